@@ -116,6 +116,7 @@ CHANGES = (
         "turn * signed_offset > 0.0",
         "fagor8070/rules/compensation",
     ),
+    Change("text/lines", "_RETURN = 10, 13", "_RETURN = 32, 13", "gost/rules/drilling"),
     Change("text/plain_word", '_POINT: ".",', '_POINT: ",",', "gost/rules/drilling"),
     Change(
         "text/comments",

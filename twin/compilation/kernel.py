@@ -15,7 +15,7 @@ from numba.extending import overload
 
 from twin.compilation.cache import keep_by_content
 from twin.compilation.compilable import take_declared
-from twin.compilation.part import PartCompiler
+from twin.compilation.part import BranchingCompiler, PartCompiler
 
 _SUMS = {"reassoc", "nsz", "nnan"}
 """Freedoms that let a sum or a maximum over neighbours be taken several at a time: its terms may be
@@ -58,6 +58,11 @@ def summing_kernel(function: Kernel) -> Kernel:
 def kernel(function: Kernel) -> Kernel:
     """Compile a function that makes no array."""
     return _compiled(function, _nrt=False)
+
+
+def branching_kernel(function: Kernel) -> Kernel:
+    """Compile a function that makes no array, and whose loops gain nothing by several rounds at a time."""
+    return _compiled(function, _nrt=False, pipeline_class=BranchingCompiler)
 
 
 def arithmetic_kernel(function: Kernel) -> Kernel:

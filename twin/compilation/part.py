@@ -1,4 +1,4 @@
-"""Numba's form of a function that has none of its own: code that kernels take in and compile with theirs."""
+"""How Numba keeps and optimises code: of functions that kernels take in, and of kernels of branches."""
 
 from typing import Any
 
@@ -50,4 +50,28 @@ class PartCompiler(Compiler):
     def __init__(self, typingctx: Any, targetctx: Any, library: Any, *rest: Any) -> None:
         if library is None:
             library = PartLibrary(targetctx.codegen(), "part")
+        super().__init__(typingctx, targetctx, library, *rest)
+
+
+class BranchingLibrary(JITCodeLibrary):
+    """Code of branches: its few loops are not made to take several rounds at a time.
+
+    To look for such loops is a quarter of what it costs to compile a kernel that has none.
+    """
+
+    def _optimize_final_module(self) -> None:
+        for options in ({"opt": 0, "cost": "cheap"}, {}):  # the two passes of Numba
+            passes, builder = self._codegen._module_pass_manager(  # noqa: SLF001 (as Numba does)
+                loop_vectorize=False, slp_vectorize=False, **options
+            )
+            passes.run(self._final_module, builder)
+
+
+class BranchingCompiler(Compiler):
+    """Compiles into such a library."""
+
+    def __init__(self, typingctx: Any, targetctx: Any, library: Any, *rest: Any) -> None:
+        if library is None:
+            library = BranchingLibrary(targetctx.codegen(), "kernel")
+            library.enable_object_caching()
         super().__init__(typingctx, targetctx, library, *rest)

@@ -23,6 +23,7 @@ REFUSED = {
     "S100 M3\nG33.1\nM2\n": "code-words",
     "F100\nG38.3\nM2\n": "code-words",
     "G93\nG38.3 X5 F10\nM2\n": "code-words",
+    "S100 M3\nG95\nG38.3 X5 F1\nM2\n": "code-words",
     "F100\nG5\nM2\n": "code-words",
     "F100\nG5.1 I5 X10 Y5\nM2\n": "code-words",
     "F100\nG5.1 X10 Y10 I2 J6\nX20 Y10 I1 J1\nM2\n": "no-motion-code",
@@ -50,6 +51,9 @@ REFUSED = {
     "o1.5 sub\no1.5 endsub\nM2\n": "o-word",
 }
 ENDS = {
+    "F90\nG0 Z9\nG81 X1 Z-1 R2\nX2 R3\nX4 R1.5\nX5 R4 L2\nG91 X1 R-4 L2\nG80\nM2\n": [7.0, 0.0, 5.0],
+    "F90\nG0 Z9\nG91 G83 X1 Z-3 R-7 Q1\nX2 R-6\nX4 R-8 L2\nG80\nM2\n": [11.0, 0.0, 1.0],
+    "F90\nG0 Z9\nG81 X1 Z-1 R2\nG85 X2 Z-2 R3\nG98 X3 R12\nM2\n": [3.0, 0.0, 12.0],
     _COMPENSATED.format("M70\nG90.1\nM72"): [40.0, 0.0, 0.0],
     _COMPENSATED.format("M70\nX25\nM72"): [40.0, 0.0, 0.0],
     _COMPENSATED.format("G17\nG21"): [40.0, 0.0, 0.0],

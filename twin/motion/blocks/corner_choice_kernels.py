@@ -158,6 +158,7 @@ def _find_ways(blocks: BlockMotion, corners: Corners, machine: MachineLimits) ->
         np.full(count, PASSED), np.full(count, math.inf), np.zeros(count), np.zeros(count),
         np.zeros((count, 4)), np.ones(count),
     )  # fmt: skip
+    known, after = -1, RampLimits(0.0, 0.0, 0.0, 0.0)
     for i in range(count):
         if i == 0 or not corners.rounded[i]:
             ways.way[i] = STOPPED
@@ -170,8 +171,8 @@ def _find_ways(blocks: BlockMotion, corners: Corners, machine: MachineLimits) ->
             ways.velocity[i] = _rounding_velocity(corners, i, machine)
             if ways.velocity[i] >= min(blocks.velocity[i - 1], blocks.velocity[i]):
                 continue
-        before = _block_limits(blocks, i - 1, machine)
-        after = _block_limits(blocks, i, machine)
+        before = after if known == i - 1 else _block_limits(blocks, i - 1, machine)
+        known, after = i, _block_limits(blocks, i, machine)
         for block, limits in ((i - 1, before), (i, after)):
             ways.ramps[block, :] = limits
             ways.unevenness[block] = _unevenness(blocks, block, machine)

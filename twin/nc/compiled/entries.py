@@ -37,15 +37,15 @@ COLD = Kernels(_run_program, program.unread_lines)
 
 def page_columns(page: Page) -> program.PageColumns:
     """A page as kernels read it."""
-    return program.PageColumns(page.data, page.starts, page.lines.start)
+    return program.PageColumns(page.data, page.starts, page.ends, page.lines.start)
 
 
 @functools.cache
 def hot() -> Kernels:
     """The compiled ones; the first call loads Numba."""
-    from twin.compilation.kernel import array_kernel, kernel
+    from twin.compilation.kernel import array_kernel, branching_kernel
 
-    return Kernels(kernel(program.run_program), array_kernel(program.unread_lines))
+    return Kernels(branching_kernel(program.run_program), array_kernel(program.unread_lines))
 
 
 def at_hand() -> bool:

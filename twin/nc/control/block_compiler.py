@@ -80,13 +80,12 @@ class BlockCompiler:
         return SortedBlock(codes, functions)
 
     def _code(self, word: Word) -> GCode | MCode:
-        number, vocabulary = _number(word), self.vocabulary
-        code = vocabulary.g.get(number) if word.address == "G" else vocabulary.m.get(number)
-        if word.address == "M" and number in self.control.interpreted_functions:
-            raise UnsupportedError
-        if code is None and word.address == "M" and vocabulary.any_m and number >= 0:
-            return MCode(meaning="machine function")
-        if code is None:
+        number, vocabulary, control = _number(word), self.vocabulary, self.control
+        if word.address == "G":
+            code = vocabulary.g.get(number)
+        else:
+            code = vocabulary.function(number, control.settings.m_functions)
+        if code is None or (word.address == "M" and number in control.interpreted_functions):
             raise UnsupportedError
         return code
 

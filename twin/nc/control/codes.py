@@ -8,6 +8,7 @@ from twin.nc.bytecode.assembler import Assembler
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import MotionMode
 from twin.nc.control.modal import ModalChanges
+from twin.nc.control.settings import MachineFunction
 from twin.nc.control.state import ControlLanguage
 from twin.nc.text.blocks import Statement, Word
 
@@ -195,3 +196,17 @@ class Vocabulary(ControlLanguage):
         """Why a G code that the control knows is refused, given its number; None: it is not."""
         declared = self.g.get(code)
         return None if declared is None or not declared.refused else declared.refusal
+
+    def function(self, number: int, declared: Mapping[int, MachineFunction]) -> MCode | None:
+        """The M code with a number; None where it has no meaning.
+
+        Args:
+            number: Below 0 where it is no whole one.
+            declared: What the machine's builder has declared of the codes outside the table.
+        """
+        code, own = self.m.get(number), declared.get(number)
+        if code is None and own is not None:
+            return MCode(meaning=own.meaning, dwell=own.dwell)
+        if code is None and self.any_m and number >= 0:
+            return MCode(meaning="machine function")
+        return code

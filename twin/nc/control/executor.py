@@ -231,11 +231,7 @@ class Executor(Control):
 
     def _m_code(self, word: Word) -> MCode:
         number = integer_of(number_of(word))
-        code = self.dialect.m.get(number)
-        if code is None and (declared := self.settings.m_functions.get(number)) is not None:
-            return MCode(meaning=declared.meaning, dwell=declared.dwell)
-        if code is None and self.dialect.any_m and number >= 0:
-            return MCode(meaning="machine function")
+        code = self.dialect.function(number, self.settings.m_functions)
         if code is None:
             known = ", ".join(f"M{number}" for number in sorted(self.dialect.m))
             self.fail(

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Unpack
 
 from twin.nc.bytecode import opcodes
-from twin.nc.control.codes import Action, CodeWriter, Effect, GCode, Ground, Interpolation
+from twin.nc.control.codes import Action, CodeWriter, Effect, GCode, Ground, Interpolation, MCode
 from twin.nc.control.modal import ModalChanges
 from twin.nc.geometry.planes import PLANE_ORDER, Plane
 
@@ -56,3 +56,10 @@ def refused(meaning: str, reason: str, *numbers: float, group: str = "") -> Mapp
     """Codes that the control knows and the twin does not follow."""
     code = GCode(meaning=meaning, group=group, refused=reason, ground="manual")
     return dict.fromkeys(numbers, code)
+
+
+def flow_function(meaning: str, action: Action, group: str = "") -> MCode:
+    """An M code of the program's flow: it acts when the block has moved, and the machine hears nothing of it."""
+    return MCode(
+        meaning=meaning, group=group, late=True, action=action, silent=True, ground="manual"
+    )

@@ -143,8 +143,8 @@ class Cycle(NamedTuple):
         retract: A ``Retract``.
         lift: How far the tool withdraws between pecks where its words do not say it; 0: to the
             reference plane [mm].
-        repeats_only: The compiled tier drills the holes behind the call whose block names an axis, in absolute coordinates; all
-            else is for the interpreter tier.
+        repeats_only: The compiled tier drills the holes behind the call whose block names an axis, in absolute coordinates, from
+            the reference plane or above; all else is for the interpreter tier.
     """
 
     lasting: bool

@@ -32,6 +32,7 @@ _ANY_BYTE = "latin-1"
 
 _DIVIDED = 256
 """Lines that are divided at once: one by one is slow, and a whole page takes eight times its text."""
+Places = npt.NDArray[np.signedinteger]
 
 
 class Page:
@@ -41,14 +42,15 @@ class Page:
         lines: Their numbers, from 0.
         text: The lines as UTF-8, with their ends.
         data: The bytes of ``text``, shape (bytes,).
-        starts: Where each line begins in it, and where the last one ends, shape (n + 1,).
+        starts: Where each line begins in it, shape (n,).
+        ends: Where it ends, before CR, LF or CR LF, shape (n,).
     """
 
     def __init__(self, first: int, text: bytes) -> None:
         self.text = text
         self.data = np.frombuffer(text, np.uint8)
-        self.starts = _line_starts(self.data)
-        self.lines = range(first, first + len(self.starts) - 1)
+        self.starts, self.ends = _line_places(self.data)
+        self.lines = range(first, first + len(self.starts))
         self._first_divided = -_DIVIDED
         self._divided: list[bytes] = []
 
@@ -57,9 +59,9 @@ class Page:
         at = number - self.lines.start
         if not 0 <= at - self._first_divided < _DIVIDED:
             self._first_divided = at - at % _DIVIDED
-            end = min(self._first_divided + _DIVIDED, len(self.starts) - 1)
-            part = self.text[self.starts[self._first_divided] : self.starts[end]]
-            self._divided = part.splitlines()
+            part = slice(self._first_divided, self._first_divided + _DIVIDED)
+            places = zip(self.starts[part].tolist(), self.ends[part].tolist(), strict=True)
+            self._divided = [self.text[begin:end] for begin, end in places]
         return self._divided[at - self._first_divided].decode(_UTF_8, _SURROGATES)
 
 
@@ -158,7 +160,7 @@ class Lines(Sequence[str]):
                 while (at := page.text.find(wanted, at)) >= 0:
                     index = int(np.searchsorted(page.starts, at, side="right")) - 1
                     yield first + index, page.line(first + index)
-                    at = int(page.starts[index + 1])
+                    at = int(page.ends[index])
 
     @property
     def text(self) -> bytes:
@@ -195,10 +197,15 @@ def _line_count(page: bytes) -> int:
     return ends + (not page.endswith((b"\n", b"\r")))
 
 
-def _line_starts(data: npt.NDArray[np.uint8]) -> npt.NDArray[np.signedinteger]:
-    """Where lines begin that end as ``_line_count`` has it, and where the last one ends."""
-    feed = data == _LINE_FEED
-    ends = feed | (data == _RETURN)
-    ends[:-1] &= ~((data[:-1] == _RETURN) & feed[1:])
-    starts = np.append(0, np.flatnonzero(ends) + 1)
-    return starts if starts[-1] == len(data) else np.append(starts, len(data))
+def _line_places(data: npt.NDArray[np.uint8]) -> tuple[Places, Places]:
+    """Where lines begin, and where they end; they are divided as ``_line_count`` has it."""
+    feed, back = data == _LINE_FEED, data == _RETURN
+    divides = feed | back
+    divides[:-1] &= ~(back[:-1] & feed[1:])
+    behind = np.flatnonzero(divides) + 1
+    if len(data) and not divides[-1]:
+        behind = np.append(behind, len(data))
+    starts = np.append(0, behind)[:-1]
+    ends = behind - divides[behind - 1]
+    ends -= feed[behind - 1] & (ends > starts) & back[ends - 1]
+    return starts, ends

@@ -72,6 +72,8 @@ def drill(
     if repeats_only and (called[0] or block.modal[INCREMENTAL] != 0.0 or not names_place):
         return UNSUPPORTED
     taken, hole = _read_cycle(block, called, tables, constants, state)
+    if repeats_only and state.programmed[plane[2]] < hole.reference:
+        return UNSUPPORTED
     if hole.fault != 0 or hole.stops > drilling_cycle.MOST_STOPS or hole.faster != 1.0:
         return UNSUPPORTED
     rest = block.seen & ~taken

@@ -38,10 +38,7 @@ from twin.nc.bytecode.registers import MOST_EVENTS, MOST_WORDS, Machine
 from twin.nc.bytecode.token_kinds import UNSUPPORTED, ByteArray, LineTables
 from twin.nc.canonical import IntArray
 from twin.nc.compiled.kernels.dispatch import DONE, dispatch_loop
-from twin.nc.compiled.kernels.tokenizer import (
-    line_end,
-    read_words,
-)
+from twin.nc.compiled.kernels.tokenizer import read_words
 from twin.nc.path.compensation.contour import MOST_LET_GO, OFF, STAGE
 
 
@@ -50,12 +47,14 @@ class PageColumns(NamedTuple):
 
     Attributes:
         data: Its bytes.
-        starts: Where each line of it begins, and where the last one ends, shape (lines + 1,).
+        starts: Where each line of it begins, shape (lines,).
+        ends: Where each ends, shape (lines,).
         first_line: Its first line, from 0.
     """
 
     data: ByteArray
     starts: IntArray
+    ends: IntArray
     first_line: int
 
 
@@ -83,7 +82,7 @@ def run_program(
     Returns:
         Why it ended.
     """
-    rows, data, starts = machine.rows, page.data, page.starts
+    rows, data = machine.rows, page.data
     progress, calls = execution.progress, execution.calls
     lines = len(table.first) - 1
     contour, events = execution.contour, machine.state.event_count
@@ -103,10 +102,9 @@ def run_program(
         is_text = row == NOT_COMPILED
         if is_text:
             at = line - page.first_line
-            if at < 0 or at >= len(starts) - 1:
+            if at < 0 or at >= len(page.starts):
                 return OFF_PAGE
-            begin = int(starts[at])
-            end = line_end(data, begin, int(starts[at + 1]))
+            begin, end = int(page.starts[at]), int(page.ends[at])
             if progress[PART] > 0 or end - begin > line_tables.longest:
                 return UNCOMPILED_LINE
             words = read_words(data, begin, end, line_tables, scratch.token_kinds, scratch.values)
@@ -144,13 +142,12 @@ def unread_lines(
         line: The line before them, from 0.
         most: How many lines are looked at.
     """
-    data, starts, first_line = page
+    data, first_line = page.data, page.first_line
     token_kinds, values = np.zeros(MOST_WORDS, np.int64), np.zeros(MOST_WORDS)
-    last = min(line + 1 + most, first_line + len(starts) - 1)
+    last = min(line + 1 + most, first_line + len(page.starts))
     found, count = np.zeros(most, np.int64), 0
     for each in range(line + 1, last):
-        begin = starts[each - first_line]
-        end = line_end(data, begin, starts[each - first_line + 1])
+        begin, end = page.starts[each - first_line], page.ends[each - first_line]
         if first[each] != NOT_COMPILED or end - begin > line_tables.longest:
             continue
         if read_words(data, begin, end, line_tables, token_kinds, values) == UNSUPPORTED:

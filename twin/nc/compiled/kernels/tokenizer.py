@@ -37,19 +37,6 @@ A quotient of two exact doubles is the double nearest to the decimal number, as 
 
 
 @compilable
-def line_end(data: ByteArray, begin: int, following: int) -> int:
-    """End of a line without its CR, LF or CR LF, given where it and the next one begin."""
-    end = following
-    if end > begin and data[end - 1] == 10:
-        end -= 1
-        if end > begin and data[end - 1] == 13:
-            end -= 1
-    elif end > begin and data[end - 1] == 13:
-        end -= 1
-    return end
-
-
-@compilable
 def read_words(
     data: ByteArray,
     begin: int,

@@ -24,6 +24,7 @@ from twin.nc.dialects.fagor8070.decisions import DECISIONS
 from twin.nc.dialects.fagor8070.library import with_globals
 from twin.nc.dialects.fagor8070.memory import FagorMemory, acts_on_plain_blocks
 from twin.nc.iso import base, shared_marks
+from twin.nc.iso.declared import flow_function
 from twin.nc.text.syntax import Comment, Mark, Syntax
 
 
@@ -76,21 +77,9 @@ FAGOR8070 = Dialect(
             action=Effect(frames.change_tool),
             ground="manual",
         ),
-        17: MCode(
-            meaning="end of subroutine",
-            late=True,
-            action=subroutines.return_,
-            silent=True,
-            ground="manual",
-        ),
+        17: flow_function("end of subroutine", subroutines.return_),
         19: MCode(meaning="spindle orientation", ground="manual"),
-        29: MCode(
-            meaning="end of subroutine",
-            late=True,
-            action=subroutines.return_,
-            silent=True,
-            ground="manual",
-        ),
+        29: flow_function("end of subroutine", subroutines.return_),
         **{number: MCode(meaning="spindle gear", ground="manual") for number in range(41, 45)},
     },
     motion_words=frozenset("XYZABCUVWIJKRQ") | {"R1"},

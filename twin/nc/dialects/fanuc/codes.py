@@ -21,7 +21,7 @@ from twin.nc.dialects.fanuc import (
 from twin.nc.dialects.fanuc.cycles.canned_cycles import cycles
 from twin.nc.dialects.fanuc.memory import Variant, memory_of
 from twin.nc.iso import base, fixed_cycles
-from twin.nc.iso.declared import instead, modal, motion_code, refused
+from twin.nc.iso.declared import flow_function, instead, modal, motion_code, refused
 from twin.nc.iso.tool_compensation import (
     END_OF_COMPENSATION,
     LEFT,
@@ -231,18 +231,6 @@ M_CODES: Mapping[int, MCode] = {
     **base.M_CODES,
     19: MCode(meaning="spindle orientation", ground="manual"),
     29: MCode(meaning="rigid tapping", ground="manual"),
-    98: MCode(
-        meaning="run a subprogram: P L",
-        late=True,
-        action=programs.call,
-        silent=True,
-        ground="manual",
-    ),
-    99: MCode(
-        meaning="end of a subprogram, or jump: P",
-        late=True,
-        action=programs.return_,
-        silent=True,
-        ground="manual",
-    ),
+    98: flow_function("run a subprogram: P L", programs.call),
+    99: flow_function("end of a subprogram, or jump: P", programs.return_),
 }

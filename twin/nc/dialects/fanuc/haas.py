@@ -13,7 +13,7 @@ from twin.nc.dialects.fanuc.decisions import DECISIONS as FANUC_DECISIONS
 from twin.nc.dialects.fanuc.memory import HAAS
 from twin.nc.dialects.fanuc.tool_offsets import radius_in_force
 from twin.nc.geometry.planes import XY
-from twin.nc.iso.declared import instead, modal, refused
+from twin.nc.iso.declared import flow_function, instead, modal, refused
 
 _LACKING = (5, 5.1, 7.1, 8, 15, 16, 27, 30, 50.1, 51.1, 54.1, 62, 63, 87, 92.1)
 """Codes that the control lacks."""
@@ -151,13 +151,7 @@ INSTEAD: Mapping[float, str] = {
 
 HAAS_M_CODES: Mapping[int, MCode] = {
     **M_CODES,
-    97: MCode(
-        meaning="run blocks of this program as a subprogram: P L",
-        late=True,
-        action=programs.call_block,
-        silent=True,
-        ground="manual",
-    ),
+    97: flow_function("run blocks of this program as a subprogram: P L", programs.call_block),
     **{
         number: MCode(meaning=meaning, ground="manual")
         for number, meaning in {

@@ -266,7 +266,7 @@ def _drill_holes(control: Control, kind: Kind, repeats: int) -> None:
     clear = reference if control.modal.return_to_reference else start
     i, j, k = memory.back_boring
     hole = Drilling(reference, bottom, clear, state, (i, j, k + bottom if incremental else k))
-    current = control.programmed[axis]
+    current = max(control.programmed[axis], reference)
     if not control.modal.return_to_reference:
         current = start
     for number in range(repeats):

@@ -9,6 +9,7 @@ from twin.nc.dialects.linuxcnc import compensation, saved_state
 from twin.nc.dialects.linuxcnc.flow import call_program, return_from_program
 from twin.nc.dialects.linuxcnc.memory import memory_of
 from twin.nc.dialects.linuxcnc.offsets import refuse_in_compensation
+from twin.nc.iso.declared import flow_function
 from twin.nc.text.blocks import Word
 
 TIMES_OUT = (0.0, 1.0, 2.0, 3.0, 4.0)
@@ -191,8 +192,6 @@ M_CODES = {
               action=saved_state.restore, silent=True, ground="manual"),
     73: MCode(meaning="what is in force is put aside until the subroutine ends", group="state",
               action=saved_state.save_until_return, silent=True, ground="manual"),
-    98: MCode(meaning="the program O P is run, L times", group="call", late=True,
-              action=call_program, silent=True, ground="manual"),
-    99: MCode(meaning="end of that program; the main program begins anew", group="call", late=True,
-              action=return_from_program, silent=True, ground="manual"),
+    98: flow_function("the program O P is run, L times", call_program, "call"),
+    99: flow_function("end of that program; the main program begins anew", return_from_program, "call"),
 }  # fmt: skip

@@ -221,7 +221,7 @@ def probe(control: Control) -> None:
     refuse_in_compensation(control)
     require_axes(control)
     check_feed(control, False)
-    if control.modal.feed_mode is FeedMode.BLOCKS_PER_MINUTE:
+    if control.modal.feed_mode is not FeedMode.PER_MINUTE:
         control.fail("code-words", "probing needs a feed per minute", hint="write G94 F")
     goal = target(control)
     control.function("G38", {})
