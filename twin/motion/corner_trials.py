@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from twin.columns import join
-from twin.motion.blocks.blocks import BoolArray, Surroundings
+from twin.motion.blocks.blocks import Blocks, BoolArray, Surroundings
 from twin.motion.blocks.corners import Borders, find_borders
 from twin.motion.limits import MotionLimits
 from twin.motion.phases_of_pieces import phases_of_pieces
@@ -23,7 +23,46 @@ MOST_BLOCKS = 64
 """Between two stops: of more, stops do not make up for what passing their corners gains."""
 
 
-class PiecesOfChunks(Step[Surroundings, Pieces]):
+@dataclasses.dataclass(frozen=True, slots=True)
+class _Span:
+    """Pieces of a program, the last of which are doubtful.
+
+    Attributes:
+        pieces: All of them, in order.
+        first: The first doubtful one.
+        blocks: What the doubtful ones were cut from, from a stop to a stop; None: none is doubtful.
+    """
+
+    pieces: Pieces
+    first: int = 0
+    blocks: Blocks | None = None
+
+
+class _Spans(Step[Surroundings, _Span]):
+    """Cuts blocks, and tells between which stops they are doubtful."""
+
+    def __init__(
+        self, parts: Iterable[Surroundings], limits: MotionLimits, largest_override: float
+    ) -> None:
+        super().__init__(parts)
+        self._limits, self._largest_override = limits, largest_override
+
+    def take(self, part: Surroundings) -> Iterator[_Span]:
+        """The pieces of some blocks."""
+        borders = find_borders(part.blocks, self._limits, self._largest_override)
+        pieces = cut(part, borders, self._limits, self._largest_override)
+        begins = np.append(
+            np.flatnonzero((pieces.begin == 0.0) | (pieces.length == 0.0)), len(pieces)
+        )
+        done = 0
+        for first, last in _doubtful(part, borders):
+            begin, end = begins[[first - part.first, last - part.first]].tolist()
+            yield _Span(pieces[done:end], begin - done, part.blocks[first:last])
+            done = end
+        yield _Span(pieces[done:])
+
+
+class PiecesOfChunks(Step[_Span, Pieces]):
     """Cuts a program into pieces, dwells included, in order.
 
     Args:
@@ -43,40 +82,25 @@ class PiecesOfChunks(Step[Surroundings, Pieces]):
         start: FloatArray,
         largest_override: float = 1.0,
     ) -> None:
-        super().__init__(blocks_to_cut(chunks, start))
+        super().__init__(_Spans(blocks_to_cut(chunks, start), limits, largest_override))
         self._limits, self._largest_override = limits, largest_override
 
-    def take(self, part: Surroundings) -> Iterator[Pieces]:
-        """The pieces of some blocks."""
-        limits, largest_override = self._limits, self._largest_override
-        borders = find_borders(part.blocks, limits, largest_override)
-        pieces = cut(part, borders, limits, largest_override)
-        yield _with_faster_stops(pieces, part, borders, limits, largest_override)
-
-
-def _with_faster_stops(
-    pieces: Pieces, surroundings: Surroundings, borders: Borders, limits: MotionLimits,
-    largest_override: float,
-) -> Pieces:  # fmt: skip
-    """The pieces, those between two stops by stops at every corner where that is faster."""
-    blocks = surroundings.blocks
-    parts, done = list[Pieces](), 0
-    begins = np.append(np.flatnonzero((pieces.begin == 0.0) | (pieces.length == 0.0)), len(pieces))
-    for first, last in _doubtful(surroundings, borders):
-        begin, end = begins[[first - surroundings.first, last - surroundings.first]]
-        passing = pieces[begin:end]
-        corner = np.full(last - first, Corner.EXACT_STOP, np.uint8)
-        apart = Surroundings(
-            dataclasses.replace(blocks[first:last], corner=corner), 0, last - first, True
-        )
-        stopping = cut(
-            apart, find_borders(apart.blocks, limits, largest_override), limits, largest_override
-        )
+    def take(self, part: _Span) -> Iterator[Pieces]:
+        """The pieces of a span, the doubtful ones by stops at every corner where that is faster."""
+        blocks = part.blocks
+        if blocks is None:
+            yield part.pieces
+            return
+        limits, override = self._limits, self._largest_override
+        corner = np.full(len(blocks), Corner.EXACT_STOP, np.uint8)
+        apart = Surroundings(dataclasses.replace(blocks, corner=corner), 0, len(blocks), True)
+        stopping = cut(apart, find_borders(apart.blocks, limits, override), limits, override)
+        passing = part.pieces[part.first :]
         stopping.overlap[0] = passing.overlap[0]
         if _seconds(stopping, limits) < _seconds(passing, limits):
-            parts += [pieces[done:begin], stopping]
-            done = int(end)
-    return join([*parts, pieces[done:]]) if parts else pieces
+            yield join([part.pieces[: part.first], stopping])
+        else:
+            yield part.pieces
 
 
 def _doubtful(surroundings: Surroundings, borders: Borders) -> list[tuple[int, int]]:

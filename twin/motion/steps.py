@@ -32,10 +32,25 @@ class Step(abc.ABC, Generic[Taken, Made]):
         while not self._made:
             if self._over:
                 raise StopIteration
-            part = next(self._parts, None)
-            self._over = part is None
-            self._made.extend(self.finish() if part is None else self.take(part))
+            self._take_next()
         return self._made.popleft()
+
+    def work(self) -> bool:
+        """Do the least that brings the next result nearer: one part of the first step that lacks one.
+
+        Returns:
+            Whether the next result is there, or none comes any more.
+        """
+        if not self._made and not self._over:
+            if isinstance(self._parts, Step) and not self._parts.work():
+                return False
+            self._take_next()
+        return bool(self._made) or self._over
+
+    def _take_next(self) -> None:
+        part = next(self._parts, None)
+        self._over = part is None
+        self._made.extend(self.finish() if part is None else self.take(part))
 
     @abc.abstractmethod
     def take(self, part: Taken) -> Iterator[Made]:

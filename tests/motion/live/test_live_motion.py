@@ -119,6 +119,18 @@ def test_slices_do_not_matter(
         assert np.array_equal(getattr(whole, name), getattr(sliced, name)), name
 
 
+@FEWER
+@given(programs(most=8, corners=tuple(Corner)), limits())
+def test_what_is_planned_ahead_is_what_is_planned_when_needed(
+    program: Program, machine: MotionLimits
+) -> None:
+    ahead, parts = live(program, machine), list[Setpoints]()
+    while not ahead.finished:
+        ahead.work()
+        parts.append(ahead.advance(500))
+    assert np.array_equal(join(parts).position, join(to_the_end(live(program, machine))).position)
+
+
 def speed(setpoints: Setpoints) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
     return np.linalg.norm(setpoints.velocity[:, :3], axis=1)
 

@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 
 from tests.training.session.commanding import do
+from twin.motion import corner_trials
 from twin.nc.text.source import source_from_text
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.session.block_walk import FORGOTTEN_AT_ONCE
-from twin.training.session.program_run import MOVES_AT_ONCE
+from twin.training.session.program_run import MOVES_AT_ONCE, PLANNED_AT_REST
 from twin.training.session.session import Session
 
 
@@ -53,6 +54,29 @@ def test_what_lies_behind_the_axes_is_forgotten(contour):
     _, remembered = contour
     assert max(blocks for blocks, _ in remembered) <= 2 * FORGOTTEN_AT_ONCE
     assert max(moves for _, moves in remembered) <= 2 * MOVES_AT_ONCE
+
+
+def test_the_room_is_heard_while_the_corners_of_a_program_are_tried(monkeypatch):
+    """A corner beside an arc is planned in both ways: a slice of time tries few of them."""
+    tried = []
+    seconds = corner_trials._seconds
+
+    def counted(pieces, limits):
+        tried.append(pieces)
+        return seconds(pieces, limits)
+
+    monkeypatch.setattr(corner_trials, "_seconds", counted)
+    bend = "G64 P0.05\nG1 X3 Y1\nG2 X6 Y1 R2\nG1 X8 Y0\nG61.1\nX0 Y0\n"
+    session = session_of("G1 F3000 X0 Y0 Z50\n" + bend * 60 + "M2\n")
+    do(session, "cycle_start")
+    in_a_slice = []
+    for _ in range(8):
+        before = len(tried)
+        session.advance()
+        in_a_slice.append(len(tried) - before)
+    assert max(in_a_slice) == 2 * PLANNED_AT_REST
+    assert sum(in_a_slice) > max(in_a_slice)
+    assert np.any(session.room.samples.joint_velocity)
 
 
 @pytest.fixture

@@ -99,6 +99,16 @@ class LiveMotion:
         """
         self._plan.begin()
 
+    def work(self) -> bool:
+        """Plan a little ahead, so that ``begin`` and ``advance`` find it planned.
+
+        What ``chunks`` raise comes through, as from ``begin``.
+
+        Returns:
+            Whether there is no more to do until the axes are further.
+        """
+        return self._plan.work()
+
     @property
     def feed_override(self) -> float:
         """Factor of programmed feeds, 0 to ``largest_override``; at 0 feed moves stand.

@@ -100,6 +100,10 @@ class OverriddenPlan:
             self._empty = not self._open()
             self._begun = True
 
+    def work(self) -> bool:
+        """Plan a little of the next window ahead; whether there is no more to do until it is needed."""
+        return self._windows.work()
+
     @property
     def ended(self) -> bool:
         """Whether the plan reaches the program's end."""

@@ -55,6 +55,8 @@ BLOCKS_AT_REST, BLOCKS_IN_MOTION = 200, 50
 """Blocks that are interpreted in one slice of time, before the axes move and while they do."""
 BLOCKS_FOR_PLANNER = 400
 """Blocks more that are interpreted in one slice where the planner has caught up."""
+PLANNED_AT_REST = 16
+"""Steps of planning in one slice before the axes can go: corners that are tried take a few milliseconds each."""
 MOVES_KEPT_BEHIND = 2
 """Moves behind the axes that are remembered: a stop at a block's end may count as the next one's beginning."""
 SLICES_AT_REST = 100
@@ -362,6 +364,8 @@ class ProgramRun:
         if self._motion is None and long_enough and len(self._control.path):
             self._finish_chunk(self._control.path.take())
         enough = long_enough or self.ending is not None or len(self._waiting) >= CHUNKS_AHEAD
+        if self._motion is not None and (self._waiting or self.ending is not None):
+            self._motion.work()
         known = self._waiting or self._beginning is not None
         if self._motion is None and known and enough:
             self._begin_to_plan(at_any_rate=long_enough)
@@ -380,6 +384,8 @@ class ProgramRun:
             )
         self._takes_any = at_any_rate
         try:
+            if not any(self._beginning.work() for _ in range(PLANNED_AT_REST)):
+                return
             self._beginning.begin()
         except _TooFewMovesError:
             self._ahead += CHUNKS_AHEAD
