@@ -87,7 +87,7 @@ def uses_of_limits(
         the solver went astray.
     """
     uses = np.zeros((len(phases) // 2, 3))
-    before = np.zeros((len(machine.jerk), 2))
+    before = np.zeros((len(machine.jerk), 3))
     for row in range(len(phases)):
         _, duration, begin, v0, a0, j = phases[row]
         fast, hard, sudden = uses[row >> 1]
@@ -110,14 +110,15 @@ def uses_of_limits(
                 q1, q2, q3 = derivatives_at(pieces, piece, x, axis)
                 squares += q2 * q2 if axis < 3 else 0.0
                 velocity, acceleration = q1 * v, q2 * v * v + q1 * a
-                jerk = abs((q3 * v * v + 3.0 * q2 * a) * v + q1 * j)
+                jerk = (q3 * v * v + 3.0 * q2 * a) * v + q1 * j
                 if part > 0:
-                    u0, slope = before[axis]
-                    highest = _highest(u0, slope, velocity, acceleration, step)
+                    v_before, a_before, j_before = before[axis]
+                    highest = _highest(v_before, a_before, velocity, acceleration, step)
+                    hardest = _highest(a_before, j_before, acceleration, jerk, step)
                     fast = max(fast, highest / machine.velocity[axis])
-                before[axis, 0], before[axis, 1] = velocity, acceleration
-                hard = max(hard, abs(acceleration) / machine.acceleration[axis])
-                sudden = max(sudden, jerk / machine.jerk[axis])
+                    hard = max(hard, hardest / machine.acceleration[axis])
+                before[axis, 0], before[axis, 1], before[axis, 2] = velocity, acceleration, jerk
+                sudden = max(sudden, abs(jerk) / machine.jerk[axis])
             hard = max(hard, v * v * math.sqrt(squares) / machine.path[0])
         uses[row >> 1, 0], uses[row >> 1, 1], uses[row >> 1, 2] = fast, hard, sudden
     return uses
@@ -125,13 +126,13 @@ def uses_of_limits(
 
 @arithmetic_kernel
 def _highest(v0: float, a0: float, v1: float, a1: float, step: float) -> float:
-    """Highest absolute velocity along a step, as a cubic tells it from its ends.
+    """Highest absolute value along a step, as a cubic tells it from its ends.
 
     Args:
-        v0: Velocity at the begin.
-        a0: Acceleration at the begin.
-        v1: Velocity at the end.
-        a1: Acceleration at the end.
+        v0: Value at the begin, such as a velocity.
+        a0: Its rate of change there, such as an acceleration.
+        v1: Value at the end.
+        a1: Its rate of change there.
         step: Duration [s].
     """
     sign = math.copysign(1.0, v0 + v1)
