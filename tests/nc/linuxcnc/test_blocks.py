@@ -71,6 +71,8 @@ ENDS = {
     "N 1 0 G0 X1 2 (X 1 3) Y3\nM2\n": [12.0, 3.0, 0.0],
     "o 1 0 0 sub\nG0 Z1\no100 endsub\no1 00 call\nM2\n": [0.0, 0.0, 1.0],
     "o1 . sub\nG0 Z1\no1.0 endsub\no1 call\no01. call\nM2\n": [0.0, 0.0, 1.0],
+    "o<a> sub\no1 if [#1 GT 0]\no<a> call [#2Y]\no1 endif\nG0 Z1\no<a> endsub\no<a> call [0]\nM2\n":
+        [0.0, 0.0, 1.0],
     "F100\nG38.5 X0.1\nM2\n": [0.1, 0.0, 0.0],
     "F100 G20\nG0 X[#<_feed>/100]\nG21\nG0 Y[#<_feed>]\nF5\nG0 Z[#<_feed>]\nM2\n": [25.4, 100.0, 5.0],
     "T1\nT2 M6\nM6\nG43\nG0 Z1\nM2\n": [0.0, 0.0, 21.0],

@@ -17,7 +17,7 @@ from twin.nc.dialects.linuxcnc.structure import (
     KEYWORDS,
     LOOPS,
     OWord,
-    lines_of_label,
+    lines_to_read,
     name_of_label,
     o_word,
     scope,
@@ -325,7 +325,7 @@ def _sub(control: Control, statement: Statement, word: OWord, assembler: Assembl
     """A definition that the program comes to: its own lines are read, and it goes on behind it."""
     _declare(control, statement, word, assembler)
     construct = _construct_of(control, statement, word)
-    for line in lines_of_label(control, construct):
+    for line in lines_to_read(control, construct):
         _read_line(control, line)
 
     def define() -> None:

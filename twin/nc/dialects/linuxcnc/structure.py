@@ -149,13 +149,18 @@ def structure(control: Control) -> Structure:
     return memory.structure
 
 
-def lines_of_label(control: Control, construct: Construct) -> list[int]:
-    """Lines, from 0, within a construct and at its end whose O-word has its label."""
+def lines_to_read(control: Control, construct: Construct) -> list[int]:
+    """Lines, from 0, that the control reads where it passes over a definition.
+
+    They are those within it and at its end whose O-word has its label, but for calls (``rs274``).
+    """
     assert construct.end is not None
     lines = control.program_counter.lines
     inner = range(construct.begin + 1, construct.end + 1)
     named = ((line, named_o_word(lines[line])) for line in inner)
-    return [line for line, word in named if word is not None and word[0] == construct.name]
+    return [
+        line for line, word in named if word and word[0] == construct.name and word[1] != "CALL"
+    ]
 
 
 def scope(control: Control, line: int) -> str:
