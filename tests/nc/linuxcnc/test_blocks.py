@@ -48,6 +48,9 @@ REFUSED = {
     "G0 X1 M98 P100\nM2\nO100\nG0 X5\nM99\n": "code-words",
     "M98 P100\nM2\nO100\nG0 X5\nM9 M99\n": "code-words",
     "G0 X1 (one (two)\nM2\n": "open-comment",
+    "S100 M3\nM19 R45 P3\nM2\n": "code-words",
+    "S100 M3\nM19 R45 P1.5\nM2\n": "code-words",
+    "S100 M3\nM19 R45 Q0\nM2\n": "code-words",
     "o1.5 sub\no1.5 endsub\nM2\n": "o-word",
 }
 ENDS = {

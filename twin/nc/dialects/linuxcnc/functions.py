@@ -90,14 +90,19 @@ def orient_spindle(control: Control) -> None:
     """M19 R, P, Q: the spindle's angle changes no path.
 
     Raises:
-        ProgramError: R is no angle of one turn.
+        ProgramError: R is no angle of one turn, P none of 0, 1 and 2, or Q not above 0.
     """
     angle = control.take("R")
     if angle is not None and not 0.0 <= control.number(angle) <= 360.0:
         control.fail(
             "code-words", f"{angle.text} is no angle of one turn", angle, "0 to 360 degrees"
         )
-    _with_words("PQ", "")(control)
+    way, seconds = control.take("P"), control.take("Q")
+    if way is not None and control.number(way) not in (0.0, 1.0, 2.0):
+        message = "P of M19 is 0 (the shorter way), 1 (clockwise) or 2 (counter-clockwise)"
+        control.fail("code-words", message, way)
+    if seconds is not None and control.number(seconds) <= 0.0:
+        control.fail("code-words", "Q of M19, its seconds, must be above 0", seconds)
 
 
 def read_input(control: Control) -> None:
