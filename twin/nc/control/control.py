@@ -6,12 +6,21 @@ from collections.abc import Callable, Mapping
 
 from twin.nc.bytecode.assembler import Assembler
 from twin.nc.bytecode.effects import Affected
-from twin.nc.bytecode.registers import INCREMENTAL, PLANE, PROGRAMMED_FEED, UNIT
+from twin.nc.bytecode.registers import (
+    ACCELERATION,
+    CORNER,
+    CORNER_TOLERANCE,
+    DECELERATION,
+    INCREMENTAL,
+    PROGRAMMED_FEED,
+    RAPID_FEED,
+    UNIT,
+)
 from twin.nc.canonical import Dwell, Function
-from twin.nc.control.modal import FEED_FACTORS, FeedMode
+from twin.nc.control.modal import CORNERS, FEED_FACTORS, FeedMode
 from twin.nc.control.words import ControlWords
 from twin.nc.geometry.frame import moved_shift
-from twin.nc.geometry.planes import PLANE_ORDER, Plane, Vector
+from twin.nc.geometry.planes import Plane, Vector
 from twin.nc.path.event_columns import EventRows
 from twin.nc.path.move_columns import FEED, NAN, RAPID, Segment
 from twin.nc.path.moves import (
@@ -33,8 +42,8 @@ class Control(ControlWords):
 
     def target(self) -> list[float]:
         """Take the axis words; the programmed position that they ask for, shape (k,)."""
-        target, modal, linear = list(self.programmed), self.modal, self.linear
-        unit, relative = modal.unit, modal.incremental
+        target, cells, linear = list(self.programmed), self.modal.cells, self.linear
+        unit, relative = cells[UNIT], cells[INCREMENTAL] != 0.0
         for index, word in self.take_axis_words():
             incremental = relative or word.incremental
             here = target[index]
@@ -88,12 +97,12 @@ class Control(ControlWords):
         if length < SMALLEST_MOVE:
             self.programmed = target
             return
-        modal = self.modal
+        cells, registers = self.modal.cells, self.registers
         is_arc = center is not None
         if self.series:
             self.place_switches(length)
-        feed = self.rapid_feed if rapid else self._feed_per_minute(end, is_arc, length)
-        acceleration, deceleration = self.acceleration, self.deceleration
+        feed = registers[RAPID_FEED] if rapid else self._feed_per_minute(end, is_arc, length)
+        acceleration, deceleration = registers[ACCELERATION], registers[DECELERATION]
         if rapid:
             acceleration = _either(self.rapid_acceleration, acceleration)
             deceleration = _either(self.rapid_deceleration, deceleration)
@@ -110,8 +119,8 @@ class Control(ControlWords):
             end,
             target,
             feed,
-            RAPIDS_END if rapid else modal.corner,
-            modal.corner_tolerance,
+            RAPIDS_END if rapid else CORNERS[int(cells[CORNER])],
+            cells[CORNER_TOLERANCE],
             acceleration,
             deceleration,
             center,
@@ -188,15 +197,9 @@ class Control(ControlWords):
 
     def begin_effect(self) -> Affected:
         """Let the columns show what the control keeps as objects, for an instruction."""
-        state, modal = self.state, self.modal
+        state = self.state
         state.event_count[0] = 0
         state.programmed[:], state.part[:] = self.programmed, self.part
-        state.modal[UNIT], state.modal[INCREMENTAL] = modal.unit, modal.incremental
-        if modal.plane in PLANE_ORDER:
-            state.modal[PLANE] = PLANE_ORDER.index(modal.plane)
-        else:
-            state.modal[PLANE] = len(PLANE_ORDER)
-            self.constants.directions[len(PLANE_ORDER)] = modal.plane.directions
         return Affected(self.constants, state, self._event_room)
 
     def end_effect(self) -> None:

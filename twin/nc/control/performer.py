@@ -11,13 +11,12 @@ from twin.nc.bytecode import effects, opcodes
 from twin.nc.bytecode.assembler import Assembler, Target, found
 from twin.nc.bytecode.bytecode import MOST_VALUES, Instruction, number_of_location
 from twin.nc.bytecode.effects import BlockPlace, run_effect
-from twin.nc.bytecode.flow import Transfer, count_loop, jumps, transfer
+from twin.nc.bytecode.flow import Transfer, count_loop, jumps, keep_codes, transfer
 from twin.nc.bytecode.frames import (
     CALLS,
     DEPTH,
     NO_LOCATION,
     NOTHING_RESTORED,
-    RESTORED_BY_CONTROL,
     go_to,
 )
 from twin.nc.bytecode.variables import store
@@ -264,17 +263,13 @@ class Performer(Assembler):
         known, to = transfer(instruction, value, self._to, counter.calls, local)
         if not known:
             self._refuse_transfer(instruction)
-        if opcode == opcodes.RESTORE_CODES:
-            to = to._replace(restores=RESTORED_BY_CONTROL)
         self._to = to
         if opcode not in (opcodes.CALL, opcodes.REPEAT, opcodes.RETURN):
             return
         go_to(to.going, counter.progress)
         counter.progress[DEPTH], counter.progress[CALLS] = to.depth, to.called
-        if to.restores == RESTORED_BY_CONTROL and opcode == opcodes.RETURN:
-            control.restore_modal(counter.saved.pop(to.called))
-        elif to.restores == RESTORED_BY_CONTROL:
-            counter.saved[to.called - 1] = control.saved_modal()
+        keep_codes(opcode, to, control.state.modal, counter.saved)
+        control.forget_ended_cycle()
         raise _Gone
 
     def _refuse_transfer(self, instruction: Instruction) -> NoReturn:

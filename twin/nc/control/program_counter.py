@@ -19,7 +19,6 @@ from twin.nc.bytecode.frames import (
     end_parts,
 )
 from twin.nc.canonical import NO_BLOCK_NUMBER
-from twin.nc.control.modal import SavedModal
 from twin.nc.text.blocks import Block, Location
 from twin.nc.text.diagnostics import ProgramError
 from twin.nc.text.lexer import Lexer
@@ -45,7 +44,7 @@ class ProgramCounter:
     Attributes:
         progress: How far the program has come, as ``frames`` has it, shape (``PROGRESS``,).
         calls: The parts that are being run for a caller, the innermost last, as ``frames`` has them.
-        saved: What the ends of calls put back into force, by their rows.
+        saved: What was in force when each was called, shape (``MOST_CALLS``, m).
     """
 
     def __init__(
@@ -54,6 +53,7 @@ class ProgramCounter:
         lexer: Lexer,
         step_limit: int,
         report: Reporter,
+        in_force: int,
     ) -> None:
         """Stand before the program.
 
@@ -62,6 +62,7 @@ class ProgramCounter:
             lexer: Reads its lines.
             step_limit: Blocks that may be run again.
             report: Where diagnostics go.
+            in_force: How many numbers say what is in force.
         """
         self._lines = source.lines
         self._line_count = len(source.lines)
@@ -72,7 +73,7 @@ class ProgramCounter:
         self._now = self.progress.data
         self._now[FURTHEST], self._now[INSTRUCTION_BUDGET] = -1, step_limit
         self.calls = np.zeros((MOST_CALLS, CALL_COLUMNS), np.int64)
-        self.saved: dict[int, SavedModal] = {}
+        self.saved = np.zeros((MOST_CALLS, in_force))
         self._labels: FoundInText[int | str, list[Location]] | None = None
         self._cache = FoundInText[int, tuple[Block, ...]]()
         self._told_to_end = False

@@ -9,11 +9,15 @@ from typing import NoReturn, Protocol
 import numpy as np
 
 from twin.nc.bytecode.registers import (
+    ACCELERATION,
+    CYCLE,
     CYCLE_STATE,
     CYCLE_WORDS,
+    DECELERATION,
     MATRIX,
     MOST_EVENTS,
     PROGRAMMED_FEED,
+    RAPID_FEED,
     SPINDLE,
     SPINDLE_TURNS,
     TURNED,
@@ -22,12 +26,12 @@ from twin.nc.bytecode.registers import (
     new_state,
 )
 from twin.nc.bytecode.variables import Variables
-from twin.nc.control.modal import Modal, SavedModal
+from twin.nc.control.modal import Modal
 from twin.nc.control.program_counter import ProgramCounter
 from twin.nc.control.settings import ControlSettings, ToolData
 from twin.nc.control.tools import Tools
 from twin.nc.geometry.frame import Frame
-from twin.nc.geometry.planes import PLANE_ORDER, XY
+from twin.nc.geometry.planes import PLANE_ORDER
 from twin.nc.path.drilling_cycle import MOST_STOPS, START, forget, most_acts
 from twin.nc.path.move_columns import NAN, Segment
 from twin.nc.path.path import Path
@@ -72,6 +76,19 @@ class HasGroup(Protocol):
         ...
 
 
+class Register:
+    """A register of a control; NaN: none."""
+
+    def __init__(self, place: int) -> None:
+        self._place = place
+
+    def __get__(self, control: "ControlState", _kind: type) -> float:
+        return control.registers[self._place]
+
+    def __set__(self, control: "ControlState", value: float) -> None:
+        control.registers[self._place] = value
+
+
 class ControlState:
     """The state of one control while it runs one program.
 
@@ -79,7 +96,7 @@ class ControlState:
         settings: What it was told of the machine and the job.
         report: Where its diagnostics go.
         modal: What stays in force.
-        active: Number of the G code in force in each group.
+        active: Number of the G code in force in each group, a part of that.
         memory: What only this dialect remembers.
         state: What both tiers remember, as columns.
         registers: Those of its registers, one by one.
@@ -98,7 +115,6 @@ class ControlState:
         words: Its words that nothing has taken yet.
         codes: Its G codes.
         series: Its words for switch points, in order.
-        rapid_feed: Feed of rapids where the program limits it [mm/min]; NaN: the machine's.
         rapid_acceleration: Acceleration of rapids where the program sets their own [mm/s²]; NaN:
             that of the path.
         rapid_deceleration: Deceleration of rapids, likewise [mm/s²].
@@ -109,15 +125,21 @@ class ControlState:
         ended: An end code was run.
     """
 
+    acceleration = Register(ACCELERATION)
+    """[mm/s²]; NaN: the machine's."""
+    deceleration = Register(DECELERATION)
+    """[mm/s²]; NaN: the machine's."""
+    rapid_feed = Register(RAPID_FEED)
+    """Feed of rapids where the program limits it [mm/min]; NaN: the machine's."""
+
     def __init__(
-        self, language: ControlLanguage, settings: ControlSettings, source: Source
+        self, language: ControlLanguage, settings: ControlSettings, source: Source, modal: Modal
     ) -> None:
         self.settings = settings
         self.report = Reporter(source, strict=settings.strict)
         self.axis_index = {name: index for index, name in enumerate(settings.axes.names)}
         self.linear = tuple(kind == "linear" for kind in settings.axes.kinds)
-        self.modal = Modal()
-        self.active: dict[str, float] = {}
+        self.modal, self.active = modal, modal.active
         self.memory = language.memory()
         self.axis_letters = language.axis_letters
         self._axis_columns = {
@@ -126,7 +148,7 @@ class ControlState:
         self._axes_that_lack = self.axis_letters - self.axis_index.keys()
         self.programmed = [settings.start.get(name, 0.0) for name in settings.axes.names]
         self.part = list(self.programmed)
-        self.state = new_state(self.programmed)
+        self.state = new_state(self.programmed, modal.column)
         columns = self.state.registers
         self.registers = cells(columns)
         self.frame = Frame(
@@ -135,8 +157,6 @@ class ControlState:
             columns[MATRIX:],
             columns[TURNED : TURNED + 1],
         )
-        self.acceleration = NAN
-        self.deceleration = NAN
         self.rapid_acceleration = NAN
         self.rapid_deceleration = NAN
         self.tools = Tools(settings.tools, self.registers, any_tool=settings.any_tool)
@@ -144,7 +164,9 @@ class ControlState:
         self._event_room = new_rows(0, MOST_EVENTS, len(self.linear))
         self.path = Path(settings.axes, self.part, self._refuse_move, self._warn_of_move)
         lexer = Lexer(language, self.report)
-        self.program_counter = ProgramCounter(source, lexer, settings.step_limit, self.report)
+        self.program_counter = ProgramCounter(
+            source, lexer, settings.step_limit, self.report, len(modal.column)
+        )
         self.variables = Variables(
             language.is_local,
             lambda name: language.given_variable(settings.variables, name),
@@ -157,7 +179,6 @@ class ControlState:
         self.words: dict[str, Word] = {}
         self.codes: Sequence[tuple[Word, HasGroup]] = ()
         self.series: list[Word] = []
-        self.rapid_feed = NAN
         self.interpreted_functions = frozenset(
             number for number, each in settings.m_functions.items() if each.dwell > 0.0
         )
@@ -176,24 +197,22 @@ class ControlState:
             default_feed=settings.default_feed,
             default_rotary_feed=settings.default_rotary_feed,
             feed_may_lack=False,
-            rapid_feed=NAN,
             own_rapid_feed=NAN,
-            last_values=np.full(3, NAN),
             linear=np.array(self.linear),
             planes=np.array([plane.axes for plane in PLANE_ORDER]),
-            directions=np.array([plane.directions for plane in (*PLANE_ORDER, XY)]),
+            directions=np.array([plane.directions for plane in PLANE_ORDER]),
             tools=np.array([float(number) for number in tools.table]),
             longer=np.array([*longer, 0.0]),
             radii=np.array([tool.radius for tool in (*tools.table.values(), other)]),
-            square_corners=False,
-            indirect_leads=False,
             over=np.zeros(axes),
             room=np.zeros((3, axes)),
             hole=np.zeros((4, most_acts(MOST_STOPS))),
         )
 
-    def forget_cycle(self) -> None:
-        """No cycle is in force any more, and its words hold no longer."""
+    def forget_ended_cycle(self) -> None:
+        """The words of a cycle hold no longer where none is in force."""
+        if self.modal.cells[CYCLE]:
+            return
         if self.cycle_values:
             self.cycle_values = {}
         if not math.isnan(self.cycle_state[START]):
@@ -225,14 +244,6 @@ class ControlState:
     @spindle_turns.setter
     def spindle_turns(self, turns: bool) -> None:
         self.registers[SPINDLE_TURNS] = turns
-
-    def saved_modal(self) -> SavedModal:
-        """What is in force, to be restored later."""
-        return SavedModal(dataclasses.replace(self.modal), dict(self.active))
-
-    def restore_modal(self, saved: SavedModal) -> None:
-        """Put back what ``saved_modal`` gave."""
-        self.modal, self.active = saved
 
     def code_word(self, number: float) -> Word | None:
         """Where the block writes a G code, for diagnostics."""

@@ -9,9 +9,10 @@ from twin.nc.bytecode.registers import (
     CYCLE,
     CYCLE_STATE,
     CYCLE_WORDS,
-    FEED_FACTOR,
+    FEED_MODE,
     INCREMENTAL,
     PLANE,
+    RAPID_FEED,
     TO_REFERENCE,
     UNIT,
     BlockTables,
@@ -157,9 +158,10 @@ def _emit_hole(
         return NO_ROOM
     if np.isnan(feed) and not constants.feed_may_lack:
         return UNSUPPORTED
+    factor = 60.0 if modal[FEED_MODE] == 1.0 else 1.0
     otherwise = (constants.default_feed, constants.default_rotary_feed)
-    pace = feed_per_minute(feed, False, modal[UNIT], modal[FEED_FACTOR], otherwise)
-    rapidly = Travel(RAPID, constants.rapid_feed, STOP)
+    pace = feed_per_minute(feed, False, modal[UNIT], factor, otherwise)
+    rapidly = Travel(RAPID, state.registers[RAPID_FEED], STOP)
     feeding = Travel(FEED, pace, int(modal[CORNER]))
     axis = int(constants.planes[int(modal[PLANE])][2])
     here, part, goal = constants.room[0], constants.room[1], constants.room[2]
@@ -202,5 +204,5 @@ def _go(
     if line_length(position[0], position[1]) == 0.0:
         return row
     copy(position[1], part)
-    put_move(block, travel, LINE, constants, rows, row)
+    put_move(block, travel, LINE, state, rows, row)
     return row + 1

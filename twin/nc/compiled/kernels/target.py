@@ -21,7 +21,7 @@ class PlainBlock(NamedTuple):
         values: The words' values, shape (w,).
         seen: Which token kinds there are, as bits.
         feed: F.
-        modal: The modal state with its codes, shape (``MODAL``,).
+        modal: What is in force with its codes, shape (``OF_PLAIN_BLOCKS``,).
         polar: The target of ``State`` holds where it goes in the plane.
     """
 
@@ -80,5 +80,5 @@ def aim(constants: Constants, block: PlainBlock, seen: int, state: State) -> Non
         x = height if across == 0 else x
         y = height if across == 1 else y
         z = height if across == 2 else z
-    axes = directions(constants, plane)
+    axes = directions(constants, block.modal)
     put_point(axes, (abscissa, ordinate), along((x, y, z), axes[2]), state.target)

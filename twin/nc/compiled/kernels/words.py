@@ -10,18 +10,21 @@ import numpy as np
 from twin.compilation.compilable import inlined
 from twin.nc.bytecode.effects import Affected, BlockPlace, report_function
 from twin.nc.bytecode.registers import (
+    ACTIVE,
     ARC,
     CODES,
     CORNER,
     CYCLE,
     EARLY,
-    FEED_FACTOR,
+    FEED_MODE,
     INTERPOLATION,
     NO_MOTION,
+    OF_PLAIN_BLOCKS,
     PLANE,
     POLAR_ANGLE,
     POLAR_RADIUS,
     PROGRAMMED_FEED,
+    RAPID_FEED,
     RAPID_LINE,
     UNIT,
     BlockTables,
@@ -77,7 +80,7 @@ def execute_block(
         token_kinds: What each word's letter is, shape (w,).
         values: The words' values, shape (w,).
         machine: What it runs on.
-        modal: Room for the modal state, shape (``MODAL``,).
+        modal: Room for what is in force in the block, shape (``OF_PLAIN_BLOCKS``,).
         row: The row of its move.
         polar: ``State.target`` holds where the move goes in the plane.
 
@@ -144,7 +147,7 @@ def _decode(
         Whether nothing about them is doubtful, the block, its M function or ``UNSUPPORTED``, and the
         drilling cycle that it calls or 0.
     """
-    copy(state.modal, modal)
+    copy(state.modal[:OF_PLAIN_BLOCKS], modal)
     known = True
     number, seen, groups = int(np.int64(NO_BLOCK_NUMBER)), int(np.int64(0)), 0
     function, cycle = UNSUPPORTED, 0
@@ -201,7 +204,7 @@ def _activate(block: PlainBlock, tables: BlockTables, state: State) -> None:
     for word in range(len(block.token_kinds)):
         if block.token_kinds[word] == CODE:
             code = int(block.values[word])
-            state.active_codes[tables.group[code]] = code
+            state.modal[ACTIVE + tables.group[code]] = code
     copy(block.modal, state.modal)
     state.registers[PROGRAMMED_FEED] = block.feed
 
@@ -231,17 +234,18 @@ def _move(block: PlainBlock, machine: Machine, row: int) -> int:
             return UNSUPPORTED
     elif line_length(position[0], position[1]) == 0.0:
         return row
-    pace = constants.rapid_feed
+    pace = state.registers[RAPID_FEED]
     own = constants.own_rapid_feed
     if kind == RAPID_LINE and not np.isnan(own):
         pace = rapid_feed(own, block.feed)
     elif kind != RAPID_LINE:
         turning = not is_arc and only_turns(position[0], position[1], constants.linear)
+        factor = 60.0 if modal[FEED_MODE] == 1.0 else 1.0
         otherwise = (constants.default_feed, constants.default_rotary_feed)
-        pace = feed_per_minute(block.feed, turning, modal[UNIT], modal[FEED_FACTOR], otherwise)
+        pace = feed_per_minute(block.feed, turning, modal[UNIT], factor, otherwise)
     motion, corner = move_row.FEED, int(modal[CORNER])
     if kind == RAPID_LINE:
         motion, corner = move_row.RAPID, move_row.STOP
     shape = move_columns.ARC if is_arc else move_columns.LINE
-    put_move(block, Travel(motion, pace, corner), shape, constants, rows, row)
+    put_move(block, Travel(motion, pace, corner), shape, state, rows, row)
     return row + 1

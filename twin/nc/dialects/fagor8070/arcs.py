@@ -24,6 +24,7 @@ from twin.nc.geometry.arcs import (
     sweep_between,
     turned,
 )
+from twin.nc.geometry.planes import OWN_PLANE
 from twin.nc.iso import base
 from twin.nc.iso.circular import (
     BOUNDS,
@@ -212,7 +213,7 @@ def _helix_sweep(control: Control, height: float, pitch: Word, *, clockwise: boo
 def _center_letters(control: Control) -> str:
     """Centre words along abscissa, ordinate and normal of the working plane."""
     plane = control.modal.plane
-    return "IJK" if plane.name == "G20" else "".join("IJK"[index] for index in plane.axes)
+    return "IJK" if plane.name == OWN_PLANE else "".join("IJK"[index] for index in plane.axes)
 
 
 def _given_center(control: Control, words: tuple[Word, ...], start: Point) -> Point:
