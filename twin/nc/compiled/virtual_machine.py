@@ -165,7 +165,8 @@ class VirtualMachine:
     def _leave_state(self, rows: Rows) -> None:
         """The control takes back what it keeps as objects, and the path what was made."""
         control, state = self._control, self._control.state
-        control.forget_ended_cycle()
+        if control.modal.cycle is None:
+            control.forget_cycle()
         control.frame.refresh()
         event_count = int(state.event_count[0])
         events = EventRows(rows.events[:event_count], rows.event_values[:event_count])

@@ -57,8 +57,11 @@ class Executor(Control):
             places = self._sets[number] = self.modal.places(code.sets)
             if code.group:
                 places.append((self.modal.groups[code.group], number))
-        self.modal.put(places)
-        self.forget_ended_cycle()
+        cells = self.modal.cells
+        for place, value in places:
+            cells[place] = value
+        if not cells[CYCLE]:
+            self.forget_cycle()
 
     def run(self, block: Block) -> None:
         """Run one block.

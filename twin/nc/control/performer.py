@@ -269,7 +269,8 @@ class Performer(Assembler):
         go_to(to.going, counter.progress)
         counter.progress[DEPTH], counter.progress[CALLS] = to.depth, to.called
         keep_codes(opcode, to, control.state.modal, counter.saved)
-        control.forget_ended_cycle()
+        if control.modal.cycle is None:
+            control.forget_cycle()
         raise _Gone
 
     def _refuse_transfer(self, instruction: Instruction) -> NoReturn:

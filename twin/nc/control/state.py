@@ -10,7 +10,6 @@ import numpy as np
 
 from twin.nc.bytecode.registers import (
     ACCELERATION,
-    CYCLE,
     CYCLE_STATE,
     CYCLE_WORDS,
     DECELERATION,
@@ -209,10 +208,8 @@ class ControlState:
             hole=np.zeros((4, most_acts(MOST_STOPS))),
         )
 
-    def forget_ended_cycle(self) -> None:
-        """The words of a cycle hold no longer where none is in force."""
-        if self.modal.cells[CYCLE]:
-            return
+    def forget_cycle(self) -> None:
+        """No cycle is in force any more, and its words hold no longer."""
         if self.cycle_values:
             self.cycle_values = {}
         if not math.isnan(self.cycle_state[START]):
