@@ -17,7 +17,6 @@ from twin.nc.bytecode.registers import (
     DRILLING,
     EARLY,
     FEED_LINE,
-    FEED_MODE,
     INTERPOLATION,
     LATE,
     NO_MOTION,
@@ -136,7 +135,6 @@ class DecodeTables:
         if len(places) > 1 or place >= OF_PLAIN_BLOCKS:
             return None
         is_known = place != INTERPOLATION or self._rules[int(number)] is not None
-        is_known &= place != FEED_MODE or number < 2.0
         return (place, number) if is_known else None
 
 

@@ -23,7 +23,7 @@ from twin.nc.control.dialect import Dialect
 from twin.nc.control.modal import Places
 from twin.nc.control.performer import perform
 from twin.nc.control.settings import ControlSettings
-from twin.nc.control.state import code_number, integer_of, number_of
+from twin.nc.control.state import integer_of, number_of
 from twin.nc.functions import starts_spindle, turns_behind
 from twin.nc.text.blocks import Assignment, Block, Statement, Word
 from twin.nc.text.expressions import Expression, ExpressionError, NumberedVariable
@@ -167,7 +167,7 @@ class Executor(Control):
                 restore.append(self.modal.standing(code.sets))
             if code.alone and len(self.block.words) > 1:
                 self.fail("alone", f"{word.text} must stand alone in its block", word)
-            self.put_into_force(code_number(number_of(word)), code)
+            self.put_into_force(number_of(word), code)
         return restore
 
     def _sort_words(self, block: Block) -> list[tuple[Word, MCode]]:
@@ -325,7 +325,7 @@ class Executor(Control):
                 word,
                 hint="write G0, G1, G2 or G3",
             )
-        if cells[CYCLE] and self.path.compensating:
+        if self.path.compensating and cells[CYCLE]:
             message = "a canned cycle cannot run while radius compensation is in force"
             self.fail("compensation-change", message, hint="end it by G40 first")
         if self.dialect.before_motion is not None:

@@ -297,11 +297,6 @@ def number_of(word: Word) -> float:
     return word.value
 
 
-def code_number(value: float) -> float:
-    """A G code's number as a dialect's table has it: 54, or 54.1."""
-    return int(value) if value == int(value) else value
-
-
 def integer_of(value: float) -> int:
     """A code's number; -1 where it is no whole one."""
     return int(value) if value == int(value) else -1

@@ -25,7 +25,7 @@ from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Chunk, Event, FloatArray, Function, Motion, Moves
 from twin.nc.control.dialect import Dialect
 from twin.nc.control.executor import Executor
-from twin.nc.control.modal import FEED_FACTORS, Modal
+from twin.nc.control.modal import Modal
 from twin.nc.control.settings import ControlSettings
 from twin.nc.functions import (
     COOLANT_OFF,
@@ -39,6 +39,7 @@ from twin.nc.functions import (
     SpindleState,
 )
 from twin.nc.geometry.frame import SHIFTS
+from twin.nc.path.paces import FEED_FACTORS
 from twin.nc.text.blocks import Block
 from twin.nc.text.diagnostics import Diagnostic, ProgramError
 from twin.nc.text.source import Source

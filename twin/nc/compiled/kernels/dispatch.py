@@ -37,7 +37,6 @@ from twin.nc.bytecode.registers import (
     CORRECT_CENTER,
     CYCLE,
     DRILLING,
-    FEED_MODE,
     INTERPOLATION,
     PLANE,
     BlockTables,
@@ -191,5 +190,5 @@ def knows(modal: FloatArray, tables: BlockTables) -> bool:
     if interpolation >= len(tables.kind) or cycle >= len(tables.kind):
         return False
     drills = cycle == 0 or tables.kind[cycle] == DRILLING
-    plain = modal[PLANE] < 3.0 and modal[FEED_MODE] < 2.0 and modal[CORRECT_CENTER] != 0.0
+    plain = modal[PLANE] < 3.0 and modal[CORRECT_CENTER] != 0.0
     return drills and plain
