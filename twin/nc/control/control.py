@@ -11,6 +11,7 @@ from twin.nc.bytecode.registers import (
     CORNER,
     CORNER_TOLERANCE,
     DECELERATION,
+    FEED_MODE,
     INCREMENTAL,
     PROGRAMMED_FEED,
     RAPID_FEED,
