@@ -72,7 +72,7 @@ class DecodeTables:
             interpreted: M codes that only the interpreter tier may run.
         """
         self._modal = modal
-        self._rules = [None if each is None else each.rule for each in modal.modes]
+        self._rules = [None if each is None else each.rule for each in modal.modes.values()]
         self._interpreted = [number for number in interpreted if number < CODES]
         self.token_kinds = _token_kinds(dialect, settings)
         self.pointed = dialect.pointless(settings)
@@ -109,7 +109,7 @@ class DecodeTables:
             cycle=cycle,
             cycles=_cycle_rows(self._rules, self.token_kinds),
             function=_functions(dialect, self._interpreted),
-            kind=np.array([_kind(each) for each in self._modal.modes]),
+            kind=np.array([_kind(each) for each in self._modal.modes.values()]),
             clockwise=np.array([arc.clockwise for arc in arcs]),
             bounds=np.array([arc.bounds for arc in arcs]),
             fits_radius=np.array([arc.fits_radius for arc in arcs]),
@@ -119,7 +119,7 @@ class DecodeTables:
     def _number_of_cycle(self, cycle: MotionMode | None) -> int:
         """Its number; 0 where the kernel knows none."""
         drills = cycle is not None and isinstance(cycle.rule, CycleRule)
-        return self._modal.number_of_mode(cycle) if drills else 0
+        return int(self._modal.number_of_mode(cycle)) if drills else 0
 
     def _meaning(self, code: GCode) -> tuple[int, float] | None:
         """Which place a code sets, and to what; None for a code that does more than that."""

@@ -1,8 +1,8 @@
 """The compiled tier: plain and compiled blocks go past the control's words, in one compiled loop.
 
-The control stays the one place that knows what a program means. It hands its state to the loop,
-the loop runs blocks as far as they are plain, and the control takes the state back; where a
-dialect remembers something that acts on such blocks, they go the interpreter tier.
+The loop works on the columns of the control's own state, as far as blocks are plain; of what the control
+keeps besides, it is given the position, and gives it back. Where a dialect remembers something that acts
+on such blocks, they go the interpreter tier.
 """
 
 import math
@@ -32,7 +32,7 @@ from twin.nc.path.rows import Row, Rows, new_rows
 from twin.nc.text.lines import Page
 
 _WORTHWHILE = 4
-"""Blocks that a run must have to pay for handing the state over and back."""
+"""Blocks that a run must have to pay for its beginning and its end."""
 _LONGEST_PAUSE = 256
 """Blocks after which a new run is tried, where plain blocks are rare."""
 _MOST = 200_000
@@ -156,14 +156,14 @@ class VirtualMachine:
         )
 
     def _enter_state(self) -> None:
-        """What the control keeps as objects goes into the columns of the state."""
+        """Where the control stands goes into the columns of the state."""
         control, state = self._control, self._control.state
         state.programmed[:], state.part[:] = control.programmed, control.part
         state.event_count[0] = 0
         state.registers[CYCLE_WORDS:MATRIX] = math.nan
 
     def _leave_state(self, rows: Rows) -> None:
-        """The control takes back what it keeps as objects, and the path what was made."""
+        """The control takes back where it stands, and the path what was made."""
         control, state = self._control, self._control.state
         if control.modal.cycle is None:
             control.forget_cycle()

@@ -20,7 +20,7 @@ from twin.nc.bytecode.registers import (
     UNIT,
 )
 from twin.nc.canonical import Dwell, Function
-from twin.nc.control.modal import CORNERS
+from twin.nc.control.modal import CORNERS, FEED_MODES
 from twin.nc.control.words import ControlWords
 from twin.nc.geometry.frame import moved_shift
 from twin.nc.geometry.planes import Plane, Vector
@@ -128,7 +128,7 @@ class Control(ControlWords):
             end,
             target,
             feed,
-            RAPIDS_END if rapid else CORNERS[int(cells[CORNER])],
+            RAPIDS_END if rapid else CORNERS[cells[CORNER]],
             cells[CORNER_TOLERANCE],
             acceleration,
             deceleration,
@@ -162,7 +162,11 @@ class Control(ControlWords):
 
     def _feed_per_minute(self, end: list[float], is_arc: bool, length: float) -> float:
         registers, cells, settings = self.registers, self.modal.cells, self.settings
-        feed, mode, speed = registers[PROGRAMMED_FEED], int(cells[FEED_MODE]), registers[SPINDLE]
+        feed, mode, speed = (
+            registers[PROGRAMMED_FEED],
+            FEED_MODES[cells[FEED_MODE]],
+            registers[SPINDLE],
+        )
         finding = finding_of_feed(feed, mode, speed, registers[SPINDLE_TURNS])
         if finding != PACED:
             self._blame_feed(finding)
@@ -197,7 +201,7 @@ class Control(ControlWords):
         self.path.event(Function(0, self.block.line, word, dict(arguments), at))
 
     def begin_effect(self) -> Affected:
-        """Let the columns show what the control keeps as objects, for an instruction."""
+        """Let the columns show where the control stands, for an instruction."""
         state = self.state
         state.event_count[0] = 0
         state.programmed[:], state.part[:] = self.programmed, self.part

@@ -314,7 +314,7 @@ class Executor(Control):
             self._stand_alone()
             return
         cells = self.modal.cells
-        interpolation = self.modal.modes[int(cells[CYCLE] or cells[INTERPOLATION])]
+        interpolation = self.modal.modes[cells[CYCLE] or cells[INTERPOLATION]]
         if interpolation is None:
             word = next(each for each in words.values() if each.address in motion_words)
             if word.address not in self.dialect.axis_letters:

@@ -1,8 +1,8 @@
 """What stays in force from block to block."""
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
-from typing import Generic, TypedDict, TypeVar, cast
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Generic, TypedDict, TypeVar, cast
 
 import numpy as np
 
@@ -54,68 +54,79 @@ Places = Iterable[tuple[int, float]]
 """Places of the modal state, each with a number."""
 
 
-class _Field(Generic[Value]):
-    """A field that is one of some values; its number is the place among them."""
+class _Field(property, Generic[Value]):
+    """A field that stands in one place, as a number."""
 
-    def __init__(self, place: int, values: Sequence[Value]) -> None:
+    def __init__(
+        self,
+        place: int,
+        read: Callable[["Modal"], Value],
+        number: Callable[["Modal", Value], float],
+    ) -> None:
+        super().__init__(read, lambda modal, value: modal.put(self.places(modal, value)))
         self._place = place
-        self._values = values
+        self._number = number
 
-    def __get__(self, modal: "Modal", _kind: type) -> Value:
-        return self._values[int(modal.cells[self._place])]
+    if TYPE_CHECKING:
 
-    def __set__(self, modal: "Modal", value: Value) -> None:
-        modal.put(self.places(modal, value))
+        def __get__(  # pyright: ignore[reportIncompatibleMethodOverride]  # it has a type
+            self, modal: "Modal", _kind: type | None = None
+        ) -> Value: ...
+        def __set__(self, modal: "Modal", value: Value) -> None: ...
 
     def places(self, modal: "Modal", value: Value) -> Places:
         """What stands where, if the field has a value."""
         return ((self._place, float(self._number(modal, value))),)
 
-    def _number(self, modal: "Modal", value: Value) -> float:
-        del modal
-        return self._values.index(value)
+
+def _numbered(values: Sequence[Value]) -> Mapping[float, Value]:
+    return {float(number): value for number, value in enumerate(values)}
 
 
-class _Number(_Field[float]):
+def _choice(place: int, values: Mapping[float, Value]) -> _Field[Value]:
+    """A field that is one of some values."""
+    numbers = {value: number for number, value in values.items()}
+    return _Field(place, lambda modal: values[modal.cells[place]], lambda _, value: numbers[value])
+
+
+def _number(place: int) -> _Field[float]:
     """A field that is a number."""
-
-    def __get__(self, modal: "Modal", _kind: type) -> float:
-        return modal.cells[self._place]
-
-    def _number(self, modal: "Modal", value: float) -> float:
-        del modal
-        return value
+    return _Field(place, lambda modal: modal.cells[place], lambda _, value: value)
 
 
-class _Mode(_Field[MotionMode | None]):
+def _mode(place: int) -> _Field[MotionMode | None]:
     """A field that is a way to move, or None."""
+    return _Field(
+        place,
+        lambda modal: modal.modes[modal.cells[place]],
+        lambda modal, mode: modal.number_of_mode(mode),
+    )
 
-    def __get__(self, modal: "Modal", _kind: type) -> MotionMode | None:
-        return modal.modes[int(modal.cells[self._place])]
 
-    def _number(self, modal: "Modal", value: MotionMode | None) -> float:
-        return modal.number_of_mode(value)
-
-
-class _Plane(_Field[Plane]):
+class _PlaneField(_Field[Plane]):
     """The working plane, which need not lie along the axes."""
 
-    def __get__(self, modal: "Modal", _kind: type) -> Plane:
-        number = int(modal.cells[self._place])
-        if number < len(self._values):
-            return self._values[number]
-        abscissa, ordinate, normal = modal.column[FREE_PLANE:ACTIVE].reshape(3, 3).tolist()
-        return Plane(OWN_PLANE, vector_of(abscissa), vector_of(ordinate), vector_of(normal))
+    def __init__(self) -> None:
+        super().__init__(PLANE, _plane, lambda _, plane: PLANE_ORDER.index(plane))
 
     def places(self, modal: "Modal", value: Plane) -> Places:
-        """What stands where, if the field has a value."""
-        if value in self._values:
+        """What stands where, if the plane is this one."""
+        if value in PLANE_ORDER:
             return super().places(modal, value)
         directions = enumerate(np.ravel(value.directions).tolist(), FREE_PLANE)
-        return ((self._place, len(self._values)), *directions)
+        return ((PLANE, float(len(PLANE_ORDER))), *directions)
 
 
-_NO_YES, CORNERS = (False, True), tuple(Corner)
+def _plane(modal: "Modal") -> Plane:
+    plane = _PLANES.get(modal.cells[PLANE])
+    if plane is None:
+        abscissa, ordinate, normal = modal.column[FREE_PLANE:ACTIVE].reshape(3, 3).tolist()
+        plane = Plane(OWN_PLANE, vector_of(abscissa), vector_of(ordinate), vector_of(normal))
+    return plane
+
+
+_NO_YES, _PLANES = _numbered((False, True)), _numbered(PLANE_ORDER)
+CORNERS, FEED_MODES = _numbered(tuple(Corner)), _numbered(tuple(FeedMode))
 """Values of fields by their numbers."""
 
 
@@ -152,28 +163,28 @@ class Modal:
         active: The code in force in each.
     """
 
-    interpolation = _Mode(INTERPOLATION, ())
-    cycle = _Mode(CYCLE, ())
+    interpolation = _mode(INTERPOLATION)
+    cycle = _mode(CYCLE)
     """A canned cycle; while it is in force it stands in the place of the interpolation."""
-    return_to_reference = _Field(TO_REFERENCE, _NO_YES)
+    return_to_reference = _choice(TO_REFERENCE, _NO_YES)
     """Cycles end at their reference plane, not at the height where they were called."""
-    plane = _Plane(PLANE, PLANE_ORDER)
-    incremental = _Field(INCREMENTAL, _NO_YES)
-    center_absolute = _Field(CENTER_ABSOLUTE, _NO_YES)
-    unit = _Number(UNIT, ())
+    plane = _PlaneField()
+    incremental = _choice(INCREMENTAL, _NO_YES)
+    center_absolute = _choice(CENTER_ABSOLUTE, _NO_YES)
+    unit = _number(UNIT)
     """Of programmed lengths [mm]."""
-    feed_mode = _Field(FEED_MODE, tuple(FeedMode))
-    corner = _Field(CORNER, CORNERS)
-    corner_tolerance = _Number(CORNER_TOLERANCE, ())
-    square_corners = _Field(SQUARE_CORNERS, _NO_YES)
+    feed_mode = _choice(FEED_MODE, FEED_MODES)
+    corner = _choice(CORNER, CORNERS)
+    corner_tolerance = _number(CORNER_TOLERANCE)
+    square_corners = _choice(SQUARE_CORNERS, _NO_YES)
     """Compensation extends lines at outside corners instead of rolling around them."""
-    indirect_leads = _Field(INDIRECT_LEADS, _NO_YES)
+    indirect_leads = _choice(INDIRECT_LEADS, _NO_YES)
     """Compensation begins and ends around the contour's first and last point."""
-    correct_center = _Field(CORRECT_CENTER, _NO_YES)
+    correct_center = _choice(CORRECT_CENTER, _NO_YES)
     """A centre that start and end are not equally far from is moved to fit."""
 
     def __init__(
-        self, column: FloatArray, modes: list[MotionMode | None], groups: Mapping[str, int]
+        self, column: FloatArray, modes: dict[float, MotionMode | None], groups: Mapping[str, int]
     ) -> None:
         """See a column."""
         self.column = column
@@ -182,13 +193,13 @@ class Modal:
         self.groups = groups
         self.active = ActiveCodes(self.cells, groups)
 
-    def number_of_mode(self, mode: MotionMode | None) -> int:
+    def number_of_mode(self, mode: MotionMode | None) -> float:
         """The number of a way to move; one that has none gets the next."""
-        for number, each in enumerate(self.modes):
+        for number, each in self.modes.items():
             if each is mode:
                 return number
-        self.modes.append(mode)
-        return len(self.modes) - 1
+        self.modes[number := float(len(self.modes))] = mode
+        return number
 
     def places(self, changes: ModalChanges) -> list[tuple[int, float]]:
         """What stands where behind changes; the names of ``ModalChanges`` are those of the fields."""
@@ -224,7 +235,7 @@ def new_modal(modes: Iterable[MotionMode], groups: Iterable[str]) -> Modal:
     places = {group: place for place, group in enumerate(groups, ACTIVE)}
     column = np.zeros(ACTIVE + len(places))
     column[[CORNER_TOLERANCE, *places.values()]] = math.nan
-    modal = Modal(column, [None], places)
+    modal = Modal(column, {0.0: None}, places)
     for mode in modes:
         modal.number_of_mode(mode)
     modal.unit, modal.corner, modal.correct_center = 1.0, Corner.EXACT_PATH, True
