@@ -1,16 +1,16 @@
 """Does at once what codes, words and statements say as instructions: the interpreter tier's assembler.
 
-What goes wrong has its message here; what an instruction does, ``bytecode`` says for both tiers.
+What an instruction does, ``bytecode`` says for both tiers.
 """
 
 import contextlib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import NoReturn
 
-from twin.nc.bytecode import effects, opcodes
-from twin.nc.bytecode.assembler import Assembler, Target, found
+from twin.nc.bytecode import opcodes
+from twin.nc.bytecode.assembler import Assembler, Finding, Otherwise, Target, found
 from twin.nc.bytecode.bytecode import MOST_VALUES, Instruction, number_of_location
-from twin.nc.bytecode.effects import BlockPlace, run_effect
+from twin.nc.bytecode.effects import Affected, BlockPlace, run_effect
 from twin.nc.bytecode.flow import Transfer, count_loop, jumps, transfer
 from twin.nc.bytecode.frames import (
     CALLS,
@@ -21,77 +21,34 @@ from twin.nc.bytecode.frames import (
     go_to,
 )
 from twin.nc.bytecode.variables import store
-from twin.nc.control.compensation import NEEDS_TOOL, compensate, tool_numbered
+from twin.nc.control.compensation import compensate
 from twin.nc.control.control import Control
 from twin.nc.text.blocks import Word
-from twin.nc.text.expressions import Expression, Tree
-
-_END_IT = "end it by G40 first"
-_FINDINGS: Mapping[int, tuple[str, str, str | None, bool]] = {
-    effects.NEGATIVE_SPEED: ("spindle-range", "the speed {word} is negative", None, True),
-    effects.NO_TOOL_NUMBER: ("tool-number", "{word} is no tool number", None, True),
-    effects.OTHER_AUXILIARY: (
-        "number-range",
-        "{word} is no number of a function: whole ones up to 999999 are",
-        None,
-        True,
-    ),
-    effects.NO_TOOL: (
-        "no-such-tool",
-        "compensation needs a tool, and the job has none",
-        NEEDS_TOOL,
-        False,
-    ),
-    effects.NEGATIVE_DWELL: ("dwell", "a dwell cannot be negative", None, True),
-    effects.PLANE_COMPENSATED: (
-        "compensation-plane",
-        "the plane cannot change while compensation is in force",
-        _END_IT,
-        False,
-    ),
-    effects.PLANE_ROTATED: (
-        "rotation-active",
-        "the plane cannot change while a rotation turns it",
-        "end it by G73 alone",
-        False,
-    ),
-    effects.MIRROR_SIGN: ("mirror", "a mirror takes -1 or 1 for X, Y and Z", None, True),
-    effects.SCALE_RANGE: ("scale", "a scale lies between 0.001 and 1000", None, True),
-    effects.ROTATED_ALREADY: (
-        "rotation-active",
-        "a rotation is in force",
-        "end it by G73 alone",
-        True,
-    ),
-    effects.TRANSFORM_COMPENSATED: (
-        "compensation-change",
-        "mirror, scale and rotation cannot change while compensation is in force",
-        _END_IT,
-        False,
-    ),
-}
-"""Code, message and hint of what is wrong with an effect, and whether the word is to blame."""
+from twin.nc.text.expressions import Computed, Expression, Number, Tree
 
 
 def refuse(
-    control: Control, finding: int, word: Word | None = None, span: tuple[int, int] | None = None
+    control: Control,
+    finding: Finding,
+    word: Word | None = None,
+    span: tuple[int, int] | None = None,
 ) -> NoReturn:
     """Say what is wrong with an effect, or with an action that follows the same rule.
 
     Args:
         control: Whose block it is.
-        finding: One of ``effects``.
+        finding: What is wrong.
         word: What the instruction was given.
         span: Column and width of what is blamed where no word is; None: what a control blames.
 
     Raises:
         ProgramError: Always.
     """
-    code, message, hint, is_of_word = _FINDINGS[finding]
-    message = message.format(word="" if word is None else word.text)
-    if span is None or (is_of_word and word is not None):
-        control.fail(code, message, word if is_of_word else None, hint)
-    control.report.fail(code, message, *span, hint)
+    message = finding.message.format(word="" if word is None else word.text)
+    if span is None or (finding.blames_word and word is not None):
+        blamed = word if finding.blames_word else None
+        control.fail(finding.code, message, blamed, finding.hint)
+    control.report.fail(finding.code, message, *span, finding.hint)
 
 
 class _Gone(Exception):  # noqa: N818 (nothing is wrong)
@@ -194,9 +151,15 @@ class Performer(Assembler):
         """Do it."""
         action()
 
-    def emit(self, opcode: int, operand: int = 0, blamed: Word | None = None) -> None:
+    def compute(self, function: Callable[..., float]) -> None:
+        """Replace the topmost values by a function of them."""
+        self._top -= function.__code__.co_argcount
+        values = self._stack[self._top : self._top + function.__code__.co_argcount]
+        tree = Computed(function.__name__, function, tuple(map(Number, map(float, values))))
+        self.value(tree, self._span[0])
+
+    def emit(self, opcode: int, operand: int = 0) -> None:
         """Run one of the instructions that do more than compute, move and jump."""
-        self._word = self._word if blamed is None else blamed
         if opcode == opcodes.COMPENSATE:
             compensate(self._control, float(operand), float(self._pop()))
         elif opcode == opcodes.END_COMPENSATION:
@@ -205,30 +168,32 @@ class Performer(Assembler):
             self._control.part_plane()
         ):
             return  # it is in force already
+        elif opcode in (opcodes.REGISTER, opcodes.SET_REGISTER):
+            self._run_effect(Instruction(opcode, operand, 0.0), self._control.affected)
         else:
-            if opcode == opcodes.TOOL and operand:
-                operand = self._look_for_tool()
-            self._run_effect(Instruction(opcode, operand, 0.0))
+            self._run_effect(Instruction(opcode, operand, 0.0), self._control.begin_effect())
+            self._control.end_effect()
 
-    def _look_for_tool(self) -> int:
-        """Refuse a tool that the job lacks, or warn of it; 0, since that has been seen to.
+    def check(
+        self, check: int, otherwise: Otherwise, bound: float = 0.0, blamed: Word | None = None
+    ) -> None:
+        """The topmost value must be as a check says.
 
         Raises:
-            ProgramError: The job has other tools.
+            ProgramError: It is not.
         """
-        word = self._word
-        if word is not None and self._stack[self._top - 1] != 0.0:
-            tool_numbered(self._control, word)
-        return 0
+        if self._run_effect(Instruction(opcodes.CHECK, check, bound), self._control.affected):
+            return
+        if isinstance(otherwise, Finding):
+            refuse(self._control, otherwise, blamed or self._word, self._span)
+        otherwise()
 
-    def _run_effect(self, instruction: Instruction) -> None:
-        control, on = self._control, self._control.begin_effect()
-        place = BlockPlace(control.block.line, 0, control.path.compensating)
+    def _run_effect(self, instruction: Instruction, on: Affected) -> bool:
+        """Run an instruction; False where a check does not hold."""
+        place = BlockPlace(self._control.block.line, 0, self._control.path.compensating)
         top = run_effect(instruction, self._stack, self._top, place, on)
-        if top < 0:
-            refuse(control, top, self._word, self._span)
-        self._top = top
-        control.end_effect()
+        self._top = self._top if top < 0 else top
+        return top >= 0
 
     def _add(self, opcode: int, operand: int = 0, immediate: float = 0.0) -> None:
         instruction = Instruction(opcode, operand, immediate)

@@ -103,7 +103,7 @@ def dispatch_loop(
         elif opcode == opcodes.TRAP or opcode == opcodes.NO_PECKS:
             if opcode == opcodes.TRAP or _pecks(machine):
                 break
-        elif opcode >= opcodes.FUNCTION:
+        elif opcode >= opcodes.REGISTER:
             place = BlockPlace(line, made, contour.counts[STAGE] != OFF)
             on = Affected(machine.constants, state, machine.rows)
             top = run_effect(instruction, stack, top, place, on)

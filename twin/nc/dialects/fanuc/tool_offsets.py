@@ -7,7 +7,7 @@ their numbers; lengths count against the job's first tool. D holds radii (parame
 import dataclasses
 from typing import NoReturn
 
-from twin.nc.bytecode import effects, opcodes
+from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
 from twin.nc.control.codes import Action, CodeWriter
 from twin.nc.control.compensation import compensate, tool_numbered
@@ -15,6 +15,7 @@ from twin.nc.control.control import Control
 from twin.nc.control.performer import refuse
 from twin.nc.dialects.fanuc.memory import ToolOffset, letter_patterns, memory_of
 from twin.nc.dialects.fanuc.programs import whole
+from twin.nc.iso.findings import NO_TOOL
 from twin.nc.iso.tool_compensation import set_length
 from twin.nc.text.blocks import Word
 from twin.nc.text.expressions import Expression
@@ -142,7 +143,7 @@ def _radius(control: Control, number: int) -> float:
     radius, row = radius_of(control, number), memory_of(control).tool_offsets.get(number)
     if radius is None:
         if not control.tools.table:
-            refuse(control, effects.NO_TOOL)
+            refuse(control, NO_TOOL)
         _refuse_row(control, number, "D")
     if row is None or row.radius is None:
         _warn_of_default_tool(control, number, "D")
