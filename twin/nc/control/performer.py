@@ -10,8 +10,8 @@ from typing import NoReturn
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler, Finding, Otherwise, Target, found
 from twin.nc.bytecode.bytecode import MOST_VALUES, Instruction, number_of_location
-from twin.nc.bytecode.effects import Affected, BlockPlace, run_effect
-from twin.nc.bytecode.flow import Transfer, count_loop, jumps, transfer
+from twin.nc.bytecode.effects import BlockPlace
+from twin.nc.bytecode.flow import Transfer
 from twin.nc.bytecode.frames import (
     CALLS,
     DEPTH,
@@ -20,6 +20,7 @@ from twin.nc.bytecode.frames import (
     RESTORED_BY_CONTROL,
     go_to,
 )
+from twin.nc.bytecode.instructions import Surroundings, run_instruction
 from twin.nc.bytecode.variables import store
 from twin.nc.control.compensation import compensate
 from twin.nc.control.control import Control
@@ -86,6 +87,7 @@ class Performer(Assembler):
             NO_LOCATION,
             0,
             NOTHING_RESTORED,
+            False,
         )
 
     def _slot(self, name: str) -> int:
@@ -169,9 +171,10 @@ class Performer(Assembler):
         ):
             return  # it is in force already
         elif opcode in (opcodes.REGISTER, opcodes.SET_REGISTER):
-            self._run_effect(Instruction(opcode, operand, 0.0), self._control.affected)
+            self._add(opcode, operand)
         else:
-            self._run_effect(Instruction(opcode, operand, 0.0), self._control.begin_effect())
+            self._control.begin_effect()
+            self._add(opcode, operand)
             self._control.end_effect()
 
     def check(
@@ -182,58 +185,43 @@ class Performer(Assembler):
         Raises:
             ProgramError: It is not.
         """
-        if self._run_effect(Instruction(opcodes.CHECK, check, bound), self._control.affected):
+        if self._run(Instruction(opcodes.CHECK, check, bound)):
             return
         if isinstance(otherwise, Finding):
             refuse(self._control, otherwise, blamed or self._word, self._span)
         otherwise()
 
-    def _run_effect(self, instruction: Instruction, on: Affected) -> bool:
-        """Run an instruction; False where a check does not hold."""
-        place = BlockPlace(self._control.block.line, 0, self._control.path.compensating)
-        top = run_effect(instruction, self._stack, self._top, place, on)
-        self._top = self._top if top < 0 else top
+    def _add(self, opcode: int, operand: int = 0, immediate: float = 0.0) -> None:
+        if opcode == opcodes.STORE:
+            store(self._control.variables.columns, self._to.depth, operand, self._pop())
+            return
+        if opcode == opcodes.CHECK_CALL:
+            self._control.variables.make_room(self._to.depth + 1)
+        instruction = Instruction(opcode, operand, immediate)
+        if not self._run(instruction):
+            self._refuse(instruction)
+        if opcode == opcodes.RESTORE_CODES:
+            self._to = self._to._replace(restores=RESTORED_BY_CONTROL)
+        if self._to.ends:
+            self._leave(opcode)
+
+    def _run(self, instruction: Instruction) -> bool:
+        """Run an instruction; whether nothing is wrong."""
+        control = self._control
+        around = Surroundings(
+            control.variables.columns,
+            control.program_counter.calls,
+            BlockPlace(control.block.line, 0, control.path.compensating),
+            control.affected,
+        )
+        top, to = run_instruction(instruction, self._stack, self._top, self._to, around)
+        if top >= 0:
+            self._top, self._to = top, to
         return top >= 0
 
-    def _add(self, opcode: int, operand: int = 0, immediate: float = 0.0) -> None:
-        instruction = Instruction(opcode, operand, immediate)
-        if opcode == opcodes.CONSTANT:
-            self._push(immediate)
-        elif opcode == opcodes.DROP:
-            self._top -= 1
-        elif opcode == opcodes.STORE:
-            store(self._control.variables.columns, self._to.depth, operand, self._pop())
-        elif opcodes.JUMP <= opcode <= opcodes.JUMP_CASE:
-            if jumps(instruction, self._stack, self._top):
-                go_to(operand, self._control.program_counter.progress)
-                raise _Gone
-            self._top -= 1
-        elif opcodes.BEGIN_FOR <= opcode <= opcodes.COUNT_DOWN:
-            self._count_loop(instruction)
-        else:
-            self._transfer(instruction)
-
-    def _count_loop(self, instruction: Instruction) -> None:
-        columns, depth = self._control.variables.columns, self._to.depth
-        self._top = count_loop(instruction, self._stack, self._top, depth, columns)
-        if self._top < 0:
-            self._fail("structure", "a step of 0 never ends")
-
-    def _transfer(self, instruction: Instruction) -> None:
-        """Run one of the instructions that call parts of the program or go back."""
-        control, opcode = self._control, instruction.opcode
-        counter, variables = control.program_counter, control.variables
-        if opcode == opcodes.CHECK_CALL:
-            variables.make_room(self._to.depth + 1)
-        value, local = self._stack[self._top - 1], variables.columns.local
-        known, to = transfer(instruction, value, self._to, counter.calls, local)
-        if not known:
-            self._refuse_transfer(instruction)
-        if opcode == opcodes.RESTORE_CODES:
-            to = to._replace(restores=RESTORED_BY_CONTROL)
-        self._to = to
-        if opcode not in (opcodes.CALL, opcodes.REPEAT, opcodes.RETURN):
-            return
+    def _leave(self, opcode: int) -> NoReturn:
+        """The program goes on where the block leads."""
+        control, counter, to = self._control, self._control.program_counter, self._to
         go_to(to.going, counter.progress)
         counter.progress[DEPTH], counter.progress[CALLS] = to.depth, to.called
         if to.restores == RESTORED_BY_CONTROL and opcode == opcodes.RETURN:
@@ -242,12 +230,14 @@ class Performer(Assembler):
             counter.saved[to.called - 1] = control.saved_modal()
         raise _Gone
 
-    def _refuse_transfer(self, instruction: Instruction) -> NoReturn:
-        """Say why the program cannot go on there.
+    def _refuse(self, instruction: Instruction) -> NoReturn:
+        """Say why an instruction that jumps, counts or calls cannot be run.
 
         Raises:
             ProgramError: Always.
         """
+        if instruction.opcode in (opcodes.BEGIN_FOR, opcodes.STEP_FOR):
+            self._fail("structure", "a step of 0 never ends")
         if instruction.opcode == opcodes.CHECK_CALL:
             self._fail("call-depth", f"more than {instruction.operand} calls within calls")
         if instruction.opcode == opcodes.CHECK_RETURN:
