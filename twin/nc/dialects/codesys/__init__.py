@@ -138,6 +138,6 @@ CODESYS = Dialect(
     given_variable=program.given_variable,
     place_switches=words.place_switches,
     rapid_feed=words.own_rapid_feed,
-    library=subprograms.with_files,
+    library=subprograms.LIBRARY,
     disturbed=program.acts_on_plain_blocks,
 )

@@ -21,7 +21,7 @@ from twin.nc.dialects.fagor8070.codes import (
 )
 from twin.nc.dialects.fagor8070.control_variables import LiveVariables
 from twin.nc.dialects.fagor8070.decisions import DECISIONS
-from twin.nc.dialects.fagor8070.library import with_globals
+from twin.nc.dialects.fagor8070.library import LIBRARY
 from twin.nc.dialects.fagor8070.memory import FagorMemory, acts_on_plain_blocks
 from twin.nc.iso import base, shared_marks
 from twin.nc.iso.declared import flow_function
@@ -162,7 +162,7 @@ FAGOR8070 = Dialect(
     read_variable=variables.read_variable,
     is_local=variables.is_local,
     live_variables=LiveVariables(),
-    library=with_globals,
+    library=LIBRARY,
     prepare=_prepare,
     after_motion=subroutines.call_after_motion,
     finish=statements.warn_of_missing_end,

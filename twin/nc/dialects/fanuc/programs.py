@@ -6,17 +6,15 @@ subprogram that the file lacks is a file of its own beside it: O2000, O2000.nc o
 
 import re
 from collections.abc import Iterator
-from pathlib import Path
 
 from twin.nc.bytecode.assembler import Assembler
 from twin.nc.bytecode.frames import AGAIN, CALLS
 from twin.nc.control.control import Control
 from twin.nc.dialects.fanuc.memory import holds_any, letter_patterns, memory_of
 from twin.nc.text.blocks import Location, Word
-from twin.nc.text.library import named_files, with_called_files
+from twin.nc.text.library import Library
 from twin.nc.text.lines import Lines
 from twin.nc.text.source import Source
-from twin.nc.text.syntax import Language
 
 _HEADING = re.compile(r"[ \t]*[O:][ \t]*([0-9]{1,8})(?![0-9.])", re.IGNORECASE)
 _HEADING_SOMEWHERE = (*letter_patterns("O", rb"[ \t]*[0-9]"), re.compile(rb":[ \t]*[0-9]"))
@@ -25,29 +23,14 @@ _CALL = re.compile(
 )
 _CALL_SOMEWHERE = re.compile(rb"(?:M0*98|G0*6[56])(?![0-9.])", re.IGNORECASE)
 _FILE = re.compile(r"O?0*([0-9]{1,8})")
-_SUFFIXES = ("", ".nc", ".cnc", ".tap", ".prg", ".txt")
 _BLANK = re.compile(r"[ \t]*(?:%.*)?")
 _REPEATS = 10_000
 """P of M98 holds how often the subprogram runs in the digits above the last four."""
 
 
-def with_subprograms(source: Source, folder: Path, dialect: Language) -> Source:
-    """The program with the subprograms that it calls and does not hold, as far as they are found.
-
-    Args:
-        source: The program.
-        folder: Where their files lie.
-        dialect: How they are read.
-    """
-    return with_called_files(source, lambda: _files(folder), _calls, "O", dialect)
-
-
-def _files(folder: Path) -> dict[str, Path]:
-    found: dict[str, Path] = {}
-    for name, path in named_files(folder, _SUFFIXES).items():
-        if (match := _FILE.fullmatch(name)) is not None:
-            found.setdefault(match[1], path)
-    return found
+def _number_of_file(name: str) -> str | None:
+    match = _FILE.fullmatch(name)
+    return None if match is None else match[1]
 
 
 def _calls(source: Source) -> Iterator[str]:
@@ -69,6 +52,9 @@ def _headings(lines: Lines) -> Iterator[tuple[int, int]]:
     for line, text in enumerate(lines):
         if (match := _HEADING.match(text)) is not None:
             yield line, int(match[1])
+
+
+LIBRARY = Library(_calls, "O", ("", ".nc", ".cnc", ".tap", ".prg", ".txt"), _number_of_file)
 
 
 def begin(control: Control) -> None:
