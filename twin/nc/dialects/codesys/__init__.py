@@ -9,6 +9,7 @@ from twin.nc.dialects.codesys.actions import ADDITIONAL
 from twin.nc.dialects.codesys.codes import CODES, INSTEAD
 from twin.nc.dialects.codesys.decisions import DECISIONS
 from twin.nc.iso import base, shared_marks
+from twin.nc.iso.declared import go_back
 from twin.nc.text.syntax import HEADING, Comment, Mark, Syntax
 
 CODESYS = Dialect(
@@ -68,8 +69,10 @@ CODESYS = Dialect(
     statements={
         "LET": StatementEffect(program.let),
         "SUBPROGRAM": subprograms.define,
-        "END_SUBPROGRAM": StatementEffect(subprograms.leave),
-        "RETURN": StatementEffect(subprograms.leave),
+        **dict.fromkeys(
+            ("END_SUBPROGRAM", "RETURN"),
+            StatementEffect(lambda _control, _statement, assembler: go_back(assembler)),
+        ),
     },
     other_statement=StatementEffect(subprograms.assign_or_call),
     word_meanings={

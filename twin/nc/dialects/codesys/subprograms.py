@@ -126,9 +126,3 @@ def assign_or_call(control: Control, statement: Statement, assembler: Assembler)
         assign(control, statement, assembler)
     else:
         _call(control, statement, assembler)
-
-
-def leave(_control: Control, _statement: Statement, assembler: Assembler) -> None:
-    """RETURN or END_SUBPROGRAM."""
-    assembler.check_return()
-    assembler.end_call()

@@ -9,6 +9,7 @@ from twin.nc.control.codes import StatementAction, StatementEffect
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.library import MARK
 from twin.nc.dialects.fagor8070.memory import memory_of
+from twin.nc.iso.declared import go_back
 from twin.nc.text.blocks import Location, Statement
 from twin.nc.text.expressions import Expression, ExpressionError, Number
 
@@ -247,15 +248,9 @@ def _line_of(
     return line
 
 
-def _return(_control: Control, _statement: Statement, assembler: Assembler) -> None:
-    """#RET: back to the caller."""
-    assembler.check_return()
-    assembler.end_call()
-
-
 def return_(control: Control) -> None:
     """M17, M29: back to the caller."""
-    control.perform(lambda assembler: _return(control, Statement("", "", 0, 0), assembler))
+    control.perform(go_back)
 
 
 STATEMENTS: dict[str, StatementAction] = {
@@ -267,5 +262,5 @@ STATEMENTS: dict[str, StatementAction] = {
     "#PCALL": StatementEffect(_call_with_parameters),
     "#MCALL": call_modally,
     "#MDOFF": end_modal_call,
-    "#RET": StatementEffect(_return),
+    "#RET": StatementEffect(lambda _control, _statement, assembler: go_back(assembler)),
 }

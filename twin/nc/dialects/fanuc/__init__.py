@@ -73,10 +73,6 @@ _FAMILY = (
 """What the controls of the family have in common: alone it tells none of them."""
 
 
-def _haas_memory() -> FanucMemory:
-    return FanucMemory(variant=HAAS_VARIANT)
-
-
 FANUC = Dialect(
     name="fanuc",
     title="Fanuc 0i-MF, 30i (milling)",
@@ -200,6 +196,6 @@ HAAS = dataclasses.replace(
         shared_marks.G136,
         shared_marks.CYLINDER,
     ),
-    memory=_haas_memory,
+    memory=lambda: FanucMemory(HAAS_VARIANT),
 )
 """The Haas mills."""

@@ -11,6 +11,7 @@ from twin.nc.bytecode.assembler import Assembler
 from twin.nc.bytecode.frames import AGAIN, CALLS
 from twin.nc.control.control import Control
 from twin.nc.dialects.fanuc.memory import holds_any, letter_patterns, memory_of
+from twin.nc.iso.declared import go_back
 from twin.nc.text.blocks import Location, Word
 from twin.nc.text.library import Library
 from twin.nc.text.lines import Lines
@@ -96,9 +97,12 @@ def heading(control: Control, word: Word) -> None:
         control.fail("program-end", f"{word.text} must stand alone before its program", word)
 
 
-def lines_around(control: Control) -> range:
-    """The program that is being run; labels are its own."""
-    return _lines_around(control, control.block.line - 1)
+def lines_around(control: Control, line: int | None = None) -> range:
+    """The program that a line, from 0, stands in, else the one that is being run; labels are its own."""
+    headings, count = memory_of(control).headings, len(control.program_counter.lines)
+    here = control.block.line - 1 if line is None else line
+    first = max((each for each in headings if each <= here), default=0)
+    return range(first, min((each for each in headings if each > here), default=count))
 
 
 def whole(control: Control, word: Word, code: str, meaning: str) -> int:
@@ -154,7 +158,7 @@ def call(control: Control) -> None:
     repeats = None if often is None else whole(control, often, "repeat-count", "count")
     number = whole(control, word, "call-values", "program number")
     number, count = called(control, number, repeats)
-    run_program(control, line_of(control, number, word), count, word)
+    run_part(control, Location(line_of(control, number, word), 0), count, word)
 
 
 def call_block(control: Control) -> None:
@@ -168,11 +172,6 @@ def call_block(control: Control) -> None:
         number, (word.column, word.width), "M97", lines_around(control)
     )
     run_part(control, label, count, word)
-
-
-def run_program(control: Control, line: int, count: int, word: Word) -> None:
-    """Run the program that begins at a line, from 0, so often."""
-    run_part(control, Location(line, 0), count, word)
 
 
 def run_part(control: Control, first: Location, count: int, word: Word) -> None:
@@ -198,12 +197,6 @@ def compile_call(control: Control, first: Location, count: int, assembler: Assem
     assembler.call(first, deepest, often=count > 1)
 
 
-def compile_return(assembler: Assembler) -> None:
-    """M99 as instructions."""
-    assembler.check_return()
-    assembler.end_call()
-
-
 def return_(control: Control) -> None:
     """M99: back behind the call; with P at the block of that number.
 
@@ -213,8 +206,8 @@ def return_(control: Control) -> None:
     if counter.is_calling:
         if target is not None:
             counter.calls[counter.progress[CALLS] - 1, AGAIN] = 0
-        control.perform(compile_return)
-        around = _lines_around(control, counter.location.line)
+        control.perform(go_back)
+        around = lines_around(control, counter.location.line)
     elif target is None:
         message = "M99 in the main program begins it anew, for ever: here it ends"
         control.report.warn_once("endless-main", message, hint="end the main program by M30")
@@ -226,12 +219,6 @@ def return_(control: Control) -> None:
         number = whole(control, target, "jump-target", "block number")
         span = (target.column, target.width)
         counter.go(counter.find_label(number, span, "M99", around))
-
-
-def _lines_around(control: Control, line: int) -> range:
-    headings, count = memory_of(control).headings, len(control.program_counter.lines)
-    first = max((each for each in headings if each <= line), default=0)
-    return range(first, min((each for each in headings if each > line), default=count))
 
 
 def finish(control: Control) -> None:

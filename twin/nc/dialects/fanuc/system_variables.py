@@ -10,6 +10,7 @@ from typing import NoReturn
 from twin.nc.control.control import Control
 from twin.nc.dialects.fanuc import offsets, tool_offsets
 from twin.nc.dialects.fanuc.memory import memory_of
+from twin.nc.dialects.fanuc.programs import lines_around
 from twin.nc.geometry.frame import SHIFTS
 from twin.nc.iso.offsets import machine_zero
 from twin.nc.text.expressions import ExpressionError
@@ -145,17 +146,13 @@ def _position(control: Control, number: int) -> float:
 
 
 def _modal_word(control: Control, number: int) -> float:
-    memory = memory_of(control)
-    here = control.block.line - 1
+    memory, heading = memory_of(control), lines_around(control).start
     values = {
         4107: memory.radius_number or 0,
         4109: control.feed or 0.0,
         4111: memory.length_number or 0,
         4114: max(control.block.number, 0),
-        4115: next(
-            (each for each, line in memory.programs.items() if line - 1 == _heading(control, here)),
-            0,
-        ),
+        4115: next((each for each, line in memory.programs.items() if line - 1 == heading), 0),
         4119: control.spindle or 0.0,
         4120: control.tools.selected or 0,
         4130: memory.extended_number,
@@ -164,10 +161,6 @@ def _modal_word(control: Control, number: int) -> float:
     if value is None:
         _refuse(number)
     return float(value)
-
-
-def _heading(control: Control, line: int) -> int:
-    return max((each for each in memory_of(control).headings if each <= line), default=-1)
 
 
 def tool_row(control: Control, number: int) -> tuple[int, str] | None:
