@@ -56,7 +56,7 @@ CODESYS = Dialect(
         "EF-": words.set_rapid_acceleration,
         "D": actions.set_smoothing,
         "S": words.refuse_profile,
-        "L!": words.pass_label,
+        "L!": lambda _control, _word: None,  # a place to jump to
         **{f"P{letter}": words.set_period(letter) for letter in ADDITIONAL},
         **{f"F{letter}": words.axis_velocity(letter) for letter in f"XYZ{ADDITIONAL}"},
         **{

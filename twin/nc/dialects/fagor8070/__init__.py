@@ -13,12 +13,7 @@ from twin.nc.dialects.fagor8070 import (
     subroutines,
     variables,
 )
-from twin.nc.dialects.fagor8070.codes import (
-    CODES,
-    INSTEAD,
-    auxiliary,
-    plain_dwell,
-)
+from twin.nc.dialects.fagor8070.codes import CODES, INSTEAD, auxiliary, plain_dwell
 from twin.nc.dialects.fagor8070.control_variables import LiveVariables
 from twin.nc.dialects.fagor8070.decisions import DECISIONS
 from twin.nc.dialects.fagor8070.library import LIBRARY
@@ -72,11 +67,7 @@ FAGOR8070 = Dialect(
     start=(1, 17, 40, 50, 71, 80, 90, 94, 97, 98, 108, 137, 139, 152, 197, 262, 265),
     m={
         **base.M_CODES,
-        6: MCode(
-            meaning="tool change",
-            action=Effect(frames.change_tool),
-            ground="manual",
-        ),
+        6: MCode(meaning="tool change", action=Effect(frames.change_tool), ground="manual"),
         17: flow_function("end of subroutine", subroutines.return_),
         19: MCode(meaning="spindle orientation", ground="manual"),
         29: flow_function("end of subroutine", subroutines.return_),

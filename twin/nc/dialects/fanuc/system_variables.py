@@ -48,7 +48,7 @@ def read(control: Control, number: int) -> float:
         _refuse(number)
     name, axis = found
     value = offsets.read_offset(control, name, axis, f"#{number}")
-    return value / _unit(control, control.axis_index[axis])
+    return value / control.unit_of(control.axis_index[axis])
 
 
 def write(control: Control, number: int, value: float) -> None:
@@ -78,7 +78,7 @@ def write(control: Control, number: int, value: float) -> None:
     if found is None:
         _refuse(number)
     name, axis = found
-    value *= _unit(control, control.axis_index[axis])
+    value *= control.unit_of(control.axis_index[axis])
     offsets.write_offset(control, name, axis, value, f"#{number}")
     offsets.put_into_force(control)
 
@@ -112,10 +112,6 @@ def _alarm(control: Control, value: float) -> NoReturn:
     control.report.fail("program-alarm", message, column, max(len(line) - column, 1))
 
 
-def _unit(control: Control, index: int) -> float:
-    return control.modal.unit if control.linear[index] else 1.0
-
-
 def _axis(control: Control, place: int, number: int) -> int:
     if place >= len(control.settings.axes):
         raise ExpressionError("no-such-axis", f"#{number} is of an axis that this machine lacks")
@@ -142,7 +138,7 @@ def _position(control: Control, number: int) -> float:
         value = length
     else:
         _refuse(number)
-    return value / _unit(control, index)
+    return value / control.unit_of(index)
 
 
 def _modal_word(control: Control, number: int) -> float:

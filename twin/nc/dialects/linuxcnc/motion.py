@@ -223,8 +223,7 @@ def probe(control: Control) -> None:
     control.function("G38", {})
     control.line_to(goal, rapid=False)
     memory_of(control).probe = [
-        value / control.modal.unit if linear else value
-        for value, linear in zip(control.programmed, control.linear, strict=True)
+        value / control.unit_of(axis) for axis, value in enumerate(control.programmed)
     ]
 
 

@@ -149,13 +149,8 @@ def _read_live(control: Control, number: int) -> float | None:
             message = f"#{number} cannot be read while radius compensation is in force"
             raise ExpressionError("compensation-change", message, None, "end it by G40 first")
         axis = _axis(control, number - 5420)
-        return 0.0 if axis is None else _in_units(control, control.programmed[axis], axis)
+        return 0.0 if axis is None else control.programmed[axis] / control.unit_of(axis)
     return None
-
-
-def _in_units(control: Control, value: float, axis: int) -> float:
-    """A position as the program counts it."""
-    return value / (control.modal.unit if control.linear[axis] else 1.0)
 
 
 def _read_system(control: Control, at: int) -> float | None:
@@ -233,8 +228,10 @@ def _position(letter: str, *, of_machine: bool) -> Callable[[Control], float]:
         axis = control.axis_index.get(letter)
         if axis is None:
             return 0.0
-        machine = control.part[axis] - _zero(control, axis) if of_machine else None
-        return _in_units(control, control.programmed[axis] if machine is None else machine, axis)
+        place = (
+            control.part[axis] - _zero(control, axis) if of_machine else control.programmed[axis]
+        )
+        return place / control.unit_of(axis)
 
     return value
 
