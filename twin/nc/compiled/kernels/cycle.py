@@ -9,7 +9,7 @@ from twin.nc.bytecode.registers import (
     CYCLE,
     CYCLE_STATE,
     CYCLE_WORDS,
-    FEED_FACTOR,
+    FEED_MODE,
     INCREMENTAL,
     PLANE,
     TO_REFERENCE,
@@ -26,13 +26,16 @@ from twin.nc.compiled.kernels.move_row import (
     RAPID,
     STOP,
     Travel,
+    has_pace,
+    pace_of,
     put_move,
     put_positions,
 )
 from twin.nc.compiled.kernels.target import PlainBlock, aim, target_of_axis
 from twin.nc.path import drilling_cycle
 from twin.nc.path.drilling_cycle import Act, Cycle, Hole
-from twin.nc.path.moves import LARGEST_COORDINATE, feed_per_minute, line_length
+from twin.nc.path.moves import LARGEST_COORDINATE, line_length
+from twin.nc.path.paces import counts_blocks
 from twin.nc.path.rows import Rows, copy
 
 NO_ROOM = -2
@@ -152,13 +155,12 @@ def _emit_hole(
     block: PlainBlock, hole: Hole, constants: Constants, state: State, rows: Rows, row: int
 ) -> int:
     """Go over the hole, drill it, return: ``drilling.drill``; the hole lies at ``constants.over``."""
-    modal, feed = block.modal, block.feed
+    modal = block.modal
     if row + drilling_cycle.most_acts(hole.stops) > len(rows.codes):
         return NO_ROOM
-    if np.isnan(feed) and not constants.feed_may_lack:
+    if counts_blocks(int(modal[FEED_MODE])) or not has_pace(block, constants, state):
         return UNSUPPORTED
-    otherwise = (constants.default_feed, constants.default_rotary_feed)
-    pace = feed_per_minute(feed, False, modal[UNIT], modal[FEED_FACTOR], otherwise)
+    pace = pace_of(block, 0.0, False, constants, state)
     rapidly = Travel(RAPID, constants.rapid_feed, STOP)
     feeding = Travel(FEED, pace, int(modal[CORNER]))
     axis = int(constants.planes[int(modal[PLANE])][2])

@@ -5,7 +5,6 @@ from twin.nc.bytecode.assembler import Assembler
 from twin.nc.canonical import Corner
 from twin.nc.control.codes import CodeWriter, Effect, GCode
 from twin.nc.control.control import Control
-from twin.nc.control.modal import FeedMode
 from twin.nc.dialects.fagor8070 import arcs, frames, polar, transformations
 from twin.nc.dialects.fagor8070.corners import blend_code
 from twin.nc.dialects.fagor8070.cycles.canned_cycles import CYCLES
@@ -16,6 +15,7 @@ from twin.nc.iso import base, fixed_cycles, offsets
 from twin.nc.iso.declared import instead, modal, motion_code, plane_code, refused
 from twin.nc.iso.tool_compensation import END_OF_COMPENSATION, LEFT, RIGHT, compensation_by_tool
 from twin.nc.path.blends import BlendKind
+from twin.nc.path.paces import FeedMode
 from twin.nc.text.blocks import Word
 
 

@@ -5,7 +5,6 @@ from collections.abc import Mapping
 from twin.nc.canonical import Corner
 from twin.nc.control.codes import GCode, MCode
 from twin.nc.control.control import Control
-from twin.nc.control.modal import FeedMode
 from twin.nc.dialects.fanuc import (
     cylinder,
     data_setting,
@@ -22,6 +21,7 @@ from twin.nc.dialects.fanuc.tool_offsets import compensation_code, length_code
 from twin.nc.iso import base, fixed_cycles
 from twin.nc.iso.declared import flow_function, instead, modal, motion_code, refused
 from twin.nc.iso.tool_compensation import END_OF_COMPENSATION, LEFT, RIGHT, set_length
+from twin.nc.path.paces import FeedMode
 
 
 def _lose_feed(control: Control) -> None:
