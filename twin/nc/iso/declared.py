@@ -92,3 +92,9 @@ def flow_function(meaning: str, action: Action, group: str = "") -> MCode:
     return MCode(
         meaning=meaning, group=group, late=True, action=action, silent=True, ground="manual"
     )
+
+
+def go_back(assembler: Assembler) -> None:
+    """The end of a subprogram: back behind its call."""
+    assembler.check_return()
+    assembler.end_call()
