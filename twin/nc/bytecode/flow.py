@@ -46,6 +46,7 @@ class Transfer(NamedTuple):
         range_end: Where the range ends that is repeated next, or ``NO_LOCATION``.
         owns_scope: The part that is called next has local variables of its own.
         restores: What its end puts back into force; behind ``RETURN``: what the end of the part does.
+        ends: The block ends, whatever it says behind.
     """
 
     going: int
@@ -55,6 +56,7 @@ class Transfer(NamedTuple):
     range_end: int
     owns_scope: int
     restores: int
+    ends: bool
 
 
 @inlined
@@ -63,7 +65,7 @@ def straight_on(progress: IntArray, ends_line: bool) -> Transfer:
     line, part = progress[LINE], progress[PART]
     behind = (line + 1) << PART_BITS if ends_line else (line << PART_BITS | part) + 1
     return Transfer(
-        behind, behind, progress[DEPTH], progress[CALLS], NO_LOCATION, 0, NOTHING_RESTORED
+        behind, behind, progress[DEPTH], progress[CALLS], NO_LOCATION, 0, NOTHING_RESTORED, False
     )
 
 
@@ -71,7 +73,7 @@ def straight_on(progress: IntArray, ends_line: bool) -> Transfer:
 def going_to(location: int, to: Transfer) -> Transfer:
     """Let another location come next."""
     return Transfer(
-        location, to.behind, to.depth, to.called, to.range_end, to.owns_scope, to.restores
+        location, to.behind, to.depth, to.called, to.range_end, to.owns_scope, to.restores, True
     )
 
 
@@ -152,7 +154,7 @@ def transfer(
     opcode, operand = instruction.opcode, instruction.operand
     going, depth, called = to.going, to.depth, to.called
     range_end, owns_scope, restores = to.range_end, to.owns_scope, to.restores
-    known = True
+    known, ends = True, False
     if opcode == opcodes.CHECK_CALL:
         known = called < min(operand, len(calls)) and depth + 1 < len(local)
     elif opcode == opcodes.OWN_VARIABLES:
@@ -166,7 +168,7 @@ def transfer(
     elif opcode == opcodes.CHECK_RETURN:
         known = innermost(calls, called) > 0
     elif opcode == opcodes.RETURN:
-        called = innermost(calls, called) - 1
+        called, ends = innermost(calls, called) - 1, True
         if calls[called, AGAIN] > 0:
             calls[called, AGAIN] -= 1
             going, restores = calls[called, FIRST], NOTHING_RESTORED
@@ -183,8 +185,8 @@ def transfer(
             call[BACK], call[FIRST], call[AGAIN] = to.behind, operand, int(again)
             call[LAST], call[OWNS_SCOPE], call[RESTORES] = range_end, owns_scope, restores
             called += 1
-            going = operand
-    return known, Transfer(going, to.behind, depth, called, range_end, owns_scope, restores)
+            going, ends = operand, True
+    return known, Transfer(going, to.behind, depth, called, range_end, owns_scope, restores, ends)
 
 
 @inlined
@@ -192,12 +194,12 @@ def keep_codes(opcode: int, to: Transfer, modal: FloatArray, saved: FloatArray) 
     """Save what is in force at a call whose end restores it, and put it back at that end.
 
     Args:
-        opcode: ``CALL``, ``REPEAT`` or ``RETURN``.
+        opcode: The instruction that has run.
         to: Where it leads.
         modal: What is in force, shape (m,).
         saved: Of each call, shape (``MOST_CALLS``, m).
     """
     if to.restores == CODES_RESTORED and opcode == opcodes.RETURN:
         copy(saved[to.called], modal)
-    elif to.restores == CODES_RESTORED:
+    elif to.restores == CODES_RESTORED and opcodes.CALL <= opcode <= opcodes.REPEAT:
         copy(modal, saved[to.called - 1])

@@ -205,7 +205,12 @@ class Control(ControlWords):
         state = self.state
         state.event_count[0] = 0
         state.programmed[:], state.part[:] = self.programmed, self.part
-        return Affected(self.constants, state, self._event_room)
+        return self.affected
+
+    @property
+    def affected(self) -> Affected:
+        """What instructions change; only the registers are up to date between two of them."""
+        return Affected(self.constants, self.state, self._event_room)
 
     def end_effect(self) -> None:
         """Take back what an instruction has changed, and report what happened."""
