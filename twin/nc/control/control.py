@@ -16,7 +16,7 @@ from twin.nc.bytecode.registers import (
 )
 from twin.nc.canonical import Dwell, Function
 from twin.nc.control.words import ControlWords
-from twin.nc.geometry.frame import moved_shift
+from twin.nc.geometry.frame import Arc, moved_shift
 from twin.nc.geometry.planes import PLANE_ORDER, Plane, Vector
 from twin.nc.path.event_columns import EventRows
 from twin.nc.path.move_columns import FEED, NAN, RAPID, Segment
@@ -79,8 +79,8 @@ class Control(ControlWords):
             center: Programmed centre at the height of the start [mm].
             sweep: Signed angle with all turns [deg].
         """
-        normal, sweep = self.frame.arc(self.modal.plane.normal, sweep)
-        self._add(target, rapid=False, center=self.frame.point(center), normal=normal, sweep=sweep)
+        arc = self.frame.arc(Arc(center, self.modal.plane.normal, sweep))
+        self._add(target, rapid=False, center=arc.center, normal=arc.normal, sweep=arc.sweep)
 
     def _add(
         self,

@@ -101,7 +101,7 @@ def _opening_arc(control: Control, opening: Word, *, clockwise: bool) -> None:
         control.fail("arc-center", "the centre lies on the arc's start", word)
     sweep = -angle if clockwise else angle
     end = turned(start[:2], center, sweep)
-    target[:3] = plane.world(*end, plane.local(target).height)
+    plane.aim(target, end)
     control.arc_to(target, plane.world(*center, start.height), sweep)
 
 

@@ -103,7 +103,7 @@ def _end_on_circle(control: Control, goal: Goal, center: Point) -> None:
         center[1] + (end[1] - center[1]) * far,
     )
     if onto != end[:2]:
-        goal.target[:3] = control.modal.plane.world(*onto, end.height)
+        control.modal.plane.aim(goal.target, onto)
         forget_polar(control)
 
 
@@ -192,8 +192,7 @@ def _sweep(
             if wanted == 0.0:
                 control.fail("helix-height", "a helix by its pitch alone needs a height", pitch)
             sweep = wanted
-            around = turned(start[:2], center, sweep)
-            goal.target[:3] = plane.world(*around, end.height)
+            plane.aim(goal.target, turned(start[:2], center, sweep))
             forget_polar(control)
     control.arc_to(goal.target, plane.world(*center, start.height), sweep)
 
@@ -243,7 +242,7 @@ def _arc_about_own_center(control: Control, *, clockwise: bool) -> None:
     by = value if incremental else value - angle_of(start[:2], center)
     end = turned(start[:2], center, by)
     target = control.target()
-    target[:3] = plane.world(*end, plane.local(target).height)
+    plane.aim(target, end)
     forget_polar(control)
     sweep = sweep_between(start[:2], end, center, clockwise=clockwise)
     control.arc_to(target, plane.world(*center, start.height), sweep)

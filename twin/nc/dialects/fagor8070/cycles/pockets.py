@@ -313,7 +313,7 @@ def _arc(control: Control, end: Point, center: Point, sweep: float) -> None:
 
 def _go(control: Control, point: Point, *, rapid: bool) -> None:
     plane, target = control.modal.plane, list(control.programmed)
-    target[:3] = plane.world(*point, plane.local(target).height)
+    plane.aim(target, point)
     control.line_to(target, rapid=rapid)
 
 
