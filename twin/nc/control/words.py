@@ -60,7 +60,11 @@ class ControlWords(ControlState, abc.ABC):
 
     def axis_value(self, index: int, word: Word) -> float:
         """Value of an axis word [mm or deg]."""
-        return number_of(word) * (self.modal.unit if self.linear[index] else 1.0)
+        return number_of(word) * self.unit_of(index)
+
+    def unit_of(self, index: int) -> float:
+        """What 1 of an axis is in the program's unit [mm or deg]."""
+        return self.modal.unit if self.linear[index] else 1.0
 
     def evaluate(self, expression: Expression, word: Word) -> float:
         """Compute an expression; errors point at the word."""

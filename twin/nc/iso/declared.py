@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import Unpack
 
 from twin.nc.bytecode import opcodes
+from twin.nc.bytecode.assembler import Assembler
 from twin.nc.control.codes import Action, CodeWriter, Effect, GCode, Ground, Interpolation, MCode
 from twin.nc.control.modal import ModalChanges
 from twin.nc.geometry.planes import PLANE_ORDER, Plane
@@ -63,3 +64,9 @@ def flow_function(meaning: str, action: Action, group: str = "") -> MCode:
     return MCode(
         meaning=meaning, group=group, late=True, action=action, silent=True, ground="manual"
     )
+
+
+def go_back(assembler: Assembler) -> None:
+    """The end of a subprogram: back behind its call."""
+    assembler.check_return()
+    assembler.end_call()

@@ -132,7 +132,11 @@ def _numbered_axis(control: Control, word: Word) -> int:
     number = control.number(word) - FIRST_ADDITIONAL
     if number not in range(len(ADDITIONAL)):
         control.fail("even-axis", f"{word.text} numbers no additional axis", word, "4 is A, 6 is C")
-    letter = ADDITIONAL[int(number)]
+    return axis_named(control, ADDITIONAL[int(number)], word)
+
+
+def axis_named(control: Control, letter: str, word: Word) -> int:
+    """Column of the axis with a letter; a word asks for it."""
     index = control.axis_index.get(letter)
     if index is None:
         control.refuse_axis(word._replace(address=letter))

@@ -4,13 +4,7 @@ from twin.nc.control.control import Control
 from twin.nc.control.interpolation import ArcRule
 from twin.nc.geometry import arcs
 from twin.nc.geometry.arcs import SAME_POINT, Bounds, Point, distance, turned
-from twin.nc.iso.circular import (
-    both_senses,
-    refuse_arc,
-    start_and_end,
-    sweep_arc,
-    take_center,
-)
+from twin.nc.iso.circular import both_senses, refuse_arc, start_and_end, sweep_arc, take_center
 from twin.nc.text.blocks import Word
 
 BOUNDS = Bounds(mismatch=0.0, mismatch_share=0.1, shift=1e-3, shift_share=0.0)

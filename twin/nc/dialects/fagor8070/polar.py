@@ -16,9 +16,6 @@ from twin.nc.geometry.arcs import direction
 from twin.nc.geometry.polar import changed, point_at, seen_from
 from twin.nc.text.blocks import Word
 
-HELIX_ANGLE = 0.1
-"""A helix whose pitch misses its end point by more than this earns a warning [deg]."""
-
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Goal:

@@ -101,7 +101,10 @@ def _pocket(meaning: str, *, clockwise: bool) -> GCode:
 
 def _offset(number: int) -> GCode:
     pair = number - 109
-    action = offsets.numbered_code(number, pair)
+
+    def action(control: Control) -> None:
+        offsets.select(control, offsets.further(control, pair), control.code_word(number))
+
     return modal(f"work offset G154 P{pair} of the job", "offset", action)
 
 

@@ -15,7 +15,7 @@ from twin.nc.dialects.linuxcnc import (
 from twin.nc.dialects.linuxcnc.codes import CODES, GROUPS, START
 from twin.nc.dialects.linuxcnc.decisions import DECISIONS
 from twin.nc.dialects.linuxcnc.expressions import EXPRESSIONS
-from twin.nc.dialects.linuxcnc.library import with_files
+from twin.nc.dialects.linuxcnc.library import LIBRARY
 from twin.nc.dialects.linuxcnc.memory import LinuxcncMemory, memory_of
 from twin.nc.dialects.linuxcnc.structure import COMMENTS
 from twin.nc.iso import base, shared_marks
@@ -167,7 +167,7 @@ LINUXCNC = Dialect(
     is_local=parameters.is_local,
     given_variable=parameters.given_variable,
     live_variables=parameters.LiveParameters(),
-    library=with_files,
+    library=LIBRARY,
     prepare=offsets.begin,
     must_end=True,
     finish=_finish,

@@ -23,6 +23,7 @@ from twin.nc.dialects.linuxcnc.structure import (
     scope,
     structure,
 )
+from twin.nc.iso.declared import go_back
 from twin.nc.text import arithmetic
 from twin.nc.text.blocks import Location, Statement
 from twin.nc.text.expressions import (
@@ -60,11 +61,6 @@ def values_of(control: Control, word: OWord, statement: Statement) -> list[tuple
         found.append((value, word.column + at))
         at = end
     return found
-
-
-def _condition(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
-    """Put the one value behind IF, ELSEIF or WHILE on the stack."""
-    assembler.value(*_condition_of(control, statement, word))
 
 
 def _condition_of(control: Control, statement: Statement, word: OWord) -> tuple[Expression, int]:
@@ -146,13 +142,13 @@ def _declare(control: Control, statement: Statement, word: OWord, assembler: Ass
 def _if(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
     _declare(control, statement, word, assembler)
     construct = _construct_of(control, statement, word)
-    _condition(control, statement, word, assembler)
+    assembler.value(*_condition_of(control, statement, word))
     assembler.jump_if(Location(control.block.line, 0))
     for branch in construct.branches:
         if branch.keyword == "ELSE":
             assembler.jump(Location(branch.line + 1, 0))
             return
-        _condition(control, *_line_of(control, branch.line), assembler)
+        assembler.value(*_condition_of(control, *_line_of(control, branch.line)))
         assembler.jump_if(Location(branch.line + 1, 0))
     assembler.jump(construct.behind)
 
@@ -168,11 +164,11 @@ def _nothing(control: Control, statement: Statement, word: OWord, _assembler: As
 def _while(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
     construct = _construct_of(control, statement, word)
     if construct.keyword == "DO":
-        _condition(control, statement, word, assembler)
+        assembler.value(*_condition_of(control, statement, word))
         assembler.jump_if(Location(construct.begin + 1, 0))
         return
     _declare(control, statement, word, assembler)
-    _condition(control, statement, word, assembler)
+    assembler.value(*_condition_of(control, statement, word))
     assembler.jump_unless(construct.behind)
 
 
@@ -357,13 +353,6 @@ def _return(control: Control, statement: Statement, word: OWord, assembler: Asse
     assembler.end_call()
 
 
-def _program_for_m98(
-    control: Control, statement: Statement, word: OWord, assembler: Assembler
-) -> None:
-    """O100 alone: a program that M98 calls, and that the flow may run into."""
-    del control, statement, word, assembler
-
-
 _WORDS: dict[str, Callable[[Control, Statement, OWord, Assembler], None]] = {
     "SUB": _sub,
     "ENDSUB": _return,
@@ -380,7 +369,7 @@ _WORDS: dict[str, Callable[[Control, Statement, OWord, Assembler], None]] = {
     "ENDREPEAT": _end_repeat,
     "BREAK": _break,
     "CONTINUE": _continue,
-    "": _program_for_m98,
+    "": lambda _control, _statement, _word, _assembler: None,  # a program for M98: it is run into
 }
 
 
@@ -447,7 +436,7 @@ def return_from_program(control: Control) -> None:
     """M99: back behind M98; in the main program from its beginning again."""
     _refuse_companions(control, "N", "M99")
     if control.program_counter.is_calling:
-        control.perform(_end_program)
+        control.perform(go_back)
     else:
         control.program_counter.go(Location(0, 0))
         memory_of(control).percent = False
@@ -466,8 +455,3 @@ def _refuse_companions(control: Control, letters: str, alone: str) -> None:
     if other is not None:
         message = f"{other.text} cannot stand beside {call.text}"
         control.fail("code-words", message, other, f"write {alone} in a line of its own")
-
-
-def _end_program(assembler: Assembler) -> None:
-    assembler.check_return()
-    assembler.end_call()

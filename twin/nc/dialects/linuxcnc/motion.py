@@ -52,10 +52,6 @@ def require_axes(control: Control) -> None:
         need_axes(control)
 
 
-def _feed_alone(control: Control) -> None:
-    check_feed(control, False)
-
-
 def target(control: Control) -> list[float]:
     """Take the axis words and @ ^; the programmed position that they ask for, shape (k,)."""
     radius, angle = control.take("@"), control.take("^")
@@ -95,7 +91,7 @@ def _straight(control: Control, rapid: bool) -> None:
         control.line_to(goal, rapid=rapid)
 
 
-RAPID, FEED = base.straight(_straight, _feed_alone)
+RAPID, FEED = base.straight(_straight, lambda control: check_feed(control, False))
 
 
 def in_machine_coordinates(control: Control) -> None:
@@ -227,8 +223,7 @@ def probe(control: Control) -> None:
     control.function("G38", {})
     control.line_to(goal, rapid=False)
     memory_of(control).probe = [
-        value / control.modal.unit if linear else value
-        for value, linear in zip(control.programmed, control.linear, strict=True)
+        value / control.unit_of(axis) for axis, value in enumerate(control.programmed)
     ]
 
 
