@@ -18,7 +18,7 @@ from twin.nc.geometry.matrices import (
     stretched,
     turned_unit,
 )
-from twin.nc.geometry.planes import Directions, Plane, Vector, cross
+from twin.nc.geometry.planes import Directions, Plane, Vector, along, cross, world
 
 FloatArray = npt.NDArray[np.float64]
 Values = list[float] | FloatArray
@@ -60,6 +60,13 @@ class Arc(NamedTuple):
     center: Vector
     normal: Vector
     sweep: float
+
+
+@inlined
+def arc_about(plane: Directions, start: Values, center: Point, sweep: float) -> Arc:
+    """The arc of a plane that begins at a position, shape (k,), about a centre."""
+    height = along((start[0], start[1], start[2]), plane[2])
+    return Arc(world(plane, center, height), plane[2], sweep)
 
 
 @inlined

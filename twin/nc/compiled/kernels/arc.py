@@ -21,8 +21,8 @@ from twin.nc.bytecode.token_kinds import CENTER, RADIUS
 from twin.nc.compiled.kernels.target import PlainBlock, value_of
 from twin.nc.geometry import arcs
 from twin.nc.geometry.arcs import ArcWords, Bounds, Sense
-from twin.nc.geometry.frame import Arc, arc_of_part
-from twin.nc.geometry.planes import along, point_of, vector_of, world
+from twin.nc.geometry.frame import arc_about, arc_of_part
+from twin.nc.geometry.planes import point_of, vector_of
 from twin.nc.path.moves import arc_length
 from twin.nc.path.rows import Rows
 
@@ -59,8 +59,8 @@ def emit_arc(
         return DOUBTFUL
     plane = directions(constants, int(block.modal[PLANE]))
     position, value = rows.positions[row], rows.values[row]
-    here = vector_of(state.programmed)
-    start, end = point_of(plane, here), point_of(plane, vector_of(position[2]))
+    start = point_of(plane, vector_of(state.programmed))
+    end = point_of(plane, vector_of(position[2]))
     b = tables.bounds[interpolation]
     bounds = Bounds(float(b[0]), float(b[1]), float(b[2]), float(b[3]))
     fits = tables.fits_radius[interpolation]
@@ -69,8 +69,8 @@ def emit_arc(
     finding, found = arcs.center_of_words(start, end, words, absolute, sense, bounds)
     if finding != arcs.FITS:
         return DOUBTFUL
-    center = world(plane, found, along(here, plane[2]))
-    programmed = Arc(center, plane[2], arcs.sweep_between(start, end, found, clockwise))
+    sweep = arcs.sweep_between(start, end, found, clockwise)
+    programmed = arc_about(plane, state.programmed, found, sweep)
     turned = state.registers[TURNED] != 0.0
     arc = arc_of_part(programmed, matrix_of(state), state.total, turned)
     put(arc.center, value)

@@ -96,7 +96,7 @@ def _opening_arc(control: Control, opening: Word, *, clockwise: bool) -> None:
     sweep = -angle if clockwise else angle
     end = turned(start[:2], center, sweep)
     plane.aim(target, end)
-    control.arc_to(target, plane.world(*center, start.height), sweep)
+    control.arc_to(target, center, sweep)
 
 
 def _programmed_center(control: Control) -> tuple[Point | None, Word | None]:

@@ -177,7 +177,7 @@ def _sweep(
             sweep = wanted
             plane.aim(goal.target, turned(start[:2], center, sweep))
             forget_polar(control)
-    control.arc_to(goal.target, plane.world(*center, start.height), sweep)
+    control.arc_to(goal.target, center, sweep)
 
 
 def _helix_sweep(control: Control, height: float, pitch: Word, *, clockwise: bool) -> float:
@@ -228,7 +228,7 @@ def _arc_about_own_center(control: Control, *, clockwise: bool) -> None:
     plane.aim(target, end)
     forget_polar(control)
     sweep = sweep_between(start[:2], end, center, clockwise=clockwise)
-    control.arc_to(target, plane.world(*center, start.height), sweep)
+    control.arc_to(target, center, sweep)
 
 
 RAPID, FEED = base.straight(_line)
