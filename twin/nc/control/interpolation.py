@@ -43,6 +43,10 @@ class CycleRule:
     cycle: Cycle
     words: Mapping[str, int]
 
+    def addresses(self, across: str) -> Mapping[str, int]:
+        """Which of its values each word gives, also that of the axis across the plane."""
+        return {**self.words, across: self.cycle.across}
+
 
 MotionRule = LineRule | ArcRule | CycleRule
 

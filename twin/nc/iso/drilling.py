@@ -19,14 +19,14 @@ from twin.nc.path.drilling_cycle import (
     PECK,
     REFERENCE,
     Act,
+    CycleBlock,
     Fault,
     Hole,
-    begin,
     hole_of,
     most_acts,
     next_place,
     no_values,
-    remember,
+    read_words,
     write_acts,
 )
 
@@ -52,26 +52,19 @@ ONE_HOLE = Holes()
 
 def cycle_code(rule: CycleRule, meaning: str, holes: Holes = ONE_HOLE) -> GCode:
     """The code that calls a cycle with its words, told to people by its meaning."""
-    cycle = rule.cycle
 
     def call(control: Control) -> None:
-        axis = control.modal.plane.axes[2]
-        begin(control.cycle_state, axis, control.programmed[axis], cycle.lasting)
-        if not cycle.lasting:
-            take_words(control, rule)
+        take_words(control, rule, calls=True)
 
     def perform(control: Control) -> None:
         count = repeats_of(control, holes.repeats)
+        take_words(control, rule)
         given = dict(control.words)
         if count == 0:
-            take_words(control, rule)
             control.take_axis_words()
-        for number in range(count):
-            if number:
-                control.words = dict(given)
-            if cycle.lasting:
-                take_words(control, rule)
-            drill(control, _hole(control, rule), holes.target(control))
+        for _ in range(count):
+            control.words = dict(given)
+            drill(control, hole_in_force(control, rule), holes.target(control))
 
     return GCode(
         meaning=meaning,
@@ -99,18 +92,19 @@ def repeats_of(control: Control, address: str, least: int = 0) -> int:
     return int(given)
 
 
-def take_words(control: Control, rule: CycleRule) -> None:
-    """Take the cycle's words, and that of the axis across the plane."""
-    cycle, given = rule.cycle, no_values()
-    relative = dict.fromkeys((REFERENCE, BOTTOM), control.modal.incremental)
-    for address, value in {**rule.words, _across(control): cycle.across}.items():
-        word = control.take(address)
-        if word is not None:
-            given[value] = control.number(word)
-            if word.incremental:
-                relative[value] = True
+def take_words(control: Control, rule: CycleRule, *, calls: bool = False) -> None:
+    """Take the words of a block that calls a cycle, or of its hole; which of both it is, the cycle says."""
+    modal, given = control.modal, no_values()
+    axis, relative = modal.plane.axes[2], dict.fromkeys((REFERENCE, BOTTOM), modal.incremental)
+    if calls != rule.cycle.lasting:
+        for address, value in rule.addresses(control.settings.axes.names[axis]).items():
+            word = control.take(address)
+            if word is not None:
+                given[value] = control.number(word)
+                relative[value] = modal.incremental or word.incremental
     from_where = relative[REFERENCE], relative[BOTTOM]
-    remember(control.cycle_state, given, control.modal.unit, from_where, cycle.lasting)
+    block = CycleBlock(calls, axis, control.programmed[axis], modal.unit, from_where)
+    read_words(rule.cycle, control.cycle_state, given, block)
 
 
 def _write_words(words: Mapping[str, int]) -> CodeWriter:
@@ -128,12 +122,7 @@ def _write_words(words: Mapping[str, int]) -> CodeWriter:
     return write
 
 
-def _across(control: Control) -> str:
-    """Name of the axis across the plane."""
-    return control.settings.axes.names[control.modal.plane.axes[2]]
-
-
-def _hole(control: Control, rule: CycleRule) -> Hole:
+def hole_in_force(control: Control, rule: CycleRule) -> Hole:
     """What the cycle does at a hole.
 
     Raises:
@@ -153,8 +142,8 @@ def refuse_hole(control: Control, rule: CycleRule, hole: Hole) -> NoReturn:
         ProgramError: Always.
     """
     name = rule.name
-    addresses = {value: address for address, value in rule.words.items()}
-    addresses[rule.cycle.across] = _across(control)
+    across = control.settings.axes.names[control.modal.plane.axes[2]]
+    addresses = {value: address for address, value in rule.addresses(across).items()}
     if hole.fault == Fault.MISSING:
         missing = [
             address
@@ -203,20 +192,14 @@ def drill(control: Control, hole: Hole, target: list[float] | None) -> None:
     goal = list(control.programmed)
     over = goal if target is None else target
     for number in range(write_acts(hole, goal[axis], acts, amounts)):
-        act, amount, height = int(acts[number]), amounts[number], goal[axis]
+        act, amount = int(acts[number]), amounts[number]
         if next_place(act, amount, over, goal, axis):
-            faster = hole.faster if act == Act.FEED and amount > height else 1.0
-            _go(control, list(goal), faster, rapid=act != Act.FEED)
+            feed = control.feed
+            if feed is not None and act == Act.BACK:
+                control.feed = feed * hole.faster
+            control.line_to(list(goal), rapid=act not in (Act.FEED, Act.BACK))
+            control.feed = feed
         else:
             place = BlockPlace(control.block.line, 0, control.path.compensating)
             report_act(act, amount, place, control.begin_effect())
             control.end_effect()
-
-
-def _go(control: Control, there: list[float], faster: float, *, rapid: bool) -> None:
-    """Go straight to a programmed position, so many times as fast as F says."""
-    feed = control.feed
-    if feed is not None:
-        control.feed = feed * faster
-    control.line_to(there, rapid=rapid)
-    control.feed = feed

@@ -96,6 +96,8 @@ class Act(enum.IntEnum):
     M5 = 5
     ACROSS = 6
     """Rapidly over the hole, at a height."""
+    BACK = 7
+    """With the feed, as many times as fast as the hole says."""
 
 
 class Fault(enum.IntEnum):
@@ -125,7 +127,7 @@ _PECK_WORDS, _FASTER = int(Fault.PECK_WORDS), int(Fault.FASTER)
 _TO_BOTTOM = int(Pecking.TO_BOTTOM)
 _FASTEST_RETURN = 9.0
 _UP, _DOWN, _WAIT = float(Act.RAPID), float(Act.FEED), float(Act.DWELL)
-_ACROSS = float(Act.ACROSS)
+_ACROSS, _BACK = float(Act.ACROSS), float(Act.BACK)
 _M3, _M4, _M5 = float(Act.M3), float(Act.M4), float(Act.M5)
 
 
@@ -156,6 +158,41 @@ class Cycle(NamedTuple):
     retract: int = int(Retract.RAPID)
     lift: float = 0.0
     repeats_only: bool = False
+
+
+@compilable
+def cycle_of(column: FloatArray) -> Cycle:
+    """The cycle that a column begins with, value by value."""
+    return Cycle(
+        column[0] != 0.0,
+        int(column[1]),
+        int(column[2]),
+        int(column[3]),
+        column[4] != 0.0,
+        column[5],
+        int(column[6]),
+        column[7],
+        column[8] != 0.0,
+    )
+
+
+class CycleBlock(NamedTuple):
+    """A block, as a cycle sees it.
+
+    Attributes:
+        calls: It calls the cycle.
+        axis: The axis across the plane in force.
+        height: Where the tool stands on that [mm].
+        unit: Of programmed lengths [mm].
+        relative: Whether the reference plane counts from the height of the call, and whether the
+            bottom counts from the reference plane.
+    """
+
+    calls: bool
+    axis: int
+    height: float
+    unit: float
+    relative: tuple[bool, bool]
 
 
 class Hole(NamedTuple):
@@ -215,40 +252,27 @@ def forget(values: Values) -> None:
 
 
 @compilable
-def begin(values: Values, axis: int, height: float, lasting: bool) -> None:
-    """A cycle begins at a height [mm] of the axis across its plane."""
-    if lasting and values[START] == values[START]:
-        return
-    forget(values)
-    values[START], values[AXIS] = height, float(axis)
-
-
-@compilable
-def remember(
-    values: Values,
-    given: Values,
-    unit: float,
-    relative: tuple[bool, bool],
-    lasting: bool,
-) -> None:
+def read_words(cycle: Cycle, values: Values, given: Values, block: CycleBlock) -> None:
     """Take the words of a block.
 
     Args:
-        values: What the cycle remembers.
+        cycle: The cycle that it calls, or that is in force.
+        values: What the cycle remembers; NaN all of it where none was in force.
         given: The block's words as they are written, in the same places; lengths become millimetres.
-        unit: Of programmed lengths [mm].
-        relative: Whether the reference plane counts from the height of the call, and whether the
-            bottom counts from the reference plane.
-        lasting: As in ``Cycle``; else the reference plane is the height of the call where it is
-            not given.
+        block: The block.
     """
-    from_start, from_reference = relative
+    if block.calls and not (cycle.lasting and values[START] == values[START]):
+        forget(values)
+        values[START], values[AXIS] = block.height, float(block.axis)
+    elif not cycle.lasting:
+        return
     for value in range(VALUES):
         if (LENGTHS >> value) & 1:
-            given[value] *= unit
+            given[value] *= block.unit
+    from_start, from_reference = block.relative
     if given[REFERENCE] == given[REFERENCE]:
         values[REFERENCE] = given[REFERENCE] + (values[START] if from_start else 0.0)
-    elif not lasting:
+    elif not cycle.lasting:
         values[REFERENCE] = values[START]
     if given[BOTTOM] == given[BOTTOM]:
         above = either(values[REFERENCE], 0.0) if from_reference else 0.0
@@ -384,7 +408,7 @@ def next_place(act: float, amount: float, over: Values, goal: Values, axis: int)
         goal: Shape (k,).
         axis: The axis across the plane.
     """
-    if act not in (_UP, _DOWN, _ACROSS):
+    if act not in (_UP, _DOWN, _ACROSS, _BACK):
         return False
     if act == _ACROSS:
         for other in range(len(goal)):
@@ -428,7 +452,7 @@ def write_acts(hole: Hole, height: float, acts: Values, amounts: Values) -> int:
         acts[at], amounts[at] = back if reverses else _M5, 0.0
         at += 1
     if reverses or hole.retract == _FEED:
-        acts[at], amounts[at] = _DOWN, hole.reference
+        acts[at], amounts[at] = _BACK, hole.reference
         at += 1
     if reverses:
         acts[at], amounts[at] = forth, 0.0

@@ -31,7 +31,7 @@ from twin.nc.compiled.kernels.move_row import (
 )
 from twin.nc.compiled.kernels.target import PlainBlock, aim, target_of_axis
 from twin.nc.path import drilling_cycle
-from twin.nc.path.drilling_cycle import Act, Cycle, Hole
+from twin.nc.path.drilling_cycle import Act, Cycle, CycleBlock, Hole
 from twin.nc.path.moves import LARGEST_COORDINATE, feed_per_minute, line_length
 from twin.nc.path.rows import Rows, copy
 
@@ -39,7 +39,7 @@ NO_ROOM = -2
 """The rows are full."""
 _WORDS = len(Cycle._fields)
 _REPEATS_ONLY = Cycle._fields.index("repeats_only")
-_DOWN = int(Act.FEED)
+_DOWN, _BACK = int(Act.FEED), int(Act.BACK)
 
 
 @compilable
@@ -74,7 +74,7 @@ def drill(
     taken, hole = _read_cycle(block, called, tables, constants, state)
     if repeats_only and state.programmed[plane[2]] < hole.reference:
         return UNSUPPORTED
-    if hole.fault != 0 or hole.stops > drilling_cycle.MOST_STOPS or hole.faster != 1.0:
+    if hole.fault != 0 or hole.stops > drilling_cycle.MOST_STOPS:
         return UNSUPPORTED
     rest = block.seen & ~taken
     if (rest >> RADIUS) & ((1 << (AXIS - RADIUS)) - 1) or rest & (1 << (AXIS + plane[2])):
@@ -109,30 +109,16 @@ def _read_cycle(
     Returns:
         The token kinds of those words as bits, and what is done at the hole.
     """
-    modal, (begins, anew) = block.modal, called
+    modal, (calls, anew) = block.modal, called
     row = tables.cycles[int(modal[CYCLE])]
-    cycle = Cycle(
-        row[0] != 0.0,
-        int(row[1]),
-        int(row[2]),
-        int(row[3]),
-        row[4] != 0.0,
-        row[5],
-        int(row[6]),
-        row[7],
-        row[8] != 0.0,
-    )
+    cycle = drilling_cycle.cycle_of(row)
     across = int(constants.planes[int(modal[PLANE])][2])
     remembered, given = constants.hole[0], constants.hole[1]
     for value in range(drilling_cycle.VALUES):
-        remembered[value] = state.registers[CYCLE_STATE + value]
+        remembered[value] = np.nan if anew else state.registers[CYCLE_STATE + value]
         given[value] = state.registers[CYCLE_WORDS + value]
-    if anew:
-        remembered[drilling_cycle.START] = np.nan
-    if begins:
-        drilling_cycle.begin(remembered, across, state.programmed[across], cycle.lasting)
     taken = 0
-    if begins or cycle.lasting:
+    if calls or cycle.lasting:
         for word in range(len(block.token_kinds)):
             token_kind = block.token_kinds[word]
             value = int(row[_WORDS + token_kind])
@@ -142,8 +128,8 @@ def _read_cycle(
                 given[value] = block.values[word]
                 taken |= 1 << token_kind
     relative = modal[INCREMENTAL] != 0.0
-    if begins or taken:
-        drilling_cycle.remember(remembered, given, modal[UNIT], (relative, relative), cycle.lasting)
+    here = CycleBlock(calls, across, state.programmed[across], modal[UNIT], (relative, relative))
+    drilling_cycle.read_words(cycle, remembered, given, here)
     return taken, drilling_cycle.hole_of(cycle, remembered, across, modal[TO_REFERENCE] != 0.0)
 
 
@@ -158,9 +144,11 @@ def _emit_hole(
     if np.isnan(feed) and not constants.feed_may_lack:
         return UNSUPPORTED
     otherwise = (constants.default_feed, constants.default_rotary_feed)
-    pace = feed_per_minute(feed, False, modal[UNIT], modal[FEED_FACTOR], otherwise)
+    unit, factor, corner = modal[UNIT], modal[FEED_FACTOR], int(modal[CORNER])
     rapidly = Travel(RAPID, constants.rapid_feed, STOP)
-    feeding = Travel(FEED, pace, int(modal[CORNER]))
+    down = Travel(FEED, feed_per_minute(feed, False, unit, factor, otherwise), corner)
+    pace = feed_per_minute(feed * hole.faster, False, unit, factor, otherwise)
+    back = Travel(FEED, pace, corner)
     axis = int(constants.planes[int(modal[PLANE])][2])
     here, part, goal = constants.room[0], constants.room[1], constants.room[2]
     copy(state.programmed, here)
@@ -170,7 +158,7 @@ def _emit_hole(
     for step in range(drilling_cycle.write_acts(hole, here[axis], acts, amounts)):
         act, amount = int(acts[step]), amounts[step]
         if drilling_cycle.next_place(act, amount, constants.over, goal, axis):
-            travel = feeding if act == _DOWN else rapidly
+            travel = down if act == _DOWN else (back if act == _BACK else rapidly)
             after = _go(goal, travel, block, constants, state, rows, after)
             if after == UNSUPPORTED:
                 return UNSUPPORTED
