@@ -1,7 +1,7 @@
 """Drilling cycles: the codes that call them, their words, and what happens at a hole, in every dialect."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import NamedTuple, NoReturn
 
 from twin.nc.bytecode import opcodes
@@ -29,6 +29,7 @@ from twin.nc.path.drilling_cycle import (
     read_words,
     write_acts,
 )
+from twin.nc.text.blocks import Word
 
 
 class Holes(NamedTuple):
@@ -54,6 +55,7 @@ def cycle_code(rule: CycleRule, meaning: str, holes: Holes = ONE_HOLE) -> GCode:
     """The code that calls a cycle with its words, told to people by its meaning."""
 
     def call(control: Control) -> None:
+        _take_options(control, rule, control.number)
         take_words(control, rule, calls=True)
 
     def perform(control: Control) -> None:
@@ -71,7 +73,7 @@ def cycle_code(rule: CycleRule, meaning: str, holes: Holes = ONE_HOLE) -> GCode:
         group="cycle",
         sets={"cycle": Interpolation(perform, rule=rule)},
         action=call,
-        compiler=_write_words(rule.words),
+        compiler=_write_words(rule),
         ground=holes.ground,
     )
 
@@ -107,11 +109,25 @@ def take_words(control: Control, rule: CycleRule, *, calls: bool = False) -> Non
     read_words(rule.cycle, control.cycle_state, given, block)
 
 
-def _write_words(words: Mapping[str, int]) -> CodeWriter:
-    """Write those words as instructions; the words of axes stay with those of the hole."""
+def _take_options(control: Control, rule: CycleRule, value: Callable[[Word], float]) -> None:
+    """Take words of the call that change nothing of the path.
+
+    Raises:
+        ProgramError: One has another value than those that are known to do so.
+    """
+    for letter, known in rule.options.items():
+        word = control.take(letter)
+        if word is not None and value(word) not in known:
+            values = " or ".join(f"{letter}{value:g}" for value in known)
+            control.fail("unsupported-word", f"only {values} is followed here", word)
+
+
+def _write_words(rule: CycleRule) -> CodeWriter:
+    """Write the words of the call as instructions; those of axes stay with those of the hole."""
 
     def write(control: Control, assembler: Assembler) -> None:
-        for address, value in words.items():
+        _take_options(control, rule, assembler.known)
+        for address, value in rule.words.items():
             word = control.take(address)
             if word is not None and word.incremental:
                 assembler.rare()
@@ -154,6 +170,14 @@ def refuse_hole(control: Control, rule: CycleRule, hole: Hole) -> NoReturn:
     if hole.fault == Fault.PLANE:
         message = f"{name} was called in another plane"
         control.fail("cycle-plane", message, hint="end it by G80 before the plane changes")
+    if hole.passes and hole.fault == Fault.MANY_PECKS:
+        message = f"the hole would need more than {MOST_PECKS} passes"
+        control.fail("cycle-depth", message, hint=f"write a larger {addresses[PECK]}")
+    if hole.passes and hole.fault == Fault.PECKS:
+        needed = f"passes {addresses[PECK]} above 0"
+        if LIFT in addresses:
+            needed = f"{addresses[PECK]} above 0, and {addresses[LIFT]} not below 0"
+        control.fail("cycle-depth", f"{name} needs {needed}")
     if hole.fault == Fault.MANY_PECKS:
         message = f"the hole would need more than {MOST_PECKS} pecks"
         control.fail("cycle-depth", message, hint="write deeper pecks")

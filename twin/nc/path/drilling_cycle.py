@@ -80,6 +80,11 @@ class Pecking(enum.IntEnum):
     """By pecks, from the first on, as far as the bottom."""
     COUNTED = 2
     """By so many equal pecks."""
+    PASSES = 3
+    """By passes of a tap, which breaks the chip in its thread: every way is made with the feed, and out with
+    the spindle reversed. At once where nothing says how deep they are."""
+    UNSIGNED_PASSES = 4
+    """As ``PASSES``; their depth may be written with either sign."""
 
 
 class Act(enum.IntEnum):
@@ -121,6 +126,7 @@ class Fault(enum.IntEnum):
 _FEED, _REVERSED, _STOPPED = int(Retract.FEED), int(Retract.REVERSED), int(Retract.STOPPED)
 _REVERSED_LEFT = int(Retract.REVERSED_LEFT)
 _STRAIGHT, _COUNTED = int(Pecking.NONE), int(Pecking.COUNTED)
+_PASSES, _UNSIGNED_PASSES = int(Pecking.PASSES), int(Pecking.UNSIGNED_PASSES)
 _MISSING, _PLANE, _PECKS = int(Fault.MISSING), int(Fault.PLANE), int(Fault.PECKS)
 _MANY_PECKS, _DEPTH, _DWELL = int(Fault.MANY_PECKS), int(Fault.DEPTH), int(Fault.DWELL)
 _PECK_WORDS, _FASTER = int(Fault.PECK_WORDS), int(Fault.FASTER)
@@ -206,6 +212,7 @@ class Hole(NamedTuple):
         dwell: At the bottom [s].
         surface: Height at which the first peck begins [mm].
         stops: How often it withdraws to break or clear chips.
+        passes: It does so as a tap, with the feed.
         peck: Depth of the first peck [mm].
         factor: By which each is deeper than the one before.
         reduction: By how much each is less deep than that [mm].
@@ -224,6 +231,7 @@ class Hole(NamedTuple):
     dwell: float
     surface: float
     stops: int
+    passes: bool
     peck: float
     factor: float
     reduction: float
@@ -309,13 +317,19 @@ def hole_of(cycle: Cycle, values: Values, axis: int, to_reference: bool) -> Hole
     if cycle.pecking == _COUNTED:
         peck = abs(values[DEPTH])
         bottom = surface - peck * values[COUNT]
-    if fault == 0 and cycle.pecking != _STRAIGHT:
+    passes = cycle.pecking in (_PASSES, _UNSIGNED_PASSES)
+    if cycle.pecking == _UNSIGNED_PASSES:
+        peck = abs(peck)
+    if fault == 0 and cycle.pecking != _STRAIGHT and not (passes and peck != peck):
         if peck <= 0.0 or factor <= 0.0 or lift < 0.0 or every < 0.0 or every % 1.0 != 0.0:
             fault = _PECKS
         else:
-            stops = count_stops(surface, bottom, peck, (factor, reduction, least))
+            course = (factor, reduction, least)
+            stops = count_stops(surface, bottom, peck, course)
+            if passes:
+                stops = count_passes(surface, bottom, peck) - 1
             full_every = 1 if lift == 0.0 else int(every)
-            if stops > MOST_PECKS:
+            if stops + passes > MOST_PECKS:
                 fault = _MANY_PECKS
     clearance = either(values[CLEARANCE], cycle.clearance)
     dwell = either(values[DWELL], 0.0) if cycle.dwells else 0.0
@@ -334,6 +348,7 @@ def hole_of(cycle: Cycle, values: Values, axis: int, to_reference: bool) -> Hole
         dwell,
         surface,
         stops,
+        passes,
         peck,
         factor,
         reduction,
@@ -392,9 +407,15 @@ def count_stops(
 
 
 @compilable
+def count_passes(surface: float, bottom: float, depth: float) -> int:
+    """How many passes of a depth lead to the bottom; more than ``MOST_PECKS`` are not counted."""
+    return math.ceil(max(min((surface - bottom) / depth, MOST_PECKS + 1.0) - 1e-9, 1.0))
+
+
+@compilable
 def most_acts(stops: int) -> int:
     """Room that ``write_acts`` needs."""
-    return 3 * stops + 9
+    return 4 * stops + 9
 
 
 @compilable
@@ -428,34 +449,40 @@ def write_acts(hole: Hole, height: float, acts: Values, amounts: Values) -> int:
         amounts: Filled with heights [mm] and seconds.
     """
     over = max(height, hole.reference)
+    reverses = hole.retract in (_REVERSED, _REVERSED_LEFT)
+    outwards, inwards = (_M3, _M4) if hole.retract == _REVERSED_LEFT else (_M4, _M3)
     acts[0], amounts[0] = _UP, over
     acts[1], amounts[1] = _ACROSS, over
     acts[2], amounts[2], at = _UP, hole.reference, 3
     depth, peck = hole.surface, hole.peck
     for number in range(1, hole.stops + 1):
-        depth -= peck
-        peck = next_peck(peck, hole.factor, hole.reduction, hole.least)
+        depth = hole.surface - number * peck if hole.passes else depth - peck
         full = hole.full_every > 0 and number % hole.full_every == 0
         up = hole.reference if full else min(depth + hole.lift, hole.reference)
         acts[at], amounts[at] = _DOWN, depth
-        acts[at + 1], amounts[at + 1] = _UP, up
-        acts[at + 2], amounts[at + 2] = _UP, min(depth + hole.clearance, up)
-        at += 3
+        if hole.passes:
+            acts[at + 1], amounts[at + 1] = outwards, 0.0
+            acts[at + 2], amounts[at + 2] = _BACK, up
+            acts[at + 3], amounts[at + 3] = inwards, 0.0
+            at += 4
+        else:
+            peck = next_peck(peck, hole.factor, hole.reduction, hole.least)
+            acts[at + 1], amounts[at + 1] = _UP, up
+            acts[at + 2], amounts[at + 2] = _UP, min(depth + hole.clearance, up)
+            at += 3
     acts[at], amounts[at] = _DOWN, hole.bottom
     at += 1
     if hole.dwell > 0.0:
         acts[at], amounts[at] = _WAIT, hole.dwell
         at += 1
-    reverses = hole.retract in (_REVERSED, _REVERSED_LEFT)
-    back, forth = (_M3, _M4) if hole.retract == _REVERSED_LEFT else (_M4, _M3)
     if reverses or hole.retract == _STOPPED:
-        acts[at], amounts[at] = back if reverses else _M5, 0.0
+        acts[at], amounts[at] = outwards if reverses else _M5, 0.0
         at += 1
     if reverses or hole.retract == _FEED:
         acts[at], amounts[at] = _BACK, hole.reference
         at += 1
     if reverses:
-        acts[at], amounts[at] = forth, 0.0
+        acts[at], amounts[at] = inwards, 0.0
         at += 1
     acts[at], amounts[at] = _UP, hole.back
     at += 1

@@ -139,7 +139,8 @@ def _emit_hole(
 ) -> int:
     """Go over the hole, drill it, return: ``drilling.drill``; the hole lies at ``constants.over``."""
     modal, feed = block.modal, block.feed
-    if row + drilling_cycle.most_acts(hole.stops) > len(rows.codes):
+    most = drilling_cycle.most_acts(hole.stops)
+    if row + most > len(rows.codes) or state.event_count[0] + most > len(rows.events):
         return NO_ROOM
     if np.isnan(feed) and not constants.feed_may_lack:
         return UNSUPPORTED
