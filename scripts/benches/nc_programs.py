@@ -49,6 +49,9 @@ def programs() -> Iterator[Computing]:
         every = f"{LINES:,} lines, every tenth {task}"
         texts = (_long(start, ours), _long("#101=1\n", theirs).replace("M30", "M2"))
         yield Computing(every, dialect, *texts, LINES)
+    for task, dialect, start, feed in _PACED:
+        text = _paced(start, feed)
+        yield Computing(f"{LINES:,} lines {task}", dialect, text, text, LINES)
 
 
 def _filled(ours: str, theirs: str) -> tuple[str, str]:
@@ -65,6 +68,22 @@ def _long(start: str, tenth: str) -> str:
         lines.append(plain if index % 10 else tenth.format(x=f"{x + 200.0:.3f}", y=f"{y:.3f}"))
     return "\n".join([*lines, "M30", ""])
 
+
+def _paced(start: str, feed: str) -> str:
+    """Lines in a feed mode, each with its feed."""
+    chance = random.Random(4)  # noqa: S311 (programs need no cryptography)
+    lines = [f"S1000 M3\nG90 G17 G94 G1 X0 Y0 F1000\n{start}"]
+    for _ in range(LINES):
+        x, y = chance.uniform(-100.0, 100.0), chance.uniform(-100.0, 100.0)
+        lines.append(f"X{x:.3f} Y{y:.3f}{feed}")
+    return "\n".join([*lines, "M2", ""])
+
+
+_PACED = (
+    ("G95, a feed per revolution", "gost", "G95 F0.2", ""),
+    ("G93, an F in every block", "fanuc", "G93 F10.", " F20."),
+)
+"""Task, dialect, how it begins, what each line has besides its way."""
 
 _FORMS = (
     (

@@ -84,8 +84,12 @@ CHANGES = (
         "fagor8070/codes/G139",
     ),
     Change(
-        "path/moves", "feed * unit) * factor", "feed * unit) * factor * 1.01", "codesys/codes/G01"
+        "path/moves",
+        "return target + here if incremental",
+        "return target - here if incremental",
+        "gost/codes/G91",
     ),
+    Change("path/paces", "return counted * 60.0", "return counted * 61.0", "codesys/codes/G01"),
     Change(
         "path/compensation/leads",
         "element, part, element[2], rows",

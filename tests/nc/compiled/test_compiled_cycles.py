@@ -71,7 +71,7 @@ def test_a_cycle_in_a_loop_never_leaves_the_compiled_run(
 
 TAPS = {
     "fanuc": "G83 X1. Z-5. R2. Q2. F100.\nG84 X2. Z-6.\nX3. Y1.\nG74 X4. Q0.7 R1.\nX5. Q1.\nX6.\nX7.",
-    "haas": "G84 X1. Z-5. R2. J3 F100.\nX2. Y1.\nX3. J2\nG74 X4.\nX5. J1\nX6. R1.\nX7.",
+    "haas": "G84 X1. Z-5. R2. J3 F100.\nX2. Y1.\nX3. J2.\nG74 X4.\nX5. J1.\nX6. R1.\nX7.",
 }
 
 

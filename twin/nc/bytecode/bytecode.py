@@ -90,28 +90,34 @@ class Bytecode:
         self._opcode[row], self._operand[row], self._immediate[row] = opcode, operand, immediate
         self._rows = row + 1
 
-    def add_rows(
+    def add_lines(
         self,
-        opcodes: IntArray,
-        operands: IntArray,
-        immediates: FloatArray,
+        lines: list[int],
+        instructions: tuple[IntArray, IntArray, FloatArray],
+        places: IntArray,
         own: FloatArray,
-        at: IntArray,
-    ) -> int:
-        """Append rows, with other numbers at some of them; the first of them."""
-        first, count = self._rows, len(opcodes)
+    ) -> None:
+        """Append the rows of lines that differ in numbers alone.
+
+        Args:
+            lines: Counted from 0.
+            instructions: Opcodes, operands and immediates of one of them, shape (n,) each.
+            places: Rows whose number is the line's own, shape (m,).
+            own: These numbers of each line, shape (lines, m).
+        """
+        first, size = self._rows, len(instructions[0])
+        count = size * len(lines)
         self._grow(count)
-        rows = slice(first, first + count)
-        self._opcode[rows], self._operand[rows], self._immediate[rows] = (
-            opcodes,
-            operands,
-            immediates,
-        )
-        self._immediate[at + first] = own
+        rows, columns = slice(first, first + count), (self._opcode, self._operand, self._immediate)
+        for column, shared in zip(columns, instructions, strict=True):
+            column[rows].reshape(-1, size)[:] = shared
+        self._immediate[rows].reshape(-1, size)[:, places] = own
+        self._first[lines] = np.arange(first, first + count, size)
+        self._compiled += lines
         self._rows = first + count
-        return first
 
     def _grow(self, rows: int) -> None:
+        """Make room for so many rows."""
         while self._rows + rows > len(self._opcode):
             self._opcode = np.concatenate([self._opcode, np.zeros_like(self._opcode)])
             self._operand = np.concatenate([self._operand, np.zeros_like(self._operand)])

@@ -17,7 +17,7 @@ from twin.nc.path.rows import Rows, copy, copy_rows
     CENTER_ABSOLUTE,
     UNIT,
     CORNER,
-    FEED_FACTOR,
+    FEED_MODE,
     PLANE,
     CYCLE,
     TO_REFERENCE,

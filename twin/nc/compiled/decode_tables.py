@@ -16,8 +16,8 @@ from twin.nc.bytecode.registers import (
     CORNER,
     CYCLE,
     EARLY,
-    FEED_FACTOR,
     FEED_LINE,
+    FEED_MODE,
     INCREMENTAL,
     INTERPOLATION,
     LATE,
@@ -46,7 +46,7 @@ from twin.nc.canonical import FloatArray, IntArray
 from twin.nc.control.codes import GCode
 from twin.nc.control.dialect import Dialect
 from twin.nc.control.interpolation import ArcRule, CycleRule, MotionMode
-from twin.nc.control.modal import FEED_FACTORS, FeedMode, Modal
+from twin.nc.control.modal import Modal
 from twin.nc.control.settings import ControlSettings
 from twin.nc.geometry.arcs import Bounds
 from twin.nc.geometry.planes import PLANE_ORDER
@@ -59,7 +59,7 @@ _FIELDS: Mapping[str, int] = {
     "center_absolute": CENTER_ABSOLUTE,
     "unit": UNIT,
     "corner": CORNER,
-    "feed_mode": FEED_FACTOR,
+    "feed_mode": FEED_MODE,
     "return_to_reference": TO_REFERENCE,
 }
 """The fields of ``Modal`` that plain codes may set, and their places."""
@@ -124,8 +124,6 @@ class DecodeTables:
 
     def _number(self, name: str, value: object) -> float | None:
         """A value of the modal state as a number; None where the kernel has none for it."""
-        if isinstance(value, FeedMode):
-            return FEED_FACTORS.get(value)
         if name == "interpolation":
             return self._places.get(id(value))
         assert isinstance(value, (bool, int, float))

@@ -9,7 +9,7 @@ from twin.nc.bytecode.bytecode_assembler import BytecodeAssembler
 from twin.nc.bytecode.token_kinds import CODE, FUNCTION, NUMBER
 from twin.nc.compiled.decode_tables import DecodeTables
 from twin.nc.compiled.entries import Kernels, page_columns
-from twin.nc.compiled.line_templates import LineTemplates
+from twin.nc.compiled.line_templates import LineTemplates, Template
 from twin.nc.control.block_compiler import BlockCompiler
 from twin.nc.control.executor import Executor
 from twin.nc.text.blocks import Block
@@ -54,13 +54,12 @@ class LineCompiler:
         bytecode.make_room()
         lines = self._control.program_counter.lines
         key, numbers = self._templates.split(lines[line])
-        if self._copy(line, key, numbers):
+        if self._templates.find(key, numbers) is not None:
             page = lines.page_of(line)
             ahead = self._kernels.unread_lines(
                 page_columns(page), self._lines, bytecode.table.first, line, _AHEAD
             )
-            for each in ahead.tolist():
-                self._copy(each, *self._templates.split(lines[each]))
+            self._copy([line, *ahead.tolist()])
             return True
         first = bytecode.rows
         known = self._compile_line(line)
@@ -69,20 +68,19 @@ class LineCompiler:
             self._templates.keep(key, numbers, bytecode.table, rows, self._assembler.columns)
         return known
 
-    def _copy(self, line: int, key: tuple[str, ...], numbers: list[float]) -> bool:
-        """Compile a line from the template of its shape; False where there was none."""
-        template = self._templates.find(key, numbers)
-        if template is None:
-            return False
-        row = self.bytecode.add_rows(
-            template.opcodes,
-            template.operands,
-            template.immediates,
-            np.array(numbers),
-            template.places,
-        )
-        self.bytecode.begins(line, row)
-        return True
+    def _copy(self, lines: list[int]) -> None:
+        """Compile those of these lines whose shape has a template; lines of one shape at once."""
+        alike: dict[tuple[str, ...], tuple[Template, list[int], list[list[float]]]] = {}
+        text = self._control.program_counter.lines
+        for line in lines:
+            key, numbers = self._templates.split(text[line])
+            template = self._templates.find(key, numbers)
+            if template is not None:
+                _, those, own = alike.setdefault(key, (template, [], []))
+                those.append(line)
+                own.append(numbers)
+        for template, those, own in alike.values():
+            self.bytecode.add_lines(those, template.instructions, template.places, np.array(own))
 
     def _compile_line(self, line: int) -> bool:
         bytecode = self.bytecode

@@ -29,15 +29,11 @@ class Template:
     """What the lines of one shape do.
 
     Attributes:
-        opcodes: Shape (n,).
-        operands: Shape (n,).
-        immediates: Of the line that was compiled, shape (n,).
+        instructions: Opcodes, operands and immediates of the line that was compiled, shape (n,) each.
         places: Rows whose number is the line's own, in the order of its text, shape (m,).
     """
 
-    opcodes: IntArray
-    operands: IntArray
-    immediates: FloatArray
+    instructions: tuple[IntArray, IntArray, FloatArray]
     places: IntArray
 
 
@@ -113,4 +109,5 @@ class LineTemplates:
             return
         own = own[np.argsort(np.array(columns)[own], kind="stable")]
         if table.immediate[rows][own].tolist() == numbers:
-            self._templates[key] = Template(codes, operands, table.immediate[rows].copy(), own)
+            instructions = codes, operands, table.immediate[rows].copy()
+            self._templates[key] = Template(instructions, own)

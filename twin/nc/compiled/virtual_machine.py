@@ -41,7 +41,6 @@ from twin.nc.compiled.decode_tables import DecodeTables
 from twin.nc.compiled.entries import Kernels, hot, page_columns
 from twin.nc.compiled.line_compiler import LineCompiler
 from twin.nc.control.executor import Executor
-from twin.nc.control.modal import FEED_FACTORS
 from twin.nc.geometry.planes import PLANE_ORDER
 from twin.nc.path.compensation.contour import Contour, new_contour
 from twin.nc.path.event_columns import EventRows
@@ -166,7 +165,6 @@ class VirtualMachine:
         return (
             self._tables.knows_cycle(modal.cycle)
             and modal.plane in PLANE_ORDER
-            and modal.feed_mode in FEED_FACTORS
             and modal.correct_center
             and math.isnan(control.rapid_acceleration)
             and math.isnan(control.rapid_deceleration)

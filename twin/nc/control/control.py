@@ -6,9 +6,15 @@ from collections.abc import Callable, Mapping
 
 from twin.nc.bytecode.assembler import Assembler
 from twin.nc.bytecode.effects import Affected
-from twin.nc.bytecode.registers import INCREMENTAL, PLANE, PROGRAMMED_FEED, UNIT
+from twin.nc.bytecode.registers import (
+    INCREMENTAL,
+    PLANE,
+    PROGRAMMED_FEED,
+    SPINDLE,
+    SPINDLE_TURNS,
+    UNIT,
+)
 from twin.nc.canonical import Dwell, Function
-from twin.nc.control.modal import FEED_FACTORS, FeedMode
 from twin.nc.control.words import ControlWords
 from twin.nc.geometry.frame import moved_shift
 from twin.nc.geometry.planes import PLANE_ORDER, Plane, Vector
@@ -20,9 +26,15 @@ from twin.nc.path.moves import (
     SMALLEST_MOVE,
     arc_length,
     axis_target,
-    feed_per_minute,
     line_length,
     only_turns,
+)
+from twin.nc.path.paces import (
+    PACED,
+    STANDING,
+    WITHOUT_SPEED,
+    feed_per_minute,
+    finding_of_feed,
 )
 from twin.nc.path.segments import direction_of
 from twin.nc.text.blocks import Block
@@ -143,40 +155,32 @@ class Control(ControlWords):
         return [1.0, 1.0, 1.0, *shares[3:]] if is_arc else shares
 
     def _feed_per_minute(self, end: list[float], is_arc: bool, length: float) -> float:
-        settings, modal, feed = self.settings, self.modal, self.registers[PROGRAMMED_FEED]
-        factor = FEED_FACTORS.get(modal.feed_mode)
-        if feed != feed:
-            self.report.warn_once(
-                "no-feed",
-                "no feed is programmed: the machine's default is used",
-                *self._blamed(None),
-                hint="write F in the first block that needs it",
-            )
-        elif factor is None:
-            if modal.feed_mode is FeedMode.SECONDS_PER_BLOCK:
-                return length / feed * 60.0
-            if modal.feed_mode is FeedMode.BLOCKS_PER_MINUTE:
-                return length * feed
-            self._refuse_standing_spindle()
-        return feed_per_minute(
-            feed,
-            not is_arc and only_turns(self.part, end, self.linear),
-            modal.unit,
-            (self.spindle or 1.0) if factor is None else factor,
-            (settings.default_feed, settings.default_rotary_feed),
-        )
+        registers, modal, settings = self.registers, self.modal, self.settings
+        feed, mode, speed = registers[PROGRAMMED_FEED], modal.feed_mode, registers[SPINDLE]
+        finding = finding_of_feed(feed, mode, speed, registers[SPINDLE_TURNS])
+        if finding != PACED:
+            self._blame_feed(finding)
+        turning = not is_arc and only_turns(self.part, end, self.linear)
+        otherwise = (settings.default_feed, settings.default_rotary_feed)
+        return feed_per_minute(feed, mode, length, turning, modal.unit, speed, otherwise)
 
-    def _refuse_standing_spindle(self) -> None:
-        """A feed per revolution needs a spindle that turns.
+    def _blame_feed(self, finding: int) -> None:
+        """Say what is wrong with the pace of a move.
 
         Raises:
-            ProgramError: It does not.
+            ProgramError: It has none.
         """
-        if not self.spindle:
+        if finding == WITHOUT_SPEED:
             self.fail("feed-per-revolution", "a feed per revolution needs a spindle speed S")
-        if not self.spindle_turns:
+        if finding == STANDING:
             message = "a feed per revolution never moves while the spindle stands"
             self.fail("feed-per-revolution", message, hint="start it by M3 or M4 before")
+        self.report.warn_once(
+            "no-feed",
+            "no feed is programmed: the machine's default is used",
+            *self._blamed(None),
+            hint="write F in the first block that needs it",
+        )
 
     def dwell(self, seconds: float) -> None:
         """Wait."""

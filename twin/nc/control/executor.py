@@ -183,12 +183,13 @@ class Executor(Control):
                         message = f"the value of '{address}' is no number"
                         self.fail("number-range", message, word)
                     continue  # computed of a vacant variable: the word is not there
+            if address == "G":
+                codes.append((word, self._g_code(word)))
+                continue
             if address in dialect.signed and number_of(word) < 0.0:
                 address = f"{address}-"
                 word = word._replace(address=address)
-            if address == "G":
-                codes.append((word, self._g_code(word)))
-            elif address == "M" and not self._takes_m(block):
+            if address == "M" and not self._takes_m(block):
                 functions.append((word, self._m_code(word)))
             elif address in dialect.series and self._has_switch(block):
                 if isinstance(word.value, Expression):

@@ -1,29 +1,12 @@
 """What stays in force from block to block."""
 
 import dataclasses
-import enum
 from typing import NamedTuple, TypedDict, cast
 
 from twin.nc.canonical import Corner
 from twin.nc.control.interpolation import MotionMode
 from twin.nc.geometry.planes import XY, Plane
-
-
-class FeedMode(enum.Enum):
-    """What F counts."""
-
-    PER_MINUTE = "per minute"
-    PER_SECOND = "per second"
-    SECONDS_PER_BLOCK = "seconds per block"
-    PER_REVOLUTION = "per revolution of the spindle"
-    BLOCKS_PER_MINUTE = "blocks per minute, the inverse of a block's time"
-
-    __hash__ = object.__hash__
-    """One object each: an enum's own hash is computed in Python, at every block."""
-
-
-FEED_FACTORS = {FeedMode.PER_MINUTE: 1.0, FeedMode.PER_SECOND: 60.0}
-"""By what F is multiplied to count per minute; other modes need more than F."""
+from twin.nc.path.paces import FeedMode
 
 
 class ModalChanges(TypedDict, total=False):

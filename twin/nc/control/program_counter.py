@@ -125,7 +125,11 @@ class ProgramCounter:
             blocks = self._blocks(line)
             if part < len(blocks):
                 now[LINE], now[PART] = line, part + 1
-                self._count(line, part)
+                here = line << PART_BITS | part
+                if here > now[FURTHEST]:
+                    now[FURTHEST] = here
+                else:
+                    self._count_again(line)
                 return blocks[part]
             line, part = line + 1, 0
         now[LINE], now[PART] = line, 0
@@ -244,19 +248,19 @@ class ProgramCounter:
             return self._here
         blocks = self._cache.get(line)
         if blocks is None:
-            blocks = self._lexer.blocks(
-                self._lines[line], line + 1, lambda: self._lines[line - 1] if line else ""
-            )
+            blocks = self._lexer.blocks(self._lines[line], line + 1, self._line_before)
             if line <= self._now[FURTHEST] >> PART_BITS and len(self._cache) < _CACHED_LINES:
                 self._cache[line] = blocks
         self._here, self._here_line = blocks, line
         return blocks
 
-    def _count(self, line: int, part: int) -> None:
-        now, here = self._now, line << PART_BITS | part
-        if here > now[FURTHEST]:
-            now[FURTHEST] = here
-            return
+    def _line_before(self, number: int) -> str:
+        """The text before the line with a number, from 1."""
+        return self._lines[number - 2] if number > 1 else ""
+
+    def _count_again(self, line: int) -> None:
+        """A block of a line runs that has run before, or that one behind it has."""
+        now = self._now
         now[INSTRUCTION_BUDGET] -= 1
         if now[INSTRUCTION_BUDGET] < 0:
             self._report.line = line + 1

@@ -1,12 +1,16 @@
 """How a control takes the words of a block and computes their values."""
 
 import abc
-from typing import NoReturn
+from collections.abc import Callable
+from typing import NoReturn, TypeVar
 
 from twin.nc.bytecode.expressions import evaluate
 from twin.nc.control.state import ControlState, number_of
-from twin.nc.text.blocks import Word
+from twin.nc.text.blocks import Block, Statement, Word
 from twin.nc.text.expressions import Expression, ExpressionError, Tree
+
+Found = TypeVar("Found")
+Read = Callable[[str, int], tuple[Found, int]]
 
 
 class ControlWords(ControlState, abc.ABC):
@@ -74,17 +78,44 @@ class ControlWords(ControlState, abc.ABC):
         """Read a text that must be expressions separated by commas."""
         if not text.strip() and not count:
             return []
-        try:
-            found, end = self.program_counter.lexer.expressions.read_list(text, 0)
-        except ExpressionError as error:
-            at = column + (error.column or 0)
-            self.report.fail(error.code, str(error), at, 1, error.hint)
+        found, end = self._read(self.program_counter.lexer.expressions.read_list, text, 0, column)
         if text[end:].strip() or (count is not None and len(found) != count):
             wanted = "values" if count is None else f"{count} value" + "s" * (count > 1)
             hint = "equal is written ==" if text[end:].lstrip().startswith("=") else None
             message = f"{wanted} must stand here and no more"
             self.report.fail("expression", message, column + end, 1, hint)
         return found
+
+    def read_operand(self, text: str, at: int, column: int) -> tuple[Expression, int]:
+        """Read the operand at a place of a text that begins at a column; return it with its end."""
+        return self._read(self.program_counter.lexer.expressions.read_operand, text, at, column)
+
+    def read_expression(self, text: str, at: int, column: int) -> tuple[Expression, int]:
+        """As ``read_operand``, but read the longest expression."""
+        return self._read(self.program_counter.lexer.expressions.read, text, at, column)
+
+    def _read(self, read: Read[Found], text: str, at: int, column: int) -> tuple[Found, int]:
+        try:
+            return read(text, at)
+        except ExpressionError as error:
+            self.report.fail(error.code, str(error), column + (error.column or 0), 1, error.hint)
+
+    def blocks_within(self, text: str, column: int) -> tuple[Block, ...]:
+        """The blocks of a text that stands at a column of the block's line."""
+        return self.program_counter.lexer.blocks(" " * column + text, self.block.line)
+
+    def statement_of(self, line: int) -> Statement:
+        """The statement of another line, from 0; errors are that line's from now on."""
+        self.report.line = line + 1
+        (block,) = self.program_counter.lexer.blocks(self.program_counter.lines[line], line + 1)
+        assert block.statement is not None
+        return block.statement
+
+    def refuse(
+        self, statement: Statement, code: str, message: str, hint: str | None = None
+    ) -> NoReturn:
+        """Refuse a statement; the caret stands under its keyword."""
+        self.report.fail(code, message, statement.column, len(statement.keyword), hint)
 
     def compute(self, expression: Expression | Tree, column: int) -> float:
         """Compute an expression of a statement; errors point at its column."""

@@ -10,7 +10,6 @@ from twin.nc.control.codes import Action, Effect, GCode, Interpolation, MCode, W
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Dialect
 from twin.nc.control.interpolation import ArcRule, LineRule
-from twin.nc.control.modal import FEED_FACTORS, FeedMode
 from twin.nc.functions import starts_spindle
 from twin.nc.geometry.planes import XY, YZ, ZX
 from twin.nc.iso.circular import BOUNDS, both_senses, iso_arc
@@ -18,6 +17,7 @@ from twin.nc.iso.declared import instead, modal, motion_code, plane_code
 from twin.nc.iso.fixed_cycles import CYCLES
 from twin.nc.iso.offsets import OFFSETS, PRESET
 from twin.nc.iso.tool_compensation import COMPENSATION, LENGTH
+from twin.nc.path.paces import FeedMode, feed_per_minute, needs_own_feed
 from twin.nc.text.blocks import Word
 
 
@@ -226,7 +226,7 @@ def require_feed_of_block(control: Control) -> None:
     Raises:
         ProgramError: The block has none.
     """
-    if control.modal.feed_mode is FeedMode.BLOCKS_PER_MINUTE and not any(
+    if needs_own_feed(control.modal.feed_mode) and not any(
         word.address == "F" for word in control.block.words
     ):
         message = "with G93 every block that cuts needs its F"
@@ -249,7 +249,8 @@ def jog_block(dialect: Dialect, axis: str, distance: float, feed: float) -> str:
     """
     mode = dialect.start_state.get("feed_mode", FeedMode.PER_MINUTE)
     end = "\nM2" if dialect.must_end else ""
-    return f"N1 G91 G1 {axis}{_written(distance)} F{_written(feed / FEED_FACTORS[mode])}{end}"
+    of_one = feed_per_minute(1.0, mode, distance, True, 1.0, 0.0, (feed, feed))
+    return f"N1 G91 G1 {axis}{_written(distance)} F{_written(feed / of_one)}{end}"
 
 
 def _written(number: float) -> str:

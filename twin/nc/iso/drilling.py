@@ -16,9 +16,9 @@ from twin.nc.path.drilling_cycle import (
     FACTOR,
     LIFT,
     MOST_PECKS,
+    NO_MOVE,
     PECK,
     REFERENCE,
-    Act,
     CycleBlock,
     Fault,
     Hole,
@@ -217,11 +217,12 @@ def drill(control: Control, hole: Hole, target: list[float] | None) -> None:
     over = goal if target is None else target
     for number in range(write_acts(hole, goal[axis], acts, amounts)):
         act, amount = int(acts[number]), amounts[number]
-        if next_place(act, amount, over, goal, axis):
+        speed = next_place(act, amount, hole, over, goal, axis)
+        if speed != NO_MOVE:
             feed = control.feed
-            if feed is not None and act == Act.BACK:
-                control.feed = feed * hole.faster
-            control.line_to(list(goal), rapid=act not in (Act.FEED, Act.BACK))
+            if feed is not None and speed > 0.0:
+                control.feed = feed * speed
+            control.line_to(list(goal), rapid=speed == 0.0)
             control.feed = feed
         else:
             place = BlockPlace(control.block.line, 0, control.path.compensating)

@@ -243,6 +243,8 @@ class Hole(NamedTuple):
     faster: float
 
 
+NO_MOVE = -1.0
+"""Something happens at the hole."""
 MOST_STOPS = 500
 """Stops of a hole that the compiled tier drills: its moves must fit into a chunk."""
 
@@ -419,23 +421,31 @@ def most_acts(stops: int) -> int:
 
 
 @compilable
-def next_place(act: float, amount: float, over: Values, goal: Values, axis: int) -> bool:
-    """Whether an act is a move; the goal, where the tool stands before, becomes its end.
+def next_place(
+    act: float, amount: float, hole: Hole, over: Values, goal: Values, axis: int
+) -> float:
+    """How an act moves; the goal, where the tool stands before, becomes its end.
 
     Args:
         act: An ``Act``.
         amount: Its height [mm].
+        hole: Of which hole.
         over: The hole's place, shape (k,).
         goal: Shape (k,).
         axis: The axis across the plane.
+
+    Returns:
+        How many times as fast as F says, 0 for rapidly, or ``NO_MOVE``.
     """
     if act not in (_UP, _DOWN, _ACROSS, _BACK):
-        return False
+        return NO_MOVE
     if act == _ACROSS:
         for other in range(len(goal)):
             goal[other] = over[other]
     goal[axis] = amount
-    return True
+    if act == _BACK:
+        return hole.faster
+    return 1.0 if act == _DOWN else 0.0
 
 
 @compilable

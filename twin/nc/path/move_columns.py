@@ -115,9 +115,10 @@ class MoveColumns:
         """Append a move."""
         self._codes += move.codes
         self._values += move.values
-        self._positions += move.start
-        self._positions += move.end
-        self._positions += move.display
+        positions = self._positions
+        positions += move.start
+        positions += move.end
+        positions += move.display
         self._count += 1
 
     def add_rows(self, codes: IntArray, values: FloatArray, positions: FloatArray) -> None:

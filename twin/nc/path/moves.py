@@ -1,4 +1,4 @@
-"""How far moves go, and how fast: for both tiers, by the convention of ``canonical``."""
+"""How far moves go: for both tiers, by the convention of ``canonical``."""
 
 import math
 from collections.abc import Sequence
@@ -81,27 +81,3 @@ def only_turns(start: Position, end: Position, linear: Sequence[bool] | NDArray[
     while axis < axes and (end[axis] == start[axis] or not linear[axis]):
         axis += 1
     return axis == axes
-
-
-@inlined
-def rapid_feed(own: float, feed: float) -> float:
-    """Feed of rapids that the program paces [mm/min]: their own per second, where that is 0 F; or NaN."""
-    return (own if own != 0.0 else feed) * 60.0
-
-
-@inlined
-def feed_per_minute(
-    feed: float, turning: bool, unit: float, factor: float, otherwise: tuple[float, float]
-) -> float:
-    """Feed of a move [mm/min or deg/min].
-
-    Args:
-        feed: F, or NaN where none is programmed.
-        turning: Only rotary axes move.
-        unit: Of programmed lengths [mm].
-        factor: By which F is multiplied to count per minute.
-        otherwise: Feed where none is programmed, of other moves and of such that only turn.
-    """
-    if math.isnan(feed):
-        return otherwise[1] if turning else otherwise[0]
-    return (feed if turning else feed * unit) * factor

@@ -25,7 +25,9 @@ class Grammar:
         syntax: Its declaration.
         comment: A comment that is closed, unless it can only begin its line.
         comment_openings: The characters that comments may begin with.
-        word: An address with a plain number and, where the dialect has it, the incremental suffix.
+        words: Blanks, and an address with a plain number and, where the dialect has it, the incremental
+            suffix: blanks, all of the word, address, number and suffix; behind the last, with none of
+            these, what is left of the line.
         address: An address alone.
         suffix: The incremental suffix alone.
         statement: The keyword of a statement, or None where the dialect has none.
@@ -44,9 +46,8 @@ class Grammar:
             continues += rf"|{BLANKS}(?:=|{'|'.join(map(operator_pattern, operators))})"
         self.unfinished = _unfinished(syntax.expressions) if syntax.expressions else None
         suffix = r"(I(?![ \t]*[-+.0-9=\[P])|)" if syntax.incremental_suffix else "()"
-        self.word = _compiled(
-            rf"{BLANKS}({syntax.address}){BLANKS_BETWEEN}({SIGNED_NUMBER})(?!{continues}){suffix}"
-        )
+        word = rf"({syntax.address}){BLANKS_BETWEEN}({SIGNED_NUMBER})(?!{continues}){suffix}"
+        self.words = _compiled(rf"({BLANKS})({word})|(?s:.+)")
         self._comments = comment_marks(syntax.comments)
         self.comment = re.compile(BLANKS + closed_comment(self._comments))
         self.comment_openings = {comment.opening[0] for comment in syntax.comments}

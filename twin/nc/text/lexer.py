@@ -33,14 +33,14 @@ class Lexer:
         return self._grammar.reader
 
     def blocks(
-        self, line: str, number: int, previous: Callable[[], str] = str
+        self, line: str, number: int, previous: Callable[[int], str] = lambda _number: ""
     ) -> tuple[Block, ...]:
         """Read a line; a line without words gives no block.
 
         Args:
             line: Its text.
             number: Its number, from 1.
-            previous: Gives the text of the line before.
+            previous: Gives the text of the line before this one, told this one's number.
 
         Raises:
             ProgramError: It cannot be read.
@@ -57,7 +57,7 @@ class Lexer:
         try:
             return LineReader(self._grammar, self._report, line, number).blocks()
         except ProgramError:
-            excuse = self._grammar.syntax.excused(line, previous())
+            excuse = self._grammar.syntax.excused(line, previous(number))
             if excuse is None:
                 raise
         self._report.warn(excuse, "this line is no block and is left out", 0, len(line))

@@ -52,6 +52,8 @@ class LineReader:
     _name = ""
     _skippable = False
     _skip_level = 1
+    _done: tuple[Block, ...] = ()
+    _assignments: tuple[Assignment, ...] = ()
 
     def __init__(self, grammar: Grammar, report: Reporter, line: str, number: int) -> None:
         self._grammar = grammar
@@ -59,9 +61,7 @@ class LineReader:
         self._report = report
         self._line = line
         self._line_number = number
-        self._done: list[Block] = []
         self._words: list[Word] = []
-        self._assignments: list[Assignment] = []
 
     def blocks(self) -> tuple[Block, ...]:
         """The line's blocks.
@@ -79,27 +79,28 @@ class LineReader:
             if self._at == end or not self._something_else():
                 break
         self._close()
-        return tuple(self._done)
+        return self._done
 
     def _plain_words(self) -> bool:
         """Read words with plain numbers; True behind an N where a statement may follow."""
-        line, at, add = self._line, self._at, self._words.append
-        match_word, name_of = self._grammar.word.match, self._grammar.name
-        while (match := match_word(line, at)) is not None:
-            address, number, suffix = match.groups()
-            begin, at = match.start(1), match.end()
+        grammar, at, add = self._grammar, self._at, self._words.append
+        for blanks, written, address, number, suffix in grammar.words.findall(self._line, at):
+            if not written:
+                break
+            begin, width = at + len(blanks), len(written)
+            at = begin + width
             if address in ("N", "n"):
                 self._at = at
                 self._label(number, begin)
-                if self._grammar.statement is not None:
+                if grammar.statement is not None and grammar.statement.match(self._line, at):
                     return True
                 add = self._words.append
                 continue
             value = float(number)
             if not -LARGEST_NUMBER <= value <= LARGEST_NUMBER:
                 self._fail("number-range", f"the value is not within ±{LARGEST_NUMBER:g}", begin)
-            name = address if address in _LETTERS else name_of(address)
-            given = (name, value, begin, at - begin, suffix != "", "." not in number)
+            name = address if address in _LETTERS else grammar.name(address)
+            given = (name, value, begin, width, suffix != "", "." not in number)
             add(_tuple(Word, given))  # as Word(*given), in a third of the time
         self._at = at
         return False
@@ -273,7 +274,7 @@ class LineReader:
             self._refuse_value(begin, error)
         tree = target.tree
         assert isinstance(tree, (Variable, NumberedVariable))
-        self._assignments.append(Assignment(tree, value, begin, end - begin))
+        self._assignments += (Assignment(tree, value, begin, end - begin),)
         self._at = end
         return True
 
@@ -324,22 +325,21 @@ class LineReader:
     def _start_block(self, number: int) -> None:
         self._number = number
         self._name = ""
-        self._words, self._assignments = [], []
+        self._words, self._assignments = [], ()
 
     def _finish_block(self, statement: Statement | None = None) -> None:
-        self._done.append(
-            Block(
-                self._line_number,
-                len(self._done),
-                self._number,
-                tuple(self._words),
-                statement,
-                self._skippable,
-                self._name,
-                tuple(self._assignments),
-                self._skip_level,
-            )
+        given = (
+            self._line_number,
+            len(self._done),
+            self._number,
+            tuple(self._words),
+            statement,
+            self._skippable,
+            self._name,
+            self._assignments,
+            self._skip_level,
         )
+        self._done += (_tuple(Block, given),)
 
     def _close(self) -> None:
         if self._words or self._assignments or self._number != NO_BLOCK_NUMBER or self._name:

@@ -52,7 +52,7 @@ class Page:
         self.starts, self.ends = _line_places(self.data)
         self.lines = range(first, first + len(self.starts))
         self._first_divided = -_DIVIDED
-        self._divided: list[bytes] = []
+        self._divided: list[str] = []
 
     def line(self, number: int) -> str:
         """One of its lines without its end."""
@@ -61,8 +61,10 @@ class Page:
             self._first_divided = at - at % _DIVIDED
             part = slice(self._first_divided, self._first_divided + _DIVIDED)
             places = zip(self.starts[part].tolist(), self.ends[part].tolist(), strict=True)
-            self._divided = [self.text[begin:end] for begin, end in places]
-        return self._divided[at - self._first_divided].decode(_UTF_8, _SURROGATES)
+            self._divided = [
+                self.text[begin:end].decode(_UTF_8, _SURROGATES) for begin, end in places
+            ]
+        return self._divided[at - self._first_divided]
 
 
 class Lines(Sequence[str]):

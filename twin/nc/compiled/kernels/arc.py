@@ -22,8 +22,11 @@ from twin.nc.compiled.kernels.target import PlainBlock, value_of
 from twin.nc.geometry import arcs
 from twin.nc.geometry.arcs import ArcWords, Bounds, Sense
 from twin.nc.geometry.planes import vector_of
-from twin.nc.path.moves import SMALLEST_MOVE, arc_length
+from twin.nc.path.moves import arc_length
 from twin.nc.path.rows import Rows
+
+DOUBTFUL = -1.0
+"""Length of an arc that is left to the interpreter tier."""
 
 
 @inlined
@@ -34,7 +37,7 @@ def emit_arc(
     state: State,
     rows: Rows,
     row: int,
-) -> bool:
+) -> float:
     """Write the centre, normal and sweep of a row whose positions stand.
 
     Args:
@@ -46,7 +49,7 @@ def emit_arc(
         row: Its row.
 
     Returns:
-        Whether nothing about the arc is doubtful; if something is, the row is not to be used.
+        Its length [mm]; ``DOUBTFUL`` where something about the arc is.
     """
     interpolation = int(block.modal[INTERPOLATION])
     plane = constants.planes[int(block.modal[PLANE])]
@@ -56,7 +59,7 @@ def emit_arc(
     end = (display[first_axis], display[second_axis])
     clear, words = _words_of_arc(block, (first_axis, second_axis, across))
     if not clear:
-        return False
+        return DOUBTFUL
     b = tables.bounds[interpolation]
     bounds = Bounds(float(b[0]), float(b[1]), float(b[2]), float(b[3]))
     sense = Sense(
@@ -67,7 +70,7 @@ def emit_arc(
     absolute = block.modal[CENTER_ABSOLUTE] != 0.0
     finding, center = arcs.center_of_words(start, end, words, absolute, sense, bounds)
     if finding != arcs.FITS:
-        return False
+        return DOUBTFUL
     sweep = arcs.sweep_between(start, end, center, tables.clockwise[interpolation])
     value = rows.values[row]
     value[first_axis], value[second_axis] = center
@@ -82,8 +85,7 @@ def emit_arc(
             value[axis] += state.total[axis]
     turned_center, normal = vector_of(value), vector_of(value[3:])
     position = rows.positions[row]
-    length = arc_length(position[0], position[1], turned_center, normal, value[6])
-    return length >= SMALLEST_MOVE
+    return arc_length(position[0], position[1], turned_center, normal, value[6])
 
 
 @inlined

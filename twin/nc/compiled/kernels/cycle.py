@@ -9,7 +9,6 @@ from twin.nc.bytecode.registers import (
     CYCLE,
     CYCLE_STATE,
     CYCLE_WORDS,
-    FEED_FACTOR,
     INCREMENTAL,
     PLANE,
     TO_REFERENCE,
@@ -26,20 +25,21 @@ from twin.nc.compiled.kernels.move_row import (
     RAPID,
     STOP,
     Travel,
+    has_pace,
+    pace_of,
     put_move,
     put_positions,
 )
 from twin.nc.compiled.kernels.target import PlainBlock, aim, target_of_axis
 from twin.nc.path import drilling_cycle
-from twin.nc.path.drilling_cycle import Act, Cycle, CycleBlock, Hole
-from twin.nc.path.moves import LARGEST_COORDINATE, feed_per_minute, line_length
+from twin.nc.path.drilling_cycle import NO_MOVE, Cycle, CycleBlock, Hole
+from twin.nc.path.moves import LARGEST_COORDINATE, line_length
 from twin.nc.path.rows import Rows, copy
 
 NO_ROOM = -2
 """The rows are full."""
 _WORDS = len(Cycle._fields)
 _REPEATS_ONLY = Cycle._fields.index("repeats_only")
-_DOWN, _BACK = int(Act.FEED), int(Act.BACK)
 
 
 @compilable
@@ -138,19 +138,12 @@ def _emit_hole(
     block: PlainBlock, hole: Hole, constants: Constants, state: State, rows: Rows, row: int
 ) -> int:
     """Go over the hole, drill it, return: ``drilling.drill``; the hole lies at ``constants.over``."""
-    modal, feed = block.modal, block.feed
     most = drilling_cycle.most_acts(hole.stops)
     if row + most > len(rows.codes) or state.event_count[0] + most > len(rows.events):
         return NO_ROOM
-    if np.isnan(feed) and not constants.feed_may_lack:
+    if not has_pace(block, constants, state):
         return UNSUPPORTED
-    otherwise = (constants.default_feed, constants.default_rotary_feed)
-    unit, factor, corner = modal[UNIT], modal[FEED_FACTOR], int(modal[CORNER])
-    rapidly = Travel(RAPID, constants.rapid_feed, STOP)
-    down = Travel(FEED, feed_per_minute(feed, False, unit, factor, otherwise), corner)
-    pace = feed_per_minute(feed * hole.faster, False, unit, factor, otherwise)
-    back = Travel(FEED, pace, corner)
-    axis = int(constants.planes[int(modal[PLANE])][2])
+    axis = int(constants.planes[int(block.modal[PLANE])][2])
     here, part, goal = constants.room[0], constants.room[1], constants.room[2]
     copy(state.programmed, here)
     copy(state.part, part)
@@ -158,9 +151,9 @@ def _emit_hole(
     acts, amounts, after = constants.hole[2], constants.hole[3], row
     for step in range(drilling_cycle.write_acts(hole, here[axis], acts, amounts)):
         act, amount = int(acts[step]), amounts[step]
-        if drilling_cycle.next_place(act, amount, constants.over, goal, axis):
-            travel = down if act == _DOWN else (back if act == _BACK else rapidly)
-            after = _go(goal, travel, block, constants, state, rows, after)
+        speed = drilling_cycle.next_place(act, amount, hole, constants.over, goal, axis)
+        if speed != NO_MOVE:
+            after = _go(goal, speed, block, constants, state, rows, after)
             if after == UNSUPPORTED:
                 return UNSUPPORTED
         else:
@@ -174,7 +167,7 @@ def _emit_hole(
 @compilable
 def _go(
     goal: FloatArray,
-    travel: Travel,
+    speed: float,
     block: PlainBlock,
     constants: Constants,
     state: State,
@@ -188,8 +181,13 @@ def _go(
             return UNSUPPORTED
     put_positions(goal, part, state, position)
     copy(goal, here)
-    if line_length(position[0], position[1]) == 0.0:
+    length = line_length(position[0], position[1])
+    if length == 0.0:
         return row
     copy(position[1], part)
+    travel = Travel(RAPID, constants.rapid_feed, STOP)
+    if speed > 0.0:
+        pace = pace_of(block.feed * speed, block, length, False, constants, state)
+        travel = Travel(FEED, pace, int(block.modal[CORNER]))
     put_move(block, travel, LINE, constants, rows, row)
     return row + 1

@@ -6,11 +6,26 @@ import numpy as np
 
 from twin.compilation.compilable import inlined
 from twin.nc.bytecode.coordinates import turn_place
-from twin.nc.bytecode.registers import Constants, State
+from twin.nc.bytecode.registers import (
+    FEED_MODE,
+    SPINDLE,
+    SPINDLE_TURNS,
+    UNIT,
+    Constants,
+    State,
+)
+from twin.nc.bytecode.token_kinds import FEED as FEED_WORD
 from twin.nc.canonical import FloatArray, Motion
 from twin.nc.compiled.kernels.target import PlainBlock
 from twin.nc.path.move_columns import LINE
 from twin.nc.path.moves import RAPIDS_END
+from twin.nc.path.paces import (
+    PACED,
+    WITHOUT_FEED,
+    feed_per_minute,
+    finding_of_feed,
+    needs_own_feed,
+)
 from twin.nc.path.rows import Rows, copy
 
 RAPID, FEED, STOP = int(Motion.RAPID), int(Motion.FEED), int(RAPIDS_END)
@@ -28,6 +43,33 @@ class Travel(NamedTuple):
     motion: int
     pace: float
     corner: int
+
+
+@inlined
+def has_pace(block: PlainBlock, constants: Constants, state: State) -> bool:
+    """Whether nothing about the pace of a block's moves with a feed is doubtful."""
+    registers, mode = state.registers, int(block.modal[FEED_MODE])
+    if needs_own_feed(mode) and not block.seen & (1 << FEED_WORD):
+        return False
+    speed, turns = registers[SPINDLE], registers[SPINDLE_TURNS]
+    finding = finding_of_feed(block.feed, mode, speed, turns)
+    return finding == PACED or (finding == WITHOUT_FEED and constants.feed_may_lack)
+
+
+@inlined
+def pace_of(
+    feed: float,
+    block: PlainBlock,
+    length: float,
+    turning: bool,
+    constants: Constants,
+    state: State,
+) -> float:
+    """Pace of a move with a feed, where its block ``has_pace``; the other arguments are those of ``feed_per_minute``."""
+    mode, unit = int(block.modal[FEED_MODE]), block.modal[UNIT]
+    otherwise = (constants.default_feed, constants.default_rotary_feed)
+    speed = state.registers[SPINDLE]
+    return feed_per_minute(feed, mode, length, turning, unit, speed, otherwise)
 
 
 @inlined

@@ -15,7 +15,6 @@ from twin.nc.bytecode.registers import (
     CORNER,
     CYCLE,
     EARLY,
-    FEED_FACTOR,
     INTERPOLATION,
     NO_MOTION,
     PLANE,
@@ -23,7 +22,6 @@ from twin.nc.bytecode.registers import (
     POLAR_RADIUS,
     PROGRAMMED_FEED,
     RAPID_LINE,
-    UNIT,
     BlockTables,
     Machine,
     State,
@@ -41,16 +39,22 @@ from twin.nc.canonical import NO_BLOCK_NUMBER, FloatArray, IntArray
 from twin.nc.compiled.kernels import move_row
 from twin.nc.compiled.kernels.arc import emit_arc
 from twin.nc.compiled.kernels.cycle import drill
-from twin.nc.compiled.kernels.move_row import Travel, put_move, put_positions
+from twin.nc.compiled.kernels.move_row import (
+    Travel,
+    has_pace,
+    pace_of,
+    put_move,
+    put_positions,
+)
 from twin.nc.compiled.kernels.target import PlainBlock, aim, target_of_axis
 from twin.nc.path import move_columns
 from twin.nc.path.moves import (
     LARGEST_COORDINATE,
-    feed_per_minute,
+    SMALLEST_MOVE,
     line_length,
     only_turns,
-    rapid_feed,
 )
+from twin.nc.path.paces import rapid_feed
 from twin.nc.path.rows import copy
 from twin.nc.text.arithmetic import is_whole
 from twin.nc.text.line_reader import LARGEST_LABEL
@@ -99,7 +103,7 @@ def execute_block(
         return UNSUPPORTED
     if not moves and block.seen & (1 << CODE):
         kind = tables.kind[int(modal[INTERPOLATION])]
-        if kind == ARC or (kind != RAPID_LINE and np.isnan(block.feed)):
+        if kind == ARC or (kind != RAPID_LINE and not has_pace(block, machine.constants, state)):
             return UNSUPPORTED
     early = function != UNSUPPORTED and tables.function[function] == EARLY
     on = Affected(machine.constants, state, rows)
@@ -215,7 +219,7 @@ def _move(block: PlainBlock, machine: Machine, row: int) -> int:
     is_arc = kind == ARC
     if kind == NO_MOTION or (block.polar and is_arc) or (not is_arc and seen & _ARC_WORDS):
         return UNSUPPORTED
-    if kind != RAPID_LINE and np.isnan(block.feed) and not constants.feed_may_lack:
+    if kind != RAPID_LINE and not has_pace(block, constants, state):
         return UNSUPPORTED
     position = rows.positions[row]
     if block.polar:
@@ -227,18 +231,18 @@ def _move(block: PlainBlock, machine: Machine, row: int) -> int:
         position[2, axis] = target
     put_positions(position[2], state.part, state, position)
     if is_arc:
-        if not emit_arc(block, tables, constants, state, rows, row):
-            return UNSUPPORTED
-    elif line_length(position[0], position[1]) == 0.0:
-        return row
+        length = emit_arc(block, tables, constants, state, rows, row)
+    else:
+        length = line_length(position[0], position[1])
+    if length < SMALLEST_MOVE:
+        return row if length >= 0.0 else UNSUPPORTED
     pace = constants.rapid_feed
     own = constants.own_rapid_feed
     if kind == RAPID_LINE and not np.isnan(own):
         pace = rapid_feed(own, block.feed)
     elif kind != RAPID_LINE:
         turning = not is_arc and only_turns(position[0], position[1], constants.linear)
-        otherwise = (constants.default_feed, constants.default_rotary_feed)
-        pace = feed_per_minute(block.feed, turning, modal[UNIT], modal[FEED_FACTOR], otherwise)
+        pace = pace_of(block.feed, block, length, turning, constants, state)
     motion, corner = move_row.FEED, int(modal[CORNER])
     if kind == RAPID_LINE:
         motion, corner = move_row.RAPID, move_row.STOP

@@ -3,12 +3,12 @@
 from twin.nc.canonical import Corner
 from twin.nc.control.codes import MCode, StatementEffect
 from twin.nc.control.dialect import Dialect
-from twin.nc.control.modal import FeedMode
 from twin.nc.dialects.codesys import actions, program, subprograms, words
 from twin.nc.dialects.codesys.actions import ADDITIONAL
 from twin.nc.dialects.codesys.codes import CODES, INSTEAD
 from twin.nc.dialects.codesys.decisions import DECISIONS
 from twin.nc.iso import base, shared_marks
+from twin.nc.path.paces import FeedMode
 from twin.nc.text.syntax import HEADING, Comment, Mark, Syntax
 
 CODESYS = Dialect(

@@ -7,7 +7,7 @@ from twin.nc.control.codes import WordAction
 from twin.nc.control.control import Control
 from twin.nc.dialects.codesys.actions import lead_into_length
 from twin.nc.dialects.codesys.program import variables
-from twin.nc.path.moves import rapid_feed
+from twin.nc.path.paces import rapid_feed
 from twin.nc.text.blocks import Word
 
 LARGEST_SWITCH = 32_767

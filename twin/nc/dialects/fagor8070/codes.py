@@ -5,7 +5,6 @@ from twin.nc.bytecode.assembler import Assembler
 from twin.nc.canonical import Corner
 from twin.nc.control.codes import CodeWriter, Effect, GCode
 from twin.nc.control.control import Control
-from twin.nc.control.modal import FeedMode
 from twin.nc.dialects.fagor8070 import arcs, corners, frames, polar, transformations
 from twin.nc.dialects.fagor8070.cycles.canned_cycles import CYCLES
 from twin.nc.dialects.fagor8070.machine_coordinates import refuse_change
@@ -19,6 +18,7 @@ from twin.nc.iso.tool_compensation import (
     RIGHT,
     compensation_by_tool,
 )
+from twin.nc.path.paces import FeedMode
 from twin.nc.text.blocks import Word
 
 

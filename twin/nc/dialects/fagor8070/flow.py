@@ -9,7 +9,6 @@ from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.dialects.fagor8070.structure import structure_of
 from twin.nc.dialects.fagor8070.subroutines import lines_around
-from twin.nc.dialects.fagor8070.variables import refuse
 from twin.nc.text.blocks import Location, Statement
 
 _PLACE = re.compile(r"[ \t]*(?:N[ \t]*([0-9]+)|\[[ \t]*([A-Z_]\w*)[ \t]*\])[ \t]*", re.IGNORECASE)
@@ -30,22 +29,10 @@ def construct_of(control: Control, statement: Statement) -> Construct:
     """
     construct = _structure(control).by_line.get(control.block.line - 1)
     if construct is None or construct.end is None:
-        refuse(
-            control,
-            statement,
-            "open-structure",
-            f"{statement.keyword} has no counterpart",
-            hint="every $IF needs its $ENDIF, every loop its end",
-        )
+        message = f"{statement.keyword} has no counterpart"
+        hint = "every $IF needs its $ENDIF, every loop its end"
+        control.refuse(statement, "open-structure", message, hint)
     return construct
-
-
-def statement_at(control: Control, line: int) -> Statement:
-    """The statement of another line of a construct, from 0; errors are that line's from now on."""
-    control.report.line = line + 1
-    (block,) = control.program_counter.lexer.blocks(control.program_counter.lines[line], line + 1)
-    assert block.statement is not None
-    return block.statement
 
 
 def _jump_behind_condition(
@@ -53,15 +40,9 @@ def _jump_behind_condition(
 ) -> Statement:
     """The jump of ``$IF condition $GOTO``, given the texts before and behind its dollar."""
     if target[:4].upper() != "GOTO":
-        refuse(control, statement, "structure", "only $GOTO can follow a condition")
+        control.refuse(statement, "structure", "only $GOTO can follow a condition")
     column = statement.text_column + len(head) + 5
     return Statement(statement.keyword, target[4:], statement.column, column)
-
-
-def behind(construct: Construct) -> Location:
-    """The place behind a construct that has an end."""
-    assert construct.end is not None
-    return Location(construct.end + 1, 0)
 
 
 def _enclosing(control: Control, statement: Statement, without: tuple[str, ...]) -> Construct:
@@ -72,7 +53,7 @@ def _enclosing(control: Control, statement: Statement, without: tuple[str, ...])
         if construct.keyword not in without
     ]
     if not around:
-        refuse(control, statement, "structure", f"{statement.keyword} stands outside a loop")
+        control.refuse(statement, "structure", f"{statement.keyword} stands outside a loop")
     return around[-1]
 
 
@@ -84,7 +65,7 @@ def destination(control: Control, statement: Statement) -> Location:
     """
     match = _PLACE.fullmatch(statement.text)
     if match is None:
-        refuse(control, statement, "jump-target", "$GOTO needs N10 or [NAME]")
+        control.refuse(statement, "jump-target", "$GOTO needs N10 or [NAME]")
     place = control.program_counter.find_label(
         label_of(match),
         (statement.text_column, len(statement.text)),
@@ -94,7 +75,7 @@ def destination(control: Control, statement: Statement) -> Location:
     structure = _structure(control)
     here = structure.around(control.block.line - 1)
     if any(construct not in here for construct in structure.around(place.line)):
-        refuse(control, statement, "jump-into-structure", "a jump must not lead into a structure")
+        control.refuse(statement, "jump-into-structure", "a jump must not lead into a structure")
     return place
 
 
@@ -121,14 +102,14 @@ def _if(control: Control, statement: Statement, assembler: Assembler) -> None:
         if branch.keyword == "$ELSE":
             assembler.jump(Location(branch.line + 1, 0))
             return
-        _value(control, statement_at(control, branch.line), assembler)
+        _value(control, control.statement_of(branch.line), assembler)
         assembler.jump_if(Location(branch.line + 1, 0))
-    assembler.jump(behind(construct))
+    assembler.jump(construct.behind)
 
 
 def _else(control: Control, statement: Statement, assembler: Assembler) -> None:
     """$ELSEIF, $ELSE reached from the branch before: go on behind $ENDIF."""
-    assembler.jump(behind(construct_of(control, statement)))
+    assembler.jump(construct_of(control, statement).behind)
 
 
 def _nothing(control: Control, statement: Statement, _assembler: Assembler) -> None:
@@ -140,7 +121,7 @@ def _while(control: Control, statement: Statement, assembler: Assembler) -> None
     """$WHILE: run the body as long as the condition holds."""
     construct = construct_of(control, statement)
     _value(control, statement, assembler)
-    assembler.jump_unless(behind(construct))
+    assembler.jump_unless(construct.behind)
 
 
 def _again(control: Control, statement: Statement, assembler: Assembler) -> None:
@@ -159,13 +140,13 @@ def _for(control: Control, statement: Statement, assembler: Assembler) -> None:
     """$FOR P1 = first, last, step."""
     construct = construct_of(control, statement)
     name = _for_values(control, statement, assembler)
-    assembler.begin_for(name, behind(construct))
+    assembler.begin_for(name, construct.behind)
 
 
 def _end_for(control: Control, statement: Statement, assembler: Assembler) -> None:
     """$ENDFOR: step on, and run the body again until the last value is passed."""
     construct = construct_of(control, statement)
-    name = _for_values(control, statement_at(control, construct.begin), assembler)
+    name = _for_values(control, control.statement_of(construct.begin), assembler)
     assembler.step_for(name, Location(construct.begin + 1, 0))
 
 
@@ -174,7 +155,7 @@ def _for_values(control: Control, statement: Statement, assembler: Assembler) ->
     variable = control.program_counter.lexer.expressions.variable.match(statement.text.lstrip(), 0)
     name, equals, values = statement.text.partition("=")
     if variable is None or not equals:
-        refuse(control, statement, "structure", "$FOR needs its parameter", "$FOR P1=0,10,1")
+        control.refuse(statement, "structure", "$FOR needs its parameter", "$FOR P1=0,10,1")
     column = statement.text_column + len(name) + 1
     for each in control.expressions(values, column, 3):
         assembler.value(each, column)
@@ -189,9 +170,9 @@ def _switch(control: Control, statement: Statement, assembler: Assembler) -> Non
         if branch.keyword == "$DEFAULT":
             assembler.jump(Location(branch.line + 1, 0))
             return
-        _value(control, statement_at(control, branch.line), assembler)
+        _value(control, control.statement_of(branch.line), assembler)
         assembler.jump_case(Location(branch.line + 1, 0))
-    assembler.jump(behind(construct))
+    assembler.jump(construct.behind)
 
 
 def case(control: Control, statement: Statement) -> None:
@@ -200,12 +181,12 @@ def case(control: Control, statement: Statement) -> None:
     Raises:
         ProgramError: Always.
     """
-    refuse(control, statement, "missing-break", "the case before has no $BREAK")
+    control.refuse(statement, "missing-break", "the case before has no $BREAK")
 
 
 def _break(control: Control, statement: Statement, assembler: Assembler) -> None:
     """$BREAK: go on behind the innermost loop or $SWITCH."""
-    assembler.jump(behind(_enclosing(control, statement, ("$IF",))))
+    assembler.jump(_enclosing(control, statement, ("$IF",)).behind)
 
 
 def _continue(control: Control, statement: Statement, assembler: Assembler) -> None:

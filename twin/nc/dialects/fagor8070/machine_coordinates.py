@@ -9,7 +9,6 @@ must have ended, polar coordinates are refused (E1305), and what changes the fra
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.memory import PartFrame, memory_of
 from twin.nc.dialects.fagor8070.polar import forget_polar
-from twin.nc.dialects.fagor8070.variables import refuse
 from twin.nc.geometry.frame import SHIFTS
 from twin.nc.geometry.matrices import IDENTITY
 from twin.nc.iso.offsets import machine_zero
@@ -40,12 +39,10 @@ def machine_coordinates(control: Control, statement: Statement) -> None:
 
 
 def _move_once(control: Control, statement: Statement) -> None:
-    line, block = control.block.line, control.block
-    blank = " " * statement.text_column
-    blocks = control.program_counter.lexer.blocks(blank + statement.text, line)
+    block, blocks = control.block, control.blocks_within(statement.text, statement.text_column)
     if len(blocks) != 1 or blocks[0].statement is not None:
         hint = "write #MCS G0 Z0, or #MCS ON and #MCS OFF in blocks of their own"
-        refuse(control, statement, "machine-coordinates", "#MCS needs the words of a move", hint)
+        control.refuse(statement, "machine-coordinates", "#MCS needs the words of a move", hint)
     lasting = memory_of(control).part_frame is not None
     if not lasting:
         _enter(control, statement)
@@ -61,7 +58,7 @@ def _enter(control: Control, statement: Statement) -> None:
     if control.path.compensating:
         message = "machine coordinates know no radius compensation"
         hint = "end it by G40 before #MCS"
-        refuse(control, statement, "compensation-change", message, hint)
+        control.refuse(statement, "compensation-change", message, hint)
     zero = machine_zero(control, "#MCS")
     memory.part_frame = PartFrame(frame.shifts, frame.matrix)
     names = control.settings.axes.names

@@ -11,7 +11,7 @@ from twin.nc.dialects.fagor8070 import flow, subroutines
 from twin.nc.dialects.fagor8070.known_statements import ENDED_ONLY, PASSED_OVER, REFUSED
 from twin.nc.dialects.fagor8070.machine_coordinates import machine_coordinates
 from twin.nc.dialects.fagor8070.transformations import write_scale
-from twin.nc.dialects.fagor8070.variables import VARIABLE_STATEMENT, assign, refuse
+from twin.nc.dialects.fagor8070.variables import VARIABLE_STATEMENT, assign
 from twin.nc.text.blocks import Location, Statement
 from twin.nc.text.expressions import Expression
 
@@ -34,7 +34,7 @@ def skip_comment(control: Control, statement: Statement) -> None:
         if re.match(r"[ \t]*#COMMENT[ \t]+END\b", lines[line], re.IGNORECASE):
             control.program_counter.go(Location(line + 1, 0))
             return
-    refuse(control, statement, "open-comment", "#COMMENT END is missing")
+    control.refuse(statement, "open-comment", "#COMMENT END is missing")
 
 
 def stray_comment_end(control: Control, statement: Statement) -> None:
@@ -43,7 +43,7 @@ def stray_comment_end(control: Control, statement: Statement) -> None:
     Raises:
         ProgramError: Always.
     """
-    refuse(control, statement, "open-comment", "#COMMENT BEGIN is missing")
+    control.refuse(statement, "open-comment", "#COMMENT BEGIN is missing")
 
 
 def _scale(control: Control, statement: Statement, assembler: Assembler) -> None:
@@ -67,7 +67,7 @@ def round_parameters(control: Control, statement: Statement) -> None:
     if kind not in _ROUNDED or len(values) < 2 or values[1] <= 0.0:
         kinds = " and ".join(map(str, _ROUNDED))
         message = f"only the kinds {kinds} of #ROUNDPAR are simulated, with a distance above 0"
-        refuse(control, statement, "unsupported-statement", message, "write #ROUNDPAR[1,0.05]")
+        control.refuse(statement, "unsupported-statement", message, "write #ROUNDPAR[1,0.05]")
     control.modal.corner_tolerance = values[1] * control.modal.unit
 
 
@@ -84,7 +84,7 @@ def _bracketed(
     begin = len(text) - len(text.lstrip())
     if not (text[begin : begin + 1] == "[" and text.endswith("]")):
         message = f"{statement.keyword} needs its values in square brackets"
-        refuse(control, statement, "expression", message)
+        control.refuse(statement, "expression", message)
     column = statement.text_column + begin + 1
     found = control.expressions(text[begin + 1 : -1], column, count)
     return [(each, column) for each in found]
@@ -103,7 +103,7 @@ def error(control: Control, statement: Statement) -> None:
         ProgramError: Always.
     """
     message = f"the program stops itself: {_quoted(statement)}"
-    refuse(control, statement, "program-error", message, "the program's own checks have failed")
+    control.refuse(statement, "program-error", message, "the program's own checks have failed")
 
 
 def _quoted(statement: Statement) -> str:
@@ -136,7 +136,7 @@ def refuse_known(control: Control, statement: Statement) -> None:
 
 def _refuse_known(control: Control, statement: Statement, reason: str) -> None:
     message = f"{_words(statement)} is known to the control and not simulated: {reason}"
-    refuse(control, statement, "unsupported-statement", message)
+    control.refuse(statement, "unsupported-statement", message)
 
 
 def _words(statement: Statement) -> str:

@@ -9,7 +9,6 @@ from twin.nc.control.codes import StatementAction, StatementEffect
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.library import MARK
 from twin.nc.dialects.fagor8070.memory import memory_of
-from twin.nc.dialects.fagor8070.variables import refuse
 from twin.nc.text.blocks import Location, Statement
 from twin.nc.text.expressions import Expression, ExpressionError, Number
 
@@ -49,7 +48,7 @@ def range_of(control: Control, statement: Statement) -> Range:
     """
     match = _RANGE.fullmatch(statement.text)
     if match is None:
-        refuse(control, statement, "repeat-range", "the labels are missing", "#RPT[N10,N20,3]")
+        control.refuse(statement, "repeat-range", "the labels are missing", "#RPT[N10,N20,3]")
     first, last = (
         control.program_counter.find_label(
             _range_label(match[group]), _span(statement), "#RPT", lines_around(control)
@@ -61,11 +60,11 @@ def range_of(control: Control, statement: Statement) -> Range:
     )
     if len(blocks) != 1 or blocks[0].words or blocks[0].statement is not None:
         message = "the last label must stand alone in its block"
-        refuse(control, statement, "repeat-range", message, "give it a block of its own behind")
+        control.refuse(statement, "repeat-range", message, "give it a block of its own behind")
     if last < first:
-        refuse(control, statement, "repeat-range", _NO_RANGE)
+        control.refuse(statement, "repeat-range", _NO_RANGE)
     if first <= Location(control.block.line - 1, 0) <= last:
-        refuse(control, statement, "repeat-range", "the range must not hold its own #RPT")
+        control.refuse(statement, "repeat-range", "the range must not hold its own #RPT")
     if match[3] is None:
         return Range(first, last, Expression("1", Number(1.0)), statement.text_column)
     column = statement.text_column + match.start(3)
@@ -131,11 +130,11 @@ def heading(control: Control, statement: Statement) -> None:
     if control.block.line - 1 != memory_of(control).main:
         message = "a heading can stand only before the program or a local subroutine"
         hint = "end the program by M30 and a subroutine by M17 before the next begins"
-        refuse(control, statement, "heading", message, hint)
+        control.refuse(statement, "heading", message, hint)
     if _TITLE.fullmatch(statement.text) is None:
         message = "nothing but a comment may follow the program's name"
         hint = "the 8070's heading is %NAME; what follows a comma is the CNC 8055's"
-        refuse(control, statement, "heading", message, hint)
+        control.refuse(statement, "heading", message, hint)
 
 
 def _call(control: Control, statement: Statement, assembler: Assembler) -> None:
@@ -153,7 +152,7 @@ def _called_line(control: Control, statement: Statement) -> int:
 def _only_name(control: Control, statement: Statement) -> str:
     match = _NAME.fullmatch(statement.text)
     if match is None:
-        refuse(control, statement, "call-values", "the call needs a name and no more")
+        control.refuse(statement, "call-values", "the call needs a name and no more")
     return match[1].upper()
 
 
@@ -206,7 +205,7 @@ def _name_of(control: Control, statement: Statement) -> str:
     """The name behind #PCALL or #MCALL."""
     match = _NAME.match(statement.text)
     if match is None:
-        refuse(control, statement, "call-values", "the call needs a name")
+        control.refuse(statement, "call-values", "the call needs a name")
     return match[1].upper()
 
 
@@ -241,10 +240,10 @@ def _line_of(
         known = f"subroutines here: {', '.join(sorted(table)) or 'none'}"
         if table is memory.subroutines:
             message = f"there is no local subroutine {name}"
-            refuse(control, statement, "unknown-subprogram", message, known)
+            control.refuse(statement, "unknown-subprogram", message, known)
         message = f"there is no subroutine {name}"
         hint = f"a global one is a file {name} or {name}.nc beside the program; {known}"
-        refuse(control, statement, "unknown-subprogram", message, hint)
+        control.refuse(statement, "unknown-subprogram", message, hint)
     return line
 
 

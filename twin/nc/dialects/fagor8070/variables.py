@@ -3,7 +3,6 @@
 import dataclasses
 import math
 import re
-from typing import NoReturn
 
 from twin.nc.bytecode.assembler import Assembler
 from twin.nc.control.control import Control
@@ -79,13 +78,6 @@ _SET = re.compile(r"[ \t]*([-+*/]?)=")
 _SEPARATOR = re.compile(r"[ \t,]*")
 
 
-def refuse(
-    control: Control, statement: Statement, code: str, message: str, hint: str | None = None
-) -> NoReturn:
-    """Refuse a statement; the caret stands under its keyword."""
-    control.report.fail(code, message, statement.column, len(statement.keyword), hint)
-
-
 def read_variable(control: Control, name: str, index: float | None) -> float:
     """Value of ``P5``, ``P[...]``, ``V.P.name``, ``V.S.name`` or a variable of the control."""
     if name == "P" and index is not None:
@@ -144,11 +136,11 @@ def assignments(control: Control, statement: Statement) -> tuple[list[Assignment
     while True:
         index, index_at = None, at
         if name == "P":
-            index, at = _read(control, statement, at, whole=False)
+            index, at = control.read_operand(text, at, begin)
         match = _SET.match(text, at)
         if match is None:
-            refuse(control, statement, "assignment", "'=' is missing behind the name")
-        value, end = _read(control, statement, match.end())
+            control.refuse(statement, "assignment", "'=' is missing behind the name")
+        value, end = control.read_expression(text, match.end(), begin)
         name = name.replace(" ", "").replace("\t", "").upper()
         found.append(
             Assignment(name, index, begin + index_at, match[1], value, begin + match.end())
@@ -172,20 +164,8 @@ def assignments(control: Control, statement: Statement) -> tuple[list[Assignment
 
 def _rest(control: Control, column: int, text: str) -> Block:
     """The block whose words stand behind assignments."""
-    here = control.block
-    (block,) = control.program_counter.lexer.blocks(" " * column + text, here.line)
-    return block._replace(number=here.number)
-
-
-def _read(
-    control: Control, statement: Statement, at: int, *, whole: bool = True
-) -> tuple[Expression, int]:
-    reader = control.program_counter.lexer.expressions
-    try:
-        return (reader.read if whole else reader.read_operand)(statement.text, at)
-    except ExpressionError as error:
-        column = statement.text_column + (error.column or 0)
-        control.report.fail(error.code, str(error), column, 1, error.hint)
+    (block,) = control.blocks_within(text, column)
+    return block._replace(number=control.block.number)
 
 
 def assign(control: Control, statement: Statement, assembler: Assembler) -> None:
@@ -228,8 +208,8 @@ def _write_live(control: Control, statement: Statement, assignment: Assignment) 
     try:
         written = write_live(control, name, value)
     except ExpressionError as error:
-        refuse(control, statement, error.code, str(error), error.hint)
+        control.refuse(statement, error.code, str(error), error.hint)
     if not written:
         message = f"{name} belongs to the control, and the twin does not simulate it"
         hint = "programs write V.P and V.S variables and the offsets V.A.ORGT[1].X"
-        refuse(control, statement, "control-variable", message, hint)
+        control.refuse(statement, "control-variable", message, hint)

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from twin.nc.canonical import Corner
 from twin.nc.control.codes import GCode, MCode
 from twin.nc.control.control import Control
-from twin.nc.control.modal import FeedMode
 from twin.nc.dialects.fanuc import (
     cylinder,
     data_setting,
@@ -27,6 +26,7 @@ from twin.nc.iso.tool_compensation import (
     LEFT,
     RIGHT,
 )
+from twin.nc.path.paces import FeedMode
 
 
 def _lose_feed(control: Control) -> None:

@@ -9,10 +9,10 @@ axis (parameter 1022), and an arc is driven in chords that leave it by 0.001 mm 
 import math
 
 from twin.nc.control.control import Control
-from twin.nc.control.modal import FeedMode
 from twin.nc.dialects.fanuc.memory import memory_of
 from twin.nc.geometry.arcs import sweep_between
 from twin.nc.iso.circular import center_of_radius
+from twin.nc.path.paces import FeedMode
 
 CHORD_ERROR = 0.001
 """How far a chord may leave its arc [mm]."""

@@ -8,10 +8,10 @@ milliseconds on either. The first number that is changed so is warned of.
 """
 
 from twin.nc.control.control import Control
-from twin.nc.control.modal import FeedMode
 from twin.nc.control.settings import ControlSettings
 from twin.nc.dialects.fanuc.memory import memory_of
 from twin.nc.dialects.fanuc.variables import rounding_to, rounds
+from twin.nc.path.paces import FeedMode
 from twin.nc.text import arithmetic
 from twin.nc.text.blocks import Block, Word
 from twin.nc.text.expressions import Computed, Expression, Number

@@ -1,18 +1,17 @@
 """Program flow of Fanuc's custom macro B: IF GOTO, IF THEN, GOTO, WHILE DO END."""
 
 import re
-from typing import NoReturn
 
 from twin.nc.bytecode.assembler import Assembler
 from twin.nc.control.codes import StatementAction, StatementEffect
+from twin.nc.control.constructs import Construct, Structure
 from twin.nc.control.control import Control
-from twin.nc.dialects.fanuc.memory import Loop, holds_any, letter_patterns, memory_of
+from twin.nc.dialects.fanuc.memory import holds_any, letter_patterns, memory_of
 from twin.nc.dialects.fanuc.programs import lines_around
 from twin.nc.dialects.fanuc.variables import ControlVariables, compile_assignment, write_variable
 from twin.nc.text.blocks import Assignment, Block, Location, Statement
 from twin.nc.text.expressions import (
     Expression,
-    ExpressionError,
     Number,
     NumberedVariable,
     Variable,
@@ -37,79 +36,61 @@ _BEHIND_CONDITION = re.compile(r"[ \t]*(GOTO|THEN)(?![A-Z])", re.IGNORECASE)
 _EQUALS = re.compile(r"[ \t]*=")
 
 
-def refuse(
-    control: Control, statement: Statement, code: str, message: str, hint: str | None = None
-) -> NoReturn:
-    """Refuse a statement; the caret stands under its keyword."""
-    control.report.fail(code, message, statement.column, len(statement.keyword), hint)
-
-
-def loops_of(lines: Lines, headings: list[int]) -> dict[int, Loop]:
-    """The loops of a file by the lines that begin and end them; those without an end have none."""
-    found: dict[int, Loop] = {}
+def loops_of(lines: Lines, headings: list[int]) -> Structure:
+    """The loops of a file; those without an end stay open."""
+    loops = Structure({"END": "DO"})
     if not holds_any(lines, _LOOP_SOMEWHERE):
-        return found
-    inside: list[Loop] = []
+        return loops
     begins = set(headings)
     for line, text in enumerate(lines):
         if line in begins:
-            inside = []
+            loops.close()
         match = _LOOP.match(text)
-        if match is None:
-            continue
-        if match["begin"]:
-            inside.append(Loop(int(match["begin"]), line, None, len(inside) + 1))
-            found[line] = inside[-1]
-        elif inside and inside[-1].number == int(match["end"]):
-            loop = inside.pop()
-            loop.end = line
-            found[line] = loop
-    return found
+        if match is not None:
+            keyword = "DO" if match["begin"] else "END"
+            loops.add(keyword, line, str(int(match["begin"] or match["end"])))
+    return loops
 
 
-def _loops(control: Control) -> dict[int, Loop]:
+def _loops(control: Control) -> Structure:
     memory = memory_of(control)
     if memory.loops is None:
         memory.loops = loops_of(control.program_counter.lines, memory.headings)
     return memory.loops
 
 
-def _loop(control: Control, statement: Statement) -> tuple[int, int]:
-    """First and last line, from 0, of the loop that the block begins or ends.
+def _loop(control: Control, statement: Statement) -> Construct:
+    """The loop that the block begins or ends.
 
     Raises:
         ProgramError: It has no counterpart, or is one of too many within each other.
     """
-    loop = _loops(control).get(control.block.line - 1)
+    loop = _loops(control).by_line.get(control.block.line - 1)
     if loop is None or loop.end is None:
         message = f"{statement.keyword} has no counterpart"
         hint = "DO1 ends at END1 of its program, and loops do not cross"
-        refuse(control, statement, "open-structure", message, hint)
-    if not 1 <= loop.number <= DEEPEST_LOOP or loop.depth > DEEPEST_LOOP:
+        control.refuse(statement, "open-structure", message, hint)
+    if not 1 <= int(loop.name) <= DEEPEST_LOOP or loop.depth > DEEPEST_LOOP:
         message = f"loops are numbered 1 to {DEEPEST_LOOP}, and no more lie within each other"
-        refuse(control, statement, "structure", message)
-    return loop.begin, loop.end
+        control.refuse(statement, "structure", message)
+    return loop
 
 
-def _read(control: Control, statement: Statement, at: int) -> tuple[Expression, int]:
+def _operand(control: Control, statement: Statement, at: int) -> tuple[Expression, int]:
     """The operand at a place of a statement's text, and where it ends."""
-    try:
-        return control.program_counter.lexer.expressions.read_operand(statement.text, at)
-    except ExpressionError as error:
-        column = statement.text_column + (error.column or 0)
-        control.report.fail(error.code, str(error), column, 1, error.hint)
+    return control.read_operand(statement.text, at, statement.text_column)
 
 
 def _while(control: Control, statement: Statement, assembler: Assembler) -> None:
     """WHILE [...] DO1: run the blocks up to END1 as long as the condition holds."""
-    _, end = _loop(control, statement)
-    condition, at = _read(control, statement, 0)
+    loop = _loop(control, statement)
+    condition, at = _operand(control, statement, 0)
     if _DO.match(statement.text, at) is None:
         message = f"{statement.keyword} needs DO and its number behind the condition, and no more"
         hint = "WHILE [#1 LT 5] DO1; what the loop does stands in lines of its own"
-        refuse(control, statement, "structure", message, hint)
+        control.refuse(statement, "structure", message, hint)
     assembler.value(condition, statement.text_column)
-    assembler.jump_unless(Location(end + 1, 0))
+    assembler.jump_unless(loop.behind)
 
 
 def _do(control: Control, statement: Statement, _assembler: Assembler) -> None:
@@ -120,23 +101,23 @@ def _do(control: Control, statement: Statement, _assembler: Assembler) -> None:
 
 def _end(control: Control, statement: Statement, assembler: Assembler) -> None:
     """END1: back to the loop's first line."""
-    begin, _ = _loop(control, statement)
+    loop = _loop(control, statement)
     _whole(control, statement)
-    assembler.jump(Location(begin, 0))
+    assembler.jump(Location(loop.begin, 0))
 
 
 def _whole(control: Control, statement: Statement) -> None:
     if _COUNT.match(statement.text) is None:
-        refuse(control, statement, "structure", f"only a number follows {statement.keyword}")
+        control.refuse(statement, "structure", f"only a number follows {statement.keyword}")
 
 
 def _if(control: Control, statement: Statement, assembler: Assembler) -> None:
     """IF [...] GOTO 10, IF [...] THEN #1=5."""
-    condition, at = _read(control, statement, 0)
+    condition, at = _operand(control, statement, 0)
     match = _BEHIND_CONDITION.match(statement.text, at)
     if match is None:
         hint = "IF [#1 EQ 5] GOTO 10, or IF [#1 EQ 5] THEN #2=1"
-        refuse(control, statement, "structure", "GOTO or THEN must follow the condition", hint)
+        control.refuse(statement, "structure", "GOTO or THEN must follow the condition", hint)
     assembler.value(condition, statement.text_column)
     if match[1].upper() == "GOTO":
         target = _target(control, statement, match.end())
@@ -164,31 +145,26 @@ def _block_behind_then(control: Control, statement: Statement, at: int) -> Block
     """What a Haas runs where the condition holds, if words belong to it (manual); else None."""
     if not memory_of(control).variant.then_takes_words:
         return None
-    text = " " * (statement.text_column + at) + statement.text[at:]
-    blocks = control.program_counter.lexer.blocks(text, control.block.line)
+    blocks = control.blocks_within(statement.text[at:], statement.text_column + at)
     if len(blocks) != 1 or blocks[0].statement is not None:
         hint = "THEN #2=1, or THEN G1 X10."
-        refuse(control, statement, "structure", "assignments and words follow THEN", hint)
+        control.refuse(statement, "structure", "assignments and words follow THEN", hint)
     return blocks[0]._replace(number=control.block.number) if blocks[0].words else None
 
 
 def _assignment(control: Control, statement: Statement, at: int) -> Assignment:
     """The assignment behind THEN."""
-    reader, text = control.program_counter.lexer.expressions, statement.text
+    text = statement.text
     at += len(text[at:]) - len(text[at:].lstrip())
     target, end = Expression("", Number(0.0)), at
     if text.startswith("#", at):
-        target, end = _read(control, statement, at)
+        target, end = _operand(control, statement, at)
     equals = _EQUALS.match(text, end)
     if equals is None or not isinstance(target.tree, Variable | NumberedVariable):
-        refuse(control, statement, "structure", "one assignment follows THEN", "THEN #2=1")
-    try:
-        value, end = reader.read(text, equals.end())
-    except ExpressionError as error:
-        column = statement.text_column + (error.column or 0)
-        control.report.fail(error.code, str(error), column, 1, error.hint)
+        control.refuse(statement, "structure", "one assignment follows THEN", "THEN #2=1")
+    value, end = control.read_expression(text, equals.end(), statement.text_column)
     if text[end:].strip():
-        refuse(control, statement, "structure", "one assignment follows THEN, and no more")
+        control.refuse(statement, "structure", "one assignment follows THEN, and no more")
     column = statement.text_column + at
     return Assignment(target.tree, value, column, end - at)
 
@@ -212,9 +188,9 @@ def _go_to(control: Control, statement: Statement, assembler: Assembler) -> None
 
 
 def _target(control: Control, statement: Statement, at: int) -> Expression:
-    target, end = _read(control, statement, at)
+    target, end = _operand(control, statement, at)
     if statement.text[end:].strip():
-        refuse(control, statement, "jump-target", "GOTO needs one number and no more", "GOTO 10")
+        control.refuse(statement, "jump-target", "GOTO needs one number and no more", "GOTO 10")
     return target
 
 
@@ -234,7 +210,7 @@ def destination(control: Control, statement: Statement, number: float) -> Locati
         ProgramError: Nowhere, or into a loop.
     """
     if not number >= 0.0 or number != int(number):
-        refuse(control, statement, "jump-target", f"there is no block N{number:g}")
+        control.refuse(statement, "jump-target", f"there is no block N{number:g}")
     counter, around, here = control.program_counter, lines_around(control), control.block.line - 1
     places = [place for place in counter.labels().get(int(number), []) if place.line in around]
     if places:
@@ -242,11 +218,11 @@ def destination(control: Control, statement: Statement, number: float) -> Locati
     else:
         span = statement.column, len(statement.keyword)
         place = counter.find_label(int(number), span, "GOTO", around)
-    for loop in _loops(control).values():
+    for loop in _loops(control).constructs:
         end = -1 if loop.end is None else loop.end
         if loop.begin < place.line <= end and not loop.begin <= here <= end:
             message = f"N{int(number)} lies in a loop, and a jump must not lead into one"
-            refuse(control, statement, "jump-into-structure", message)
+            control.refuse(statement, "jump-into-structure", message)
     return place
 
 

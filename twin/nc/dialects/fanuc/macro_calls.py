@@ -11,7 +11,6 @@ from twin.nc.bytecode.frames import CALLS
 from twin.nc.control.codes import StatementAction, StatementEffect
 from twin.nc.control.control import Control
 from twin.nc.dialects.fanuc import decimal_point
-from twin.nc.dialects.fanuc.flow import refuse
 from twin.nc.dialects.fanuc.memory import ModalCall, memory_of
 from twin.nc.dialects.fanuc.programs import line_of, whole
 from twin.nc.text.blocks import Location, Statement, Word
@@ -26,12 +25,11 @@ _MOST_GROUPS = 10
 
 def _words(control: Control, statement: Statement) -> tuple[Word, ...]:
     """The words behind G65 or G66."""
-    lexer, line = control.program_counter.lexer, control.block.line
-    blocks = lexer.blocks(" " * statement.text_column + statement.text, line)
+    blocks = control.blocks_within(statement.text, statement.text_column)
     if not blocks:
-        refuse(control, statement, "call-values", f"{statement.keyword} needs P", "G65 P1000 A1.")
+        control.refuse(statement, "call-values", f"{statement.keyword} needs P", "G65 P1000 A1.")
     if len(blocks) != 1 or blocks[0].statement is not None or blocks[0].assignments:
-        refuse(control, statement, "call-values", f"{statement.keyword} takes words only")
+        control.refuse(statement, "call-values", f"{statement.keyword} takes words only")
     return blocks[0].words
 
 
@@ -70,7 +68,7 @@ def _call(control: Control, statement: Statement, assembler: Assembler) -> None:
     words = _words(control, statement)
     program, often = _one(control, words, "P"), _one(control, words, "L")
     if program is None:
-        refuse(control, statement, "call-values", "G65 needs P", "G65 P1000 A1.")
+        control.refuse(statement, "call-values", "G65 needs P", "G65 P1000 A1.")
     arguments = list(_arguments(control, words))
     counted = any(decimal_point.is_counted(control, word) for _, word in arguments)
     if often is not None or counted:
@@ -130,7 +128,7 @@ def call_modally(control: Control, statement: Statement) -> None:
     memory = memory_of(control)
     if memory.modal_call is not None:
         message = "a modal call is in force already, and one within another is not simulated"
-        refuse(control, statement, "call-values", message, "end it by G67 first")
+        control.refuse(statement, "call-values", message, "end it by G67 first")
     memory.modal_call = _modal_call(control, _words(control, statement))
     memory.modal_depth = int(control.program_counter.progress[CALLS])
     control.active["modal call"] = 66

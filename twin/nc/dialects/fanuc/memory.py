@@ -5,10 +5,11 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
+from twin.nc.control.constructs import Structure
 from twin.nc.control.control import Control
-from twin.nc.control.modal import FeedMode
 from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.planes import Vector
+from twin.nc.path.paces import FeedMode
 from twin.nc.text.blocks import Word
 from twin.nc.text.lines import Lines
 
@@ -148,23 +149,6 @@ class ModalCall(NamedTuple):
 
 
 @dataclasses.dataclass(slots=True)
-class Loop:
-    """A loop from DO to END.
-
-    Attributes:
-        number: Behind DO.
-        begin: Its first line, from 0.
-        end: Its last line; None where it has none.
-        depth: Loops around it, and itself.
-    """
-
-    number: int
-    begin: int
-    end: int | None
-    depth: int
-
-
-@dataclasses.dataclass(slots=True)
 class ToolOffset:
     """A row of the offset memory, with what the program has written into it [mm].
 
@@ -211,7 +195,7 @@ class FanucMemory:
         mirror: Coordinates of the axes of mirror images by column [mm].
         rotation: Angle [deg] and centre [mm] of a rotation in the plane, or None.
         cylinder: Column of the rotary axis and radius [mm] of G107, or None.
-        loops: By their first and last lines, from 0; None before they were asked for.
+        loops: Those of the file; None before they were asked for.
         modal_call: G66 in force.
         modal_depth: Programs that were being run for callers when it was called.
         extended_number: P of the last G54.1.
@@ -242,7 +226,7 @@ class FanucMemory:
     mirror: dict[int, float] = dataclasses.field(default_factory=dict)
     rotation: tuple[float, Point] | None = None
     cylinder: tuple[int, float] | None = None
-    loops: dict[int, Loop] | None = None
+    loops: Structure | None = None
     modal_call: ModalCall | None = None
     modal_depth: int = 0
     extended_number: int = 0

@@ -3,7 +3,6 @@
 from twin.nc.canonical import Corner
 from twin.nc.control.codes import Action, GCode
 from twin.nc.control.control import Control
-from twin.nc.control.modal import FeedMode
 from twin.nc.dialects.linuxcnc import compensation, curves, motion, offsets
 from twin.nc.dialects.linuxcnc.arcs import CLOCKWISE, COUNTER_CLOCKWISE
 from twin.nc.dialects.linuxcnc.cycles import CYCLES
@@ -13,6 +12,7 @@ from twin.nc.iso import base
 from twin.nc.iso.declared import instead, modal, motion_code, plane_code, refused
 from twin.nc.iso.fixed_cycles import BY_HAND
 from twin.nc.iso.tool_compensation import LEFT, RIGHT
+from twin.nc.path.paces import FeedMode
 
 _INCH = 25.4
 _LATHE = "it belongs to lathes"

@@ -11,7 +11,6 @@ from typing import NamedTuple
 from twin.nc.control.codes import GCode, Interpolation
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import CycleRule
-from twin.nc.control.modal import FeedMode
 from twin.nc.dialects.linuxcnc.memory import memory_of
 from twin.nc.dialects.linuxcnc.motion import check_feed, target
 from twin.nc.dialects.linuxcnc.offsets import refuse_in_compensation
@@ -30,6 +29,7 @@ from twin.nc.path.drilling_cycle import (
     forget,
     hole_of,
 )
+from twin.nc.path.paces import FeedMode
 
 CLEARANCE = 0.254
 """A rapid return ends this far above the bottom of the last peck [mm]: a hundredth of an inch."""

@@ -28,7 +28,6 @@ from twin.nc.text.blocks import Location, Statement
 from twin.nc.text.expressions import (
     Computed,
     Expression,
-    ExpressionError,
     Number,
     Tree,
     Variable,
@@ -50,19 +49,14 @@ def refuse(
 
 def values_of(control: Control, word: OWord, statement: Statement) -> list[tuple[Expression, int]]:
     """The values behind a keyword, with their columns; each stands in square brackets."""
-    reader, found, at = control.program_counter.lexer.expressions, [], 0
-    text = word.text.rstrip()
+    found, at, text = list[tuple[Expression, int]](), 0, word.text.rstrip()
     while at < len(text):
         if text[at] in " \t":
             at += 1
             continue
         if text[at] != "[":
             refuse(control, statement, "o-word", "values stand in square brackets here")
-        try:
-            value, end = reader.read_operand(text, at)
-        except ExpressionError as error:
-            column = word.column + (at if error.column is None else error.column)
-            control.report.fail(error.code, str(error), column, 1, error.hint)
+        value, end = control.read_operand(text, at, word.column)
         found.append((value, word.column + at))
         at = end
     return found
@@ -116,20 +110,12 @@ def _read_line(control: Control, line: int) -> None:
     control.report.line = control.block.line
 
 
-def _behind(construct: Construct) -> Location:
-    """The place behind a construct."""
-    assert construct.end is not None
-    return Location(construct.end + 1, 0)
-
-
 def _line_of(control: Control, line: int) -> tuple[Statement, OWord]:
     """The O-word of another line, from 0; errors are that line's from now on."""
-    control.report.line = line + 1
-    (block,) = control.program_counter.lexer.blocks(control.program_counter.lines[line], line + 1)
-    assert block.statement is not None
-    word = o_word(block.statement)
+    statement = control.statement_of(line)
+    word = o_word(statement)
     assert word is not None
-    return block.statement, word
+    return statement, word
 
 
 def _declare(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
@@ -168,11 +154,11 @@ def _if(control: Control, statement: Statement, word: OWord, assembler: Assemble
             return
         _condition(control, *_line_of(control, branch.line), assembler)
         assembler.jump_if(Location(branch.line + 1, 0))
-    assembler.jump(_behind(construct))
+    assembler.jump(construct.behind)
 
 
 def _leave(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
-    assembler.jump(_behind(_construct_of(control, statement, word)))
+    assembler.jump(_construct_of(control, statement, word).behind)
 
 
 def _nothing(control: Control, statement: Statement, word: OWord, _assembler: Assembler) -> None:
@@ -187,7 +173,7 @@ def _while(control: Control, statement: Statement, word: OWord, assembler: Assem
         return
     _declare(control, statement, word, assembler)
     _condition(control, statement, word, assembler)
-    assembler.jump_unless(_behind(construct))
+    assembler.jump_unless(construct.behind)
 
 
 def _do(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
@@ -216,7 +202,7 @@ def _repeat(control: Control, statement: Statement, word: OWord, assembler: Asse
     assembler.value(Computed("ROUND", arithmetic.nearest_whole_away, (value.tree,)), column)
     assembler.assign(counter.name)
     assembler.value(_is_positive(counter))
-    assembler.jump_unless(_behind(construct))
+    assembler.jump_unless(construct.behind)
 
 
 def _end_repeat(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
@@ -247,7 +233,7 @@ def _enclosing(control: Control, statement: Statement, word: OWord) -> Construct
 
 
 def _break(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
-    assembler.jump(_behind(_enclosing(control, statement, word)))
+    assembler.jump(_enclosing(control, statement, word).behind)
 
 
 def _continue(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
@@ -340,7 +326,7 @@ def _sub(control: Control, statement: Statement, word: OWord, assembler: Assembl
             )
 
     assembler.interpreted(define)
-    assembler.jump(_behind(construct))
+    assembler.jump(construct.behind)
 
 
 _TELLS = re.compile(rb"_value|_call_level|M[ \t]*0*7[0-3]", re.IGNORECASE)

@@ -5,13 +5,13 @@ from typing import NoReturn
 
 from twin.nc.control.codes import Action, Interpolation
 from twin.nc.control.control import Control
-from twin.nc.control.modal import FeedMode
 from twin.nc.dialects.linuxcnc.compensation import in_force
 from twin.nc.dialects.linuxcnc.memory import memory_of
 from twin.nc.dialects.linuxcnc.offsets import refuse_changed_unit, refuse_in_compensation
 from twin.nc.geometry.planes import XY
 from twin.nc.iso import base
 from twin.nc.iso.offsets import machine_zero
+from twin.nc.path.paces import FeedMode
 from twin.nc.text.blocks import Word
 
 

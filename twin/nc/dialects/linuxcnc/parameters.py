@@ -3,10 +3,10 @@
 from collections.abc import Callable
 
 from twin.nc.control.control import Control
-from twin.nc.control.modal import FeedMode
 from twin.nc.dialects.linuxcnc.memory import SYSTEMS, CoordinateSystem, memory_of, written_feed
 from twin.nc.dialects.linuxcnc.offsets import reframe
 from twin.nc.iso.offsets import machine_zero
+from twin.nc.path.paces import FeedMode
 from twin.nc.text.blocks import Assignment
 from twin.nc.text.expressions import ExpressionError
 

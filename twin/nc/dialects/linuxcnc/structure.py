@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from twin.nc.control.constructs import Branch, Construct, Structure
+from twin.nc.control.constructs import Construct, Structure
 from twin.nc.control.control import Control
 from twin.nc.dialects.linuxcnc.memory import memory_of
 from twin.nc.text.blocks import Statement
@@ -27,7 +27,11 @@ _COMPUTED = re.compile(r"[ \t]*[#\[]")
 _WORD = re.compile(rf"[ \t]*({_LABEL}|#[^\[ \t]*|\[[^\]]*\])[ \t]*([A-Z]*)[ \t]*", re.IGNORECASE)
 COMMENTS = (Comment("(", ")", holds_opening=False), Comment(";"))
 _MARKS = comment_marks(COMMENTS)
-_ENDS = {"ENDSUB": "SUB", "ENDIF": "IF", "ENDWHILE": "WHILE", "ENDREPEAT": "REPEAT"}
+_ENDS = {
+    **{f"END{keyword}": keyword for keyword in ("SUB", "IF", "WHILE", "REPEAT")},
+    "WHILE": "DO",
+}
+_BRANCHES = {"ELSEIF": "IF", "ELSE": "IF"}
 LOOPS = ("WHILE", "DO", "REPEAT")
 
 
@@ -100,12 +104,12 @@ class OWords(NamedTuple):
 
 def structure_of(lines: Iterable[str]) -> OWords:
     """Pair the O-words of a program, and find its subroutines."""
-    structure, subroutines, garbled = Structure(), dict[str, list[int]](), list[int]()
-    open_ones: list[Construct] = []
+    structure = Structure(_ENDS, _BRANCHES)
+    subroutines, garbled = dict[str, list[int]](), list[int]()
     for line, text in enumerate(lines):
         if text.startswith(FILE):
-            open_ones = []
-        if open_ones and is_garbled(text):
+            structure.close()
+        if structure.is_open and is_garbled(text):
             garbled.append(line)
         if "O" not in text.upper():
             continue
@@ -114,30 +118,8 @@ def structure_of(lines: Iterable[str]) -> OWords:
         name, keyword = named
         if keyword in ("SUB", ""):
             subroutines.setdefault(name, []).append(line)
-        found = _paired(structure, open_ones, name, keyword, line)
-        if found is not None:
-            structure.by_line[line] = found
+        structure.add(keyword, line, name)
     return OWords(structure, subroutines, garbled)
-
-
-def _paired(
-    structure: Structure, open_ones: list[Construct], name: str, keyword: str, line: int
-) -> Construct | None:
-    inner = open_ones[-1] if open_ones else None
-    if inner is not None and inner.name == name:
-        if keyword in ("ELSEIF", "ELSE") and inner.keyword == "IF":
-            inner.branches.append(Branch(keyword, line))
-            return inner
-        ends_do = keyword == "WHILE" and inner.keyword == "DO"
-        if ends_do or _ENDS.get(keyword) == inner.keyword:
-            inner.end = line
-            return open_ones.pop()
-    if keyword in _ENDS.values() or keyword == "DO":
-        construct = Construct(keyword, line, name=name)
-        open_ones.append(construct)
-        structure.constructs.append(construct)
-        return construct
-    return None
 
 
 def structure(control: Control) -> Structure:
