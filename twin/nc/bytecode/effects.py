@@ -41,7 +41,6 @@ from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.frame import SHIFTS, add_up
 from twin.nc.geometry.matrices import LARGEST_SCALE, SMALLEST_SCALE
 from twin.nc.geometry.planes import along, vector_of
-from twin.nc.path.drilling_cycle import Act
 from twin.nc.path.event_columns import (
     AUXILIARY,
     DWELL,
@@ -49,6 +48,7 @@ from twin.nc.path.event_columns import (
     SPEED,
     TOOL,
 )
+from twin.nc.path.hole import Act
 from twin.nc.path.moves import LARGEST_COORDINATE
 from twin.nc.path.rows import Rows, copy
 from twin.nc.text.arithmetic import is_whole

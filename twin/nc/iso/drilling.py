@@ -15,18 +15,20 @@ from twin.nc.path.drilling_cycle import (
     EVERY,
     FACTOR,
     LIFT,
-    MOST_PECKS,
-    NO_MOVE,
     PECK,
     REFERENCE,
     CycleBlock,
+    no_values,
+    read_words,
+)
+from twin.nc.path.hole import (
+    MOST_PECKS,
+    NO_MOVE,
     Fault,
     Hole,
     hole_of,
     most_acts,
     next_place,
-    no_values,
-    read_words,
     write_acts,
 )
 from twin.nc.text.blocks import Word

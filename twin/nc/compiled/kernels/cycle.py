@@ -31,8 +31,8 @@ from twin.nc.compiled.kernels.move_row import (
     put_positions,
 )
 from twin.nc.compiled.kernels.target import PlainBlock, aim, target_of_axis
-from twin.nc.path import drilling_cycle
-from twin.nc.path.drilling_cycle import NO_MOVE, Cycle, CycleBlock, Hole
+from twin.nc.path.drilling_cycle import VALUES, Cycle, CycleBlock, cycle_of, read_words
+from twin.nc.path.hole import MOST_STOPS, NO_MOVE, Hole, hole_of, most_acts, next_place, write_acts
 from twin.nc.path.moves import LARGEST_COORDINATE, line_length
 from twin.nc.path.rows import Rows, copy
 
@@ -74,7 +74,7 @@ def drill(
     taken, hole = _read_cycle(block, called, tables, constants, state)
     if repeats_only and state.programmed[plane[2]] < hole.reference:
         return UNSUPPORTED
-    if hole.fault != 0 or hole.stops > drilling_cycle.MOST_STOPS:
+    if hole.fault != 0 or hole.stops > MOST_STOPS:
         return UNSUPPORTED
     rest = block.seen & ~taken
     if (rest >> RADIUS) & ((1 << (AXIS - RADIUS)) - 1) or rest & (1 << (AXIS + plane[2])):
@@ -88,7 +88,7 @@ def drill(
             return UNSUPPORTED
     after = _emit_hole(block, hole, constants, state, rows, row)
     if after >= 0:
-        for value in range(drilling_cycle.VALUES):
+        for value in range(VALUES):
             state.registers[CYCLE_STATE + value] = constants.hole[0, value]
             state.registers[CYCLE_WORDS + value] = np.nan
     return after
@@ -111,10 +111,10 @@ def _read_cycle(
     """
     modal, (calls, anew) = block.modal, called
     row = tables.cycles[int(modal[CYCLE])]
-    cycle = drilling_cycle.cycle_of(row)
+    cycle = cycle_of(row)
     across = int(constants.planes[int(modal[PLANE])][2])
     remembered, given = constants.hole[0], constants.hole[1]
-    for value in range(drilling_cycle.VALUES):
+    for value in range(VALUES):
         remembered[value] = np.nan if anew else state.registers[CYCLE_STATE + value]
         given[value] = state.registers[CYCLE_WORDS + value]
     taken = 0
@@ -129,8 +129,8 @@ def _read_cycle(
                 taken |= 1 << token_kind
     relative = modal[INCREMENTAL] != 0.0
     here = CycleBlock(calls, across, state.programmed[across], modal[UNIT], (relative, relative))
-    drilling_cycle.read_words(cycle, remembered, given, here)
-    return taken, drilling_cycle.hole_of(cycle, remembered, across, modal[TO_REFERENCE] != 0.0)
+    read_words(cycle, remembered, given, here)
+    return taken, hole_of(cycle, remembered, across, modal[TO_REFERENCE] != 0.0)
 
 
 @compilable
@@ -138,7 +138,7 @@ def _emit_hole(
     block: PlainBlock, hole: Hole, constants: Constants, state: State, rows: Rows, row: int
 ) -> int:
     """Go over the hole, drill it, return: ``drilling.drill``; the hole lies at ``constants.over``."""
-    most = drilling_cycle.most_acts(hole.stops)
+    most = most_acts(hole.stops)
     if row + most > len(rows.codes) or state.event_count[0] + most > len(rows.events):
         return NO_ROOM
     if not has_pace(block, constants, state):
@@ -149,9 +149,9 @@ def _emit_hole(
     copy(state.part, part)
     copy(state.programmed, goal)
     acts, amounts, after = constants.hole[2], constants.hole[3], row
-    for step in range(drilling_cycle.write_acts(hole, here[axis], acts, amounts)):
+    for step in range(write_acts(hole, here[axis], acts, amounts)):
         act, amount = int(acts[step]), amounts[step]
-        speed = drilling_cycle.next_place(act, amount, hole, constants.over, goal, axis)
+        speed = next_place(act, amount, hole, constants.over, goal, axis)
         if speed != NO_MOVE:
             after = _go(goal, speed, block, constants, state, rows, after)
             if after == UNSUPPORTED:
