@@ -166,6 +166,12 @@ CHANGES = (
         "gost/rules/work_offsets",
     ),
     Change(
+        "iso/base",
+        "opcodes.REPORT, event_columns.DWELL",
+        "opcodes.REPORT, event_columns.AUXILIARY",
+        "gost/codes/G04",
+    ),
+    Change(
         "bytecode/coordinates",
         "state.part[axis] - state.total[axis]",
         "state.part[axis] - state.total[axis] + 1.0",

@@ -4,9 +4,9 @@ import math
 from collections.abc import Callable
 from typing import NamedTuple, NoReturn
 
-from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler
 from twin.nc.bytecode.effects import BlockPlace, report_act
+from twin.nc.bytecode.registers import CYCLE_WORDS
 from twin.nc.control.codes import CodeWriter, GCode, Ground, Interpolation
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import CycleRule
@@ -135,7 +135,7 @@ def _write_words(rule: CycleRule) -> CodeWriter:
                 assembler.rare()
             if word is not None:
                 assembler.word_value(word)
-                assembler.emit(opcodes.CYCLE_WORD, value)
+                assembler.set_register(CYCLE_WORDS + value)
 
     return write
 
