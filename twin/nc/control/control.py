@@ -202,7 +202,12 @@ class Control(ControlWords):
         else:
             state.modal[PLANE] = len(PLANE_ORDER)
             self.constants.directions[len(PLANE_ORDER)] = modal.plane.directions
-        return Affected(self.constants, state, self._event_room)
+        return self.affected
+
+    @property
+    def affected(self) -> Affected:
+        """What instructions change; only the registers are up to date between two of them."""
+        return Affected(self.constants, self.state, self._event_room)
 
     def end_effect(self) -> None:
         """Take back what an instruction has changed, and report what happened."""

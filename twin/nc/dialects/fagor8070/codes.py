@@ -1,7 +1,7 @@
 """G codes of the Fagor CNC 8070."""
 
 from twin.nc.bytecode import opcodes
-from twin.nc.bytecode.assembler import Assembler
+from twin.nc.bytecode.assembler import Assembler, Finding
 from twin.nc.canonical import Corner
 from twin.nc.control.codes import CodeWriter, Effect, GCode
 from twin.nc.control.control import Control
@@ -15,8 +15,13 @@ from twin.nc.iso import base, fixed_cycles, offsets
 from twin.nc.iso.declared import instead, modal, motion_code, plane_code, refused
 from twin.nc.iso.tool_compensation import END_OF_COMPENSATION, LEFT, RIGHT, compensation_by_tool
 from twin.nc.path.blends import BlendKind
+from twin.nc.path.event_columns import AUXILIARY
 from twin.nc.path.paces import FeedMode
 from twin.nc.text.blocks import Word
+
+_OTHER_AUXILIARY = Finding(
+    "number-range", "{word} is no number of a function: whole ones up to 999999 are"
+)
 
 
 def plain_dwell(control: Control, word: Word, assembler: Assembler) -> None:
@@ -24,13 +29,14 @@ def plain_dwell(control: Control, word: Word, assembler: Assembler) -> None:
     if control.words or len(control.block.words) > 1:
         control.fail("dwell", "G04 must stand alone in its block", word)
     assembler.word_value(word)
-    assembler.emit(opcodes.DWELL)
+    base.write_dwell(assembler)
 
 
 def auxiliary(_control: Control, word: Word, assembler: Assembler) -> None:
     """H: an auxiliary function of the machine."""
     assembler.word_value(word)
-    assembler.emit(opcodes.AUXILIARY)
+    assembler.check(opcodes.WHOLE, _OTHER_AUXILIARY, 999_999.0)
+    assembler.emit(opcodes.REPORT, AUXILIARY)
 
 
 def _forgetting_polar(write: CodeWriter) -> Effect:
@@ -39,7 +45,7 @@ def _forgetting_polar(write: CodeWriter) -> Effect:
     def both(control: Control, assembler: Assembler) -> None:
         assembler.disturbed(lambda: refuse_change(control))
         write(control, assembler)
-        assembler.emit(opcodes.FORGET_POLAR)
+        polar.write_forgotten_polar(assembler)
 
     return Effect(both)
 

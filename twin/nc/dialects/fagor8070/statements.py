@@ -4,7 +4,6 @@ import re
 from collections.abc import Iterable
 from typing import NoReturn
 
-from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler
 from twin.nc.control.codes import StatementAction, StatementEffect
 from twin.nc.control.control import Control
@@ -13,6 +12,7 @@ from twin.nc.dialects.fagor8070.known_statements import ENDED_ONLY, PASSED_OVER,
 from twin.nc.dialects.fagor8070.machine_coordinates import machine_coordinates
 from twin.nc.dialects.fagor8070.transformations import write_scale
 from twin.nc.dialects.fagor8070.variables import VARIABLE_STATEMENT, assign
+from twin.nc.iso.base import write_dwell
 from twin.nc.text.blocks import Location, Statement
 from twin.nc.text.expressions import Expression
 
@@ -24,7 +24,7 @@ _QUOTED = re.compile(r"[^\"]*\"([^\"]*)\".*")
 def _dwell(control: Control, statement: Statement, assembler: Assembler) -> None:
     """#TIME [s]."""
     flow.put_value(control, statement, assembler)
-    assembler.emit(opcodes.DWELL)
+    write_dwell(assembler)
 
 
 def skip_comment(control: Control, statement: Statement) -> None:

@@ -6,7 +6,7 @@ their numbers; lengths count against the job's first tool. D holds radii (parame
 
 from typing import NoReturn
 
-from twin.nc.bytecode import effects, opcodes
+from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler
 from twin.nc.control.codes import Action, Effect
 from twin.nc.control.compensation import compensate, tool_numbered
@@ -14,6 +14,7 @@ from twin.nc.control.control import Control
 from twin.nc.control.performer import refuse
 from twin.nc.dialects.fanuc.memory import ToolOffset, letter_patterns, memory_of
 from twin.nc.dialects.fanuc.programs import whole
+from twin.nc.iso.findings import NO_TOOL
 from twin.nc.iso.tool_compensation import set_length
 from twin.nc.text.blocks import Word
 
@@ -135,7 +136,7 @@ def _radius(control: Control, number: int) -> float:
     row = memory_of(control).tool_offsets.get(number)
     if radius is None:
         if not control.tools.table:
-            refuse(control, effects.NO_TOOL)
+            refuse(control, NO_TOOL)
         _refuse_row(control, number, "D")
     if row is None or row.radius is None:
         _warn_of_default_tool(control, number, "D")

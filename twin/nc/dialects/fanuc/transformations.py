@@ -4,7 +4,6 @@ A block's coordinates are mirrored, then scaled, then rotated (manual). Centres 
 block's place, and what comes before acts on them as well.
 """
 
-from twin.nc.bytecode.effects import SCALE_RANGE, TRANSFORM_COMPENSATED
 from twin.nc.control.codes import Action
 from twin.nc.control.control import Control
 from twin.nc.control.performer import refuse
@@ -20,6 +19,7 @@ from twin.nc.geometry.matrices import (
     stretched,
 )
 from twin.nc.geometry.planes import Vector
+from twin.nc.iso.findings import SCALE_RANGE, TRANSFORM_COMPENSATED
 
 PLAIN: Vector = (1.0, 1.0, 1.0)
 
