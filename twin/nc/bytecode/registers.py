@@ -64,8 +64,8 @@ REGISTERS = MATRIX + 9
 """Places in the registers: F; S; the tool that comes next and the one that is in use; whether it has
 its offset; the polar origin, the last R and Q; the scale; angle and centre of the rotation in the
 plane; whether the frame's matrix is not the identity; the tool's radius that the program gave; whether
-M3 or M4 is in force; acceleration and deceleration that the program sets; the feed that it gives to
-rapids; the signs of X, Y and Z, -1 where they are mirrored; what the drilling cycle in force remembers, as
+M3 or M4 is in force; acceleration and deceleration that the program sets; the feed per second
+of rapids, 0 where they follow F, NaN where they have the machine's pace; the signs of X, Y and Z, -1 where they are mirrored; what the drilling cycle in force remembers, as
 ``drilling_cycle`` counts it, and the same of the words of the block; the matrix, row by row. Those of a
 dialect's own stand behind them. NaN: none."""
 Cells: TypeAlias = "memoryview[float]"
@@ -128,8 +128,6 @@ class Constants(NamedTuple):
         default_feed: Where none is programmed [mm/min].
         default_rotary_feed: Where none is programmed and only rotary axes move [deg/min].
         feed_may_lack: A feed move without a programmed feed was warned of already.
-        own_rapid_feed: Feed per second of rapids that the program paces, 0 where they follow F;
-            NaN: ``RAPID_FEED`` counts.
         linear: Which axes are linear, shape (k,).
         planes: Columns of abscissa, ordinate and normal of each plane, shape (3, 3).
         directions: Their directions, shape (3, 3, 3).
@@ -145,7 +143,6 @@ class Constants(NamedTuple):
     default_feed: float
     default_rotary_feed: float
     feed_may_lack: bool
-    own_rapid_feed: float
     linear: npt.NDArray[np.bool_]
     planes: IntArray
     directions: FloatArray

@@ -149,11 +149,8 @@ class VirtualMachine:
         )
 
     def _constants(self) -> Constants:
-        control, rapid = self._control, self._control.dialect.rapid_feed
-        return control.constants._replace(
-            feed_may_lack=control.report.has_said("no-feed"),
-            own_rapid_feed=math.nan if rapid is None else rapid(control),
-        )
+        control = self._control
+        return control.constants._replace(feed_may_lack=control.report.has_said("no-feed"))
 
     def _enter_state(self) -> None:
         """Where the control stands goes into the columns of the state."""

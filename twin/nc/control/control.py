@@ -20,7 +20,7 @@ from twin.nc.bytecode.registers import (
     UNIT,
 )
 from twin.nc.canonical import Dwell, Function
-from twin.nc.control.modal import CORNERS, FEED_MODES
+from twin.nc.control.modal import CORNERS
 from twin.nc.control.words import ControlWords
 from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.frame import arc_about, moved_shift
@@ -42,6 +42,7 @@ from twin.nc.path.paces import (
     WITHOUT_SPEED,
     feed_per_minute,
     finding_of_feed,
+    rapid_feed,
 )
 from twin.nc.path.segments import direction_of
 from twin.nc.text.blocks import Block
@@ -111,7 +112,10 @@ class Control(ControlWords):
         is_arc = center is not None
         if self.series:
             self.place_switches(length)
-        feed = registers[RAPID_FEED] if rapid else self._feed_per_minute(end, is_arc, length)
+        if rapid:
+            feed = rapid_feed(registers[RAPID_FEED], registers[PROGRAMMED_FEED])
+        else:
+            feed = self._feed_per_minute(end, is_arc, length)
         acceleration, deceleration = registers[ACCELERATION], registers[DECELERATION]
         if rapid:
             acceleration = _either(self.rapid_acceleration, acceleration)
@@ -163,11 +167,7 @@ class Control(ControlWords):
 
     def _feed_per_minute(self, end: list[float], is_arc: bool, length: float) -> float:
         registers, cells, settings = self.registers, self.modal.cells, self.settings
-        feed, mode, speed = (
-            registers[PROGRAMMED_FEED],
-            FEED_MODES[cells[FEED_MODE]],
-            registers[SPINDLE],
-        )
+        feed, mode, speed = registers[PROGRAMMED_FEED], int(cells[FEED_MODE]), registers[SPINDLE]
         finding = finding_of_feed(feed, mode, speed, registers[SPINDLE_TURNS])
         if finding != PACED:
             self._blame_feed(finding)

@@ -69,8 +69,6 @@ class Dialect(Vocabulary):
         finish: Done when the program ends without an end code.
         compile_block: Compiles one of its blocks that is more than plain words; raises
             ``UnsupportedError`` for what is left to the interpreter tier.
-        rapid_feed: Feed per second of rapids at a pace that the program sets, 0 where it follows F;
-            None: rapids have the machine's pace.
         disturbed: Something that only this dialect remembers acts on plain blocks, so that the
             interpreter tier must run them; None: nothing can.
     """
@@ -104,7 +102,6 @@ class Dialect(Vocabulary):
     must_end: bool = False
     finish: Action | None = None
     compile_block: Callable[[BlockCompiler, Block], None] = BlockCompiler.block
-    rapid_feed: Callable[[Control], float] | None = None
     disturbed: Callable[[Control], bool] | None = None
 
     def new_modal(self) -> Modal:

@@ -134,7 +134,7 @@ class ControlState:
     deceleration = Register(DECELERATION)
     """[mm/s²]; NaN: the machine's."""
     rapid_feed = Register(RAPID_FEED)
-    """Feed of rapids where the program limits it [mm/min]; NaN: the machine's."""
+    """Feed per second of rapids [mm/s]; 0: they follow F; NaN: they have the machine's pace."""
 
     def __init__(
         self, language: ControlLanguage, settings: ControlSettings, source: Source, modal: Modal
@@ -202,7 +202,6 @@ class ControlState:
             default_feed=settings.default_feed,
             default_rotary_feed=settings.default_rotary_feed,
             feed_may_lack=False,
-            own_rapid_feed=NAN,
             linear=np.array(self.linear),
             planes=np.array([plane.axes for plane in PLANE_ORDER]),
             directions=np.array([plane.directions for plane in PLANE_ORDER]),

@@ -100,5 +100,5 @@ def counts_blocks(mode: int) -> bool:
 
 @inlined
 def rapid_feed(own: float, feed: float) -> float:
-    """Feed of rapids that the program paces [mm/min]: their own per second, where that is 0 F; or NaN."""
+    """Feed of rapids [mm/min]: their own per second, where that is 0 F; NaN: the machine's."""
     return (own if own != 0.0 else feed) * 60.0

@@ -5,13 +5,11 @@ import numpy as np
 from twin.compilation.compilable import compilable
 from twin.nc.bytecode.effects import Affected, BlockPlace, report_act
 from twin.nc.bytecode.registers import (
-    CORNER,
     CYCLE,
     CYCLE_STATE,
     CYCLE_WORDS,
     INCREMENTAL,
     PLANE,
-    RAPID_FEED,
     TO_REFERENCE,
     UNIT,
     BlockTables,
@@ -21,15 +19,12 @@ from twin.nc.bytecode.registers import (
 from twin.nc.bytecode.token_kinds import AXIS, RADIUS, UNSUPPORTED
 from twin.nc.canonical import FloatArray
 from twin.nc.compiled.kernels.move_row import (
-    FEED,
     LINE,
-    RAPID,
-    STOP,
-    Travel,
+    feeding,
     has_pace,
-    pace_of,
     put_move,
     put_positions,
+    rapidly,
 )
 from twin.nc.compiled.kernels.target import PlainBlock, put_target
 from twin.nc.path.drilling_cycle import VALUES, Cycle, CycleBlock, cycle_of, read_words
@@ -181,9 +176,8 @@ def _go(
     if length == 0.0:
         return row
     copy(position[1], part)
-    travel = Travel(RAPID, state.registers[RAPID_FEED], STOP)
+    travel = rapidly(block, state)
     if speed > 0.0:
-        pace = pace_of(block.feed * speed, block, length, False, constants, state)
-        travel = Travel(FEED, pace, int(block.modal[CORNER]))
+        travel = feeding(block.feed * speed, block, length, False, constants, state)
     put_move(block, travel, LINE, state, rows, row)
     return row + 1

@@ -8,16 +8,18 @@ from twin.compilation.compilable import inlined
 from twin.nc.bytecode.coordinates import turn_place
 from twin.nc.bytecode.registers import (
     ACCELERATION,
+    CORNER,
     CORNER_TOLERANCE,
     DECELERATION,
     FEED_MODE,
+    RAPID_FEED,
     SPINDLE,
     SPINDLE_TURNS,
     UNIT,
     Constants,
     State,
 )
-from twin.nc.bytecode.token_kinds import FEED as FEED_WORD
+from twin.nc.bytecode.token_kinds import FEED
 from twin.nc.canonical import FloatArray, Motion
 from twin.nc.compiled.kernels.target import PlainBlock
 from twin.nc.path.move_columns import LINE
@@ -28,10 +30,11 @@ from twin.nc.path.paces import (
     feed_per_minute,
     finding_of_feed,
     needs_own_feed,
+    rapid_feed,
 )
 from twin.nc.path.rows import Rows
 
-RAPID, FEED, STOP = int(Motion.RAPID), int(Motion.FEED), int(RAPIDS_END)
+_RAPID, _FEED, _STOP = int(Motion.RAPID), int(Motion.FEED), int(RAPIDS_END)
 
 
 class Travel(NamedTuple):
@@ -52,7 +55,7 @@ class Travel(NamedTuple):
 def has_pace(block: PlainBlock, constants: Constants, state: State) -> bool:
     """Whether nothing about the pace of a block's moves with a feed is doubtful."""
     registers, mode = state.registers, int(block.modal[FEED_MODE])
-    if needs_own_feed(mode) and not block.seen & (1 << FEED_WORD):
+    if needs_own_feed(mode) and not block.seen & (1 << FEED):
         return False
     speed, turns = registers[SPINDLE], registers[SPINDLE_TURNS]
     finding = finding_of_feed(block.feed, mode, speed, turns)
@@ -60,19 +63,26 @@ def has_pace(block: PlainBlock, constants: Constants, state: State) -> bool:
 
 
 @inlined
-def pace_of(
+def rapidly(block: PlainBlock, state: State) -> Travel:
+    """How a rapid goes."""
+    return Travel(_RAPID, rapid_feed(state.registers[RAPID_FEED], block.feed), _STOP)
+
+
+@inlined
+def feeding(
     feed: float,
     block: PlainBlock,
     length: float,
     turning: bool,
     constants: Constants,
     state: State,
-) -> float:
-    """Pace of a move with a feed, where its block ``has_pace``; the other arguments are those of ``feed_per_minute``."""
-    mode, unit = int(block.modal[FEED_MODE]), block.modal[UNIT]
+) -> Travel:
+    """How a move with a feed goes, where its block ``has_pace``; the arguments as ``feed_per_minute`` has them."""
+    modal, speed = block.modal, state.registers[SPINDLE]
     otherwise = (constants.default_feed, constants.default_rotary_feed)
-    speed = state.registers[SPINDLE]
-    return feed_per_minute(feed, mode, length, turning, unit, speed, otherwise)
+    mode, unit = int(modal[FEED_MODE]), modal[UNIT]
+    pace = feed_per_minute(feed, mode, length, turning, unit, speed, otherwise)
+    return Travel(_FEED, pace, int(modal[CORNER]))
 
 
 @inlined

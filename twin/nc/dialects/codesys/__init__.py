@@ -140,7 +140,7 @@ CODESYS = Dialect(
     is_local=program.is_local,
     given_variable=program.given_variable,
     place_switches=words.place_switches,
-    rapid_feed=words.own_rapid_feed,
+    prepare=words.prepare,
     library=subprograms.LIBRARY,
     disturbed=program.acts_on_plain_blocks,
 )

@@ -231,7 +231,8 @@ def set_position(control: Control) -> None:
     if following is not None and any(w.address == "G" and w.value == 92.0 for w in following.words):
         return
     if control.has_moved:
-        control.rapid_feed = math.nan
+        programmed, control.rapid_feed = control.rapid_feed, math.nan
         control.line_to(target, rapid=True)
+        control.rapid_feed = programmed
     else:
         control.stand_at(target)

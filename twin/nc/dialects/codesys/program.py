@@ -98,7 +98,6 @@ class Variables:
         length_ramp: What G43 has changed and no move has led into yet [mm].
         smoothing: Distance from a corner at which its moves are cut [mm].
         smoothed_by: What takes the corners' place; None: nothing.
-        rapid_feed: FF as programmed, 0 where it is not.
         periods: Modulo periods of additional axes by column [mm or deg].
         subprograms: By name; None before the program was searched for them.
     """
@@ -106,7 +105,6 @@ class Variables:
     length_ramp: Vector = (0.0, 0.0, 0.0)
     smoothing: float = 0.0
     smoothed_by: BlendKind | None = None
-    rapid_feed: float = 0.0
     periods: dict[int, float] = dataclasses.field(default_factory=dict)
     subprograms: dict[str, Subprogram] | None = None
 

@@ -2,12 +2,10 @@
 
 import math
 
-from twin.nc.bytecode.registers import PROGRAMMED_FEED
 from twin.nc.control.codes import WordAction
 from twin.nc.control.control import Control
 from twin.nc.dialects.codesys.actions import axis_named, lead_into_length
 from twin.nc.dialects.codesys.program import variables
-from twin.nc.path.paces import rapid_feed
 from twin.nc.text.blocks import Word
 
 LARGEST_SWITCH = 32_767
@@ -32,7 +30,7 @@ def set_rapid_feed(control: Control, word: Word) -> None:
     value = control.number(word)
     if value < 0.0:
         control.fail("feed-range", f"the feed {word.text} is negative", word)
-    variables(control).rapid_feed = value
+    control.rapid_feed = value
 
 
 def set_rapid_acceleration(control: Control, word: Word) -> None:
@@ -44,16 +42,13 @@ def set_rapid_acceleration(control: Control, word: Word) -> None:
         control.rapid_deceleration = -value or math.nan
 
 
-def own_rapid_feed(control: Control) -> float:
-    """FF [units/s]; 0 where G0 follows F."""
-    return variables(control).rapid_feed
+def prepare(control: Control) -> None:
+    """The program begins: G0 follows F."""
+    control.rapid_feed = 0.0
 
 
-def before_motion(control: Control, rapid: bool) -> None:
-    """What holds for every motion block: the pace of G0, and the shortest way of modulo axes."""
-    if rapid:
-        feed = control.registers[PROGRAMMED_FEED]
-        control.rapid_feed = rapid_feed(own_rapid_feed(control), feed)
+def before_motion(control: Control, _rapid: bool) -> None:
+    """What holds for every motion block: slopes, and the shortest way of modulo axes."""
     _refuse_slopes(control)
     take_shortest_way(control)
     if any(variables(control).length_ramp):
