@@ -128,7 +128,7 @@ class VirtualMachine:
                 counter.progress,
                 counter.calls,
                 self._control.variables.columns,
-                counter.saved,
+                self._control.modal_of_calls,
                 contour,
             ),
             self._scratch,

@@ -221,7 +221,7 @@ class Performer(Assembler):
         control, counter, to = self._control, self._control.program_counter, self._to
         go_to(to.going, counter.progress)
         counter.progress[DEPTH], counter.progress[CALLS] = to.depth, to.called
-        keep_codes(opcode, to, control.state.modal, counter.saved)
+        keep_codes(opcode, to, control.state.modal, control.modal_of_calls)
         if control.modal.cycle is None:
             control.forget_cycle()
         raise _Gone

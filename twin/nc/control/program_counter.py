@@ -44,26 +44,10 @@ class ProgramCounter:
     Attributes:
         progress: How far the program has come, as ``frames`` has it, shape (``PROGRESS``,).
         calls: The parts that are being run for a caller, the innermost last, as ``frames`` has them.
-        saved: What was in force when each was called, shape (``MOST_CALLS``, m).
     """
 
-    def __init__(
-        self,
-        source: Source,
-        lexer: Lexer,
-        step_limit: int,
-        report: Reporter,
-        in_force: int,
-    ) -> None:
-        """Stand before the program.
-
-        Args:
-            source: The program.
-            lexer: Reads its lines.
-            step_limit: Blocks that may be run again.
-            report: Where diagnostics go.
-            in_force: How many numbers say what is in force.
-        """
+    def __init__(self, source: Source, lexer: Lexer, step_limit: int, report: Reporter) -> None:
+        """Stand before the program, of which so many blocks may be run again."""
         self._lines = source.lines
         self._line_count = len(source.lines)
         self._lexer = lexer
@@ -73,7 +57,6 @@ class ProgramCounter:
         self._now = self.progress.data
         self._now[FURTHEST], self._now[INSTRUCTION_BUDGET] = -1, step_limit
         self.calls = np.zeros((MOST_CALLS, CALL_COLUMNS), np.int64)
-        self.saved = np.zeros((MOST_CALLS, in_force))
         self._labels: FoundInText[int | str, list[Location]] | None = None
         self._cache = FoundInText[int, tuple[Block, ...]]()
         self._told_to_end = False

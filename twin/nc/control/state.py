@@ -8,6 +8,7 @@ from typing import NoReturn, Protocol
 
 import numpy as np
 
+from twin.nc.bytecode.frames import MOST_CALLS
 from twin.nc.bytecode.registers import (
     ACCELERATION,
     CYCLE_STATE,
@@ -112,6 +113,7 @@ class ControlState:
         path: Where moves and events go.
         axis_letters: Addresses that name axes.
         program_counter: Which block comes next.
+        modal_of_calls: What was in force when each part was called, shape (``MOST_CALLS``, m).
         variables: What the program computes with.
         cycle_values: What the words of a milling cycle were last, by address.
         cycle_state: What a drilling cycle remembers, as ``drilling_cycle`` counts it.
@@ -169,9 +171,8 @@ class ControlState:
         self._event_room = new_rows(0, MOST_EVENTS, len(self.linear))
         self.path = Path(settings.axes, self.part, self._refuse_move, self._warn_of_move)
         lexer = Lexer(language, self.report)
-        self.program_counter = ProgramCounter(
-            source, lexer, settings.step_limit, self.report, len(modal.column)
-        )
+        self.program_counter = ProgramCounter(source, lexer, settings.step_limit, self.report)
+        self.modal_of_calls = np.zeros((MOST_CALLS, len(modal.column)))
         self.variables = Variables(
             language.is_local,
             lambda name: language.given_variable(settings.variables, name),
