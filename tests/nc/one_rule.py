@@ -148,13 +148,28 @@ CHANGES = (
         "fagor8070/rules/polar",
     ),
     Change(
-        "path/drilling_cycle", "CHIP_CLEARANCE = 0.5", "CHIP_CLEARANCE = 0.6", "gost/rules/drilling"
+        "path/drilling_cycle",
+        "given[BOTTOM] + above, given",
+        "given[BOTTOM] + above + 1.0, given",
+        "gost/rules/drilling",
+    ),
+    Change(
+        "path/hole",
+        "min(depth + hole.clearance, up)",
+        "min(depth - hole.clearance, up)",
+        "gost/rules/drilling",
     ),
     Change(
         "bytecode/effects",
         "state.shifts[operand, axis] = stack[top + axis]",
         "state.shifts[operand, axis] = stack[top + axis] + 1.0",
         "gost/rules/work_offsets",
+    ),
+    Change(
+        "iso/base",
+        "opcodes.REPORT, event_columns.DWELL",
+        "opcodes.REPORT, event_columns.AUXILIARY",
+        "gost/codes/G04",
     ),
     Change(
         "bytecode/coordinates",

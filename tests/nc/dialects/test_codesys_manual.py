@@ -7,7 +7,7 @@ import pytest
 from tests.nc.running import SETTINGS, bad, good
 from twin.nc.canonical import Motion, concatenate
 from twin.nc.dialects.codesys import CODESYS
-from twin.nc.dialects.codesys.subprograms import with_files
+from twin.nc.dialects.codesys.subprograms import LIBRARY
 from twin.nc.interpreter import Interpretation
 from twin.nc.text.diagnostics import ProgramError
 from twin.nc.text.source import read_source
@@ -83,7 +83,7 @@ def test_the_machine_stands_where_the_path_begins(tmp_path: Path) -> None:
 def test_a_subprogram_is_a_file_of_its_own(tmp_path: Path) -> None:
     (tmp_path / "main.cnc").write_text(MAIN)
     (tmp_path / "cnc2.cnc").write_text(CIRCLES)
-    source = with_files(read_source(tmp_path / "main.cnc", CODESYS), tmp_path, CODESYS)
+    source = LIBRARY(read_source(tmp_path / "main.cnc", CODESYS), tmp_path, CODESYS)
     chunks = Interpretation(source, CODESYS, SETTINGS).chunks()
     moves = concatenate((chunk.moves for chunk in chunks), SETTINGS.axes)
     # Two half circles, and without RESTORE the caller goes on in relative mode.
@@ -97,7 +97,7 @@ def test_a_subprogram_is_a_file_of_its_own(tmp_path: Path) -> None:
 def test_an_error_names_the_subprograms_file(tmp_path: Path) -> None:
     (tmp_path / "main.cnc").write_text("N10 Bore{}")
     (tmp_path / "bore.cnc").write_text("SUBPROGRAM Bore{}\nN10 G1 X#a F10\nEND_SUBPROGRAM")
-    source = with_files(read_source(tmp_path / "main.cnc", CODESYS), tmp_path, CODESYS)
+    source = LIBRARY(read_source(tmp_path / "main.cnc", CODESYS), tmp_path, CODESYS)
     with pytest.raises(ProgramError) as raised:
         list(Interpretation(source, CODESYS, SETTINGS).chunks())
     assert str(raised.value).startswith(f"{tmp_path / 'bore.cnc'}:2:8: error unknown-variable")

@@ -11,8 +11,7 @@ from hypothesis import strategies as st
 from tests.nc.running import bad, good
 from twin.nc.canonical import FloatArray, Moves, Shape
 from twin.nc.geometry.arcs import distance
-from twin.nc.geometry.elements import Element
-from twin.nc.path.loops import crossing
+from twin.nc.geometry.curves import crossing_of, line
 
 SPLINE_ERROR = 5e-4
 
@@ -203,7 +202,7 @@ def test_loops_of_arcs_are_cut_too() -> None:
 
 
 def test_elements_that_only_touch_do_not_cross() -> None:
-    first = Element((0.0, 0.0), (10.0, 0.0))
-    assert crossing(first, Element((10.0, 0.0), (10.0, 5.0))) is None
-    assert crossing(first, Element((5.0, 0.0), (5.0, 5.0))) is None
-    assert crossing(first, Element((5.0, -5.0), (5.0, 5.0))) == pytest.approx((0.5, 0.5))
+    first = line((0.0, 0.0), (10.0, 0.0))
+    assert not crossing_of(first, line((10.0, 0.0), (10.0, 5.0)))[0]
+    assert not crossing_of(first, line((5.0, 0.0), (5.0, 5.0)))[0]
+    assert crossing_of(first, line((5.0, -5.0), (5.0, 5.0))) == pytest.approx((True, 0.5, 0.5))

@@ -22,12 +22,12 @@ ROWS = EventRows(
             [0, 2, FUNCTION, 3],
             [1, 3, FUNCTION, 4],
             [1, 4, SPEED, 0],
-            [2, 5, TOOL, 7],
-            [2, 6, AUXILIARY, 9],
+            [2, 5, TOOL, 0],
+            [2, 6, AUXILIARY, 0],
             [3, 7, DWELL, 0],
         ]
     ),
-    np.array([math.nan, 900.0, math.nan, 500.0, math.nan, math.nan, 1.5]),
+    np.array([math.nan, 900.0, math.nan, 500.0, 7.0, 9.0, 1.5]),
 )
 OBJECTS = (
     Function(0, 1, "M8", {}),

@@ -7,7 +7,7 @@ import pytest
 from tests.nc.running import SETTINGS
 from twin.nc.canonical import Moves, concatenate
 from twin.nc.dialects.fagor8070 import FAGOR8070
-from twin.nc.dialects.fagor8070.library import with_globals
+from twin.nc.dialects.fagor8070.library import LIBRARY
 from twin.nc.interpreter import Interpretation
 from twin.nc.text.diagnostics import ProgramError
 from twin.nc.text.source import read_source
@@ -16,7 +16,7 @@ from twin.nc.text.source import read_source
 def run_files(folder: Path, **files: str) -> Moves:
     for name, text in files.items():
         (folder / name.replace("_", ".")).write_text(text)
-    source = with_globals(read_source(folder / "main.nc", FAGOR8070), folder, FAGOR8070)
+    source = LIBRARY(read_source(folder / "main.nc", FAGOR8070), folder, FAGOR8070)
     interpretation = Interpretation(source, FAGOR8070, SETTINGS)
     return concatenate((chunk.moves for chunk in interpretation.chunks()), SETTINGS.axes)
 

@@ -4,7 +4,9 @@ An assembler of the compiled tier writes them down; that of the interpreter tier
 """
 
 import abc
+import math
 from collections.abc import Callable, Iterable
+from typing import NamedTuple
 
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.bytecode import number_of_location
@@ -17,6 +19,26 @@ Target = Location | Callable[[], Location]
 
 class UnsupportedError(Exception):
     """The block is left to the interpreter tier."""
+
+
+class Finding(NamedTuple):
+    """What is said where a check does not hold.
+
+    Attributes:
+        code: Of the diagnostic.
+        message: ``{word}`` stands for the word that is to blame.
+        hint: What would have worked.
+        blames_word: A word is to blame, else the block.
+    """
+
+    code: str
+    message: str
+    hint: str | None = None
+    blames_word: bool = True
+
+
+Otherwise = Finding | Callable[[], None]
+"""What the interpreter tier says or does where a check does not hold."""
 
 
 class Assembler(abc.ABC):
@@ -49,13 +71,43 @@ class Assembler(abc.ABC):
         """Put a number on the stack."""
         self._add(opcodes.CONSTANT, 0, value)
 
+    def drop(self) -> None:
+        """Take the topmost value off the stack."""
+        self._add(opcodes.DROP)
+
     @abc.abstractmethod
-    def emit(self, opcode: int, operand: int = 0, blamed: Word | None = None) -> None:
-        """Take one of the instructions that do more than compute, move and jump.
+    def compute(self, function: Callable[..., float]) -> None:
+        """Replace the topmost values by a function of them; as ``value``."""
+
+    @abc.abstractmethod
+    def emit(self, opcode: int, operand: int = 0) -> None:
+        """Take one of the instructions that do more than compute, move and jump."""
+
+    # --- registers
+
+    def register(self, place: int) -> None:
+        """Put a register on the stack."""
+        self.emit(opcodes.REGISTER, place)
+
+    def set_register(self, place: int) -> None:
+        """The topmost value becomes a register."""
+        self.emit(opcodes.SET_REGISTER, place)
+
+    def empty_register(self, place: int) -> None:
+        """A register has no value from here on."""
+        self.constant(math.nan)
+        self.set_register(place)
+
+    @abc.abstractmethod
+    def check(
+        self, check: int, otherwise: Otherwise, bound: float = 0.0, blamed: Word | None = None
+    ) -> None:
+        """The topmost value, which stays, must be as a check says.
 
         Args:
-            opcode: The instruction.
-            operand: As ``opcodes`` says.
+            check: One of those of ``opcodes``.
+            otherwise: What follows where it is not.
+            bound: ``immediate`` of the check.
             blamed: The word to blame; None: that of the topmost value.
         """
 
@@ -159,7 +211,7 @@ class Assembler(abc.ABC):
             done: set[str] = set()
             for name in reversed(list(own)):
                 if name in done:
-                    self._add(opcodes.DROP)
+                    self.drop()
                 else:
                     self.assign(name)
                 done.add(name)

@@ -3,9 +3,9 @@
 from collections.abc import Callable, Container, Iterable, Mapping
 
 from twin.nc.bytecode import opcodes
-from twin.nc.bytecode.assembler import Assembler, UnsupportedError
+from twin.nc.bytecode.assembler import Assembler, Otherwise, UnsupportedError
 from twin.nc.bytecode.bytecode import MOST_ROWS, MOST_STORES, Bytecode
-from twin.nc.bytecode.expressions import code_of
+from twin.nc.bytecode.expressions import Operation, code_of, operation_of
 from twin.nc.bytecode.registers import MOST_WORDS
 from twin.nc.bytecode.variables import NO_SLOT, Variables
 from twin.nc.canonical import NO_BLOCK_NUMBER
@@ -75,13 +75,19 @@ class BytecodeAssembler(Assembler):
         self._bytecode.add(opcode, operand, immediate)
         self.columns.append(self._column)
 
-    def emit(self, opcode: int, operand: int = 0, blamed: Word | None = None) -> None:
+    def emit(self, opcode: int, operand: int = 0, immediate: float = 0.0) -> None:
         """Append one of the instructions that do more than compute, move and jump."""
-        del blamed
         if not self._has_snapshot:
             self._has_snapshot = True
             self._add(opcodes.SNAPSHOT)
-        self._add(opcode, operand)
+        self._add(opcode, operand, immediate)
+
+    def check(
+        self, check: int, otherwise: Otherwise, bound: float = 0.0, blamed: Word | None = None
+    ) -> None:
+        """Append a check; where it does not hold, the interpreter tier runs the block."""
+        del otherwise, blamed
+        self.emit(opcodes.CHECK, check, bound)
 
     # --- words
 
@@ -156,10 +162,17 @@ class BytecodeAssembler(Assembler):
                 if [inner.opcode for inner in each.inner] != [opcodes.LOAD]:
                     raise UnsupportedError
                 self._add(opcodes.DEFINED, self._slot(each.inner[0].name))
-            elif each.has_compiled_form:
-                self._add(each.opcode, each.operand, each.immediate)
             else:
-                raise UnsupportedError
+                self._compute(each)
+
+    def compute(self, function: Callable[..., float]) -> None:
+        """Replace the topmost values by a function of them; as ``value``."""
+        self._compute(operation_of(function))
+
+    def _compute(self, operation: Operation) -> None:
+        if not operation.has_compiled_form:
+            raise UnsupportedError
+        self._add(operation.opcode, operation.operand, operation.immediate)
 
     def _slot(self, name: str) -> int:
         if name in self._live:

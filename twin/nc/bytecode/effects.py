@@ -13,7 +13,7 @@ from twin.nc.bytecode.bytecode import Instruction
 from twin.nc.bytecode.coordinates import directions, reframe, to_part, transform
 from twin.nc.bytecode.flow import Stack
 from twin.nc.bytecode.registers import (
-    CYCLE_WORDS,
+    BAILOUT,
     IN_SPINDLE,
     INCREMENTAL,
     OFFSET_ON,
@@ -22,13 +22,6 @@ from twin.nc.bytecode.registers import (
     POLAR_ANGLE,
     POLAR_ORDINATE,
     POLAR_RADIUS,
-    RADIUS_GIVEN,
-    ROTATION,
-    ROTATION_ABSCISSA,
-    ROTATION_ORDINATE,
-    SCALE,
-    SELECTED,
-    SIGNS,
     SPINDLE,
     SPINDLE_TURNS,
     UNIT,
@@ -39,41 +32,15 @@ from twin.nc.functions import starts_spindle, turns_behind
 from twin.nc.geometry import polar
 from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.frame import SHIFTS, add_up
-from twin.nc.geometry.matrices import LARGEST_SCALE, SMALLEST_SCALE
 from twin.nc.geometry.planes import along, vector_of
-from twin.nc.path.drilling_cycle import Act
-from twin.nc.path.event_columns import (
-    AUXILIARY,
-    DWELL,
-    FUNCTION,
-    SPEED,
-    TOOL,
-)
+from twin.nc.path.event_columns import DWELL, FUNCTION
+from twin.nc.path.hole import Act
 from twin.nc.path.moves import LARGEST_COORDINATE
 from twin.nc.path.rows import Rows, copy
 from twin.nc.text.arithmetic import is_whole
-from twin.nc.text.expressions import LARGEST_NUMBER
 
-(
-    NEGATIVE_SPEED,
-    NO_TOOL_NUMBER,
-    UNKNOWN_TOOL,
-    NO_TOOL,
-    OTHER_AUXILIARY,
-    NEGATIVE_DWELL,
-    PLANE_COMPENSATED,
-    PLANE_ROTATED,
-    MIRROR_SIGN,
-    SCALE_RANGE,
-    ROTATED_ALREADY,
-    TRANSFORM_COMPENSATED,
-) = range(-110, -98)
-"""What is wrong with an instruction."""
-_NO_EVENT = -1
 _LENGTH = SHIFTS.index("length")
 _WAIT = int(Act.DWELL)
-LARGEST_TOOL, LARGEST_AUXILIARY = LARGEST_NUMBER, 999_999.0
-"""Numbers of tools and of auxiliary functions that an event can hold."""
 
 
 class Affected(NamedTuple):
@@ -111,68 +78,69 @@ def run_effect(
     """Run one instruction.
 
     Args:
-        instruction: One from ``FUNCTION`` on.
+        instruction: One from ``REGISTER`` on.
         stack: Values.
         top: How many there are.
         block: Whose it is.
         on: What it runs on.
 
     Returns:
-        How many values are left, or what is wrong.
+        How many values are left, or ``BAILOUT`` where a check does not hold.
     """
     opcode = instruction.opcode
-    if opcode <= opcodes.DWELL:
-        return _report_effect(instruction, stack, top, block, on)
-    if opcode <= opcodes.PROGRAMMED_RADIUS:
-        return _use_tool(instruction, stack, top, on)
     if opcode <= opcodes.TO_MILLIMETRES:
+        return _use_register(instruction, stack, top, block, on)
+    if opcode == opcodes.FUNCTION:
+        report_function(instruction.operand, block, on)
+    elif opcode == opcodes.REPORT:
+        top -= 1
+        report(on.rows, on.state, block.made, block.line, instruction.operand, 0, stack[top])
+    elif opcode <= opcodes.TOOL_RADIUS:
+        return _use_tool(instruction, stack, top, on)
+    elif opcode <= opcodes.TRANSFORM:
         return _shift_coordinates(instruction, stack, top, on)
-    if opcode <= opcodes.FORGET_POLAR:
-        return _choose_plane(instruction, stack, top, block, on)
-    if opcode == opcodes.CYCLE_WORD:
-        on.state.registers[CYCLE_WORDS + instruction.operand] = stack[top - 1]
-        return top - 1
-    return _transform(instruction, stack, top, block, on)
+    else:
+        return _choose_plane(instruction, stack, top, on)
+    return top
 
 
 @compilable
-def _report_effect(
+def _use_register(
     instruction: Instruction, stack: Stack, top: int, block: BlockPlace, on: Affected
 ) -> int:
-    """Functions, speeds, tools and dwells, which are reported; as ``run_effect``."""
+    """Registers, and what must hold of a value; as ``run_effect``."""
     opcode, operand = instruction.opcode, instruction.operand
-    registers, constants = on.state.registers, on.constants
-    value = stack[top - 1] if top > 0 else 0.0
-    kind, number, amount = _NO_EVENT, operand, np.nan
-    if opcode == opcodes.FUNCTION:
-        report_function(operand, block, on)
-    elif opcode == opcodes.SPEED:
-        if value < 0.0:
-            return NEGATIVE_SPEED
-        registers[SPINDLE] = value
-        kind, amount = SPEED if operand else _NO_EVENT, value
-        top -= 1
-    elif opcode == opcodes.TOOL:
-        if not is_whole(value, LARGEST_TOOL):
-            return NO_TOOL_NUMBER
-        if operand and not _is_listed(constants, value):
-            return UNKNOWN_TOOL
-        registers[SELECTED] = value
-        kind, number = TOOL, int(value)
-        top -= 1
-    elif opcode == opcodes.AUXILIARY:
-        if not is_whole(value, LARGEST_AUXILIARY):
-            return OTHER_AUXILIARY
-        kind, number = AUXILIARY, int(value)
-        top -= 1
-    elif opcode == opcodes.DWELL:
-        if value < 0.0:
-            return NEGATIVE_DWELL
-        kind, amount = DWELL, value
-        top -= 1
-    if kind != _NO_EVENT:
-        report(on.rows, on.state, block.made, block.line, kind, number, amount)
-    return top
+    registers = on.state.registers
+    if opcode == opcodes.REGISTER:
+        stack[top] = registers[operand]
+        return top + 1
+    if opcode == opcodes.SET_REGISTER:
+        registers[operand] = stack[top - 1]
+        return top - 1
+    if opcode == opcodes.TO_MILLIMETRES:
+        stack[top - 1] *= on.state.modal[UNIT]
+        return top
+    value = stack[top - 1] if top > 0 else np.nan
+    return top if _holds(instruction, value, block, on.constants) else BAILOUT
+
+
+@compilable
+def _holds(instruction: Instruction, value: float, block: BlockPlace, constants: Constants) -> bool:
+    """Whether a check holds of a value."""
+    check, bound = instruction.operand, instruction.immediate
+    if check == opcodes.AT_LEAST:
+        return value >= bound
+    if check == opcodes.AT_MOST:
+        return value <= bound
+    if check == opcodes.WHOLE:
+        return is_whole(value, bound)
+    if check == opcodes.SIGN:
+        return abs(value) == 1.0
+    if check == opcodes.LISTED_TOOL:
+        return _tool(constants, value) < len(constants.tools)
+    if check == opcodes.UNCOMPENSATED:
+        return not block.compensates
+    return np.isnan(value) == (check == opcodes.ABSENT)
 
 
 @compilable
@@ -201,39 +169,21 @@ def report_act(act: int, amount: float, block: BlockPlace, on: Affected) -> None
 @compilable
 def _use_tool(instruction: Instruction, stack: Stack, top: int, on: Affected) -> int:
     """The tool in use, its length and its radius; as ``run_effect``."""
-    opcode, operand = instruction.opcode, instruction.operand
-    state, constants = on.state, on.constants
-    registers = state.registers
-    if opcode == opcodes.CHANGE_TOOL:
-        registers[IN_SPINDLE] = registers[SELECTED]
-    elif opcode == opcodes.OFFSET_ON:
-        registers[OFFSET_ON] = operand
-    elif opcode == opcodes.TOOL_LENGTH:
-        longer = 0.0
-        if registers[OFFSET_ON] != 0.0:
-            longer = constants.longer[_tool(constants, registers[IN_SPINDLE])]
-        state.shifts[_LENGTH, :] = 0.0
-        state.shifts[_LENGTH, 2] = longer
-        reframe(state)
-    elif opcode == opcodes.TOOL_RADIUS:
-        radius = constants.radii[_tool(constants, registers[IN_SPINDLE])]
-        if np.isnan(radius):
-            return NO_TOOL
-        offset = operand == 0 or registers[OFFSET_ON] != 0.0
-        stack[top] = radius if offset else 0.0
-        top += 1
-    elif operand:
-        registers[RADIUS_GIVEN] = stack[top - 1] * state.modal[UNIT]
-        stack[top - 1] = registers[RADIUS_GIVEN]
-    else:
-        stack[top] = registers[RADIUS_GIVEN]
-        top += 1
+    state, registers = on.state, on.state.registers
+    tool = _tool(on.constants, registers[IN_SPINDLE])
+    if instruction.opcode == opcodes.TOOL_RADIUS:
+        stack[top] = on.constants.radii[tool]
+        return top + 1
+    state.shifts[_LENGTH, :] = 0.0
+    if registers[OFFSET_ON] != 0.0:
+        state.shifts[_LENGTH, 2] = on.constants.longer[tool]
+    reframe(state)
     return top
 
 
 @compilable
 def _shift_coordinates(instruction: Instruction, stack: Stack, top: int, on: Affected) -> int:
-    """Shifts, and other coordinates for the present position; as ``run_effect``."""
+    """Shifts, other coordinates for the present position, mirror, scale and rotation; as ``run_effect``."""
     opcode, operand = instruction.opcode, instruction.operand
     state = on.state
     if opcode == opcodes.SHIFT:
@@ -256,75 +206,21 @@ def _shift_coordinates(instruction: Instruction, stack: Stack, top: int, on: Aff
             state.programmed[axis] = state.target[axis]
         add_up(state.shifts, state.total)
     else:
-        unit = state.modal[UNIT] if on.constants.linear[operand] else 1.0
-        stack[top - 1] *= unit
-    return top
-
-
-@compilable
-def _choose_plane(
-    instruction: Instruction, stack: Stack, top: int, block: BlockPlace, on: Affected
-) -> int:
-    """The plane, and what polar coordinates refer to; as ``run_effect``."""
-    opcode, operand = instruction.opcode, instruction.operand
-    state = on.state
-    registers = state.registers
-    if opcode == opcodes.PLANE:
-        if block.compensates:
-            return PLANE_COMPENSATED
-        if not np.isnan(registers[ROTATION]):
-            return PLANE_ROTATED
-        state.modal[PLANE] = operand
-        registers[POLAR_ABSCISSA] = registers[POLAR_ORDINATE] = 0.0
-    elif opcode == opcodes.POLAR_ORIGIN:
-        unit = state.modal[UNIT]
-        abscissa, ordinate = _in_plane(on.constants, state)
-        if operand:
-            abscissa, ordinate = stack[top - 2] * unit, stack[top - 1] * unit
-        registers[POLAR_ABSCISSA], registers[POLAR_ORDINATE] = abscissa, ordinate
-        top -= operand
-    registers[POLAR_RADIUS] = registers[POLAR_ANGLE] = np.nan
-    return top
-
-
-@compilable
-def _transform(
-    instruction: Instruction, stack: Stack, top: int, block: BlockPlace, on: Affected
-) -> int:
-    """Mirror, scale and rotation; as ``run_effect``."""
-    opcode, operand = instruction.opcode, instruction.operand
-    state = on.state
-    registers, unit = state.registers, state.modal[UNIT]
-    if opcode == opcodes.MIRROR:
-        top -= 1
-        if abs(stack[top]) != 1.0:
-            return MIRROR_SIGN
-        registers[SIGNS + operand] = stack[top]
-    elif opcode == opcodes.SCALE:
-        top -= 1
-        if not SMALLEST_SCALE <= stack[top] <= LARGEST_SCALE:
-            return SCALE_RANGE
-        registers[SCALE] = stack[top]
-    elif opcode == opcodes.ROTATE:
-        if not np.isnan(registers[ROTATION]):
-            return ROTATED_ALREADY
-        top -= 3
-        registers[ROTATION] = stack[top]
-        registers[ROTATION_ABSCISSA] = stack[top + 1] * unit
-        registers[ROTATION_ORDINATE] = stack[top + 2] * unit
-    elif opcode == opcodes.END_ROTATION:
-        registers[ROTATION] = np.nan
-    else:
-        if block.compensates:
-            return TRANSFORM_COMPENSATED
         transform(on.constants, state)
     return top
 
 
 @compilable
-def _is_listed(constants: Constants, number: float) -> bool:
-    """Whether the job lists a tool."""
-    return _tool(constants, number) < len(constants.tools)
+def _choose_plane(instruction: Instruction, stack: Stack, top: int, on: Affected) -> int:
+    """The plane, and where the control stands in it; as ``run_effect``."""
+    state, registers = on.state, on.state.registers
+    if instruction.opcode == opcodes.COORDINATE:
+        stack[top] = _in_plane(on.constants, state)[instruction.operand]
+        return top + 1
+    state.modal[PLANE] = instruction.operand
+    registers[POLAR_ABSCISSA] = registers[POLAR_ORDINATE] = 0.0
+    registers[POLAR_RADIUS] = registers[POLAR_ANGLE] = np.nan
+    return top
 
 
 @compilable
@@ -363,16 +259,11 @@ def polar_target(
     registers, modal = state.registers, state.modal
     origin = (registers[POLAR_ABSCISSA], registers[POLAR_ORDINATE])
     start = _in_plane(constants, state)
-    radius, angle = polar.seen_from(origin, start, registers[POLAR_RADIUS], registers[POLAR_ANGLE])
-    incremental = modal[INCREMENTAL] != 0.0
-    if seen & 1:
-        radius = polar.changed(radius, radius_word * modal[UNIT], incremental)
-        if not 0.0 <= radius <= LARGEST_COORDINATE:
-            return False
-    if seen & 2:
-        angle = polar.changed(angle, angle_word, incremental)
-        if not abs(angle) <= LARGEST_COORDINATE:
-            return False
+    old = polar.seen_from(origin, start, registers[POLAR_RADIUS], registers[POLAR_ANGLE])
+    incremental, words = modal[INCREMENTAL] != 0.0, (radius_word * modal[UNIT], angle_word)
+    radius, angle = polar.changed(seen, old, words, (incremental, incremental))
+    if not (0.0 <= radius <= LARGEST_COORDINATE and abs(angle) <= LARGEST_COORDINATE):
+        return False
     state.target[0], state.target[1] = polar.point_at(origin, start, radius, angle)
     registers[POLAR_RADIUS], registers[POLAR_ANGLE] = radius, angle
     return True

@@ -119,16 +119,20 @@ def code_of(tree: Tree) -> tuple[Operation, ...]:
             return (Operation(opcodes.DEFINED, inner=code_of(operand)),)
         case Computed(what, compute, operands):
             values = (each for operand in operands for each in code_of(operand))
-            opcode = opcodes.UNARY + len(operands) - 1
-            return (*values, Operation(opcode, _number_of(compute, len(operands)), name=what))
+            return (*values, _operation(compute, len(operands), what))
 
 
-def _number_of(function: Function, values: int) -> int:
+def operation_of(function: Function) -> Operation:
+    """The instruction that replaces the topmost values by a function of them."""
+    return _operation(function, function.__code__.co_argcount, function.__name__)
+
+
+def _operation(function: Function, values: int, name: str) -> Operation:
     functions, numbers = FUNCTIONS[values - 1], _NUMBERS[values - 1]
     if function not in numbers:
         numbers[function] = len(functions)
         functions.append(function)
-    return numbers[function]
+    return Operation(opcodes.UNARY + values - 1, numbers[function], name=name)
 
 
 def evaluate(expression: Expression | Tree, scope: Scope) -> float:

@@ -45,6 +45,7 @@ class Transfer(NamedTuple):
         range_end: Where the range ends that is repeated next, or ``NO_LOCATION``.
         owns_scope: The part that is called next has local variables of its own.
         restores: What its end puts back into force; behind ``RETURN``: what the end of the part does.
+        ends: The block ends, whatever it says behind.
     """
 
     going: int
@@ -54,6 +55,7 @@ class Transfer(NamedTuple):
     range_end: int
     owns_scope: int
     restores: int
+    ends: bool
 
 
 @inlined
@@ -62,7 +64,7 @@ def straight_on(progress: IntArray, ends_line: bool) -> Transfer:
     line, part = progress[LINE], progress[PART]
     behind = (line + 1) << PART_BITS if ends_line else (line << PART_BITS | part) + 1
     return Transfer(
-        behind, behind, progress[DEPTH], progress[CALLS], NO_LOCATION, 0, NOTHING_RESTORED
+        behind, behind, progress[DEPTH], progress[CALLS], NO_LOCATION, 0, NOTHING_RESTORED, False
     )
 
 
@@ -70,7 +72,7 @@ def straight_on(progress: IntArray, ends_line: bool) -> Transfer:
 def going_to(location: int, to: Transfer) -> Transfer:
     """Let another location come next."""
     return Transfer(
-        location, to.behind, to.depth, to.called, to.range_end, to.owns_scope, to.restores
+        location, to.behind, to.depth, to.called, to.range_end, to.owns_scope, to.restores, True
     )
 
 
@@ -151,7 +153,7 @@ def transfer(
     opcode, operand = instruction.opcode, instruction.operand
     going, depth, called = to.going, to.depth, to.called
     range_end, owns_scope, restores = to.range_end, to.owns_scope, to.restores
-    known = True
+    known, ends = True, False
     if opcode == opcodes.CHECK_CALL:
         known = called < min(operand, len(calls)) and depth + 1 < len(local)
     elif opcode == opcodes.OWN_VARIABLES:
@@ -165,7 +167,7 @@ def transfer(
     elif opcode == opcodes.CHECK_RETURN:
         known = innermost(calls, called) > 0
     elif opcode == opcodes.RETURN:
-        called = innermost(calls, called) - 1
+        called, ends = innermost(calls, called) - 1, True
         if calls[called, AGAIN] > 0:
             calls[called, AGAIN] -= 1
             going, restores = calls[called, FIRST], NOTHING_RESTORED
@@ -182,5 +184,5 @@ def transfer(
             call[BACK], call[FIRST], call[AGAIN] = to.behind, operand, int(again)
             call[LAST], call[OWNS_SCOPE], call[RESTORES] = range_end, owns_scope, restores
             called += 1
-            going = operand
-    return known, Transfer(going, to.behind, depth, called, range_end, owns_scope, restores)
+            going, ends = operand, True
+    return known, Transfer(going, to.behind, depth, called, range_end, owns_scope, restores, ends)

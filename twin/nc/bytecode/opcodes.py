@@ -108,75 +108,61 @@ CHECK_RETURN = 37
 RETURN = 38
 """Go back behind the call."""
 
-# --- codes and events
+# --- codes
 
 ACTIVATE = 39
 """The G code ``operand`` becomes active."""
-FUNCTION = 40
+NO_PECKS = 40
+"""No drilling cycle with pecks may be in force."""
+
+# --- registers
+
+REGISTER = 41
+"""Put the register ``operand`` on the stack."""
+SET_REGISTER = 42
+"""The topmost value becomes the register ``operand``."""
+CHECK = 43
+"""The topmost value, which stays, must be as the check ``operand`` says, one of those below, of
+``immediate``; else the interpreter tier must run the block, which says what is wrong."""
+TO_MILLIMETRES = 44
+"""Convert the topmost value, a length, from the active unit."""
+
+AT_LEAST, AT_MOST, WHOLE, SIGN, PRESENT, ABSENT, LISTED_TOOL, UNCOMPENSATED = range(8)
+"""Checks: not below ``immediate``; not above it; a whole number from 0 to it; -1 or 1; any value, or
+none (NaN); the number of a tool that the job lists; or, of no value, radius compensation is not in force."""
+
+# --- events
+
+FUNCTION = 45
 """Report the M function ``operand``, a start of the spindle together with its speed."""
-SPEED = 41
-"""The spindle's speed is the topmost value; ``operand`` 1: report it."""
-TOOL = 42
-"""The topmost value is the number of the tool to prepare; ``operand`` 1: it must be one of the job's."""
-AUXILIARY = 43
-"""Report H with the topmost value."""
-DWELL = 44
-"""Wait as many seconds as the topmost value."""
+REPORT = 46
+"""Report an event of the kind ``operand`` with the topmost value."""
 
 # --- tools
 
-CHANGE_TOOL = 45
-"""The tool that was prepared last becomes the tool in use."""
-OFFSET_ON = 46
-"""``operand`` 1: tool offsets apply; 0: they do not."""
 TOOL_LENGTH = 47
 """Shift Z by the length of the tool in use, if its offset applies."""
 TOOL_RADIUS = 48
-"""Put the radius of the tool in use on the stack; ``operand`` 1: 0 where it has no offset."""
-PROGRAMMED_RADIUS = 49
-"""The topmost value is the radius that the program gives the tool; ``operand`` 0: put on the
-stack what it gave last."""
+"""Put the radius of the tool in use on the stack, NaN where there is no tool."""
 
 # --- shifts of coordinates
 
-SHIFT = 50
+SHIFT = 49
 """The topmost values, one for each axis, are the shift ``operand``."""
-REFRAME = 51
+REFRAME = 50
 """The shifts have changed."""
-BEGIN_TARGET = 52
+BEGIN_TARGET = 51
 """Begin to set new coordinates for the present position: until set, each axis keeps its own."""
-TARGET = 53
+TARGET = 52
 """The topmost value is the new coordinate of the axis ``operand``."""
-SET_POSITION = 54
+SET_POSITION = 53
 """The new coordinates hold from here on, by the shift ``operand``."""
-TO_MILLIMETRES = 55
-"""Convert the topmost value from the active unit, as one of the axis ``operand``."""
-
-# --- plane and polar coordinates
-
-PLANE = 56
-"""The plane ``operand`` becomes active: 0 to 2."""
-POLAR_ORIGIN = 57
-"""``operand`` 2: the two topmost values are the polar origin; 0: the present position is."""
-FORGET_POLAR = 58
-"""The last R and Q are no longer modal."""
-
-# --- drilling cycles
-
-NO_PECKS = 59
-"""No drilling cycle with pecks may be in force."""
-CYCLE_WORD = 60
-"""The topmost value is that of the drilling cycle's word for ``operand``."""
-
-# --- mirror, scale, rotation
-
-MIRROR = 61
-"""The topmost value, -1 or 1, is the sign of the axis ``operand``."""
-SCALE = 62
-"""The topmost value is the scale."""
-ROTATE = 63
-"""The topmost values are angle, abscissa and ordinate of the rotation, which must be the only one."""
-END_ROTATION = 64
-"""The rotation ends."""
-TRANSFORM = 65
+TRANSFORM = 54
 """Mirror, scale and rotation have changed."""
+
+# --- plane
+
+PLANE = 55
+"""The plane ``operand``, 0 to 2, becomes active, with part zero as polar origin."""
+COORDINATE = 56
+"""Put the abscissa (``operand`` 0) or ordinate (1) of the present position on the stack."""

@@ -1,5 +1,6 @@
 """What the compiled loop over plain blocks is given, changes and fills, as tuples of columns."""
 
+from collections.abc import Iterable
 from typing import NamedTuple, TypeAlias, cast
 
 import numpy as np
@@ -52,7 +53,7 @@ REGISTERS = MATRIX + 9
 its offset; the polar origin, the last R and Q; the scale; angle and centre of the rotation in the
 plane; whether the frame's matrix is not the identity; the tool's radius that the program gave; whether
 M3 or M4 is in force; the signs of X, Y and Z, -1 where they are mirrored; what the drilling cycle in force remembers, as
-``drilling_cycle`` counts it, and the same of the words of the block; the matrix, row by row. NaN: none."""
+``drilling_cycle`` counts it, and the same of the words of the block; the matrix, row by row. Those of a dialect's own stand behind them. NaN: none."""
 Cells: TypeAlias = "memoryview[float]"
 """A column as Python reads and writes it one by one, without a NumPy object for each value."""
 BAILOUT = -3
@@ -160,7 +161,7 @@ class State(NamedTuple):
         programmed: Programmed position, shape (k,) [mm or deg].
         part: Part position, shape (k,) [mm or deg].
         event_count: Events that were reported, shape (1,).
-        registers: Shape (``REGISTERS``,).
+        registers: Shape (``REGISTERS`` + those of the dialect's own,).
         shifts: In the order of ``frame.SHIFTS``, shape (s, k) [mm or deg].
         total: Their sum, from programmed to part coordinates, shape (k,) [mm or deg].
         target: The coordinates that a block gives to the place where it stands, shape (k,).
@@ -177,13 +178,18 @@ class State(NamedTuple):
     target: FloatArray
 
 
-def new_state(start: list[float]) -> State:
-    """The state of a control that stands at a position, shape (k,), and has run nothing."""
-    registers = np.full(REGISTERS, np.nan)
+def new_state(start: list[float], own: Iterable[float] = ()) -> State:
+    """The state of a control that has run nothing.
+
+    Args:
+        start: Where it stands, shape (k,) [mm or deg].
+        own: What the registers of its dialect's own begin with.
+    """
+    registers = np.append(np.full(REGISTERS, np.nan), tuple(own))
     registers[SCALE] = registers[SIGNS:CYCLE_STATE] = 1.0
     nothing = [POLAR_ABSCISSA, POLAR_ORDINATE, TURNED, RADIUS_GIVEN, SPINDLE_TURNS]
     registers[OFFSET_ON], registers[nothing] = 1.0, 0.0
-    registers[MATRIX:] = np.identity(3).ravel()
+    registers[MATRIX:REGISTERS] = np.identity(3).ravel()
     axes = len(start)
     return State(
         modal=np.zeros(MODAL),

@@ -46,7 +46,9 @@ class LineCompiler:
             NUMBER,
             control.dialect.live_variables,
         )
-        self._compiler = BlockCompiler(control, control.dialect, self._assembler)
+        self._compiler = BlockCompiler(
+            control, control.dialect, self._assembler, control.sort_words
+        )
 
     def compile(self, line: int) -> bool:
         """Compile a line, from 0; False where the interpreter tier must run all of it."""

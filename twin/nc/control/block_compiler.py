@@ -3,13 +3,12 @@
 Of a doubtful block nothing is compiled: the interpreter tier alone says what is wrong.
 """
 
-from collections.abc import Iterable, Iterator
-from typing import NamedTuple
+from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import UnsupportedError
 from twin.nc.bytecode.bytecode_assembler import BytecodeAssembler
-from twin.nc.control.block_order import codes_that_count, conflict_of, in_order, run_in_order
+from twin.nc.control.block_order import SortedBlock, run_in_order
 from twin.nc.control.codes import GCode, MCode, StatementEffect, Vocabulary, WordEffect
 from twin.nc.control.control import Control
 from twin.nc.text.blocks import Block, Word
@@ -19,16 +18,8 @@ _BESIDE_CYCLE = "ST"
 """Words that may stand beside the call of a cycle: they change nothing of where the tool stands."""
 
 
-class SortedBlock(NamedTuple):
-    """A block by what its words are; the others are those of its control.
-
-    Attributes:
-        codes: Its G codes, in the order in which they take effect.
-        functions: Its M functions, in the order of the text.
-    """
-
-    codes: list[tuple[Word, GCode]]
-    functions: list[tuple[Word, MCode]]
+Sort = Callable[[Sequence[Word], Callable[[Expression, Word], float | None]], SortedBlock]
+"""``Executor.sort_words``."""
 
 
 class BlockCompiler:
@@ -42,52 +33,30 @@ class BlockCompiler:
     """
 
     def __init__(
-        self, control: Control, vocabulary: Vocabulary, assembler: BytecodeAssembler
+        self, control: Control, vocabulary: Vocabulary, assembler: BytecodeAssembler, sort: Sort
     ) -> None:
+        """Compile for a control, whose words this sorts."""
         self.control = control
         self.vocabulary = vocabulary
         self.assembler = assembler
         self.acting = frozenset(
             each for each, do in vocabulary.words.items() if isinstance(do, WordEffect)
         )
+        self._sort = sort
         self._sorted = SortedBlock([], [])
 
     def sorted(self, words: Iterable[Word]) -> SortedBlock:
-        """Sort the words of a block; those that are no codes become the control's.
+        """Sort the words of a block, before those that are computed have a value.
 
         Raises:
-            UnsupportedError: It is doubtful.
+            UnsupportedError: A code is computed, or no whole number.
+            ProgramError: Some of them cannot stand in one block.
         """
-        codes: list[tuple[Word, GCode]] = []
-        functions: list[tuple[Word, MCode]] = []
-        others: dict[str, Word] = {}
+        words = list(words)
         for word in words:
             if word.address in ("G", "M"):
-                code = self._code(word)
-                if isinstance(code, MCode):
-                    functions.append((word, code))
-                else:
-                    codes.append((word, code))
-            elif word.address in others:
-                raise UnsupportedError
-            else:
-                others[word.address] = word
-        codes = codes_that_count(codes, last_of_group=self.vocabulary.last_of_group_counts)
-        if conflict_of(codes, functions) is not None:
-            raise UnsupportedError
-        codes = in_order(codes, self.vocabulary.groups)
-        self.control.words, self.control.codes = others, codes
-        return SortedBlock(codes, functions)
-
-    def _code(self, word: Word) -> GCode | MCode:
-        number, vocabulary, control = _number(word), self.vocabulary, self.control
-        if word.address == "G":
-            code = vocabulary.g.get(number)
-        else:
-            code = vocabulary.function(number, control.settings.m_functions)
-        if code is None or (word.address == "M" and number in control.interpreted_functions):
-            raise UnsupportedError
-        return code
+                _number(word)
+        return self._sort(words, lambda _value, _word: None)
 
     def block(self, block: Block) -> None:
         """Compile a block.
@@ -156,6 +125,8 @@ class BlockCompiler:
         number, writer = _number(word), function.writer
         acts = function.action is not None
         if function.ends or function.silent or (acts and writer is None):
+            raise UnsupportedError
+        if number in self.control.interpreted_functions:
             raise UnsupportedError
         if any(letter in self.control.words for letter in self.vocabulary.function_letters):
             raise UnsupportedError

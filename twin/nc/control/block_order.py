@@ -14,6 +14,18 @@ Codes = Sequence[tuple[Word, GCode]]
 Functions = Sequence[tuple[Word, MCode]]
 
 
+class SortedBlock(NamedTuple):
+    """A block by what its words are; the others are those of its control.
+
+    Attributes:
+        codes: Its G codes, in the order in which they take effect.
+        functions: Its M functions, in the order of the text.
+    """
+
+    codes: Codes
+    functions: Functions
+
+
 class BlockSteps(Protocol):
     """What a tier does at each step: it acts, or it writes instructions."""
 

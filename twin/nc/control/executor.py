@@ -4,13 +4,14 @@ Every word must be used by something; a word that nothing wants is an error, bec
 be a guess.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NoReturn
 
 from twin.nc.bytecode.assembler import Assembler
 from twin.nc.bytecode.expressions import evaluate
 from twin.nc.control.block_order import (
     Conflict,
+    SortedBlock,
     codes_that_count,
     conflict_of,
     in_order,
@@ -73,11 +74,11 @@ class Executor(Control):
         if block.statement is not None:
             self._run_statement(block.statement)
             return
-        functions = self._sort_words(block)
+        codes, functions = self.sort_words(block.words, self.evaluate)
         if block.assignments:
             self._assign(block.assignments)
         restore = self._apply_codes()
-        run_in_order(self, self._codes, functions, words_first=self.dialect.words_first)
+        run_in_order(self, codes, functions, words_first=self.dialect.words_first)
         if self.words or self.series:
             self._refuse_unused()
         for replaced in restore:
@@ -163,20 +164,34 @@ class Executor(Control):
             self.put_into_force(code_number(number_of(word)), code)
         return restore
 
-    def _sort_words(self, block: Block) -> list[tuple[Word, MCode]]:
+    def sort_words(
+        self, block: Sequence[Word], evaluate: Callable[[Expression, Word], float | None]
+    ) -> SortedBlock:
+        """Sort the words of a block; those that are no codes become ``words`` and ``series``.
+
+        Args:
+            block: Its words.
+            evaluate: The value of a computed one; None: it is not known yet.
+
+        Raises:
+            ProgramError: Some of them cannot stand in one block.
+        """
         dialect = self.dialect
         self.codes = self._codes = codes = []
         self.words = words = {}
         self.series = []
         functions: list[tuple[Word, MCode]] = []
         special = self._special
-        for word in block.words:
+        for word in block:
             address, value = word.address, word.value
             if address not in special and address not in words and type(value) is float:
                 words[address] = word
                 continue
             if isinstance(value, Expression) and address not in dialect.references:
-                value = self.evaluate(value, word)
+                value = evaluate(value, word)
+                if value is None:
+                    self._add_word(word)
+                    continue
                 word = word._replace(value=value)
                 if value != value:
                     if not self._vacant:
@@ -195,24 +210,27 @@ class Executor(Control):
                 if isinstance(word.value, Expression):
                     word = word._replace(value=self.evaluate(word.value, word))
                 self.series.append(word)
-            elif address in words:
-                self.fail("duplicate-word", f"'{address}' stands twice in the block", word)
             else:
-                words[address] = word
+                self._add_word(word)
         if len(codes) > 1 or len(functions) > 1:
             codes = codes_that_count(codes, last_of_group=dialect.last_of_group_counts)
             self._refuse_conflict(conflict_of(codes, functions))
             self.codes = self._codes = in_order(codes, dialect.groups)
-        return functions
+        return SortedBlock(self._codes, functions)
 
-    def _takes_m(self, block: Block) -> bool:
+    def _add_word(self, word: Word) -> None:
+        if word.address in self.words:
+            self.fail("duplicate-word", f"'{word.address}' stands twice in the block", word)
+        self.words[word.address] = word
+
+    def _takes_m(self, block: Sequence[Word]) -> bool:
         """Whether M is a word of one of the block's G codes, and no machine function."""
-        numbers = (word.value for word in block.words if word.address == "G")
+        numbers = (word.value for word in block if word.address == "G")
         codes = (self.dialect.g.get(n) for n in numbers if isinstance(n, float))
         return any(code is not None and "M" in code.takes for code in codes)
 
-    def _has_switch(self, block: Block) -> bool:
-        return any(word.address == self.dialect.series[0] for word in block.words)
+    def _has_switch(self, block: Sequence[Word]) -> bool:
+        return any(word.address == self.dialect.series[0] for word in block)
 
     def _g_code(self, word: Word) -> GCode:
         number = number_of(word)

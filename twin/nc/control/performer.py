@@ -1,17 +1,17 @@
 """Does at once what codes, words and statements say as instructions: the interpreter tier's assembler.
 
-What goes wrong has its message here; what an instruction does, ``bytecode`` says for both tiers.
+What an instruction does, ``bytecode`` says for both tiers.
 """
 
 import contextlib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import NoReturn
 
-from twin.nc.bytecode import effects, opcodes
-from twin.nc.bytecode.assembler import Assembler, Target, found
+from twin.nc.bytecode import opcodes
+from twin.nc.bytecode.assembler import Assembler, Finding, Otherwise, Target, found
 from twin.nc.bytecode.bytecode import MOST_VALUES, Instruction, number_of_location
-from twin.nc.bytecode.effects import BlockPlace, run_effect
-from twin.nc.bytecode.flow import Transfer, count_loop, jumps, transfer
+from twin.nc.bytecode.effects import BlockPlace
+from twin.nc.bytecode.flow import Transfer
 from twin.nc.bytecode.frames import (
     CALLS,
     DEPTH,
@@ -20,78 +20,36 @@ from twin.nc.bytecode.frames import (
     RESTORED_BY_CONTROL,
     go_to,
 )
+from twin.nc.bytecode.instructions import Surroundings, run_instruction
 from twin.nc.bytecode.variables import store
-from twin.nc.control.compensation import NEEDS_TOOL, compensate, tool_numbered
+from twin.nc.control.compensation import compensate
 from twin.nc.control.control import Control
 from twin.nc.text.blocks import Word
-from twin.nc.text.expressions import Expression, Tree
-
-_END_IT = "end it by G40 first"
-_FINDINGS: Mapping[int, tuple[str, str, str | None, bool]] = {
-    effects.NEGATIVE_SPEED: ("spindle-range", "the speed {word} is negative", None, True),
-    effects.NO_TOOL_NUMBER: ("tool-number", "{word} is no tool number", None, True),
-    effects.OTHER_AUXILIARY: (
-        "number-range",
-        "{word} is no number of a function: whole ones up to 999999 are",
-        None,
-        True,
-    ),
-    effects.NO_TOOL: (
-        "no-such-tool",
-        "compensation needs a tool, and the job has none",
-        NEEDS_TOOL,
-        False,
-    ),
-    effects.NEGATIVE_DWELL: ("dwell", "a dwell cannot be negative", None, True),
-    effects.PLANE_COMPENSATED: (
-        "compensation-plane",
-        "the plane cannot change while compensation is in force",
-        _END_IT,
-        False,
-    ),
-    effects.PLANE_ROTATED: (
-        "rotation-active",
-        "the plane cannot change while a rotation turns it",
-        "end it by G73 alone",
-        False,
-    ),
-    effects.MIRROR_SIGN: ("mirror", "a mirror takes -1 or 1 for X, Y and Z", None, True),
-    effects.SCALE_RANGE: ("scale", "a scale lies between 0.001 and 1000", None, True),
-    effects.ROTATED_ALREADY: (
-        "rotation-active",
-        "a rotation is in force",
-        "end it by G73 alone",
-        True,
-    ),
-    effects.TRANSFORM_COMPENSATED: (
-        "compensation-change",
-        "mirror, scale and rotation cannot change while compensation is in force",
-        _END_IT,
-        False,
-    ),
-}
-"""Code, message and hint of what is wrong with an effect, and whether the word is to blame."""
+from twin.nc.text.expressions import Computed, Expression, Number, Tree
 
 
 def refuse(
-    control: Control, finding: int, word: Word | None = None, span: tuple[int, int] | None = None
+    control: Control,
+    finding: Finding,
+    word: Word | None = None,
+    span: tuple[int, int] | None = None,
 ) -> NoReturn:
     """Say what is wrong with an effect, or with an action that follows the same rule.
 
     Args:
         control: Whose block it is.
-        finding: One of ``effects``.
+        finding: What is wrong.
         word: What the instruction was given.
         span: Column and width of what is blamed where no word is; None: what a control blames.
 
     Raises:
         ProgramError: Always.
     """
-    code, message, hint, is_of_word = _FINDINGS[finding]
-    message = message.format(word="" if word is None else word.text)
-    if span is None or (is_of_word and word is not None):
-        control.fail(code, message, word if is_of_word else None, hint)
-    control.report.fail(code, message, *span, hint)
+    message = finding.message.format(word="" if word is None else word.text)
+    if span is None or (finding.blames_word and word is not None):
+        blamed = word if finding.blames_word else None
+        control.fail(finding.code, message, blamed, finding.hint)
+    control.report.fail(finding.code, message, *span, finding.hint)
 
 
 class _Gone(Exception):  # noqa: N818 (nothing is wrong)
@@ -129,6 +87,7 @@ class Performer(Assembler):
             NO_LOCATION,
             0,
             NOTHING_RESTORED,
+            False,
         )
 
     def _slot(self, name: str) -> int:
@@ -194,9 +153,15 @@ class Performer(Assembler):
         """Do it."""
         action()
 
-    def emit(self, opcode: int, operand: int = 0, blamed: Word | None = None) -> None:
+    def compute(self, function: Callable[..., float]) -> None:
+        """Replace the topmost values by a function of them."""
+        self._top -= function.__code__.co_argcount
+        values = self._stack[self._top : self._top + function.__code__.co_argcount]
+        tree = Computed(function.__name__, function, tuple(map(Number, map(float, values))))
+        self.value(tree, self._span[0])
+
+    def emit(self, opcode: int, operand: int = 0) -> None:
         """Run one of the instructions that do more than compute, move and jump."""
-        self._word = self._word if blamed is None else blamed
         if opcode == opcodes.COMPENSATE:
             compensate(self._control, float(operand), float(self._pop()))
         elif opcode == opcodes.END_COMPENSATION:
@@ -205,70 +170,58 @@ class Performer(Assembler):
             self._control.part_plane()
         ):
             return  # it is in force already
+        elif opcode in (opcodes.REGISTER, opcodes.SET_REGISTER):
+            self._add(opcode, operand)
         else:
-            if opcode == opcodes.TOOL and operand:
-                operand = self._look_for_tool()
-            self._run_effect(Instruction(opcode, operand, 0.0))
+            self._control.begin_effect()
+            self._add(opcode, operand)
+            self._control.end_effect()
 
-    def _look_for_tool(self) -> int:
-        """Refuse a tool that the job lacks, or warn of it; 0, since that has been seen to.
+    def check(
+        self, check: int, otherwise: Otherwise, bound: float = 0.0, blamed: Word | None = None
+    ) -> None:
+        """The topmost value must be as a check says.
 
         Raises:
-            ProgramError: The job has other tools.
+            ProgramError: It is not.
         """
-        word = self._word
-        if word is not None and self._stack[self._top - 1] != 0.0:
-            tool_numbered(self._control, word)
-        return 0
-
-    def _run_effect(self, instruction: Instruction) -> None:
-        control, on = self._control, self._control.begin_effect()
-        place = BlockPlace(control.block.line, 0, control.path.compensating)
-        top = run_effect(instruction, self._stack, self._top, place, on)
-        if top < 0:
-            refuse(control, top, self._word, self._span)
-        self._top = top
-        control.end_effect()
+        if self._run(Instruction(opcodes.CHECK, check, bound)):
+            return
+        if isinstance(otherwise, Finding):
+            refuse(self._control, otherwise, blamed or self._word, self._span)
+        otherwise()
 
     def _add(self, opcode: int, operand: int = 0, immediate: float = 0.0) -> None:
-        instruction = Instruction(opcode, operand, immediate)
-        if opcode == opcodes.CONSTANT:
-            self._push(immediate)
-        elif opcode == opcodes.DROP:
-            self._top -= 1
-        elif opcode == opcodes.STORE:
+        if opcode == opcodes.STORE:
             store(self._control.variables.columns, self._to.depth, operand, self._pop())
-        elif opcodes.JUMP <= opcode <= opcodes.JUMP_CASE:
-            if jumps(instruction, self._stack, self._top):
-                go_to(operand, self._control.program_counter.progress)
-                raise _Gone
-            self._top -= 1
-        elif opcodes.BEGIN_FOR <= opcode <= opcodes.COUNT_DOWN:
-            self._count_loop(instruction)
-        else:
-            self._transfer(instruction)
-
-    def _count_loop(self, instruction: Instruction) -> None:
-        columns, depth = self._control.variables.columns, self._to.depth
-        self._top = count_loop(instruction, self._stack, self._top, depth, columns)
-        if self._top < 0:
-            self._fail("structure", "a step of 0 never ends")
-
-    def _transfer(self, instruction: Instruction) -> None:
-        """Run one of the instructions that call parts of the program or go back."""
-        control, opcode = self._control, instruction.opcode
-        counter, variables = control.program_counter, control.variables
-        if opcode == opcodes.CHECK_CALL:
-            variables.make_room(self._to.depth + 1)
-        value, local = self._stack[self._top - 1], variables.columns.local
-        known, to = transfer(instruction, value, self._to, counter.calls, local)
-        if not known:
-            self._refuse_transfer(instruction)
-        if opcode == opcodes.RESTORE_CODES:
-            to = to._replace(restores=RESTORED_BY_CONTROL)
-        self._to = to
-        if opcode not in (opcodes.CALL, opcodes.REPEAT, opcodes.RETURN):
             return
+        if opcode == opcodes.CHECK_CALL:
+            self._control.variables.make_room(self._to.depth + 1)
+        instruction = Instruction(opcode, operand, immediate)
+        if not self._run(instruction):
+            self._refuse(instruction)
+        if opcode == opcodes.RESTORE_CODES:
+            self._to = self._to._replace(restores=RESTORED_BY_CONTROL)
+        if self._to.ends:
+            self._leave(opcode)
+
+    def _run(self, instruction: Instruction) -> bool:
+        """Run an instruction; whether nothing is wrong."""
+        control = self._control
+        around = Surroundings(
+            control.variables.columns,
+            control.program_counter.calls,
+            BlockPlace(control.block.line, 0, control.path.compensating),
+            control.affected,
+        )
+        top, to = run_instruction(instruction, self._stack, self._top, self._to, around)
+        if top >= 0:
+            self._top, self._to = top, to
+        return top >= 0
+
+    def _leave(self, opcode: int) -> NoReturn:
+        """The program goes on where the block leads."""
+        control, counter, to = self._control, self._control.program_counter, self._to
         go_to(to.going, counter.progress)
         counter.progress[DEPTH], counter.progress[CALLS] = to.depth, to.called
         if to.restores == RESTORED_BY_CONTROL and opcode == opcodes.RETURN:
@@ -277,12 +230,14 @@ class Performer(Assembler):
             counter.saved[to.called - 1] = control.saved_modal()
         raise _Gone
 
-    def _refuse_transfer(self, instruction: Instruction) -> NoReturn:
-        """Say why the program cannot go on there.
+    def _refuse(self, instruction: Instruction) -> NoReturn:
+        """Say why an instruction that jumps, counts or calls cannot be run.
 
         Raises:
             ProgramError: Always.
         """
+        if instruction.opcode in (opcodes.BEGIN_FOR, opcodes.STEP_FOR):
+            self._fail("structure", "a step of 0 never ends")
         if instruction.opcode == opcodes.CHECK_CALL:
             self._fail("call-depth", f"more than {instruction.operand} calls within calls")
         if instruction.opcode == opcodes.CHECK_RETURN:

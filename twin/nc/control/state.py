@@ -14,6 +14,7 @@ from twin.nc.bytecode.registers import (
     MATRIX,
     MOST_EVENTS,
     PROGRAMMED_FEED,
+    REGISTERS,
     SPINDLE,
     SPINDLE_TURNS,
     TURNED,
@@ -28,7 +29,8 @@ from twin.nc.control.settings import ControlSettings, ToolData
 from twin.nc.control.tools import Tools
 from twin.nc.geometry.frame import Frame
 from twin.nc.geometry.planes import PLANE_ORDER, XY
-from twin.nc.path.drilling_cycle import MOST_STOPS, START, forget, most_acts
+from twin.nc.path.drilling_cycle import START, forget
+from twin.nc.path.hole import MOST_STOPS, most_acts
 from twin.nc.path.move_columns import NAN, Segment
 from twin.nc.path.path import Path
 from twin.nc.path.rows import new_rows
@@ -46,12 +48,15 @@ class ControlLanguage(Language):
     Attributes:
         axis_letters: Addresses that name axes.
         memory: Makes the object that holds what only this dialect remembers.
+        registers: Names of registers of its own, for the instructions of its codes, and what they begin
+            with.
         is_local: Whether calls with variables of their own have a variable of this name anew.
         given_variable: The value of a variable among those of the job, or None.
     """
 
     axis_letters: frozenset[str] = frozenset("XYZABCUVW")
     memory: Callable[[], object] = object
+    registers: Mapping[str, float] = dataclasses.field(default_factory=dict)
     is_local: Callable[[str], bool] = lambda _name: False
     given_variable: Callable[[Mapping[str, float], str], float | None] = lambda given, name: (
         given.get(name)
@@ -126,13 +131,14 @@ class ControlState:
         self._axes_that_lack = self.axis_letters - self.axis_index.keys()
         self.programmed = [settings.start.get(name, 0.0) for name in settings.axes.names]
         self.part = list(self.programmed)
-        self.state = new_state(self.programmed)
+        self._own_registers = {name: REGISTERS + at for at, name in enumerate(language.registers)}
+        self.state = new_state(self.programmed, language.registers.values())
         columns = self.state.registers
         self.registers = cells(columns)
         self.frame = Frame(
             self.state.shifts,
             self.state.total,
-            columns[MATRIX:],
+            columns[MATRIX:REGISTERS],
             columns[TURNED : TURNED + 1],
         )
         self.acceleration = NAN
@@ -198,6 +204,10 @@ class ControlState:
             self.cycle_values = {}
         if not math.isnan(self.cycle_state[START]):
             forget(self.cycle_state)
+
+    def own_register(self, name: str) -> int:
+        """Place of a register that the dialect declares, among ``registers``."""
+        return self._own_registers[name]
 
     @property
     def feed(self) -> float | None:

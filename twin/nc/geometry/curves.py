@@ -1,13 +1,12 @@
 """Geometry of plane curves, lines and arcs, as plain functions over tuples.
 
-``elements.Element`` is a view of them for people; the compiled tier (``compiled.kernels.compensation``) compiles them as
-they stand here, so that both compute the same bits.
+The compiled tier compiles what is ``compilable`` as it stands here, so that both tiers compute the same bits.
 """
 
 import math
 
 from twin.compilation.compilable import compilable
-from twin.nc.geometry.arcs import Point, distance
+from twin.nc.geometry.arcs import Point, distance, turned
 
 Curve = tuple[bool, Point, Point, Point, float]
 """Whether it is an arc; its start and end [mm]; the centre and the signed sweep of an arc [deg]."""
@@ -115,6 +114,40 @@ def along(curve: Curve, point: Point) -> float:
     if size < 360.0 and angle > size + over / 2.0:
         angle -= 360.0
     return angle / size
+
+
+def last_along(curve: Curve, point: Point) -> float:
+    """As ``along``; on an arc of several turns in its last one."""
+    share = along(curve, point)
+    if not curve[0] or abs(curve[4]) < 360.0:
+        return share
+    turn = 360.0 / abs(curve[4])
+    return share + turn * math.floor((1.0 - share) / turn + NEAR)
+
+
+@compilable
+def point_of(straight: Curve, share: float) -> Point:
+    """The point of a line at a share of its way."""
+    start, end = straight[1], straight[2]
+    return (start[0] + share * (end[0] - start[0]), start[1] + share * (end[1] - start[1]))
+
+
+def point_at(curve: Curve, share: float) -> Point:
+    """The point of a line or an arc at a share of its way."""
+    return turned(curve[1], curve[3], curve[4] * share) if curve[0] else point_of(curve, share)
+
+
+def head_of(curve: Curve, share: float) -> Curve:
+    """The part from its start to a share of its way."""
+    return (curve[0], curve[1], point_at(curve, share), curve[3], curve[4] * share)
+
+
+def tangent_at(curve: Curve, share: float) -> Point:
+    """Unit direction of travel at a share of its way."""
+    is_arc, start, end, center, sweep = curve
+    return tangent_of(
+        (is_arc, start, point_at(curve, share) if is_arc else end, center, sweep), True
+    )
 
 
 @compilable

@@ -1,8 +1,4 @@
-"""Geometry of the ways to and from a compensated contour, as plain functions over tuples.
-
-``leads`` is a view of them; the compiled tier (``lead_kernels``) compiles them as they stand here, as it
-does those of ``curves``.
-"""
+"""Geometry of the ways to and from a compensated contour, as plain functions over tuples, for both tiers."""
 
 import math
 
@@ -40,7 +36,7 @@ def clearance(line: Curve, curve: Curve) -> float:
     if curve[0]:
         share = curves.along(line, curve[3])
         if curves.within(line, share):
-            near = min(near, distance_to(curve, point_of(line, share)))
+            near = min(near, distance_to(curve, curves.point_of(line, share)))
     return near
 
 
@@ -52,15 +48,8 @@ def distance_to(curve: Curve, point: Point) -> float:
     if 0.0 <= share <= 1.0:
         if is_arc:
             return abs(distance(point, center) - curves.radius_of(curve))
-        return distance(point, point_of(curve, share))
+        return distance(point, curves.point_of(curve, share))
     return min(distance(point, start), distance(point, end))
-
-
-@compilable
-def point_of(line: Curve, share: float) -> Point:
-    """The point of a line at a share of its way."""
-    start, end = line[1], line[2]
-    return (start[0] + share * (end[0] - start[0]), start[1] + share * (end[1] - start[1]))
 
 
 @compilable

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler
+from twin.nc.bytecode.registers import IN_SPINDLE, SELECTED, SPINDLE
 from twin.nc.control.codes import Action, Effect, GCode, Interpolation, MCode, WordEffect
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Dialect
@@ -14,11 +15,14 @@ from twin.nc.functions import starts_spindle
 from twin.nc.geometry.planes import XY, YZ, ZX
 from twin.nc.iso.circular import BOUNDS, both_senses, iso_arc
 from twin.nc.iso.declared import instead, modal, motion_code, plane_code
+from twin.nc.iso.findings import NEGATIVE_DWELL, NEGATIVE_SPEED, NO_TOOL_NUMBER
 from twin.nc.iso.fixed_cycles import CYCLES
 from twin.nc.iso.offsets import OFFSETS, PRESET
 from twin.nc.iso.tool_compensation import COMPENSATION, LENGTH
+from twin.nc.path import event_columns
 from twin.nc.path.paces import FeedMode, feed_per_minute, needs_own_feed
 from twin.nc.text.blocks import Word
+from twin.nc.text.expressions import LARGEST_NUMBER
 
 
 def straight(
@@ -71,18 +75,31 @@ def spindle_speed(control: Control, word: Word, assembler: Assembler) -> None:
     others = control.block.words
     functions = (other.value for other in others if other.address == "M")
     starts = any(isinstance(number, float) and starts_spindle(number) for number in functions)
-    assembler.emit(opcodes.SPEED, 0 if starts else 1)
+    assembler.check(opcodes.AT_LEAST, NEGATIVE_SPEED)
+    assembler.set_register(SPINDLE)
+    if not starts:
+        assembler.register(SPINDLE)
+        assembler.emit(opcodes.REPORT, event_columns.SPEED)
 
 
 def next_tool(_control: Control, word: Word, assembler: Assembler) -> None:
     """T: the tool that comes next."""
     assembler.word_value(word)
-    assembler.emit(opcodes.TOOL)
+    select_tool(assembler)
+
+
+def select_tool(assembler: Assembler) -> None:
+    """The topmost value is the number of the tool that comes next."""
+    assembler.check(opcodes.WHOLE, NO_TOOL_NUMBER, LARGEST_NUMBER)
+    assembler.set_register(SELECTED)
+    assembler.register(SELECTED)
+    assembler.emit(opcodes.REPORT, event_columns.TOOL)
 
 
 def change_tool(_control: Control, assembler: Assembler) -> None:
     """M6: the selected tool goes into the spindle."""
-    assembler.emit(opcodes.CHANGE_TOOL)
+    assembler.register(SELECTED)
+    assembler.set_register(IN_SPINDLE)
 
 
 def dwell(letters: str, message: str, hint: str) -> Effect:
@@ -93,9 +110,15 @@ def dwell(letters: str, message: str, hint: str) -> Effect:
         if len(words) != 1:
             control.fail("dwell", message, hint=hint)
         assembler.word_value(words[0])
-        assembler.emit(opcodes.DWELL)
+        write_dwell(assembler)
 
     return Effect(write)
+
+
+def write_dwell(assembler: Assembler) -> None:
+    """Wait as many seconds as the topmost value."""
+    assembler.check(opcodes.AT_LEAST, NEGATIVE_DWELL)
+    assembler.emit(opcodes.REPORT, event_columns.DWELL)
 
 
 PLANES: dict[float, GCode] = {

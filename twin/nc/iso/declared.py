@@ -1,12 +1,17 @@
 """G codes as the tables of dialects declare them, a line each: by the manual of their control."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Unpack
 
 from twin.nc.bytecode import opcodes
+from twin.nc.bytecode.assembler import Assembler, Finding
+from twin.nc.bytecode.registers import ROTATION
 from twin.nc.control.codes import Action, CodeWriter, Effect, GCode, Ground, Interpolation, MCode
+from twin.nc.control.control import Control
 from twin.nc.control.modal import ModalChanges
+from twin.nc.control.performer import refuse
 from twin.nc.geometry.planes import PLANE_ORDER, Plane
+from twin.nc.iso.findings import PLANE_COMPENSATED, PLANE_ROTATED
 
 
 def modal(
@@ -46,10 +51,34 @@ def motion_code(meaning: str, interpolation: Interpolation, ground: Ground = "ma
 def plane_code(
     meaning: str, plane: Plane, action: Action | None = None, ground: Ground = "manual"
 ) -> GCode:
-    """A code of a working plane; ``action``: what the interpreter tier does besides."""
-    effect = Effect(lambda _, assembler: assembler.emit(opcodes.PLANE, PLANE_ORDER.index(plane)))
+    """A code of a working plane; ``action``: what the interpreter tier does in its place."""
+    number = PLANE_ORDER.index(plane)
+    effect = Effect(lambda control, assembler: write_plane(control, number, assembler))
     write = None if action is None else effect.write
     return modal(meaning, "plane", action or effect, compiler=write, ground=ground, plane=plane)
+
+
+def write_plane(control: Control, number: int, assembler: Assembler) -> None:
+    """A plane becomes active; compensation that acts in it already lets it be.
+
+    Args:
+        control: Whose block it is.
+        number: As ``planes.PLANE_ORDER`` counts them.
+        assembler: Takes the instructions.
+    """
+
+    def unless_compensated_in(finding: Finding) -> Callable[[], None]:
+        def refuse_other() -> None:
+            if not control.path.compensates_in(control.part_plane()):
+                refuse(control, finding)
+
+        return refuse_other
+
+    assembler.check(opcodes.UNCOMPENSATED, unless_compensated_in(PLANE_COMPENSATED))
+    assembler.register(ROTATION)
+    assembler.check(opcodes.ABSENT, unless_compensated_in(PLANE_ROTATED))
+    assembler.drop()
+    assembler.emit(opcodes.PLANE, number)
 
 
 def refused(meaning: str, reason: str, *numbers: float, group: str = "") -> Mapping[float, GCode]:
@@ -63,3 +92,9 @@ def flow_function(meaning: str, action: Action, group: str = "") -> MCode:
     return MCode(
         meaning=meaning, group=group, late=True, action=action, silent=True, ground="manual"
     )
+
+
+def go_back(assembler: Assembler) -> None:
+    """The end of a subprogram: back behind its call."""
+    assembler.check_return()
+    assembler.end_call()

@@ -6,16 +6,51 @@ acts on them.
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import NamedTuple
 
 from twin.nc.control.control import Control
 from twin.nc.geometry.frame import SHIFTS
-from twin.nc.geometry.matrices import IDENTITY
+from twin.nc.geometry.matrices import IDENTITY, Matrix
 from twin.nc.iso.offsets import machine_zero
+
+
+class PartFrame(NamedTuple):
+    """The frame that machine coordinates have put aside.
+
+    Attributes:
+        shifts: Of every kind, shape (s, k) [mm or deg].
+        matrix: Mirror, scale and rotation.
+    """
+
+    shifts: list[list[float]]
+    matrix: Matrix
+
+
+def enter_machine_frame(control: Control, code: str) -> PartFrame:
+    """Let programmed coordinates be those of the machine; ``code`` asks for it.
+
+    Raises:
+        ProgramError: Nobody said where machine zero is.
+    """
+    zero, frame = machine_zero(control, code), control.frame
+    kept, names = PartFrame(frame.shifts, frame.matrix), control.settings.axes.names
+    frame.set_shifts([[0.0] * len(names) for _ in SHIFTS])
+    frame.set_shift("offset", [zero.get(name, 0.0) for name in names])
+    frame.set_matrix(IDENTITY)
+    control.reframed()
+    return kept
+
+
+def leave_machine_frame(control: Control, kept: PartFrame) -> None:
+    """Let programmed coordinates be what they were."""
+    control.frame.set_shifts(kept.shifts)
+    control.frame.set_matrix(kept.matrix)
+    control.reframed()
 
 
 @contextmanager
 def machine_frame(control: Control, code: str) -> Iterator[None]:
-    """Let programmed coordinates be those of the machine, within; ``code`` asks for it.
+    """As ``enter_machine_frame``, within.
 
     Raises:
         ProgramError: Nobody said where machine zero is, or compensation is in force.
@@ -23,14 +58,6 @@ def machine_frame(control: Control, code: str) -> Iterator[None]:
     if control.path.compensating:
         message = "machine coordinates know no radius compensation"
         control.fail("compensation-change", message, hint=f"end it by G40 before {code}")
-    zero, frame = machine_zero(control, code), control.frame
-    shifts, matrix = frame.shifts, frame.matrix
-    names = control.settings.axes.names
-    frame.set_shifts([[0.0] * len(names) for _ in SHIFTS])
-    frame.set_shift("offset", [zero.get(name, 0.0) for name in names])
-    frame.set_matrix(IDENTITY)
-    control.reframed()
+    kept = enter_machine_frame(control, code)
     yield
-    frame.set_shifts(shifts)
-    frame.set_matrix(matrix)
-    control.reframed()
+    leave_machine_frame(control, kept)

@@ -34,12 +34,9 @@ def offset_of_job(control: Control, name: str, word: Word | None) -> Mapping[str
     if values is None and name != "G54":
         known = ", ".join(sorted(control.settings.offsets)) or "none"
         key = name if name.isalnum() else f'"{name}"'
-        control.fail(
-            "no-offset",
-            f"the job gives no work offset {name}",
-            word,
-            hint=f"write it under [offsets.{key}]; the job has: {known}",
-        )
+        message = f"the job gives no work offset {name}"
+        hint = f"write it under [offsets.{key}]; the job has: {known}"
+        control.fail("no-offset", message, word, hint=hint)
     return values or {}
 
 
@@ -60,11 +57,9 @@ def machine_zero(control: Control, code: str) -> Mapping[str, float]:
     """
     zero = control.settings.machine_zero
     if zero is None:
-        control.fail(
-            "no-machine-zero",
-            f"{code} counts from machine zero, and the job does not say where that lies",
-            hint="write part_zero with its Z into the job file; twin init writes a first one",
-        )
+        message = f"{code} counts from machine zero, and the job does not say where that lies"
+        hint = "write part_zero with its Z into the job file; twin init writes a first one"
+        control.fail("no-machine-zero", message, hint=hint)
     return zero
 
 
@@ -102,8 +97,7 @@ def programmed_shift(name: str, control: Control, assembler: Assembler) -> None:
     words = dict(control.take_axis_words())
     for index in range(len(control.settings.axes)):
         if index in words:
-            assembler.word_value(words[index])
-            assembler.emit(opcodes.TO_MILLIMETRES, index)
+            _write_coordinate(control, index, words[index], assembler)
         else:
             assembler.constant(0.0)
     assembler.emit(opcodes.SHIFT, SHIFTS.index(name))
@@ -115,17 +109,25 @@ def preset(control: Control, assembler: Assembler) -> None:
     words = control.take_axis_words()
     if not words:
         control.fail("preset", "G92 needs the coordinates that this place shall have")
-    set_position(words, "preset", assembler)
+    set_position(control, words, "preset", assembler)
 
 
-def set_position(words: Iterable[tuple[int, Word]], shift: str, assembler: Assembler) -> None:
+def set_position(
+    control: Control, words: Iterable[tuple[int, Word]], shift: str, assembler: Assembler
+) -> None:
     """Words of axes give the place where the machine stands other coordinates, by a shift."""
     assembler.emit(opcodes.BEGIN_TARGET)
     for index, word in words:
-        assembler.word_value(word)
-        assembler.emit(opcodes.TO_MILLIMETRES, index)
+        _write_coordinate(control, index, word, assembler)
         assembler.emit(opcodes.TARGET, index)
     assembler.emit(opcodes.SET_POSITION, SHIFTS.index(shift))
+
+
+def _write_coordinate(control: Control, index: int, word: Word, assembler: Assembler) -> None:
+    """Put the value of an axis's word on the stack [mm or deg]."""
+    assembler.word_value(word)
+    if control.linear[index]:
+        assembler.emit(opcodes.TO_MILLIMETRES)
 
 
 def _work_offset(number: int) -> GCode:

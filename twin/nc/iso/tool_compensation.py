@@ -2,10 +2,13 @@
 
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler
+from twin.nc.bytecode.registers import OFFSET_ON, RADIUS_GIVEN
 from twin.nc.control.codes import Effect, GCode
 from twin.nc.control.compensation import NEEDS_TOOL, tool_numbered
 from twin.nc.control.control import Control
+from twin.nc.iso.findings import NO_TOOL
 from twin.nc.iso.offsets import compile_shift
+from twin.nc.text.arithmetic import multiply
 
 LEFT, RIGHT = 1, -1
 
@@ -16,7 +19,7 @@ def _compensation_by_table(side: int) -> Effect:
     def write(control: Control, assembler: Assembler) -> None:
         word = control.take("D")
         if word is None:
-            assembler.emit(opcodes.TOOL_RADIUS)
+            _write_radius(assembler)
         else:
             assembler.known(word)
             tool = control.tools.data(tool_numbered(control, word))
@@ -30,10 +33,18 @@ def compensation_by_tool(side: int) -> Effect:
     """Compensation by the tool in the spindle, where it has its offset."""
 
     def write(_control: Control, assembler: Assembler) -> None:
-        assembler.emit(opcodes.TOOL_RADIUS, 1)
+        _write_radius(assembler)
+        assembler.register(OFFSET_ON)
+        assembler.compute(multiply)
         assembler.emit(opcodes.COMPENSATE, side)
 
     return Effect(write)
+
+
+def _write_radius(assembler: Assembler) -> None:
+    """Put the radius of the tool in the spindle on the stack."""
+    assembler.emit(opcodes.TOOL_RADIUS)
+    assembler.check(opcodes.PRESENT, NO_TOOL)
 
 
 def compensation_by_radius(side: int) -> Effect:
@@ -43,7 +54,9 @@ def compensation_by_radius(side: int) -> Effect:
         word = control.take("D")
         if word is not None:
             assembler.word_value(word)
-        assembler.emit(opcodes.PROGRAMMED_RADIUS, int(word is not None))
+            assembler.emit(opcodes.TO_MILLIMETRES)
+            assembler.set_register(RADIUS_GIVEN)
+        assembler.register(RADIUS_GIVEN)
         assembler.emit(opcodes.COMPENSATE, side)
 
     return Effect(write)

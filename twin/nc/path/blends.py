@@ -9,8 +9,9 @@ import enum
 import math
 from collections.abc import Sequence
 
+from twin.nc.geometry import curves
 from twin.nc.geometry.arcs import Point, center_tangent, distance, sweep_between
-from twin.nc.geometry.elements import Element, crossings, turn_between
+from twin.nc.geometry.curves import Curve
 from twin.nc.geometry.planes import Plane, Vector, cross, plane_with_normal
 from twin.nc.path.move_columns import Segment
 from twin.nc.path.segments import direction_of, element_of, line_between, part_of
@@ -67,7 +68,7 @@ def blend_corner(
     before, behind = element_of(first, plane), element_of(second, plane)
     if before is None or behind is None:
         raise NoBlendError("one of the moves does not lie in the working plane")
-    turn = turn_between(before, behind)
+    turn = curves.turn_from(before, behind)
     if abs(turn) < _STRAIGHT_ON:
         return first, [], second
     if abs(turn) > 180.0 - _STRAIGHT_ON:
@@ -77,28 +78,29 @@ def blend_corner(
     else:
         left, right = _cut(before, behind, blend)
         center = (0.0, 0.0)
-    begin, end = before.point(left), behind.point(right)
+    begin, end = curves.point_at(before, left), curves.point_at(behind, right)
     head = part_of(first, before, plane, 0.0, left)
     tail = part_of(second, behind, plane, right, 1.0)
     if blend.kind is BlendKind.CHAMFER:
         return head, [line_between(first, head.end, tail.start)], tail
     if blend.kind is BlendKind.SPLINE:
-        return head, _spline(head, tail, before.length * (1.0 - left)), tail
+        return head, _spline(head, tail, curves.length_of(before) * (1.0 - left)), tail
     if blend.kind is BlendKind.FILLET:
         sweep = sweep_between(begin, end, center, clockwise=turn < 0.0)
-        return head, _arcs(head, tail, plane, [Element(begin, end, center, sweep)]), tail
-    leaving, arriving = before.tangent_at(left), behind.tangent_at(right)
+        return head, _arcs(head, tail, plane, [curves.arc(begin, end, center, sweep)]), tail
+    leaving, arriving = curves.tangent_at(before, left), curves.tangent_at(behind, right)
     return head, _arcs(head, tail, plane, _biarc(begin, end, leaving, arriving)), tail
 
 
-def _cut(before: Element, behind: Element, blend: Blend) -> tuple[float, float]:
+def _cut(before: Curve, behind: Curve, blend: Blend) -> tuple[float, float]:
     """Where both moves are cut, as shares of their ways."""
-    size, shorter = blend.size, min(before.length, behind.length)
+    size, lengths = blend.size, (curves.length_of(before), curves.length_of(behind))
+    shorter = min(lengths)
     if blend.halves:
         size = min(size, shorter / 2.0)
     elif size > shorter + _SMALL:
         raise NoBlendError(f"{size:g} mm are longer than the shorter move, {shorter:.4f} mm")
-    return max(0.0, 1.0 - size / before.length), min(1.0, size / behind.length)
+    return max(0.0, 1.0 - size / lengths[0]), min(1.0, size / lengths[1])
 
 
 def _plane_of(first: Segment, second: Segment, blend: Blend) -> Plane:
@@ -113,25 +115,24 @@ def _plane_of(first: Segment, second: Segment, blend: Blend) -> Plane:
     return plane_with_normal(normal)
 
 
-def _fillet(
-    before: Element, behind: Element, turn: float, radius: float
-) -> tuple[float, float, Point]:
+def _fillet(before: Curve, behind: Curve, turn: float, radius: float) -> tuple[float, float, Point]:
     """Where a fillet touches both moves, as shares of their ways, and its centre."""
     side = math.copysign(radius, turn)
-    beside, following = before.parallel(side), behind.parallel(side)
-    if beside is None or following is None:
+    if not (curves.leaves_room(before, side) and curves.leaves_room(behind, side)):
         raise NoBlendError(f"the radius {radius:g} does not fit into the arc beside the corner")
+    beside, following = curves.parallel_of(before, side), curves.parallel_of(behind, side)
     fitting: list[tuple[float, float, Point]] = []
-    for center in crossings(beside, following):
-        left, right = beside.last_along(center), following.along(center)
-        if before.within(left) and behind.within(right):
+    count, *centers = curves.meetings(beside, following)
+    for center in centers[:count]:
+        left, right = curves.last_along(beside, center), curves.along(following, center)
+        if curves.within(before, left) and curves.within(behind, right):
             fitting.append((min(max(left, 0.0), 1.0), min(max(right, 0.0), 1.0), center))
     if not fitting:
         raise NoBlendError(f"the radius {radius:g} is too large for the moves beside the corner")
-    return min(fitting, key=lambda each: distance(each[2], before.end))
+    return min(fitting, key=lambda each: distance(each[2], before[2]))
 
 
-def _biarc(begin: Point, end: Point, first: Point, last: Point) -> list[Element]:
+def _biarc(begin: Point, end: Point, first: Point, last: Point) -> list[Curve]:
     """One or two arcs from ``begin`` along ``first`` to ``end`` along ``last``."""
     vx, vy = end[0] - begin[0], end[1] - begin[1]
     tx, ty = first[0] + last[0], first[1] + last[1]
@@ -146,8 +147,7 @@ def _biarc(begin: Point, end: Point, first: Point, last: Point) -> list[Element]
     right = center_tangent(end, joint, (-last[0], -last[1]))
     pieces = [_arc_or_line(begin, joint, left, first), _arc_or_line(joint, end, right, None, last)]
     if left is not None and right is not None and distance(left, right) < 1e-7:
-        whole = pieces[0].sweep + pieces[1].sweep
-        return [Element(begin, end, left, whole)]
+        return [curves.arc(begin, end, left, pieces[0][4] + pieces[1][4])]
     return pieces
 
 
@@ -157,32 +157,28 @@ def _arc_or_line(
     center: Point | None,
     leaving: Point | None,
     arriving: Point | None = None,
-) -> Element:
+) -> Curve:
     if center is None:
-        return Element(begin, end)
+        return curves.line(begin, end)
     point, along = (begin, leaving) if leaving is not None else (end, arriving)
     assert along is not None
     arm = (point[0] - center[0], point[1] - center[1])
     clockwise = arm[0] * along[1] - arm[1] * along[0] < 0.0
-    return Element(begin, end, center, sweep_between(begin, end, center, clockwise=clockwise))
+    return curves.arc(begin, end, center, sweep_between(begin, end, center, clockwise))
 
 
-def _arcs(before: Segment, behind: Segment, plane: Plane, pieces: list[Element]) -> list[Segment]:
+def _arcs(before: Segment, behind: Segment, plane: Plane, pieces: list[Curve]) -> list[Segment]:
     """Plane pieces as moves; their ends meet those of the moves beside them exactly."""
     made: list[Segment] = []
     here = before.end
     height = plane.local(here).height
-    for number, piece in enumerate(pieces):
+    for number, (is_arc, _, end, center, sweep) in enumerate(pieces):
         last = number == len(pieces) - 1
-        there = behind.start if last else [*plane.world(*piece.end, height), *here[3:]]
+        there = behind.start if last else [*plane.world(*end, height), *here[3:]]
         move = line_between(before, here, there)
-        if piece.center is not None:
-            move = dataclasses.replace(
-                move,
-                center=plane.world(*piece.center, height),
-                normal=plane.normal,
-                sweep=piece.sweep,
-            )
+        if is_arc:
+            center = plane.world(*center, height)
+            move = dataclasses.replace(move, center=center, normal=plane.normal, sweep=sweep)
         made.append(move)
         here = there
     return made

@@ -19,8 +19,8 @@ class EventRows:
     """Events as the compiled run reports them.
 
     Attributes:
-        rows: Index of the move that comes next, line, kind and number of each, shape (m, 4).
-        amounts: What it counts, NaN for nothing, shape (m,).
+        rows: Index of the move that comes next, line, kind and number of an M function, shape (m, 4).
+        amounts: What it counts; of T and H the number; NaN for nothing, shape (m,).
     """
 
     rows: IntArray
@@ -93,4 +93,4 @@ def _event(row: list[int], amount: float) -> Event:
         return Function(before, line, SPINDLE_SPEED, {SPINDLE_SPEED: amount})
     if kind == DWELL:
         return Dwell(before, line, amount)
-    return Function(before, line, f"{'T' if kind == TOOL else 'H'}{number}", {})
+    return Function(before, line, f"{'T' if kind == TOOL else 'H'}{int(amount)}", {})

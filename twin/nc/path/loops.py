@@ -10,7 +10,8 @@ import dataclasses
 from collections.abc import Callable
 
 from twin.nc.canonical import Event
-from twin.nc.geometry.elements import Element, crossing
+from twin.nc.geometry import curves
+from twin.nc.geometry.curves import Curve
 from twin.nc.geometry.planes import Plane
 from twin.nc.path.move_columns import Segment
 from twin.nc.path.segments import element_of, part_of
@@ -24,7 +25,7 @@ class _Held:
     """A move that a later one may cross, and what happens behind it."""
 
     move: Segment
-    element: Element
+    element: Curve
     waiting: list[Event] = dataclasses.field(default_factory=list)
 
 
@@ -47,9 +48,9 @@ class Loops:
             self._emit(move)
             return
         for index, older in enumerate(self._held):
-            place = crossing(older.element, element)
-            if place is not None:
-                move, element = self._cut(index, move, element, place)
+            crosses, *place = curves.crossing_of(older.element, element)
+            if crosses:
+                move, element = self._cut(index, move, element, *place)
                 break
         self._held.append(_Held(move, element))
         while len(self._held) > LONGEST_LOOP:
@@ -74,14 +75,15 @@ class Loops:
             self._happen(event)
 
     def _cut(
-        self, index: int, move: Segment, element: Element, place: tuple[float, float]
-    ) -> tuple[Segment, Element]:
-        older, (left, right) = self._held[index], place
+        self, index: int, move: Segment, element: Curve, left: float, right: float
+    ) -> tuple[Segment, Curve]:
+        """Cut out the loop from a share of an older move on to a share of this one."""
+        older = self._held[index]
         waiting = [event for held in list(self._held)[index:] for event in held.waiting]
         while len(self._held) > index:
             self._held.pop()
         head = part_of(older.move, older.element, self._plane, 0.0, left)
         tail = part_of(move, element, self._plane, right, 1.0)
         tail = dataclasses.replace(tail, start=head.end)
-        self._held.append(_Held(head, older.element.cut_share(left), waiting))
+        self._held.append(_Held(head, curves.head_of(older.element, left), waiting))
         return tail, element_of(tail, self._plane) or element

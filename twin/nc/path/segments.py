@@ -3,8 +3,9 @@
 import dataclasses
 import math
 
+from twin.nc.geometry import curves
 from twin.nc.geometry.arcs import SAME_POINT, Point, distance
-from twin.nc.geometry.elements import Element
+from twin.nc.geometry.curves import Curve
 from twin.nc.geometry.matrices import dot
 from twin.nc.geometry.planes import Plane, Vector, cross
 from twin.nc.path.move_columns import Segment
@@ -43,18 +44,18 @@ def spatial_length(move: Segment) -> float:
     return math.hypot(math.dist(move.start[:3], move.center) * math.radians(move.sweep), advance)
 
 
-def element_of(move: Segment, plane: Plane) -> Element | None:
+def element_of(move: Segment, plane: Plane) -> Curve | None:
     """A move as a plane sees it; None where it is no line or arc there, or has no length."""
     start, end = plane.local(move.start)[:2], plane.local(move.end)[:2]
     if move.center is None:
-        return Element(start, end) if distance(start, end) >= SAME_POINT else None
+        return curves.line(start, end) if distance(start, end) >= SAME_POINT else None
     sense = dot(move.normal, plane.normal)
     if abs(sense) < IN_PLANE:
         return None
-    return Element(start, end, plane.local(move.center)[:2], move.sweep * sense)
+    return curves.arc(start, end, plane.local(move.center)[:2], move.sweep * sense)
 
 
-def part_of(move: Segment, element: Element, plane: Plane, first: float, last: float) -> Segment:
+def part_of(move: Segment, element: Curve, plane: Plane, first: float, last: float) -> Segment:
     """The part of a move between two shares of its way; what else moves goes along.
 
     Args:
@@ -65,20 +66,18 @@ def part_of(move: Segment, element: Element, plane: Plane, first: float, last: f
         last: Where it ends.
     """
     start, end = (
-        whole if share == exact else _at(move, plane, element.point(share), share)
+        whole if share == exact else _at(move, plane, curves.point_at(element, share), share)
         for share, exact, whole in ((first, 0.0, move.start), (last, 1.0, move.end))
     )
-    center = move.center
-    if element.center is not None:
-        center = plane.world(*element.center, plane.local(start).height)
+    is_arc, _, _, center, sweep = element
     return dataclasses.replace(
         move,
         start=start,
         end=end,
         display=_shown(move, end),
-        center=center,
-        normal=move.normal if element.center is None else plane.normal,
-        sweep=element.sweep * (last - first),
+        center=plane.world(*center, plane.local(start).height) if is_arc else move.center,
+        normal=plane.normal if is_arc else move.normal,
+        sweep=sweep * (last - first),
     )
 
 

@@ -3,7 +3,8 @@
 So calls, jumps and diagnostics treat them like the rest of the program.
 """
 
-from collections.abc import Callable, Iterable, Iterator
+import dataclasses
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from twin.nc.text.source import Source, read_source
@@ -13,44 +14,42 @@ MOST_FILES = 100
 """Files that one program may call: more is no library but a slip."""
 
 
-def with_called_files(
-    source: Source,
-    files: Callable[[], dict[str, Path]],
-    calls: Callable[[Source], Iterable[str]],
-    mark: str,
-    dialect: Language,
-) -> Source:
-    """The program with the files that it calls, and those that they call, as far as found.
+@dataclasses.dataclass(frozen=True, slots=True)
+class Library:
+    """Which files the programs of a dialect can call.
 
-    Args:
-        source: The program.
-        files: Gives the files that can be called, by the name that calls them.
+    Attributes:
         calls: Names that a text calls.
         mark: Begins the line before each file, in front of its name.
-        dialect: How the files are read.
+        suffixes: Of the files, lower case; a file with an earlier one comes first.
+        name_of: The name that calls a file, given its own in upper case without the suffix; None: none does.
     """
-    found: set[str] = set()
-    wanted = list(calls(source))
-    known = files() if wanted else {}
-    while wanted and len(found) < MOST_FILES:
-        name = wanted.pop(0)
-        if name in known and name not in found:
-            found.add(name)
-            fresh = read_source(known[name], dialect)
-            source = source.followed_by(f"{mark}{name}", fresh)
-            wanted += calls(fresh)
-    return source
 
+    calls: Callable[[Source], Iterable[str]]
+    mark: str
+    suffixes: tuple[str, ...]
+    name_of: Callable[[str], str | None] = lambda name: name
 
-def named_files(folder: Path, suffixes: Iterable[str]) -> dict[str, Path]:
-    """Files of a folder by their names in upper case without a suffix, an earlier one first."""
-    found: dict[str, Path] = {}
-    for suffix in suffixes:
-        for path in _files(folder):
-            if path.suffix.lower() == suffix:
-                found.setdefault(path.stem.upper(), path)
-    return found
+    def __call__(self, source: Source, folder: Path, dialect: Language) -> Source:
+        """The program with the files of a folder that it calls, and those that they call, as far as found."""
+        found: set[str] = set()
+        wanted = list(self.calls(source))
+        known = self._files(folder) if wanted else {}
+        while wanted and len(found) < MOST_FILES:
+            name = wanted.pop(0)
+            if name in known and name not in found:
+                found.add(name)
+                fresh = read_source(known[name], dialect)
+                source = source.followed_by(f"{self.mark}{name}", fresh)
+                wanted += self.calls(fresh)
+        return source
 
-
-def _files(folder: Path) -> Iterator[Path]:
-    return (path for path in sorted(folder.iterdir()) if path.is_file())
+    def _files(self, folder: Path) -> dict[str, Path]:
+        found: dict[str, Path] = {}
+        files = [path for path in sorted(folder.iterdir()) if path.is_file()]
+        for suffix in self.suffixes:
+            for path in files:
+                name = self.name_of(path.stem.upper()) if path.suffix.lower() == suffix else None
+                if name is not None:
+                    found.setdefault(name, path)
+        return found

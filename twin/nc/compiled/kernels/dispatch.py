@@ -6,16 +6,8 @@ Each does what ``opcodes`` says of it; opcodes of one kind have a function.
 from twin.compilation.compilable import inlined
 from twin.nc.bytecode import compensation, opcodes
 from twin.nc.bytecode.bytecode import PART_BITS, BytecodeTable, Instruction
-from twin.nc.bytecode.effects import Affected, BlockPlace, run_effect
-from twin.nc.bytecode.flow import (
-    Transfer,
-    arrive,
-    count_loop,
-    going_to,
-    jumps,
-    straight_on,
-    transfer,
-)
+from twin.nc.bytecode.effects import Affected, BlockPlace
+from twin.nc.bytecode.flow import Transfer, arrive, straight_on
 from twin.nc.bytecode.frames import (
     DEPTH,
     FULL,
@@ -32,6 +24,7 @@ from twin.nc.bytecode.frames import (
     Scratch,
     innermost,
 )
+from twin.nc.bytecode.instructions import Surroundings, run_instruction
 from twin.nc.bytecode.registers import CYCLE, Machine, State, copy_active_codes, copy_state
 from twin.nc.bytecode.variables import undo_stores
 from twin.nc.compiled.kernels.block import BlockBegin, run_words
@@ -103,21 +96,17 @@ def dispatch_loop(
         elif opcode == opcodes.TRAP or opcode == opcodes.NO_PECKS:
             if opcode == opcodes.TRAP or _pecks(machine):
                 break
-        elif opcode >= opcodes.FUNCTION:
-            place = BlockPlace(line, made, contour.counts[STAGE] != OFF)
-            on = Affected(machine.constants, state, machine.rows)
-            top = run_effect(instruction, stack, top, place, on)
-        elif opcodes.JUMP <= opcode <= opcodes.JUMP_CASE:
-            if jumps(instruction, stack, top):
-                to = going_to(instruction.operand, to)
-                opcode = opcodes.NEXT
-            top -= 1
-        elif opcodes.BEGIN_FOR <= opcode <= opcodes.COUNT_DOWN:
-            top = count_loop(instruction, stack, top, to.depth, memory)
-        elif opcodes.CHECK_CALL <= opcode <= opcodes.RETURN:
-            known, to = transfer(instruction, stack[top - 1], to, execution.calls, memory.local)
-            if not known or not _keep_codes(opcode, to, state, execution):
+        elif opcode != opcodes.NEXT:
+            around = Surroundings(
+                memory,
+                execution.calls,
+                BlockPlace(line, made, contour.counts[STAGE] != OFF),
+                Affected(machine.constants, state, machine.rows),
+            )
+            top, to = run_instruction(instruction, stack, top, to, around)
+            if top < 0 or not _keep_codes(opcode, to, state, execution):
                 break
+            opcode = opcodes.NEXT if to.ends else opcode
         if opcode == opcodes.NEXT:
             progress[INSTRUCTION_BUDGET], progress[MADE] = budget, made
             arrive(to, here, progress)
@@ -174,7 +163,7 @@ def _keep_codes(opcode: int, to: Transfer, state: State, execution: ExecutionSta
         copy_active_codes(
             saved.modal[called], saved.active_codes[called], state.modal, state.active_codes
         )
-    elif to.restores == RESTORED_HERE and opcode >= opcodes.CALL:
+    elif to.restores == RESTORED_HERE and opcodes.CALL <= opcode <= opcodes.REPEAT:
         called = to.called - 1
         copy_active_codes(
             state.modal, state.active_codes, saved.modal[called], saved.active_codes[called]

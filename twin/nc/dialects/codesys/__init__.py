@@ -8,6 +8,7 @@ from twin.nc.dialects.codesys.actions import ADDITIONAL
 from twin.nc.dialects.codesys.codes import CODES, INSTEAD
 from twin.nc.dialects.codesys.decisions import DECISIONS
 from twin.nc.iso import base, shared_marks
+from twin.nc.iso.declared import go_back
 from twin.nc.path.paces import FeedMode
 from twin.nc.text.syntax import HEADING, Comment, Mark, Syntax
 
@@ -55,7 +56,7 @@ CODESYS = Dialect(
         "EF-": words.set_rapid_acceleration,
         "D": actions.set_smoothing,
         "S": words.refuse_profile,
-        "L!": words.pass_label,
+        "L!": lambda _control, _word: None,  # a place to jump to
         **{f"P{letter}": words.set_period(letter) for letter in ADDITIONAL},
         **{f"F{letter}": words.axis_velocity(letter) for letter in f"XYZ{ADDITIONAL}"},
         **{
@@ -68,8 +69,10 @@ CODESYS = Dialect(
     statements={
         "LET": StatementEffect(program.let),
         "SUBPROGRAM": subprograms.define,
-        "END_SUBPROGRAM": StatementEffect(subprograms.leave),
-        "RETURN": StatementEffect(subprograms.leave),
+        **dict.fromkeys(
+            ("END_SUBPROGRAM", "RETURN"),
+            StatementEffect(lambda _control, _statement, assembler: go_back(assembler)),
+        ),
     },
     other_statement=StatementEffect(subprograms.assign_or_call),
     word_meanings={
@@ -138,6 +141,6 @@ CODESYS = Dialect(
     given_variable=program.given_variable,
     place_switches=words.place_switches,
     rapid_feed=words.own_rapid_feed,
-    library=subprograms.with_files,
+    library=subprograms.LIBRARY,
     disturbed=program.acts_on_plain_blocks,
 )

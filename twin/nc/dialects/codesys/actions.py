@@ -4,7 +4,6 @@ import math
 
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler
-from twin.nc.bytecode.effects import PLANE_COMPENSATED
 from twin.nc.control.codes import Action
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import LineRule
@@ -12,6 +11,7 @@ from twin.nc.control.performer import refuse
 from twin.nc.dialects.codesys.program import variables
 from twin.nc.geometry.planes import XY, plane_with_normal
 from twin.nc.iso import offsets
+from twin.nc.iso.findings import PLANE_COMPENSATED
 from twin.nc.iso.offsets import compile_shift, programmed_shift
 from twin.nc.path.blends import Blend, BlendKind
 from twin.nc.text.blocks import Word
@@ -132,7 +132,11 @@ def _numbered_axis(control: Control, word: Word) -> int:
     number = control.number(word) - FIRST_ADDITIONAL
     if number not in range(len(ADDITIONAL)):
         control.fail("even-axis", f"{word.text} numbers no additional axis", word, "4 is A, 6 is C")
-    letter = ADDITIONAL[int(number)]
+    return axis_named(control, ADDITIONAL[int(number)], word)
+
+
+def axis_named(control: Control, letter: str, word: Word) -> int:
+    """Column of the axis with a letter; a word asks for it."""
     index = control.axis_index.get(letter)
     if index is None:
         control.refuse_axis(word._replace(address=letter))
@@ -209,7 +213,7 @@ def set_reference(control: Control, assembler: Assembler) -> None:
 
     Decision: the manual's page is not fully known; this is what its title says.
     """
-    offsets.set_position(control.take_axis_words(), "offset", assembler)
+    offsets.set_position(control, control.take_axis_words(), "offset", assembler)
 
 
 def set_position(control: Control) -> None:

@@ -4,13 +4,7 @@ from twin.nc.control.control import Control
 from twin.nc.control.interpolation import ArcRule
 from twin.nc.geometry import arcs
 from twin.nc.geometry.arcs import SAME_POINT, Bounds, Point, distance, turned
-from twin.nc.iso.circular import (
-    both_senses,
-    refuse_arc,
-    start_and_end,
-    sweep_arc,
-    take_center,
-)
+from twin.nc.iso.circular import both_senses, refuse_arc, start_and_end, sweep_arc, take_center
 from twin.nc.text.blocks import Word
 
 BOUNDS = Bounds(mismatch=0.0, mismatch_share=0.1, shift=1e-3, shift_share=0.0)
@@ -82,11 +76,8 @@ def _center_arc(control: Control, rule: ArcRule) -> None:
 def _opening_arc(control: Control, opening: Word, *, clockwise: bool) -> None:
     angle = control.number(opening)
     if not 0.0 < angle <= LARGEST_OPENING:
-        control.fail(
-            "arc-opening",
-            f"the opening angle {opening.text} is not above 0 and up to {LARGEST_OPENING:g}",
-            opening,
-        )
+        message = f"the opening angle {opening.text} is not above 0 and up to {LARGEST_OPENING:g}"
+        control.fail("arc-opening", message, opening)
     center, word = _programmed_center(control)
     if center is None:
         control.fail("arc-without-center", "an opening angle needs I, J or K", opening)
@@ -101,8 +92,8 @@ def _opening_arc(control: Control, opening: Word, *, clockwise: bool) -> None:
         control.fail("arc-center", "the centre lies on the arc's start", word)
     sweep = -angle if clockwise else angle
     end = turned(start[:2], center, sweep)
-    target[:3] = plane.world(*end, plane.local(target).height)
-    control.arc_to(target, plane.world(*center, start.height), sweep)
+    plane.aim(target, end)
+    control.arc_to(target, center, sweep)
 
 
 def _programmed_center(control: Control) -> tuple[Point | None, Word | None]:

@@ -13,12 +13,7 @@ from twin.nc.dialects.codesys.curves import (
 from twin.nc.geometry.planes import XY, YZ, ZX
 from twin.nc.iso import base
 from twin.nc.iso.declared import instead, modal, motion_code, plane_code, refused
-from twin.nc.iso.tool_compensation import (
-    END_OF_COMPENSATION,
-    LEFT,
-    RIGHT,
-    compensation_by_radius,
-)
+from twin.nc.iso.tool_compensation import END_OF_COMPENSATION, LEFT, RIGHT, compensation_by_radius
 from twin.nc.path.blends import BlendKind
 
 _PROFILE = "what it sets in the path preprocessing has no counterpart in the twin"

@@ -45,16 +45,13 @@ def parabola(control: Control) -> None:
 
     def at(u: float) -> Point:
         a, b, c = (1.0 - u) ** 2, 2.0 * u * (1.0 - u), u * u
-        return (
-            a * start[0] + b * apex[0] + c * end[0],
-            a * start[1] + b * apex[1] + c * end[1],
-        )
+        return (a * start[0] + b * apex[0] + c * end[0], a * start[1] + b * apex[1] + c * end[1])
 
     second = math.hypot(start[0] - 2.0 * apex[0] + end[0], start[1] - 2.0 * apex[1] + end[1])
     _draw(control, target, at, math.sqrt(second / (4.0 * CHORD_ERROR)))
 
 
-def _ellipse(control: Control, *, clockwise: bool) -> None:
+def ellipse(control: Control, *, clockwise: bool) -> None:
     """G8, G9 X Y I J K R: about I J, the main axis at angle K.
 
     Start and end fix the shape; where they are equally far from the main axis, R does, the short
@@ -162,18 +159,8 @@ def _draw(
     control.line_to(target, rapid=False)
 
 
-def clockwise_ellipse(control: Control) -> None:
-    """G8."""
-    _ellipse(control, clockwise=True)
-
-
-def counter_clockwise_ellipse(control: Control) -> None:
-    """G9."""
-    _ellipse(control, clockwise=False)
-
-
 FLAT_SPLINE = Interpolation(flat_spline)
 SPATIAL_SPLINE = Interpolation(spatial_spline)
 PARABOLA = Interpolation(parabola)
-CLOCKWISE_ELLIPSE = Interpolation(clockwise_ellipse)
-COUNTER_CLOCKWISE_ELLIPSE = Interpolation(counter_clockwise_ellipse)
+CLOCKWISE_ELLIPSE = Interpolation(lambda control: ellipse(control, clockwise=True))
+COUNTER_CLOCKWISE_ELLIPSE = Interpolation(lambda control: ellipse(control, clockwise=False))

@@ -129,15 +129,11 @@ def read_variable(control: Control, name: str, _index: float | None) -> float:
     if value is not None:
         return value
     if name.startswith("#"):
-        raise ExpressionError(
-            "unknown-variable", f"{name} is not declared", None, f"write LET {name} : LREAL"
-        )
-    raise ExpressionError(
-        "unknown-variable",
-        f"the application's variable {name} has no value",
-        None,
-        f"give it one in the job: [variables] {name.strip('$')} = 0.0",
-    )
+        message = f"{name} is not declared"
+        raise ExpressionError("unknown-variable", message, None, f"write LET {name} : LREAL")
+    message = f"the application's variable {name} has no value"
+    hint = f"give it one in the job: [variables] {name.strip('$')} = 0.0"
+    raise ExpressionError("unknown-variable", message, None, hint)
 
 
 def is_local(name: str) -> bool:
@@ -156,34 +152,24 @@ def given_variable(given: Mapping[str, float], name: str) -> float | None:
     return None
 
 
-def _declaration(control: Control, statement: Statement) -> tuple[str, Expression | None, int]:
-    """What LET declares: name, value or None, and where that stands.
+def let(control: Control, statement: Statement, assembler: Assembler) -> None:
+    """LET: declare a local variable, 0 unless it is given a value.
 
     Raises:
         ProgramError: It cannot be read.
     """
     match = _LET.match(statement.text)
     if match is None:
-        control.report.fail(
-            "declaration", "LET needs a variable", statement.column, 3, "LET #x : LREAL := 1"
-        )
+        hint = "LET #x : LREAL := 1"
+        control.report.fail("declaration", "LET needs a variable", statement.column, 3, hint)
     rest, column = statement.text[match.end() :], statement.text_column + match.end()
-    value = None
     if match[2]:
-        value = control.expression(rest, column)
+        assembler.value(control.expression(rest, column), column)
     elif rest.strip():
         control.report.fail("declaration", "this cannot follow a declaration", column)
-    return match[1].upper(), value, column
-
-
-def let(control: Control, statement: Statement, assembler: Assembler) -> None:
-    """LET: declare a local variable, 0 unless it is given a value."""
-    name, value, column = _declaration(control, statement)
-    if value is None:
-        assembler.constant(0.0)
     else:
-        assembler.value(value, column)
-    assembler.assign(name)
+        assembler.constant(0.0)
+    assembler.assign(match[1].upper())
 
 
 def assign(control: Control, statement: Statement, assembler: Assembler) -> None:

@@ -2,15 +2,13 @@
 
 import re
 from collections.abc import Container, Iterator
-from pathlib import Path
 
 from twin.nc.bytecode.assembler import Assembler
 from twin.nc.control.control import Control
 from twin.nc.dialects.codesys.program import Subprogram, assign, variables
 from twin.nc.text.blocks import Location, Statement
-from twin.nc.text.library import named_files, with_called_files
+from twin.nc.text.library import Library
 from twin.nc.text.source import Source
-from twin.nc.text.syntax import Language
 
 DEEPEST_CALL = 14
 """Subprograms within subprograms (manual, before 4.18)."""
@@ -24,22 +22,15 @@ _CALL = re.compile(r"(?:^|[ \t])([A-Z_]\w{2,})[ \t]*[{(]", re.IGNORECASE)
 _CALL_SOMEWHERE = re.compile(rb"[A-Z_][A-Z_0-9]{2,}[ \t]*[{(]", re.IGNORECASE)
 
 
-def with_files(source: Source, folder: Path, dialect: Language) -> Source:
-    """The program with the subprograms that it calls, as far as they are files of their own.
-
-    Args:
-        source: The program.
-        folder: Where their files lie, called ``name.cnc`` (manual), in any case.
-        dialect: How they are read.
-    """
-    return with_called_files(source, lambda: named_files(folder, (".cnc",)), _calls, "// ", dialect)
-
-
 def _calls(source: Source) -> Iterator[str]:
     if source.lines.any_holds(_CALL_SOMEWHERE):
         for line in source.lines:
             if _SUBPROGRAM.match(line) is None:
                 yield from (match[1].upper() for match in _CALL.finditer(line))
+
+
+LIBRARY = Library(_calls, "// ", (".cnc",))
+"""Subprograms are called from files of their names with ``.cnc`` (manual)."""
 
 
 class _Outside:
@@ -95,34 +86,22 @@ def define(control: Control, statement: Statement) -> None:
 
 
 def _call(control: Control, statement: Statement, assembler: Assembler) -> None:
-    """``Name{values}``: run a subprogram with its own variables.
-
-    Raises:
-        ProgramError: There is none, or it takes others.
-    """
+    """``Name{values}``: run a subprogram with its own variables."""
     name = statement.keyword.strip()
     subprogram = _subprograms(control).get(name)
     if subprogram is None:
         known = ", ".join(sorted(_subprograms(control))) or "none"
-        control.report.fail(
-            "unknown-subprogram",
-            f"there is no subprogram {name}",
-            statement.column,
-            len(name),
-            hint=f"one of its own file is {name.lower()}.cnc; subprograms here: {known}",
-        )
+        message = f"there is no subprogram {name}"
+        hint = f"one of its own file is {name.lower()}.cnc; subprograms here: {known}"
+        control.report.fail("unknown-subprogram", message, statement.column, len(name), hint=hint)
     text = statement.text.strip()
     if text[-1:] not in ("}", ")"):
         control.report.fail("expression", "the bracket is not closed", statement.text_column)
     column = statement.text_column + statement.text.index(text[0]) + 1
     values = control.expressions(text[1:-1], column)
     if len(values) != len(subprogram.formals):
-        control.report.fail(
-            "call-values",
-            f"{name} takes {len(subprogram.formals)} values, not {len(values)}",
-            statement.column,
-            len(name),
-        )
+        message = f"{name} takes {len(subprogram.formals)} values, not {len(values)}"
+        control.report.fail("call-values", message, statement.column, len(name))
     for each in values:
         assembler.value(each, column)
     begin = Location(subprogram.lines.start, 0)
@@ -135,9 +114,3 @@ def assign_or_call(control: Control, statement: Statement, assembler: Assembler)
         assign(control, statement, assembler)
     else:
         _call(control, statement, assembler)
-
-
-def leave(_control: Control, _statement: Statement, assembler: Assembler) -> None:
-    """RETURN or END_SUBPROGRAM."""
-    assembler.check_return()
-    assembler.end_call()

@@ -5,7 +5,7 @@ import math
 from twin.nc.bytecode.registers import PROGRAMMED_FEED
 from twin.nc.control.codes import WordAction
 from twin.nc.control.control import Control
-from twin.nc.dialects.codesys.actions import lead_into_length
+from twin.nc.dialects.codesys.actions import axis_named, lead_into_length
 from twin.nc.dialects.codesys.program import variables
 from twin.nc.path.paces import rapid_feed
 from twin.nc.text.blocks import Word
@@ -73,9 +73,7 @@ def set_period(letter: str) -> WordAction:
     """PA, PB, ...: the modulo period of an additional axis; 0 makes it linear."""
 
     def action(control: Control, word: Word) -> None:
-        index = control.axis_index.get(letter)
-        if index is None:
-            control.refuse_axis(word._replace(address=letter))
+        index = axis_named(control, letter, word)
         period = control.number(word)
         if period < 0.0:
             control.fail("period", f"{word.text} is no period", word)
@@ -88,7 +86,7 @@ def axis_velocity(letter: str) -> WordAction:
     """FX, ...: the largest velocity of one axis; 0 takes it away."""
 
     def action(control: Control, word: Word) -> None:
-        index, value = _limited_axis(control, letter, word), abs(control.number(word))
+        index, value = axis_named(control, letter, word), abs(control.number(word))
         control.axis_limits[index] = value * 60.0
         if value == 0.0:
             del control.axis_limits[index]
@@ -104,7 +102,7 @@ def axis_acceleration(letter: str) -> WordAction:
     """
 
     def action(control: Control, word: Word) -> None:
-        index, value = _limited_axis(control, letter, word), control.number(word)
+        index, value = axis_named(control, letter, word), control.number(word)
         both = control.axis_accelerations, control.axis_decelerations
         if value == 0.0:
             for table in both:
@@ -119,22 +117,11 @@ def axis_acceleration(letter: str) -> WordAction:
     return action
 
 
-def _limited_axis(control: Control, letter: str, word: Word) -> int:
-    index = control.axis_index.get(letter)
-    if index is None:
-        control.refuse_axis(word._replace(address=letter))
-    return index
-
-
 def refuse_profile(control: Control, word: Word) -> None:
     """S: a profile of the additional axes; only 0, none, can be followed."""
     if control.number(word) != 0.0:
         message = "profiles of additional axes are not simulated; S can only be 0"
         control.fail("unsupported-word", message, word)
-
-
-def pass_label(_control: Control, _word: Word) -> None:
-    """L!: a place to jump to; nothing happens there."""
 
 
 def take_shortest_way(control: Control) -> None:

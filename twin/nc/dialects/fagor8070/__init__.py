@@ -13,15 +13,10 @@ from twin.nc.dialects.fagor8070 import (
     subroutines,
     variables,
 )
-from twin.nc.dialects.fagor8070.codes import (
-    CODES,
-    INSTEAD,
-    auxiliary,
-    plain_dwell,
-)
+from twin.nc.dialects.fagor8070.codes import CODES, INSTEAD, auxiliary, plain_dwell
 from twin.nc.dialects.fagor8070.control_variables import LiveVariables
 from twin.nc.dialects.fagor8070.decisions import DECISIONS
-from twin.nc.dialects.fagor8070.library import with_globals
+from twin.nc.dialects.fagor8070.library import LIBRARY
 from twin.nc.dialects.fagor8070.memory import FagorMemory, acts_on_plain_blocks
 from twin.nc.iso import base, shared_marks
 from twin.nc.iso.declared import flow_function
@@ -72,11 +67,7 @@ FAGOR8070 = Dialect(
     start=(1, 17, 40, 50, 71, 80, 90, 94, 97, 98, 108, 137, 139, 152, 197, 262, 265),
     m={
         **base.M_CODES,
-        6: MCode(
-            meaning="tool change",
-            action=Effect(frames.change_tool),
-            ground="manual",
-        ),
+        6: MCode(meaning="tool change", action=Effect(frames.change_tool), ground="manual"),
         17: flow_function("end of subroutine", subroutines.return_),
         19: MCode(meaning="spindle orientation", ground="manual"),
         29: flow_function("end of subroutine", subroutines.return_),
@@ -162,7 +153,7 @@ FAGOR8070 = Dialect(
     read_variable=variables.read_variable,
     is_local=variables.is_local,
     live_variables=LiveVariables(),
-    library=with_globals,
+    library=LIBRARY,
     prepare=_prepare,
     after_motion=subroutines.call_after_motion,
     finish=statements.warn_of_missing_end,

@@ -12,18 +12,7 @@ from twin.nc.control.interpolation import ArcRule
 from twin.nc.dialects.fagor8070.memory import memory_of, polar_origin
 from twin.nc.dialects.fagor8070.polar import Goal, forget_polar, take_goal
 from twin.nc.geometry import arcs
-from twin.nc.geometry.arcs import (
-    SAME_POINT,
-    TURN,
-    Point,
-    angle_of,
-    center_tangent,
-    center_through,
-    distance,
-    programmed_center,
-    sweep_between,
-    turned,
-)
+from twin.nc.geometry.arcs import SAME_POINT, TURN, Point, distance, sweep_between, turned
 from twin.nc.iso import base
 from twin.nc.iso.circular import (
     BOUNDS,
@@ -77,11 +66,9 @@ def _arc(control: Control, rule: ArcRule) -> None:
     elif goal.polar:
         center = polar_origin(control)
     else:
-        control.fail(
-            "arc-without-center",
-            "the arc has neither a centre nor a radius",
-            hint=f"write {letters[0]} and {letters[1]}, or R",
-        )
+        message = "the arc has neither a centre nor a radius"
+        hint = f"write {letters[0]} and {letters[1]}, or R"
+        control.fail("arc-without-center", message, hint=hint)
     if centre.words or goal.polar:
         memory.circle_radius = None
     if goal.in_plane or pitch is None:
@@ -98,12 +85,9 @@ def _end_on_circle(control: Control, goal: Goal, center: Point) -> None:
     """G264: the centre stays, the radius is the start's, and the end moves onto this circle."""
     start, end = start_and_end(control, goal.target)
     far = distance(start[:2], center) / distance(end[:2], center)
-    onto = (
-        center[0] + (end[0] - center[0]) * far,
-        center[1] + (end[1] - center[1]) * far,
-    )
+    onto = (center[0] + (end[0] - center[0]) * far, center[1] + (end[1] - center[1]) * far)
     if onto != end[:2]:
-        goal.target[:3] = control.modal.plane.world(*onto, end.height)
+        control.modal.plane.aim(goal.target, onto)
         forget_polar(control)
 
 
@@ -137,11 +121,10 @@ def tangent_arc(control: Control) -> None:
     tangent = control.modal.plane.local(direction_before)
     if math.hypot(tangent[0], tangent[1]) < SAME_POINT:
         control.fail("tangent-arc", "the move before G08 has no direction in the plane")
-    center = center_tangent(start[:2], end[:2], tangent[:2])
+    center = arcs.center_tangent(start[:2], end[:2], tangent[:2])
     if center is None:
-        control.fail(
-            "tangent-arc", "the end lies straight ahead or at the start: no arc leads there"
-        )
+        message = "the end lies straight ahead or at the start: no arc leads there"
+        control.fail("tangent-arc", message)
     side = tangent[0] * (center[1] - start[1]) - tangent[1] * (center[0] - start[0])
     sweep_arc(control, goal.target, center, clockwise=side < 0.0)
 
@@ -163,7 +146,7 @@ def three_point_arc(control: Control) -> None:
     via = (abscissa, ordinate)
     if control.modal.incremental:
         via = (start[0] + abscissa, start[1] + ordinate)
-    center = center_through(start[:2], via, end[:2])
+    center = arcs.center_through(start[:2], via, end[:2])
     if center is None:
         control.fail("three-point-arc", "the three points lie on a line", words[0])
     side = (via[0] - start[0]) * (end[1] - start[1]) - (via[1] - start[1]) * (end[0] - start[0])
@@ -192,10 +175,9 @@ def _sweep(
             if wanted == 0.0:
                 control.fail("helix-height", "a helix by its pitch alone needs a height", pitch)
             sweep = wanted
-            around = turned(start[:2], center, sweep)
-            goal.target[:3] = plane.world(*around, end.height)
+            plane.aim(goal.target, turned(start[:2], center, sweep))
             forget_polar(control)
-    control.arc_to(goal.target, plane.world(*center, start.height), sweep)
+    control.arc_to(goal.target, center, sweep)
 
 
 def _helix_sweep(control: Control, height: float, pitch: Word, *, clockwise: bool) -> float:
@@ -219,7 +201,7 @@ def _given_center(control: Control, words: tuple[Word, ...], start: Point) -> Po
     letters = _center_letters(control)
     values = {word.address: control.length(word) for word in words}
     first, second = (values.get(letter, math.nan) for letter in letters[:2])
-    return programmed_center(start, first, second, control.modal.center_absolute)
+    return arcs.programmed_center(start, first, second, control.modal.center_absolute)
 
 
 def _arc_about_own_center(control: Control, *, clockwise: bool) -> None:
@@ -240,13 +222,13 @@ def _arc_about_own_center(control: Control, *, clockwise: bool) -> None:
         control.fail("arc-center", "the centre lies on the arc's start", centre.words[0])
     value = control.number(angle)
     incremental = control.modal.incremental or angle.incremental
-    by = value if incremental else value - angle_of(start[:2], center)
+    by = value if incremental else value - arcs.angle_of(start[:2], center)
     end = turned(start[:2], center, by)
     target = control.target()
-    target[:3] = plane.world(*end, plane.local(target).height)
+    plane.aim(target, end)
     forget_polar(control)
     sweep = sweep_between(start[:2], end, center, clockwise=clockwise)
-    control.arc_to(target, plane.world(*center, start.height), sweep)
+    control.arc_to(target, center, sweep)
 
 
 RAPID, FEED = base.straight(_line)

@@ -1,25 +1,27 @@
 """G codes of the Fagor CNC 8070."""
 
 from twin.nc.bytecode import opcodes
-from twin.nc.bytecode.assembler import Assembler
+from twin.nc.bytecode.assembler import Assembler, Finding
 from twin.nc.canonical import Corner
 from twin.nc.control.codes import CodeWriter, Effect, GCode
 from twin.nc.control.control import Control
-from twin.nc.dialects.fagor8070 import arcs, corners, frames, polar, transformations
+from twin.nc.dialects.fagor8070 import arcs, frames, polar, transformations
+from twin.nc.dialects.fagor8070.corners import blend_code
 from twin.nc.dialects.fagor8070.cycles.canned_cycles import CYCLES
 from twin.nc.dialects.fagor8070.machine_coordinates import refuse_change
 from twin.nc.dialects.fagor8070.offset_table import offset_code
 from twin.nc.geometry.planes import XY, YZ, ZX
 from twin.nc.iso import base, fixed_cycles, offsets
 from twin.nc.iso.declared import instead, modal, motion_code, plane_code, refused
-from twin.nc.iso.tool_compensation import (
-    END_OF_COMPENSATION,
-    LEFT,
-    RIGHT,
-    compensation_by_tool,
-)
+from twin.nc.iso.tool_compensation import END_OF_COMPENSATION, LEFT, RIGHT, compensation_by_tool
+from twin.nc.path.blends import BlendKind
+from twin.nc.path.event_columns import AUXILIARY
 from twin.nc.path.paces import FeedMode
 from twin.nc.text.blocks import Word
+
+_OTHER_AUXILIARY = Finding(
+    "number-range", "{word} is no number of a function: whole ones up to 999999 are"
+)
 
 
 def plain_dwell(control: Control, word: Word, assembler: Assembler) -> None:
@@ -27,13 +29,14 @@ def plain_dwell(control: Control, word: Word, assembler: Assembler) -> None:
     if control.words or len(control.block.words) > 1:
         control.fail("dwell", "G04 must stand alone in its block", word)
     assembler.word_value(word)
-    assembler.emit(opcodes.DWELL)
+    base.write_dwell(assembler)
 
 
 def auxiliary(_control: Control, word: Word, assembler: Assembler) -> None:
     """H: an auxiliary function of the machine."""
     assembler.word_value(word)
-    assembler.emit(opcodes.AUXILIARY)
+    assembler.check(opcodes.WHOLE, _OTHER_AUXILIARY, 999_999.0)
+    assembler.emit(opcodes.REPORT, AUXILIARY)
 
 
 def _forgetting_polar(write: CodeWriter) -> Effect:
@@ -42,7 +45,7 @@ def _forgetting_polar(write: CodeWriter) -> Effect:
     def both(control: Control, assembler: Assembler) -> None:
         assembler.disturbed(lambda: refuse_change(control))
         write(control, assembler)
-        assembler.emit(opcodes.FORGET_POLAR)
+        polar.write_forgotten_polar(assembler)
 
     return Effect(both)
 
@@ -115,9 +118,13 @@ CODES: dict[float, GCode] = {
     30: modal("polar origin: I J, or where the tool stands", action=Effect(polar.set_polar_origin)),
     31: modal("temporary polar origin at the arc's centre", action=polar.temporary_polar_origin),
     **refused("threading", "the twin's spindle has no angle", 33),
-    36: instead("corner rounded by the radius I", corners.round_corner, ground="decision"),
+    36: instead(
+        "corner rounded by the radius I", blend_code(BlendKind.FILLET, 36), ground="decision"
+    ),
     **refused("tangential entry, tangential exit", _LEAD, *range(37, 39)),
-    39: instead("corner chamfered at the distance I", corners.chamfer_corner, ground="decision"),
+    39: instead(
+        "corner chamfered at the distance I", blend_code(BlendKind.CHAMFER, 39), ground="decision"
+    ),
     40: modal("radius compensation off", "compensation", END_OF_COMPENSATION),
     41: modal("compensation, tool left", "compensation", compensation_by_tool(LEFT)),
     42: modal("compensation, tool right", "compensation", compensation_by_tool(RIGHT)),

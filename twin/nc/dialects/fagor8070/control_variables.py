@@ -9,7 +9,6 @@ their value.
 
 import re
 from collections.abc import Callable, Mapping
-from typing import NamedTuple
 
 from twin.nc.bytecode import registers
 from twin.nc.control.control import Control
@@ -30,13 +29,6 @@ _READ: Mapping[str, Callable[[Control], float]] = {
     "V.G.NXTOOL": lambda control: float(control.tools.selected or 0),
     "V.G.TOD": lambda control: control.registers[registers.OFFSET_ON],
 }
-
-
-class OffsetCell(NamedTuple):
-    """One axis of one zero offset."""
-
-    name: str
-    axis: str
 
 
 def is_live(name: str) -> bool:
@@ -64,11 +56,10 @@ def read_live(control: Control, name: str) -> float | None:
     cell = _cell(control, name)
     if cell is None:
         return None
-    values = memory_of(control).offsets.get(cell.name)
-    if values is None:
-        values = control.settings.offsets.get(cell.name, {})
-    zero = machine_zero(control, "V.A.ORGT").get(cell.axis, 0.0)
-    return (values.get(cell.axis, 0.0) - zero) / _unit(control, cell)
+    offset, axis = cell
+    values = memory_of(control).offsets.get(offset, control.settings.offsets.get(offset, {}))
+    zero = machine_zero(control, "V.A.ORGT").get(axis, 0.0)
+    return (values.get(axis, 0.0) - zero) / control.unit_of(control.axis_index[axis])
 
 
 def write_live(control: Control, name: str, value: float) -> bool:
@@ -81,14 +72,16 @@ def write_live(control: Control, name: str, value: float) -> bool:
     cell = _cell(control, name)
     if cell is None:
         return False
-    zero = machine_zero(control, "V.A.ORGT").get(cell.axis, 0.0)
-    offsets = memory_of(control).offsets
-    values = offsets.setdefault(cell.name, dict(control.settings.offsets.get(cell.name, {})))
-    values[cell.axis] = zero + value * _unit(control, cell)
+    offset, axis = cell
+    zero = machine_zero(control, "V.A.ORGT").get(axis, 0.0)
+    given = dict(control.settings.offsets.get(offset, {}))
+    values = memory_of(control).offsets.setdefault(offset, given)
+    values[axis] = zero + value * control.unit_of(control.axis_index[axis])
     return True
 
 
-def _cell(control: Control, name: str) -> OffsetCell | None:
+def _cell(control: Control, name: str) -> tuple[str, str] | None:
+    """Name and axis of a cell of the table of offsets; None where a variable is none."""
     match = _OFFSET.fullmatch(name)
     if match is None:
         return None
@@ -105,9 +98,4 @@ def _cell(control: Control, name: str) -> OffsetCell | None:
         axes = ", ".join(control.settings.axes.names)
         message = f"this machine has no axis {match[3]}"
         raise ExpressionError("no-such-axis", message, None, f"axes: {axes}")
-    return OffsetCell(offset_name(int(number)), match[3])
-
-
-def _unit(control: Control, cell: OffsetCell) -> float:
-    index = control.settings.axes.names.index(cell.axis)
-    return control.modal.unit if control.linear[index] else 1.0
+    return offset_name(int(number)), match[3]

@@ -66,22 +66,14 @@ def destination(control: Control, statement: Statement) -> Location:
     match = _PLACE.fullmatch(statement.text)
     if match is None:
         control.refuse(statement, "jump-target", "$GOTO needs N10 or [NAME]")
-    place = control.program_counter.find_label(
-        label_of(match),
-        (statement.text_column, len(statement.text)),
-        "$GOTO",
-        lines_around(control),
-    )
+    label = int(match[1]) if match[1] else match[2].upper()
+    span = statement.text_column, len(statement.text)
+    place = control.program_counter.find_label(label, span, "$GOTO", lines_around(control))
     structure = _structure(control)
     here = structure.around(control.block.line - 1)
     if any(construct not in here for construct in structure.around(place.line)):
         control.refuse(statement, "jump-into-structure", "a jump must not lead into a structure")
     return place
-
-
-def label_of(match: re.Match[str]) -> int | str:
-    """The N number or the name that was read."""
-    return int(match[1]) if match[1] else match[2].upper()
 
 
 # --- what the statements do
@@ -102,7 +94,7 @@ def _if(control: Control, statement: Statement, assembler: Assembler) -> None:
         if branch.keyword == "$ELSE":
             assembler.jump(Location(branch.line + 1, 0))
             return
-        _value(control, control.statement_of(branch.line), assembler)
+        put_value(control, control.statement_of(branch.line), assembler)
         assembler.jump_if(Location(branch.line + 1, 0))
     assembler.jump(construct.behind)
 
@@ -120,7 +112,7 @@ def _nothing(control: Control, statement: Statement, _assembler: Assembler) -> N
 def _while(control: Control, statement: Statement, assembler: Assembler) -> None:
     """$WHILE: run the body as long as the condition holds."""
     construct = construct_of(control, statement)
-    _value(control, statement, assembler)
+    put_value(control, statement, assembler)
     assembler.jump_unless(construct.behind)
 
 
@@ -132,7 +124,7 @@ def _again(control: Control, statement: Statement, assembler: Assembler) -> None
 def _end_do(control: Control, statement: Statement, assembler: Assembler) -> None:
     """$ENDDO condition: run the body again as long as it holds."""
     construct = construct_of(control, statement)
-    _value(control, statement, assembler)
+    put_value(control, statement, assembler)
     assembler.jump_if(Location(construct.begin + 1, 0))
 
 
@@ -165,22 +157,18 @@ def _for_values(control: Control, statement: Statement, assembler: Assembler) ->
 def _switch(control: Control, statement: Statement, assembler: Assembler) -> None:
     """$SWITCH: go to the $CASE with the same value, else to $DEFAULT."""
     construct = construct_of(control, statement)
-    _value(control, statement, assembler)
+    put_value(control, statement, assembler)
     for branch in construct.branches:
         if branch.keyword == "$DEFAULT":
             assembler.jump(Location(branch.line + 1, 0))
             return
-        _value(control, control.statement_of(branch.line), assembler)
+        put_value(control, control.statement_of(branch.line), assembler)
         assembler.jump_case(Location(branch.line + 1, 0))
     assembler.jump(construct.behind)
 
 
-def case(control: Control, statement: Statement) -> None:
-    """$CASE or $DEFAULT reached from the case before, which is not documented.
-
-    Raises:
-        ProgramError: Always.
-    """
+def _case(control: Control, statement: Statement) -> None:
+    """$CASE or $DEFAULT reached from the case before, which is not documented."""
     control.refuse(statement, "missing-break", "the case before has no $BREAK")
 
 
@@ -201,7 +189,7 @@ def _go_to(control: Control, statement: Statement, assembler: Assembler) -> None
     assembler.jump(destination(control, statement))
 
 
-def _value(control: Control, statement: Statement, assembler: Assembler) -> None:
+def put_value(control: Control, statement: Statement, assembler: Assembler) -> None:
     """Put the value behind a keyword on the stack."""
     column = statement.text_column
     assembler.value(control.expression(statement.text, column), column)
@@ -228,6 +216,6 @@ STATEMENTS: dict[str, StatementAction] = {
             "$GOTO": _go_to,
         }.items()
     },
-    "$CASE": case,
-    "$DEFAULT": case,
+    "$CASE": _case,
+    "$DEFAULT": _case,
 }

@@ -2,11 +2,16 @@
 
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler
-from twin.nc.bytecode.effects import PLANE_COMPENSATED
+from twin.nc.bytecode.registers import OFFSET_ON
+from twin.nc.control.compensation import tool_numbered
 from twin.nc.control.control import Control
 from twin.nc.control.performer import refuse
 from twin.nc.dialects.fagor8070.machine_coordinates import refuse_change
+from twin.nc.dialects.fagor8070.polar import write_forgotten_polar
 from twin.nc.geometry.planes import Plane, Vector, cross
+from twin.nc.iso import base
+from twin.nc.iso.declared import write_plane
+from twin.nc.iso.findings import PLANE_COMPENSATED
 from twin.nc.iso.offsets import programmed_shift
 from twin.nc.text.blocks import Word
 
@@ -18,14 +23,13 @@ def any_plane(control: Control) -> None:
     """
     if control.path.compensating:
         refuse(control, PLANE_COMPENSATED)
-    control.perform(lambda assembler: assembler.emit(opcodes.PLANE))
+    control.perform(lambda assembler: write_plane(control, 0, assembler))
     roles: dict[int, Vector] = {}
     for index, word in control.take_axis_words():
         role = int(control.number(word))
         if role not in (1, 2, 3) or role in roles or index > 2:
-            control.fail(
-                "plane-axes", "1, 2 and 3 name abscissa, ordinate and the axis across", word
-            )
+            message = "1, 2 and 3 name abscissa, ordinate and the axis across"
+            control.fail("plane-axes", message, word)
         x, y, z = (1.0 if each == index else 0.0 for each in range(3))
         roles[role] = (x, y, z)
     if 1 not in roles or 2 not in roles:
@@ -38,7 +42,7 @@ def incremental_offset(control: Control, assembler: Assembler) -> None:
     """G158 X Y: added to the work offset; without axes it ends."""
     assembler.disturbed(lambda: refuse_change(control))
     programmed_shift("increment", control, assembler)
-    assembler.emit(opcodes.FORGET_POLAR)
+    write_forgotten_polar(assembler)
 
 
 # --- tools and the rotary axis
@@ -51,21 +55,33 @@ def tool_offset(control: Control, word: Word, assembler: Assembler) -> None:
     if number not in (0.0, 1.0):
         message = f"the job gives every tool one offset, D1, not D{number:g}"
         control.fail("tool-offset", message, word)
-    assembler.emit(opcodes.OFFSET_ON, int(number))
-    assembler.emit(opcodes.TOOL_LENGTH)
+    _apply_offset(number, assembler)
 
 
 def next_tool(control: Control, word: Word, assembler: Assembler) -> None:
     """T: the tool that M06 brings, known to the job; T0 leaves the spindle empty."""
     assembler.word_value(word)
-    assembler.emit(opcodes.TOOL, int(bool(control.tools.table)))
+    if control.tools.table:
+        assembler.check(opcodes.LISTED_TOOL, lambda: _look_for_tool(control, word))
+    base.select_tool(assembler)
 
 
 def change_tool(control: Control, assembler: Assembler) -> None:
     """M06: the tool goes into the spindle with its offset D1; T0 has none."""
     assembler.disturbed(lambda: refuse_change(control))
-    assembler.emit(opcodes.CHANGE_TOOL)
-    assembler.emit(opcodes.OFFSET_ON, 1)
+    base.change_tool(control, assembler)
+    _apply_offset(1.0, assembler)
+
+
+def _look_for_tool(control: Control, word: Word) -> None:
+    if control.number(word) != 0.0:
+        tool_numbered(control, word)
+
+
+def _apply_offset(number: float, assembler: Assembler) -> None:
+    """The tool's length and radius count, or (0) do not."""
+    assembler.constant(number)
+    assembler.set_register(OFFSET_ON)
     assembler.emit(opcodes.TOOL_LENGTH)
 
 

@@ -2,11 +2,9 @@
 
 import re
 from collections.abc import Iterator
-from pathlib import Path
 
-from twin.nc.text.library import named_files, with_called_files
+from twin.nc.text.library import Library
 from twin.nc.text.source import Source
-from twin.nc.text.syntax import Language
 
 MARK = "%GLOBAL "
 """Begins the line in front of a global subroutine; a program's own heading has no blank in it."""
@@ -19,21 +17,11 @@ _CALL = re.compile(
 _CALL_SOMEWHERE = re.compile(rb"(?:L|CALL)[ \t]+[A-Z_]", re.IGNORECASE)
 
 
-def with_globals(source: Source, folder: Path, dialect: Language) -> Source:
-    """The program with the global subroutines that it calls, as far as they are found.
-
-    Args:
-        source: The program.
-        folder: Where their files lie, called ``NAME`` or ``NAME.nc`` in any case.
-        dialect: How they are read.
-    """
-    return with_called_files(
-        source, lambda: named_files(folder, ("", ".nc")), _calls, MARK, dialect
-    )
-
-
 def _calls(source: Source) -> Iterator[str]:
     if source.lines.any_holds(_CALL_SOMEWHERE):
         for line in source.lines:
             if (match := _CALL.match(line)) is not None:
                 yield match[1].upper()
+
+
+LIBRARY = Library(_calls, MARK, ("", ".nc"))

@@ -7,11 +7,9 @@ must have ended, polar coordinates are refused (E1305), and what changes the fra
 """
 
 from twin.nc.control.control import Control
-from twin.nc.dialects.fagor8070.memory import PartFrame, memory_of
+from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.dialects.fagor8070.polar import forget_polar
-from twin.nc.geometry.frame import SHIFTS
-from twin.nc.geometry.matrices import IDENTITY
-from twin.nc.iso.offsets import machine_zero
+from twin.nc.iso.machine_coordinates import enter_machine_frame, leave_machine_frame
 from twin.nc.text.blocks import Statement
 
 
@@ -52,29 +50,20 @@ def _move_once(control: Control, statement: Statement) -> None:
 
 
 def _enter(control: Control, statement: Statement) -> None:
-    memory, frame = memory_of(control), control.frame
+    memory = memory_of(control)
     if memory.part_frame is not None:
         return
     if control.path.compensating:
         message = "machine coordinates know no radius compensation"
         hint = "end it by G40 before #MCS"
         control.refuse(statement, "compensation-change", message, hint)
-    zero = machine_zero(control, "#MCS")
-    memory.part_frame = PartFrame(frame.shifts, frame.matrix)
-    names = control.settings.axes.names
-    nothing = [0.0] * len(names)
-    frame.set_shifts([nothing for _ in SHIFTS])
-    frame.set_shift("offset", [zero.get(name, 0.0) for name in names])
-    frame.set_matrix(IDENTITY)
-    control.reframed()
+    memory.part_frame = enter_machine_frame(control, "#MCS")
     forget_polar(control)
 
 
 def _leave(control: Control) -> None:
     memory = memory_of(control)
     assert memory.part_frame is not None
-    control.frame.set_shifts(memory.part_frame.shifts)
-    control.frame.set_matrix(memory.part_frame.matrix)
+    leave_machine_frame(control, memory.part_frame)
     memory.part_frame = None
-    control.reframed()
     forget_polar(control)

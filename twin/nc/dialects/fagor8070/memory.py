@@ -1,31 +1,18 @@
 """What only the Fagor CNC 8070 remembers from block to block."""
 
 import dataclasses
-from typing import NamedTuple
 
 from twin.nc.bytecode.registers import POLAR_ABSCISSA, POLAR_ORDINATE
 from twin.nc.control.constructs import Structure
 from twin.nc.control.control import Control
 from twin.nc.geometry.arcs import Point
-from twin.nc.geometry.matrices import Matrix
+from twin.nc.iso.machine_coordinates import PartFrame
 from twin.nc.text.blocks import Statement
 
 OFFSETS_BY_NUMBER = 20
 """Work offsets that G159 and the table can name; the first six are G54 to G59."""
 
 ModalCall = tuple[str, dict[str, float], Statement]
-
-
-class PartFrame(NamedTuple):
-    """The frame that #MCS has put aside.
-
-    Attributes:
-        shifts: Of every kind, shape (s, k) [mm or deg].
-        matrix: Mirror, scale and rotation.
-    """
-
-    shifts: list[list[float]]
-    matrix: Matrix
 
 
 @dataclasses.dataclass(slots=True)

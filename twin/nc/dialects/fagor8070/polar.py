@@ -1,12 +1,16 @@
 """Where a block of the Fagor CNC 8070 goes: Cartesian, polar, or a coordinate and an angle."""
 
 import dataclasses
-import math
 from collections.abc import Iterable
 
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.bytecode.registers import POLAR_ANGLE, POLAR_RADIUS
+from twin.nc.bytecode.registers import (
+    POLAR_ABSCISSA,
+    POLAR_ANGLE,
+    POLAR_ORDINATE,
+    POLAR_RADIUS,
+)
 from twin.nc.control.block_compiler import BlockCompiler
 from twin.nc.control.codes import GCode
 from twin.nc.control.control import Control
@@ -15,9 +19,6 @@ from twin.nc.dialects.fagor8070.memory import memory_of, polar_origin
 from twin.nc.geometry.arcs import direction
 from twin.nc.geometry.polar import changed, point_at, seen_from
 from twin.nc.text.blocks import Word
-
-HELIX_ANGLE = 0.1
-"""A helix whose pitch misses its end point by more than this earns a warning [deg]."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -37,7 +38,13 @@ class Goal:
 
 def forget_polar(control: Control) -> None:
     """The last polar values no longer hold: they are seen anew from where the tool stands."""
-    control.registers[POLAR_RADIUS] = control.registers[POLAR_ANGLE] = math.nan
+    control.perform(write_forgotten_polar)
+
+
+def write_forgotten_polar(assembler: Assembler) -> None:
+    """As ``forget_polar``, said as instructions."""
+    assembler.empty_register(POLAR_RADIUS)
+    assembler.empty_register(POLAR_ANGLE)
 
 
 def set_polar_origin(control: Control, assembler: Assembler) -> None:
@@ -52,9 +59,14 @@ def set_polar_origin(control: Control, assembler: Assembler) -> None:
     if control.words or len(control.codes) > 1:
         assembler.rare()
     given = [word for word in (abscissa, ordinate) if word is not None]
-    for word in given:
-        assembler.word_value(word)
-    assembler.emit(opcodes.POLAR_ORIGIN, len(given))
+    for axis, register in enumerate((POLAR_ABSCISSA, POLAR_ORDINATE)):
+        if given:
+            assembler.word_value(given[axis])
+            assembler.emit(opcodes.TO_MILLIMETRES)
+        else:
+            assembler.emit(opcodes.COORDINATE, axis)
+        assembler.set_register(register)
+    write_forgotten_polar(assembler)
 
 
 def is_polar(compiler: BlockCompiler, words: Iterable[Word]) -> bool:
@@ -74,7 +86,8 @@ def is_polar(compiler: BlockCompiler, words: Iterable[Word]) -> bool:
 def _words_of_cycles(codes: Iterable[GCode]) -> set[str]:
     """Letters that belong to the drilling cycle which one of these codes calls."""
     rules = [cycle.rule for code in codes if (cycle := code.sets.get("cycle")) is not None]
-    return {letter for rule in rules if isinstance(rule, CycleRule) for letter in rule.words}
+    cycles = [rule for rule in rules if isinstance(rule, CycleRule)]
+    return {letter for rule in cycles for letter in (*rule.words, *rule.options)}
 
 
 def compile_polar(compiler: BlockCompiler, words: Iterable[Word]) -> None:
@@ -159,27 +172,24 @@ def _polar_target(control: Control, *, arc: bool) -> list[float]:
     if memory_of(control).part_frame is not None:
         message = "polar coordinates are not allowed while #MCS is in force (E1305)"
         control.fail("polar-origin", message, control.words.get("R") or control.words.get("Q"))
-    radius, angle = current_polar(control)
     radius_word, angle_word = control.take("R"), control.take("Q")
     target = control.target()
-    if radius_word is not None:
-        value = control.length(radius_word)
-        incremental = control.modal.incremental or radius_word.incremental
-        radius = changed(radius, value, incremental)
-        if radius < 0.0 or (arc and radius == 0.0):
-            control.fail(
-                "polar-radius",
-                f"the polar radius {radius:g} must be positive" + ("" if arc else " or 0"),
-                radius_word,
-            )
-    if angle_word is not None:
-        value = control.number(angle_word)
-        incremental = control.modal.incremental or angle_word.incremental
-        angle = changed(angle, value, incremental)
+    seen = (radius_word is not None) + 2 * (angle_word is not None)
+    words = (control.length(radius_word), 0.0 if angle_word is None else control.number(angle_word))
+    relative = (_counts_on(control, radius_word), _counts_on(control, angle_word))
+    radius, angle = changed(seen, current_polar(control), words, relative)
+    if radius_word is not None and (radius < 0.0 or (arc and radius == 0.0)):
+        message = f"the polar radius {radius:g} must be positive" + ("" if arc else " or 0")
+        control.fail("polar-radius", message, radius_word)
     end = point_at(polar_origin(control), plane.local(control.programmed)[:2], radius, angle)
-    target[:3] = plane.world(*end, plane.local(target).height)
+    plane.aim(target, end)
     control.registers[POLAR_RADIUS], control.registers[POLAR_ANGLE] = radius, angle
     return target
+
+
+def _counts_on(control: Control, word: Word | None) -> bool:
+    """Whether a word counts from where the tool stands."""
+    return control.modal.incremental or (word is not None and word.incremental)
 
 
 def _along_angle(control: Control, target: list[float], word: Word, *, from_abscissa: bool) -> None:
@@ -192,7 +202,7 @@ def _along_angle(control: Control, target: list[float], word: Word, *, from_absc
     start, end = plane.local(control.programmed), plane.local(target)
     if from_abscissa:
         other = start.ordinate + (end.abscissa - start.abscissa) * across / along
-        target[:3] = plane.world(end.abscissa, other, end.height)
+        plane.aim(target, (end.abscissa, other))
     else:
         other = start.abscissa + (end.ordinate - start.ordinate) * across / along
-        target[:3] = plane.world(other, end.ordinate, end.height)
+        plane.aim(target, (other, end.ordinate))

@@ -2,8 +2,8 @@
 
 import re
 from collections.abc import Iterable
+from typing import NoReturn
 
-from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler
 from twin.nc.control.codes import StatementAction, StatementEffect
 from twin.nc.control.control import Control
@@ -12,6 +12,7 @@ from twin.nc.dialects.fagor8070.known_statements import ENDED_ONLY, PASSED_OVER,
 from twin.nc.dialects.fagor8070.machine_coordinates import machine_coordinates
 from twin.nc.dialects.fagor8070.transformations import write_scale
 from twin.nc.dialects.fagor8070.variables import VARIABLE_STATEMENT, assign
+from twin.nc.iso.base import write_dwell
 from twin.nc.text.blocks import Location, Statement
 from twin.nc.text.expressions import Expression
 
@@ -22,9 +23,8 @@ _QUOTED = re.compile(r"[^\"]*\"([^\"]*)\".*")
 
 def _dwell(control: Control, statement: Statement, assembler: Assembler) -> None:
     """#TIME [s]."""
-    column = statement.text_column
-    assembler.value(control.expression(statement.text, column), column)
-    assembler.emit(opcodes.DWELL)
+    flow.put_value(control, statement, assembler)
+    write_dwell(assembler)
 
 
 def skip_comment(control: Control, statement: Statement) -> None:
@@ -35,15 +35,6 @@ def skip_comment(control: Control, statement: Statement) -> None:
             control.program_counter.go(Location(line + 1, 0))
             return
     control.refuse(statement, "open-comment", "#COMMENT END is missing")
-
-
-def stray_comment_end(control: Control, statement: Statement) -> None:
-    """#COMMENT END without its beginning.
-
-    Raises:
-        ProgramError: Always.
-    """
-    control.refuse(statement, "open-comment", "#COMMENT BEGIN is missing")
 
 
 def _scale(control: Control, statement: Statement, assembler: Assembler) -> None:
@@ -62,18 +53,13 @@ def round_parameters(control: Control, statement: Statement) -> None:
     Decision: kinds 1 and 4 give the largest distance from the programmed path, as the machine
     file's tolerance does; the others shape the curve, which the twin chooses itself.
     """
-    values = _values(control, statement)
+    values = [control.compute(*each) for each in _bracketed(control, statement)]
     kind = values[0] if values else 0.0
     if kind not in _ROUNDED or len(values) < 2 or values[1] <= 0.0:
         kinds = " and ".join(map(str, _ROUNDED))
         message = f"only the kinds {kinds} of #ROUNDPAR are simulated, with a distance above 0"
         control.refuse(statement, "unsupported-statement", message, "write #ROUNDPAR[1,0.05]")
     control.modal.corner_tolerance = values[1] * control.modal.unit
-
-
-def _values(control: Control, statement: Statement) -> list[float]:
-    """The values in the square brackets behind a keyword."""
-    return [control.compute(*each) for each in _bracketed(control, statement)]
 
 
 def _bracketed(
@@ -122,20 +108,14 @@ def pass_over(control: Control, statement: Statement) -> None:
 def end_only(control: Control, statement: Statement) -> None:
     """A statement whose OFF alone can be followed, because nothing has begun."""
     if statement.text.strip().upper() != "OFF":
-        _refuse_known(control, statement, ENDED_ONLY[_words(statement)])
+        refuse_known(control, statement)
 
 
-def refuse_known(control: Control, statement: Statement) -> None:
-    """A statement of the control that the twin does not follow.
-
-    Raises:
-        ProgramError: Always.
-    """
-    _refuse_known(control, statement, REFUSED[_words(statement)])
-
-
-def _refuse_known(control: Control, statement: Statement, reason: str) -> None:
-    message = f"{_words(statement)} is known to the control and not simulated: {reason}"
+def refuse_known(control: Control, statement: Statement) -> NoReturn:
+    """A statement of the control that the twin does not follow."""
+    keyword = _words(statement)
+    reason = {**ENDED_ONLY, **REFUSED}[keyword]
+    message = f"{keyword} is known to the control and not simulated: {reason}"
     control.refuse(statement, "unsupported-statement", message)
 
 
@@ -156,7 +136,9 @@ STATEMENTS: dict[str, StatementAction] = {
     **subroutines.STATEMENTS,
     "#TIME": StatementEffect(_dwell),
     "#COMMENT BEGIN": skip_comment,
-    "#COMMENT END": stray_comment_end,
+    "#COMMENT END": lambda control, statement: control.refuse(
+        statement, "open-comment", "#COMMENT BEGIN is missing"
+    ),
     "#MCS": machine_coordinates,
     "#SCALE": StatementEffect(_scale),
     "#ROUNDPAR": round_parameters,

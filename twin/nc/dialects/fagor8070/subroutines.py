@@ -9,6 +9,7 @@ from twin.nc.control.codes import StatementAction, StatementEffect
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.library import MARK
 from twin.nc.dialects.fagor8070.memory import memory_of
+from twin.nc.iso.declared import go_back
 from twin.nc.text.blocks import Location, Statement
 from twin.nc.text.expressions import Expression, ExpressionError, Number
 
@@ -19,10 +20,7 @@ DEEPEST_CALL = 20
 _NAME = re.compile(r"[ \t]*([A-Z_]\w*)[ \t]*", re.IGNORECASE)
 _TITLE = re.compile(r"[ \t]*[^,;(]*(?:\([^)]*\)[ \t]*)?")
 _LABEL = r"[ \t]*(\[?[ \t]*[A-Z_0-9]+[ \t]*\]?)[ \t]*"
-_RANGE = re.compile(
-    rf"[ \t]*\[{_LABEL},{_LABEL}(?:,(.*))?\][ \t]*",
-    re.IGNORECASE,
-)
+_RANGE = re.compile(rf"[ \t]*\[{_LABEL},{_LABEL}(?:,(.*))?\][ \t]*", re.IGNORECASE)
 _ARGUMENT = re.compile(r"[ \t]*([A-Z])[ \t]*=?", re.IGNORECASE)
 _NUMBERED = re.compile(r"L([0-9]+)")
 """Decision: ``#CALL L100`` calls ``%L 100`` where no subroutine is called L100, as post-processors write."""
@@ -113,21 +111,18 @@ def begin(control: Control) -> None:
 def lines_around(control: Control) -> range:
     """The program or subroutine that is being run; labels are its own."""
     headings, here = memory_of(control).headings, control.block.line - 1
+    count = len(control.program_counter.lines)
     begin = max((line for line in headings if line <= here), default=0)
-    return range(
-        begin,
-        min((line for line in headings if line > here), default=len(control.program_counter.lines)),
-    )
+    return range(begin, min((line for line in headings if line > here), default=count))
 
 
 def heading(control: Control, statement: Statement) -> None:
     """%: the program's name; nowhere else. A global subroutine behind it ends the program."""
-    if control.block.line - 1 in memory_of(control).headings and statement.text.startswith(
-        MARK[1:]
-    ):
+    memory, here = memory_of(control), control.block.line - 1
+    if here in memory.headings and statement.text.startswith(MARK[1:]):
         control.program_counter.end()
         return
-    if control.block.line - 1 != memory_of(control).main:
+    if here != memory.main:
         message = "a heading can stand only before the program or a local subroutine"
         hint = "end the program by M30 and a subroutine by M17 before the next begins"
         control.refuse(statement, "heading", message, hint)
@@ -144,16 +139,9 @@ def _call(control: Control, statement: Statement, assembler: Assembler) -> None:
 
 def _called_line(control: Control, statement: Statement) -> int:
     """First line, from 0, of the subroutine that LL, L or #CALL names."""
-    name, memory = _only_name(control, statement), memory_of(control)
+    name, memory = _name_of(control, statement, alone=True), memory_of(control)
     tables = {"LL": memory.subroutines, "L": memory.library}
     return _line_of(control, statement, name, tables.get(statement.keyword))
-
-
-def _only_name(control: Control, statement: Statement) -> str:
-    match = _NAME.fullmatch(statement.text)
-    if match is None:
-        control.refuse(statement, "call-values", "the call needs a name and no more")
-    return match[1].upper()
 
 
 def _call_with_parameters(control: Control, statement: Statement, assembler: Assembler) -> None:
@@ -168,8 +156,10 @@ def _call_with_parameters(control: Control, statement: Statement, assembler: Ass
 
 def call_modally(control: Control, statement: Statement) -> None:
     """#MCALL NAME A1: run the subroutine after every block that moves, until #MDOFF."""
-    memory = memory_of(control)
-    memory.modal_call = (*_computed_arguments(control, statement), statement)
+    name, values = _name_of(control, statement), dict[str, float]()
+    for parameter, expression, column in _arguments(control, statement):
+        values[parameter] = control.compute(expression, column)
+    memory_of(control).modal_call = (name, values, statement)
 
 
 def end_modal_call(control: Control, _statement: Statement) -> None:
@@ -193,19 +183,12 @@ def call_after_motion(control: Control) -> None:
     control.perform(write, _span(statement))
 
 
-def _computed_arguments(control: Control, statement: Statement) -> tuple[str, dict[str, float]]:
-    values: dict[str, float] = {}
-    name = _name_of(control, statement)
-    for parameter, expression, column in _arguments(control, statement):
-        values[parameter] = control.compute(expression, column)
-    return name, values
-
-
-def _name_of(control: Control, statement: Statement) -> str:
-    """The name behind #PCALL or #MCALL."""
-    match = _NAME.match(statement.text)
+def _name_of(control: Control, statement: Statement, *, alone: bool = False) -> str:
+    """The name behind a call; ``alone``: nothing may follow it."""
+    match = (_NAME.fullmatch if alone else _NAME.match)(statement.text)
     if match is None:
-        control.refuse(statement, "call-values", "the call needs a name")
+        message = "the call needs a name" + (" and no more" if alone else "")
+        control.refuse(statement, "call-values", message)
     return match[1].upper()
 
 
@@ -247,15 +230,9 @@ def _line_of(
     return line
 
 
-def _return(_control: Control, _statement: Statement, assembler: Assembler) -> None:
-    """#RET: back to the caller."""
-    assembler.check_return()
-    assembler.end_call()
-
-
 def return_(control: Control) -> None:
     """M17, M29: back to the caller."""
-    control.perform(lambda assembler: _return(control, Statement("", "", 0, 0), assembler))
+    control.perform(go_back)
 
 
 STATEMENTS: dict[str, StatementAction] = {
@@ -267,5 +244,5 @@ STATEMENTS: dict[str, StatementAction] = {
     "#PCALL": StatementEffect(_call_with_parameters),
     "#MCALL": call_modally,
     "#MDOFF": end_modal_call,
-    "#RET": StatementEffect(_return),
+    "#RET": StatementEffect(lambda _control, _statement, assembler: go_back(assembler)),
 }

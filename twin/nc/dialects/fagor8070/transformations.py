@@ -1,17 +1,30 @@
 """Mirror, scale and rotation of the Fagor CNC 8070."""
 
 from twin.nc.bytecode import opcodes
-from twin.nc.bytecode.assembler import Assembler
+from twin.nc.bytecode.assembler import Assembler, Finding
+from twin.nc.bytecode.registers import (
+    ROTATION,
+    ROTATION_ABSCISSA,
+    ROTATION_ORDINATE,
+    SCALE,
+    SIGNS,
+)
 from twin.nc.control.codes import Effect
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.machine_coordinates import refuse_change
+from twin.nc.dialects.fagor8070.polar import write_forgotten_polar
+from twin.nc.geometry.matrices import LARGEST_SCALE, SMALLEST_SCALE
+from twin.nc.iso.findings import SCALE_RANGE, TRANSFORM_COMPENSATED
+
+_MIRROR_SIGN = Finding("mirror", "a mirror takes -1 or 1 for X, Y and Z")
+_ROTATED_ALREADY = Finding("rotation-active", "a rotation is in force", "end it by G73 alone")
 
 
 def mirror_off(control: Control, assembler: Assembler) -> None:
     """G10."""
     for index in range(3):
         assembler.constant(1.0)
-        assembler.emit(opcodes.MIRROR, index)
+        assembler.set_register(SIGNS + index)
     _update(control, assembler)
 
 
@@ -20,7 +33,7 @@ def mirror(index: int) -> Effect:
 
     def write(control: Control, assembler: Assembler) -> None:
         assembler.constant(-1.0)
-        assembler.emit(opcodes.MIRROR, index)
+        assembler.set_register(SIGNS + index)
         _update(control, assembler)
 
     return Effect(write)
@@ -35,7 +48,8 @@ def mirror_axes(control: Control, assembler: Assembler) -> None:
         if index > 2:
             control.fail("mirror", "G14 takes -1 or 1 for X, Y and Z", word)
         assembler.word_value(word)
-        assembler.emit(opcodes.MIRROR, index)
+        assembler.check(opcodes.SIGN, _MIRROR_SIGN)
+        assembler.set_register(SIGNS + index)
     _update(control, assembler)
 
 
@@ -47,7 +61,9 @@ def scale(control: Control, assembler: Assembler) -> None:
 
 def write_scale(control: Control, assembler: Assembler) -> None:
     """Multiply lengths by the topmost value."""
-    assembler.emit(opcodes.SCALE)
+    assembler.check(opcodes.AT_LEAST, SCALE_RANGE, SMALLEST_SCALE)
+    assembler.check(opcodes.AT_MOST, SCALE_RANGE, LARGEST_SCALE)
+    assembler.set_register(SCALE)
     _update(control, assembler)
 
 
@@ -58,16 +74,23 @@ def rotate(control: Control, assembler: Assembler) -> None:
     """
     angle, center = control.take("Q"), [control.take("I"), control.take("J")]
     if angle is None:
-        assembler.emit(opcodes.END_ROTATION)
+        assembler.empty_register(ROTATION)
     else:
         for word in (angle, *center):
             assembler.word_value(word)
-        assembler.emit(opcodes.ROTATE, blamed=angle)
+        assembler.register(ROTATION)
+        assembler.check(opcodes.ABSENT, _ROTATED_ALREADY, blamed=angle)
+        assembler.drop()
+        for register in (ROTATION_ORDINATE, ROTATION_ABSCISSA):
+            assembler.emit(opcodes.TO_MILLIMETRES)
+            assembler.set_register(register)
+        assembler.set_register(ROTATION)
     _update(control, assembler)
 
 
 def _update(control: Control, assembler: Assembler) -> None:
     """Scale, then mirror, then rotation about its centre in the working plane hold from here on."""
     assembler.disturbed(lambda: refuse_change(control))
+    assembler.check(opcodes.UNCOMPENSATED, TRANSFORM_COMPENSATED)
     assembler.emit(opcodes.TRANSFORM)
-    assembler.emit(opcodes.FORGET_POLAR)
+    write_forgotten_polar(assembler)

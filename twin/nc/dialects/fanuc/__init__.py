@@ -73,10 +73,6 @@ _FAMILY = (
 """What the controls of the family have in common: alone it tells none of them."""
 
 
-def _haas_memory() -> FanucMemory:
-    return FanucMemory(variant=HAAS_VARIANT)
-
-
 FANUC = Dialect(
     name="fanuc",
     title="Fanuc 0i-MF, 30i (milling)",
@@ -158,7 +154,7 @@ FANUC = Dialect(
     after_motion=after_motion,
     statements={**flow.STATEMENTS, **macro_calls.CALLS_BY_CODE},
     finish=programs.finish,
-    library=programs.with_subprograms,
+    library=programs.LIBRARY,
     compile_block=block_compiler.compile_block,
     disturbed=acts_on_plain_blocks,
     pointless=decimal_point.pointless,
@@ -200,6 +196,6 @@ HAAS = dataclasses.replace(
         shared_marks.G136,
         shared_marks.CYLINDER,
     ),
-    memory=_haas_memory,
+    memory=lambda: FanucMemory(HAAS_VARIANT),
 )
 """The Haas mills."""

@@ -1,6 +1,5 @@
 """G and M codes of the Fanuc 0i-MF and 30i, milling, as far as the controls of the family share them."""
 
-import dataclasses
 from collections.abc import Mapping
 
 from twin.nc.canonical import Corner
@@ -14,18 +13,14 @@ from twin.nc.dialects.fanuc import (
     offsets,
     programs,
     reference_points,
-    tool_offsets,
     transformations,
 )
 from twin.nc.dialects.fanuc.cycles.canned_cycles import cycles
 from twin.nc.dialects.fanuc.memory import Variant, memory_of
+from twin.nc.dialects.fanuc.tool_offsets import compensation_code, length_code
 from twin.nc.iso import base, fixed_cycles
 from twin.nc.iso.declared import flow_function, instead, modal, motion_code, refused
-from twin.nc.iso.tool_compensation import (
-    END_OF_COMPENSATION,
-    LEFT,
-    RIGHT,
-)
+from twin.nc.iso.tool_compensation import END_OF_COMPENSATION, LEFT, RIGHT, set_length
 from twin.nc.path.paces import FeedMode
 
 
@@ -39,33 +34,20 @@ def _lose_feed(control: Control) -> None:
             control.feed = None
 
 
-def passed_over(meaning: str, letters: str, group: str = "") -> GCode:
-    """A code whose words change nothing of the path here."""
+def passed_over(meaning: str, letters: str, *, modes: tuple[float, ...] = ()) -> GCode:
+    """A code whose words change nothing of the path here; other modes P are refused, if there are any."""
 
     def perform(control: Control) -> None:
+        mode, code = control.words.get("P"), control.codes[-1][0]
+        if modes and (mode is None or control.number(mode) not in modes):
+            message = "of the modes of G5 only P10000 and P0 are known to change no path"
+            control.fail("unsupported-g", message, mode or control.code_word(5))
         for letter in letters:
             control.take(letter)
-        word = control.codes[-1][0]
-        message = f"{word.text} does not change the path here: {meaning}"
-        control.report.notice(word.text, message, word.column, word.width)
+        message = f"{code.text} does not change the path here: {meaning}"
+        control.report.notice(code.text, message, code.column, code.width)
 
-    return GCode(meaning=meaning, group=group, action=perform, ground="manual")
-
-
-def _contour_control() -> GCode:
-    """G5 P10000 and P0, which look ahead; other modes of G5 are refused."""
-    code = passed_over("look-ahead (high-precision contour control): P10000 on, P0 off", "P")
-    pass_over = code.action
-    assert pass_over is not None
-
-    def action(control: Control) -> None:
-        word = control.words.get("P")
-        if word is None or control.number(word) not in (0.0, 10000.0):
-            message = "of the modes of G5 only P10000 and P0 are known to change no path"
-            control.fail("unsupported-g", message, word or control.code_word(5))
-        pass_over(control)
-
-    return dataclasses.replace(code, action=action)
+    return GCode(meaning=meaning, action=perform, ground="manual")
 
 
 NO_PROBE = "the twin has no probe to touch with"
@@ -84,7 +66,9 @@ _MOTION: Mapping[float, GCode] = {
         "dwell, seconds in X or milliseconds in P",
         base.dwell("PX", "G4 needs its time", "G4 P500 or G4 X0.5 waits half a second"),
     ),
-    5: _contour_control(),
+    5: passed_over(
+        "look-ahead (high-precision contour control): P10000 on, P0 off", "P", modes=(0.0, 10000.0)
+    ),
     5.1: passed_over("look-ahead (AI contour control): Q1 on, Q0 off", "QRXYZC"),
     8: passed_over("look-ahead (advanced preview): P1 on, P0 off", "P"),
     9: modal("exact stop in this block", once=True, corner=Corner.EXACT_STOP),
@@ -112,12 +96,7 @@ _PLACE: Mapping[float, GCode] = {
     52: instead("local origin, in every work offset", offsets.local_offset),
     53: instead("machine coordinates in this block", reference_points.machine_move),
     **{
-        number: modal(
-            f"work offset G{number} of the job",
-            "offset",
-            offsets.offset_code(number),
-            compiler=offsets.compile_offset(number),
-        )
+        number: modal(f"work offset G{number} of the job", "offset", offsets.offset_code(number))
         for number in range(54, 60)
     },
     54.1: modal("work offset P1 to P300 of the job", "offset", offsets.extended_offset),
@@ -127,29 +106,19 @@ _PLACE: Mapping[float, GCode] = {
 }
 _TOOL: Mapping[float, GCode] = {
     40: modal("radius compensation off", "compensation", END_OF_COMPENSATION),
-    41: modal(
-        "compensation by D, tool left",
-        "compensation",
-        tool_offsets.compensation_code(41, LEFT),
-        compiler=tool_offsets.compile_compensation(LEFT),
-    ),
-    42: modal(
-        "compensation by D, tool right",
-        "compensation",
-        tool_offsets.compensation_code(42, RIGHT),
-        compiler=tool_offsets.compile_compensation(RIGHT),
-    ),
-    43: modal("tool length by H", "length", tool_offsets.length_code(43, 1.0)),
-    44: modal("tool length by H, reversed", "length", tool_offsets.length_code(44, -1.0)),
-    49: modal("tool length off", "length", tool_offsets.end_length),
+    41: modal("compensation by D, tool left", "compensation", compensation_code(41, LEFT)),
+    42: modal("compensation by D, tool right", "compensation", compensation_code(42, RIGHT)),
+    43: modal("tool length by H", "length", length_code(43, 1.0)),
+    44: modal("tool length by H, reversed", "length", length_code(44, -1.0)),
+    49: modal("tool length off", "length", lambda control: set_length(control, 0.0)),
 }
 _TRANSFORMATIONS: Mapping[float, GCode] = {
-    50: modal("scale off", "scale", transformations.end_scale),
+    50: modal("scale off", "scale", transformations.end("scale")),
     51: instead("scale about X Y Z: P, or I J K", transformations.scale, "scale"),
     50.1: instead("mirror off", transformations.end_mirror, "mirror"),
     51.1: instead("mirror the axes at the places named", transformations.mirror, "mirror"),
     68: instead("rotation by R about a point of the plane", transformations.rotate, "rotation"),
-    69: modal("rotation off", "rotation", transformations.end_rotation),
+    69: modal("rotation off", "rotation", transformations.end("rotation")),
 }
 _FEEDS: Mapping[float, GCode] = {
     93: modal(

@@ -32,6 +32,11 @@ _SCALED = 51.0
 _TURNED = 68.0
 _CYLINDER = frozenset({7.1, 107.0})
 """Codes whose rotary axis gives a radius."""
+_FEED_MODES = {
+    93.0: FeedMode.BLOCKS_PER_MINUTE,
+    95.0: FeedMode.PER_REVOLUTION,
+    94.0: FeedMode.PER_MINUTE,
+}
 _UNTOUCHED = frozenset({5.1, 8.0})
 """Codes whose words are switches."""
 
@@ -83,13 +88,11 @@ def _counted(
     if factor == 1.0:
         return word
     value = word.value * factor
-    control.report.warn_once(
-        "decimal-point",
-        f"{word.text} has no decimal point: it counts {factor:g} {unit}, so it is {value:g} {unit}",
-        word.column,
-        word.width,
-        hint=f'write {word.text}. for whole units, or decimal_point = "calculator" into the job',
+    message = (
+        f"{word.text} has no decimal point: it counts {factor:g} {unit}, so it is {value:g} {unit}"
     )
+    hint = f'write {word.text}. for whole units, or decimal_point = "calculator" into the job'
+    control.report.warn_once("decimal-point", message, word.column, word.width, hint=hint)
     return word._replace(value=value)
 
 
@@ -146,15 +149,11 @@ def _increment(control: Control, address: str, codes: set[float | Expression]) -
 def _feed_increment(
     control: Control, codes: set[float | Expression], *, inches: bool
 ) -> tuple[float, str]:
-    per_revolution = 95.0 in codes or (
-        control.modal.feed_mode is FeedMode.PER_REVOLUTION and not codes & {93.0, 94.0}
-    )
-    per_block = 93.0 in codes or (
-        control.modal.feed_mode is FeedMode.BLOCKS_PER_MINUTE and not codes & {94.0, 95.0}
-    )
-    if per_block:
+    written = (mode for code, mode in _FEED_MODES.items() if code in codes)
+    mode = next(written, control.modal.feed_mode)
+    if mode is FeedMode.BLOCKS_PER_MINUTE:
         return 1.0, ""
-    if per_revolution:
+    if mode is FeedMode.PER_REVOLUTION:
         return (_INCH_INCREMENT, "inch") if inches else (0.01, "mm")
     of_mm, of_inch = memory_of(control).variant.feed_increments
     return (of_inch, "inch/min") if inches else (of_mm, "mm/min")

@@ -38,9 +38,8 @@ def circular_pocket(control: Control, *, clockwise: bool) -> None:
     if control.modal.plane is not XY:
         control.fail("cycle-plane", "a circular pocket lies in the plane X Y", hint="write G17")
     if step is not None and last is None:
-        control.fail(
-            "cycle-word", "Q makes circles larger up to the radius K, which is missing", step
-        )
+        message = "Q makes circles larger up to the radius K, which is missing"
+        control.fail("cycle-word", message, step)
     tool = radius_in_force(control)
     radii = [control.length(first)]
     if last is not None:
@@ -88,7 +87,7 @@ def _arc(
     if sweep is None:
         control.line_to(there, rapid=False)
     else:
-        control.arc_to(there, (*center, there[2]), sweep)
+        control.arc_to(there, center, sweep)
 
 
 def _pocket(meaning: str, *, clockwise: bool) -> GCode:
@@ -101,7 +100,10 @@ def _pocket(meaning: str, *, clockwise: bool) -> GCode:
 
 def _offset(number: int) -> GCode:
     pair = number - 109
-    action = offsets.numbered_code(number, pair)
+
+    def action(control: Control) -> None:
+        offsets.select(control, offsets.further(control, pair), control.code_word(number))
+
     return modal(f"work offset G154 P{pair} of the job", "offset", action)
 
 

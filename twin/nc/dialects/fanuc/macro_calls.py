@@ -72,7 +72,7 @@ def _call(control: Control, statement: Statement, assembler: Assembler) -> None:
     arguments = list(_arguments(control, words))
     counted = any(decimal_point.is_counted(control, word) for _, word in arguments)
     if often is not None or counted:
-        assembler.interpreted(lambda: _call_at_once(control, words))
+        assembler.interpreted(lambda: _run(control, _modal_call(control, words)))
         return
     number = whole(
         control, program._replace(value=assembler.known(program)), "call-values", "program number"
@@ -105,10 +105,6 @@ def _computed(control: Control, word: Word) -> Word:
     if isinstance(word.value, Expression):
         return word._replace(value=control.evaluate(word.value, word))
     return word
-
-
-def _call_at_once(control: Control, words: tuple[Word, ...]) -> None:
-    _run(control, _modal_call(control, words))
 
 
 def _run(control: Control, asked: ModalCall) -> None:

@@ -7,8 +7,8 @@ all of them alike; a work offset ends neither (manual).
 
 import re
 
-from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.control.codes import Action, CodeWriter
+from twin.nc.bytecode.assembler import Assembler
+from twin.nc.control.codes import Effect
 from twin.nc.control.control import Control
 from twin.nc.dialects.fanuc.memory import letter_patterns, memory_of, refuse_transformed
 from twin.nc.dialects.fanuc.programs import whole
@@ -34,16 +34,21 @@ def further(control: Control, number: int) -> str:
     return next((each for each in names if each in control.settings.offsets), names[0])
 
 
-def offset_code(number: int) -> Action:
-    """G54 to G59; ``G54 P1`` is G54.1 P1."""
+def offset_code(number: int) -> Effect:
+    """G54 to G59; ``G54 P1`` is G54.1 P1. The compiled tier knows the job's values only."""
+    name = f"G{number}"
 
-    def action(control: Control) -> None:
+    def write(control: Control, assembler: Assembler) -> None:
+        memory, word = memory_of(control), control.code_word(number)
         if number == 54 and "P" in control.words:
-            extended_offset(control)
+            assembler.interpreted(lambda: extended_offset(control))
+        elif "P" in control.words or memory.writes_offsets or memory.transforms:
+            assembler.interpreted(lambda: select(control, name, word))
         else:
-            select(control, f"G{number}", control.code_word(number))
+            values = offset_of_job(control, name, word)
+            write_job_offset(control, values, assembler, ends_preset=False)
 
-    return action
+    return Effect(write)
 
 
 def extended_offset(control: Control) -> None:
@@ -58,11 +63,6 @@ def extended_offset(control: Control) -> None:
         control.fail("no-offset", f"there is no work offset P{number}", word)
     select(control, further(control, number), word)
     memory_of(control).extended_number = number
-
-
-def numbered_code(number: int, pair: int) -> Action:
-    """Haas G110 to G129 are G154 P1 to P20."""
-    return lambda control: select(control, further(control, pair), control.code_word(number))
 
 
 def select(control: Control, name: str, word: Word | None) -> None:
@@ -111,20 +111,6 @@ def read_offset(control: Control, name: str | None, axis: str, code: str) -> flo
     return offset_values(control, name).get(axis, 0.0) - zero.get(axis, 0.0)
 
 
-def compile_offset(number: int) -> CodeWriter:
-    """A work offset of the job, for the compiled tier; not where the program writes offsets."""
-    name = f"G{number}"
-
-    def write(control: Control, assembler: Assembler) -> None:
-        memory = memory_of(control)
-        if "P" in control.words or memory.writes_offsets or memory.transforms:
-            raise UnsupportedError
-        values = offset_of_job(control, name, control.code_word(number))
-        write_job_offset(control, values, assembler, ends_preset=False)
-
-    return write
-
-
 def local_offset(control: Control) -> None:
     """G52: shifts all work offsets; coordinates count from the work offset; 0 ends it."""
     refuse_transformed(control, "G52")
@@ -161,10 +147,9 @@ def end_preset(control: Control) -> None:
     words = control.take_axis_words()
     if not words:
         control.fail("preset", "G92.1 needs the axes whose preset ends", hint="G92.1 X0 Y0 Z0")
-    shifts = control.frame.shift("preset"), control.frame.shift("increment")
-    for index, _ in words:
-        for shift in shifts:
+    for name in ("preset", "increment"):
+        shift = control.frame.shift(name)
+        for index, _ in words:
             shift[index] = 0.0
-    control.frame.set_shift("preset", shifts[0])
-    control.frame.set_shift("increment", shifts[1])
+        control.frame.set_shift(name, shift)
     control.reframed()

@@ -6,17 +6,16 @@ subprogram that the file lacks is a file of its own beside it: O2000, O2000.nc o
 
 import re
 from collections.abc import Iterator
-from pathlib import Path
 
 from twin.nc.bytecode.assembler import Assembler
 from twin.nc.bytecode.frames import AGAIN, CALLS
 from twin.nc.control.control import Control
 from twin.nc.dialects.fanuc.memory import holds_any, letter_patterns, memory_of
+from twin.nc.iso.declared import go_back
 from twin.nc.text.blocks import Location, Word
-from twin.nc.text.library import named_files, with_called_files
+from twin.nc.text.library import Library
 from twin.nc.text.lines import Lines
 from twin.nc.text.source import Source
-from twin.nc.text.syntax import Language
 
 _HEADING = re.compile(r"[ \t]*[O:][ \t]*([0-9]{1,8})(?![0-9.])", re.IGNORECASE)
 _HEADING_SOMEWHERE = (*letter_patterns("O", rb"[ \t]*[0-9]"), re.compile(rb":[ \t]*[0-9]"))
@@ -25,29 +24,14 @@ _CALL = re.compile(
 )
 _CALL_SOMEWHERE = re.compile(rb"(?:M0*98|G0*6[56])(?![0-9.])", re.IGNORECASE)
 _FILE = re.compile(r"O?0*([0-9]{1,8})")
-_SUFFIXES = ("", ".nc", ".cnc", ".tap", ".prg", ".txt")
 _BLANK = re.compile(r"[ \t]*(?:%.*)?")
 _REPEATS = 10_000
 """P of M98 holds how often the subprogram runs in the digits above the last four."""
 
 
-def with_subprograms(source: Source, folder: Path, dialect: Language) -> Source:
-    """The program with the subprograms that it calls and does not hold, as far as they are found.
-
-    Args:
-        source: The program.
-        folder: Where their files lie.
-        dialect: How they are read.
-    """
-    return with_called_files(source, lambda: _files(folder), _calls, "O", dialect)
-
-
-def _files(folder: Path) -> dict[str, Path]:
-    found: dict[str, Path] = {}
-    for name, path in named_files(folder, _SUFFIXES).items():
-        if (match := _FILE.fullmatch(name)) is not None:
-            found.setdefault(match[1], path)
-    return found
+def _number_of_file(name: str) -> str | None:
+    match = _FILE.fullmatch(name)
+    return None if match is None else match[1]
 
 
 def _calls(source: Source) -> Iterator[str]:
@@ -69,6 +53,9 @@ def _headings(lines: Lines) -> Iterator[tuple[int, int]]:
     for line, text in enumerate(lines):
         if (match := _HEADING.match(text)) is not None:
             yield line, int(match[1])
+
+
+LIBRARY = Library(_calls, "O", ("", ".nc", ".cnc", ".tap", ".prg", ".txt"), _number_of_file)
 
 
 def begin(control: Control) -> None:
@@ -100,19 +87,19 @@ def heading(control: Control, word: Word) -> None:
     """
     memory, line = memory_of(control), control.block.line - 1
     if line != memory.main:
-        control.fail(
-            "program-end",
-            f"{word.text} begins here, and the program before it has not ended",
-            word,
-            hint="a program ends by M30 or M2, a subprogram by M99",
-        )
+        message = f"{word.text} begins here, and the program before it has not ended"
+        hint = "a program ends by M30 or M2, a subprogram by M99"
+        control.fail("program-end", message, word, hint=hint)
     if control.program_counter.is_calling or len(control.block.words) > 1:
         control.fail("program-end", f"{word.text} must stand alone before its program", word)
 
 
-def lines_around(control: Control) -> range:
-    """The program that is being run; labels are its own."""
-    return _lines_around(control, control.block.line - 1)
+def lines_around(control: Control, line: int | None = None) -> range:
+    """The program that a line, from 0, stands in, else the one that is being run; labels are its own."""
+    headings, count = memory_of(control).headings, len(control.program_counter.lines)
+    here = control.block.line - 1 if line is None else line
+    first = max((each for each in headings if each <= here), default=0)
+    return range(first, min((each for each in headings if each > here), default=count))
 
 
 def whole(control: Control, word: Word, code: str, meaning: str) -> int:
@@ -151,12 +138,9 @@ def line_of(control: Control, number: int, word: Word | None) -> int:
     line = memory_of(control).programs.get(number)
     if line is None:
         known = ", ".join(f"O{each}" for each in sorted(memory_of(control).programs)) or "none"
-        control.fail(
-            "unknown-subprogram",
-            f"there is no program O{number}",
-            word,
-            hint=f"programs of this file: {known}; or a file O{number}.nc beside it",
-        )
+        message = f"there is no program O{number}"
+        hint = f"programs of this file: {known}; or a file O{number}.nc beside it"
+        control.fail("unknown-subprogram", message, word, hint=hint)
     return line
 
 
@@ -168,7 +152,7 @@ def call(control: Control) -> None:
     repeats = None if often is None else whole(control, often, "repeat-count", "count")
     number = whole(control, word, "call-values", "program number")
     number, count = called(control, number, repeats)
-    run_program(control, line_of(control, number, word), count, word)
+    run_part(control, Location(line_of(control, number, word), 0), count, word)
 
 
 def call_block(control: Control) -> None:
@@ -182,11 +166,6 @@ def call_block(control: Control) -> None:
         number, (word.column, word.width), "M97", lines_around(control)
     )
     run_part(control, label, count, word)
-
-
-def run_program(control: Control, line: int, count: int, word: Word) -> None:
-    """Run the program that begins at a line, from 0, so often."""
-    run_part(control, Location(line, 0), count, word)
 
 
 def run_part(control: Control, first: Location, count: int, word: Word) -> None:
@@ -212,12 +191,6 @@ def compile_call(control: Control, first: Location, count: int, assembler: Assem
     assembler.call(first, deepest, often=count > 1)
 
 
-def compile_return(assembler: Assembler) -> None:
-    """M99 as instructions."""
-    assembler.check_return()
-    assembler.end_call()
-
-
 def return_(control: Control) -> None:
     """M99: back behind the call; with P at the block of that number.
 
@@ -227,8 +200,8 @@ def return_(control: Control) -> None:
     if counter.is_calling:
         if target is not None:
             counter.calls[counter.progress[CALLS] - 1, AGAIN] = 0
-        control.perform(compile_return)
-        around = _lines_around(control, counter.location.line)
+        control.perform(go_back)
+        around = lines_around(control, counter.location.line)
     elif target is None:
         message = "M99 in the main program begins it anew, for ever: here it ends"
         control.report.warn_once("endless-main", message, hint="end the main program by M30")
@@ -240,12 +213,6 @@ def return_(control: Control) -> None:
         number = whole(control, target, "jump-target", "block number")
         span = (target.column, target.width)
         counter.go(counter.find_label(number, span, "M99", around))
-
-
-def _lines_around(control: Control, line: int) -> range:
-    headings, count = memory_of(control).headings, len(control.program_counter.lines)
-    first = max((each for each in headings if each <= line), default=0)
-    return range(first, min((each for each in headings if each > line), default=count))
 
 
 def finish(control: Control) -> None:

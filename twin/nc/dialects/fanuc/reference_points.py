@@ -10,20 +10,16 @@ from twin.nc.dialects.fanuc.programs import whole
 from twin.nc.iso.machine_coordinates import machine_frame
 
 
-def go_home(control: Control) -> None:
-    """G28: rapidly to the point of the block, then its axes to machine zero."""
-    _go_home(control, "G28")
-
-
 def go_to_reference(control: Control) -> None:
     """G30 P2, P3, P4: as G28, to the second, third or fourth reference point."""
     word = control.take("P")
     if word is not None and not 2 <= whole(control, word, "reference-point", "number") <= 4:
         control.fail("reference-point", f"there is no reference point {word.text}", word)
-    _go_home(control, "G30")
+    go_home(control, "G30")
 
 
-def _go_home(control: Control, code: str) -> None:
+def go_home(control: Control, code: str = "G28") -> None:
+    """G28: rapidly to the point of the block, then its axes to machine zero."""
     axes = _named_axes(control)
     if not axes and memory_of(control).variant.home_without_axes:
         axes = list(range(len(control.settings.axes)))
@@ -92,12 +88,8 @@ def machine_move(control: Control) -> None:
     """
     word = control.code_word(53)
     if control.modal.incremental:
-        control.fail(
-            "reference-point",
-            "G53 counts from machine zero, and G91 is in force",
-            word,
-            "write G90 G53",
-        )
+        message = "G53 counts from machine zero, and G91 is in force"
+        control.fail("reference-point", message, word, "write G90 G53")
     if not control.words.keys() & control.axis_letters:
         control.fail("reference-point", "G53 needs the axes that shall move", word, "G53 Z0")
     motion, by_motion = control.active.get("motion"), memory_of(control).variant.machine_by_motion

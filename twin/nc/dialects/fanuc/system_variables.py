@@ -10,6 +10,7 @@ from typing import NoReturn
 from twin.nc.control.control import Control
 from twin.nc.dialects.fanuc import offsets, tool_offsets
 from twin.nc.dialects.fanuc.memory import memory_of
+from twin.nc.dialects.fanuc.programs import lines_around
 from twin.nc.geometry.frame import SHIFTS
 from twin.nc.iso.offsets import machine_zero
 from twin.nc.text.expressions import ExpressionError
@@ -47,7 +48,7 @@ def read(control: Control, number: int) -> float:
         _refuse(number)
     name, axis = found
     value = offsets.read_offset(control, name, axis, f"#{number}")
-    return value / _unit(control, control.axis_index[axis])
+    return value / control.unit_of(control.axis_index[axis])
 
 
 def write(control: Control, number: int, value: float) -> None:
@@ -77,7 +78,7 @@ def write(control: Control, number: int, value: float) -> None:
     if found is None:
         _refuse(number)
     name, axis = found
-    value *= _unit(control, control.axis_index[axis])
+    value *= control.unit_of(control.axis_index[axis])
     offsets.write_offset(control, name, axis, value, f"#{number}")
     offsets.put_into_force(control)
 
@@ -86,18 +87,12 @@ def _refuse(number: int) -> NoReturn:
     if number == 0:
         raise ExpressionError("control-variable", "#0 is always vacant and takes no value")
     if number < 1000:
-        raise ExpressionError(
-            "unknown-variable",
-            f"there is no variable #{number}",
-            None,
-            "#1 to #33 belong to the call, #100 to #199 and #500 to #999 to all programs",
-        )
-    raise ExpressionError(
-        "control-variable",
-        f"#{number} belongs to the control, and the twin does not simulate it",
-        None,
-        f'the job can give its value: [variables] "#{number}" = 0.0',
-    )
+        message = f"there is no variable #{number}"
+        hint = "#1 to #33 belong to the call, #100 to #199 and #500 to #999 to all programs"
+        raise ExpressionError("unknown-variable", message, None, hint)
+    message = f"#{number} belongs to the control, and the twin does not simulate it"
+    hint = f'the job can give its value: [variables] "#{number}" = 0.0'
+    raise ExpressionError("control-variable", message, None, hint)
 
 
 def _alarm(control: Control, value: float) -> NoReturn:
@@ -109,10 +104,6 @@ def _alarm(control: Control, value: float) -> NoReturn:
     message = f"the program raises the alarm {first + value:g}{said}"
     column = max(line.find("#"), 0)
     control.report.fail("program-alarm", message, column, max(len(line) - column, 1))
-
-
-def _unit(control: Control, index: int) -> float:
-    return control.modal.unit if control.linear[index] else 1.0
 
 
 def _axis(control: Control, place: int, number: int) -> int:
@@ -141,21 +132,17 @@ def _position(control: Control, number: int) -> float:
         value = length
     else:
         _refuse(number)
-    return value / _unit(control, index)
+    return value / control.unit_of(index)
 
 
 def _modal_word(control: Control, number: int) -> float:
-    memory = memory_of(control)
-    here = control.block.line - 1
+    memory, heading = memory_of(control), lines_around(control).start
     values = {
         4107: memory.radius_number or 0,
         4109: control.feed or 0.0,
         4111: memory.length_number or 0,
         4114: max(control.block.number, 0),
-        4115: next(
-            (each for each, line in memory.programs.items() if line - 1 == _heading(control, here)),
-            0,
-        ),
+        4115: next((each for each, line in memory.programs.items() if line - 1 == heading), 0),
         4119: control.spindle or 0.0,
         4120: control.tools.selected or 0,
         4130: memory.extended_number,
@@ -164,10 +151,6 @@ def _modal_word(control: Control, number: int) -> float:
     if value is None:
         _refuse(number)
     return float(value)
-
-
-def _heading(control: Control, line: int) -> int:
-    return max((each for each in memory_of(control).headings if each <= line), default=-1)
 
 
 def tool_row(control: Control, number: int) -> tuple[int, str] | None:

@@ -4,45 +4,30 @@ Geometry and wear of length and radius (memory C). The job's tools are the geome
 their numbers; lengths count against the job's first tool. D holds radii (parameter 5004 #2 at 0).
 """
 
-import dataclasses
 from typing import NoReturn
 
-from twin.nc.bytecode import effects, opcodes
-from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.control.codes import Action, CodeWriter
+from twin.nc.bytecode import opcodes
+from twin.nc.bytecode.assembler import Assembler
+from twin.nc.control.codes import Action, Effect
 from twin.nc.control.compensation import compensate, tool_numbered
 from twin.nc.control.control import Control
 from twin.nc.control.performer import refuse
 from twin.nc.dialects.fanuc.memory import ToolOffset, letter_patterns, memory_of
 from twin.nc.dialects.fanuc.programs import whole
+from twin.nc.iso.findings import NO_TOOL
 from twin.nc.iso.tool_compensation import set_length
 from twin.nc.text.blocks import Word
-from twin.nc.text.expressions import Expression
 
 BARE_COMPENSATION = letter_patterns("G", rb"0*4[12](?![0-9.])(?![^\r\n]*[Dd])")
 """Compensation without D in its line."""
 LARGEST_OFFSET = 999
 
 
-def row_of(control: Control, number: int) -> ToolOffset:
-    """A row of the offset memory, to be written to."""
-    return memory_of(control).tool_offsets.setdefault(number, ToolOffset())
-
-
-def length_of(control: Control, number: int) -> float | None:
-    """Geometry of a length [mm]; None: nobody has given it."""
+def geometry_of(control: Control, number: int, field: str) -> float | None:
+    """Geometry of a length or a radius [mm]; None: nobody has given it."""
     row, tool = memory_of(control).tool_offsets.get(number), control.tools.data(number)
-    if row is not None and row.length is not None:
-        return row.length
-    return None if tool is None else tool.length
-
-
-def radius_of(control: Control, number: int) -> float | None:
-    """Geometry of a radius [mm]; None: nobody has given it."""
-    row, tool = memory_of(control).tool_offsets.get(number), control.tools.data(number)
-    if row is not None and row.radius is not None:
-        return row.radius
-    return None if tool is None else tool.radius
+    written = None if row is None else getattr(row, field)
+    return getattr(tool, field, None) if written is None else written
 
 
 def set_length_number(control: Control, word: Word) -> None:
@@ -93,7 +78,8 @@ def _apply_length(control: Control, sign: float, word: Word | None) -> None:
     if number == 0:
         set_length(control, 0.0)
         return
-    length, row = length_of(control, number), memory_of(control).tool_offsets.get(number)
+    length = geometry_of(control, number, "length")
+    row = memory_of(control).tool_offsets.get(number)
     if length is None:
         _refuse_row(control, number, "H")
     if row is None or row.length is None:
@@ -118,31 +104,39 @@ def _warn_of_default_tool(control: Control, number: int, letter: str) -> None:
         tool_numbered(control, word._replace(value=float(number)))
 
 
-def end_length(control: Control) -> None:
-    """G49."""
-    set_length(control, 0.0)
+def compensation_code(number: int, side: float) -> Effect:
+    """G41, G42: compensation by the row D.
 
+    The compiled tier knows D1 where every call names D and no program writes radii.
+    """
 
-def compensation_code(number: int, side: float) -> Action:
-    """G41, G42: compensation by the row D."""
-
-    def action(control: Control) -> None:
+    def begin(control: Control) -> None:
         row_number = memory_of(control).radius_number
         if row_number is None:
             message = f"G{number} needs D, the number of the radius"
             control.fail("tool-offset", message, control.code_word(number), f"G{number} D1")
         compensate(control, side, _radius(control, row_number))
 
-    return action
+    def write(control: Control, assembler: Assembler) -> None:
+        word, memory = control.take("D"), memory_of(control)
+        interpreted = memory.bare_compensation or memory.writes_offsets
+        if interpreted or word is None or word.value not in control.tools.table:
+            assembler.interpreted(lambda: begin(control))
+        else:
+            assembler.constant(control.tools.table[int(assembler.known(word))].radius)
+            assembler.emit(opcodes.COMPENSATE, int(side))
+
+    return Effect(write)
 
 
 def _radius(control: Control, number: int) -> float:
     if number == 0:
         return 0.0
-    radius, row = radius_of(control, number), memory_of(control).tool_offsets.get(number)
+    radius = geometry_of(control, number, "radius")
+    row = memory_of(control).tool_offsets.get(number)
     if radius is None:
         if not control.tools.table:
-            refuse(control, effects.NO_TOOL)
+            refuse(control, NO_TOOL)
         _refuse_row(control, number, "D")
     if row is None or row.radius is None:
         _warn_of_default_tool(control, number, "D")
@@ -157,32 +151,14 @@ def radius_in_force(control: Control) -> float:
     return _radius(control, number)
 
 
-def compile_compensation(side: float) -> CodeWriter:
-    """G41 D1, for the compiled tier; where every call names D and no program writes radii."""
-
-    def write(control: Control, assembler: Assembler) -> None:
-        word, memory = control.take("D"), memory_of(control)
-        if word is None or isinstance(word.value, Expression) or memory.bare_compensation:
-            raise UnsupportedError
-        if memory.writes_offsets or word.value not in control.tools.table:
-            raise UnsupportedError
-        assembler.constant(control.tools.table[int(word.value)].radius)
-        assembler.emit(opcodes.COMPENSATE, int(side))
-
-    return write
-
-
 def write_tool_offset(control: Control, number: int, field: str, value: float) -> None:
     """Write a value of a row, whose length holds at once where it is in force [mm]."""
-    memory = memory_of(control)
-    memory.tool_offsets[number] = dataclasses.replace(row_of(control, number), **{field: value})
+    setattr(memory_of(control).tool_offsets.setdefault(number, ToolOffset()), field, value)
 
 
 def read_tool_offset(control: Control, number: int, field: str) -> float:
     """A value of a row, 0 where nobody has given it [mm]."""
-    if field == "length":
-        return length_of(control, number) or 0.0
-    if field == "radius":
-        return radius_of(control, number) or 0.0
+    if field in ("length", "radius"):
+        return geometry_of(control, number, field) or 0.0
     row = memory_of(control).tool_offsets.get(number, ToolOffset())
     return float(getattr(row, field))

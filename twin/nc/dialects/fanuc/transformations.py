@@ -4,7 +4,7 @@ A block's coordinates are mirrored, then scaled, then rotated (manual). Centres 
 block's place, and what comes before acts on them as well.
 """
 
-from twin.nc.bytecode.effects import SCALE_RANGE, TRANSFORM_COMPENSATED
+from twin.nc.control.codes import Action
 from twin.nc.control.control import Control
 from twin.nc.control.performer import refuse
 from twin.nc.dialects.fanuc.memory import memory_of
@@ -19,6 +19,7 @@ from twin.nc.geometry.matrices import (
     stretched,
 )
 from twin.nc.geometry.planes import Vector
+from twin.nc.iso.findings import SCALE_RANGE, TRANSFORM_COMPENSATED
 
 PLAIN: Vector = (1.0, 1.0, 1.0)
 
@@ -72,10 +73,14 @@ def scale(control: Control) -> None:
     _update(control)
 
 
-def end_scale(control: Control) -> None:
-    """G50."""
-    memory_of(control).scale = None
-    _update(control)
+def end(name: str) -> Action:
+    """G50, G69: there is no scale, or no rotation."""
+
+    def action(control: Control) -> None:
+        setattr(memory_of(control), name, None)
+        _update(control)
+
+    return action
 
 
 def rotate(control: Control) -> None:
@@ -101,12 +106,6 @@ def rotate(control: Control) -> None:
         center[index] = matrix[index][index] * control.axis_value(index, word) + shift[index]
     middle = plane.local((center[0], center[1], center[2]))
     memory.rotation = (control.number(angle), (middle.abscissa, middle.ordinate))
-    _update(control)
-
-
-def end_rotation(control: Control) -> None:
-    """G69."""
-    memory_of(control).rotation = None
     _update(control)
 
 

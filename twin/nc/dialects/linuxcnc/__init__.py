@@ -15,7 +15,7 @@ from twin.nc.dialects.linuxcnc import (
 from twin.nc.dialects.linuxcnc.codes import CODES, GROUPS, START
 from twin.nc.dialects.linuxcnc.decisions import DECISIONS
 from twin.nc.dialects.linuxcnc.expressions import EXPRESSIONS
-from twin.nc.dialects.linuxcnc.library import with_files
+from twin.nc.dialects.linuxcnc.library import LIBRARY
 from twin.nc.dialects.linuxcnc.memory import LinuxcncMemory, memory_of
 from twin.nc.dialects.linuxcnc.structure import COMMENTS
 from twin.nc.iso import base, shared_marks
@@ -63,11 +63,7 @@ def _acts_on_plain_blocks(control: Control) -> bool:
 
 
 def _finish(control: Control) -> None:
-    """The last line is reached without M2, M30 or a second %.
-
-    Raises:
-        ProgramError: It is.
-    """
+    """The last line is reached without M2, M30 or a second %."""
     if control.program_counter.is_calling:
         control.report.fail("return-outside", "the subroutine has no endsub, return or M99")
     if not memory_of(control).percent_ended:
@@ -167,7 +163,7 @@ LINUXCNC = Dialect(
     is_local=parameters.is_local,
     given_variable=parameters.given_variable,
     live_variables=parameters.LiveParameters(),
-    library=with_files,
+    library=LIBRARY,
     prepare=offsets.begin,
     must_end=True,
     finish=_finish,

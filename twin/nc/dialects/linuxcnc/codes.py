@@ -48,9 +48,13 @@ def change_plane(control: Control) -> None:
         offsets.refuse_in_compensation(control)
 
 
-def change_corners(control: Control) -> None:
-    """G61 to G64: not while radius compensation is in force."""
-    offsets.refuse_in_compensation(control, "how corners are passed cannot change")
+def _uncompensated(what: str) -> Action:
+    """What cannot change while radius compensation is in force."""
+    return lambda control: offsets.refuse_in_compensation(control, f"{what} cannot change")
+
+
+change_corners = _uncompensated("how corners are passed")
+change_return = _uncompensated("the return plane of cycles")
 
 
 def corner_tolerance(control: Control) -> None:
@@ -61,11 +65,6 @@ def corner_tolerance(control: Control) -> None:
         if each is not None and control.number(each) < 0.0:
             control.fail("code-words", f"{each.text} is no distance", each)
     control.modal.corner_tolerance = float("nan") if word is None else control.length(word)
-
-
-def change_return(control: Control) -> None:
-    """G98, G99: not while radius compensation is in force."""
-    offsets.refuse_in_compensation(control, "the return plane of cycles cannot change")
 
 
 def _alone_with_axes(action: Action) -> Action:
@@ -135,9 +134,13 @@ NOT_MODAL = {
     52: instead("local shift of zero", _alone_with_axes(offsets.local_offset), "not modal"),
     53: instead("in machine coordinates", motion.in_machine_coordinates, "not modal"),
     92: instead("this place gets these coordinates", _alone_with_axes(offsets.preset), "not modal"),
-    92.1: modal("no preset, its parameters become 0", "not modal", offsets.end_preset),
-    92.2: modal("no preset, its parameters stay", "not modal", offsets.suspend_preset),
-    92.3: modal("the preset is put back", "not modal", offsets.restore_preset),
+    92.1: modal(
+        "no preset, its parameters become 0",
+        "not modal",
+        offsets.change_preset(on=False, forgets=True),
+    ),
+    92.2: modal("no preset, its parameters stay", "not modal", offsets.change_preset(on=False)),
+    92.3: modal("the preset is put back", "not modal", offsets.change_preset(on=True)),
 }
 
 MODAL = {
@@ -160,7 +163,7 @@ MODAL = {
         _alone_with_axes(offsets.further_tool_length),
         "length",
     ),
-    49: modal("no tool length", "length", offsets.no_tool_length),
+    49: modal("no tool length", "length", lambda control: offsets.set_length(control, None)),
     **{
         (int(name[1:]) if name[1:].isdigit() else float(name[1:])): modal(
             f"coordinate system {number}", "offset", offsets.select_system(number)

@@ -120,14 +120,11 @@ def add_control_point(control: Control) -> None:
     if order is not None:
         memory.spline_order = max(int(control.number(order)), DEFAULT_ORDER)
     if not memory.control_points:
-        memory.control_points = [(*_here(control), 1.0 if is_point else value)]
+        x, y = control.programmed[:2]
+        memory.control_points = [(x, y, 1.0 if is_point else value)]
     if is_point:
         memory.control_points.append((goal[0], goal[1], value))
     memory.control_line = control.block.line
-
-
-def _here(control: Control) -> Point:
-    return control.programmed[0], control.programmed[1]
 
 
 def end_nurbs(control: Control) -> None:
@@ -135,9 +132,8 @@ def end_nurbs(control: Control) -> None:
     memory = memory_of(control)
     points, order = memory.control_points, memory.spline_order
     if not points:
-        control.fail(
-            "code-words", "G5.3 ends a NURBS, and none has begun", hint="write G5.2 before"
-        )
+        message = "G5.3 ends a NURBS, and none has begun"
+        control.fail("code-words", message, hint="write G5.2 before")
     if len(points) < order or order < 1:
         message = f"a NURBS of order {order} needs {order} control points, and has {len(points)}"
         control.fail("code-words", message)

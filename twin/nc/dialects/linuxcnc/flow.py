@@ -23,6 +23,7 @@ from twin.nc.dialects.linuxcnc.structure import (
     scope,
     structure,
 )
+from twin.nc.iso.declared import go_back
 from twin.nc.text import arithmetic
 from twin.nc.text.blocks import Location, Statement
 from twin.nc.text.expressions import (
@@ -62,17 +63,8 @@ def values_of(control: Control, word: OWord, statement: Statement) -> list[tuple
     return found
 
 
-def _condition(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
-    """Put the one value behind IF, ELSEIF or WHILE on the stack."""
-    assembler.value(*_condition_of(control, statement, word))
-
-
 def _condition_of(control: Control, statement: Statement, word: OWord) -> tuple[Expression, int]:
-    """The one value behind a keyword, and its column.
-
-    Raises:
-        ProgramError: There is none, or more than one.
-    """
+    """The one value behind a keyword, and its column."""
     found = values_of(control, word, statement)
     if len(found) != 1:
         hint = f"write o{word.label} {word.keyword.lower()} [#1 LT 5]"
@@ -82,11 +74,7 @@ def _condition_of(control: Control, statement: Statement, word: OWord) -> tuple[
 
 
 def _construct_of(control: Control, statement: Statement, word: OWord) -> Construct:
-    """The construct that a line belongs to.
-
-    Raises:
-        ProgramError: It has no counterpart.
-    """
+    """The construct that a line belongs to."""
     construct = structure(control).by_line.get(control.block.line - 1)
     if construct is None or construct.end is None:
         message = f"o{word.label} {word.keyword.lower()} has no counterpart"
@@ -119,11 +107,7 @@ def _line_of(control: Control, line: int) -> tuple[Statement, OWord]:
 
 
 def _declare(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
-    """A label is given once in its subroutine, as far as the program comes to it.
-
-    Raises:
-        ProgramError: Another line has it.
-    """
+    """A label is given once in its subroutine, as far as the program comes to it."""
     line = control.block.line - 1
     own = scope(control, line)
     same = [
@@ -146,13 +130,13 @@ def _declare(control: Control, statement: Statement, word: OWord, assembler: Ass
 def _if(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
     _declare(control, statement, word, assembler)
     construct = _construct_of(control, statement, word)
-    _condition(control, statement, word, assembler)
+    assembler.value(*_condition_of(control, statement, word))
     assembler.jump_if(Location(control.block.line, 0))
     for branch in construct.branches:
         if branch.keyword == "ELSE":
             assembler.jump(Location(branch.line + 1, 0))
             return
-        _condition(control, *_line_of(control, branch.line), assembler)
+        assembler.value(*_condition_of(control, *_line_of(control, branch.line)))
         assembler.jump_if(Location(branch.line + 1, 0))
     assembler.jump(construct.behind)
 
@@ -168,11 +152,11 @@ def _nothing(control: Control, statement: Statement, word: OWord, _assembler: As
 def _while(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
     construct = _construct_of(control, statement, word)
     if construct.keyword == "DO":
-        _condition(control, statement, word, assembler)
+        assembler.value(*_condition_of(control, statement, word))
         assembler.jump_if(Location(construct.begin + 1, 0))
         return
     _declare(control, statement, word, assembler)
-    _condition(control, statement, word, assembler)
+    assembler.value(*_condition_of(control, statement, word))
     assembler.jump_unless(construct.behind)
 
 
@@ -215,11 +199,7 @@ def _end_repeat(control: Control, statement: Statement, word: OWord, assembler: 
 
 
 def _enclosing(control: Control, statement: Statement, word: OWord) -> Construct:
-    """The loop with the label that BREAK or CONTINUE names.
-
-    Raises:
-        ProgramError: The line lies in none.
-    """
+    """The loop with the label that BREAK or CONTINUE names."""
     for each in reversed(structure(control).around(control.block.line - 1)):
         if each.keyword in LOOPS and each.name == word.label:
             if each.keyword == "REPEAT":
@@ -269,11 +249,7 @@ def _first_file(control: Control) -> int:
 
 
 def _called_line(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> int:
-    """First line, from 0, of the subroutine that CALL names.
-
-    Raises:
-        ProgramError: There is none, or it is one for M98.
-    """
+    """First line, from 0, of the subroutine that CALL names."""
     name, here = word.label, control.block.line - 1
     if name[0] in "#[":
         assembler.interpreted(lambda: None)
@@ -357,13 +333,6 @@ def _return(control: Control, statement: Statement, word: OWord, assembler: Asse
     assembler.end_call()
 
 
-def _program_for_m98(
-    control: Control, statement: Statement, word: OWord, assembler: Assembler
-) -> None:
-    """O100 alone: a program that M98 calls, and that the flow may run into."""
-    del control, statement, word, assembler
-
-
 _WORDS: dict[str, Callable[[Control, Statement, OWord, Assembler], None]] = {
     "SUB": _sub,
     "ENDSUB": _return,
@@ -380,7 +349,7 @@ _WORDS: dict[str, Callable[[Control, Statement, OWord, Assembler], None]] = {
     "ENDREPEAT": _end_repeat,
     "BREAK": _break,
     "CONTINUE": _continue,
-    "": _program_for_m98,
+    "": lambda _control, _statement, _word, _assembler: None,  # a program for M98: it is run into
 }
 
 
@@ -447,18 +416,14 @@ def return_from_program(control: Control) -> None:
     """M99: back behind M98; in the main program from its beginning again."""
     _refuse_companions(control, "N", "M99")
     if control.program_counter.is_calling:
-        control.perform(_end_program)
+        control.perform(go_back)
     else:
         control.program_counter.go(Location(0, 0))
         memory_of(control).percent = False
 
 
 def _refuse_companions(control: Control, letters: str, alone: str) -> None:
-    """Only P and L stand beside M98, nothing beside M99: the control passes over other words, or refuses them.
-
-    Raises:
-        ProgramError: Other words do.
-    """
+    """Only P and L stand beside M98, nothing beside M99: the control passes over other words, or refuses them."""
     words = control.block.words
     call = next(word for word in words if word.address == "M" and word.value in (98.0, 99.0))
     others = (word for word in words if word is not call and word.address not in letters)
@@ -466,8 +431,3 @@ def _refuse_companions(control: Control, letters: str, alone: str) -> None:
     if other is not None:
         message = f"{other.text} cannot stand beside {call.text}"
         control.fail("code-words", message, other, f"write {alone} in a line of its own")
-
-
-def _end_program(assembler: Assembler) -> None:
-    assembler.check_return()
-    assembler.end_call()

@@ -1,7 +1,5 @@
 """M codes of LinuxCNC, and F, S, T."""
 
-from collections.abc import Callable
-
 from twin.nc.control.codes import Action, MCode
 from twin.nc.control.compensation import tool_numbered
 from twin.nc.control.control import Control
@@ -74,18 +72,6 @@ def _end_coolant(control: Control) -> None:
     functions["mist"] = functions["flood"] = 0.0
 
 
-def _with_words(letters: str, needed: str) -> Callable[[Control], None]:
-    """Take the words that belong to an M function, some of which it needs."""
-
-    def action(control: Control) -> None:
-        words = {letter: control.take(letter) for letter in letters}
-        missing = [letter for letter in needed if words[letter] is None]
-        if missing:
-            control.fail("code-words", f"the function needs {' and '.join(missing)}")
-
-    return action
-
-
 def orient_spindle(control: Control) -> None:
     """M19 R, P, Q: the spindle's angle changes no path.
 
@@ -94,9 +80,8 @@ def orient_spindle(control: Control) -> None:
     """
     angle = control.take("R")
     if angle is not None and not 0.0 <= control.number(angle) <= 360.0:
-        control.fail(
-            "code-words", f"{angle.text} is no angle of one turn", angle, "0 to 360 degrees"
-        )
+        message = f"{angle.text} is no angle of one turn"
+        control.fail("code-words", message, angle, "0 to 360 degrees")
     way, seconds = control.take("P"), control.take("Q")
     if way is not None and control.number(way) not in (0.0, 1.0, 2.0):
         message = "P of M19 is 0 (the shorter way), 1 (clockwise) or 2 (counter-clockwise)"
@@ -136,21 +121,18 @@ def _end_early(control: Control) -> None:
     memory_of(control).functions["spindle"] = 5.0
 
 
-def _function(meaning: str, letters: str, needed: str) -> MCode:
-    """An output or an override, which changes no path."""
-    take = _with_words(letters, needed)
+def _function(meaning: str, letters: str = "", *, optional: bool = False) -> MCode:
+    """An output or an override, which changes no path, with its words."""
 
     def action(control: Control) -> None:
         refuse_in_compensation(control, "outputs and overrides cannot change")
-        take(control)
+        words = {letter: control.take(letter) for letter in letters}
+        missing = [letter for letter, word in words.items() if word is None and not optional]
+        if missing:
+            control.fail("code-words", f"the function needs {' and '.join(missing)}")
 
-    return MCode(
-        meaning=meaning,
-        group=f"function {meaning}",
-        action=action,
-        silent=True,
-        ground="manual",
-    )
+    group = f"function {meaning}"
+    return MCode(meaning=meaning, group=group, action=action, silent=True, ground="manual")
 
 
 M_CODES = {
@@ -172,31 +154,31 @@ M_CODES = {
               action=orient_spindle, ground="manual"),
     30: MCode(meaning="end of program, pallets exchanged", group="stop", late=True, ends=True, action=compensation.end,
               ground="manual"),
-    48: _function("feed and speed overrides on", "", ""),
-    49: _function("feed and speed overrides off", "", ""),
-    50: _function("feed override, P1 on, P0 off", "P", ""),
-    51: _function("speed override, P1 on, P0 off", "P", ""),
-    52: _function("adaptive feed, P1 on, P0 off", "P", ""),
-    53: _function("feed hold, P1 on, P0 off", "P", ""),
+    48: _function("feed and speed overrides on"),
+    49: _function("feed and speed overrides off"),
+    50: _function("feed override, P1 on, P0 off", "P", optional=True),
+    51: _function("speed override, P1 on, P0 off", "P", optional=True),
+    52: _function("adaptive feed, P1 on, P0 off", "P", optional=True),
+    53: _function("feed hold, P1 on, P0 off", "P", optional=True),
     60: MCode(meaning="pallets exchanged, program stop", group="stop", late=True, ground="manual"),
     61: MCode(meaning="number of the tool in the spindle, Q", group="tool", action=set_tool,
               silent=True, ground="manual"),
-    62: _function("output P on with the next move", "P", "P"),
-    63: _function("output P off with the next move", "P", "P"),
-    64: _function("output P on", "P", "P"),
-    65: _function("output P off", "P", "P"),
+    62: _function("output P on with the next move", "P"),
+    63: _function("output P off with the next move", "P"),
+    64: _function("output P on", "P"),
+    65: _function("output P off", "P"),
     66: MCode(meaning="input P or E read into #5399, L how, Q seconds at most", group="input",
               action=read_input, silent=True, ground="manual"),
-    67: _function("analog output E set to Q with the next move", "EQ", "EQ"),
-    68: _function("analog output E set to Q", "EQ", "EQ"),
-    70: MCode(meaning="what is in force is put aside", group="state", action=saved_state.save,
+    67: _function("analog output E set to Q with the next move", "EQ"),
+    68: _function("analog output E set to Q", "EQ"),
+    70: MCode(meaning="what is in force is put aside", group="state", action=saved_state.save(until_return=False),
               silent=True, ground="manual"),
     71: MCode(meaning="what was put aside is dropped", group="state", action=saved_state.forget,
               silent=True, ground="manual"),
     72: MCode(meaning="what was put aside is put back", group="state",
               action=saved_state.restore, silent=True, ground="manual"),
     73: MCode(meaning="what is in force is put aside until the subroutine ends", group="state",
-              action=saved_state.save_until_return, silent=True, ground="manual"),
+              action=saved_state.save(until_return=True), silent=True, ground="manual"),
     98: flow_function("the program O P is run, L times", call_program, "call"),
     99: flow_function("end of that program; the main program begins anew", return_from_program, "call"),
 }  # fmt: skip

@@ -57,7 +57,8 @@ class LinuxcncMemory:
         labels: Lines, from 0, of the O-words that have been run, by scope and name.
         saved: What M70 and M73 have put aside, by how deep the call is, and whether its end puts it back.
         subroutines: Lines, from 0, of the definitions of subroutines by name, in the order of the text.
-        garbled: Lines, from 0, that begin as one with an O-word and are none, or hold an open comment.
+        garbled: Lines, from 0, within a condition, a loop or a subroutine that begin as one with an O-word
+            and are none, or hold an open comment.
         tells_calls: The program reads what calls give, or puts aside what is in force; None: not looked.
         called: Names of those that have been called.
         returned: Value of the last subroutine, and whether it gave one.

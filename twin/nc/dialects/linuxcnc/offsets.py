@@ -9,7 +9,7 @@ from twin.nc.control.compensation import tool_numbered
 from twin.nc.control.control import Control
 from twin.nc.control.settings import ToolData
 from twin.nc.control.state import integer_of
-from twin.nc.dialects.linuxcnc.memory import SYSTEMS, CoordinateSystem, memory_of
+from twin.nc.dialects.linuxcnc.memory import SYSTEMS, CoordinateSystem, LinuxcncMemory, memory_of
 from twin.nc.geometry.matrices import IDENTITY, Matrix, applied, rotated, transposed
 from twin.nc.geometry.planes import XY
 from twin.nc.iso.offsets import machine_zero
@@ -52,10 +52,14 @@ def reframe(control: Control) -> None:
     matrix = turned(system)
     control.frame.set_matrix(matrix)
     control.frame.set_shift("offset", list(system.origin))
-    preset = memory.preset if memory.preset_on else [0.0] * len(memory.preset)
-    control.frame.set_shift("preset", _applied(matrix, preset))
+    control.frame.set_shift("preset", _applied(matrix, _preset_of(memory)))
     control.frame.set_shift("length", tool_shift(control))
     control.reframed()
+
+
+def _preset_of(memory: LinuxcncMemory) -> list[float]:
+    """The preset that counts, shape (k,) [mm or deg]."""
+    return list(memory.preset) if memory.preset_on else [0.0] * len(memory.preset)
 
 
 def tool_shift(control: Control) -> list[float]:
@@ -129,7 +133,7 @@ def refuse_changed_unit(control: Control) -> None:
 def preset(control: Control) -> None:
     """G92: the place where the machine stands gets the coordinates of the block."""
     memory, words = memory_of(control), _needed_axes(control, "G92")
-    before = memory.preset if memory.preset_on else [0.0] * len(memory.preset)
+    before = _preset_of(memory)
     for index, word in words:
         before[index] += control.programmed[index] - control.axis_value(index, word)
     _set_preset(control, before)
@@ -138,7 +142,7 @@ def preset(control: Control) -> None:
 def local_offset(control: Control) -> None:
     """G52: the zero moves by the words of the block; it shares its values with G92."""
     memory, words = memory_of(control), _needed_axes(control, "G52")
-    values = list(memory.preset) if memory.preset_on else [0.0] * len(memory.preset)
+    values = _preset_of(memory)
     for index, word in words:
         values[index] = control.axis_value(index, word)
     _set_preset(control, values)
@@ -158,28 +162,20 @@ def _needed_axes(control: Control, code: str) -> list[tuple[int, Word]]:
     return words
 
 
-def end_preset(control: Control) -> None:
-    """G92.1: no preset, and none to put back."""
-    refuse_in_compensation(control)
-    memory = memory_of(control)
-    memory.preset, memory.preset_on = [0.0] * len(memory.preset), False
-    memory.kept_preset = list(memory.preset)
-    reframe(control)
+def change_preset(*, on: bool, forgets: bool = False) -> Action:
+    """G92.1: no preset, and none to put back; G92.2: none until G92.3 puts it back."""
 
+    def action(control: Control) -> None:
+        refuse_in_compensation(control)
+        memory = memory_of(control)
+        if forgets:
+            memory.kept_preset = [0.0] * len(memory.preset)
+        if on or forgets:
+            memory.preset = list(memory.kept_preset)
+        memory.preset_on = on
+        reframe(control)
 
-def suspend_preset(control: Control) -> None:
-    """G92.2: no preset, until G92.3 puts it back."""
-    refuse_in_compensation(control)
-    memory_of(control).preset_on = False
-    reframe(control)
-
-
-def restore_preset(control: Control) -> None:
-    """G92.3."""
-    refuse_in_compensation(control)
-    memory = memory_of(control)
-    memory.preset, memory.preset_on = list(memory.kept_preset), True
-    reframe(control)
+    return action
 
 
 # --- G10
@@ -194,9 +190,8 @@ def write_table(control: Control) -> None:
         control.fail("code-words", "G10 needs L1, L2, L10, L11 or L20", kind)
     number = control.take("P")
     if number is None or control.number(number) != int(control.number(number)):
-        control.fail(
-            "code-words", "G10 needs P, a whole number", number, "write the system or the tool"
-        )
+        message = "G10 needs P, a whole number"
+        control.fail("code-words", message, number, "write the system or the tool")
     if value in (2, 20):
         _write_system(control, number, here=value == 20)
     else:
@@ -249,8 +244,7 @@ def _set_origin_here(
     control: Control, system: CoordinateSystem, axes: list[tuple[int, Word]]
 ) -> None:
     """Move a system so that the place where the machine stands has new coordinates in it."""
-    memory, matrix = memory_of(control), turned(system)
-    preset = memory.preset if memory.preset_on else [0.0] * len(memory.preset)
+    preset, matrix = _preset_of(memory_of(control)), turned(system)
     length = control.frame.shift("length")
     place = [value - shift for value, shift in zip(control.part, length, strict=True)]
     way = [a - b for a, b in zip(place, system.origin, strict=True)]
@@ -299,9 +293,7 @@ def _length_here(control: Control, height: float, *, from_fixture: bool) -> floa
     memory = memory_of(control)
     number = FIXTURE if from_fixture else memory.system
     origin = known_system(control, number).origin[2]
-    preset = 0.0
-    if memory.preset_on and not from_fixture:
-        preset = memory.preset[2]
+    preset = 0.0 if from_fixture else _preset_of(memory)[2]
     reference = -control.tools.longer(ToolData(0.0, 0.0))
     spindle = control.part[2] + reference if memory.tool_offset is not None else control.part[2]
     return spindle - origin - preset - height
@@ -312,7 +304,7 @@ def _length_here(control: Control, height: float, *, from_fixture: bool) -> floa
 
 def tool_length(control: Control) -> None:
     """G43: the length of tool H; without it, and with H0, of the tool in the spindle."""
-    _set_length(control, _offset_of(control, _length_number(control, control.take("H"))))
+    set_length(control, _offset_of(control, _length_number(control, control.take("H"))))
 
 
 def _length_number(control: Control, word: Word | None) -> int | None:
@@ -335,25 +327,19 @@ def further_tool_length(control: Control) -> None:
         more = _offset_of(control, _length_number(control, word))
     for index, each in axes:
         more[index] += control.axis_value(index, each)
-    _set_length(control, [a + b for a, b in zip(offset, more, strict=True)])
+    set_length(control, [a + b for a, b in zip(offset, more, strict=True)])
 
 
 def given_tool_length(control: Control) -> None:
     """G43.1: the words of axes are the tool's offset; alone it keeps the one in force (``rs274``)."""
     axes = control.take_axis_words()
-    offset = memory_of(control).tool_offset or [0.0] * len(control.settings.axes)
-    offset = list(offset)
+    offset = list(memory_of(control).tool_offset or [0.0] * len(control.settings.axes))
     for index, word in axes:
         offset[index] = control.axis_value(index, word)
-    _set_length(control, offset)
+    set_length(control, offset)
 
 
-def no_tool_length(control: Control) -> None:
-    """G49."""
-    _set_length(control, None)
-
-
-def _set_length(control: Control, offset: list[float] | None) -> None:
+def set_length(control: Control, offset: list[float] | None) -> None:
     """Put a tool offset into force."""
     refuse_in_compensation(control)
     refuse_changed_unit(control)
@@ -363,8 +349,6 @@ def _set_length(control: Control, offset: list[float] | None) -> None:
 
 
 def _offset_of(control: Control, number: int | None) -> list[float]:
-    data = control.tools.data(number)
-    length = 0.0 if data is None else data.length
-    offset = [0.0] * len(control.settings.axes)
-    offset[2] = length
+    data, offset = control.tools.data(number), [0.0] * len(control.settings.axes)
+    offset[2] = 0.0 if data is None else data.length
     return offset

@@ -1,6 +1,6 @@
 """Parameters of LinuxCNC: numbered and named, the program's own and those of the control."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from twin.nc.control.control import Control
 from twin.nc.dialects.linuxcnc.memory import SYSTEMS, CoordinateSystem, memory_of, written_feed
@@ -27,13 +27,9 @@ def is_local(name: str) -> bool:
     return not name[1:].isdigit() or int(name[1:]) <= LOCAL_PARAMETERS
 
 
-def given_variable(given: object, name: str) -> float | None:
+def given_variable(given: Mapping[str, float], name: str) -> float | None:
     """The job's value of a parameter; numbered ones that nobody has set are 0."""
-    assert isinstance(given, dict) or hasattr(given, "get")
-    value = given.get(name)  # pyright: ignore[reportAttributeAccessIssue]
-    if value is None and name[1:].isdigit():
-        return 0.0
-    return value
+    return given.get(name, 0.0 if name[1:].isdigit() else None)
 
 
 class LiveParameters:
@@ -41,11 +37,8 @@ class LiveParameters:
 
     def __contains__(self, name: object) -> bool:
         assert isinstance(name, str)
-        return (name.startswith("#<_") and name[3:-1] in _NAMED) or _is_live(name)
-
-
-def _is_live(name: str) -> bool:
-    return name[1:].isdigit() and int(name[1:]) >= 5000
+        named = name.startswith("#<_") and name[3:-1] in _NAMED
+        return named or (name[1:].isdigit() and int(name[1:]) >= 5000)
 
 
 def read_variable(control: Control, name: str, index: float | None) -> float:
@@ -156,13 +149,8 @@ def _read_live(control: Control, number: int) -> float | None:
             message = f"#{number} cannot be read while radius compensation is in force"
             raise ExpressionError("compensation-change", message, None, "end it by G40 first")
         axis = _axis(control, number - 5420)
-        return 0.0 if axis is None else _in_units(control, control.programmed[axis], axis)
+        return 0.0 if axis is None else control.programmed[axis] / control.unit_of(axis)
     return None
-
-
-def _in_units(control: Control, value: float, axis: int) -> float:
-    """A position as the program counts it."""
-    return value / (control.modal.unit if control.linear[axis] else 1.0)
 
 
 def _read_system(control: Control, at: int) -> float | None:
@@ -226,50 +214,33 @@ def _write_system(control: Control, at: int, value: float) -> bool:
 # --- named parameters of the control
 
 
-def _code(group: str, *, times: float = 10.0) -> Callable[[Control], float]:
+def _code(group: str, default: float = 0.0) -> Callable[[Control], float]:
     """The code in force of a group, ten times its number as LinuxCNC counts."""
-    return lambda control: round(times * control.active.get(group, 0.0))
+    return lambda control: round(10.0 * control.active.get(group, default))
 
 
 def _switched(name: str) -> Callable[[Control], float]:
     return lambda control: memory_of(control).functions.get(name, 0.0)
 
 
-def _position(letter: str) -> Callable[[Control], float]:
-    def value(control: Control) -> float:
-        axis = control.axis_index.get(letter)
-        return 0.0 if axis is None else _in_units(control, control.programmed[axis], axis)
-
-    return value
-
-
-def _machine_position(letter: str) -> Callable[[Control], float]:
+def _position(letter: str, *, of_machine: bool) -> Callable[[Control], float]:
     def value(control: Control) -> float:
         axis = control.axis_index.get(letter)
         if axis is None:
             return 0.0
-        return _in_units(control, control.part[axis] - _zero(control, axis), axis)
+        place = (
+            control.part[axis] - _zero(control, axis) if of_machine else control.programmed[axis]
+        )
+        return place / control.unit_of(axis)
 
     return value
-
-
-def _motion(control: Control) -> float:
-    return round(10.0 * control.active.get("motion", 80.0))
-
-
-def _feed(control: Control) -> float:
-    return written_feed(control) or 0.0
-
-
-def _system_code(control: Control) -> float:
-    return round(10.0 * float(SYSTEMS[memory_of(control).system - 1][1:]))
 
 
 _NAMED: dict[str, Callable[[Control], float]] = {
     "vmajor": lambda _control: 2.9,
     "vminor": lambda _control: 0.0,
     "line": lambda control: float(control.block.line),
-    "motion_mode": _motion,
+    "motion_mode": _code("motion", 80.0),
     "plane": _code("plane"),
     "ccomp": _code("compensation"),
     "metric": lambda control: float(control.modal.unit == 1.0),
@@ -279,7 +250,7 @@ _NAMED: dict[str, Callable[[Control], float]] = {
     "inverse_time": lambda control: float(control.modal.feed_mode is FeedMode.BLOCKS_PER_MINUTE),
     "units_per_minute": lambda control: float(control.modal.feed_mode is FeedMode.PER_MINUTE),
     "units_per_rev": lambda control: float(control.modal.feed_mode is FeedMode.PER_REVOLUTION),
-    "coord_system": _system_code,
+    "coord_system": lambda control: round(10.0 * float(SYSTEMS[memory_of(control).system - 1][1:])),
     "tool_offset": lambda control: float(any(memory_of(control).tool_offset or ())),
     "retract_r_plane": lambda control: float(control.modal.return_to_reference),
     "retract_old_z": lambda control: float(not control.modal.return_to_reference),
@@ -298,10 +269,10 @@ _NAMED: dict[str, Callable[[Control], float]] = {
     "feed_override": lambda _control: 1.0,
     "adaptive_feed": lambda _control: 0.0,
     "feed_hold": lambda _control: 1.0,
-    "feed": _feed,
+    "feed": lambda control: written_feed(control) or 0.0,
     "rpm": lambda control: control.spindle or 0.0,
-    **{letter.lower(): _position(letter) for letter in _AXES},
-    **{f"abs_{letter.lower()}": _machine_position(letter) for letter in _AXES},
+    **{letter.lower(): _position(letter, of_machine=False) for letter in _AXES},
+    **{f"abs_{letter.lower()}": _position(letter, of_machine=True) for letter in _AXES},
     "current_tool": lambda control: float(control.tools.spindle or 0),
     "current_pocket": lambda control: float(control.tools.spindle or 0),
     "selected_tool": lambda control: float(control.tools.selected or 0),

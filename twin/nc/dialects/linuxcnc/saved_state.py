@@ -2,6 +2,7 @@
 
 import dataclasses
 
+from twin.nc.control.codes import Action
 from twin.nc.control.control import Control
 from twin.nc.dialects.linuxcnc.memory import SYSTEMS, SavedState, memory_of, written_feed
 from twin.nc.dialects.linuxcnc.offsets import reframe, refuse_in_compensation
@@ -14,18 +15,14 @@ _KEPT_GROUPS = ("motion", "not modal", "length")
 """What neither M72 nor the end of a subroutine puts back."""
 
 
-def _state(control: Control) -> SavedState:
-    return SavedState(control.saved_modal(), written_feed(control), control.spindle)
+def save(*, until_return: bool) -> Action:
+    """M70, and M73, which the end of the subroutine puts back."""
 
+    def action(control: Control) -> None:
+        state = SavedState(control.saved_modal(), written_feed(control), control.spindle)
+        memory_of(control).saved[control.program_counter.depth] = (state, until_return)
 
-def save(control: Control) -> None:
-    """M70."""
-    memory_of(control).saved[control.program_counter.depth] = (_state(control), False)
-
-
-def save_until_return(control: Control) -> None:
-    """M73: as M70; the end of the subroutine puts it back."""
-    memory_of(control).saved[control.program_counter.depth] = (_state(control), True)
+    return action
 
 
 def forget(control: Control) -> None:

@@ -1,7 +1,6 @@
 """Which O-words of a program belong together, and what a line with one says."""
 
 import re
-from collections.abc import Iterable
 from typing import NamedTuple
 
 from twin.nc.control.constructs import Construct, Structure
@@ -87,48 +86,23 @@ def is_garbled(text: str) -> bool:
     return match[2].upper() not in KEYWORDS if match[2] else said[match.end() :].strip() != ""
 
 
-class OWords(NamedTuple):
-    """The O-words of a program.
-
-    Attributes:
-        structure: Which belong together; what has no counterpart stays open.
-        subroutines: Lines, from 0, of the definitions of subroutines by name.
-        garbled: Lines, from 0, within a condition, a loop or a subroutine that begin with O and say nothing,
-            or hold an open comment.
-    """
-
-    structure: Structure
-    subroutines: dict[str, list[int]]
-    garbled: list[int]
-
-
-def structure_of(lines: Iterable[str]) -> OWords:
-    """Pair the O-words of a program, and find its subroutines."""
-    structure = Structure(_ENDS, _BRANCHES)
-    subroutines, garbled = dict[str, list[int]](), list[int]()
-    for line, text in enumerate(lines):
+def structure(control: Control) -> Structure:
+    """Which O-words of the program belong together; the first time its subroutines are found as well."""
+    memory = memory_of(control)
+    if memory.structure is not None:
+        return memory.structure
+    memory.structure = structure = Structure(_ENDS, _BRANCHES)
+    for line, text in enumerate(control.program_counter.lines):
         if text.startswith(FILE):
             structure.close()
         if structure.is_open and is_garbled(text):
-            garbled.append(line)
-        if "O" not in text.upper():
-            continue
-        if (named := named_o_word(text)) is None:
-            continue
-        name, keyword = named
-        if keyword in ("SUB", ""):
-            subroutines.setdefault(name, []).append(line)
-        structure.add(keyword, line, name)
-    return OWords(structure, subroutines, garbled)
-
-
-def structure(control: Control) -> Structure:
-    """The program's structure."""
-    memory = memory_of(control)
-    if memory.structure is None:
-        found = structure_of(control.program_counter.lines)
-        memory.structure, memory.subroutines, memory.garbled = found
-    return memory.structure
+            memory.garbled.append(line)
+        if "O" in text.upper() and (named := named_o_word(text)) is not None:
+            name, keyword = named
+            if keyword in ("SUB", ""):
+                memory.subroutines.setdefault(name, []).append(line)
+            structure.add(keyword, line, name)
+    return structure
 
 
 def lines_to_read(control: Control, construct: Construct) -> list[int]:
