@@ -2,14 +2,7 @@
 
 from collections.abc import Mapping
 
-from twin.nc.bytecode.compensation import (
-    BEGINS,
-    IN_FORCE,
-    LEADS_OUT,
-    NO_RADIUS,
-    begin,
-    may_begin,
-)
+from twin.nc.bytecode.compensation import BEGINS, IN_FORCE, LEADS_OUT, NO_RADIUS, begin, may_begin
 from twin.nc.control.control import Control
 from twin.nc.control.state import integer_of
 from twin.nc.text.blocks import Word

@@ -49,14 +49,7 @@ class ProgramCounter:
     """
 
     def __init__(self, source: Source, lexer: Lexer, step_limit: int, report: Reporter) -> None:
-        """Stand before the program.
-
-        Args:
-            source: The program.
-            lexer: Reads its lines.
-            step_limit: Blocks that may be run again.
-            report: Where diagnostics go.
-        """
+        """Stand before the program, of which so many blocks may be run again."""
         self._lines = source.lines
         self._line_count = len(source.lines)
         self._lexer = lexer
