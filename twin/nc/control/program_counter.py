@@ -223,7 +223,8 @@ class ProgramCounter:
             return self._here
         blocks = self._cache.get(line)
         if blocks is None:
-            blocks = self._lexer.blocks(self._lines[line], line + 1, self._line_before)
+            text = self._lines.page_of(line).line(line)
+            blocks = self._lexer.blocks(text, line + 1, self._line_before)
             if line <= self._now[FURTHEST] >> PART_BITS and len(self._cache) < _CACHED_LINES:
                 self._cache[line] = blocks
         self._here, self._here_line = blocks, line
