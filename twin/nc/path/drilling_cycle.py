@@ -97,8 +97,9 @@ class Cycle(NamedTuple):
         retract: A ``Retract``.
         lift: How far the tool withdraws between pecks where its words do not say it; 0: to the
             reference plane [mm].
-        repeats_only: The compiled tier drills the holes behind the call whose block names an axis, in absolute coordinates, from
-            the reference plane or above; all else is for the interpreter tier.
+        as_written: It remembers heights as they are written, and at each hole they count from what is in
+            force there. The compiled tier drills holes behind its call whose block names an axis, in
+            absolute coordinates, from the reference plane or above; all else is for the interpreter tier.
     """
 
     lasting: bool
@@ -109,7 +110,7 @@ class Cycle(NamedTuple):
     clearance: float = CHIP_CLEARANCE
     retract: int = int(Retract.RAPID)
     lift: float = 0.0
-    repeats_only: bool = False
+    as_written: bool = False
 
 
 @compilable

@@ -14,8 +14,9 @@ from twin.nc.control.interpolation import CycleRule
 from twin.nc.dialects.linuxcnc.memory import memory_of
 from twin.nc.dialects.linuxcnc.motion import check_feed, target
 from twin.nc.dialects.linuxcnc.offsets import refuse_in_compensation
-from twin.nc.iso.drilling import drill, refuse_hole, repeats_of
+from twin.nc.iso.drilling import drill, refuse_hole, repeats_of, take_words
 from twin.nc.path.drilling_cycle import (
+    AXIS,
     BOTTOM,
     DWELL,
     PECK,
@@ -25,7 +26,6 @@ from twin.nc.path.drilling_cycle import (
     Pecking,
     Retract,
     Values,
-    forget,
 )
 from twin.nc.path.hole import Fault, hole_of
 from twin.nc.path.paces import FeedMode
@@ -73,16 +73,15 @@ class Kind(NamedTuple):
     work: Cycle | Work
 
     @property
-    def rule(self) -> CycleRule | None:
-        """Its rule, where both tiers have one."""
-        if not isinstance(self.work, Cycle):
-            return None
+    def rule(self) -> CycleRule:
+        """Its words, and what both tiers do at the hole where they have a rule for that."""
+        cycle = self.work if isinstance(self.work, Cycle) else _G81
         letters = {letter: place for letter, place in _PLACES.items() if letter in self.words}
-        return CycleRule(f"G{self.number}", self.work, {"R": REFERENCE, **letters})
+        return CycleRule(f"G{self.number}", cycle, {"R": REFERENCE, **letters})
 
 
 _NAME_PLACES = frozenset("XYZ@^")
-_PLACES = {"R": REFERENCE, "P": DWELL, "Q": PECK}
+_PLACES = {"P": DWELL, "Q": PECK}
 
 
 def _height(control: Control, height: float, *, rapid: bool = True) -> None:
@@ -190,33 +189,26 @@ def _take_words(control: Control, kind: Kind) -> None:
     Raises:
         ProgramError: One is missing.
     """
-    state, memory, plane = control.cycle_state, memory_of(control), control.modal.plane
-    across = control.settings.axes.names[plane.axes[2]]
+    state, memory, axis = control.cycle_state, memory_of(control), control.modal.plane.axes[2]
     if math.isnan(state[START]):
         memory.cycle = 0
-        forget(state)
-        state[START], state[1] = control.programmed[plane.axes[2]], float(plane.axes[2])
-    elif state[1] != plane.axes[2]:
+    elif state[AXIS] != axis:
         message = f"G{kind.number} was called in another plane"
         control.fail("cycle-plane", message, hint="end it by G80 before the plane changes")
-    words = {letter: control.take(letter) for letter in ("R", across, *kind.words)}
     if memory.cycle != kind.number:
-        missing = [letter for letter in ("R", across, *kind.needed) if words[letter] is None]
+        needed = ("R", control.settings.axes.names[axis], *kind.needed)
+        missing = [letter for letter in needed if letter not in control.words]
         if missing:
             control.fail("cycle-word", f"G{kind.number} needs {' and '.join(missing)}")
         memory.back_boring = (0.0, 0.0, 0.0)
-    for letter, word in words.items():
-        if word is not None and letter == "P" and control.number(word) < 0.0:
-            control.fail("dwell", "a dwell cannot be negative", word)
-        if word is not None and letter in _PLACES:
-            in_mm = letter != "P"
-            state[_PLACES[letter]] = control.length(word) if in_mm else control.number(word)
-    depth = words[across]
-    if depth is not None:
-        state[BOTTOM] = control.length(depth)
+    dwell = control.words.get("P") if "P" in kind.words else None
+    if dwell is not None and control.number(dwell) < 0.0:
+        control.fail("dwell", "a dwell cannot be negative", dwell)
+    take_words(control, kind.rule, calls=True)
+    take_words(control, kind.rule)
     if kind.words == "IJK":
         memory.back_boring = tuple(
-            old if (word := words[letter]) is None else control.length(word)
+            old if (word := control.take(letter)) is None else control.length(word)
             for letter, old in zip("IJK", memory.back_boring, strict=True)
         )
     memory.cycle = kind.number
@@ -250,7 +242,7 @@ def _refuse_rotary(control: Control) -> None:
 
 
 def _drill_holes(control: Control, kind: Kind, repeats: int) -> None:
-    state, memory, rule = control.cycle_state, memory_of(control), kind.rule
+    state, memory = control.cycle_state, memory_of(control)
     axis, incremental = control.modal.plane.axes[2], control.modal.incremental
     words = {letter: control.words[letter] for letter in (*"XYZ@^",) if letter in control.words}
     reference = state[REFERENCE] + (state[START] if incremental else 0.0)
@@ -275,9 +267,9 @@ def _drill_holes(control: Control, kind: Kind, repeats: int) -> None:
         over[axis] = current if number == 0 else clear
         control.line_to(over, rapid=True)
         _height(control, reference)
-        if rule is not None:
-            _drill(control, hole, rule)
-        elif not isinstance(kind.work, Cycle):
+        if isinstance(kind.work, Cycle):
+            _drill(control, hole, kind.rule)
+        else:
             kind.work(control, hole)
 
 
@@ -287,7 +279,7 @@ _G81 = Cycle(
     needed=1 << REFERENCE | 1 << BOTTOM,
     dwells=False,
     clearance=CLEARANCE,
-    repeats_only=True,
+    as_written=True,
 )
 _PECKING = _G81._replace(needed=_G81.needed | 1 << PECK, pecking=int(Pecking.TO_BOTTOM))
 
@@ -312,7 +304,7 @@ KINDS = (
 
 
 def _code(kind: Kind) -> GCode:
-    mode = Interpolation(_perform(kind), rule=kind.rule)
+    mode = Interpolation(_perform(kind), rule=kind.rule if isinstance(kind.work, Cycle) else None)
     return GCode(
         meaning=kind.meaning,
         group="motion",
