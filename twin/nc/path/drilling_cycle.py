@@ -66,6 +66,8 @@ class Retract(enum.IntEnum):
     """Rapidly, the spindle stopped."""
     REVERSED_LEFT = 4
     """As ``REVERSED``, of a spindle that turned counter-clockwise."""
+    FEED_ALL = 5
+    """With the feed, as far as it goes back."""
 
 
 class Pecking(enum.IntEnum):

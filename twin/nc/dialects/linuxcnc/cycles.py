@@ -14,7 +14,14 @@ from twin.nc.control.interpolation import CycleRule
 from twin.nc.dialects.linuxcnc.memory import memory_of
 from twin.nc.dialects.linuxcnc.motion import check_feed, target
 from twin.nc.dialects.linuxcnc.offsets import refuse_in_compensation
-from twin.nc.iso.drilling import drill, refuse_hole, repeats_of, take_words
+from twin.nc.iso.drilling import (
+    drill,
+    go_to_height,
+    refuse_hole,
+    repeats_of,
+    take_words,
+    turn_spindle,
+)
 from twin.nc.path.drilling_cycle import (
     AXIS,
     BOTTOM,
@@ -84,12 +91,6 @@ _NAME_PLACES = frozenset("XYZ@^")
 _PLACES = {"P": DWELL, "Q": PECK}
 
 
-def _height(control: Control, height: float, *, rapid: bool = True) -> None:
-    goal = list(control.programmed)
-    goal[control.modal.plane.axes[2]] = height
-    control.line_to(goal, rapid=rapid)
-
-
 def _dwell(control: Control, hole: Drilling) -> None:
     seconds = hole.values[DWELL]
     if seconds == seconds and seconds > 0.0:
@@ -107,32 +108,22 @@ def _drill(control: Control, hole: Drilling, rule: CycleRule) -> None:
     drill(control, found, None)
 
 
-def _tap(control: Control, hole: Drilling, *, clockwise: bool) -> None:
-    code = "G84" if clockwise else "G74"
-    sense = memory_of(control).functions.get("spindle")
-    if not control.spindle_turns or sense != (3.0 if clockwise else 4.0):
-        wanted = "M3" if clockwise else "M4"
-        control.fail("spindle-needed", f"{code} needs the spindle turning by {wanted}")
-    speed = {} if control.spindle is None else {"S": control.spindle}
-    _height(control, hole.bottom, rapid=False)
-    control.function("M4" if clockwise else "M3", speed)
-    _dwell(control, hole)
-    _height(control, hole.clear, rapid=False)
-    control.function("M3" if clockwise else "M4", speed)
+def _tap(inwards: int, outwards: int) -> Work:
+    """Tap with a spindle that turns by these M functions."""
 
+    def work(control: Control, hole: Drilling) -> None:
+        turns = memory_of(control).functions.get("spindle") == inwards
+        if not control.spindle_turns or not turns:
+            code = "G84" if inwards == 3 else "G74"
+            message = f"{code} needs the spindle turning by M{inwards}"
+            control.fail("spindle-needed", message)
+        go_to_height(control, hole.bottom, rapid=False)
+        turn_spindle(control, f"M{outwards}")
+        _dwell(control, hole)
+        go_to_height(control, hole.clear, rapid=False)
+        turn_spindle(control, f"M{inwards}")
 
-def _tap_right(control: Control, hole: Drilling) -> None:
-    _tap(control, hole, clockwise=True)
-
-
-def _tap_left(control: Control, hole: Drilling) -> None:
-    _tap(control, hole, clockwise=False)
-
-
-def _ream_and_wait(control: Control, hole: Drilling) -> None:
-    _height(control, hole.bottom, rapid=False)
-    _dwell(control, hole)
-    _height(control, hole.clear, rapid=False)
+    return work
 
 
 def _start_again(control: Control, code: str) -> Callable[[], None]:
@@ -140,16 +131,15 @@ def _start_again(control: Control, code: str) -> Callable[[], None]:
     if not control.spindle_turns:
         control.fail("spindle-needed", f"{code} needs the spindle turning", hint="write M3 before")
     sense = memory_of(control).functions.get("spindle", 3.0)
-    speed = {} if control.spindle is None else {"S": control.spindle}
-    return lambda: control.function(f"M{int(sense)}", speed)
+    return lambda: turn_spindle(control, f"M{int(sense)}")
 
 
 def _bore(control: Control, hole: Drilling) -> None:
     start = _start_again(control, "G86")
-    _height(control, hole.bottom, rapid=False)
+    go_to_height(control, hole.bottom, rapid=False)
     _dwell(control, hole)
     control.function("M5", {})
-    _height(control, hole.clear)
+    go_to_height(control, hole.clear)
     start()
 
 
@@ -162,14 +152,14 @@ def _bore_back(control: Control, hole: Drilling) -> None:
     beside[second] += hole.back_boring[1]
     control.line_to(beside, rapid=True)
     control.function("M5", {})
-    _height(control, hole.bottom)
+    go_to_height(control, hole.bottom)
     _across(control, over)
     start()
-    _height(control, hole.back_boring[2], rapid=False)
-    _height(control, hole.bottom, rapid=False)
+    go_to_height(control, hole.back_boring[2], rapid=False)
+    go_to_height(control, hole.bottom, rapid=False)
     control.function("M5", {})
     _across(control, beside)
-    _height(control, hole.clear)
+    go_to_height(control, hole.clear)
     _across(control, over)
     start()
 
@@ -252,7 +242,7 @@ def _drill_holes(control: Control, kind: Kind, repeats: int) -> None:
         control.fail("cycle-depth", message)
     start = state[START]
     if start < reference:
-        _height(control, reference)
+        go_to_height(control, reference)
         start = reference
     clear = reference if control.modal.return_to_reference else start
     i, j, k = memory.back_boring
@@ -266,7 +256,7 @@ def _drill_holes(control: Control, kind: Kind, repeats: int) -> None:
         over = target(control) if number == 0 or incremental else list(control.programmed)
         over[axis] = current if number == 0 else clear
         control.line_to(over, rapid=True)
-        _height(control, reference)
+        go_to_height(control, reference)
         if isinstance(kind.work, Cycle):
             _drill(control, hole, kind.rule)
         else:
@@ -291,15 +281,21 @@ KINDS = (
         "Q",
         _PECKING._replace(lift=CLEARANCE),
     ),
-    Kind(74, "tapping, left-hand", "P", "", _tap_left),
+    Kind(74, "tapping, left-hand", "P", "", _tap(4, 3)),
     Kind(81, "drilling", "", "", _G81),
     Kind(82, "drilling with P seconds at the bottom", "P", "P", _G81._replace(dwells=True)),
     Kind(83, "drilling in pecks of Q", "Q", "Q", _PECKING),
-    Kind(84, "tapping, right-hand", "P", "", _tap_right),
+    Kind(84, "tapping, right-hand", "P", "", _tap(3, 4)),
     Kind(85, "reaming, out with the feed", "", "", _G81._replace(retract=int(Retract.FEED))),
     Kind(86, "boring, out with the spindle stopped", "P", "P", _bore),
     Kind(87, "boring from behind: I J beside the hole, K its top", "IJK", "IJK", _bore_back),
-    Kind(89, "reaming with P seconds at the bottom", "P", "P", _ream_and_wait),
+    Kind(
+        89,
+        "reaming with P seconds at the bottom",
+        "P",
+        "P",
+        _G81._replace(dwells=True, retract=int(Retract.FEED_ALL)),
+    ),
 )
 
 
