@@ -39,7 +39,7 @@ from twin.nc.canonical import NO_BLOCK_NUMBER, FloatArray, IntArray
 from twin.nc.compiled.kernels.arc import emit_arc
 from twin.nc.compiled.kernels.cycle import drill
 from twin.nc.compiled.kernels.move_row import has_pace, put_move, put_positions, travel_of
-from twin.nc.compiled.kernels.target import PlainBlock, aim, target_of_axis
+from twin.nc.compiled.kernels.target import PlainBlock, put_target
 from twin.nc.path import move_columns
 from twin.nc.path.moves import LARGEST_COORDINATE, SMALLEST_MOVE, line_length, only_turns
 from twin.nc.path.rows import copy
@@ -209,13 +209,8 @@ def _move(block: PlainBlock, machine: Machine, row: int) -> int:
     if kind != RAPID_LINE and not has_pace(block, constants, state):
         return UNSUPPORTED
     position = rows.positions[row]
-    if block.polar:
-        aim(constants, block, seen, state)
-    for axis in range(len(state.part)):
-        target = target_of_axis(axis, block, seen, constants, state)
-        if not abs(target) <= LARGEST_COORDINATE:
-            return UNSUPPORTED
-        position[2, axis] = target
+    if not put_target(block, seen, constants, state, position[2]):
+        return UNSUPPORTED
     put_positions(position[2], state.part, state, position)
     if is_arc:
         length = emit_arc(block, tables, constants, state, rows, row)
