@@ -101,7 +101,8 @@ class Cycle(NamedTuple):
             reference plane [mm].
         as_written: It remembers heights as they are written, and at each hole they count from what is in
             force there. The compiled tier drills holes behind its call whose block names an axis, in
-            absolute coordinates, from the reference plane or above; all else is for the interpreter tier.
+            absolute coordinates, from the reference plane or above, with a feed that counts no blocks; all
+            else is for the interpreter tier.
     """
 
     lasting: bool

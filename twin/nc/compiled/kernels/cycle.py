@@ -8,6 +8,7 @@ from twin.nc.bytecode.registers import (
     CYCLE,
     CYCLE_STATE,
     CYCLE_WORDS,
+    FEED_MODE,
     INCREMENTAL,
     PLANE,
     TO_REFERENCE,
@@ -23,6 +24,7 @@ from twin.nc.compiled.kernels.target import PlainBlock, put_target
 from twin.nc.path.drilling_cycle import VALUES, Cycle, CycleBlock, cycle_of, read_words
 from twin.nc.path.hole import MOST_STOPS, NO_MOVE, Hole, hole_of, most_acts, next_place, write_acts
 from twin.nc.path.moves import LARGEST_COORDINATE, line_length
+from twin.nc.path.paces import counts_blocks
 from twin.nc.path.rows import Rows, copy
 
 NO_ROOM = -2
@@ -58,7 +60,9 @@ def drill(
     plane = constants.planes[int(block.modal[PLANE])]
     as_written = tables.cycles[int(block.modal[CYCLE])][_AS_WRITTEN] != 0.0
     names_place = block.polar or block.seen >> AXIS != 0
-    if as_written and (called[0] or block.modal[INCREMENTAL] != 0.0 or not names_place):
+    modal, other = block.modal, called[0] or not names_place
+    other = other or modal[INCREMENTAL] != 0.0 or counts_blocks(int(modal[FEED_MODE]))
+    if as_written and other:
         return UNSUPPORTED
     taken, hole = _read_cycle(block, called, tables, constants, state)
     if as_written and state.programmed[plane[2]] < hole.reference:
