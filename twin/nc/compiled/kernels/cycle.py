@@ -174,5 +174,5 @@ def _go(
         return row
     copy(position[1], part)
     travel = travel_of(block, speed, length, False, constants, state)
-    put_move(block, travel, LINE, constants, rows, row)
+    put_move(block, travel, LINE, state, rows, row)
     return row + 1

@@ -7,8 +7,12 @@ import numpy as np
 from twin.compilation.compilable import inlined
 from twin.nc.bytecode.coordinates import turn_place
 from twin.nc.bytecode.registers import (
+    ACCELERATION,
     CORNER,
+    CORNER_TOLERANCE,
+    DECELERATION,
     FEED_MODE,
+    RAPID_FEED,
     SPINDLE,
     SPINDLE_TURNS,
     UNIT,
@@ -28,7 +32,7 @@ from twin.nc.path.paces import (
     needs_own_feed,
     rapid_feed,
 )
-from twin.nc.path.rows import Rows, copy
+from twin.nc.path.rows import Rows
 
 RAPID, FEED, STOP = int(Motion.RAPID), int(Motion.FEED), int(RAPIDS_END)
 
@@ -77,13 +81,14 @@ def travel_of(
         constants: What stays.
         state: S is among its registers.
     """
+    registers = state.registers
     if speed == 0.0:
         own = constants.own_rapid_feed
-        pace = constants.rapid_feed if np.isnan(own) else rapid_feed(own, block.feed)
+        pace = registers[RAPID_FEED] if np.isnan(own) else rapid_feed(own, block.feed)
         return Travel(RAPID, pace, STOP)
     mode, unit = int(block.modal[FEED_MODE]), block.modal[UNIT]
     otherwise = (constants.default_feed, constants.default_rotary_feed)
-    feed, spindle = block.feed * speed, state.registers[SPINDLE]
+    feed, spindle = block.feed * speed, registers[SPINDLE]
     pace = feed_per_minute(feed, mode, length, turning, unit, spindle, otherwise)
     return Travel(FEED, pace, int(block.modal[CORNER]))
 
@@ -107,7 +112,7 @@ def put_positions(goal: FloatArray, part: FloatArray, state: State, position: Fl
 
 @inlined
 def put_move(
-    block: PlainBlock, travel: Travel, shape: int, constants: Constants, rows: Rows, row: int
+    block: PlainBlock, travel: Travel, shape: int, state: State, rows: Rows, row: int
 ) -> None:
     """Fill in what is no position of a move; an arc has its centre, normal and sweep already."""
     value, code = rows.values[row], rows.codes[row]
@@ -115,6 +120,7 @@ def put_move(
         value[:6] = np.nan
         value[6] = 0.0
     value[7] = travel.pace
-    copy(constants.last_values, value[8:])
+    value[8] = state.modal[CORNER_TOLERANCE]
+    value[9], value[10] = state.registers[ACCELERATION], state.registers[DECELERATION]
     code[0], code[1], code[2], code[3] = travel.motion, shape, block.line, block.number
     code[4] = travel.corner

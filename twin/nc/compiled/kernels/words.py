@@ -10,6 +10,7 @@ import numpy as np
 from twin.compilation.compilable import inlined
 from twin.nc.bytecode.effects import Affected, BlockPlace, report_function
 from twin.nc.bytecode.registers import (
+    ACTIVE,
     ARC,
     CODES,
     CYCLE,
@@ -17,6 +18,7 @@ from twin.nc.bytecode.registers import (
     FEED_LINE,
     INTERPOLATION,
     NO_MOTION,
+    OF_PLAIN_BLOCKS,
     PLANE,
     POLAR_ANGLE,
     POLAR_RADIUS,
@@ -68,7 +70,7 @@ def execute_block(
         token_kinds: What each word's letter is, shape (w,).
         values: The words' values, shape (w,).
         machine: What it runs on.
-        modal: Room for the modal state, shape (``MODAL``,).
+        modal: Room for what is in force in the block, shape (``OF_PLAIN_BLOCKS``,).
         row: The row of its move.
         polar: ``State.target`` holds where the move goes in the plane.
 
@@ -135,7 +137,7 @@ def _decode(
         Whether nothing about them is doubtful, the block, its M function or ``UNSUPPORTED``, and the
         drilling cycle that it calls or 0.
     """
-    copy(state.modal, modal)
+    copy(state.modal[:OF_PLAIN_BLOCKS], modal)
     known = True
     number, seen, groups = int(np.int64(NO_BLOCK_NUMBER)), int(np.int64(0)), 0
     function, cycle = UNSUPPORTED, 0
@@ -192,7 +194,7 @@ def _activate(block: PlainBlock, tables: BlockTables, state: State) -> None:
     for word in range(len(block.token_kinds)):
         if block.token_kinds[word] == CODE:
             code = int(block.values[word])
-            state.active_codes[tables.group[code]] = code
+            state.modal[ACTIVE + tables.group[code]] = code
     copy(block.modal, state.modal)
     state.registers[PROGRAMMED_FEED] = block.feed
 
@@ -222,5 +224,5 @@ def _move(block: PlainBlock, machine: Machine, row: int) -> int:
     turning = kind == FEED_LINE and only_turns(position[0], position[1], constants.linear)
     travel = travel_of(block, speed, length, turning, constants, state)
     shape = move_columns.ARC if is_arc else move_columns.LINE
-    put_move(block, travel, shape, constants, rows, row)
+    put_move(block, travel, shape, state, rows, row)
     return row + 1
