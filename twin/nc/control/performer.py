@@ -11,13 +11,12 @@ from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler, Finding, Otherwise, Target, found
 from twin.nc.bytecode.bytecode import MOST_VALUES, Instruction, number_of_location
 from twin.nc.bytecode.effects import BlockPlace
-from twin.nc.bytecode.flow import Transfer
+from twin.nc.bytecode.flow import Transfer, keep_codes
 from twin.nc.bytecode.frames import (
     CALLS,
     DEPTH,
     NO_LOCATION,
     NOTHING_RESTORED,
-    RESTORED_BY_CONTROL,
     go_to,
 )
 from twin.nc.bytecode.instructions import Surroundings, run_instruction
@@ -200,8 +199,6 @@ class Performer(Assembler):
         instruction = Instruction(opcode, operand, immediate)
         if not self._run(instruction):
             self._refuse(instruction)
-        if opcode == opcodes.RESTORE_CODES:
-            self._to = self._to._replace(restores=RESTORED_BY_CONTROL)
         if self._to.ends:
             self._leave(opcode)
 
@@ -224,10 +221,9 @@ class Performer(Assembler):
         control, counter, to = self._control, self._control.program_counter, self._to
         go_to(to.going, counter.progress)
         counter.progress[DEPTH], counter.progress[CALLS] = to.depth, to.called
-        if to.restores == RESTORED_BY_CONTROL and opcode == opcodes.RETURN:
-            control.restore_modal(counter.saved.pop(to.called))
-        elif to.restores == RESTORED_BY_CONTROL:
-            counter.saved[to.called - 1] = control.saved_modal()
+        keep_codes(opcode, to, control.state.modal, control.modal_of_calls)
+        if control.modal.cycle is None:
+            control.forget_cycle()
         raise _Gone
 
     def _refuse(self, instruction: Instruction) -> NoReturn:

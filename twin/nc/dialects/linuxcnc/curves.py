@@ -139,7 +139,8 @@ def end_nurbs(control: Control) -> None:
 
 def _end_motion(control: Control) -> None:
     """Behind G5 and G5.1 axis words need a code again (``rs274``)."""
-    control.modal.interpolation, control.active["motion"] = None, 80
+    control.modal.interpolation = None
+    control.active.put("motion", 80.0)
 
 
 def _knots(points: int, order: int) -> list[float]:
