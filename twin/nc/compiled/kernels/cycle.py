@@ -8,6 +8,7 @@ from twin.nc.bytecode.registers import (
     CYCLE,
     CYCLE_STATE,
     CYCLE_WORDS,
+    FEED_MODE,
     INCREMENTAL,
     PLANE,
     TO_REFERENCE,
@@ -18,24 +19,18 @@ from twin.nc.bytecode.registers import (
 )
 from twin.nc.bytecode.token_kinds import AXIS, RADIUS, UNSUPPORTED
 from twin.nc.canonical import FloatArray
-from twin.nc.compiled.kernels.move_row import (
-    LINE,
-    feeding,
-    has_pace,
-    put_move,
-    put_positions,
-    rapidly,
-)
+from twin.nc.compiled.kernels.move_row import LINE, has_pace, put_move, put_positions, travel_of
 from twin.nc.compiled.kernels.target import PlainBlock, put_target
 from twin.nc.path.drilling_cycle import VALUES, Cycle, CycleBlock, cycle_of, read_words
 from twin.nc.path.hole import MOST_STOPS, NO_MOVE, Hole, hole_of, most_acts, next_place, write_acts
 from twin.nc.path.moves import LARGEST_COORDINATE, line_length
+from twin.nc.path.paces import counts_blocks
 from twin.nc.path.rows import Rows, copy
 
 NO_ROOM = -2
 """The rows are full."""
 _WORDS = len(Cycle._fields)
-_REPEATS_ONLY = Cycle._fields.index("repeats_only")
+_AS_WRITTEN = Cycle._fields.index("as_written")
 
 
 @compilable
@@ -63,12 +58,14 @@ def drill(
         The number of rows after it, ``NO_ROOM``, or ``UNSUPPORTED`` with the cycle untouched.
     """
     plane = constants.planes[int(block.modal[PLANE])]
-    repeats_only = tables.cycles[int(block.modal[CYCLE])][_REPEATS_ONLY] != 0.0
+    as_written = tables.cycles[int(block.modal[CYCLE])][_AS_WRITTEN] != 0.0
     names_place = block.polar or block.seen >> AXIS != 0
-    if repeats_only and (called[0] or block.modal[INCREMENTAL] != 0.0 or not names_place):
+    modal, other = block.modal, called[0] or not names_place
+    other = other or modal[INCREMENTAL] != 0.0 or counts_blocks(int(modal[FEED_MODE]))
+    if as_written and other:
         return UNSUPPORTED
     taken, hole = _read_cycle(block, called, tables, constants, state)
-    if repeats_only and state.programmed[plane[2]] < hole.reference:
+    if as_written and state.programmed[plane[2]] < hole.reference:
         return UNSUPPORTED
     if hole.fault != 0 or hole.stops > MOST_STOPS:
         return UNSUPPORTED
@@ -176,8 +173,6 @@ def _go(
     if length == 0.0:
         return row
     copy(position[1], part)
-    travel = rapidly(block, state)
-    if speed > 0.0:
-        travel = feeding(block.feed * speed, block, length, False, constants, state)
+    travel = travel_of(block, speed, length, False, constants, state)
     put_move(block, travel, LINE, state, rows, row)
     return row + 1

@@ -19,7 +19,7 @@ from twin.nc.bytecode.registers import (
     Constants,
     State,
 )
-from twin.nc.bytecode.token_kinds import FEED
+from twin.nc.bytecode.token_kinds import FEED as FEED_WORD
 from twin.nc.canonical import FloatArray, Motion
 from twin.nc.compiled.kernels.target import PlainBlock
 from twin.nc.path.move_columns import LINE
@@ -34,7 +34,7 @@ from twin.nc.path.paces import (
 )
 from twin.nc.path.rows import Rows
 
-_RAPID, _FEED, _STOP = int(Motion.RAPID), int(Motion.FEED), int(RAPIDS_END)
+RAPID, FEED, STOP = int(Motion.RAPID), int(Motion.FEED), int(RAPIDS_END)
 
 
 class Travel(NamedTuple):
@@ -55,7 +55,7 @@ class Travel(NamedTuple):
 def has_pace(block: PlainBlock, constants: Constants, state: State) -> bool:
     """Whether nothing about the pace of a block's moves with a feed is doubtful."""
     registers, mode = state.registers, int(block.modal[FEED_MODE])
-    if needs_own_feed(mode) and not block.seen & (1 << FEED):
+    if needs_own_feed(mode) and not block.seen & (1 << FEED_WORD):
         return False
     speed, turns = registers[SPINDLE], registers[SPINDLE_TURNS]
     finding = finding_of_feed(block.feed, mode, speed, turns)
@@ -63,26 +63,32 @@ def has_pace(block: PlainBlock, constants: Constants, state: State) -> bool:
 
 
 @inlined
-def rapidly(block: PlainBlock, state: State) -> Travel:
-    """How a rapid goes."""
-    return Travel(_RAPID, rapid_feed(state.registers[RAPID_FEED], block.feed), _STOP)
-
-
-@inlined
-def feeding(
-    feed: float,
+def travel_of(
     block: PlainBlock,
+    speed: float,
     length: float,
     turning: bool,
     constants: Constants,
     state: State,
 ) -> Travel:
-    """How a move with a feed goes, where its block ``has_pace``; the arguments as ``feed_per_minute`` has them."""
-    modal, speed = block.modal, state.registers[SPINDLE]
+    """How a move of a block goes, which ``has_pace`` where it has a feed.
+
+    Args:
+        block: The block.
+        speed: How many times as fast as F says; 0: rapidly.
+        length: How far the move goes [mm or deg].
+        turning: Only rotary axes move.
+        constants: What stays.
+        state: S is among its registers.
+    """
+    registers = state.registers
+    if speed == 0.0:
+        return Travel(RAPID, rapid_feed(registers[RAPID_FEED], block.feed), STOP)
+    mode, unit = int(block.modal[FEED_MODE]), block.modal[UNIT]
     otherwise = (constants.default_feed, constants.default_rotary_feed)
-    mode, unit = int(modal[FEED_MODE]), modal[UNIT]
-    pace = feed_per_minute(feed, mode, length, turning, unit, speed, otherwise)
-    return Travel(_FEED, pace, int(modal[CORNER]))
+    feed, spindle = block.feed * speed, registers[SPINDLE]
+    pace = feed_per_minute(feed, mode, length, turning, unit, spindle, otherwise)
+    return Travel(FEED, pace, int(block.modal[CORNER]))
 
 
 @inlined

@@ -15,6 +15,7 @@ from twin.nc.bytecode.registers import (
     CODES,
     CYCLE,
     EARLY,
+    FEED_LINE,
     INTERPOLATION,
     NO_MOTION,
     OF_PLAIN_BLOCKS,
@@ -39,15 +40,10 @@ from twin.nc.bytecode.token_kinds import (
 from twin.nc.canonical import NO_BLOCK_NUMBER, FloatArray, IntArray
 from twin.nc.compiled.kernels.arc import emit_arc
 from twin.nc.compiled.kernels.cycle import drill
-from twin.nc.compiled.kernels.move_row import feeding, has_pace, put_move, put_positions, rapidly
+from twin.nc.compiled.kernels.move_row import has_pace, put_move, put_positions, travel_of
 from twin.nc.compiled.kernels.target import PlainBlock, put_target
 from twin.nc.path import move_columns
-from twin.nc.path.moves import (
-    LARGEST_COORDINATE,
-    SMALLEST_MOVE,
-    line_length,
-    only_turns,
-)
+from twin.nc.path.moves import LARGEST_COORDINATE, SMALLEST_MOVE, line_length, only_turns
 from twin.nc.path.rows import copy
 from twin.nc.text.arithmetic import is_whole
 from twin.nc.text.line_reader import LARGEST_LABEL
@@ -224,10 +220,9 @@ def _move(block: PlainBlock, machine: Machine, row: int) -> int:
         length = line_length(position[0], position[1])
     if length < SMALLEST_MOVE:
         return row if length >= 0.0 else UNSUPPORTED
-    if kind == RAPID_LINE:
-        travel = rapidly(block, state)
-    else:
-        turning = not is_arc and only_turns(position[0], position[1], constants.linear)
-        travel = feeding(block.feed, block, length, turning, constants, state)
-    put_move(block, travel, move_columns.ARC if is_arc else move_columns.LINE, state, rows, row)
+    speed = 0.0 if kind == RAPID_LINE else 1.0
+    turning = kind == FEED_LINE and only_turns(position[0], position[1], constants.linear)
+    travel = travel_of(block, speed, length, turning, constants, state)
+    shape = move_columns.ARC if is_arc else move_columns.LINE
+    put_move(block, travel, shape, state, rows, row)
     return row + 1
