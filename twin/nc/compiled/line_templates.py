@@ -18,8 +18,8 @@ from twin.nc.text.expressions import LARGEST_NUMBER
 from twin.nc.text.plain_word import BLANKS_BETWEEN, NUMBER, SIGNED_NUMBER, SIGNED_POINTED_NUMBER
 
 _LABEL = re.compile(r"[ \t]*N[ \t]*([0-9]{1,9})(?=[ \t])", re.IGNORECASE)
-_SHARED = (opcodes.SNAPSHOT, opcodes.SET_REGISTER)
-"""Opcodes of lines that may share a template, besides those that compute and move."""
+_SHARED = (*range(opcodes.CONSTANT, opcodes.JUMP), opcodes.SNAPSHOT, opcodes.SET_REGISTER)
+"""Opcodes of lines that may share a template, besides those of variables, words and moves."""
 _MOST_TEMPLATES = 1000
 """Templates that are kept: a program that has more gains nothing by them."""
 
