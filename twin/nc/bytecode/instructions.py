@@ -1,4 +1,4 @@
-"""Runs the instructions that both tiers run alike: all but those of variables, words and moves."""
+"""Runs the instructions that both tiers run alike: those from ``CONSTANT`` on."""
 
 from typing import NamedTuple
 
@@ -36,8 +36,7 @@ def run_instruction(
     """Run one instruction, by its kind.
 
     Args:
-        instruction: One that computes of values on the stack, or one from ``JUMP`` on but
-            ``ACTIVATE`` and ``NO_PECKS``.
+        instruction: One from ``CONSTANT`` on.
         stack: Values.
         top: How many there are.
         to: Where the block leads so far.
@@ -47,6 +46,8 @@ def run_instruction(
         How many values there are then, below 0 where something is wrong; and where the block leads.
     """
     opcode, memory = instruction.opcode, around.memory
+    if opcode <= opcodes.DROP:
+        return compute_value(instruction, stack, top), to
     if opcode >= opcodes.REGISTER:
         return run_effect(instruction, stack, top, around.block, around.on), to
     if opcode >= opcodes.CHECK_CALL:
@@ -54,8 +55,6 @@ def run_instruction(
         return top if known else BAILOUT, to
     if opcode >= opcodes.BEGIN_FOR:
         return count_loop(instruction, stack, top, to.depth, memory), to
-    if opcode >= opcodes.JUMP:
-        if jumps(instruction, stack, top):
-            to = going_to(instruction.operand, to)
-        return top if opcode == opcodes.JUMP else top - 1, to
-    return compute_value(instruction, stack, top), to
+    if jumps(instruction, stack, top):
+        to = going_to(instruction.operand, to)
+    return top if opcode == opcodes.JUMP else top - 1, to

@@ -165,22 +165,15 @@ class BlockCompiler:
 
     def _acts(self, words: list[Word]) -> bool:
         """Whether the block does more than its plain words."""
-        functions = 0
-        for word in words:
-            if word.address in self.acting:
-                return True
-            if isinstance(word.value, Expression):
-                continue
-            if word.address == "G":
-                code = self.vocabulary.g.get(word.value)
-                if code is not None and code.writer is not None:
-                    return True
-            elif word.address == "M":
-                function = self.vocabulary.m.get(int(word.value))
-                functions += 1
-                if function is not None and function.writer is not None:
-                    return True
-        return functions > 1
+        values = (word.value for word in words if word.address == "M")
+        functions = [value for value in values if isinstance(value, float)]
+        known = (self.vocabulary.m.get(int(number)) for number in functions)
+        codes = (*self.known_codes(words), *filter(None, known))
+        return (
+            len(functions) > 1
+            or any(word.address in self.acting for word in words)
+            or any(code.writer is not None for code in codes)
+        )
 
 
 def _number(word: Word) -> int:

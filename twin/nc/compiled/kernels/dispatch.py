@@ -67,7 +67,18 @@ def dispatch_loop(
         row += 1
         instruction = Instruction(table.opcode[row], table.operand[row], table.immediate[row])
         opcode = instruction.opcode
-        if opcodes.CONSTANT <= opcode <= opcodes.WORD_CONSTANT:
+        if opcode >= opcodes.CONSTANT:
+            around = Surroundings(
+                memory,
+                execution.calls,
+                BlockPlace(line, made, contour.counts[STAGE] != OFF),
+                Affected(machine.constants, state, machine.rows),
+            )
+            top, to = run_instruction(instruction, stack, top, to, around)
+            if top < 0 or not _keep_codes(opcode, to, state, execution):
+                break
+            opcode = opcodes.NEXT if to.ends else opcode
+        elif opcodes.LOAD <= opcode <= opcodes.WORD_CONSTANT:
             top = compute(instruction, top, to.depth, table.numbered, memory, scratch)
         elif opcodes.RUN <= opcode <= opcodes.RUN_POLAR:
             begun = BlockBegin(line, made, first_event)
@@ -93,20 +104,8 @@ def dispatch_loop(
             made = progress[MADE] = after  # not undone: to end it twice is to end it once
         elif opcode == opcodes.ACTIVATE:
             state.active_codes[machine.tables.group[instruction.operand]] = instruction.operand
-        elif opcode == opcodes.TRAP or opcode == opcodes.NO_PECKS:
-            if opcode == opcodes.TRAP or _pecks(machine):
-                break
-        elif opcode != opcodes.NEXT:
-            around = Surroundings(
-                memory,
-                execution.calls,
-                BlockPlace(line, made, contour.counts[STAGE] != OFF),
-                Affected(machine.constants, state, machine.rows),
-            )
-            top, to = run_instruction(instruction, stack, top, to, around)
-            if top < 0 or not _keep_codes(opcode, to, state, execution):
-                break
-            opcode = opcodes.NEXT if to.ends else opcode
+        elif opcode == opcodes.TRAP or (opcode == opcodes.NO_PECKS and _pecks(machine)):
+            break
         if opcode == opcodes.NEXT:
             progress[INSTRUCTION_BUDGET], progress[MADE] = budget, made
             arrive(to, here, progress)

@@ -1,11 +1,10 @@
-"""Instructions that fill stack, variables or words; ``bytecode/expressions`` has those that compute."""
+"""Instructions of variables and words."""
 
 import numpy as np
 
 from twin.compilation.compilable import inlined
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.bytecode import Instruction
-from twin.nc.bytecode.expressions import compute_value
 from twin.nc.bytecode.frames import WORDS, Scratch, VariableStore
 from twin.nc.bytecode.registers import BAILOUT
 from twin.nc.bytecode.variables import NO_SLOT, assign, load, slot_of_number
@@ -21,10 +20,10 @@ def compute(
     memory: VariableStore,
     scratch: Scratch,
 ) -> int:
-    """Run an instruction that fills stack, variables or words.
+    """Run an instruction of variables or words.
 
     Args:
-        instruction: One from ``CONSTANT`` to ``WORD_CONSTANT``.
+        instruction: One from ``LOAD`` to ``WORD_CONSTANT``.
         top: How many values there are.
         depth: Row of the local variables.
         numbered: Slots of the variables that have a number.
@@ -46,8 +45,6 @@ def compute(
     if opcode == opcodes.DEFINED:
         stack[top] = 0.0 if np.isnan(load(memory, depth, instruction.operand)) else 1.0
         return top + 1
-    if opcode <= opcodes.DROP:
-        return compute_value(instruction, stack, top)
     if opcode <= opcodes.STORE_NUMBERED:
         return top - 1 if assign(instruction, top, depth, numbered, memory, scratch) else BAILOUT
     value = instruction.immediate
