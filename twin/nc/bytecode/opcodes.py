@@ -112,17 +112,24 @@ CHECK_RETURN = 39
 RETURN = 40
 """Go back behind the call."""
 
-# --- registers
+# --- what the control remembers
 
 REGISTER = 41
 """Put the register ``operand`` on the stack."""
 SET_REGISTER = 42
 """The topmost value becomes the register ``operand``."""
-CHECK = 43
+TO_MILLIMETRES = 43
+"""Convert the topmost value, a length, from the active unit."""
+TOOL_RADIUS = 44
+"""Put the radius of the tool in use on the stack, NaN where there is no tool."""
+COORDINATE = 45
+"""Put the abscissa (``operand`` 0) or ordinate (1) of the present position on the stack."""
+
+# --- what must hold
+
+CHECK = 46
 """The topmost value, which stays, must be as the check ``operand`` says, one of those below, of
 ``immediate``; else the interpreter tier must run the block, which says what is wrong."""
-TO_MILLIMETRES = 44
-"""Convert the topmost value, a length, from the active unit."""
 
 AT_LEAST, AT_MOST, WHOLE, SIGN, PRESENT, ABSENT, LISTED_TOOL, UNCOMPENSATED = range(8)
 """Checks: not below ``immediate``; not above it; a whole number from 0 to it; -1 or 1; any value, or
@@ -130,36 +137,26 @@ none (NaN); the number of a tool that the job lists; or, of no value, radius com
 
 # --- events
 
-FUNCTION = 45
+FUNCTION = 47
 """Report the M function ``operand``, a start of the spindle together with its speed."""
-REPORT = 46
+REPORT = 48
 """Report an event of the kind ``operand`` with the topmost value."""
 
-# --- tools
+# --- coordinates
 
-TOOL_LENGTH = 47
+TOOL_LENGTH = 49
 """Shift Z by the length of the tool in use, if its offset applies."""
-TOOL_RADIUS = 48
-"""Put the radius of the tool in use on the stack, NaN where there is no tool."""
-
-# --- shifts of coordinates
-
-SHIFT = 49
+SHIFT = 50
 """The topmost values, one for each axis, are the shift ``operand``."""
-REFRAME = 50
+REFRAME = 51
 """The shifts have changed."""
-BEGIN_TARGET = 51
+BEGIN_TARGET = 52
 """Begin to set new coordinates for the present position: until set, each axis keeps its own."""
-TARGET = 52
+TARGET = 53
 """The topmost value is the new coordinate of the axis ``operand``."""
-SET_POSITION = 53
+SET_POSITION = 54
 """The new coordinates hold from here on, by the shift ``operand``."""
-TRANSFORM = 54
+TRANSFORM = 55
 """Mirror, scale and rotation have changed."""
-
-# --- plane
-
-PLANE = 55
+PLANE = 56
 """The plane ``operand``, 0 to 2, becomes active, with part zero as polar origin."""
-COORDINATE = 56
-"""Put the abscissa (``operand`` 0) or ordinate (1) of the present position on the stack."""

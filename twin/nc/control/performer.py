@@ -11,12 +11,10 @@ from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler, Finding, Otherwise, Target, found
 from twin.nc.bytecode.bytecode import MOST_VALUES, Instruction, number_of_location
 from twin.nc.bytecode.effects import BlockPlace
-from twin.nc.bytecode.flow import Transfer
+from twin.nc.bytecode.flow import straight_on
 from twin.nc.bytecode.frames import (
     CALLS,
     DEPTH,
-    NO_LOCATION,
-    NOTHING_RESTORED,
     RESTORED_BY_CONTROL,
     go_to,
 )
@@ -73,22 +71,12 @@ class Performer(Assembler):
 
     def __init__(self, control: Control, span: tuple[int, int]) -> None:
         counter = control.program_counter
-        here, progress = number_of_location(counter.location), counter.progress
         self._span = span
         self._control = control
         self._stack = [0.0] * MOST_VALUES
         self._top = 0
         self._word: Word | None = None
-        self._to = Transfer(
-            here,
-            here,
-            int(progress[DEPTH]),
-            int(progress[CALLS]),
-            NO_LOCATION,
-            0,
-            NOTHING_RESTORED,
-            False,
-        )
+        self._to = straight_on(counter.progress, number_of_location(counter.location))
 
     def _slot(self, name: str) -> int:
         return self._control.variables.slot(name)

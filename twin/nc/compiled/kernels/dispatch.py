@@ -57,7 +57,8 @@ def dispatch_loop(
     stack, memory = scratch.stack, execution.memory
     line, here = progress[LINE] + 1, progress[LINE] << PART_BITS | progress[PART]
     budget = progress[INSTRUCTION_BUDGET] - (here <= progress[FURTHEST])
-    to = straight_on(progress, table.operand[row] == 0)
+    ends_line = table.operand[row] == 0
+    to = straight_on(progress, (progress[LINE] + 1) << PART_BITS if ends_line else here + 1)
     top, why = 0, TRAPPED
     made, first_event = progress[MADE], state.event_count[0]
     has_snapshot = compensates = contour.counts[STAGE] != OFF
