@@ -45,13 +45,9 @@ def tool_numbered(control: Control, word: Word) -> int:
         message = f"the job has no tool {control.number(word):g}"
         control.fail("no-such-tool", message, word, hint=f"tools of the job: {known}")
     if number not in control.tools.table:
-        control.report.warn_once(
-            "default-tool",
-            f"the job lists no tools: every number means one of {2.0 * tool.radius:g} mm",
-            word.column,
-            word.width,
-            hint="give the job its tools: [[tools]]",
-        )
+        message = f"the job lists no tools: every number means one of {2.0 * tool.radius:g} mm"
+        hint = "give the job its tools: [[tools]]"
+        control.report.warn_once("default-tool", message, word.column, word.width, hint=hint)
     return number
 
 

@@ -48,13 +48,7 @@ class ProgramCounter:
         saved: What the ends of calls put back into force, by their rows.
     """
 
-    def __init__(
-        self,
-        source: Source,
-        lexer: Lexer,
-        step_limit: int,
-        report: Reporter,
-    ) -> None:
+    def __init__(self, source: Source, lexer: Lexer, step_limit: int, report: Reporter) -> None:
         """Stand before the program.
 
         Args:
@@ -189,19 +183,6 @@ class ProgramCounter:
                 if number > line or block.part >= part:
                     yield block
 
-    def jump(self, number: int, fail_at: tuple[int, int], word: str) -> None:
-        """Go on at the block with an N number.
-
-        Args:
-            number: The N number.
-            fail_at: Column and width of the word that asks for it, for the diagnostic.
-            word: That word's meaning, for the diagnostic.
-
-        Raises:
-            ProgramError: No block or more than one has it.
-        """
-        self.go(self.find_label(number, fail_at, word))
-
     def find_label(
         self,
         label: int | str,
@@ -209,9 +190,13 @@ class ProgramCounter:
         word: str,
         within: Container[int] | None = None,
     ) -> Location:
-        """Where the block with an N number or a name stands; arguments as for ``jump``.
+        """Where the block with an N number or a name stands.
 
-        ``within``, where it is given, holds the lines, from 0, that may have it.
+        Args:
+            label: The number or the name.
+            fail_at: Column and width of the word that asks for it, for the diagnostic.
+            word: That word's meaning, for the diagnostic.
+            within: The lines, from 0, that may have it; None: all.
 
         Raises:
             ProgramError: No block or more than one has it.
@@ -264,11 +249,9 @@ class ProgramCounter:
         now[INSTRUCTION_BUDGET] -= 1
         if now[INSTRUCTION_BUDGET] < 0:
             self._report.line = line + 1
-            self._report.fail(
-                "endless-program",
-                f"more than {self._step_limit} blocks were repeated",
-                hint="if the program is meant to run this long, raise the job's step_limit",
-            )
+            message = f"more than {self._step_limit} blocks were repeated"
+            hint = "if the program is meant to run this long, raise the job's step_limit"
+            self._report.fail("endless-program", message, hint=hint)
 
     def _refuse_label(
         self, label: int | str, count: int, fail_at: tuple[int, int], word: str

@@ -20,10 +20,10 @@ class ControlWords(ControlState, abc.ABC):
         """Take a word from the block; None where it has none."""
         return self.words.pop(address, None)
 
-    def take_number(self, address: str, default: float = 0.0) -> float:
-        """Take the value of a word from the block."""
+    def take_number(self, address: str) -> float:
+        """Take the value of a word from the block; 0 where it has none."""
         word = self.words.pop(address, None)
-        return default if word is None else number_of(word)
+        return 0.0 if word is None else number_of(word)
 
     def take_computed(self, address: str) -> float:
         """Take the value of a word that may be a reference to a variable."""
@@ -54,9 +54,8 @@ class ControlWords(ControlState, abc.ABC):
     def refuse_axis(self, word: Word) -> NoReturn:
         """The machine lacks the axis that the word names."""
         names = ", ".join(self.settings.axes.names)
-        self.fail(
-            "no-such-axis", f"this machine has no axis {word.address}", word, f"axes: {names}"
-        )
+        message = f"this machine has no axis {word.address}"
+        self.fail("no-such-axis", message, word, f"axes: {names}")
 
     def axis_value(self, index: int, word: Word) -> float:
         """Value of an axis word [mm or deg]."""

@@ -49,13 +49,9 @@ def warn_of_foreign_commands(control: Control) -> None:
         match = _FOREIGN_COMMAND.search(line.encode("ascii", "replace"))
         if match is not None:
             control.report.line = number
-            control.report.warn(
-                "foreign-command",
-                f"{match[0].decode()} is a comment here and a command of the NC-200 family",
-                match.start(),
-                len(match[0]),
-                hint="if the program is meant for that control, nothing here runs it",
-            )
+            message = f"{match[0].decode()} is a comment here and a command of the NC-200 family"
+            hint = "if the program is meant for that control, nothing here runs it"
+            control.report.warn("foreign-command", message, match.start(), len(match[0]), hint=hint)
 
 
 def switch_recalculation(control: Control) -> None:
@@ -70,12 +66,9 @@ def switch_recalculation(control: Control) -> None:
     periodic = sorted(control.settings.periodic)
     for index, word in words:
         if word.address not in control.settings.periodic:
-            control.fail(
-                "not-periodic",
-                f"{word.address} is not declared as a periodic axis on this machine",
-                word,
-                hint=f"periodic axes: {', '.join(periodic) or 'none'}",
-            )
+            message = f"{word.address} is not declared as a periodic axis on this machine"
+            hint = f"periodic axes: {', '.join(periodic) or 'none'}"
+            control.fail("not-periodic", message, word, hint=hint)
         period = control.number(word)
         if period < 0.0:
             control.fail("g102-period", f"{word.text} is no period", word, "360, or 0 for off")

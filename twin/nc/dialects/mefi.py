@@ -54,12 +54,9 @@ def switch_on(control: Control) -> None:
         ProgramError: No lead is stored.
     """
     if not any(_dragging(control).leads.values()):
-        control.fail(
-            "no-lead",
-            "G09 finds no lead",
-            control.code_word(9),
-            hint="store it in a block before: Z1.05 G10",
-        )
+        message = "G09 finds no lead"
+        hint = "store it in a block before: Z1.05 G10"
+        control.fail("no-lead", message, control.code_word(9), hint=hint)
     _dragging(control).on = True
 
 
@@ -75,17 +72,12 @@ def jump_with_repeat(control: Control) -> None:
 
 
 def _jump(control: Control, target: Word | None, count: Word | None, assembler: Assembler) -> None:
-    """Write the jump of G73.
-
-    Raises:
-        ProgramError: L is missing or names no block; Q is no count.
-    """
+    """Write the jump of G73."""
     if target is None:
         numbers = ", ".join(f"N{label}" for label in list(control.program_counter.labels())[:12])
         code = control.code_word(73)
-        control.fail(
-            "jump-target", "G73 needs L: the block to jump to", code, hint=f"blocks here: {numbers}"
-        )
+        message = "G73 needs L: the block to jump to"
+        control.fail("jump-target", message, code, hint=f"blocks here: {numbers}")
     wanted = 1.0 if count is None else assembler.known(count)
     if not (wanted >= 0.0 and wanted == int(wanted)):
         control.fail("repeat-count", "Q must count jumps", count)
@@ -130,12 +122,9 @@ def _arc(control: Control, rule: ArcRule) -> None:
             message = f"{name} lies in the plane {plane.name} and cannot be dragged by its circles"
             control.fail("dragged-axis", message)
         if lead and name in control.words:
-            control.fail(
-                "dragged-axis",
-                f"{name} is dragged by the circle and cannot be programmed as well",
-                control.words[name],
-                hint="leave it out, or end the helix by G98",
-            )
+            message = f"{name} is dragged by the circle and cannot be programmed as well"
+            hint = "leave it out, or end the helix by G98"
+            control.fail("dragged-axis", message, control.words[name], hint=hint)
     target = control.target()
     center = arc_center(control, target, rule)
     start, end = start_and_end(control, target)

@@ -1,8 +1,4 @@
-"""Geometry of the ways to and from a compensated contour, as plain functions over tuples.
-
-``leads`` is a view of them; the compiled tier (``lead_kernels``) compiles them as they stand here, as it
-does those of ``curves``.
-"""
+"""Geometry of the ways to and from a compensated contour, as plain functions over tuples, for both tiers."""
 
 import math
 

@@ -1,14 +1,13 @@
 """Matrices of X, Y and Z as tuples of rows: what mirror, scale and rotation do to vectors.
 
-The compiled tier (``frame_kernels``) compiles these functions as they stand here, so that they use
-nothing whose bits could differ between the two, such as ``sum``.
+Both tiers use them, so that they hold nothing whose bits could differ between the two, such as ``sum``.
 """
 
 import math
 
 from twin.compilation.compilable import compilable
 from twin.nc.geometry.arcs import Point, direction
-from twin.nc.geometry.planes import Directions, Vector
+from twin.nc.geometry.planes import Directions, Vector, along, cross
 
 Matrix = Directions
 IDENTITY: Matrix = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
@@ -33,34 +32,19 @@ def applied(matrix: Matrix, vector: Vector) -> Vector:
 def determinant(matrix: Matrix) -> float:
     """Of a matrix; below 0 where it mirrors."""
     a, b, c = matrix
-    return (
-        a[0] * (b[1] * c[2] - b[2] * c[1])
-        - a[1] * (b[0] * c[2] - b[2] * c[0])
-        + a[2] * (b[0] * c[1] - b[1] * c[0])
-    )
+    return along(cross(b, c), a)
 
 
 @compilable
 def inverse(matrix: Matrix) -> Matrix:
     """The matrix that undoes another."""
     a, b, c = matrix
-    d = determinant(matrix)
+    x, y, z = cross(b, c), cross(c, a), cross(a, b)
+    d = along(x, a)
     return (
-        (
-            (b[1] * c[2] - b[2] * c[1]) / d,
-            (a[2] * c[1] - a[1] * c[2]) / d,
-            (a[1] * b[2] - a[2] * b[1]) / d,
-        ),
-        (
-            (b[2] * c[0] - b[0] * c[2]) / d,
-            (a[0] * c[2] - a[2] * c[0]) / d,
-            (a[2] * b[0] - a[0] * b[2]) / d,
-        ),
-        (
-            (b[0] * c[1] - b[1] * c[0]) / d,
-            (a[1] * c[0] - a[0] * c[1]) / d,
-            (a[0] * b[1] - a[1] * b[0]) / d,
-        ),
+        (x[0] / d, y[0] / d, z[0] / d),
+        (x[1] / d, y[1] / d, z[1] / d),
+        (x[2] / d, y[2] / d, z[2] / d),
     )
 
 

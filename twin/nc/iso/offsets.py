@@ -34,12 +34,9 @@ def offset_of_job(control: Control, name: str, word: Word | None) -> Mapping[str
     if values is None and name != "G54":
         known = ", ".join(sorted(control.settings.offsets)) or "none"
         key = name if name.isalnum() else f'"{name}"'
-        control.fail(
-            "no-offset",
-            f"the job gives no work offset {name}",
-            word,
-            hint=f"write it under [offsets.{key}]; the job has: {known}",
-        )
+        message = f"the job gives no work offset {name}"
+        hint = f"write it under [offsets.{key}]; the job has: {known}"
+        control.fail("no-offset", message, word, hint=hint)
     return values or {}
 
 
@@ -60,11 +57,9 @@ def machine_zero(control: Control, code: str) -> Mapping[str, float]:
     """
     zero = control.settings.machine_zero
     if zero is None:
-        control.fail(
-            "no-machine-zero",
-            f"{code} counts from machine zero, and the job does not say where that lies",
-            hint="write part_zero with its Z into the job file; twin init writes a first one",
-        )
+        message = f"{code} counts from machine zero, and the job does not say where that lies"
+        hint = "write part_zero with its Z into the job file; twin init writes a first one"
+        control.fail("no-machine-zero", message, hint=hint)
     return zero
 
 

@@ -121,19 +121,24 @@ def remainder_of_wholes(a: float, b: float) -> float:
     return math.fmod(nearest_whole_away(a), nearest_whole_away(b))
 
 
-def _from_binary_decimal(a: float) -> float:
-    """As ``from_binary_decimal``; infinite where that is undefined."""
+@compilable
+def _digits_elsewhere(a: float, old: float, new: float) -> float:
+    """The number with the decimal digits that another has at a base, at a new one; infinite where it has others."""
     number, place, rest = 0.0, 1.0, a
     if not 0.0 <= a <= LARGEST_WHOLE or a != math.floor(a):
         return math.inf
     while rest > 0.0:
-        digit = math.fmod(rest, 16.0)
+        digit = math.fmod(rest, old)
         if digit > 9.0:
             return math.inf
         number += digit * place
-        place *= 10.0
-        rest = math.floor(rest / 16.0)
+        place *= new
+        rest = math.floor(rest / old)
     return number
+
+
+def _from_binary_decimal(a: float) -> float:
+    return _digits_elsewhere(a, 16.0, 10.0)
 
 
 @compilable_as(_from_binary_decimal)
@@ -143,15 +148,7 @@ def from_binary_decimal(a: float) -> float:
 
 
 def _to_binary_decimal(a: float) -> float:
-    """As ``to_binary_decimal``; infinite where that is undefined."""
-    number, place, rest = 0.0, 1.0, a
-    if not 0.0 <= a <= LARGEST_WHOLE or a != math.floor(a):
-        return math.inf
-    while rest > 0.0:
-        number += math.fmod(rest, 10.0) * place
-        place *= 16.0
-        rest = math.floor(rest / 10.0)
-    return number
+    return _digits_elsewhere(a, 10.0, 16.0)
 
 
 @compilable_as(_to_binary_decimal)

@@ -76,11 +76,8 @@ def _center_arc(control: Control, rule: ArcRule) -> None:
 def _opening_arc(control: Control, opening: Word, *, clockwise: bool) -> None:
     angle = control.number(opening)
     if not 0.0 < angle <= LARGEST_OPENING:
-        control.fail(
-            "arc-opening",
-            f"the opening angle {opening.text} is not above 0 and up to {LARGEST_OPENING:g}",
-            opening,
-        )
+        message = f"the opening angle {opening.text} is not above 0 and up to {LARGEST_OPENING:g}"
+        control.fail("arc-opening", message, opening)
     center, word = _programmed_center(control)
     if center is None:
         control.fail("arc-without-center", "an opening angle needs I, J or K", opening)

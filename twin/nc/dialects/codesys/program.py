@@ -129,15 +129,11 @@ def read_variable(control: Control, name: str, _index: float | None) -> float:
     if value is not None:
         return value
     if name.startswith("#"):
-        raise ExpressionError(
-            "unknown-variable", f"{name} is not declared", None, f"write LET {name} : LREAL"
-        )
-    raise ExpressionError(
-        "unknown-variable",
-        f"the application's variable {name} has no value",
-        None,
-        f"give it one in the job: [variables] {name.strip('$')} = 0.0",
-    )
+        message = f"{name} is not declared"
+        raise ExpressionError("unknown-variable", message, None, f"write LET {name} : LREAL")
+    message = f"the application's variable {name} has no value"
+    hint = f"give it one in the job: [variables] {name.strip('$')} = 0.0"
+    raise ExpressionError("unknown-variable", message, None, hint)
 
 
 def is_local(name: str) -> bool:

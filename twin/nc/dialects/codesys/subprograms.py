@@ -86,34 +86,22 @@ def define(control: Control, statement: Statement) -> None:
 
 
 def _call(control: Control, statement: Statement, assembler: Assembler) -> None:
-    """``Name{values}``: run a subprogram with its own variables.
-
-    Raises:
-        ProgramError: There is none, or it takes others.
-    """
+    """``Name{values}``: run a subprogram with its own variables."""
     name = statement.keyword.strip()
     subprogram = _subprograms(control).get(name)
     if subprogram is None:
         known = ", ".join(sorted(_subprograms(control))) or "none"
-        control.report.fail(
-            "unknown-subprogram",
-            f"there is no subprogram {name}",
-            statement.column,
-            len(name),
-            hint=f"one of its own file is {name.lower()}.cnc; subprograms here: {known}",
-        )
+        message = f"there is no subprogram {name}"
+        hint = f"one of its own file is {name.lower()}.cnc; subprograms here: {known}"
+        control.report.fail("unknown-subprogram", message, statement.column, len(name), hint=hint)
     text = statement.text.strip()
     if text[-1:] not in ("}", ")"):
         control.report.fail("expression", "the bracket is not closed", statement.text_column)
     column = statement.text_column + statement.text.index(text[0]) + 1
     values = control.expressions(text[1:-1], column)
     if len(values) != len(subprogram.formals):
-        control.report.fail(
-            "call-values",
-            f"{name} takes {len(subprogram.formals)} values, not {len(values)}",
-            statement.column,
-            len(name),
-        )
+        message = f"{name} takes {len(subprogram.formals)} values, not {len(values)}"
+        control.report.fail("call-values", message, statement.column, len(name))
     for each in values:
         assembler.value(each, column)
     begin = Location(subprogram.lines.start, 0)

@@ -168,11 +168,7 @@ def _switch(control: Control, statement: Statement, assembler: Assembler) -> Non
 
 
 def _case(control: Control, statement: Statement) -> None:
-    """$CASE or $DEFAULT reached from the case before, which is not documented.
-
-    Raises:
-        ProgramError: Always.
-    """
+    """$CASE or $DEFAULT reached from the case before, which is not documented."""
     control.refuse(statement, "missing-break", "the case before has no $BREAK")
 
 

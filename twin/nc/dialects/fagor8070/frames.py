@@ -28,9 +28,8 @@ def any_plane(control: Control) -> None:
     for index, word in control.take_axis_words():
         role = int(control.number(word))
         if role not in (1, 2, 3) or role in roles or index > 2:
-            control.fail(
-                "plane-axes", "1, 2 and 3 name abscissa, ordinate and the axis across", word
-            )
+            message = "1, 2 and 3 name abscissa, ordinate and the axis across"
+            control.fail("plane-axes", message, word)
         x, y, z = (1.0 if each == index else 0.0 for each in range(3))
         roles[role] = (x, y, z)
     if 1 not in roles or 2 not in roles:

@@ -179,11 +179,8 @@ def _polar_target(control: Control, *, arc: bool) -> list[float]:
         incremental = control.modal.incremental or radius_word.incremental
         radius = changed(radius, value, incremental)
         if radius < 0.0 or (arc and radius == 0.0):
-            control.fail(
-                "polar-radius",
-                f"the polar radius {radius:g} must be positive" + ("" if arc else " or 0"),
-                radius_word,
-            )
+            message = f"the polar radius {radius:g} must be positive" + ("" if arc else " or 0")
+            control.fail("polar-radius", message, radius_word)
     if angle_word is not None:
         value = control.number(angle_word)
         incremental = control.modal.incremental or angle_word.incremental

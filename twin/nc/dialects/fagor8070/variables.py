@@ -87,12 +87,9 @@ def read_variable(control: Control, name: str, index: float | None) -> float:
         value = control.variables.read(name)
     if value is not None:
         return value
-    raise ExpressionError(
-        "unknown-variable",
-        f"{name} has no value",
-        None,
-        f"set it before, or in the job: [variables] {name} = 0.0",
-    )
+    message = f"{name} has no value"
+    hint = f"set it before, or in the job: [variables] {name} = 0.0"
+    raise ExpressionError("unknown-variable", message, None, hint)
 
 
 def is_local(name: str) -> bool:
@@ -199,11 +196,7 @@ def _new_value(assignment: Assignment) -> Expression:
 
 
 def _write_live(control: Control, statement: Statement, assignment: Assignment) -> None:
-    """Write a variable of the control.
-
-    Raises:
-        ProgramError: The twin does not simulate it.
-    """
+    """Write a variable of the control."""
     name, value = assignment.name, control.compute(_new_value(assignment), assignment.column)
     try:
         written = write_live(control, name, value)

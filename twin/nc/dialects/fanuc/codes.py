@@ -34,9 +34,7 @@ def _lose_feed(control: Control) -> None:
             control.feed = None
 
 
-def passed_over(
-    meaning: str, letters: str, group: str = "", *, modes: tuple[float, ...] = ()
-) -> GCode:
+def passed_over(meaning: str, letters: str, *, modes: tuple[float, ...] = ()) -> GCode:
     """A code whose words change nothing of the path here; other modes P are refused, if there are any."""
 
     def perform(control: Control) -> None:
@@ -49,7 +47,7 @@ def passed_over(
         message = f"{code.text} does not change the path here: {meaning}"
         control.report.notice(code.text, message, code.column, code.width)
 
-    return GCode(meaning=meaning, group=group, action=perform, ground="manual")
+    return GCode(meaning=meaning, action=perform, ground="manual")
 
 
 NO_PROBE = "the twin has no probe to touch with"

@@ -26,9 +26,8 @@ def begin_or_end(control: Control) -> None:
         control.fail("compensation-change", message, hint="end it by G40 first")
     if len(words) != 1 or control.linear[words[0][0]]:
         code = control.codes[-1][0]
-        control.fail(
-            "cylinder", f"{code.text} needs its rotary axis with the radius", code, "G107 C30."
-        )
+        message = f"{code.text} needs its rotary axis with the radius"
+        control.fail("cylinder", message, code, "G107 C30.")
     ((index, word),) = words
     radius = control.length(word)
     if radius < 0.0:

@@ -66,9 +66,8 @@ def _tool_offset(control: Control, field: str) -> None:
     number = _row(control, 1, tool_offsets.LARGEST_OFFSET)
     word = control.take("R")
     if word is None:
-        control.fail(
-            "data-setting", "G10 needs R, the value of the offset", None, "G10 L10 P1 R50."
-        )
+        message = "G10 needs R, the value of the offset"
+        control.fail("data-setting", message, None, "G10 L10 P1 R50.")
     value = control.length(word)
     if control.modal.incremental:
         value += tool_offsets.read_tool_offset(control, number, field)

@@ -88,13 +88,11 @@ def _counted(
     if factor == 1.0:
         return word
     value = word.value * factor
-    control.report.warn_once(
-        "decimal-point",
-        f"{word.text} has no decimal point: it counts {factor:g} {unit}, so it is {value:g} {unit}",
-        word.column,
-        word.width,
-        hint=f'write {word.text}. for whole units, or decimal_point = "calculator" into the job',
+    message = (
+        f"{word.text} has no decimal point: it counts {factor:g} {unit}, so it is {value:g} {unit}"
     )
+    hint = f'write {word.text}. for whole units, or decimal_point = "calculator" into the job'
+    control.report.warn_once("decimal-point", message, word.column, word.width, hint=hint)
     return word._replace(value=value)
 
 

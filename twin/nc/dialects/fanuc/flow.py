@@ -60,11 +60,7 @@ def _loops(control: Control) -> Structure:
 
 
 def _loop(control: Control, statement: Statement) -> Construct:
-    """The loop that the block begins or ends.
-
-    Raises:
-        ProgramError: It has no counterpart, or is one of too many within each other.
-    """
+    """The loop that the block begins or ends."""
     loop = _loops(control).by_line.get(control.block.line - 1)
     if loop is None or loop.end is None:
         message = f"{statement.keyword} has no counterpart"

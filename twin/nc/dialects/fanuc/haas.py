@@ -38,9 +38,8 @@ def circular_pocket(control: Control, *, clockwise: bool) -> None:
     if control.modal.plane is not XY:
         control.fail("cycle-plane", "a circular pocket lies in the plane X Y", hint="write G17")
     if step is not None and last is None:
-        control.fail(
-            "cycle-word", "Q makes circles larger up to the radius K, which is missing", step
-        )
+        message = "Q makes circles larger up to the radius K, which is missing"
+        control.fail("cycle-word", message, step)
     tool = radius_in_force(control)
     radii = [control.length(first)]
     if last is not None:

@@ -87,12 +87,9 @@ def heading(control: Control, word: Word) -> None:
     """
     memory, line = memory_of(control), control.block.line - 1
     if line != memory.main:
-        control.fail(
-            "program-end",
-            f"{word.text} begins here, and the program before it has not ended",
-            word,
-            hint="a program ends by M30 or M2, a subprogram by M99",
-        )
+        message = f"{word.text} begins here, and the program before it has not ended"
+        hint = "a program ends by M30 or M2, a subprogram by M99"
+        control.fail("program-end", message, word, hint=hint)
     if control.program_counter.is_calling or len(control.block.words) > 1:
         control.fail("program-end", f"{word.text} must stand alone before its program", word)
 
@@ -141,12 +138,9 @@ def line_of(control: Control, number: int, word: Word | None) -> int:
     line = memory_of(control).programs.get(number)
     if line is None:
         known = ", ".join(f"O{each}" for each in sorted(memory_of(control).programs)) or "none"
-        control.fail(
-            "unknown-subprogram",
-            f"there is no program O{number}",
-            word,
-            hint=f"programs of this file: {known}; or a file O{number}.nc beside it",
-        )
+        message = f"there is no program O{number}"
+        hint = f"programs of this file: {known}; or a file O{number}.nc beside it"
+        control.fail("unknown-subprogram", message, word, hint=hint)
     return line
 
 

@@ -87,18 +87,12 @@ def _refuse(number: int) -> NoReturn:
     if number == 0:
         raise ExpressionError("control-variable", "#0 is always vacant and takes no value")
     if number < 1000:
-        raise ExpressionError(
-            "unknown-variable",
-            f"there is no variable #{number}",
-            None,
-            "#1 to #33 belong to the call, #100 to #199 and #500 to #999 to all programs",
-        )
-    raise ExpressionError(
-        "control-variable",
-        f"#{number} belongs to the control, and the twin does not simulate it",
-        None,
-        f'the job can give its value: [variables] "#{number}" = 0.0',
-    )
+        message = f"there is no variable #{number}"
+        hint = "#1 to #33 belong to the call, #100 to #199 and #500 to #999 to all programs"
+        raise ExpressionError("unknown-variable", message, None, hint)
+    message = f"#{number} belongs to the control, and the twin does not simulate it"
+    hint = f'the job can give its value: [variables] "#{number}" = 0.0'
+    raise ExpressionError("control-variable", message, None, hint)
 
 
 def _alarm(control: Control, value: float) -> NoReturn:

@@ -106,11 +106,7 @@ def is_local(name: str) -> bool:
 
 
 def _number(name: str, index: float | None) -> int:
-    """The number of ``#5`` or of ``#[...]``, whose computed number is given.
-
-    Raises:
-        ExpressionError: It is none.
-    """
+    """The number of ``#5`` or of ``#[...]``, whose computed number is given."""
     if index is None:
         return int(name[1:])
     if math.isnan(index) or index < 0.0 or index != int(index):
@@ -138,11 +134,9 @@ def read_variable(control: Control, name: str, index: float | None) -> float:
     if stored is not None:
         value = control.variables.read(f"#{stored}")
         if value is None and stored in KEPT:
-            control.report.warn_once(
-                "vacant-variable",
-                f"#{stored} keeps its value from earlier runs, which is not known: it is vacant here",
-                hint=f'set it before, or in the job: [variables] "#{stored}" = 0.0',
-            )
+            message = f"#{stored} keeps its value from earlier runs, which is not known: it is vacant here"
+            hint = f'set it before, or in the job: [variables] "#{stored}" = 0.0'
+            control.report.warn_once("vacant-variable", message, hint=hint)
         return math.nan if value is None else value
     given = control.settings.variables.get(f"#{number}")
     return system_variables.read(control, number) if given is None else given

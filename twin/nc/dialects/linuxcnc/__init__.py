@@ -63,11 +63,7 @@ def _acts_on_plain_blocks(control: Control) -> bool:
 
 
 def _finish(control: Control) -> None:
-    """The last line is reached without M2, M30 or a second %.
-
-    Raises:
-        ProgramError: It is.
-    """
+    """The last line is reached without M2, M30 or a second %."""
     if control.program_counter.is_calling:
         control.report.fail("return-outside", "the subroutine has no endsub, return or M99")
     if not memory_of(control).percent_ended:

@@ -132,9 +132,8 @@ def end_nurbs(control: Control) -> None:
     memory = memory_of(control)
     points, order = memory.control_points, memory.spline_order
     if not points:
-        control.fail(
-            "code-words", "G5.3 ends a NURBS, and none has begun", hint="write G5.2 before"
-        )
+        message = "G5.3 ends a NURBS, and none has begun"
+        control.fail("code-words", message, hint="write G5.2 before")
     if len(points) < order or order < 1:
         message = f"a NURBS of order {order} needs {order} control points, and has {len(points)}"
         control.fail("code-words", message)

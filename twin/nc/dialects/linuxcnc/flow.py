@@ -64,11 +64,7 @@ def values_of(control: Control, word: OWord, statement: Statement) -> list[tuple
 
 
 def _condition_of(control: Control, statement: Statement, word: OWord) -> tuple[Expression, int]:
-    """The one value behind a keyword, and its column.
-
-    Raises:
-        ProgramError: There is none, or more than one.
-    """
+    """The one value behind a keyword, and its column."""
     found = values_of(control, word, statement)
     if len(found) != 1:
         hint = f"write o{word.label} {word.keyword.lower()} [#1 LT 5]"
@@ -78,11 +74,7 @@ def _condition_of(control: Control, statement: Statement, word: OWord) -> tuple[
 
 
 def _construct_of(control: Control, statement: Statement, word: OWord) -> Construct:
-    """The construct that a line belongs to.
-
-    Raises:
-        ProgramError: It has no counterpart.
-    """
+    """The construct that a line belongs to."""
     construct = structure(control).by_line.get(control.block.line - 1)
     if construct is None or construct.end is None:
         message = f"o{word.label} {word.keyword.lower()} has no counterpart"
@@ -115,11 +107,7 @@ def _line_of(control: Control, line: int) -> tuple[Statement, OWord]:
 
 
 def _declare(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
-    """A label is given once in its subroutine, as far as the program comes to it.
-
-    Raises:
-        ProgramError: Another line has it.
-    """
+    """A label is given once in its subroutine, as far as the program comes to it."""
     line = control.block.line - 1
     own = scope(control, line)
     same = [
@@ -211,11 +199,7 @@ def _end_repeat(control: Control, statement: Statement, word: OWord, assembler: 
 
 
 def _enclosing(control: Control, statement: Statement, word: OWord) -> Construct:
-    """The loop with the label that BREAK or CONTINUE names.
-
-    Raises:
-        ProgramError: The line lies in none.
-    """
+    """The loop with the label that BREAK or CONTINUE names."""
     for each in reversed(structure(control).around(control.block.line - 1)):
         if each.keyword in LOOPS and each.name == word.label:
             if each.keyword == "REPEAT":
@@ -265,11 +249,7 @@ def _first_file(control: Control) -> int:
 
 
 def _called_line(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> int:
-    """First line, from 0, of the subroutine that CALL names.
-
-    Raises:
-        ProgramError: There is none, or it is one for M98.
-    """
+    """First line, from 0, of the subroutine that CALL names."""
     name, here = word.label, control.block.line - 1
     if name[0] in "#[":
         assembler.interpreted(lambda: None)
@@ -443,11 +423,7 @@ def return_from_program(control: Control) -> None:
 
 
 def _refuse_companions(control: Control, letters: str, alone: str) -> None:
-    """Only P and L stand beside M98, nothing beside M99: the control passes over other words, or refuses them.
-
-    Raises:
-        ProgramError: Other words do.
-    """
+    """Only P and L stand beside M98, nothing beside M99: the control passes over other words, or refuses them."""
     words = control.block.words
     call = next(word for word in words if word.address == "M" and word.value in (98.0, 99.0))
     others = (word for word in words if word is not call and word.address not in letters)

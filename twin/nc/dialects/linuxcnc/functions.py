@@ -80,9 +80,8 @@ def orient_spindle(control: Control) -> None:
     """
     angle = control.take("R")
     if angle is not None and not 0.0 <= control.number(angle) <= 360.0:
-        control.fail(
-            "code-words", f"{angle.text} is no angle of one turn", angle, "0 to 360 degrees"
-        )
+        message = f"{angle.text} is no angle of one turn"
+        control.fail("code-words", message, angle, "0 to 360 degrees")
     way, seconds = control.take("P"), control.take("Q")
     if way is not None and control.number(way) not in (0.0, 1.0, 2.0):
         message = "P of M19 is 0 (the shorter way), 1 (clockwise) or 2 (counter-clockwise)"

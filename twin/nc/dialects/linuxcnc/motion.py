@@ -25,11 +25,9 @@ def check_feed(control: Control, rapid: bool) -> None:
         return
     base.require_feed_of_block(control)
     if not control.feed:
-        control.fail(
-            "no-feed",
-            "no feed is programmed, and the control moves nowhere without one",
-            hint="write F in this block or before",
-        )
+        message = "no feed is programmed, and the control moves nowhere without one"
+        hint = "write F in this block or before"
+        control.fail("no-feed", message, hint=hint)
 
 
 def need_axes(control: Control) -> NoReturn:
@@ -102,11 +100,9 @@ def in_machine_coordinates(control: Control) -> None:
     if mode not in (RAPID, FEED) or control.modal.cycle is not None:
         control.fail("machine-coordinates", "G53 moves with G0 or G1 only", hint="write G53 G0 Z0")
     if control.modal.incremental:
-        control.fail(
-            "machine-coordinates",
-            "G53 counts from machine zero, not with G91",
-            hint="write G90 before",
-        )
+        message = "G53 counts from machine zero, not with G91"
+        hint = "write G90 before"
+        control.fail("machine-coordinates", message, hint=hint)
     words = control.take_axis_words()
     if not words:
         codes = [word.value for word in control.block.words if word.address == "G"]
@@ -171,9 +167,8 @@ def _pitch_feed(control: Control, code: str) -> float:
     if pitch is None:
         control.fail("code-words", f"{code} needs K, the way of each turn")
     if not control.spindle_turns:
-        control.fail(
-            "spindle-needed", f"{code} follows a spindle that turns", hint="write S and M3 before"
-        )
+        message = f"{code} follows a spindle that turns"
+        control.fail("spindle-needed", message, hint="write S and M3 before")
     if not control.spindle:
         message = f"{code} follows the spindle, which stands at S0"
         control.fail("spindle-needed", message, hint="write S above 0 before")

@@ -148,11 +148,7 @@ class Compensation:
         return follow(0, 1, events, events, self.contour, self._rows)
 
     def _say(self, finding: int, move: Segment) -> None:
-        """Warn of what is driven nevertheless, refuse all else.
-
-        Raises:
-            ProgramError: The move is refused.
-        """
+        """Warn of what is driven nevertheless, refuse all else."""
         code, message = _FINDINGS[finding]
         radius = abs(self.contour.signed_offset[0])
         message = message.format(radius=radius, measured=self.contour.measured[0])
