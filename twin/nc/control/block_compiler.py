@@ -49,14 +49,15 @@ class BlockCompiler:
         """Sort the words of a block, before those that are computed have a value.
 
         Raises:
-            UnsupportedError: A code is computed, or no whole number.
+            UnsupportedError: A code is computed.
             ProgramError: Some of them cannot stand in one block.
         """
-        words = list(words)
-        for word in words:
+
+        def evaluate(_value: Expression, word: Word) -> None:
             if word.address in ("G", "M"):
-                _number(word)
-        return self._sort(words, lambda _value, _word: None)
+                raise UnsupportedError
+
+        return self._sort(list(words), evaluate)
 
     def block(self, block: Block) -> None:
         """Compile a block.

@@ -12,12 +12,7 @@ from twin.nc.bytecode.assembler import Assembler, Finding, Otherwise, Target, fo
 from twin.nc.bytecode.bytecode import MOST_VALUES, Instruction, number_of_location
 from twin.nc.bytecode.effects import BlockPlace
 from twin.nc.bytecode.flow import straight_on
-from twin.nc.bytecode.frames import (
-    CALLS,
-    DEPTH,
-    RESTORED_BY_CONTROL,
-    go_to,
-)
+from twin.nc.bytecode.frames import CALLS, DEPTH, RESTORED_BY_CONTROL, go_to
 from twin.nc.bytecode.instructions import Surroundings, run_instruction
 from twin.nc.bytecode.variables import store
 from twin.nc.control.compensation import compensate
@@ -154,10 +149,6 @@ class Performer(Assembler):
             compensate(self._control, float(operand), float(self._pop()))
         elif opcode == opcodes.END_COMPENSATION:
             self._control.path.end_compensation()
-        elif opcode == opcodes.PLANE and self._control.path.compensates_in(
-            self._control.part_plane()
-        ):
-            return  # it is in force already
         elif opcode in (opcodes.REGISTER, opcodes.SET_REGISTER):
             self._add(opcode, operand)
         else:
