@@ -148,7 +148,16 @@ CHANGES = (
         "fagor8070/rules/polar",
     ),
     Change(
-        "path/drilling_cycle", "CHIP_CLEARANCE = 0.5", "CHIP_CLEARANCE = 0.6", "gost/rules/drilling"
+        "path/drilling_cycle",
+        "given[BOTTOM] + above, given",
+        "given[BOTTOM] + above + 1.0, given",
+        "gost/rules/drilling",
+    ),
+    Change(
+        "path/hole",
+        "min(depth + hole.clearance, up)",
+        "min(depth - hole.clearance, up)",
+        "gost/rules/drilling",
     ),
     Change(
         "bytecode/effects",

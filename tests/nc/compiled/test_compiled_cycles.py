@@ -38,6 +38,7 @@ CALLS = {
         "G98 G82 X1 Z2 I-9 B2 D0.5 R0.8 L1 H1 J2 C0.5 K1 F90",
         "G91 G83 Z-1 I2 J3 S200\nG90",
         "G17 G84 X1 Y2 Z2 I[-P1*0.001-1]",
+        "G84 X1 Z2 I-7 B-2 H1 R1 J1 K1 S200 M4",
         "G1 G85 Z2 I-5 M8",
         "G86 R5 Q[P1] Z2 I-4",
         "G83 Z2 I2 J2\nG81 Z2 I-3\nG17",
@@ -68,12 +69,27 @@ def test_a_cycle_in_a_loop_never_leaves_the_compiled_run(
     assert general_blocks(text, dialect, job, monkeypatch) < 5
 
 
+TAPS = {
+    "fanuc": "G83 X1. Z-5. R2. Q2. F100.\nG84 X2. Z-6.\nX3. Y1.\nG74 X4. Q0.7 R1.\nX5. Q1.\nX6.\nX7.",
+    "haas": "G84 X1. Z-5. R2. J3 F100.\nX2. Y1.\nX3. J2.\nG74 X4.\nX5. J1.\nX6. R1.\nX7.",
+}
+
+
+@pytest.mark.parametrize("dialect", TAPS)
+def test_taps_go_in_passes_and_come_back_faster_at_both_tiers(dialect: str) -> None:
+    text = f"O1\nS500 M3\nG0 X0. Y0. Z10.\n{TAPS[dialect]}\nG80\nM30"
+    result = assert_same(source_from_text(text), dialect, JOB)
+    assert result.error is None
+    assert len(result.moves) > 20
+
+
 WRONG = {
     "cycle-word": ("gost", "G81 X1 Z-5"),
     "cycle-depth": ("gost", "G83 X1 Z-5 R2 Q-1"),
     "dwell": ("gost", "G82 X1 Z-5 R2 P-1"),
     "cycle-plane": ("gost", "G81 X1 Z-5 R2\nG18\nX3"),
     "unused-word": ("gost", "G81 X1 Z-5 R2 Q1"),
+    "unsupported-word": ("fagor8070", "G84 Z2 I-3 R2"),
     "no-such-axis": ("fagor8070", "G81 Z1 I-3 U5"),
 }
 

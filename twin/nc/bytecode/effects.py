@@ -33,8 +33,8 @@ from twin.nc.geometry import polar
 from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.frame import SHIFTS, add_up
 from twin.nc.geometry.planes import along, vector_of
-from twin.nc.path.drilling_cycle import Act
 from twin.nc.path.event_columns import DWELL, FUNCTION
+from twin.nc.path.hole import Act
 from twin.nc.path.moves import LARGEST_COORDINATE
 from twin.nc.path.rows import Rows, copy
 from twin.nc.text.arithmetic import is_whole

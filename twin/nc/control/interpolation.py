@@ -37,11 +37,17 @@ class CycleRule:
         name: The cycle's code.
         cycle: What is peculiar to it.
         words: Which of its values each word gives, besides that of the axis across the plane.
+        options: Other words of its call, and those of their values that change nothing of the path.
     """
 
     name: str
     cycle: Cycle
     words: Mapping[str, int]
+    options: Mapping[str, tuple[float, ...]] = dataclasses.field(default_factory=dict)
+
+    def addresses(self, across: str) -> Mapping[str, int]:
+        """Which of its values each word gives, also that of the axis across the plane."""
+        return {**self.words, across: self.cycle.across}
 
 
 MotionRule = LineRule | ArcRule | CycleRule

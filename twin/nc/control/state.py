@@ -29,7 +29,8 @@ from twin.nc.control.settings import ControlSettings, ToolData
 from twin.nc.control.tools import Tools
 from twin.nc.geometry.frame import Frame
 from twin.nc.geometry.planes import PLANE_ORDER, XY
-from twin.nc.path.drilling_cycle import MOST_STOPS, START, forget, most_acts
+from twin.nc.path.drilling_cycle import START, forget
+from twin.nc.path.hole import MOST_STOPS, most_acts
 from twin.nc.path.move_columns import NAN, Segment
 from twin.nc.path.path import Path
 from twin.nc.path.rows import new_rows

@@ -1,7 +1,7 @@
 """Drilling cycles: the codes that call them, their words, and what happens at a hole, in every dialect."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import NamedTuple, NoReturn
 
 from twin.nc.bytecode.assembler import Assembler
@@ -15,20 +15,23 @@ from twin.nc.path.drilling_cycle import (
     EVERY,
     FACTOR,
     LIFT,
-    MOST_PECKS,
     PECK,
     REFERENCE,
-    Act,
+    CycleBlock,
+    no_values,
+    read_words,
+)
+from twin.nc.path.hole import (
+    MOST_PECKS,
+    NO_MOVE,
     Fault,
     Hole,
-    begin,
     hole_of,
     most_acts,
     next_place,
-    no_values,
-    remember,
     write_acts,
 )
+from twin.nc.text.blocks import Word
 
 
 class Holes(NamedTuple):
@@ -52,33 +55,27 @@ ONE_HOLE = Holes()
 
 def cycle_code(rule: CycleRule, meaning: str, holes: Holes = ONE_HOLE) -> GCode:
     """The code that calls a cycle with its words, told to people by its meaning."""
-    cycle = rule.cycle
 
     def call(control: Control) -> None:
-        axis = control.modal.plane.axes[2]
-        begin(control.cycle_state, axis, control.programmed[axis], cycle.lasting)
-        if not cycle.lasting:
-            take_words(control, rule)
+        _take_options(control, rule, control.number)
+        take_words(control, rule, calls=True)
 
     def perform(control: Control) -> None:
         count = repeats_of(control, holes.repeats)
+        take_words(control, rule)
         given = dict(control.words)
         if count == 0:
-            take_words(control, rule)
             control.take_axis_words()
-        for number in range(count):
-            if number:
-                control.words = dict(given)
-            if cycle.lasting:
-                take_words(control, rule)
-            drill(control, _hole(control, rule), holes.target(control))
+        for _ in range(count):
+            control.words = dict(given)
+            drill(control, hole_in_force(control, rule), holes.target(control))
 
     return GCode(
         meaning=meaning,
         group="cycle",
         sets={"cycle": Interpolation(perform, rule=rule)},
         action=call,
-        compiler=_write_words(rule.words),
+        compiler=_write_words(rule),
         ground=holes.ground,
     )
 
@@ -99,25 +96,40 @@ def repeats_of(control: Control, address: str, least: int = 0) -> int:
     return int(given)
 
 
-def take_words(control: Control, rule: CycleRule) -> None:
-    """Take the cycle's words, and that of the axis across the plane."""
-    cycle, given = rule.cycle, no_values()
-    relative = dict.fromkeys((REFERENCE, BOTTOM), control.modal.incremental)
-    for address, value in {**rule.words, _across(control): cycle.across}.items():
-        word = control.take(address)
-        if word is not None:
-            given[value] = control.number(word)
-            if word.incremental:
-                relative[value] = True
+def take_words(control: Control, rule: CycleRule, *, calls: bool = False) -> None:
+    """Take the words of a block that calls a cycle, or of its hole; which of both it is, the cycle says."""
+    modal, given = control.modal, no_values()
+    axis, relative = modal.plane.axes[2], dict.fromkeys((REFERENCE, BOTTOM), modal.incremental)
+    if calls != rule.cycle.lasting:
+        for address, value in rule.addresses(control.settings.axes.names[axis]).items():
+            word = control.take(address)
+            if word is not None:
+                given[value] = control.number(word)
+                relative[value] = modal.incremental or word.incremental
     from_where = relative[REFERENCE], relative[BOTTOM]
-    remember(control.cycle_state, given, control.modal.unit, from_where, cycle.lasting)
+    block = CycleBlock(calls, axis, control.programmed[axis], modal.unit, from_where)
+    read_words(rule.cycle, control.cycle_state, given, block)
 
 
-def _write_words(words: Mapping[str, int]) -> CodeWriter:
-    """Write those words as instructions; the words of axes stay with those of the hole."""
+def _take_options(control: Control, rule: CycleRule, value: Callable[[Word], float]) -> None:
+    """Take words of the call that change nothing of the path.
+
+    Raises:
+        ProgramError: One has another value than those that are known to do so.
+    """
+    for letter, known in rule.options.items():
+        word = control.take(letter)
+        if word is not None and value(word) not in known:
+            values = " or ".join(f"{letter}{value:g}" for value in known)
+            control.fail("unsupported-word", f"only {values} is followed here", word)
+
+
+def _write_words(rule: CycleRule) -> CodeWriter:
+    """Write the words of the call as instructions; those of axes stay with those of the hole."""
 
     def write(control: Control, assembler: Assembler) -> None:
-        for address, value in words.items():
+        _take_options(control, rule, assembler.known)
+        for address, value in rule.words.items():
             word = control.take(address)
             if word is not None and word.incremental:
                 assembler.rare()
@@ -128,12 +140,7 @@ def _write_words(words: Mapping[str, int]) -> CodeWriter:
     return write
 
 
-def _across(control: Control) -> str:
-    """Name of the axis across the plane."""
-    return control.settings.axes.names[control.modal.plane.axes[2]]
-
-
-def _hole(control: Control, rule: CycleRule) -> Hole:
+def hole_in_force(control: Control, rule: CycleRule) -> Hole:
     """What the cycle does at a hole.
 
     Raises:
@@ -153,8 +160,8 @@ def refuse_hole(control: Control, rule: CycleRule, hole: Hole) -> NoReturn:
         ProgramError: Always.
     """
     name = rule.name
-    addresses = {value: address for address, value in rule.words.items()}
-    addresses[rule.cycle.across] = _across(control)
+    across = control.settings.axes.names[control.modal.plane.axes[2]]
+    addresses = {value: address for address, value in rule.addresses(across).items()}
     if hole.fault == Fault.MISSING:
         missing = [
             address
@@ -165,6 +172,14 @@ def refuse_hole(control: Control, rule: CycleRule, hole: Hole) -> NoReturn:
     if hole.fault == Fault.PLANE:
         message = f"{name} was called in another plane"
         control.fail("cycle-plane", message, hint="end it by G80 before the plane changes")
+    if hole.passes and hole.fault == Fault.MANY_PECKS:
+        message = f"the hole would need more than {MOST_PECKS} passes"
+        control.fail("cycle-depth", message, hint=f"write a larger {addresses[PECK]}")
+    if hole.passes and hole.fault == Fault.PECKS:
+        needed = f"passes {addresses[PECK]} above 0"
+        if LIFT in addresses:
+            needed = f"{addresses[PECK]} above 0, and {addresses[LIFT]} not below 0"
+        control.fail("cycle-depth", f"{name} needs {needed}")
     if hole.fault == Fault.MANY_PECKS:
         message = f"the hole would need more than {MOST_PECKS} pecks"
         control.fail("cycle-depth", message, hint="write deeper pecks")
@@ -203,20 +218,15 @@ def drill(control: Control, hole: Hole, target: list[float] | None) -> None:
     goal = list(control.programmed)
     over = goal if target is None else target
     for number in range(write_acts(hole, goal[axis], acts, amounts)):
-        act, amount, height = int(acts[number]), amounts[number], goal[axis]
-        if next_place(act, amount, over, goal, axis):
-            faster = hole.faster if act == Act.FEED and amount > height else 1.0
-            _go(control, list(goal), faster, rapid=act != Act.FEED)
+        act, amount = int(acts[number]), amounts[number]
+        speed = next_place(act, amount, hole, over, goal, axis)
+        if speed != NO_MOVE:
+            feed = control.feed
+            if feed is not None and speed > 0.0:
+                control.feed = feed * speed
+            control.line_to(list(goal), rapid=speed == 0.0)
+            control.feed = feed
         else:
             place = BlockPlace(control.block.line, 0, control.path.compensating)
             report_act(act, amount, place, control.begin_effect())
             control.end_effect()
-
-
-def _go(control: Control, there: list[float], faster: float, *, rapid: bool) -> None:
-    """Go straight to a programmed position, so many times as fast as F says."""
-    feed = control.feed
-    if feed is not None:
-        control.feed = feed * faster
-    control.line_to(there, rapid=rapid)
-    control.feed = feed

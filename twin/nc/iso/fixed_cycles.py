@@ -33,7 +33,7 @@ class Drill(NamedTuple):
     Attributes:
         meaning: For people.
         dwell: It waits at the bottom, P.
-        peck: It goes down by pecks, Q.
+        pecking: How it goes down; by pecks or passes of Q, if not at once.
         lift: How far it withdraws between them [mm]; 0: to the reference plane.
         retract: How it leaves the hole.
         reduces: Its pecks may become less deep: I the first, J less each time, K the least, in the place of Q.
@@ -42,7 +42,7 @@ class Drill(NamedTuple):
 
     meaning: str
     dwell: bool = False
-    peck: bool = False
+    pecking: Pecking = Pecking.NONE
     lift: float = 0.0
     retract: Retract = Retract.RAPID
     reduces: bool = False
@@ -52,7 +52,7 @@ class Drill(NamedTuple):
 DRILLS = {
     81: Drill("drilling"),
     82: Drill("drilling with dwell", dwell=True),
-    83: Drill("deep drilling in pecks", peck=True),
+    83: Drill("deep drilling in pecks", pecking=Pecking.TO_BOTTOM),
     84: Drill("tapping", dwell=True, retract=Retract.REVERSED),
     85: Drill("reaming, back with the feed", retract=Retract.FEED),
     86: Drill("boring, back with the spindle stopped", retract=Retract.STOPPED),
@@ -65,17 +65,18 @@ def drilling_code(number: int, drill: Drill, holes: Holes = ONE_HOLE) -> GCode:
     words = {"R": REFERENCE}
     if drill.dwell:
         words["P"] = DWELL
-    if drill.peck:
+    if drill.pecking:
         words["Q"] = PECK
     if drill.reduces:
         words |= {"I": FIRST, "J": REDUCTION, "K": LEAST}
     if drill.faster:
         words["J"] = FASTER
+    pecks = drill.pecking == Pecking.TO_BOTTOM and not drill.reduces
     cycle = Cycle(
         lasting=True,
         across=BOTTOM,
-        needed=1 << REFERENCE | 1 << BOTTOM | (drill.peck and not drill.reduces) << PECK,
-        pecking=Pecking.TO_BOTTOM if drill.peck else Pecking.NONE,
+        needed=1 << REFERENCE | 1 << BOTTOM | pecks << PECK,
+        pecking=drill.pecking,
         dwells=drill.dwell,
         retract=drill.retract,
         lift=drill.lift,

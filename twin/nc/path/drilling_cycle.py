@@ -1,6 +1,6 @@
-"""Drilling cycles as numbers: what they remember of their words, and what they do at a hole.
+"""Drilling cycles as numbers: what is peculiar to each, and what they remember of their words.
 
-Both ways share these functions: the interpreter tier gives them lists, the compiled one columns. What is
+Both tiers share these functions: the interpreter tier gives them lists, the compiled one columns. What is
 not given is NaN.
 """
 
@@ -53,10 +53,6 @@ LENGTHS = (
 """Those whose words count in the unit in force, as bits."""
 CHIP_CLEARANCE = 0.5
 """Deep drilling stops its rapid return this far above where it was [mm]."""
-LEAST_REST = 1e-6
-"""What a peck leaves of the way to the bottom at least: less is rounding [mm]."""
-MOST_PECKS = 10_000
-"""Pecks of one hole: more is a slip of the pen."""
 
 
 class Retract(enum.IntEnum):
@@ -80,53 +76,11 @@ class Pecking(enum.IntEnum):
     """By pecks, from the first on, as far as the bottom."""
     COUNTED = 2
     """By so many equal pecks."""
-
-
-class Act(enum.IntEnum):
-    """What happens at a hole: moves to a height, a dwell, the spindle.
-
-    The number of an M function is its own.
-    """
-
-    RAPID = 0
-    FEED = 1
-    DWELL = 2
-    M3 = 3
-    M4 = 4
-    M5 = 5
-    ACROSS = 6
-    """Rapidly over the hole, at a height."""
-
-
-class Fault(enum.IntEnum):
-    """What is wrong with the values of a cycle."""
-
-    NONE = 0
-    MISSING = 1
-    PLANE = 2
-    """It was called in another plane."""
-    PECKS = 3
-    MANY_PECKS = 4
-    DEPTH = 5
-    """It does not go down, or returns from below."""
-    DWELL = 6
-    PECK_WORDS = 7
-    """It needs the depth of all pecks, or the first, the reduction and the least."""
-    FASTER = 8
-    """It comes back no faster than so many times, and no slower."""
-
-
-_FEED, _REVERSED, _STOPPED = int(Retract.FEED), int(Retract.REVERSED), int(Retract.STOPPED)
-_REVERSED_LEFT = int(Retract.REVERSED_LEFT)
-_STRAIGHT, _COUNTED = int(Pecking.NONE), int(Pecking.COUNTED)
-_MISSING, _PLANE, _PECKS = int(Fault.MISSING), int(Fault.PLANE), int(Fault.PECKS)
-_MANY_PECKS, _DEPTH, _DWELL = int(Fault.MANY_PECKS), int(Fault.DEPTH), int(Fault.DWELL)
-_PECK_WORDS, _FASTER = int(Fault.PECK_WORDS), int(Fault.FASTER)
-_TO_BOTTOM = int(Pecking.TO_BOTTOM)
-_FASTEST_RETURN = 9.0
-_UP, _DOWN, _WAIT = float(Act.RAPID), float(Act.FEED), float(Act.DWELL)
-_ACROSS = float(Act.ACROSS)
-_M3, _M4, _M5 = float(Act.M3), float(Act.M4), float(Act.M5)
+    PASSES = 3
+    """By passes of a tap, which breaks the chip in its thread: every way is made with the feed, and out with
+    the spindle reversed. At once where nothing says how deep they are."""
+    UNSIGNED_PASSES = 4
+    """As ``PASSES``; their depth may be written with either sign."""
 
 
 class Cycle(NamedTuple):
@@ -158,48 +112,39 @@ class Cycle(NamedTuple):
     repeats_only: bool = False
 
 
-class Hole(NamedTuple):
-    """What a cycle in force does at every hole.
+@compilable
+def cycle_of(column: FloatArray) -> Cycle:
+    """The cycle that a column begins with, value by value."""
+    return Cycle(
+        column[0] != 0.0,
+        int(column[1]),
+        int(column[2]),
+        int(column[3]),
+        column[4] != 0.0,
+        column[5],
+        int(column[6]),
+        column[7],
+        column[8] != 0.0,
+    )
+
+
+class CycleBlock(NamedTuple):
+    """A block, as a cycle sees it.
 
     Attributes:
-        fault: A ``Fault``; unless it is none, nothing else counts.
-        reference: Height at which the feed begins, programmed coordinates [mm].
-        bottom: Height of the hole's bottom [mm].
-        back: Height to which the tool returns [mm].
-        dwell: At the bottom [s].
-        surface: Height at which the first peck begins [mm].
-        stops: How often it withdraws to break or clear chips.
-        peck: Depth of the first peck [mm].
-        factor: By which each is deeper than the one before.
-        reduction: By how much each is less deep than that [mm].
-        least: No peck is less deep, except the last [mm].
-        lift: How far it withdraws [mm].
-        full_every: After how many stops it withdraws to the reference plane; 0: after none.
-        clearance: It returns with rapid to this far above where it was [mm].
-        retract: A ``Retract``.
-        faster: How many times as fast as it went down a tap comes back.
+        calls: It calls the cycle.
+        axis: The axis across the plane in force.
+        height: Where the tool stands on that [mm].
+        unit: Of programmed lengths [mm].
+        relative: Whether the reference plane counts from the height of the call, and whether the
+            bottom counts from the reference plane.
     """
 
-    fault: int
-    reference: float
-    bottom: float
-    back: float
-    dwell: float
-    surface: float
-    stops: int
-    peck: float
-    factor: float
-    reduction: float
-    least: float
-    lift: float
-    full_every: int
-    clearance: float
-    retract: int
-    faster: float
-
-
-MOST_STOPS = 500
-"""Stops of a hole that the compiled tier drills: its moves must fit into a chunk."""
+    calls: bool
+    axis: int
+    height: float
+    unit: float
+    relative: tuple[bool, bool]
 
 
 def no_values() -> list[float]:
@@ -215,40 +160,27 @@ def forget(values: Values) -> None:
 
 
 @compilable
-def begin(values: Values, axis: int, height: float, lasting: bool) -> None:
-    """A cycle begins at a height [mm] of the axis across its plane."""
-    if lasting and values[START] == values[START]:
-        return
-    forget(values)
-    values[START], values[AXIS] = height, float(axis)
-
-
-@compilable
-def remember(
-    values: Values,
-    given: Values,
-    unit: float,
-    relative: tuple[bool, bool],
-    lasting: bool,
-) -> None:
+def read_words(cycle: Cycle, values: Values, given: Values, block: CycleBlock) -> None:
     """Take the words of a block.
 
     Args:
-        values: What the cycle remembers.
+        cycle: The cycle that it calls, or that is in force.
+        values: What the cycle remembers; NaN all of it where none was in force.
         given: The block's words as they are written, in the same places; lengths become millimetres.
-        unit: Of programmed lengths [mm].
-        relative: Whether the reference plane counts from the height of the call, and whether the
-            bottom counts from the reference plane.
-        lasting: As in ``Cycle``; else the reference plane is the height of the call where it is
-            not given.
+        block: The block.
     """
-    from_start, from_reference = relative
+    if block.calls and not (cycle.lasting and values[START] == values[START]):
+        forget(values)
+        values[START], values[AXIS] = block.height, float(block.axis)
+    elif not cycle.lasting:
+        return
     for value in range(VALUES):
         if (LENGTHS >> value) & 1:
-            given[value] *= unit
+            given[value] *= block.unit
+    from_start, from_reference = block.relative
     if given[REFERENCE] == given[REFERENCE]:
         values[REFERENCE] = given[REFERENCE] + (values[START] if from_start else 0.0)
-    elif not lasting:
+    elif not cycle.lasting:
         values[REFERENCE] = values[START]
     if given[BOTTOM] == given[BOTTOM]:
         above = either(values[REFERENCE], 0.0) if from_reference else 0.0
@@ -259,184 +191,6 @@ def remember(
 
 
 @compilable
-def hole_of(cycle: Cycle, values: Values, axis: int, to_reference: bool) -> Hole:
-    """What a cycle does at a hole.
-
-    Args:
-        cycle: The cycle.
-        values: What it remembers.
-        axis: The axis across the plane in force.
-        to_reference: It returns to the reference plane, not to the height of its call.
-    """
-    fault = 0
-    for value in range(VALUES):
-        if (cycle.needed >> value) & 1 and values[value] != values[value]:
-            fault = _MISSING
-    if values[AXIS] != axis:
-        fault = _PLANE
-    reference, bottom = values[REFERENCE], values[BOTTOM]
-    surface = reference - either(values[SURFACE], 0.0)
-    peck, factor = either(values[FIRST], values[PECK]), either(values[FACTOR], 1.0)
-    reduction, faster = either(values[REDUCTION], 0.0), either(values[FASTER], 1.0)
-    least, lift = either(values[LEAST], 0.0), either(values[LIFT], cycle.lift)
-    every, stops, full_every = either(values[EVERY], 0.0), 0, 1
-    if fault == 0 and cycle.pecking == _TO_BOTTOM and not (cycle.needed >> PECK) & 1:
-        fault = _fault_of_pecks(values)
-    if cycle.pecking == _COUNTED:
-        peck = abs(values[DEPTH])
-        bottom = surface - peck * values[COUNT]
-    if fault == 0 and cycle.pecking != _STRAIGHT:
-        if peck <= 0.0 or factor <= 0.0 or lift < 0.0 or every < 0.0 or every % 1.0 != 0.0:
-            fault = _PECKS
-        else:
-            stops = count_stops(surface, bottom, peck, (factor, reduction, least))
-            full_every = 1 if lift == 0.0 else int(every)
-            if stops > MOST_PECKS:
-                fault = _MANY_PECKS
-    clearance = either(values[CLEARANCE], cycle.clearance)
-    dwell = either(values[DWELL], 0.0) if cycle.dwells else 0.0
-    if fault == 0 and (bottom >= reference or clearance < 0.0):
-        fault = _DEPTH
-    if fault == 0 and dwell < 0.0:
-        fault = _DWELL
-    if fault == 0 and not (faster % 1.0 == 0.0 and 1.0 <= faster <= _FASTEST_RETURN):
-        fault = _FASTER
-    back = reference if to_reference else max(values[START], reference)
-    return Hole(
-        fault,
-        reference,
-        bottom,
-        back,
-        dwell,
-        surface,
-        stops,
-        peck,
-        factor,
-        reduction,
-        least,
-        lift,
-        full_every,
-        clearance,
-        cycle.retract,
-        faster,
-    )
-
-
-@compilable
-def _fault_of_pecks(values: Values) -> int:
-    """Whether either the depth of all pecks is there, or the first, the reduction and the least."""
-    every, first = values[PECK] == values[PECK], values[FIRST] == values[FIRST]
-    reduction, least = values[REDUCTION] == values[REDUCTION], values[LEAST] == values[LEAST]
-    if every:
-        return _PECK_WORDS if first or reduction or least else 0
-    if not (first and reduction and least):
-        return _PECK_WORDS
-    return _PECKS if values[REDUCTION] < 0.0 or values[LEAST] <= 0.0 else 0
-
-
-@compilable
 def either(value: float, default: float) -> float:
     """A value, or where there is none another one."""
     return value if value == value else default
-
-
-@compilable
-def next_peck(peck: float, factor: float, reduction: float, least: float) -> float:
-    """Depth of the peck behind one [mm]."""
-    return max(peck * factor - reduction, least)
-
-
-@compilable
-def count_stops(
-    surface: float, bottom: float, peck: float, course: tuple[float, float, float]
-) -> int:
-    """How often deep drilling stops above the bottom; more than ``MOST_PECKS`` are not counted.
-
-    Args:
-        surface: Where the first peck begins [mm].
-        bottom: Where the last one ends [mm].
-        peck: Depth of the first [mm].
-        course: Factor, reduction [mm] and least depth [mm] of the next ones.
-    """
-    factor, reduction, least = course
-    depth, stops = surface, 0
-    while depth - peck > bottom + LEAST_REST and stops <= MOST_PECKS:
-        depth -= peck
-        peck = next_peck(peck, factor, reduction, least)
-        stops += 1
-    return stops
-
-
-@compilable
-def most_acts(stops: int) -> int:
-    """Room that ``write_acts`` needs."""
-    return 3 * stops + 9
-
-
-@compilable
-def next_place(act: float, amount: float, over: Values, goal: Values, axis: int) -> bool:
-    """Whether an act is a move; the goal, where the tool stands before, becomes its end.
-
-    Args:
-        act: An ``Act``.
-        amount: Its height [mm].
-        over: The hole's place, shape (k,).
-        goal: Shape (k,).
-        axis: The axis across the plane.
-    """
-    if act not in (_UP, _DOWN, _ACROSS):
-        return False
-    if act == _ACROSS:
-        for other in range(len(goal)):
-            goal[other] = over[other]
-    goal[axis] = amount
-    return True
-
-
-@compilable
-def write_acts(hole: Hole, height: float, acts: Values, amounts: Values) -> int:
-    """Write what happens at a hole; how many acts there are.
-
-    Args:
-        hole: The hole.
-        height: Where the tool stands [mm].
-        acts: Filled with ``Act``.
-        amounts: Filled with heights [mm] and seconds.
-    """
-    over = max(height, hole.reference)
-    acts[0], amounts[0] = _UP, over
-    acts[1], amounts[1] = _ACROSS, over
-    acts[2], amounts[2], at = _UP, hole.reference, 3
-    depth, peck = hole.surface, hole.peck
-    for number in range(1, hole.stops + 1):
-        depth -= peck
-        peck = next_peck(peck, hole.factor, hole.reduction, hole.least)
-        full = hole.full_every > 0 and number % hole.full_every == 0
-        up = hole.reference if full else min(depth + hole.lift, hole.reference)
-        acts[at], amounts[at] = _DOWN, depth
-        acts[at + 1], amounts[at + 1] = _UP, up
-        acts[at + 2], amounts[at + 2] = _UP, min(depth + hole.clearance, up)
-        at += 3
-    acts[at], amounts[at] = _DOWN, hole.bottom
-    at += 1
-    if hole.dwell > 0.0:
-        acts[at], amounts[at] = _WAIT, hole.dwell
-        at += 1
-    reverses = hole.retract in (_REVERSED, _REVERSED_LEFT)
-    back, forth = (_M3, _M4) if hole.retract == _REVERSED_LEFT else (_M4, _M3)
-    if reverses or hole.retract == _STOPPED:
-        acts[at], amounts[at] = back if reverses else _M5, 0.0
-        at += 1
-    if reverses or hole.retract == _FEED:
-        acts[at], amounts[at] = _DOWN, hole.reference
-        at += 1
-    if reverses:
-        acts[at], amounts[at] = forth, 0.0
-        at += 1
-    acts[at], amounts[at] = _UP, hole.back
-    at += 1
-    if hole.retract == _STOPPED:
-        acts[at], amounts[at] = _M3, 0.0
-        acts[at + 1], amounts[at + 1] = _UP, hole.back
-        at += 2
-    return at

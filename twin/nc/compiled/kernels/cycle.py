@@ -9,7 +9,6 @@ from twin.nc.bytecode.registers import (
     CYCLE,
     CYCLE_STATE,
     CYCLE_WORDS,
-    FEED_MODE,
     INCREMENTAL,
     PLANE,
     TO_REFERENCE,
@@ -32,17 +31,15 @@ from twin.nc.compiled.kernels.move_row import (
     put_positions,
 )
 from twin.nc.compiled.kernels.target import PlainBlock, aim, target_of_axis
-from twin.nc.path import drilling_cycle
-from twin.nc.path.drilling_cycle import Act, Cycle, Hole
+from twin.nc.path.drilling_cycle import VALUES, Cycle, CycleBlock, cycle_of, read_words
+from twin.nc.path.hole import MOST_STOPS, NO_MOVE, Hole, hole_of, most_acts, next_place, write_acts
 from twin.nc.path.moves import LARGEST_COORDINATE, line_length
-from twin.nc.path.paces import counts_blocks
 from twin.nc.path.rows import Rows, copy
 
 NO_ROOM = -2
 """The rows are full."""
 _WORDS = len(Cycle._fields)
 _REPEATS_ONLY = Cycle._fields.index("repeats_only")
-_DOWN = int(Act.FEED)
 
 
 @compilable
@@ -77,7 +74,7 @@ def drill(
     taken, hole = _read_cycle(block, called, tables, constants, state)
     if repeats_only and state.programmed[plane[2]] < hole.reference:
         return UNSUPPORTED
-    if hole.fault != 0 or hole.stops > drilling_cycle.MOST_STOPS or hole.faster != 1.0:
+    if hole.fault != 0 or hole.stops > MOST_STOPS:
         return UNSUPPORTED
     rest = block.seen & ~taken
     if (rest >> RADIUS) & ((1 << (AXIS - RADIUS)) - 1) or rest & (1 << (AXIS + plane[2])):
@@ -91,7 +88,7 @@ def drill(
             return UNSUPPORTED
     after = _emit_hole(block, hole, constants, state, rows, row)
     if after >= 0:
-        for value in range(drilling_cycle.VALUES):
+        for value in range(VALUES):
             state.registers[CYCLE_STATE + value] = constants.hole[0, value]
             state.registers[CYCLE_WORDS + value] = np.nan
     return after
@@ -112,30 +109,16 @@ def _read_cycle(
     Returns:
         The token kinds of those words as bits, and what is done at the hole.
     """
-    modal, (begins, anew) = block.modal, called
+    modal, (calls, anew) = block.modal, called
     row = tables.cycles[int(modal[CYCLE])]
-    cycle = Cycle(
-        row[0] != 0.0,
-        int(row[1]),
-        int(row[2]),
-        int(row[3]),
-        row[4] != 0.0,
-        row[5],
-        int(row[6]),
-        row[7],
-        row[8] != 0.0,
-    )
+    cycle = cycle_of(row)
     across = int(constants.planes[int(modal[PLANE])][2])
     remembered, given = constants.hole[0], constants.hole[1]
-    for value in range(drilling_cycle.VALUES):
-        remembered[value] = state.registers[CYCLE_STATE + value]
+    for value in range(VALUES):
+        remembered[value] = np.nan if anew else state.registers[CYCLE_STATE + value]
         given[value] = state.registers[CYCLE_WORDS + value]
-    if anew:
-        remembered[drilling_cycle.START] = np.nan
-    if begins:
-        drilling_cycle.begin(remembered, across, state.programmed[across], cycle.lasting)
     taken = 0
-    if begins or cycle.lasting:
+    if calls or cycle.lasting:
         for word in range(len(block.token_kinds)):
             token_kind = block.token_kinds[word]
             value = int(row[_WORDS + token_kind])
@@ -145,9 +128,9 @@ def _read_cycle(
                 given[value] = block.values[word]
                 taken |= 1 << token_kind
     relative = modal[INCREMENTAL] != 0.0
-    if begins or taken:
-        drilling_cycle.remember(remembered, given, modal[UNIT], (relative, relative), cycle.lasting)
-    return taken, drilling_cycle.hole_of(cycle, remembered, across, modal[TO_REFERENCE] != 0.0)
+    here = CycleBlock(calls, across, state.programmed[across], modal[UNIT], (relative, relative))
+    read_words(cycle, remembered, given, here)
+    return taken, hole_of(cycle, remembered, across, modal[TO_REFERENCE] != 0.0)
 
 
 @compilable
@@ -155,25 +138,22 @@ def _emit_hole(
     block: PlainBlock, hole: Hole, constants: Constants, state: State, rows: Rows, row: int
 ) -> int:
     """Go over the hole, drill it, return: ``drilling.drill``; the hole lies at ``constants.over``."""
-    modal = block.modal
-    if row + drilling_cycle.most_acts(hole.stops) > len(rows.codes):
+    most = most_acts(hole.stops)
+    if row + most > len(rows.codes) or state.event_count[0] + most > len(rows.events):
         return NO_ROOM
-    if counts_blocks(int(modal[FEED_MODE])) or not has_pace(block, constants, state):
+    if not has_pace(block, constants, state):
         return UNSUPPORTED
-    pace = pace_of(block, 0.0, False, constants, state)
-    rapidly = Travel(RAPID, constants.rapid_feed, STOP)
-    feeding = Travel(FEED, pace, int(modal[CORNER]))
-    axis = int(constants.planes[int(modal[PLANE])][2])
+    axis = int(constants.planes[int(block.modal[PLANE])][2])
     here, part, goal = constants.room[0], constants.room[1], constants.room[2]
     copy(state.programmed, here)
     copy(state.part, part)
     copy(state.programmed, goal)
     acts, amounts, after = constants.hole[2], constants.hole[3], row
-    for step in range(drilling_cycle.write_acts(hole, here[axis], acts, amounts)):
+    for step in range(write_acts(hole, here[axis], acts, amounts)):
         act, amount = int(acts[step]), amounts[step]
-        if drilling_cycle.next_place(act, amount, constants.over, goal, axis):
-            travel = feeding if act == _DOWN else rapidly
-            after = _go(goal, travel, block, constants, state, rows, after)
+        speed = next_place(act, amount, hole, constants.over, goal, axis)
+        if speed != NO_MOVE:
+            after = _go(goal, speed, block, constants, state, rows, after)
             if after == UNSUPPORTED:
                 return UNSUPPORTED
         else:
@@ -187,7 +167,7 @@ def _emit_hole(
 @compilable
 def _go(
     goal: FloatArray,
-    travel: Travel,
+    speed: float,
     block: PlainBlock,
     constants: Constants,
     state: State,
@@ -201,8 +181,13 @@ def _go(
             return UNSUPPORTED
     put_positions(goal, part, state, position)
     copy(goal, here)
-    if line_length(position[0], position[1]) == 0.0:
+    length = line_length(position[0], position[1])
+    if length == 0.0:
         return row
     copy(position[1], part)
+    travel = Travel(RAPID, constants.rapid_feed, STOP)
+    if speed > 0.0:
+        pace = pace_of(block.feed * speed, block, length, False, constants, state)
+        travel = Travel(FEED, pace, int(block.modal[CORNER]))
     put_move(block, travel, LINE, constants, rows, row)
     return row + 1

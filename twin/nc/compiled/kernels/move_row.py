@@ -58,13 +58,18 @@ def has_pace(block: PlainBlock, constants: Constants, state: State) -> bool:
 
 @inlined
 def pace_of(
-    block: PlainBlock, length: float, turning: bool, constants: Constants, state: State
+    feed: float,
+    block: PlainBlock,
+    length: float,
+    turning: bool,
+    constants: Constants,
+    state: State,
 ) -> float:
-    """Pace of a move with a feed, where ``has_pace``; the other arguments are those of ``feed_per_minute``."""
+    """Pace of a move with a feed, where its block ``has_pace``; the other arguments are those of ``feed_per_minute``."""
     mode, unit = int(block.modal[FEED_MODE]), block.modal[UNIT]
     otherwise = (constants.default_feed, constants.default_rotary_feed)
     speed = state.registers[SPINDLE]
-    return feed_per_minute(block.feed, mode, length, turning, unit, speed, otherwise)
+    return feed_per_minute(feed, mode, length, turning, unit, speed, otherwise)
 
 
 @inlined

@@ -242,7 +242,7 @@ def _move(block: PlainBlock, machine: Machine, row: int) -> int:
         pace = rapid_feed(own, block.feed)
     elif kind != RAPID_LINE:
         turning = not is_arc and only_turns(position[0], position[1], constants.linear)
-        pace = pace_of(block, length, turning, constants, state)
+        pace = pace_of(block.feed, block, length, turning, constants, state)
     motion, corner = move_row.FEED, int(modal[CORNER])
     if kind == RAPID_LINE:
         motion, corner = move_row.RAPID, move_row.STOP

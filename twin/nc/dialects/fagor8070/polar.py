@@ -86,7 +86,8 @@ def is_polar(compiler: BlockCompiler, words: Iterable[Word]) -> bool:
 def _words_of_cycles(codes: Iterable[GCode]) -> set[str]:
     """Letters that belong to the drilling cycle which one of these codes calls."""
     rules = [cycle.rule for code in codes if (cycle := code.sets.get("cycle")) is not None]
-    return {letter for rule in rules if isinstance(rule, CycleRule) for letter in rule.words}
+    cycles = [rule for rule in rules if isinstance(rule, CycleRule)]
+    return {letter for rule in cycles for letter in (*rule.words, *rule.options)}
 
 
 def compile_polar(compiler: BlockCompiler, words: Iterable[Word]) -> None:

@@ -22,13 +22,12 @@ from twin.nc.path.drilling_cycle import (
     REFERENCE,
     START,
     Cycle,
-    Fault,
     Pecking,
     Retract,
     Values,
     forget,
-    hole_of,
 )
+from twin.nc.path.hole import Fault, hole_of
 from twin.nc.path.paces import FeedMode
 
 CLEARANCE = 0.254

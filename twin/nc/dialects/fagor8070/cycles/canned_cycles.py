@@ -8,18 +8,18 @@ height at which the cycle was called, with G99 to the reference plane.
 Decisions, since the manuals are only partly known: K is a dwell at the bottom [s]. In G83, I is the
 depth of one peck and J their number. In G82, B is the first peck, R the factor of each next one, L
 the least; after each the tool lifts by H, after every J of them (or where H is missing) to the
-reference plane, and returns with rapid to C, 1 mm, above where it was.
+reference plane, and returns with rapid to C, 1 mm, above where it was. G84 with B taps in passes of
+B that break the chip, back by H, or without it to the reference plane.
 """
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
-from twin.nc.bytecode.assembler import Assembler, UnsupportedError
+from twin.nc.bytecode.assembler import Assembler
 from twin.nc.control.codes import GCode, Ground, Interpolation
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import CycleRule
 from twin.nc.dialects.fagor8070.cycles.pockets import call_pocket, mill_pocket
-from twin.nc.dialects.fagor8070.cycles.tapping import tapping_code
 from twin.nc.dialects.fagor8070.polar import take_goal
 from twin.nc.iso.drilling import Holes, cycle_code
 from twin.nc.path.drilling_cycle import (
@@ -39,6 +39,7 @@ from twin.nc.path.drilling_cycle import (
     Pecking,
     Retract,
 )
+from twin.nc.text.blocks import Word
 
 _CLEARANCE = 1.0
 """G82: C where it is missing [mm]."""
@@ -53,6 +54,7 @@ _PLAIN = Cycle(
     retract=Retract.RAPID,
 )
 """Down with the feed, back with rapid."""
+_NO_OPTIONS: Mapping[str, tuple[float, ...]] = {}
 
 
 def _drilling(
@@ -62,38 +64,42 @@ def _drilling(
     cycle: Cycle = _PLAIN,
     *,
     ground: Ground = "decision",
-    options: Mapping[str, tuple[float, ...]] | None = None,
+    options: Mapping[str, tuple[float, ...]] = _NO_OPTIONS,
 ) -> GCode:
     """A cycle that drills, by its words besides Z and I; ``options`` change nothing of its path."""
-    rule = CycleRule(f"G{number}", cycle, {**words, "I": BOTTOM})
-    meaning = f"{meaning}: Z I {' '.join(words)}"
-    code = cycle_code(rule, meaning, Holes(_hole, ground))
-    return code if options is None else _with_options(code, options)
+    rule = CycleRule(f"G{number}", cycle, {**words, "I": BOTTOM}, options)
+    return cycle_code(rule, f"{meaning}: Z I {' '.join(words)}", Holes(_hole, ground))
 
 
 def _hole(control: Control) -> list[float]:
     return take_goal(control, arc=False).target
 
 
-def _with_options(code: GCode, options: Mapping[str, tuple[float, ...]]) -> GCode:
-    """A cycle with words besides, of which some values are known that change nothing of its path."""
+def _tapping(code: GCode) -> GCode:
+    """Tapping: with B in passes, which are rigid; H is else the word of a function."""
+    action, writer = code.action, code.compiler
+    assert action is not None
+    assert writer is not None
+
+    def begin(control: Control, value: Callable[[Word], float], take: Callable[[], None]) -> None:
+        passes = "B" in control.words
+        options = [control.words[letter] for letter in "RJ" if letter in control.words]
+        if passes and any(value(word) != 1.0 for word in options):
+            message = "only rigid tapping, R1, goes in passes, and back with the same feed"
+            control.fail("unsupported-word", f"G84: {message}")
+        function = None if passes else control.take("H")
+        take()
+        if function is not None:
+            control.words["H"] = function
 
     def call(control: Control) -> None:
-        for letter, known in options.items():
-            word = control.take(letter)
-            if word is not None and control.number(word) not in known:
-                values = " or ".join(f"{letter}{value:g}" for value in known)
-                control.fail("unsupported-word", f"only {values} is followed here", word)
-        assert code.action is not None
-        code.action(control)
+        begin(control, control.number, lambda: action(control))
 
     def write(control: Control, assembler: Assembler) -> None:
-        if any(control.take(letter) is not None for letter in options):
-            raise UnsupportedError
-        assert code.compiler is not None
-        code.compiler(control, assembler)
+        begin(control, assembler.known, lambda: writer(control, assembler))
 
-    return dataclasses.replace(code, action=call, compiler=write)
+    meaning = "tapping: Z I K R J; in passes: B H"
+    return dataclasses.replace(code, meaning=meaning, action=call, compiler=write)
 
 
 def _pocket(
@@ -144,8 +150,14 @@ CYCLES = {
         {"J": COUNT, "D": SURFACE, "K": DWELL},
         _PLAIN._replace(needed=_PLAIN.needed | 1 << COUNT, pecking=Pecking.COUNTED),
     ),
-    84: tapping_code(
-        _drilling(84, "tapping", _DWELL, _PLAIN._replace(retract=Retract.REVERSED), options=_RIGID)
+    84: _tapping(
+        _drilling(
+            84,
+            "tapping",
+            {"B": PECK, "H": LIFT, "K": DWELL},
+            _PLAIN._replace(pecking=Pecking.UNSIGNED_PASSES, retract=Retract.REVERSED),
+            options=_RIGID,
+        )
     ),
     85: _drilling(
         85,

@@ -1,7 +1,7 @@
 """Canned cycles of a Fanuc control: G73, G74, G76, G80 to G89, with G98 and G99.
 
 X and Y name the hole, Z its bottom, R the plane where the feed begins, Q the depth of a peck or the
-shift of G76 and G87, P milliseconds at the bottom, K (on a Haas L) how many holes the block drills.
+shift of G76 and G87 or of a pass of G74 and G84, P milliseconds at the bottom, K (on a Haas L) how many holes the block drills.
 All but the hole stay in force until G80 or a motion code. Decisions: G73 withdraws by 0.5 mm, and
 G83 stops its rapid return 0.5 mm above where it was (parameters 5114 and 5115); G76 and G87 shift
 towards +X of the plane (parameter 5148).
@@ -13,35 +13,43 @@ from twin.nc.control.codes import GCode
 from twin.nc.control.control import Control
 from twin.nc.dialects.fanuc import decimal_point
 from twin.nc.dialects.fanuc.cycles.boring import boring_code
-from twin.nc.dialects.fanuc.cycles.tapping import in_passes
 from twin.nc.dialects.fanuc.memory import Variant, letter_patterns, memory_of
 from twin.nc.dialects.fanuc.motion import holes_of
 from twin.nc.dialects.fanuc.transformations import refuse_scaled_pecks
 from twin.nc.iso import base
-from twin.nc.iso.fixed_cycles import BY_HAND, CYCLES, DRILLS, Drill, drilling_code
-from twin.nc.path.drilling_cycle import CHIP_CLEARANCE, Retract
+from twin.nc.iso.fixed_cycles import BY_HAND, CYCLES, DRILLS, drilling_code
+from twin.nc.path.drilling_cycle import CHIP_CLEARANCE, PECK, Pecking, Retract
 from twin.nc.text.blocks import Block
 
+_TAPS = {
+    74: DRILLS[84]._replace(
+        meaning="left-hand tapping", retract=Retract.REVERSED_LEFT, lift=CHIP_CLEARANCE
+    ),
+    84: DRILLS[84]._replace(lift=CHIP_CLEARANCE),
+}
 _DRILLS = {
     **DRILLS,
-    73: Drill("deep drilling with chip breaking", dwell=True, peck=True, lift=CHIP_CLEARANCE),
-    74: Drill("left-hand tapping", dwell=True, retract=Retract.REVERSED_LEFT),
+    73: DRILLS[83]._replace(
+        meaning="deep drilling with chip breaking", dwell=True, lift=CHIP_CLEARANCE
+    ),
+    **{number: drill._replace(pecking=Pecking.PASSES) for number, drill in _TAPS.items()},
     83: DRILLS[83]._replace(dwell=True),
     86: DRILLS[86]._replace(dwell=True),
 }
 _HAAS_DRILLS = {
     **{number: _DRILLS[number]._replace(reduces=True) for number in (73, 83)},
-    **{number: _DRILLS[number]._replace(faster=True) for number in (74, 84)},
+    **{number: drill._replace(faster=True) for number, drill in _TAPS.items()},
 }
 
 
 def _unscaled(number: int, code: GCode) -> GCode:
-    """A cycle that is refused under a scale."""
+    """A cycle that is refused under a scale, where it has pecks or passes."""
     action = code.action
     assert action is not None
 
     def call(control: Control) -> None:
-        refuse_scaled_pecks(control, f"G{number}")
+        if number not in _TAPS or "Q" in control.words or control.cycle_state[PECK] > 0.0:
+            refuse_scaled_pecks(control, f"G{number}")
         action(control)
 
     return dataclasses.replace(code, action=call)
@@ -53,10 +61,11 @@ def cycles(variant: Variant) -> dict[float, GCode]:
     made = {
         number: drilling_code(number, drill, holes_of(variant)) for number, drill in drills.items()
     }
-    taps = () if variant.own_cycle_words else (74, 84)
     return {
-        **{n: _unscaled(n, code) if _DRILLS[n].peck else code for n, code in made.items()},
-        **{number: in_passes(number, made[number]) for number in taps},
+        **{
+            number: _unscaled(number, code) if drills[number].pecking else code
+            for number, code in made.items()
+        },
         **base.by_manual({80: CYCLES[80]}),
         76: boring_code(76, "fine boring, out with the tool shifted", variant),
         87: boring_code(87, "back boring, from below", variant),
