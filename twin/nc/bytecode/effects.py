@@ -78,45 +78,57 @@ def run_effect(
     """Run one instruction.
 
     Args:
-        instruction: One from ``REGISTER`` on.
+        instruction: One from ``FUNCTION`` on.
         stack: Values.
         top: How many there are.
         block: Whose it is.
         on: What it runs on.
 
     Returns:
+        How many values are left.
+    """
+    opcode, operand = instruction.opcode, instruction.operand
+    if opcode == opcodes.FUNCTION:
+        report_function(operand, block, on)
+    elif opcode == opcodes.REPORT:
+        top -= 1
+        report(on.rows, on.state, block.made, block.line, operand, 0, stack[top])
+    elif opcode == opcodes.TOOL_RADIUS:
+        tool = _tool(on.constants, on.state.registers[IN_SPINDLE])
+        stack[top] = on.constants.radii[tool]
+        top += 1
+    elif opcode == opcodes.COORDINATE:
+        stack[top] = _in_plane(on.constants, on.state)[operand]
+        top += 1
+    else:
+        top = _change_frame(instruction, stack, top, on)
+    return top
+
+
+@inlined
+def use_register(
+    instruction: Instruction, stack: Stack, top: int, block: BlockPlace, on: Affected
+) -> int:
+    """Run an instruction of registers, one from ``REGISTER`` to ``CHECK``; as ``run_effect``.
+
+    Returns:
         How many values are left, or ``BAILOUT`` where a check does not hold.
     """
     opcode, operand = instruction.opcode, instruction.operand
-    state, registers = on.state, on.state.registers
-    if opcode >= opcodes.TOOL_LENGTH:
-        return _change_frame(instruction, stack, top, on)
-    if opcode == opcodes.FUNCTION:
-        report_function(operand, block, on)
-        return top
     if opcode == opcodes.REGISTER:
-        stack[top] = registers[operand]
+        stack[top] = on.state.registers[operand]
         return top + 1
-    if opcode == opcodes.TOOL_RADIUS:
-        stack[top] = on.constants.radii[_tool(on.constants, registers[IN_SPINDLE])]
-        return top + 1
-    if opcode == opcodes.COORDINATE:
-        stack[top] = _in_plane(on.constants, state)[operand]
-        return top + 1
-    value = stack[top - 1] if top > 0 else np.nan
-    if opcode == opcodes.CHECK:
-        return top if _holds(instruction, value, block, on.constants) else BAILOUT
-    if opcode == opcodes.TO_MILLIMETRES:
-        stack[top - 1] = value * state.modal[UNIT]
-        return top
     if opcode == opcodes.SET_REGISTER:
-        registers[operand] = value
-    else:
-        report(on.rows, state, block.made, block.line, operand, 0, value)
-    return top - 1
+        on.state.registers[operand] = stack[top - 1]
+        return top - 1
+    if opcode == opcodes.TO_MILLIMETRES:
+        stack[top - 1] *= on.state.modal[UNIT]
+        return top
+    value = stack[top - 1] if top > 0 else np.nan
+    return top if _holds(instruction, value, block, on.constants) else BAILOUT
 
 
-@compilable
+@inlined
 def _holds(instruction: Instruction, value: float, block: BlockPlace, constants: Constants) -> bool:
     """Whether a check holds of a value."""
     check, bound = instruction.operand, instruction.immediate

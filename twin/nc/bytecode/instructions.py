@@ -5,7 +5,7 @@ from typing import NamedTuple
 from twin.compilation.compilable import inlined
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.bytecode import Instruction
-from twin.nc.bytecode.effects import Affected, BlockPlace, run_effect
+from twin.nc.bytecode.effects import Affected, BlockPlace, run_effect, use_register
 from twin.nc.bytecode.expressions import compute_value
 from twin.nc.bytecode.flow import Stack, Transfer, count_loop, going_to, jumps, transfer
 from twin.nc.bytecode.frames import VariableStore
@@ -48,8 +48,10 @@ def run_instruction(
     opcode, memory = instruction.opcode, around.memory
     if opcode <= opcodes.DROP:
         return compute_value(instruction, stack, top), to
-    if opcode >= opcodes.REGISTER:
+    if opcode >= opcodes.FUNCTION:
         return run_effect(instruction, stack, top, around.block, around.on), to
+    if opcode >= opcodes.REGISTER:
+        return use_register(instruction, stack, top, around.block, around.on), to
     if opcode >= opcodes.CHECK_CALL:
         known, to = transfer(instruction, stack[top - 1], to, around.calls, memory.local)
         return top if known else BAILOUT, to

@@ -112,7 +112,7 @@ CHECK_RETURN = 39
 RETURN = 40
 """Go back behind the call."""
 
-# --- what the control remembers
+# --- registers
 
 REGISTER = 41
 """Put the register ``operand`` on the stack."""
@@ -120,14 +120,7 @@ SET_REGISTER = 42
 """The topmost value becomes the register ``operand``."""
 TO_MILLIMETRES = 43
 """Convert the topmost value, a length, from the active unit."""
-TOOL_RADIUS = 44
-"""Put the radius of the tool in use on the stack, NaN where there is no tool."""
-COORDINATE = 45
-"""Put the abscissa (``operand`` 0) or ordinate (1) of the present position on the stack."""
-
-# --- what must hold
-
-CHECK = 46
+CHECK = 44
 """The topmost value, which stays, must be as the check ``operand`` says, one of those below, of
 ``immediate``; else the interpreter tier must run the block, which says what is wrong."""
 
@@ -137,13 +130,17 @@ none (NaN); the number of a tool that the job lists; or, of no value, radius com
 
 # --- events
 
-FUNCTION = 47
+FUNCTION = 45
 """Report the M function ``operand``, a start of the spindle together with its speed."""
-REPORT = 48
+REPORT = 46
 """Report an event of the kind ``operand`` with the topmost value."""
 
-# --- coordinates
+# --- tools and coordinates
 
+TOOL_RADIUS = 47
+"""Put the radius of the tool in use on the stack, NaN where there is no tool."""
+COORDINATE = 48
+"""Put the abscissa (``operand`` 0) or ordinate (1) of the present position on the stack."""
 TOOL_LENGTH = 49
 """Shift Z by the length of the tool in use, if its offset applies."""
 SHIFT = 50

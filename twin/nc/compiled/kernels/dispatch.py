@@ -76,9 +76,11 @@ def dispatch_loop(
                 Affected(machine.constants, state, machine.rows),
             )
             top, to = run_instruction(instruction, stack, top, to, around)
-            if top < 0 or not _keep_codes(opcode, to, state, execution):
+            transfers = opcodes.CHECK_CALL <= opcode <= opcodes.RETURN
+            if top < 0 or (transfers and not _keep_codes(opcode, to, state, execution)):
                 break
-            opcode = opcodes.NEXT if to.ends else opcode
+            if to.ends:
+                opcode = opcodes.NEXT
         elif opcodes.LOAD <= opcode <= opcodes.WORD_CONSTANT:
             top = compute(instruction, top, to.depth, table.numbered, memory, scratch)
         elif opcodes.RUN <= opcode <= opcodes.RUN_POLAR:
