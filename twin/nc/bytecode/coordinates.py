@@ -60,15 +60,6 @@ def _turn(programmed: FloatArray, state: State, part: FloatArray) -> None:
 
 
 @compilable
-def turn_arc(value: FloatArray, state: State) -> None:
-    """Centre, normal and sweep of an arc, as ``Rows.values`` has them, become the part's."""
-    matrix = matrix_of(state)
-    put(frame.to_part(matrix, state.total, vector_of(value)), value)
-    normal, value[6] = frame.arc_of_part(matrix, vector_of(value[3:]), value[6])
-    put(normal, value[3:])
-
-
-@compilable
 def reframe(state: State) -> None:
     """The shifts or the matrix have changed: see where the control stands now."""
     frame.add_up(state.shifts, state.total)

@@ -245,16 +245,11 @@ def polar_target(
     registers, modal = state.registers, state.modal
     origin = (registers[POLAR_ABSCISSA], registers[POLAR_ORDINATE])
     start = _in_plane(constants, state)
-    radius, angle = polar.seen_from(origin, start, registers[POLAR_RADIUS], registers[POLAR_ANGLE])
-    incremental = modal[INCREMENTAL] != 0.0
-    if seen & 1:
-        radius = polar.changed(radius, radius_word * modal[UNIT], incremental)
-        if not 0.0 <= radius <= LARGEST_COORDINATE:
-            return False
-    if seen & 2:
-        angle = polar.changed(angle, angle_word, incremental)
-        if not abs(angle) <= LARGEST_COORDINATE:
-            return False
+    old = polar.seen_from(origin, start, registers[POLAR_RADIUS], registers[POLAR_ANGLE])
+    incremental, words = modal[INCREMENTAL] != 0.0, (radius_word * modal[UNIT], angle_word)
+    radius, angle = polar.changed(seen, old, words, (incremental, incremental))
+    if not (0.0 <= radius <= LARGEST_COORDINATE and abs(angle) <= LARGEST_COORDINATE):
+        return False
     state.target[0], state.target[1] = polar.point_at(origin, start, radius, angle)
     registers[POLAR_RADIUS], registers[POLAR_ANGLE] = radius, angle
     return True

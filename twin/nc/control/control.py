@@ -16,7 +16,8 @@ from twin.nc.bytecode.registers import (
 )
 from twin.nc.canonical import Dwell, Function
 from twin.nc.control.words import ControlWords
-from twin.nc.geometry.frame import moved_shift
+from twin.nc.geometry.arcs import Point
+from twin.nc.geometry.frame import arc_about, moved_shift
 from twin.nc.geometry.planes import PLANE_ORDER, Plane, Vector
 from twin.nc.path.event_columns import EventRows
 from twin.nc.path.move_columns import FEED, NAN, RAPID, Segment
@@ -71,16 +72,16 @@ class Control(ControlWords):
             self.path.end_spline()
         self._add(target, rapid=False, spline=(flat,))
 
-    def arc_to(self, target: list[float], center: Vector, sweep: float) -> None:
+    def arc_to(self, target: list[float], center: Point, sweep: float) -> None:
         """Move on an arc about the plane's normal.
 
         Args:
             target: Programmed position of its end, shape (k,).
-            center: Programmed centre at the height of the start [mm].
+            center: Abscissa and ordinate of its programmed centre [mm].
             sweep: Signed angle with all turns [deg].
         """
-        normal, sweep = self.frame.arc(self.modal.plane.normal, sweep)
-        self._add(target, rapid=False, center=self.frame.point(center), normal=normal, sweep=sweep)
+        arc = self.frame.arc(arc_about(self.modal.plane.directions, self.programmed, center, sweep))
+        self._add(target, rapid=False, center=arc.center, normal=arc.normal, sweep=arc.sweep)
 
     def _add(
         self,

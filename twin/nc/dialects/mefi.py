@@ -131,7 +131,7 @@ def _arc(control: Control, rule: ArcRule) -> None:
     sweep = sweep_between(start[:2], end[:2], center, rule.clockwise)
     for index, lead in leads.items():
         target[index] += lead * abs(sweep) / 360.0
-    control.arc_to(target, plane.world(*center, start.height), sweep)
+    control.arc_to(target, center, sweep)
 
 
 CLOCKWISE, COUNTER_CLOCKWISE = both_senses(_arc, ArcRule(bounds=BOUNDS, signed_radius=False))

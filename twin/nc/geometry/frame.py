@@ -1,11 +1,12 @@
 """From programmed coordinates to the part's: offsets, presets, turns, mirror, rotation, scale."""
 
 import operator
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from twin.compilation.compilable import compilable
+from twin.compilation.compilable import compilable, inlined
 from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.matrices import (
     IDENTITY,
@@ -17,7 +18,7 @@ from twin.nc.geometry.matrices import (
     stretched,
     turned_unit,
 )
-from twin.nc.geometry.planes import Directions, Plane, Vector, cross
+from twin.nc.geometry.planes import Directions, Plane, Vector, along, cross, world
 
 FloatArray = npt.NDArray[np.float64]
 Values = list[float] | FloatArray
@@ -47,10 +48,47 @@ def plane_of_part(matrix: Matrix, plane: Directions) -> Directions:
     return (abscissa, cross(normal, abscissa), normal)
 
 
+class Arc(NamedTuple):
+    """An arc in space.
+
+    Attributes:
+        center: At the height of its start [mm].
+        normal: Unit vector that it turns about.
+        sweep: Signed angle with all turns [deg].
+    """
+
+    center: Vector
+    normal: Vector
+    sweep: float
+
+
+@inlined
+def arc_about(plane: Directions, start: Values, center: Point, sweep: float) -> Arc:
+    """The arc of a plane that begins at a position, shape (k,), about a centre."""
+    height = along((start[0], start[1], start[2]), plane[2])
+    return Arc(world(plane, center, height), plane[2], sweep)
+
+
+@inlined
+def arc_of_part(arc: Arc, matrix: Matrix, total: Values, turned: bool) -> Arc:
+    """A programmed arc as the part sees it; a mirror reverses the sense.
+
+    Args:
+        arc: As programmed.
+        matrix: Mirror, scale and rotation.
+        total: The sum of all shifts, shape (k,) [mm or deg].
+        turned: The matrix is not the identity.
+    """
+    if turned:
+        return _turned_arc(arc, matrix, total)
+    x, y, z = arc.center
+    return Arc((x + total[0], y + total[1], z + total[2]), arc.normal, arc.sweep)
+
+
 @compilable
-def arc_of_part(matrix: Matrix, normal: Vector, sweep: float) -> tuple[Vector, float]:
-    """Normal and sweep of an arc as the part sees them; a mirror reverses the sense."""
-    return turned_unit(matrix, normal), sweep * handedness(matrix)
+def _turned_arc(arc: Arc, matrix: Matrix, total: Values) -> Arc:
+    center, sweep = to_part(matrix, total, arc.center), arc.sweep * handedness(matrix)
+    return Arc(center, turned_unit(matrix, arc.normal), sweep)
 
 
 @compilable
@@ -176,20 +214,13 @@ class Frame:
         place = (part[0], part[1], part[2])
         return [*to_programmed(self.matrix, self.total, place), *values[3:]]
 
-    def point(self, programmed: Vector) -> Vector:
-        """Part coordinates of a point of X, Y, Z."""
-        if not self.is_identity:
-            return to_part(self.matrix, self.total, programmed)
-        x, y, z = programmed
-        return (x + self.total[0], y + self.total[1], z + self.total[2])
-
     def unturn(self, vector: Vector) -> Vector:
         """A direction of the part's X, Y, Z as it is programmed."""
         return vector if self.is_identity else applied(inverse(self.matrix), vector)
 
-    def arc(self, normal: Vector, sweep: float) -> tuple[Vector, float]:
-        """Normal and sweep of an arc as the part sees them; a mirror reverses the sense."""
-        return (normal, sweep) if self.is_identity else arc_of_part(self.matrix, normal, sweep)
+    def arc(self, arc: Arc) -> Arc:
+        """A programmed arc as the part sees it."""
+        return arc_of_part(arc, self.matrix, self.total, not self.is_identity)
 
     def plane(self, plane: Plane) -> Plane:
         """A working plane as the part sees it."""

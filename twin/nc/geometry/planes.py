@@ -11,6 +11,7 @@ import numpy.typing as npt
 from twin.compilation.compilable import compilable
 
 Vector = tuple[float, float, float]
+Column = list[float] | npt.NDArray[np.float64]
 Directions = tuple[Vector, Vector, Vector]
 """Abscissa, ordinate and normal of a plane."""
 
@@ -45,11 +46,15 @@ def world(plane: Directions, point: tuple[float, float], height: float) -> Vecto
 
 
 @compilable
-def put_point(
-    plane: Directions, point: tuple[float, float], height: float, target: npt.NDArray[np.float64]
-) -> None:
+def put_point(plane: Directions, point: tuple[float, float], height: float, target: Column) -> None:
     """Put that point into the first places of a column."""
     target[0], target[1], target[2] = world(plane, point, height)
+
+
+@compilable
+def aim(plane: Directions, point: tuple[float, float], target: Column) -> None:
+    """Let a position, shape (k,), have another abscissa and ordinate in a plane, at its own height."""
+    put_point(plane, point, along((target[0], target[1], target[2]), plane[2]), target)
 
 
 class Local(NamedTuple):
@@ -97,6 +102,10 @@ class Plane:
     def world(self, abscissa: float, ordinate: float, height: float) -> Vector:
         """The inverse of ``local``."""
         return world(self.directions, (abscissa, ordinate), height)
+
+    def aim(self, target: list[float], point: tuple[float, float]) -> None:
+        """Let a position, shape (k,), have another abscissa and ordinate, at its own height."""
+        aim(self.directions, point, target)
 
 
 def _column(direction: Vector) -> int:

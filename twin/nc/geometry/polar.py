@@ -22,9 +22,23 @@ def seen_from(origin: Point, here: Point, radius: float, angle: float) -> tuple[
 
 
 @compilable
-def changed(old: float, value: float, incremental: bool) -> float:
-    """R or Q with the value of a word."""
-    return old + value if incremental else value
+def changed(
+    seen: int, old: tuple[float, float], words: tuple[float, float], relative: tuple[bool, bool]
+) -> tuple[float, float]:
+    """R and Q of where a block goes.
+
+    Args:
+        seen: 1 where it has R, 2 with Q, 3 with both.
+        old: R and Q of where the tool stands [mm, deg].
+        words: The values of both words [mm, deg].
+        relative: Whether they count from there.
+    """
+    radius, angle = old
+    if seen & 1:
+        radius = radius + words[0] if relative[0] else words[0]
+    if seen & 2:
+        angle = angle + words[1] if relative[1] else words[1]
+    return radius, angle
 
 
 @compilable

@@ -157,7 +157,7 @@ def sweep_arc(
     start, end = plane.local(control.programmed), plane.local(target)
     sweep = sweep_between(start[:2], end[:2], center, clockwise=clockwise)
     sweep += -360.0 * turns if clockwise else 360.0 * turns
-    control.arc_to(target, plane.world(*center, start.height), sweep)
+    control.arc_to(target, center, sweep)
 
 
 def start_and_end(control: Control, target: list[float]) -> tuple[Local, Local]:

@@ -6,7 +6,7 @@ What a centre or a radius means, and which fits, ``geometry.arcs`` says.
 import numpy as np
 
 from twin.compilation.compilable import inlined
-from twin.nc.bytecode.coordinates import turn_arc
+from twin.nc.bytecode.coordinates import directions, matrix_of, put
 from twin.nc.bytecode.registers import (
     CENTER_ABSOLUTE,
     INTERPOLATION,
@@ -17,11 +17,12 @@ from twin.nc.bytecode.registers import (
     Constants,
     State,
 )
-from twin.nc.bytecode.token_kinds import AXIS, CENTER, RADIUS
+from twin.nc.bytecode.token_kinds import CENTER, RADIUS
 from twin.nc.compiled.kernels.target import PlainBlock, value_of
 from twin.nc.geometry import arcs
 from twin.nc.geometry.arcs import ArcWords, Bounds, Sense
-from twin.nc.geometry.planes import vector_of
+from twin.nc.geometry.frame import arc_about, arc_of_part
+from twin.nc.geometry.planes import point_of, vector_of
 from twin.nc.path.moves import arc_length
 from twin.nc.path.rows import Rows
 
@@ -52,55 +53,42 @@ def emit_arc(
         Its length [mm]; ``DOUBTFUL`` where something about the arc is.
     """
     interpolation = int(block.modal[INTERPOLATION])
-    plane = constants.planes[int(block.modal[PLANE])]
-    first_axis, second_axis, across = int(plane[0]), int(plane[1]), int(plane[2])
-    display = rows.positions[row, 2]
-    start = (state.programmed[first_axis], state.programmed[second_axis])
-    end = (display[first_axis], display[second_axis])
-    clear, words = _words_of_arc(block, (first_axis, second_axis, across))
+    clockwise = tables.clockwise[interpolation]
+    clear, words = _words_of_arc(block, constants)
     if not clear:
         return DOUBTFUL
+    plane = directions(constants, int(block.modal[PLANE]))
+    position, value = rows.positions[row], rows.values[row]
+    start = point_of(plane, vector_of(state.programmed))
+    end = point_of(plane, vector_of(position[2]))
     b = tables.bounds[interpolation]
     bounds = Bounds(float(b[0]), float(b[1]), float(b[2]), float(b[3]))
-    sense = Sense(
-        tables.clockwise[interpolation],
-        tables.signed_radius[interpolation],
-        tables.fits_radius[interpolation],
-    )
+    fits = tables.fits_radius[interpolation]
+    sense = Sense(clockwise, tables.signed_radius[interpolation], fits)
     absolute = block.modal[CENTER_ABSOLUTE] != 0.0
-    finding, center = arcs.center_of_words(start, end, words, absolute, sense, bounds)
+    finding, found = arcs.center_of_words(start, end, words, absolute, sense, bounds)
     if finding != arcs.FITS:
         return DOUBTFUL
-    sweep = arcs.sweep_between(start, end, center, tables.clockwise[interpolation])
-    value = rows.values[row]
-    value[first_axis], value[second_axis] = center
-    value[across] = state.programmed[across]
-    value[3:6] = 0.0
-    value[3 + across] = 1.0
-    value[6] = sweep
-    if state.registers[TURNED] != 0.0:
-        turn_arc(value, state)
-    else:
-        for axis in range(3):
-            value[axis] += state.total[axis]
-    turned_center, normal = vector_of(value), vector_of(value[3:])
-    position = rows.positions[row]
-    return arc_length(position[0], position[1], turned_center, normal, value[6])
+    sweep = arcs.sweep_between(start, end, found, clockwise)
+    programmed = arc_about(plane, state.programmed, found, sweep)
+    turned = state.registers[TURNED] != 0.0
+    arc = arc_of_part(programmed, matrix_of(state), state.total, turned)
+    put(arc.center, value)
+    put(arc.normal, value[3:])
+    value[6] = arc.sweep
+    return arc_length(position[0], position[1], arc.center, arc.normal, arc.sweep)
 
 
 @inlined
-def _words_of_arc(block: PlainBlock, axes: tuple[int, int, int]) -> tuple[bool, ArcWords]:
-    """Whether a block's words give an arc in the plane without a doubt, and these words."""
-    first_axis, second_axis, across = axes
-    radius = _length_of(RADIUS, block)
-    first, second = _length_of(CENTER + first_axis, block), _length_of(CENTER + second_axis, block)
-    in_plane = (1 << (AXIS + first_axis)) | (1 << (AXIS + second_axis))
-    clear = block.seen & (1 << (CENTER + across)) == 0
-    if radius == radius:
-        clear = clear and block.seen & in_plane != 0
-    elif block.modal[CENTER_ABSOLUTE] != 0.0:
+def _words_of_arc(block: PlainBlock, constants: Constants) -> tuple[bool, ArcWords]:
+    """Whether nothing about the words of an arc in the plane is doubtful, and these words."""
+    plane = constants.planes[int(block.modal[PLANE])]
+    first, second = _length_of(CENTER + plane[0], block), _length_of(CENTER + plane[1], block)
+    words = ArcWords(_length_of(RADIUS, block), first, second)
+    clear = block.seen & (1 << (CENTER + plane[2])) == 0
+    if block.modal[CENTER_ABSOLUTE] != 0.0 and words.radius != words.radius:
         clear = clear and first == first and second == second
-    return clear, ArcWords(radius, first, second)
+    return clear, words
 
 
 @inlined

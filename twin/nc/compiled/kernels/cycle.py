@@ -30,7 +30,7 @@ from twin.nc.compiled.kernels.move_row import (
     put_move,
     put_positions,
 )
-from twin.nc.compiled.kernels.target import PlainBlock, aim, target_of_axis
+from twin.nc.compiled.kernels.target import PlainBlock, put_target
 from twin.nc.path.drilling_cycle import VALUES, Cycle, CycleBlock, cycle_of, read_words
 from twin.nc.path.hole import MOST_STOPS, NO_MOVE, Hole, hole_of, most_acts, next_place, write_acts
 from twin.nc.path.moves import LARGEST_COORDINATE, line_length
@@ -79,13 +79,8 @@ def drill(
     rest = block.seen & ~taken
     if (rest >> RADIUS) & ((1 << (AXIS - RADIUS)) - 1) or rest & (1 << (AXIS + plane[2])):
         return UNSUPPORTED
-    if block.polar:
-        aim(constants, block, rest, state)
-    target = constants.over
-    for axis in range(len(state.part)):
-        target[axis] = target_of_axis(axis, block, rest, constants, state)
-        if not abs(target[axis]) <= LARGEST_COORDINATE:
-            return UNSUPPORTED
+    if not put_target(block, rest, constants, state, constants.over):
+        return UNSUPPORTED
     after = _emit_hole(block, hole, constants, state, rows, row)
     if after >= 0:
         for value in range(VALUES):

@@ -1,4 +1,4 @@
-"""Where a plain block goes: the goals of its axes, as ``Control.target`` and the polar forms have them."""
+"""Where a plain block goes: where its words lead, as ``path.moves`` says, and polar coordinates in its plane."""
 
 from typing import NamedTuple
 
@@ -7,8 +7,8 @@ from twin.nc.bytecode.coordinates import directions
 from twin.nc.bytecode.registers import INCREMENTAL, PLANE, UNIT, Constants, State
 from twin.nc.bytecode.token_kinds import AXIS
 from twin.nc.canonical import FloatArray, IntArray
-from twin.nc.geometry.planes import along, put_point
-from twin.nc.path.moves import axis_target
+from twin.nc.geometry.planes import aim
+from twin.nc.path.moves import LARGEST_COORDINATE, axis_target
 
 
 class PlainBlock(NamedTuple):
@@ -45,40 +45,26 @@ def value_of(token_kind: int, block: PlainBlock) -> float:
 
 
 @inlined
-def target_of_axis(
-    axis: int, block: PlainBlock, seen: int, constants: Constants, state: State
-) -> float:
-    """Where the block wants an axis, as programmed; a polar block has aimed already.
+def put_target(
+    block: PlainBlock, seen: int, constants: Constants, state: State, goal: FloatArray
+) -> bool:
+    """Fill in where the block wants its axes, as programmed; whether that is not too far.
 
     Args:
-        axis: Which.
         block: Its words.
         seen: Those of them that say where it goes, as bits.
         constants: What stays.
-        state: Where the block begins.
+        state: Where the block begins; of a polar block its target is abscissa and ordinate.
+        goal: Shape (k,).
     """
-    if block.polar and axis < 3:
-        return state.target[axis]
-    if not seen & (1 << (AXIS + axis)):
-        return state.programmed[axis]
-    value, unit = value_of(AXIS + axis, block), block.modal[UNIT]
-    incremental = block.modal[INCREMENTAL] != 0.0
-    return axis_target(value, unit, constants.linear[axis], incremental, state.programmed[axis])
-
-
-@compilable
-def aim(constants: Constants, block: PlainBlock, seen: int, state: State) -> None:
-    """Abscissa and ordinate of the target and the height of the block, as ``Plane.world`` has them."""
-    abscissa, ordinate = state.target[0], state.target[1]
-    x, y, z = state.programmed[0], state.programmed[1], state.programmed[2]
-    plane = int(block.modal[PLANE])
-    across = int(constants.planes[plane, 2])
-    if seen & (1 << (AXIS + across)):
-        value, unit = value_of(AXIS + across, block), block.modal[UNIT]
-        incremental = block.modal[INCREMENTAL] != 0.0
-        height = axis_target(value, unit, True, incremental, state.programmed[across])
-        x = height if across == 0 else x
-        y = height if across == 1 else y
-        z = height if across == 2 else z
-    axes = directions(constants, plane)
-    put_point(axes, (abscissa, ordinate), along((x, y, z), axes[2]), state.target)
+    modal, incremental = block.modal, block.modal[INCREMENTAL] != 0.0
+    for axis in range(len(goal)):
+        goal[axis] = state.programmed[axis]
+        if seen & (1 << (AXIS + axis)):
+            value, linear = value_of(AXIS + axis, block), constants.linear[axis]
+            goal[axis] = axis_target(value, modal[UNIT], linear, incremental, goal[axis])
+        if not abs(goal[axis]) <= LARGEST_COORDINATE:
+            return False
+    if block.polar:
+        aim(directions(constants, int(modal[PLANE])), (state.target[0], state.target[1]), goal)
+    return True

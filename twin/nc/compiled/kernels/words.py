@@ -46,7 +46,7 @@ from twin.nc.compiled.kernels.move_row import (
     put_move,
     put_positions,
 )
-from twin.nc.compiled.kernels.target import PlainBlock, aim, target_of_axis
+from twin.nc.compiled.kernels.target import PlainBlock, put_target
 from twin.nc.path import move_columns
 from twin.nc.path.moves import (
     LARGEST_COORDINATE,
@@ -222,13 +222,8 @@ def _move(block: PlainBlock, machine: Machine, row: int) -> int:
     if kind != RAPID_LINE and not has_pace(block, constants, state):
         return UNSUPPORTED
     position = rows.positions[row]
-    if block.polar:
-        aim(constants, block, seen, state)
-    for axis in range(len(state.part)):
-        target = target_of_axis(axis, block, seen, constants, state)
-        if not abs(target) <= LARGEST_COORDINATE:
-            return UNSUPPORTED
-        position[2, axis] = target
+    if not put_target(block, seen, constants, state, position[2]):
+        return UNSUPPORTED
     put_positions(position[2], state.part, state, position)
     if is_arc:
         length = emit_arc(block, tables, constants, state, rows, row)

@@ -92,8 +92,8 @@ def _opening_arc(control: Control, opening: Word, *, clockwise: bool) -> None:
         control.fail("arc-center", "the centre lies on the arc's start", word)
     sweep = -angle if clockwise else angle
     end = turned(start[:2], center, sweep)
-    target[:3] = plane.world(*end, plane.local(target).height)
-    control.arc_to(target, plane.world(*center, start.height), sweep)
+    plane.aim(target, end)
+    control.arc_to(target, center, sweep)
 
 
 def _programmed_center(control: Control) -> tuple[Point | None, Word | None]:

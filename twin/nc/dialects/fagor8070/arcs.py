@@ -87,7 +87,7 @@ def _end_on_circle(control: Control, goal: Goal, center: Point) -> None:
     far = distance(start[:2], center) / distance(end[:2], center)
     onto = (center[0] + (end[0] - center[0]) * far, center[1] + (end[1] - center[1]) * far)
     if onto != end[:2]:
-        goal.target[:3] = control.modal.plane.world(*onto, end.height)
+        control.modal.plane.aim(goal.target, onto)
         forget_polar(control)
 
 
@@ -175,10 +175,9 @@ def _sweep(
             if wanted == 0.0:
                 control.fail("helix-height", "a helix by its pitch alone needs a height", pitch)
             sweep = wanted
-            around = turned(start[:2], center, sweep)
-            goal.target[:3] = plane.world(*around, end.height)
+            plane.aim(goal.target, turned(start[:2], center, sweep))
             forget_polar(control)
-    control.arc_to(goal.target, plane.world(*center, start.height), sweep)
+    control.arc_to(goal.target, center, sweep)
 
 
 def _helix_sweep(control: Control, height: float, pitch: Word, *, clockwise: bool) -> float:
@@ -226,10 +225,10 @@ def _arc_about_own_center(control: Control, *, clockwise: bool) -> None:
     by = value if incremental else value - arcs.angle_of(start[:2], center)
     end = turned(start[:2], center, by)
     target = control.target()
-    target[:3] = plane.world(*end, plane.local(target).height)
+    plane.aim(target, end)
     forget_polar(control)
     sweep = sweep_between(start[:2], end, center, clockwise=clockwise)
-    control.arc_to(target, plane.world(*center, start.height), sweep)
+    control.arc_to(target, center, sweep)
 
 
 RAPID, FEED = base.straight(_line)

@@ -172,24 +172,24 @@ def _polar_target(control: Control, *, arc: bool) -> list[float]:
     if memory_of(control).part_frame is not None:
         message = "polar coordinates are not allowed while #MCS is in force (E1305)"
         control.fail("polar-origin", message, control.words.get("R") or control.words.get("Q"))
-    radius, angle = current_polar(control)
     radius_word, angle_word = control.take("R"), control.take("Q")
     target = control.target()
-    if radius_word is not None:
-        value = control.length(radius_word)
-        incremental = control.modal.incremental or radius_word.incremental
-        radius = changed(radius, value, incremental)
-        if radius < 0.0 or (arc and radius == 0.0):
-            message = f"the polar radius {radius:g} must be positive" + ("" if arc else " or 0")
-            control.fail("polar-radius", message, radius_word)
-    if angle_word is not None:
-        value = control.number(angle_word)
-        incremental = control.modal.incremental or angle_word.incremental
-        angle = changed(angle, value, incremental)
+    seen = (radius_word is not None) + 2 * (angle_word is not None)
+    words = (control.length(radius_word), 0.0 if angle_word is None else control.number(angle_word))
+    relative = (_counts_on(control, radius_word), _counts_on(control, angle_word))
+    radius, angle = changed(seen, current_polar(control), words, relative)
+    if radius_word is not None and (radius < 0.0 or (arc and radius == 0.0)):
+        message = f"the polar radius {radius:g} must be positive" + ("" if arc else " or 0")
+        control.fail("polar-radius", message, radius_word)
     end = point_at(polar_origin(control), plane.local(control.programmed)[:2], radius, angle)
-    target[:3] = plane.world(*end, plane.local(target).height)
+    plane.aim(target, end)
     control.registers[POLAR_RADIUS], control.registers[POLAR_ANGLE] = radius, angle
     return target
+
+
+def _counts_on(control: Control, word: Word | None) -> bool:
+    """Whether a word counts from where the tool stands."""
+    return control.modal.incremental or (word is not None and word.incremental)
 
 
 def _along_angle(control: Control, target: list[float], word: Word, *, from_abscissa: bool) -> None:
@@ -202,7 +202,7 @@ def _along_angle(control: Control, target: list[float], word: Word, *, from_absc
     start, end = plane.local(control.programmed), plane.local(target)
     if from_abscissa:
         other = start.ordinate + (end.abscissa - start.abscissa) * across / along
-        target[:3] = plane.world(end.abscissa, other, end.height)
+        plane.aim(target, (end.abscissa, other))
     else:
         other = start.abscissa + (end.ordinate - start.ordinate) * across / along
-        target[:3] = plane.world(other, end.ordinate, end.height)
+        plane.aim(target, (other, end.ordinate))

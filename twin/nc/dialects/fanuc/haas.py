@@ -87,7 +87,7 @@ def _arc(
     if sweep is None:
         control.line_to(there, rapid=False)
     else:
-        control.arc_to(there, (*center, there[2]), sweep)
+        control.arc_to(there, center, sweep)
 
 
 def _pocket(meaning: str, *, clockwise: bool) -> GCode:

@@ -337,12 +337,12 @@ class Compensation:
         if held.center is None:
             control.line_to(goal, rapid=held.rapid)
             return
-        plane = control.modal.plane
-        here = plane.local(control.frame.to_programmed(control.part))
+        control.programmed = control.frame.to_programmed(control.part)
+        here = control.modal.plane.local(control.programmed)
         clockwise = held.turns < 0
         sweep = sweep_between(here[:2], held.end, held.center, clockwise=clockwise)
         sweep += 360.0 * (held.turns + 1 if clockwise else held.turns - 1)
-        control.arc_to(goal, plane.world(*held.center, here.height), sweep)
+        control.arc_to(goal, held.center, sweep)
 
     def _place(self, goal: list[float], end: Point) -> list[float]:
         """A programmed position moved to another place in the plane."""

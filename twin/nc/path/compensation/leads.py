@@ -5,7 +5,7 @@ from twin.nc.canonical import Shape
 from twin.nc.geometry import curves, lead_curves
 from twin.nc.geometry.arcs import SAME_POINT, Point, distance
 from twin.nc.geometry.curves import Curve
-from twin.nc.geometry.planes import along, point_of, put_point, vector_of
+from twin.nc.geometry.planes import aim, point_of, vector_of
 from twin.nc.path.compensation.contour import (
     CONTOUR,
     ELEMENT,
@@ -211,7 +211,7 @@ def lead_out(row: int, early: int, behind: int, contour: Contour, rows: Rows) ->
         contour.counts[STAGE] = OFF
     else:
         level = rows.positions[last, 1]
-        put_point(plane, here, along(vector_of(level), plane[2]), level)
+        aim(plane, here, level)
     after = last if stands(rows.positions[last]) else last + 1
     contour.counts[MOVED_ROWS] = after
     for event in range(early, behind):

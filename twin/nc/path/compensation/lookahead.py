@@ -4,7 +4,7 @@ from twin.compilation.compilable import compilable
 from twin.nc.canonical import Corner, FloatArray, Shape
 from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.curves import Curve
-from twin.nc.geometry.planes import along, put_point, vector_of
+from twin.nc.geometry.planes import aim, along, put_point, vector_of
 from twin.nc.path.compensation.contour import (
     CONTOUR,
     FOLLOWING,
@@ -77,7 +77,7 @@ def flush_lookahead(
             put_point(plane, before[3], along(vector_of(position[0]), plane[2]), value)
             value[3], value[4], value[5] = plane[2]
             value[6] = part[4]
-        put_point(plane, at, along(vector_of(position[1]), plane[2]), position[1])
+        aim(plane, at, position[1])
         copy(contour.here, position[0])
         copy(position[1], contour.here)
         after += 0 if not is_arc and stands(position) else 1

@@ -251,15 +251,13 @@ def _insets(pocket: Pocket, step: float, stock: float) -> list[float]:
 
 
 def _ring(control: Control, pocket: Pocket, inset: float) -> None:
-    plane, sign = control.modal.plane, -1.0 if pocket.clockwise else 1.0
+    sign = -1.0 if pocket.clockwise else 1.0
     length = pocket.length - inset
     if pocket.width is None:
         begin = turned((pocket.center[0] + length, pocket.center[1]), pocket.center, pocket.angle)
         _go(control, begin, rapid=False)
         if length > 0.0:
-            height = plane.local(control.programmed).height
-            center = plane.world(*pocket.center, height)
-            control.arc_to(list(control.programmed), center, sign * 360.0)
+            control.arc_to(list(control.programmed), pocket.center, sign * 360.0)
         return
     _rectangle(control, pocket, length, pocket.width - inset, pocket.corner.at(inset))
 
@@ -306,14 +304,13 @@ def _rectangle(
 
 def _arc(control: Control, end: Point, center: Point, sweep: float) -> None:
     plane, target = control.modal.plane, list(control.programmed)
-    height = plane.local(target).height
-    target[:3] = plane.world(*end, height)
-    control.arc_to(target, plane.world(*center, height), sweep)
+    plane.aim(target, end)
+    control.arc_to(target, center, sweep)
 
 
 def _go(control: Control, point: Point, *, rapid: bool) -> None:
     plane, target = control.modal.plane, list(control.programmed)
-    target[:3] = plane.world(*point, plane.local(target).height)
+    plane.aim(target, point)
     control.line_to(target, rapid=rapid)
 
 
