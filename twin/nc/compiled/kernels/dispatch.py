@@ -29,7 +29,7 @@ from twin.nc.bytecode.registers import CYCLE, Machine, State, copy_active_codes,
 from twin.nc.bytecode.variables import undo_stores
 from twin.nc.compiled.kernels.block import BlockBegin, run_words
 from twin.nc.compiled.kernels.cycle import NO_ROOM
-from twin.nc.compiled.kernels.expression import compute
+from twin.nc.compiled.kernels.variables import use_variable
 from twin.nc.path.compensation import leads
 from twin.nc.path.compensation.contour import OFF, STAGE, Contour
 from twin.nc.path.compensation.lookahead import hold_events
@@ -82,7 +82,7 @@ def dispatch_loop(
             if to.ends:
                 opcode = opcodes.NEXT
         elif opcodes.LOAD <= opcode <= opcodes.WORD_CONSTANT:
-            top = compute(instruction, top, to.depth, table.numbered, memory, scratch)
+            top = use_variable(instruction, top, to.depth, table.numbered, memory, scratch)
         elif opcodes.RUN <= opcode <= opcodes.RUN_POLAR:
             begun = BlockBegin(line, made, first_event)
             after = run_words(instruction, top, begun, machine, contour, scratch)
