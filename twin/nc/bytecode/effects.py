@@ -121,6 +121,9 @@ def use_register(
     if opcode == opcodes.SET_REGISTER:
         on.state.registers[operand] = stack[top - 1]
         return top - 1
+    if opcode == opcodes.EMPTY_REGISTER:
+        on.state.registers[operand] = np.nan
+        return top
     if opcode == opcodes.TO_MILLIMETRES:
         stack[top - 1] *= on.state.modal[UNIT]
         return top

@@ -118,9 +118,11 @@ REGISTER = 41
 """Put the register ``operand`` on the stack."""
 SET_REGISTER = 42
 """The topmost value becomes the register ``operand``."""
-TO_MILLIMETRES = 43
+EMPTY_REGISTER = 43
+"""The register ``operand`` has no value from here on."""
+TO_MILLIMETRES = 44
 """Convert the topmost value, a length, from the active unit."""
-CHECK = 44
+CHECK = 45
 """The topmost value, which stays, must be as the check ``operand`` says, one of those below, of
 ``immediate``; else the interpreter tier must run the block, which says what is wrong."""
 
@@ -130,30 +132,30 @@ none (NaN); the number of a tool that the job lists; or, of no value, radius com
 
 # --- events
 
-FUNCTION = 45
+FUNCTION = 46
 """Report the M function ``operand``, a start of the spindle together with its speed."""
-REPORT = 46
+REPORT = 47
 """Report an event of the kind ``operand`` with the topmost value."""
 
 # --- tools and coordinates
 
-TOOL_RADIUS = 47
+TOOL_RADIUS = 48
 """Put the radius of the tool in use on the stack, NaN where there is no tool."""
-COORDINATE = 48
+COORDINATE = 49
 """Put the abscissa (``operand`` 0) or ordinate (1) of the present position on the stack."""
-TOOL_LENGTH = 49
+TOOL_LENGTH = 50
 """Shift Z by the length of the tool in use, if its offset applies."""
-SHIFT = 50
+SHIFT = 51
 """The topmost values, one for each axis, are the shift ``operand``."""
-REFRAME = 51
+REFRAME = 52
 """The shifts have changed."""
-BEGIN_TARGET = 52
+BEGIN_TARGET = 53
 """Begin to set new coordinates for the present position: until set, each axis keeps its own."""
-TARGET = 53
+TARGET = 54
 """The topmost value is the new coordinate of the axis ``operand``."""
-SET_POSITION = 54
+SET_POSITION = 55
 """The new coordinates hold from here on, by the shift ``operand``."""
-TRANSFORM = 55
+TRANSFORM = 56
 """Mirror, scale and rotation have changed."""
-PLANE = 56
+PLANE = 57
 """The plane ``operand``, 0 to 2, becomes active, with part zero as polar origin."""

@@ -149,7 +149,7 @@ class Performer(Assembler):
             compensate(self._control, float(operand), float(self._pop()))
         elif opcode == opcodes.END_COMPENSATION:
             self._control.path.end_compensation()
-        elif opcode in (opcodes.REGISTER, opcodes.SET_REGISTER):
+        elif opcodes.REGISTER <= opcode <= opcodes.EMPTY_REGISTER:
             self._add(opcode, operand)
         else:
             self._control.begin_effect()
