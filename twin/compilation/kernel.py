@@ -72,7 +72,9 @@ def arithmetic_kernel(function: Kernel) -> Kernel:
 
 def _compiled(function: Kernel, **options: Any) -> Kernel:
     for called, compiled, of_part in take_declared():
-        options_of_part: Any = {**of_part, "pipeline_class": PartCompiler}
+        # Kernels alone call a part: it needs no form for callers from C, which Numba makes of all.
+        for_kernels = {"no_cfunc_wrapper": True, "pipeline_class": PartCompiler}
+        options_of_part: Any = {**of_part, **for_kernels}
         overload(called, jit_options=options_of_part, strict=False)(_always(compiled))
     jit: Any = numba.njit  # its declared options lack ``_nrt``
     return keep_by_content(jit(**options)(function), function)

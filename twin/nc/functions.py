@@ -5,7 +5,6 @@ import dataclasses
 from twin.compilation.compilable import compilable
 from twin.nc.canonical import Function
 
-SPINDLE_CLOCKWISE = "M3"
 SPINDLE_COUNTER_CLOCKWISE = "M4"
 _STARTS, _STOPS = (3, 4), (5, 6)
 """M codes behind which the spindle turns, and behind which it stands until it is started anew, whichever

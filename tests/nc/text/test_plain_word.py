@@ -28,7 +28,7 @@ from twin.nc.text.reporter import Reporter
 from twin.nc.text.source import source_from_text
 
 DIALECT = dialect_named("codesys")
-TABLES = DecodeTables(DIALECT, WITH_TABLES, ())
+TABLES = DecodeTables(DIALECT, WITH_TABLES, DIALECT.new_modal(), ())
 """``codesys`` has comments of every kind: of two characters, of one, up to the end, of a whole line."""
 LINES = st.text("XYyG1205.+-( *)/%\t#é\v\f\x01", max_size=16)
 

@@ -2,7 +2,7 @@
 
 from twin.compilation.compilable import compilable
 from twin.nc.bytecode.coordinates import directions, matrix_of, put
-from twin.nc.bytecode.registers import PLANE, TURNED, Constants, State
+from twin.nc.bytecode.registers import INDIRECT_LEADS, SQUARE_CORNERS, TURNED, Constants, State
 from twin.nc.geometry import frame, matrices
 from twin.nc.path.compensation import leads
 from twin.nc.path.compensation.contour import LEADING_OUT, OFF, STAGE, Contour
@@ -36,7 +36,8 @@ def begin(side: float, radius: float, constants: Constants, state: State, contou
         state: Its plane, as the part sees it, is compensated.
         contour: Is made to wait for the move that leads in.
     """
-    axes = directions(constants, int(state.modal[PLANE]))
+    modal = state.modal
+    axes = directions(constants, modal)
     signed_offset = side * radius
     if state.registers[TURNED] != 0.0:
         matrix = matrix_of(state)
@@ -45,4 +46,5 @@ def begin(side: float, radius: float, constants: Constants, state: State, contou
     put(axes[0], contour.plane[0])
     put(axes[1], contour.plane[1])
     put(axes[2], contour.plane[2])
-    leads.begin(contour, signed_offset, constants.square_corners, constants.indirect_leads)
+    square, indirect = modal[SQUARE_CORNERS] != 0.0, modal[INDIRECT_LEADS] != 0.0
+    leads.begin(contour, signed_offset, square, indirect)

@@ -5,6 +5,7 @@ What a shift, a mirror, a scale or a rotation does to coordinates, ``geometry.fr
 
 from twin.compilation.compilable import compilable, inlined
 from twin.nc.bytecode.registers import (
+    FREE_PLANE,
     MATRIX,
     PLANE,
     ROTATION,
@@ -75,7 +76,7 @@ def transform(constants: Constants, state: State) -> None:
     """Mirror, scale and rotation have changed: the matrix, and where the control stands now."""
     registers = state.registers
     signs = (registers[SIGNS], registers[SIGNS + 1], registers[SIGNS + 2])
-    axes = directions(constants, int(state.modal[PLANE]))
+    axes = directions(constants, state.modal)
     center = (registers[ROTATION_ABSCISSA], registers[ROTATION_ORDINATE])
     matrix, shift = frame.composed(signs, registers[SCALE], axes, registers[ROTATION], center)
     put(matrix[0], registers[MATRIX:])
@@ -94,7 +95,11 @@ def put(vector: Vector, target: FloatArray) -> None:
 
 
 @inlined
-def directions(constants: Constants, plane: int) -> Matrix:
-    """Abscissa, ordinate and normal of a plane: ``Plane.directions``."""
+def directions(constants: Constants, modal: FloatArray) -> Matrix:
+    """Abscissa, ordinate and normal of the plane in force: ``Plane.directions``."""
+    plane = int(modal[PLANE])
+    if plane == len(constants.directions):
+        free = modal[FREE_PLANE:]
+        return (vector_of(free), vector_of(free[3:]), vector_of(free[6:]))
     of_plane = constants.directions[plane]
     return (vector_of(of_plane[0]), vector_of(of_plane[1]), vector_of(of_plane[2]))

@@ -224,7 +224,7 @@ def _tool(constants: Constants, number: float) -> int:
 @compilable
 def _in_plane(constants: Constants, state: State) -> Point:
     """Abscissa and ordinate of where the control stands."""
-    axes = directions(constants, int(state.modal[PLANE]))
+    axes = directions(constants, state.modal)
     here = vector_of(state.programmed)
     return (along(here, axes[0]), along(here, axes[1]))
 

@@ -12,6 +12,7 @@ from twin.nc.bytecode.frames import (
     BACK,
     BLOCKS,
     CALLS,
+    CODES_RESTORED,
     DEPTH,
     FIRST,
     FURTHEST,
@@ -19,7 +20,6 @@ from twin.nc.bytecode.frames import (
     NO_LOCATION,
     NOTHING_RESTORED,
     OWNS_SCOPE,
-    RESTORED_HERE,
     RESTORES,
     VariableStore,
     go_to,
@@ -28,6 +28,7 @@ from twin.nc.bytecode.frames import (
 from twin.nc.bytecode.registers import BAILOUT
 from twin.nc.bytecode.variables import own_value, store
 from twin.nc.canonical import FloatArray, IntArray
+from twin.nc.path.rows import copy
 
 Stack = list[float] | FloatArray
 
@@ -157,7 +158,7 @@ def transfer(
         owns_scope = 1
         local[depth, :] = np.nan
     elif opcode == opcodes.RESTORE_CODES:
-        restores = RESTORED_HERE
+        restores = CODES_RESTORED
     elif opcode == opcodes.RANGE:
         range_end = operand
     elif opcode == opcodes.CHECK_RETURN:
@@ -182,3 +183,19 @@ def transfer(
             called += 1
             going, ends = operand, True
     return known, Transfer(going, to.behind, depth, called, range_end, owns_scope, restores, ends)
+
+
+@inlined
+def keep_codes(opcode: int, to: Transfer, modal: FloatArray, saved: FloatArray) -> None:
+    """Save what is in force at a call whose end restores it, and put it back at that end.
+
+    Args:
+        opcode: The instruction that has run.
+        to: Where it leads.
+        modal: What is in force, shape (m,).
+        saved: Of each call, shape (``MOST_CALLS``, m).
+    """
+    if to.restores == CODES_RESTORED and opcode == opcodes.RETURN:
+        copy(saved[to.called], modal)
+    elif to.restores == CODES_RESTORED and opcodes.CALL <= opcode <= opcodes.REPEAT:
+        copy(modal, saved[to.called - 1])

@@ -10,7 +10,7 @@ import numpy as np
 
 from twin.compilation.compilable import compilable
 from twin.nc.bytecode.bytecode import LARGEST_PART, MOST_STORES, MOST_VALUES, PART_BITS
-from twin.nc.bytecode.registers import MOST_WORDS, State
+from twin.nc.bytecode.registers import MOST_WORDS, OF_PLAIN_BLOCKS, State
 from twin.nc.canonical import FloatArray, IntArray
 from twin.nc.path.compensation.contour import Contour
 
@@ -25,8 +25,8 @@ BACK, FIRST, AGAIN, LAST, OWNS_SCOPE, RESTORES = range(6)
 that; its last block where it ends by its location, ``NO_LOCATION`` where a word ends it; whether it has
 local variables of its own, which its end forgets; and what its end puts back into force, one of the
 following."""
-NOTHING_RESTORED, RESTORED_BY_CONTROL, RESTORED_HERE = range(3)
-"""What its end puts back into force: nothing; what the control has kept; what ``Saved`` holds."""
+NOTHING_RESTORED, CODES_RESTORED = range(2)
+"""What its end puts back into force: nothing, or what was in force when it was called."""
 CALL_COLUMNS = 6
 NO_LOCATION = -1
 MOST_CALLS = 64
@@ -91,18 +91,6 @@ class VariableStore(NamedTuple):
     given_local: FloatArray
 
 
-class Saved(NamedTuple):
-    """What was in force when each part was called, as in ``registers.State``.
-
-    Attributes:
-        modal: Shape (``MOST_CALLS``, 7).
-        active_codes: Shape (``MOST_CALLS``, g).
-    """
-
-    modal: FloatArray
-    active_codes: IntArray
-
-
 class ExecutionState(NamedTuple):
     """How far a program has come.
 
@@ -110,14 +98,14 @@ class ExecutionState(NamedTuple):
         progress: Shape (``PROGRESS``,).
         calls: The innermost last, shape (``MOST_CALLS``, ``CALL_COLUMNS``).
         memory: Its variables.
-        saved: What its calls put back into force.
+        saved: What was in force when each was called, as in ``State.modal``, shape (``MOST_CALLS``, m).
         contour: Radius compensation, in force or not.
     """
 
     progress: IntArray
     calls: IntArray
     memory: VariableStore
-    saved: Saved
+    saved: FloatArray
     contour: Contour
 
 
@@ -132,7 +120,7 @@ class Scratch(NamedTuple):
         counts: How many ``WORDS`` and ``STORES`` there are, shape (2,).
         token_kinds: Of words, shape (``MOST_WORDS``,).
         values: Of words, shape (``MOST_WORDS``,).
-        modal: Modal state of the block.
+        modal: What is in force in the block, shape (``OF_PLAIN_BLOCKS``,).
         snapshot: State before a block that runs often.
         stack: Shape (``MOST_VALUES``,).
         slots: Variables that the block has set, shape (``MOST_STORES``,).
@@ -155,7 +143,7 @@ def new_scratch(state: State) -> Scratch:
         np.zeros(2, np.int64),
         np.zeros(MOST_WORDS, np.int64),
         np.zeros(MOST_WORDS),
-        np.zeros_like(state.modal),
+        np.zeros(OF_PLAIN_BLOCKS),
         deepcopy(state),
         np.zeros(MOST_VALUES),
         np.zeros(MOST_STORES, np.int64),

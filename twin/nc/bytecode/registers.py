@@ -23,9 +23,18 @@ from twin.nc.path.rows import Rows, copy, copy_rows
     CYCLE,
     TO_REFERENCE,
     NOTHING,
-) = range(10)
-"""Places in the modal state; ``NOTHING`` takes what codes without effect set."""
-MODAL = 10
+    CORNER_TOLERANCE,
+    SQUARE_CORNERS,
+    INDIRECT_LEADS,
+    CORRECT_CENTER,
+    FREE_PLANE,
+) = range(15)
+"""Places in the modal state, as ``control.modal`` has them; ``NOTHING`` takes what codes without effect
+set; from ``FREE_PLANE`` on stand the directions of a plane that lies not along the axes."""
+OF_PLAIN_BLOCKS = NOTHING + 1
+"""The places before this one are those that plain blocks set and heed."""
+ACTIVE = FREE_PLANE + 9
+"""Behind them stands the G code in force in each group; NaN: none."""
 (
     PROGRAMMED_FEED,
     SPINDLE,
@@ -43,17 +52,22 @@ MODAL = 10
     TURNED,
     RADIUS_GIVEN,
     SPINDLE_TURNS,
-) = range(16)
-SIGNS = 16
-CYCLE_STATE = 19
+    ACCELERATION,
+    DECELERATION,
+    RAPID_FEED,
+) = range(19)
+SIGNS = 19
+CYCLE_STATE = 22
 CYCLE_WORDS = CYCLE_STATE + VALUES
 MATRIX = CYCLE_WORDS + VALUES
 REGISTERS = MATRIX + 9
 """Places in the registers: F; S; the tool that comes next and the one that is in use; whether it has
 its offset; the polar origin, the last R and Q; the scale; angle and centre of the rotation in the
 plane; whether the frame's matrix is not the identity; the tool's radius that the program gave; whether
-M3 or M4 is in force; the signs of X, Y and Z, -1 where they are mirrored; what the drilling cycle in force remembers, as
-``drilling_cycle`` counts it, and the same of the words of the block; the matrix, row by row. Those of a dialect's own stand behind them. NaN: none."""
+M3 or M4 is in force; acceleration and deceleration that the program sets; the feed that it gives to
+rapids; the signs of X, Y and Z, -1 where they are mirrored; what the drilling cycle in force remembers, as
+``drilling_cycle`` counts it, and the same of the words of the block; the matrix, row by row. Those of a
+dialect's own stand behind them. NaN: none."""
 Cells: TypeAlias = "memoryview[float]"
 """A column as Python reads and writes it one by one, without a NumPy object for each value."""
 BAILOUT = -3
@@ -61,8 +75,8 @@ BAILOUT = -3
 MOST_EVENTS = 16
 """Events of a block."""
 
-NO_MOTION, RAPID_LINE, FEED_LINE, ARC = range(4)
-"""Kinds of interpolation."""
+NO_MOTION, RAPID_LINE, FEED_LINE, ARC, DRILLING = range(5)
+"""Kinds of modes of motion; ``NO_MOTION`` are those without a compiled form."""
 
 MOST_WORDS = 32
 """Words of a plain block; longer ones are read by the interpreter tier."""
@@ -83,11 +97,11 @@ class BlockTables(NamedTuple):
         cycle: Which drilling cycle each G code begins, 0 where it ends one, ``UNSUPPORTED`` where it
             does neither, shape (``CODES``,).
         cycles: What is peculiar to each, as ``drilling_cycle.Cycle`` has it, and behind that which of its
-            values a word with each token kind gives, ``UNSUPPORTED`` for none; 0 is no cycle, shape
-            (c, 8 + token_kinds).
+            values a word with each token kind gives, ``UNSUPPORTED`` for none, shape
+            (i, 8 + token_kinds).
         function: Whether each M code is reported ``EARLY``, before its block's move, or ``LATE``,
             shape (``CODES``,); ``UNSUPPORTED`` for codes that do more than that.
-        kind: Kind of each interpolation, shape (i,).
+        kind: Kind of each mode of motion, as interpolation or cycle, shape (i,).
         clockwise: Of arcs, shape (i,).
         bounds: How badly the centre of an arc may fit, as ``arcs.Bounds`` has it, shape (i, 4).
         signed_radius: A negative radius asks for the larger arc, else it is not plain, shape (i,).
@@ -114,19 +128,14 @@ class Constants(NamedTuple):
         default_feed: Where none is programmed [mm/min].
         default_rotary_feed: Where none is programmed and only rotary axes move [deg/min].
         feed_may_lack: A feed move without a programmed feed was warned of already.
-        rapid_feed: [mm/min]; NaN: the machine's.
         own_rapid_feed: Feed per second of rapids that the program paces, 0 where they follow F;
-            NaN: ``rapid_feed`` counts.
-        last_values: Corner tolerance, acceleration and deceleration of every move, shape (3,).
+            NaN: ``RAPID_FEED`` counts.
         linear: Which axes are linear, shape (k,).
         planes: Columns of abscissa, ordinate and normal of each plane, shape (3, 3).
-        directions: Their directions, and at last those of a plane that is none of them,
-            shape (4, 3, 3).
+        directions: Their directions, shape (3, 3, 3).
         tools: Numbers of the tools that the job lists, shape (t,).
         longer: How much longer each is than the first, and at last any other, shape (t + 1,) [mm].
         radii: Of each, and at last of any other, NaN where there is none, shape (t + 1,) [mm].
-        square_corners: Compensation that begins extends outside corners between lines.
-        indirect_leads: It goes around the contour's first and last point.
         over: Room for where the hole lies, shape (k,).
         room: Room for the way there, shape (3, k).
         hole: Room for what the cycle remembers, for the block's words, for what happens at a hole,
@@ -136,17 +145,13 @@ class Constants(NamedTuple):
     default_feed: float
     default_rotary_feed: float
     feed_may_lack: bool
-    rapid_feed: float
     own_rapid_feed: float
-    last_values: FloatArray
     linear: npt.NDArray[np.bool_]
     planes: IntArray
     directions: FloatArray
     tools: FloatArray
     longer: FloatArray
     radii: FloatArray
-    square_corners: bool
-    indirect_leads: bool
     over: FloatArray
     room: FloatArray
     hole: FloatArray
@@ -156,8 +161,7 @@ class State(NamedTuple):
     """What both tiers remember of a control; the arrays are written to.
 
     Attributes:
-        modal: The modal state, shape (``MODAL``,).
-        active_codes: G code set in each group during the run, ``UNSUPPORTED`` for none, shape (g,).
+        modal: What is in force, shape (``ACTIVE`` + g,).
         programmed: Programmed position, shape (k,) [mm or deg].
         part: Part position, shape (k,) [mm or deg].
         event_count: Events that were reported, shape (1,).
@@ -168,7 +172,6 @@ class State(NamedTuple):
     """
 
     modal: FloatArray
-    active_codes: IntArray
     programmed: FloatArray
     part: FloatArray
     event_count: IntArray
@@ -178,11 +181,12 @@ class State(NamedTuple):
     target: FloatArray
 
 
-def new_state(start: list[float], own: Iterable[float] = ()) -> State:
+def new_state(start: list[float], modal: FloatArray, own: Iterable[float] = ()) -> State:
     """The state of a control that has run nothing.
 
     Args:
         start: Where it stands, shape (k,) [mm or deg].
+        modal: What is in force.
         own: What the registers of its dialect's own begin with.
     """
     registers = np.append(np.full(REGISTERS, np.nan), tuple(own))
@@ -192,8 +196,7 @@ def new_state(start: list[float], own: Iterable[float] = ()) -> State:
     registers[MATRIX:REGISTERS] = np.identity(3).ravel()
     axes = len(start)
     return State(
-        modal=np.zeros(MODAL),
-        active_codes=np.zeros(0, np.int64),
+        modal=modal,
         programmed=np.array(start),
         part=np.array(start),
         event_count=np.zeros(1, np.int64),
@@ -226,18 +229,9 @@ class Machine(NamedTuple):
 
 
 @compilable
-def copy_active_codes(
-    modal: FloatArray, active_codes: IntArray, to_modal: FloatArray, to_active_codes: IntArray
-) -> None:
-    """Copy what is in force."""
-    copy(modal, to_modal)
-    copy(active_codes, to_active_codes)
-
-
-@compilable
 def copy_state(source: State, target: State) -> None:
     """Copy every column of a state."""
-    copy_active_codes(source.modal, source.active_codes, target.modal, target.active_codes)
+    copy(source.modal, target.modal)
     copy(source.programmed, target.programmed)
     copy(source.part, target.part)
     copy(source.registers, target.registers)

@@ -5,29 +5,24 @@ not describe completely is not plain.
 """
 
 import string
-from collections.abc import Container, Iterable, Mapping
+from collections.abc import Container, Iterable, Mapping, Sequence
 
 import numpy as np
 
 from twin.nc.bytecode.registers import (
+    ACTIVE,
     ARC,
-    CENTER_ABSOLUTE,
     CODES,
-    CORNER,
     CYCLE,
+    DRILLING,
     EARLY,
     FEED_LINE,
-    FEED_MODE,
-    INCREMENTAL,
     INTERPOLATION,
     LATE,
-    MODAL,
     NO_MOTION,
     NOTHING,
-    PLANE,
+    OF_PLAIN_BLOCKS,
     RAPID_LINE,
-    TO_REFERENCE,
-    UNIT,
     BlockTables,
 )
 from twin.nc.bytecode.token_kinds import (
@@ -45,25 +40,12 @@ from twin.nc.bytecode.token_kinds import (
 from twin.nc.canonical import FloatArray, IntArray
 from twin.nc.control.codes import GCode
 from twin.nc.control.dialect import Dialect
-from twin.nc.control.interpolation import ArcRule, CycleRule, MotionMode
+from twin.nc.control.interpolation import ArcRule, CycleRule, LineRule, MotionMode, MotionRule
 from twin.nc.control.modal import Modal
 from twin.nc.control.settings import ControlSettings
 from twin.nc.geometry.arcs import Bounds
-from twin.nc.geometry.planes import PLANE_ORDER
 from twin.nc.path.drilling_cycle import Cycle
 from twin.nc.text.comments import comment_marks
-
-_FIELDS: Mapping[str, int] = {
-    "interpolation": INTERPOLATION,
-    "incremental": INCREMENTAL,
-    "center_absolute": CENTER_ABSOLUTE,
-    "unit": UNIT,
-    "corner": CORNER,
-    "feed_mode": FEED_MODE,
-    "return_to_reference": TO_REFERENCE,
-}
-"""The fields of ``Modal`` that plain codes may set, and their places."""
-
 
 _NO_ARC = ArcRule(clockwise=False, bounds=Bounds(0.0, 0.0, 0.0, 0.0))
 
@@ -74,60 +56,35 @@ class DecodeTables:
     Attributes:
         lines: How lines are read.
         blocks: What blocks mean.
-        groups: The modal groups in the order of their numbers in ``blocks``.
         token_kinds: What the letters of plain words are.
         pointed: Letters whose numbers are plain with a decimal point only.
     """
 
     def __init__(
-        self, dialect: Dialect, settings: ControlSettings, interpreted: Iterable[int]
+        self, dialect: Dialect, settings: ControlSettings, modal: Modal, interpreted: Iterable[int]
     ) -> None:
-        """Make them; ``interpreted`` are M codes that only the interpreter tier may run."""
-        self.groups = tuple(sorted({code.group for code in dialect.g.values()}))
-        self._interpolations = _interpolations(dialect)
-        self._places = {id(each): float(at) for at, each in enumerate(self._interpolations)}
-        self._cycles = _cycles(dialect)
+        """Make them.
+
+        Args:
+            dialect: What the codes mean.
+            settings: What the letters mean.
+            modal: Numbers what they put into force.
+            interpreted: M codes that only the interpreter tier may run.
+        """
+        self._modal = modal
+        self._rules = [None if each is None else each.rule for each in modal.modes.values()]
         self._interpreted = [number for number in interpreted if number < CODES]
         self.token_kinds = _token_kinds(dialect, settings)
         self.pointed = dialect.pointless(settings)
         self.lines = _line_tables(dialect, self.token_kinds, self.pointed)
         self.blocks = self._block_tables(dialect)
 
-    def modal(self, modal: Modal) -> FloatArray:
-        """The modal state as the kernel keeps it, shape (``MODAL``,)."""
-        state = np.zeros(MODAL)
-        if modal.plane in PLANE_ORDER:
-            state[PLANE] = PLANE_ORDER.index(modal.plane)
-        state[CYCLE] = float(self._number_of_cycle(modal.cycle))
-        for name, place in _FIELDS.items():
-            value = self._number(name, getattr(modal, name))
-            state[place] = 0.0 if value is None else value
-        return state
-
-    def cycle(self, number: float) -> MotionMode | None:
-        """The drilling cycle with a number."""
-        return self._cycles[int(number)]
-
     @property
     def cycle_letters(self) -> set[str]:
         """Letters of the words of drilling cycles."""
-        plain = [each.rule for each in self._cycles if each is not None]
-        return {letter for each in plain if isinstance(each, CycleRule) for letter in each.words}
-
-    def knows_cycle(self, cycle: MotionMode | None) -> bool:
-        """Whether the kernel can drill it."""
-        return any(each is cycle for each in self._cycles)
-
-    def _number_of_cycle(self, cycle: object) -> int:
-        """Its number; 0 where the kernel knows none."""
-        return next((at for at, each in enumerate(self._cycles) if each is cycle), 0)
-
-    def _number(self, name: str, value: object) -> float | None:
-        """A value of the modal state as a number; None where the kernel has none for it."""
-        if name == "interpolation":
-            return self._places.get(id(value))
-        assert isinstance(value, (bool, int, float))
-        return float(value)
+        return {
+            letter for each in self._rules if isinstance(each, CycleRule) for letter in each.words
+        }
 
     def _block_tables(self, dialect: Dialect) -> BlockTables:
         field = np.full(CODES, UNSUPPORTED, np.int64)
@@ -137,27 +94,32 @@ class DecodeTables:
         for number, code in dialect.g.items():
             if not isinstance(number, int):
                 continue
-            group[number] = self.groups.index(code.group)
+            if code.group:
+                group[number] = self._modal.groups[code.group] - ACTIVE
             if "cycle" in code.sets:
                 cycle[number] = self._number_of_cycle(code.sets["cycle"])
             meant = self._meaning(code)
             if meant is not None:
                 field[number], value[number] = meant
-        plain = [each.rule if each else None for each in self._interpolations]
-        arcs = [each if isinstance(each, ArcRule) else _NO_ARC for each in plain]
+        arcs = [each if isinstance(each, ArcRule) else _NO_ARC for each in self._rules]
         return BlockTables(
             field=field,
             value=value,
             group=group,
             cycle=cycle,
-            cycles=_cycle_rows(self._cycles, self.token_kinds),
+            cycles=_cycle_rows(self._rules, self.token_kinds),
             function=_functions(dialect, self._interpreted),
-            kind=np.array([_kind(each) for each in self._interpolations]),
+            kind=np.array([_kind(each) for each in self._modal.modes.values()]),
             clockwise=np.array([arc.clockwise for arc in arcs]),
             bounds=np.array([arc.bounds for arc in arcs]),
             fits_radius=np.array([arc.fits_radius for arc in arcs]),
             signed_radius=np.array([arc.signed_radius for arc in arcs]),
         )
+
+    def _number_of_cycle(self, cycle: MotionMode | None) -> int:
+        """Its number; 0 where the kernel knows none."""
+        drills = cycle is not None and isinstance(cycle.rule, CycleRule)
+        return int(self._modal.number_of_mode(cycle)) if drills else 0
 
     def _meaning(self, code: GCode) -> tuple[int, float] | None:
         """Which place a code sets, and to what; None for a code that does more than that."""
@@ -166,48 +128,25 @@ class DecodeTables:
         does = (code.action, code.perform, code.after)
         if any(does) or code.once or code.alone or code.refused or not code.group:
             return None
-        sets = {name: value for name, value in code.sets.items() if name != "cycle"}
-        if len(sets) > 1:
+        places = [each for each in self._modal.places(code.sets) if each[0] != CYCLE]
+        if not places:
+            return NOTHING, 0.0
+        place, number = places[0]
+        if len(places) > 1 or place >= OF_PLAIN_BLOCKS:
             return None
-        for name, value in sets.items():
-            number = self._number(name, value) if name in _FIELDS else None
-            return None if number is None else (_FIELDS[name], number)
-        return NOTHING, 0.0
+        is_known = place != INTERPOLATION or self._rules[int(number)] is not None
+        return (place, number) if is_known else None
 
 
-def _interpolations(dialect: Dialect) -> list[MotionMode | None]:
-    """None, which stands for any that is not plain, then the plain ones of the dialect."""
-    found: list[MotionMode | None] = [None]
-    for code in dialect.g.values():
-        value = code.sets.get("interpolation")
-        if (
-            isinstance(value, MotionMode)
-            and value.rule is not None
-            and all(value is not each for each in found)
-        ):
-            found.append(value)
-    return found
-
-
-def _cycles(dialect: Dialect) -> list[MotionMode | None]:
-    """None, then the drilling cycles of the dialect."""
-    begun = (code.sets.get("cycle") for code in dialect.g.values())
-    return [None, *(each for each in begun if isinstance(each, MotionMode) and _drills(each))]
-
-
-def _drills(interpolation: MotionMode) -> bool:
-    return isinstance(interpolation.rule, CycleRule)
-
-
-def _cycle_rows(cycles: list[MotionMode | None], token_kinds: Mapping[str, int]) -> FloatArray:
+def _cycle_rows(rules: Sequence[MotionRule | None], token_kinds: Mapping[str, int]) -> FloatArray:
     parts = len(Cycle._fields)
-    rows = np.full((len(cycles), parts + 1 + max(token_kinds.values())), float(UNSUPPORTED))
+    rows = np.full((len(rules), parts + 1 + max(token_kinds.values())), float(UNSUPPORTED))
     rows[:, :parts] = 0.0
-    for row, each in zip(rows, cycles, strict=True):
-        if each is not None and isinstance(each.rule, CycleRule):
-            row[:parts] = each.rule.cycle
-            for letter in each.rule.words.keys() & token_kinds.keys():
-                row[parts + token_kinds[letter]] = each.rule.words[letter]
+    for row, each in zip(rows, rules, strict=True):
+        if isinstance(each, CycleRule):
+            row[:parts] = each.cycle
+            for letter in each.words.keys() & token_kinds.keys():
+                row[parts + token_kinds[letter]] = each.words[letter]
     return rows
 
 
@@ -222,12 +161,12 @@ def _functions(dialect: Dialect, interpreted: Iterable[int]) -> IntArray:
     return function
 
 
-def _kind(interpolation: MotionMode | None) -> int:
-    if interpolation is None:
+def _kind(mode: MotionMode | None) -> int:
+    if mode is None or mode.rule is None:
         return NO_MOTION
-    if isinstance(interpolation.rule, ArcRule):
-        return ARC
-    return RAPID_LINE if interpolation.rapid else FEED_LINE
+    if isinstance(mode.rule, LineRule):
+        return RAPID_LINE if mode.rapid else FEED_LINE
+    return ARC if isinstance(mode.rule, ArcRule) else DRILLING
 
 
 def _line_tables(

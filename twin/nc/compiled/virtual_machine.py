@@ -1,47 +1,30 @@
 """The compiled tier: plain and compiled blocks go past the control's words, in one compiled loop.
 
-The control stays the one place that knows what a program means. It hands its state to the loop,
-the loop runs blocks as far as they are plain, and the control takes the state back; where a
-dialect remembers something that acts on such blocks, they go the interpreter tier.
+The loop works on the columns of the control's own state, as far as blocks are plain; of what the control
+keeps besides, it is given the position, and gives it back. Where a dialect remembers something that acts
+on such blocks, they go the interpreter tier.
 """
 
 import math
 
-import numpy as np
-
 from twin.nc.bytecode.frames import (
     BLOCKS,
-    CALLS,
     FULL,
     LINE,
     MADE,
-    MOST_CALLS,
     OFF_PAGE,
     PAUSED,
-    RESTORED_BY_CONTROL,
-    RESTORED_HERE,
-    RESTORES,
     TRAPPED,
     UNCOMPILED_LINE,
     ExecutionState,
-    Saved,
     new_scratch,
 )
-from twin.nc.bytecode.registers import (
-    CYCLE,
-    CYCLE_STATE,
-    CYCLE_WORDS,
-    MATRIX,
-    Constants,
-    Machine,
-)
-from twin.nc.bytecode.token_kinds import UNSUPPORTED
-from twin.nc.canonical import IntArray
+from twin.nc.bytecode.registers import CYCLE_WORDS, MATRIX, Constants, Machine
 from twin.nc.compiled.decode_tables import DecodeTables
 from twin.nc.compiled.entries import Kernels, hot, page_columns
+from twin.nc.compiled.kernels.dispatch import knows
 from twin.nc.compiled.line_compiler import LineCompiler
 from twin.nc.control.executor import Executor
-from twin.nc.geometry.planes import PLANE_ORDER
 from twin.nc.path.compensation.contour import Contour, new_contour
 from twin.nc.path.event_columns import EventRows
 from twin.nc.path.move_columns import CHUNK
@@ -49,7 +32,7 @@ from twin.nc.path.rows import Row, Rows, new_rows
 from twin.nc.text.lines import Page
 
 _WORTHWHILE = 4
-"""Blocks that a run must have to pay for handing the state over and back."""
+"""Blocks that a run must have to pay for its beginning and its end."""
 _LONGEST_PAUSE = 256
 """Blocks after which a new run is tried, where plain blocks are rare."""
 _MOST = 200_000
@@ -71,18 +54,11 @@ class VirtualMachine:
         self._lines = control.program_counter.lines
         self._page = Page(0, b"")
         self._tables = DecodeTables(
-            control.dialect, control.settings, control.interpreted_functions
+            control.dialect, control.settings, control.modal, control.interpreted_functions
         )
         self._line_compiler = LineCompiler(control, self._tables, kernels)
         self._rows = new_rows(CHUNK, CHUNK, axes)
-        state = self._state = control.state._replace(
-            active_codes=np.full(len(self._tables.groups), UNSUPPORTED, np.int64)
-        )
-        self._scratch = new_scratch(state)
-        self._saved = Saved(
-            np.zeros((MOST_CALLS, len(state.modal))),
-            np.zeros((MOST_CALLS, len(state.active_codes)), np.int64),
-        )
+        self._scratch = new_scratch(control.state)
         self._pause = 1
         self._wait = 0
         self.full = False
@@ -121,7 +97,7 @@ class VirtualMachine:
     def _run(self, rows: Rows, contour: Contour) -> int:
         """Run; why the run ended."""
         line_compiler, progress = self._line_compiler, self._control.program_counter.progress
-        machine = Machine(self._tables.blocks, self._constants(), self._state, rows)
+        machine = Machine(self._tables.blocks, self._constants(), self._control.state, rows)
         while True:
             why = self._kernels.run_program(*self._arguments(machine, contour))
             if why == OFF_PAGE:
@@ -136,7 +112,7 @@ class VirtualMachine:
         """Whether the hot kernels could run now, without waiting for the compiler."""
         from twin.compilation.cache import is_compiled
 
-        machine = Machine(self._tables.blocks, self._constants(), self._state, self._rows)
+        machine = Machine(self._tables.blocks, self._constants(), self._control.state, self._rows)
         contour = new_contour(len(self._control.settings.axes))
         return is_compiled(hot().run_program, self._arguments(machine, contour))
 
@@ -152,7 +128,7 @@ class VirtualMachine:
                 counter.progress,
                 counter.calls,
                 self._control.variables.columns,
-                self._saved,
+                self._control.modal_of_calls,
                 contour,
             ),
             self._scratch,
@@ -161,11 +137,9 @@ class VirtualMachine:
 
     def _may_run(self) -> bool:
         control = self._control
-        modal, disturbed = control.modal, control.dialect.disturbed
+        disturbed = control.dialect.disturbed
         return (
-            self._tables.knows_cycle(modal.cycle)
-            and modal.plane in PLANE_ORDER
-            and modal.correct_center
+            knows(control.state.modal, self._tables.blocks)
             and math.isnan(control.rapid_acceleration)
             and math.isnan(control.rapid_deceleration)
             and not (
@@ -176,54 +150,23 @@ class VirtualMachine:
 
     def _constants(self) -> Constants:
         control, rapid = self._control, self._control.dialect.rapid_feed
-        modal = control.modal
         return control.constants._replace(
             feed_may_lack=control.report.has_said("no-feed"),
-            rapid_feed=control.rapid_feed,
             own_rapid_feed=math.nan if rapid is None else rapid(control),
-            last_values=np.array(
-                [modal.corner_tolerance, control.acceleration, control.deceleration]
-            ),
-            square_corners=modal.square_corners,
-            indirect_leads=modal.indirect_leads,
         )
 
     def _enter_state(self) -> None:
-        """What the control keeps as objects goes into the columns of the state."""
-        control, state = self._control, self._state
-        state.modal[:] = self._tables.modal(control.modal)
-        state.active_codes[:] = UNSUPPORTED
+        """Where the control stands goes into the columns of the state."""
+        control, state = self._control, self._control.state
         state.programmed[:], state.part[:] = control.programmed, control.part
         state.event_count[0] = 0
         state.registers[CYCLE_WORDS:MATRIX] = math.nan
 
-    def _keep_saved_codes(self) -> None:
-        """What the run has saved at calls that go on, the control can restore."""
-        control, counter = self._control, self._control.program_counter
-        for number, call in enumerate(counter.calls[: counter.progress[CALLS]]):
-            if call[RESTORES] == RESTORED_HERE:
-                before = control.saved_modal()
-                self._put_into_force(self._saved.active_codes[number])
-                counter.saved[number] = control.saved_modal()
-                call[RESTORES] = RESTORED_BY_CONTROL
-                control.restore_modal(before)
-
-    def _put_into_force(self, numbers: IntArray) -> None:
-        """Apply the codes that a run has found in each group."""
-        control = self._control
-        for number in numbers.tolist():
-            if number != UNSUPPORTED:
-                control.put_into_force(number, control.dialect.g[number])
-
     def _leave_state(self, rows: Rows) -> None:
-        """The control takes back what it keeps as objects, and the path what was made."""
-        control, state = self._control, self._state
-        cycle_state = state.registers[CYCLE_STATE:CYCLE_WORDS].copy()
-        self._keep_saved_codes()
-        self._put_into_force(state.active_codes)
-        control.modal.cycle = self._tables.cycle(state.modal[CYCLE])
-        if control.modal.cycle is not None:
-            state.registers[CYCLE_STATE:CYCLE_WORDS] = cycle_state
+        """The control takes back where it stands, and the path what was made."""
+        control, state = self._control, self._control.state
+        if control.modal.cycle is None:
+            control.forget_cycle()
         control.frame.refresh()
         event_count = int(state.event_count[0])
         events = EventRows(rows.events[:event_count], rows.event_values[:event_count])

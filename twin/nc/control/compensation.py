@@ -2,14 +2,7 @@
 
 from collections.abc import Mapping
 
-from twin.nc.bytecode.compensation import (
-    BEGINS,
-    IN_FORCE,
-    LEADS_OUT,
-    NO_RADIUS,
-    begin,
-    may_begin,
-)
+from twin.nc.bytecode.compensation import BEGINS, IN_FORCE, LEADS_OUT, NO_RADIUS, begin, may_begin
 from twin.nc.control.control import Control
 from twin.nc.control.state import integer_of
 from twin.nc.text.blocks import Word
@@ -57,15 +50,11 @@ def compensate(control: Control, side: float, radius: float) -> None:
     Raises:
         ProgramError: It is in force already, or the radius is no radius.
     """
-    path, modal = control.path, control.modal
+    path = control.path
     answer = may_begin(radius, path.contour)
     if answer < 0:
         code, message, hint = _FINDINGS[answer]
         control.fail(code, message.format(radius=radius), hint=hint)
     if answer == BEGINS:
         path.flush()
-        on = control.begin_effect()
-        constants = on.constants._replace(
-            square_corners=modal.square_corners, indirect_leads=modal.indirect_leads
-        )
-        begin(side, radius, constants, on.state, path.contour)
+        begin(side, radius, control.constants, control.state, path.contour)

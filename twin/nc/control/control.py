@@ -7,18 +7,24 @@ from collections.abc import Callable, Mapping
 from twin.nc.bytecode.assembler import Assembler
 from twin.nc.bytecode.effects import Affected
 from twin.nc.bytecode.registers import (
+    ACCELERATION,
+    CORNER,
+    CORNER_TOLERANCE,
+    DECELERATION,
+    FEED_MODE,
     INCREMENTAL,
-    PLANE,
     PROGRAMMED_FEED,
+    RAPID_FEED,
     SPINDLE,
     SPINDLE_TURNS,
     UNIT,
 )
 from twin.nc.canonical import Dwell, Function
+from twin.nc.control.modal import CORNERS, FEED_MODES
 from twin.nc.control.words import ControlWords
 from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.frame import arc_about, moved_shift
-from twin.nc.geometry.planes import PLANE_ORDER, Plane, Vector
+from twin.nc.geometry.planes import Plane, Vector
 from twin.nc.path.event_columns import EventRows
 from twin.nc.path.move_columns import FEED, NAN, RAPID, Segment
 from twin.nc.path.moves import (
@@ -46,8 +52,8 @@ class Control(ControlWords):
 
     def target(self) -> list[float]:
         """Take the axis words; the programmed position that they ask for, shape (k,)."""
-        target, modal, linear = list(self.programmed), self.modal, self.linear
-        unit, relative = modal.unit, modal.incremental
+        target, cells, linear = list(self.programmed), self.modal.cells, self.linear
+        unit, relative = cells[UNIT], cells[INCREMENTAL] != 0.0
         for index, word in self.take_axis_words():
             incremental = relative or word.incremental
             here = target[index]
@@ -101,12 +107,12 @@ class Control(ControlWords):
         if length < SMALLEST_MOVE:
             self.programmed = target
             return
-        modal = self.modal
+        cells, registers = self.modal.cells, self.registers
         is_arc = center is not None
         if self.series:
             self.place_switches(length)
-        feed = self.rapid_feed if rapid else self._feed_per_minute(end, is_arc, length)
-        acceleration, deceleration = self.acceleration, self.deceleration
+        feed = registers[RAPID_FEED] if rapid else self._feed_per_minute(end, is_arc, length)
+        acceleration, deceleration = registers[ACCELERATION], registers[DECELERATION]
         if rapid:
             acceleration = _either(self.rapid_acceleration, acceleration)
             deceleration = _either(self.rapid_deceleration, deceleration)
@@ -123,8 +129,8 @@ class Control(ControlWords):
             end,
             target,
             feed,
-            RAPIDS_END if rapid else modal.corner,
-            modal.corner_tolerance,
+            RAPIDS_END if rapid else CORNERS[cells[CORNER]],
+            cells[CORNER_TOLERANCE],
             acceleration,
             deceleration,
             center,
@@ -156,14 +162,18 @@ class Control(ControlWords):
         return [1.0, 1.0, 1.0, *shares[3:]] if is_arc else shares
 
     def _feed_per_minute(self, end: list[float], is_arc: bool, length: float) -> float:
-        registers, modal, settings = self.registers, self.modal, self.settings
-        feed, mode, speed = registers[PROGRAMMED_FEED], modal.feed_mode, registers[SPINDLE]
+        registers, cells, settings = self.registers, self.modal.cells, self.settings
+        feed, mode, speed = (
+            registers[PROGRAMMED_FEED],
+            FEED_MODES[cells[FEED_MODE]],
+            registers[SPINDLE],
+        )
         finding = finding_of_feed(feed, mode, speed, registers[SPINDLE_TURNS])
         if finding != PACED:
             self._blame_feed(finding)
         turning = not is_arc and only_turns(self.part, end, self.linear)
         otherwise = (settings.default_feed, settings.default_rotary_feed)
-        return feed_per_minute(feed, mode, length, turning, modal.unit, speed, otherwise)
+        return feed_per_minute(feed, mode, length, turning, cells[UNIT], speed, otherwise)
 
     def _blame_feed(self, finding: int) -> None:
         """Say what is wrong with the pace of a move.
@@ -192,16 +202,10 @@ class Control(ControlWords):
         self.path.event(Function(0, self.block.line, word, dict(arguments), at))
 
     def begin_effect(self) -> Affected:
-        """Let the columns show what the control keeps as objects, for an instruction."""
-        state, modal = self.state, self.modal
+        """Let the columns show where the control stands, for an instruction."""
+        state = self.state
         state.event_count[0] = 0
         state.programmed[:], state.part[:] = self.programmed, self.part
-        state.modal[UNIT], state.modal[INCREMENTAL] = modal.unit, modal.incremental
-        if modal.plane in PLANE_ORDER:
-            state.modal[PLANE] = PLANE_ORDER.index(modal.plane)
-        else:
-            state.modal[PLANE] = len(PLANE_ORDER)
-            self.constants.directions[len(PLANE_ORDER)] = modal.plane.directions
         return self.affected
 
     @property

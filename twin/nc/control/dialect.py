@@ -7,7 +7,8 @@ from pathlib import Path
 from twin.nc.control.block_compiler import BlockCompiler
 from twin.nc.control.codes import Action, Vocabulary
 from twin.nc.control.control import Control
-from twin.nc.control.modal import ModalChanges
+from twin.nc.control.interpolation import MotionMode
+from twin.nc.control.modal import Modal, ModalChanges, new_modal
 from twin.nc.control.settings import ControlSettings
 from twin.nc.text.blocks import Assignment, Block
 from twin.nc.text.source import Source
@@ -105,3 +106,13 @@ class Dialect(Vocabulary):
     compile_block: Callable[[BlockCompiler, Block], None] = BlockCompiler.block
     rapid_feed: Callable[[Control], float] | None = None
     disturbed: Callable[[Control], bool] | None = None
+
+    def new_modal(self) -> Modal:
+        """What is in force of its codes: nothing; groups that have one at the start come first."""
+        codes = (*(self.g[number] for number in self.start), *self.g.values())
+        sets = [code.sets for code in codes]
+        modes = [each.get(name) for each in sets for name in ("interpolation", "cycle")]
+        return new_modal(
+            [mode for mode in modes if isinstance(mode, MotionMode)],
+            dict.fromkeys(code.group for code in codes if code.group),
+        )

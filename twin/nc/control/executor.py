@@ -9,6 +9,7 @@ from typing import NoReturn
 
 from twin.nc.bytecode.assembler import Assembler
 from twin.nc.bytecode.expressions import evaluate
+from twin.nc.bytecode.registers import CYCLE, INTERPOLATION
 from twin.nc.control.block_order import (
     Conflict,
     SortedBlock,
@@ -20,10 +21,10 @@ from twin.nc.control.block_order import (
 from twin.nc.control.codes import GCode, Interpolation, MCode
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Dialect
-from twin.nc.control.modal import ModalChanges
+from twin.nc.control.modal import Places
 from twin.nc.control.performer import perform
 from twin.nc.control.settings import ControlSettings
-from twin.nc.control.state import code_number, integer_of, number_of
+from twin.nc.control.state import integer_of, number_of
 from twin.nc.functions import starts_spindle, turns_behind
 from twin.nc.text.blocks import Assignment, Block, Statement, Word
 from twin.nc.text.expressions import Expression, ExpressionError, NumberedVariable
@@ -38,24 +39,30 @@ class Executor(Control):
     """
 
     def __init__(self, dialect: Dialect, settings: ControlSettings, source: Source) -> None:
-        super().__init__(dialect, settings, source)
+        super().__init__(dialect, settings, source, dialect.new_modal())
+        self._sets: dict[float, list[tuple[int, float]]] = {}
         self.dialect = dialect
         self._pointless = dialect.pointless(settings)
         self._special = frozenset(("G", "M", *dialect.signed, *dialect.series))
         expressions = dialect.syntax.expressions
         self._vacant = expressions is not None and expressions.vacant
         self._codes: list[tuple[Word, GCode]] = []
-        self.modal.apply(dialect.start_state)
+        self.modal.put(self.modal.places(dialect.start_state))
         for number in dialect.start:
             self.put_into_force(number, dialect.g[number])
 
     def put_into_force(self, number: float, code: GCode) -> None:
         """Apply a modal code."""
-        self.modal.apply(code.sets)
-        if self.modal.cycle is None:
+        places = self._sets.get(number)
+        if places is None:
+            places = self._sets[number] = self.modal.places(code.sets)
+            if code.group:
+                places.append((self.modal.groups[code.group], number))
+        cells = self.modal.cells
+        for place, value in places:
+            cells[place] = value
+        if not cells[CYCLE]:
             self.forget_cycle()
-        if code.group:
-            self.active[code.group] = number
 
     def run(self, block: Block) -> None:
         """Run one block.
@@ -82,7 +89,7 @@ class Executor(Control):
         if self.words or self.series:
             self._refuse_unused()
         for replaced in restore:
-            self.modal.apply(replaced)
+            self.modal.put(replaced)
 
     def act(self, _word: Word, code: GCode) -> None:
         """What a code does before the block moves."""
@@ -153,15 +160,15 @@ class Executor(Control):
             self.dialect.finish(self)
         self.path.finish()
 
-    def _apply_codes(self) -> list[ModalChanges]:
+    def _apply_codes(self) -> list[Places]:
         """Apply the block's codes; what those for this block only have replaced."""
-        restore: list[ModalChanges] = []
+        restore: list[Places] = []
         for word, code in self._codes:
             if code.once:
-                restore.append(self.modal.values(code.sets))
+                restore.append(self.modal.standing(code.sets))
             if code.alone and len(self.block.words) > 1:
                 self.fail("alone", f"{word.text} must stand alone in its block", word)
-            self.put_into_force(code_number(number_of(word)), code)
+            self.put_into_force(number_of(word), code)
         return restore
 
     def sort_words(
@@ -324,7 +331,8 @@ class Executor(Control):
         if motion_words.isdisjoint(words) and not any(code.begins_cycle for _, code in self._codes):
             self._stand_alone()
             return
-        interpolation = self.modal.cycle or self.modal.interpolation
+        cells = self.modal.cells
+        interpolation = self.modal.modes[cells[CYCLE] or cells[INTERPOLATION]]
         if interpolation is None:
             word = next(each for each in words.values() if each.address in motion_words)
             if word.address not in self.dialect.axis_letters:
@@ -336,7 +344,7 @@ class Executor(Control):
                 word,
                 hint="write G0, G1, G2 or G3",
             )
-        if self.modal.cycle is not None and self.path.compensating:
+        if self.path.compensating and cells[CYCLE]:
             message = "a canned cycle cannot run while radius compensation is in force"
             self.fail("compensation-change", message, hint="end it by G40 first")
         if self.dialect.before_motion is not None:

@@ -11,8 +11,8 @@ from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler, Finding, Otherwise, Target, found
 from twin.nc.bytecode.bytecode import MOST_VALUES, Instruction, number_of_location
 from twin.nc.bytecode.effects import BlockPlace
-from twin.nc.bytecode.flow import straight_on
-from twin.nc.bytecode.frames import CALLS, DEPTH, RESTORED_BY_CONTROL, go_to
+from twin.nc.bytecode.flow import keep_codes, straight_on
+from twin.nc.bytecode.frames import CALLS, DEPTH, go_to
 from twin.nc.bytecode.instructions import Surroundings, run_instruction
 from twin.nc.bytecode.variables import store
 from twin.nc.control.compensation import compensate
@@ -179,8 +179,6 @@ class Performer(Assembler):
         instruction = Instruction(opcode, operand, immediate)
         if not self._run(instruction):
             self._refuse(instruction)
-        if opcode == opcodes.RESTORE_CODES:
-            self._to = self._to._replace(restores=RESTORED_BY_CONTROL)
         if self._to.ends:
             self._leave(opcode)
 
@@ -203,10 +201,9 @@ class Performer(Assembler):
         control, counter, to = self._control, self._control.program_counter, self._to
         go_to(to.going, counter.progress)
         counter.progress[DEPTH], counter.progress[CALLS] = to.depth, to.called
-        if to.restores == RESTORED_BY_CONTROL and opcode == opcodes.RETURN:
-            control.restore_modal(counter.saved.pop(to.called))
-        elif to.restores == RESTORED_BY_CONTROL:
-            counter.saved[to.called - 1] = control.saved_modal()
+        keep_codes(opcode, to, control.state.modal, control.modal_of_calls)
+        if control.modal.cycle is None:
+            control.forget_cycle()
         raise _Gone
 
     def _refuse(self, instruction: Instruction) -> NoReturn:

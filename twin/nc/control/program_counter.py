@@ -19,7 +19,6 @@ from twin.nc.bytecode.frames import (
     end_parts,
 )
 from twin.nc.canonical import NO_BLOCK_NUMBER
-from twin.nc.control.modal import SavedModal
 from twin.nc.text.blocks import Block, Location
 from twin.nc.text.diagnostics import ProgramError
 from twin.nc.text.lexer import Lexer
@@ -45,18 +44,10 @@ class ProgramCounter:
     Attributes:
         progress: How far the program has come, as ``frames`` has it, shape (``PROGRESS``,).
         calls: The parts that are being run for a caller, the innermost last, as ``frames`` has them.
-        saved: What the ends of calls put back into force, by their rows.
     """
 
     def __init__(self, source: Source, lexer: Lexer, step_limit: int, report: Reporter) -> None:
-        """Stand before the program.
-
-        Args:
-            source: The program.
-            lexer: Reads its lines.
-            step_limit: Blocks that may be run again.
-            report: Where diagnostics go.
-        """
+        """Stand before the program, of which so many blocks may be run again."""
         self._lines = source.lines
         self._line_count = len(source.lines)
         self._lexer = lexer
@@ -66,7 +57,6 @@ class ProgramCounter:
         self._now = self.progress.data
         self._now[FURTHEST], self._now[INSTRUCTION_BUDGET] = -1, step_limit
         self.calls = np.zeros((MOST_CALLS, CALL_COLUMNS), np.int64)
-        self.saved: dict[int, SavedModal] = {}
         self._labels: FoundInText[int | str, list[Location]] | None = None
         self._cache = FoundInText[int, tuple[Block, ...]]()
         self._told_to_end = False
@@ -233,7 +223,8 @@ class ProgramCounter:
             return self._here
         blocks = self._cache.get(line)
         if blocks is None:
-            blocks = self._lexer.blocks(self._lines[line], line + 1, self._line_before)
+            text = self._lines.page_of(line).line(line)
+            blocks = self._lexer.blocks(text, line + 1, self._line_before)
             if line <= self._now[FURTHEST] >> PART_BITS and len(self._cache) < _CACHED_LINES:
                 self._cache[line] = blocks
         self._here, self._here_line = blocks, line

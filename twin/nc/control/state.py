@@ -8,12 +8,16 @@ from typing import NoReturn, Protocol
 
 import numpy as np
 
+from twin.nc.bytecode.frames import MOST_CALLS
 from twin.nc.bytecode.registers import (
+    ACCELERATION,
     CYCLE_STATE,
     CYCLE_WORDS,
+    DECELERATION,
     MATRIX,
     MOST_EVENTS,
     PROGRAMMED_FEED,
+    RAPID_FEED,
     REGISTERS,
     SPINDLE,
     SPINDLE_TURNS,
@@ -23,12 +27,12 @@ from twin.nc.bytecode.registers import (
     new_state,
 )
 from twin.nc.bytecode.variables import Variables
-from twin.nc.control.modal import Modal, SavedModal
+from twin.nc.control.modal import Modal
 from twin.nc.control.program_counter import ProgramCounter
 from twin.nc.control.settings import ControlSettings, ToolData
 from twin.nc.control.tools import Tools
 from twin.nc.geometry.frame import Frame
-from twin.nc.geometry.planes import PLANE_ORDER, XY
+from twin.nc.geometry.planes import PLANE_ORDER
 from twin.nc.path.drilling_cycle import START, forget
 from twin.nc.path.hole import MOST_STOPS, most_acts
 from twin.nc.path.move_columns import NAN, Segment
@@ -77,6 +81,19 @@ class HasGroup(Protocol):
         ...
 
 
+class Register:
+    """A register of a control; NaN: none."""
+
+    def __init__(self, place: int) -> None:
+        self._place = place
+
+    def __get__(self, control: "ControlState", _kind: type) -> float:
+        return control.registers[self._place]
+
+    def __set__(self, control: "ControlState", value: float) -> None:
+        control.registers[self._place] = value
+
+
 class ControlState:
     """The state of one control while it runs one program.
 
@@ -84,7 +101,7 @@ class ControlState:
         settings: What it was told of the machine and the job.
         report: Where its diagnostics go.
         modal: What stays in force.
-        active: Number of the G code in force in each group.
+        active: Number of the G code in force in each group, a part of that.
         memory: What only this dialect remembers.
         state: What both tiers remember, as columns.
         registers: Those of its registers, one by one.
@@ -96,6 +113,7 @@ class ControlState:
         path: Where moves and events go.
         axis_letters: Addresses that name axes.
         program_counter: Which block comes next.
+        modal_of_calls: What was in force when each part was called, shape (``MOST_CALLS``, m).
         variables: What the program computes with.
         cycle_values: What the words of a milling cycle were last, by address.
         cycle_state: What a drilling cycle remembers, as ``drilling_cycle`` counts it.
@@ -103,7 +121,6 @@ class ControlState:
         words: Its words that nothing has taken yet.
         codes: Its G codes.
         series: Its words for switch points, in order.
-        rapid_feed: Feed of rapids where the program limits it [mm/min]; NaN: the machine's.
         rapid_acceleration: Acceleration of rapids where the program sets their own [mm/s²]; NaN:
             that of the path.
         rapid_deceleration: Deceleration of rapids, likewise [mm/s²].
@@ -114,15 +131,21 @@ class ControlState:
         ended: An end code was run.
     """
 
+    acceleration = Register(ACCELERATION)
+    """[mm/s²]; NaN: the machine's."""
+    deceleration = Register(DECELERATION)
+    """[mm/s²]; NaN: the machine's."""
+    rapid_feed = Register(RAPID_FEED)
+    """Feed of rapids where the program limits it [mm/min]; NaN: the machine's."""
+
     def __init__(
-        self, language: ControlLanguage, settings: ControlSettings, source: Source
+        self, language: ControlLanguage, settings: ControlSettings, source: Source, modal: Modal
     ) -> None:
         self.settings = settings
         self.report = Reporter(source, strict=settings.strict)
         self.axis_index = {name: index for index, name in enumerate(settings.axes.names)}
         self.linear = tuple(kind == "linear" for kind in settings.axes.kinds)
-        self.modal = Modal()
-        self.active: dict[str, float] = {}
+        self.modal, self.active = modal, modal.active
         self.memory = language.memory()
         self.axis_letters = language.axis_letters
         self._axis_columns = {
@@ -132,7 +155,7 @@ class ControlState:
         self.programmed = [settings.start.get(name, 0.0) for name in settings.axes.names]
         self.part = list(self.programmed)
         self._own_registers = {name: REGISTERS + at for at, name in enumerate(language.registers)}
-        self.state = new_state(self.programmed, language.registers.values())
+        self.state = new_state(self.programmed, modal.column, language.registers.values())
         columns = self.state.registers
         self.registers = cells(columns)
         self.frame = Frame(
@@ -141,8 +164,6 @@ class ControlState:
             columns[MATRIX:REGISTERS],
             columns[TURNED : TURNED + 1],
         )
-        self.acceleration = NAN
-        self.deceleration = NAN
         self.rapid_acceleration = NAN
         self.rapid_deceleration = NAN
         self.tools = Tools(settings.tools, self.registers, any_tool=settings.any_tool)
@@ -151,6 +172,7 @@ class ControlState:
         self.path = Path(settings.axes, self.part, self._refuse_move, self._warn_of_move)
         lexer = Lexer(language, self.report)
         self.program_counter = ProgramCounter(source, lexer, settings.step_limit, self.report)
+        self.modal_of_calls = np.zeros((MOST_CALLS, len(modal.column)))
         self.variables = Variables(
             language.is_local,
             lambda name: language.given_variable(settings.variables, name),
@@ -163,7 +185,6 @@ class ControlState:
         self.words: dict[str, Word] = {}
         self.codes: Sequence[tuple[Word, HasGroup]] = ()
         self.series: list[Word] = []
-        self.rapid_feed = NAN
         self.interpreted_functions = frozenset(
             number for number, each in settings.m_functions.items() if each.dwell > 0.0
         )
@@ -182,17 +203,13 @@ class ControlState:
             default_feed=settings.default_feed,
             default_rotary_feed=settings.default_rotary_feed,
             feed_may_lack=False,
-            rapid_feed=NAN,
             own_rapid_feed=NAN,
-            last_values=np.full(3, NAN),
             linear=np.array(self.linear),
             planes=np.array([plane.axes for plane in PLANE_ORDER]),
-            directions=np.array([plane.directions for plane in (*PLANE_ORDER, XY)]),
+            directions=np.array([plane.directions for plane in PLANE_ORDER]),
             tools=np.array([float(number) for number in tools.table]),
             longer=np.array([*longer, 0.0]),
             radii=np.array([tool.radius for tool in (*tools.table.values(), other)]),
-            square_corners=False,
-            indirect_leads=False,
             over=np.zeros(axes),
             room=np.zeros((3, axes)),
             hole=np.zeros((4, most_acts(MOST_STOPS))),
@@ -235,14 +252,6 @@ class ControlState:
     @spindle_turns.setter
     def spindle_turns(self, turns: bool) -> None:
         self.registers[SPINDLE_TURNS] = turns
-
-    def saved_modal(self) -> SavedModal:
-        """What is in force, to be restored later."""
-        return SavedModal(dataclasses.replace(self.modal), dict(self.active))
-
-    def restore_modal(self, saved: SavedModal) -> None:
-        """Put back what ``saved_modal`` gave."""
-        self.modal, self.active = saved
 
     def code_word(self, number: float) -> Word | None:
         """Where the block writes a G code, for diagnostics."""
@@ -297,11 +306,6 @@ def number_of(word: Word) -> float:
     """The value of a word that has been computed."""
     assert isinstance(word.value, float)
     return word.value
-
-
-def code_number(value: float) -> float:
-    """A G code's number as a dialect's table has it: 54, or 54.1."""
-    return int(value) if value == int(value) else value
 
 
 def integer_of(value: float) -> int:

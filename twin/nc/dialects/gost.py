@@ -3,7 +3,6 @@
 Its own page (seed) says all about G102; the rest is the base of ISO 6983-1 and GOST 20999-83.
 """
 
-import dataclasses
 import math
 import re
 
@@ -28,15 +27,9 @@ _FOREIGN_COMMAND = re.compile(
 """Commands of that family: a word of three letters in brackets, often with values behind it."""
 
 
-@dataclasses.dataclass(slots=True)
-class Periods:
-    """The axes whose start point is recalculated, and their periods [deg]."""
-
-    by_axis: dict[int, float] = dataclasses.field(default_factory=dict)
-
-
-def _periods(control: Control) -> Periods:
-    assert isinstance(control.memory, Periods)
+def _periods(control: Control) -> dict[int, float]:
+    """Periods of the axes whose start point is recalculated, by column [deg]."""
+    assert isinstance(control.memory, dict)
     return control.memory
 
 
@@ -73,9 +66,9 @@ def switch_recalculation(control: Control) -> None:
         if period < 0.0:
             control.fail("g102-period", f"{word.text} is no period", word, "360, or 0 for off")
         if period == 0.0:
-            _periods(control).by_axis.pop(index, None)
+            _periods(control).pop(index, None)
         else:
-            _periods(control).by_axis[index] = period
+            _periods(control)[index] = period
 
 
 def recalculate_start(control: Control, rapid: bool) -> None:
@@ -86,7 +79,7 @@ def recalculate_start(control: Control, rapid: bool) -> None:
     ``recalculate_on_rapid`` is set; and in blocks without the axis too, since the seed speaks of
     the block's start point.
     """
-    periods = _periods(control).by_axis
+    periods = _periods(control)
     if not periods or (rapid and not control.settings.recalculate_on_rapid):
         return
     programmed = list(control.programmed)
@@ -197,8 +190,8 @@ GOST = Dialect(
         shared_marks.G102,
         Mark(r"^[^$;\"]*(?:\$\w+\$[^$;\"]*)*\$(?=\s|$|[А-Яа-я])", "$ before a comment"),
     ),
-    memory=Periods,
+    memory=dict,
     before_motion=recalculate_start,
     prepare=warn_of_foreign_commands,
-    disturbed=lambda control: bool(_periods(control).by_axis),
+    disturbed=lambda control: bool(_periods(control)),
 )

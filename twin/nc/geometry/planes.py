@@ -70,7 +70,7 @@ class Plane:
     """A right-handed frame of unit vectors: abscissa x ordinate = normal.
 
     Attributes:
-        name: As the programmer calls it: ``G20`` for a plane whose axes the program chose.
+        name: As the programmer calls it; ``OWN_PLANE`` where the program has chosen the directions.
         abscissa: Direction of angle 0.
         ordinate: Direction of angle 90.
         normal: Axis that positive arcs turn about counter-clockwise.
@@ -121,6 +121,9 @@ PLANE_ORDER = (XY, ZX, YZ)
 """Those along the axes, as the compiled tier numbers them."""
 
 
+OWN_PLANE = "of the program"
+
+
 def plane_with_normal(normal: Vector) -> Plane:
     """A plane of any normal; its abscissa lies level, as near to +X as it can.
 
@@ -136,7 +139,7 @@ def plane_with_normal(normal: Vector) -> Plane:
     if abscissa[0] < 0.0:
         abscissa = (-abscissa[0], -abscissa[1], 0.0)
     unit = (x, y, z)
-    return Plane("G16", abscissa, cross(unit, abscissa), unit)
+    return Plane(OWN_PLANE, abscissa, cross(unit, abscissa), unit)
 
 
 @compilable

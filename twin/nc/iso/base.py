@@ -12,6 +12,7 @@ from twin.nc.control.control import Control
 from twin.nc.control.dialect import Dialect
 from twin.nc.control.interpolation import ArcRule, LineRule
 from twin.nc.functions import starts_spindle
+from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.planes import XY, YZ, ZX
 from twin.nc.iso.circular import BOUNDS, both_senses, iso_arc
 from twin.nc.iso.declared import instead, modal, motion_code, plane_code
@@ -21,6 +22,7 @@ from twin.nc.iso.offsets import OFFSETS, PRESET
 from twin.nc.iso.tool_compensation import COMPENSATION, LENGTH
 from twin.nc.path import event_columns
 from twin.nc.path.paces import FeedMode, feed_per_minute, needs_own_feed
+from twin.nc.path.splines import MOST_CHORDS
 from twin.nc.text.blocks import Word
 from twin.nc.text.expressions import LARGEST_NUMBER
 
@@ -38,6 +40,21 @@ def straight(
         Interpolation(lambda control: go(control, True), rapid=True, rule=LineRule()),
         Interpolation(lambda control: go(control, False), without_words, rule=LineRule()),
     )
+
+
+def draw_curve(
+    control: Control, goal: list[float], at: Callable[[float], Point], count: int
+) -> None:
+    """Move on so many chords of a curve of the working plane, by u from 0 to 1; all else goes linearly."""
+    if count > MOST_CHORDS:
+        control.fail("curve-size", f"the curve would need {count} chords")
+    plane, before = control.modal.plane, list(control.programmed)
+    for number in range(1, count):
+        u = number / count
+        point = [a + u * (b - a) for a, b in zip(before, goal, strict=True)]
+        point[:3] = plane.world(*at(u), plane.local(point).height)
+        control.line_to(point, rapid=False)
+    control.line_to(goal, rapid=False)
 
 
 RAPID, FEED = straight(lambda control, rapid: control.line_to(control.target(), rapid=rapid))

@@ -145,23 +145,21 @@ def _biarc(begin: Point, end: Point, first: Point, last: Point) -> list[Curve]:
     )
     left = center_tangent(begin, joint, first)
     right = center_tangent(end, joint, (-last[0], -last[1]))
-    pieces = [_arc_or_line(begin, joint, left, first), _arc_or_line(joint, end, right, None, last)]
+    pieces = [
+        _arc_or_line(begin, joint, left, begin, first),
+        _arc_or_line(joint, end, right, end, last),
+    ]
     if left is not None and right is not None and distance(left, right) < 1e-7:
         return [curves.arc(begin, end, left, pieces[0][4] + pieces[1][4])]
     return pieces
 
 
 def _arc_or_line(
-    begin: Point,
-    end: Point,
-    center: Point | None,
-    leaving: Point | None,
-    arriving: Point | None = None,
+    begin: Point, end: Point, center: Point | None, point: Point, along: Point
 ) -> Curve:
+    """The arc about a centre that goes along a direction at one of its ends; without a centre the line."""
     if center is None:
         return curves.line(begin, end)
-    point, along = (begin, leaving) if leaving is not None else (end, arriving)
-    assert along is not None
     arm = (point[0] - center[0], point[1] - center[1])
     clockwise = arm[0] * along[1] - arm[1] * along[0] < 0.0
     return curves.arc(begin, end, center, sweep_between(begin, end, center, clockwise))

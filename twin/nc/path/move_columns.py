@@ -87,7 +87,11 @@ class Segment:
 
 
 class MoveColumns:
-    """The moves and events since the last ``take``."""
+    """The moves and events since the last ``take``.
+
+    Attributes:
+        count: How many moves.
+    """
 
     def __init__(self, axes: Axes) -> None:
         self._axes = axes
@@ -100,16 +104,13 @@ class MoveColumns:
         self._parts: list[tuple[IntArray, FloatArray, FloatArray]] = []
         self._event_parts: list[list[Event] | EventRows] = []
         self._event_list: list[Event] = []
-        self._count = 0
+        self.count = 0
         self._clear_lists()
 
     def _clear_lists(self) -> None:
         self._codes: list[int] = []
         self._values: list[float] = []
         self._positions: list[float] = []
-
-    def __len__(self) -> int:
-        return self._count
 
     def add(self, move: Segment) -> None:
         """Append a move."""
@@ -119,7 +120,7 @@ class MoveColumns:
         positions += move.start
         positions += move.end
         positions += move.display
-        self._count += 1
+        self.count += 1
 
     def add_rows(self, codes: IntArray, values: FloatArray, positions: FloatArray) -> None:
         """Append moves that are columns already.
@@ -132,7 +133,7 @@ class MoveColumns:
         """
         self._close_lists()
         self._parts.append((codes.copy(), values.copy(), positions.copy()))
-        self._count += len(codes)
+        self.count += len(codes)
 
     def _close_lists(self) -> None:
         """Make the moves that were appended one by one a part of columns."""
@@ -145,13 +146,13 @@ class MoveColumns:
 
     def add_event(self, event: Event) -> None:
         """Append an event after the moves so far."""
-        self._event_list.append(dataclasses.replace(event, before=self._count))
+        self._event_list.append(dataclasses.replace(event, before=self.count))
 
     def add_event_rows(self, events: EventRows) -> None:
         """Append events as columns; their places count from the next move."""
         if len(events):
             self._close_event_list()
-            self._event_parts.append(events.behind(self._count))
+            self._event_parts.append(events.behind(self.count))
 
     def _close_event_list(self) -> None:
         if self._event_list:

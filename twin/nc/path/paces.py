@@ -1,6 +1,7 @@
 """How fast moves go, by what F counts: for both tiers."""
 
 import enum
+from collections.abc import Mapping
 
 from twin.compilation.compilable import inlined
 
@@ -79,6 +80,10 @@ def feed_per_minute(
     if mode == _PER_SECOND:
         return counted * 60.0
     return counted * speed if mode == _PER_REVOLUTION else counted
+
+
+FEED_FACTORS: Mapping[FeedMode, float] = {FeedMode.PER_MINUTE: 1.0, FeedMode.PER_SECOND: 60.0}
+"""By what F is multiplied to count per minute, where it needs no more than that."""
 
 
 @inlined

@@ -49,7 +49,7 @@ class Path:
         self.defer: Callable[[Event], bool] = holds_none
 
     def __len__(self) -> int:
-        return len(self._columns)
+        return self._columns.count
 
     def take(self) -> Chunk:
         """All that has been emitted, as columns."""

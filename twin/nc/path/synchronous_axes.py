@@ -61,16 +61,14 @@ class SynchronousAxes:
         self._held.append(event)
 
     def _spread(self, axis: int, begin: int) -> None:
-        rows = [
-            row for row in range(begin, len(self._held)) if isinstance(self._held[row], Segment)
-        ]
-        moves = [each for each in self._held[begin:] if isinstance(each, Segment)]
-        total = sum(map(spatial_length, moves))
+        held = enumerate(self._held[begin:], begin)
+        moves = [(row, each) for row, each in held if isinstance(each, Segment)]
+        total = sum(spatial_length(move) for _, move in moves)
         if total == 0.0:
             return
-        first, last = moves[0].start[axis], moves[-1].end[axis]
+        first, last = moves[0][1].start[axis], moves[-1][1].end[axis]
         way, here = 0.0, first
-        for row, move in zip(rows, moves, strict=True):
+        for row, move in moves:
             way += spatial_length(move)
             there = last if way == total else first + (last - first) * way / total
             self._held[row] = dataclasses.replace(

@@ -39,7 +39,10 @@ _NAME = re.compile(r"[^\W\d_]\w+(?![\w(\[])")
 """Letters and digits without a bracket behind, as neither a value nor a function is written."""
 
 _tuple = tuple.__new__
-_LETTERS = frozenset(string.ascii_uppercase)
+_LETTERS = frozenset(string.ascii_uppercase) - {"N"}
+"""Addresses of words as they are."""
+_SHORT = len(f"{LARGEST_NUMBER:.0f}")
+"""Characters of words whose number is below the largest one."""
 _LOOKALIKES = str.maketrans("АВСЕНІКМОРТХУЗ", "ABCEHIKMOPTXY3")
 """Cyrillic letters that look like Latin ones: a keyboard left in the wrong layout."""
 
@@ -89,19 +92,20 @@ class LineReader:
                 break
             begin, width = at + len(blanks), len(written)
             at = begin + width
-            if address in ("N", "n"):
-                self._at = at
-                self._label(number, begin)
-                if grammar.statement is not None and grammar.statement.match(self._line, at):
-                    return True
-                add = self._words.append
-                continue
+            if address not in _LETTERS:
+                address = grammar.name(address)
+                if address == "N":
+                    self._at = at
+                    self._label(number, begin)
+                    if grammar.statement is not None and grammar.statement.match(self._line, at):
+                        return True
+                    add = self._words.append
+                    continue
             value = float(number)
-            if not -LARGEST_NUMBER <= value <= LARGEST_NUMBER:
+            if width > _SHORT and not -LARGEST_NUMBER <= value <= LARGEST_NUMBER:
                 self._fail("number-range", f"the value is not within ±{LARGEST_NUMBER:g}", begin)
-            name = address if address in _LETTERS else grammar.name(address)
-            given = (name, value, begin, width, suffix != "", "." not in number)
-            add(_tuple(Word, given))  # as Word(*given), in a third of the time
+            # As Word(...), in a third of the time.
+            add(_tuple(Word, (address, value, begin, width, suffix != "", "." not in number)))
         self._at = at
         return False
 

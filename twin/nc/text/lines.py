@@ -25,7 +25,7 @@ _LINE_FEED, _RETURN = 10, 13
 _MARK = b"\xef\xbb\xbf"
 """What some editors put before UTF-8."""
 _UTF_8 = "utf-8"
-_SURROGATES = "surrogatepass"
+SURROGATES = "surrogatepass"
 """Text that is made on the fly may hold what no file can."""
 _ANY_BYTE = "latin-1"
 """Decodes any byte; used where a file is neither UTF-8 nor in the dialect's own code page."""
@@ -62,7 +62,7 @@ class Page:
             part = slice(self._first_divided, self._first_divided + _DIVIDED)
             places = zip(self.starts[part].tolist(), self.ends[part].tolist(), strict=True)
             self._divided = [
-                self.text[begin:end].decode(_UTF_8, _SURROGATES) for begin, end in places
+                self.text[begin:end].decode(_UTF_8, SURROGATES) for begin, end in places
             ]
         return self._divided[at - self._first_divided]
 
@@ -155,7 +155,7 @@ class Lines(Sequence[str]):
 
     def holding(self, mark: str) -> Iterator[tuple[int, str]]:
         """The lines in which a text stands, with their numbers from 0."""
-        wanted = mark.encode(_UTF_8, _SURROGATES)
+        wanted = mark.encode(_UTF_8, SURROGATES)
         for number, first in enumerate(self._firsts):
             if wanted in self._utf_8(number):
                 page, at = self.page_of(first), 0

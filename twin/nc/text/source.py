@@ -7,11 +7,8 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from twin.errors import UsageError
-from twin.nc.text.lines import PAGE, Lines
+from twin.nc.text.lines import PAGE, SURROGATES, Lines
 from twin.nc.text.syntax import Language
-
-_SURROGATES = "surrogatepass"
-"""Text that is made on the fly may hold what no file can."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -57,7 +54,7 @@ class Source:
     @property
     def text(self) -> str:
         """All lines, ended by newlines."""
-        text = self.lines.text.decode("utf-8", _SURROGATES)
+        text = self.lines.text.decode("utf-8", SURROGATES)
         return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
@@ -85,7 +82,7 @@ def source_from_bytes(data: bytes, name: str, dialect: Language | None = None) -
 
 def source_from_text(text: str, name: str = "program") -> Source:
     """Make a source of text, for tests and programs that are made on the fly."""
-    data = text.encode("utf-8", _SURROGATES)
+    data = text.encode("utf-8", SURROGATES)
     return Source(name, Lines([data]), hashlib.sha256(data).hexdigest())
 
 

@@ -4,8 +4,8 @@ import numpy as np
 
 from twin.nc.canonical import NO_BLOCK_NUMBER, Corner, FloatArray, Motion, Moves
 from twin.nc.control.control import Control
-from twin.nc.control.modal import FEED_FACTORS
 from twin.nc.path.move_columns import NAN, MoveColumns, Segment
+from twin.nc.path.paces import FEED_FACTORS
 
 Z = 2
 SHORTEST = 1e-6

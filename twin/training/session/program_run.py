@@ -25,7 +25,7 @@ from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Chunk, Event, FloatArray, Function, Motion, Moves
 from twin.nc.control.dialect import Dialect
 from twin.nc.control.executor import Executor
-from twin.nc.control.modal import FEED_FACTORS, SavedModal
+from twin.nc.control.modal import Modal
 from twin.nc.control.settings import ControlSettings
 from twin.nc.functions import (
     COOLANT_OFF,
@@ -39,6 +39,7 @@ from twin.nc.functions import (
     SpindleState,
 )
 from twin.nc.geometry.frame import SHIFTS
+from twin.nc.path.paces import FEED_FACTORS
 from twin.nc.text.blocks import Block
 from twin.nc.text.diagnostics import Diagnostic, ProgramError
 from twin.nc.text.source import Source
@@ -89,7 +90,7 @@ class Inherited(NamedTuple):
         spindle: S as programmed, or None [1/min].
     """
 
-    modal: SavedModal
+    modal: Modal
     shifts: list[list[float]]
     feed: float | None
     spindle: float | None
@@ -489,7 +490,7 @@ class ProgramRun:
 
     def _note(self, block: Block, mark: int) -> None:
         control = self._control
-        active = tuple(control.active.values())
+        active = control.active.numbers()
         if active != self._active:
             self._active, self._codes = active, tuple(f"G{number:g}" for number in active)
         factor = FEED_FACTORS.get(control.modal.feed_mode)
@@ -537,12 +538,11 @@ class ProgramRun:
         """What an MDI block leaves in force for the next one."""
         control = self._control
         shifts = [list(shift) for shift in control.frame.shifts]
-        return Inherited(control.saved_modal(), shifts, control.feed, control.spindle)
+        return Inherited(control.modal.saved(), shifts, control.feed, control.spindle)
 
     def _inherit(self, before: Inherited) -> None:
         control = self._control
-        modal, active = before.modal
-        control.restore_modal(SavedModal(dataclasses.replace(modal), dict(active)))
+        control.modal.restore(before.modal)
         control.frame.set_shifts([list(shift) for shift in before.shifts])
         control.programmed = control.frame.to_programmed(control.part)
         control.feed, control.spindle = before.feed, before.spindle

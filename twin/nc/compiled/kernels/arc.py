@@ -57,7 +57,7 @@ def emit_arc(
     clear, words = _words_of_arc(block, constants)
     if not clear:
         return DOUBTFUL
-    plane = directions(constants, int(block.modal[PLANE]))
+    plane = directions(constants, block.modal)
     position, value = rows.positions[row], rows.values[row]
     start = point_of(plane, vector_of(state.programmed))
     end = point_of(plane, vector_of(position[2]))

@@ -11,6 +11,7 @@ from twin.nc.bytecode.registers import (
     CYCLE_WORDS,
     INCREMENTAL,
     PLANE,
+    RAPID_FEED,
     TO_REFERENCE,
     UNIT,
     BlockTables,
@@ -180,9 +181,9 @@ def _go(
     if length == 0.0:
         return row
     copy(position[1], part)
-    travel = Travel(RAPID, constants.rapid_feed, STOP)
+    travel = Travel(RAPID, state.registers[RAPID_FEED], STOP)
     if speed > 0.0:
         pace = pace_of(block.feed * speed, block, length, False, constants, state)
         travel = Travel(FEED, pace, int(block.modal[CORNER]))
-    put_move(block, travel, LINE, constants, rows, row)
+    put_move(block, travel, LINE, state, rows, row)
     return row + 1

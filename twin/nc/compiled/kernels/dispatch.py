@@ -3,12 +3,13 @@
 Each does what ``opcodes`` says of it; opcodes of one kind have a function.
 """
 
-from twin.compilation.compilable import inlined
+from twin.compilation.compilable import compilable, inlined
 from twin.nc.bytecode import compensation, opcodes
 from twin.nc.bytecode.bytecode import PART_BITS, BytecodeTable, Instruction
 from twin.nc.bytecode.effects import Affected, BlockPlace
-from twin.nc.bytecode.flow import Transfer, arrive, straight_on
+from twin.nc.bytecode.flow import Transfer, arrive, keep_codes, straight_on
 from twin.nc.bytecode.frames import (
+    CODES_RESTORED,
     DEPTH,
     FULL,
     FURTHEST,
@@ -16,8 +17,6 @@ from twin.nc.bytecode.frames import (
     LINE,
     MADE,
     PART,
-    RESTORED_BY_CONTROL,
-    RESTORED_HERE,
     RESTORES,
     TRAPPED,
     ExecutionState,
@@ -25,8 +24,20 @@ from twin.nc.bytecode.frames import (
     innermost,
 )
 from twin.nc.bytecode.instructions import Surroundings, run_instruction
-from twin.nc.bytecode.registers import CYCLE, Machine, State, copy_active_codes, copy_state
+from twin.nc.bytecode.registers import (
+    ACTIVE,
+    CORRECT_CENTER,
+    CYCLE,
+    DRILLING,
+    INTERPOLATION,
+    PLANE,
+    BlockTables,
+    Machine,
+    State,
+    copy_state,
+)
 from twin.nc.bytecode.variables import undo_stores
+from twin.nc.canonical import FloatArray
 from twin.nc.compiled.kernels.block import BlockBegin, run_words
 from twin.nc.compiled.kernels.cycle import NO_ROOM
 from twin.nc.compiled.kernels.variables import use_variable
@@ -76,9 +87,12 @@ def dispatch_loop(
                 Affected(machine.constants, state, machine.rows),
             )
             top, to = run_instruction(instruction, stack, top, to, around)
-            transfers = opcodes.CHECK_CALL <= opcode <= opcodes.RETURN
-            if top < 0 or (transfers and not _keep_codes(opcode, to, state, execution)):
+            if top < 0 or (
+                opcode == opcodes.CHECK_RETURN and not _may_return(to, machine.tables, execution)
+            ):
                 break
+            if opcodes.CALL <= opcode <= opcodes.RETURN:
+                keep_codes(opcode, to, state.modal, execution.saved)
             if to.ends:
                 opcode = opcodes.NEXT
         elif opcodes.LOAD <= opcode <= opcodes.WORD_CONSTANT:
@@ -106,7 +120,8 @@ def dispatch_loop(
                 break
             made = progress[MADE] = after  # not undone: to end it twice is to end it once
         elif opcode == opcodes.ACTIVATE:
-            state.active_codes[machine.tables.group[instruction.operand]] = instruction.operand
+            group = machine.tables.group[instruction.operand]
+            state.modal[ACTIVE + group] = instruction.operand
         elif opcode == opcodes.TRAP or (opcode == opcodes.NO_PECKS and _pecks(machine)):
             break
         if opcode == opcodes.NEXT:
@@ -150,24 +165,19 @@ def _pecks(machine: Machine) -> bool:
 
 
 @inlined
-def _keep_codes(opcode: int, to: Transfer, state: State, execution: ExecutionState) -> bool:
-    """Save the active codes at a call whose end restores them, and put them back at its end.
+def _may_return(to: Transfer, tables: BlockTables, execution: ExecutionState) -> bool:
+    """Whether what the end of the part puts back into force is known here."""
+    called = innermost(execution.calls, to.called) - 1
+    restores = execution.calls[called, RESTORES]
+    return restores != CODES_RESTORED or knows(execution.saved[called], tables)
 
-    Returns:
-        Whether the end of the part can put them back here.
-    """
-    saved = execution.saved
-    if opcode == opcodes.CHECK_RETURN:
-        part = innermost(execution.calls, to.called)
-        return execution.calls[part - 1, RESTORES] != RESTORED_BY_CONTROL
-    if to.restores == RESTORED_HERE and opcode == opcodes.RETURN:
-        called = to.called
-        copy_active_codes(
-            saved.modal[called], saved.active_codes[called], state.modal, state.active_codes
-        )
-    elif to.restores == RESTORED_HERE and opcodes.CALL <= opcode <= opcodes.REPEAT:
-        called = to.called - 1
-        copy_active_codes(
-            state.modal, state.active_codes, saved.modal[called], saved.active_codes[called]
-        )
-    return True
+
+@compilable
+def knows(modal: FloatArray, tables: BlockTables) -> bool:
+    """Whether the compiled tier can run blocks with all that is in force, shape (m,)."""
+    interpolation, cycle = int(modal[INTERPOLATION]), int(modal[CYCLE])
+    if interpolation >= len(tables.kind) or cycle >= len(tables.kind):
+        return False
+    drills = cycle == 0 or tables.kind[cycle] == DRILLING
+    plain = modal[PLANE] < 3.0 and modal[CORRECT_CENTER] != 0.0
+    return drills and plain

@@ -7,6 +7,9 @@ import numpy as np
 from twin.compilation.compilable import inlined
 from twin.nc.bytecode.coordinates import turn_place
 from twin.nc.bytecode.registers import (
+    ACCELERATION,
+    CORNER_TOLERANCE,
+    DECELERATION,
     FEED_MODE,
     SPINDLE,
     SPINDLE_TURNS,
@@ -26,7 +29,7 @@ from twin.nc.path.paces import (
     finding_of_feed,
     needs_own_feed,
 )
-from twin.nc.path.rows import Rows, copy
+from twin.nc.path.rows import Rows
 
 RAPID, FEED, STOP = int(Motion.RAPID), int(Motion.FEED), int(RAPIDS_END)
 
@@ -91,7 +94,7 @@ def put_positions(goal: FloatArray, part: FloatArray, state: State, position: Fl
 
 @inlined
 def put_move(
-    block: PlainBlock, travel: Travel, shape: int, constants: Constants, rows: Rows, row: int
+    block: PlainBlock, travel: Travel, shape: int, state: State, rows: Rows, row: int
 ) -> None:
     """Fill in what is no position of a move; an arc has its centre, normal and sweep already."""
     value, code = rows.values[row], rows.codes[row]
@@ -99,6 +102,7 @@ def put_move(
         value[:6] = np.nan
         value[6] = 0.0
     value[7] = travel.pace
-    copy(constants.last_values, value[8:])
+    value[8] = state.modal[CORNER_TOLERANCE]
+    value[9], value[10] = state.registers[ACCELERATION], state.registers[DECELERATION]
     code[0], code[1], code[2], code[3] = travel.motion, shape, block.line, block.number
     code[4] = travel.corner

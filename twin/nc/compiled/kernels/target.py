@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from twin.compilation.compilable import compilable, inlined
 from twin.nc.bytecode.coordinates import directions
-from twin.nc.bytecode.registers import INCREMENTAL, PLANE, UNIT, Constants, State
+from twin.nc.bytecode.registers import INCREMENTAL, UNIT, Constants, State
 from twin.nc.bytecode.token_kinds import AXIS
 from twin.nc.canonical import FloatArray, IntArray
 from twin.nc.geometry.planes import aim
@@ -21,7 +21,7 @@ class PlainBlock(NamedTuple):
         values: The words' values, shape (w,).
         seen: Which token kinds there are, as bits.
         feed: F.
-        modal: The modal state with its codes, shape (``MODAL``,).
+        modal: What is in force with its codes, shape (``OF_PLAIN_BLOCKS``,).
         polar: The target of ``State`` holds where it goes in the plane.
     """
 
@@ -66,5 +66,5 @@ def put_target(
         if not abs(goal[axis]) <= LARGEST_COORDINATE:
             return False
     if block.polar:
-        aim(directions(constants, int(modal[PLANE])), (state.target[0], state.target[1]), goal)
+        aim(directions(constants, modal), (state.target[0], state.target[1]), goal)
     return True

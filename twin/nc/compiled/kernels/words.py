@@ -10,6 +10,7 @@ import numpy as np
 from twin.compilation.compilable import inlined
 from twin.nc.bytecode.effects import Affected, BlockPlace, report_function
 from twin.nc.bytecode.registers import (
+    ACTIVE,
     ARC,
     CODES,
     CORNER,
@@ -17,10 +18,12 @@ from twin.nc.bytecode.registers import (
     EARLY,
     INTERPOLATION,
     NO_MOTION,
+    OF_PLAIN_BLOCKS,
     PLANE,
     POLAR_ANGLE,
     POLAR_RADIUS,
     PROGRAMMED_FEED,
+    RAPID_FEED,
     RAPID_LINE,
     BlockTables,
     Machine,
@@ -81,7 +84,7 @@ def execute_block(
         token_kinds: What each word's letter is, shape (w,).
         values: The words' values, shape (w,).
         machine: What it runs on.
-        modal: Room for the modal state, shape (``MODAL``,).
+        modal: Room for what is in force in the block, shape (``OF_PLAIN_BLOCKS``,).
         row: The row of its move.
         polar: ``State.target`` holds where the move goes in the plane.
 
@@ -148,7 +151,7 @@ def _decode(
         Whether nothing about them is doubtful, the block, its M function or ``UNSUPPORTED``, and the
         drilling cycle that it calls or 0.
     """
-    copy(state.modal, modal)
+    copy(state.modal[:OF_PLAIN_BLOCKS], modal)
     known = True
     number, seen, groups = int(np.int64(NO_BLOCK_NUMBER)), int(np.int64(0)), 0
     function, cycle = UNSUPPORTED, 0
@@ -205,7 +208,7 @@ def _activate(block: PlainBlock, tables: BlockTables, state: State) -> None:
     for word in range(len(block.token_kinds)):
         if block.token_kinds[word] == CODE:
             code = int(block.values[word])
-            state.active_codes[tables.group[code]] = code
+            state.modal[ACTIVE + tables.group[code]] = code
     copy(block.modal, state.modal)
     state.registers[PROGRAMMED_FEED] = block.feed
 
@@ -231,7 +234,7 @@ def _move(block: PlainBlock, machine: Machine, row: int) -> int:
         length = line_length(position[0], position[1])
     if length < SMALLEST_MOVE:
         return row if length >= 0.0 else UNSUPPORTED
-    pace = constants.rapid_feed
+    pace = state.registers[RAPID_FEED]
     own = constants.own_rapid_feed
     if kind == RAPID_LINE and not np.isnan(own):
         pace = rapid_feed(own, block.feed)
@@ -242,5 +245,5 @@ def _move(block: PlainBlock, machine: Machine, row: int) -> int:
     if kind == RAPID_LINE:
         motion, corner = move_row.RAPID, move_row.STOP
     shape = move_columns.ARC if is_arc else move_columns.LINE
-    put_move(block, Travel(motion, pace, corner), shape, constants, rows, row)
+    put_move(block, Travel(motion, pace, corner), shape, state, rows, row)
     return row + 1

@@ -11,8 +11,9 @@ from twin.nc.control.codes import Interpolation
 from twin.nc.control.control import Control
 from twin.nc.geometry.arcs import Point, direction
 from twin.nc.geometry.planes import XY
+from twin.nc.iso.base import draw_curve
 from twin.nc.iso.circular import start_and_end
-from twin.nc.path.splines import CHORD_ERROR, MOST_CHORDS
+from twin.nc.path.splines import CHORD_ERROR
 
 _SAME_DISTANCE = 1e-6
 """Distances from an ellipse's axis that differ by less leave its shape open [mm]."""
@@ -147,16 +148,7 @@ def _draw(
     control: Control, target: list[float], at: Callable[[float], Point], chords: float
 ) -> None:
     _refuse_switches(control)
-    count = max(1, math.ceil(chords))
-    if count > MOST_CHORDS:
-        control.fail("curve-size", f"the curve would need {count} chords")
-    plane, before = control.modal.plane, list(control.programmed)
-    for number in range(1, count):
-        u = number / count
-        point = [a + u * (b - a) for a, b in zip(before, target, strict=True)]
-        point[:3] = plane.world(*at(u), plane.local(point).height)
-        control.line_to(point, rapid=False)
-    control.line_to(target, rapid=False)
+    draw_curve(control, target, at, max(1, math.ceil(chords)))
 
 
 FLAT_SPLINE = Interpolation(flat_spline)

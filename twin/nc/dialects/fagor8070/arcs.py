@@ -13,6 +13,7 @@ from twin.nc.dialects.fagor8070.memory import memory_of, polar_origin
 from twin.nc.dialects.fagor8070.polar import Goal, forget_polar, take_goal
 from twin.nc.geometry import arcs
 from twin.nc.geometry.arcs import SAME_POINT, TURN, Point, distance, sweep_between, turned
+from twin.nc.geometry.planes import OWN_PLANE
 from twin.nc.iso import base
 from twin.nc.iso.circular import (
     BOUNDS,
@@ -194,7 +195,7 @@ def _helix_sweep(control: Control, height: float, pitch: Word, *, clockwise: boo
 def _center_letters(control: Control) -> str:
     """Centre words along abscissa, ordinate and normal of the working plane."""
     plane = control.modal.plane
-    return "IJK" if plane.name == "G20" else "".join("IJK"[index] for index in plane.axes)
+    return "IJK" if plane.name == OWN_PLANE else "".join("IJK"[index] for index in plane.axes)
 
 
 def _given_center(control: Control, words: tuple[Word, ...], start: Point) -> Point:

@@ -8,7 +8,7 @@ from twin.nc.control.control import Control
 from twin.nc.control.performer import refuse
 from twin.nc.dialects.fagor8070.machine_coordinates import refuse_change
 from twin.nc.dialects.fagor8070.polar import write_forgotten_polar
-from twin.nc.geometry.planes import Plane, Vector, cross
+from twin.nc.geometry.planes import OWN_PLANE, Plane, Vector, cross
 from twin.nc.iso import base
 from twin.nc.iso.declared import write_plane
 from twin.nc.iso.findings import PLANE_COMPENSATED
@@ -35,7 +35,7 @@ def any_plane(control: Control) -> None:
     if 1 not in roles or 2 not in roles:
         control.fail("plane-axes", "G20 needs abscissa and ordinate", hint="write G20 X1 Y2")
     normal = cross(roles[1], roles[2])
-    control.modal.plane = Plane("G20", roles[1], roles[2], normal)
+    control.modal.plane = Plane(OWN_PLANE, roles[1], roles[2], normal)
 
 
 def incremental_offset(control: Control, assembler: Assembler) -> None:

@@ -10,12 +10,7 @@ from twin.nc.dialects.fanuc.memory import holds_any, letter_patterns, memory_of
 from twin.nc.dialects.fanuc.programs import lines_around
 from twin.nc.dialects.fanuc.variables import ControlVariables, compile_assignment, write_variable
 from twin.nc.text.blocks import Assignment, Block, Location, Statement
-from twin.nc.text.expressions import (
-    Expression,
-    Number,
-    NumberedVariable,
-    Variable,
-)
+from twin.nc.text.expressions import Expression, Number, NumberedVariable, Variable
 from twin.nc.text.lines import Lines
 
 PATTERN = (

@@ -127,7 +127,7 @@ def call_modally(control: Control, statement: Statement) -> None:
         control.refuse(statement, "call-values", message, "end it by G67 first")
     memory.modal_call = _modal_call(control, _words(control, statement))
     memory.modal_depth = int(control.program_counter.progress[CALLS])
-    control.active["modal call"] = 66
+    control.active.put("modal call", 66.0)
 
 
 def end_modal_call(control: Control) -> None:

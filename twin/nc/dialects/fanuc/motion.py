@@ -16,13 +16,7 @@ from twin.nc.dialects.fanuc.memory import Variant, memory_of
 from twin.nc.dialects.fanuc.transformations import refuse_uneven_arc
 from twin.nc.geometry.arcs import direction
 from twin.nc.iso import base
-from twin.nc.iso.circular import (
-    BOUNDS,
-    arc_center,
-    both_senses,
-    plane_center_letters,
-    sweep_arc,
-)
+from twin.nc.iso.circular import BOUNDS, arc_center, both_senses, plane_center_letters, sweep_arc
 from twin.nc.iso.drilling import Holes, repeats_of
 
 _Kind = TypeVar("_Kind")

@@ -115,13 +115,7 @@ def whole(control: Control, word: Word, code: str, meaning: str) -> int:
 
 
 def called(control: Control, number: int, repeats: int | None) -> tuple[int, int]:
-    """Number of the program that P names, and how often it runs.
-
-    Args:
-        control: The control.
-        number: P.
-        repeats: L, where it is written.
-    """
+    """Number of the program that P names, and how often it runs; ``repeats`` is L, where it is written."""
     memory = memory_of(control)
     if repeats is not None or number in memory.programs or not memory.variant.repeats_in_p:
         return number, 1 if repeats is None else repeats

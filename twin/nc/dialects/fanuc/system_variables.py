@@ -34,7 +34,7 @@ def read(control: Control, number: int) -> float:
         number -= _SAME_AS
     group = memory_of(control).variant.modal_groups.get(number - 4000)
     if group is not None:
-        return float(control.active.get(group, 0))
+        return control.active.get(group, 0.0)
     if 4100 <= number <= 4130:
         return _modal_word(control, number)
     if 5001 <= number <= 5100:

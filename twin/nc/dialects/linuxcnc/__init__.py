@@ -4,14 +4,7 @@ from twin.nc.canonical import Corner
 from twin.nc.control.codes import WordEffect
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Dialect
-from twin.nc.dialects.linuxcnc import (
-    block_compiler,
-    flow,
-    functions,
-    motion,
-    offsets,
-    parameters,
-)
+from twin.nc.dialects.linuxcnc import block_compiler, flow, functions, motion, offsets, parameters
 from twin.nc.dialects.linuxcnc.codes import CODES, GROUPS, START
 from twin.nc.dialects.linuxcnc.decisions import DECISIONS
 from twin.nc.dialects.linuxcnc.expressions import EXPRESSIONS

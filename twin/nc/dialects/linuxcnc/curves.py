@@ -2,7 +2,7 @@
 
 import itertools
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 from twin.nc.control.codes import Interpolation
 from twin.nc.control.control import Control
@@ -11,6 +11,7 @@ from twin.nc.dialects.linuxcnc.motion import check_feed, need_axes, require_axes
 from twin.nc.dialects.linuxcnc.offsets import refuse_in_compensation
 from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.planes import XY
+from twin.nc.iso.base import draw_curve
 from twin.nc.path.splines import CHORD_ERROR, MOST_CHORDS
 
 DEFAULT_ORDER = 3
@@ -29,16 +30,6 @@ def _begin(control: Control, code: str) -> list[float]:
         if letter in control.axis_letters and letter not in "XY":
             control.fail("code-words", f"{code} moves X and Y only", word)
     return control.target()
-
-
-def _drawn(control: Control, goal: list[float], at: Callable[[float], Point], count: int) -> None:
-    if count > MOST_CHORDS:
-        control.fail("curve-size", f"the curve would need {count} chords")
-    for number in range(1, count):
-        point = list(control.programmed)
-        point[0], point[1] = at(number / count)
-        control.line_to(point, rapid=False)
-    control.line_to(goal, rapid=False)
 
 
 def _bezier(control: Control, goal: list[float], inner: Sequence[Point]) -> None:
@@ -60,7 +51,7 @@ def _bezier(control: Control, goal: list[float], inner: Sequence[Point]) -> None
             ]
         return left[0]
 
-    _drawn(control, goal, at, max(1, math.ceil(min(chords, MOST_CHORDS + 1.0))))
+    draw_curve(control, goal, at, max(1, math.ceil(min(chords, MOST_CHORDS + 1.0))))
 
 
 def cubic(control: Control) -> None:
@@ -142,13 +133,14 @@ def end_nurbs(control: Control) -> None:
     goal[0], goal[1] = points[-1][:2]
     knots = _knots(len(points), order)
     count = CHORDS_OF_A_PART * len(points)
-    _drawn(control, goal, lambda u: _point_of(points, knots, order, u * knots[-1]), count)
+    draw_curve(control, goal, lambda u: _point_of(points, knots, order, u * knots[-1]), count)
     control.modal.interpolation = None
 
 
 def _end_motion(control: Control) -> None:
     """Behind G5 and G5.1 axis words need a code again (``rs274``)."""
-    control.modal.interpolation, control.active["motion"] = None, 80
+    control.modal.interpolation = None
+    control.active.put("motion", 80.0)
 
 
 def _knots(points: int, order: int) -> list[float]:

@@ -26,13 +26,7 @@ from twin.nc.dialects.linuxcnc.structure import (
 from twin.nc.iso.declared import go_back
 from twin.nc.text import arithmetic
 from twin.nc.text.blocks import Location, Statement
-from twin.nc.text.expressions import (
-    Computed,
-    Expression,
-    Number,
-    Tree,
-    Variable,
-)
+from twin.nc.text.expressions import Computed, Expression, Number, Tree, Variable
 
 WITH_VALUES = ("CALL", "RETURN", "ENDSUB", "IF", "ELSEIF", "WHILE", "REPEAT")
 """Keywords that values may follow."""
@@ -228,10 +222,7 @@ def _continue(control: Control, statement: Statement, word: OWord, assembler: As
 def _subroutine_line(control: Control, name: str, *, here: int) -> int | None:
     """The line, from 0, of a subroutine's definition; None where there is none.
 
-    Args:
-        control: The control.
-        name: Its label.
-        here: The line, from 0, of the call: what stands before it comes before a file.
+    What stands before the line of the call, ``here``, comes before a file.
     """
     structure(control)
     lines = memory_of(control).subroutines.get(name, [])
@@ -297,9 +288,8 @@ def _sub(control: Control, statement: Statement, word: OWord, assembler: Assembl
             refuse(control, statement, "open-structure", message, hint)
         if word.label in memory_of(control).called:
             message = f"o{word.label} was called before this line, which defines it again"
-            refuse(
-                control, statement, "ambiguous-label", message, "end the program by M2 before it"
-            )
+            hint = "end the program by M2 before it"
+            refuse(control, statement, "ambiguous-label", message, hint)
 
     assembler.interpreted(define)
     assembler.jump(construct.behind)

@@ -4,7 +4,7 @@ import dataclasses
 
 from twin.nc.control.constructs import Structure
 from twin.nc.control.control import Control
-from twin.nc.control.modal import SavedModal
+from twin.nc.control.modal import Modal
 
 ControlPoint = tuple[float, float, float]
 """X, Y [mm] and weight of a control point of a NURBS."""
@@ -35,7 +35,7 @@ class SavedState:
         spindle: S, or None [1/min].
     """
 
-    modal: SavedModal
+    modal: Modal
     feed: float | None
     spindle: float | None
 

@@ -1,7 +1,5 @@
 """M70 to M73: what is in force is put aside, and put back."""
 
-import dataclasses
-
 from twin.nc.control.codes import Action
 from twin.nc.control.control import Control
 from twin.nc.dialects.linuxcnc.memory import SYSTEMS, SavedState, memory_of, written_feed
@@ -9,7 +7,6 @@ from twin.nc.dialects.linuxcnc.offsets import reframe, refuse_in_compensation
 
 _COMPENSATION = "compensation"
 _FRAME = ("offset", "units", "plane")
-_KEPT_FIELDS = ("interpolation", "cycle")
 _AXES = (*"XYZABCUVW", "@", "^")
 _KEPT_GROUPS = ("motion", "not modal", "length")
 """What neither M72 nor the end of a subroutine puts back."""
@@ -19,7 +16,7 @@ def save(*, until_return: bool) -> Action:
     """M70, and M73, which the end of the subroutine puts back."""
 
     def action(control: Control) -> None:
-        state = SavedState(control.saved_modal(), written_feed(control), control.spindle)
+        state = SavedState(control.modal.saved(), written_feed(control), control.spindle)
         memory_of(control).saved[control.program_counter.depth] = (state, until_return)
 
     return action
@@ -54,7 +51,7 @@ def restore_at_return(control: Control) -> None:
 
 
 def _put_back(control: Control, state: SavedState) -> None:
-    now, active, given = control.modal, control.active, state.modal.active
+    active, given = control.active, state.modal.active
     if given.get(_COMPENSATION) != active.get(_COMPENSATION):
         message = "what was put aside would change the radius compensation"
         hint = "write G40, G41 or G42 itself before"
@@ -62,15 +59,15 @@ def _put_back(control: Control, state: SavedState) -> None:
     compensated = memory_of(control).compensation is not None
     if compensated and any(given.get(group) != active.get(group) for group in _FRAME):
         refuse_in_compensation(control)
-    modal = dataclasses.replace(
-        state.modal.modal, **{name: getattr(now, name) for name in _KEPT_FIELDS}
-    )
-    kept = {group: active[group] for group in _KEPT_GROUPS if group in active}
-    control.restore_modal(state.modal._replace(modal=modal, active={**state.modal.active, **kept}))
+    now, modal = control.modal, state.modal.saved()
+    modal.interpolation, modal.cycle = now.interpolation, now.cycle
+    for group in _KEPT_GROUPS:
+        modal.active.put(group, active.get(group))
+    now.restore(modal)
     control.spindle = state.spindle
     if state.feed != written_feed(control):  # else nothing is written anew (``rs274``)
         control.feed, memory_of(control).converted_feed = state.feed, None
-    system = f"G{control.active.get('offset', 54)}"
+    system = f"G{control.active.get('offset', 54):g}"
     memory_of(control).system = SYSTEMS.index(system) + 1
     if not compensated:  # else the programmed position is that of the contour, not of the tool
         reframe(control)
