@@ -1,6 +1,5 @@
 """Subroutines and repeated ranges of the Fagor CNC 8070."""
 
-import dataclasses
 import re
 from collections.abc import Iterator, Mapping
 
@@ -11,7 +10,7 @@ from twin.nc.dialects.fagor8070.library import MARK
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.iso.declared import go_back
 from twin.nc.text.blocks import Location, Statement
-from twin.nc.text.expressions import Expression, ExpressionError, Number
+from twin.nc.text.expressions import Expression, ExpressionError
 
 DEEPEST_CALL = 20
 """Subroutines and repetitions within each other (manual, E1152)."""
@@ -28,34 +27,18 @@ _NO_RANGE = "the range or the number of runs is none"
 _SUBROUTINE = re.compile(r"[ \t]*%[ \t]*L[ \t]+([A-Z_0-9]\w*)", re.IGNORECASE)
 
 
-@dataclasses.dataclass(frozen=True, slots=True)
-class Range:
-    """What #RPT repeats: from the first place to the last, so often; the count's column."""
-
-    first: Location
-    last: Location
-    count: Expression
-    column: int
-
-
-def range_of(control: Control, statement: Statement) -> Range:
-    """Read #RPT.
-
-    Raises:
-        ProgramError: It cannot be read, or names no range.
-    """
-    match = _RANGE.fullmatch(statement.text)
+def _repeat(control: Control, statement: Statement, assembler: Assembler) -> None:
+    """#RPT[N10,N20,3]: run the blocks from one label to another, 3 times."""
+    match, counter = _RANGE.fullmatch(statement.text), control.program_counter
     if match is None:
         control.refuse(statement, "repeat-range", "the labels are missing", "#RPT[N10,N20,3]")
     first, last = (
-        control.program_counter.find_label(
+        counter.find_label(
             _range_label(match[group]), _span(statement), "#RPT", lines_around(control)
         )
         for group in (1, 2)
     )
-    blocks = control.program_counter.lexer.blocks(
-        control.program_counter.lines[last.line], last.line + 1
-    )
+    blocks = counter.lexer.blocks(counter.lines[last.line], last.line + 1)
     if len(blocks) != 1 or blocks[0].words or blocks[0].statement is not None:
         message = "the last label must stand alone in its block"
         control.refuse(statement, "repeat-range", message, "give it a block of its own behind")
@@ -64,16 +47,11 @@ def range_of(control: Control, statement: Statement) -> Range:
     if first <= Location(control.block.line - 1, 0) <= last:
         control.refuse(statement, "repeat-range", "the range must not hold its own #RPT")
     if match[3] is None:
-        return Range(first, last, Expression("1", Number(1.0)), statement.text_column)
-    column = statement.text_column + match.start(3)
-    return Range(first, last, control.expression(match[3], column), column)
-
-
-def _repeat(control: Control, statement: Statement, assembler: Assembler) -> None:
-    """#RPT[N10,N20,3]: run the blocks from one label to another, 3 times."""
-    asked = range_of(control, statement)
-    assembler.value(asked.count, asked.column)
-    assembler.repeat(asked.first, asked.last, DEEPEST_CALL)
+        assembler.constant(1.0)
+    else:
+        column = statement.text_column + match.start(3)
+        assembler.value(control.expression(match[3], column), column)
+    assembler.repeat(first, last, DEEPEST_CALL)
 
 
 def _range_label(text: str) -> int | str:

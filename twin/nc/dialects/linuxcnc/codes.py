@@ -5,6 +5,7 @@ from twin.nc.control.codes import Action, GCode
 from twin.nc.control.control import Control
 from twin.nc.dialects.linuxcnc import compensation, curves, motion, offsets
 from twin.nc.dialects.linuxcnc.arcs import CLOCKWISE, COUNTER_CLOCKWISE
+from twin.nc.dialects.linuxcnc.compensation import begin_by_diameter, begin_by_table
 from twin.nc.dialects.linuxcnc.cycles import CYCLES
 from twin.nc.dialects.linuxcnc.memory import SYSTEMS, memory_of
 from twin.nc.geometry.planes import XY, YZ, ZX
@@ -67,7 +68,7 @@ def corner_tolerance(control: Control) -> None:
     control.modal.corner_tolerance = float("nan") if word is None else control.length(word)
 
 
-def _alone_with_axes(action: Action) -> Action:
+def _with_axes(meaning: str, action: Action, group: str = "not modal") -> GCode:
     """A code that takes the axis words of its block, so that no motion code can stand beside it."""
 
     def perform(control: Control) -> None:
@@ -76,12 +77,7 @@ def _alone_with_axes(action: Action) -> Action:
             control.fail("conflicting-codes", message, hint="write them in two blocks")
         action(control)
 
-    return perform
-
-
-def _compensated(meaning: str, side: float, *, by_table: bool) -> GCode:
-    begin = compensation.begin_by_table if by_table else compensation.begin_by_diameter
-    return modal(meaning, "compensation", begin(side))
+    return instead(meaning, perform, group)
 
 
 MOTION = {
@@ -118,22 +114,14 @@ NOT_MODAL = {
         "dwell, P seconds", "not modal", base.dwell("P", "G4 needs P, its seconds", "write G4 P1")
     ),
     5.3: instead("end of a NURBS", curves.end_nurbs, "not modal"),
-    10: instead(
-        "L2, L20 coordinate system; L1, L10, L11 tool",
-        _alone_with_axes(offsets.write_table),
-        "not modal",
-    ),
-    28: instead(
-        "rapidly to the first stored position", _alone_with_axes(motion.go_home(0)), "not modal"
-    ),
+    10: _with_axes("L2, L20 coordinate system; L1, L10, L11 tool", offsets.write_table),
+    28: _with_axes("rapidly to the first stored position", motion.go_home(0)),
     28.1: modal("this is the first stored position", "not modal", motion.store_home(0)),
-    30: instead(
-        "rapidly to the second stored position", _alone_with_axes(motion.go_home(1)), "not modal"
-    ),
+    30: _with_axes("rapidly to the second stored position", motion.go_home(1)),
     30.1: modal("this is the second stored position", "not modal", motion.store_home(1)),
-    52: instead("local shift of zero", _alone_with_axes(offsets.local_offset), "not modal"),
+    52: _with_axes("local shift of zero", offsets.local_offset),
     53: instead("in machine coordinates", motion.in_machine_coordinates, "not modal"),
-    92: instead("this place gets these coordinates", _alone_with_axes(offsets.preset), "not modal"),
+    92: _with_axes("this place gets these coordinates", offsets.preset),
     92.1: modal(
         "no preset, its parameters become 0",
         "not modal",
@@ -155,13 +143,9 @@ MODAL = {
     20: modal("inches", "units", _units(_INCH)),
     21: modal("millimetres", "units", _units(1.0)),
     43: modal("length of tool H", "length", offsets.tool_length),
-    43.1: instead(
-        "tool offset by words of axes", _alone_with_axes(offsets.given_tool_length), "length"
-    ),
-    43.2: instead(
-        "a further tool offset, H or words of axes",
-        _alone_with_axes(offsets.further_tool_length),
-        "length",
+    43.1: _with_axes("tool offset by words of axes", offsets.given_tool_length, "length"),
+    43.2: _with_axes(
+        "a further tool offset, H or words of axes", offsets.further_tool_length, "length"
     ),
     49: modal("no tool length", "length", lambda control: offsets.set_length(control, None)),
     **{
@@ -201,10 +185,14 @@ MODAL = {
 
 COMPENSATION = {
     40: modal("radius compensation off", "compensation", compensation.end),
-    41: _compensated("radius compensation, tool left of the contour", LEFT, by_table=True),
-    42: _compensated("radius compensation, tool right of the contour", RIGHT, by_table=True),
-    41.1: _compensated("tool left of the contour, diameter D", LEFT, by_table=False),
-    42.1: _compensated("tool right of the contour, diameter D", RIGHT, by_table=False),
+    41: modal(
+        "radius compensation, tool left of the contour", "compensation", begin_by_table(LEFT)
+    ),
+    42: modal(
+        "radius compensation, tool right of the contour", "compensation", begin_by_table(RIGHT)
+    ),
+    41.1: modal("tool left of the contour, diameter D", "compensation", begin_by_diameter(LEFT)),
+    42.1: modal("tool right of the contour, diameter D", "compensation", begin_by_diameter(RIGHT)),
 }
 
 CODES: dict[float, GCode] = {**MOTION, **NOT_MODAL, **MODAL, **COMPENSATION}
