@@ -90,6 +90,7 @@ WRONG = {
     "cycle-plane": ("gost", "G81 X1 Z-5 R2\nG18\nX3"),
     "unused-word": ("gost", "G81 X1 Z-5 R2 Q1"),
     "unsupported-word": ("fagor8070", "G84 Z2 I-3 R2"),
+    "code-words": ("linuxcnc", "G94 G81 X1 Z-5 R2 F100\nX2\nX3\nG93 X4 F2"),
     "no-such-axis": ("fagor8070", "G81 Z1 I-3 U5"),
 }
 

@@ -41,6 +41,8 @@ def test_a_block_that_ends_a_cycle_counts_its_own_k() -> None:
         ("fanuc", "G51.1 X0.\nG55", "rotation-active"),
         ("fanuc", "G51 P2.\nG28 Z0.", "rotation-active"),
         ("fanuc", "G51.1 X0.\nG76 X9. Z-5. R2. Q1. F100.", "rotation-active"),
+        ("fanuc", "G83 X9. Z-5. R2. Q1. F100.\nG19\nG84 Y1.", "cycle-plane"),
+        ("fanuc", "G81 X9. Z-5. R2. F100.\nG19\nG76 Y1. Q1.", "cycle-plane"),
         ("fanuc", "G93 G1 X10. F2.\nX20.", "no-feed"),
         ("haas", "G12 I10. K5. Q1. D1 F100.", "cycle-size"),
         ("haas", "G12 I10. Q1. D1 F100.", "cycle-word"),

@@ -99,13 +99,14 @@ def repeats_of(control: Control, address: str, least: int = 0) -> int:
 def take_words(control: Control, rule: CycleRule, *, calls: bool = False) -> None:
     """Take the words of a block that calls a cycle, or of its hole; which of both it is, the cycle says."""
     modal, given = control.modal, no_values()
-    axis, relative = modal.plane.axes[2], dict.fromkeys((REFERENCE, BOTTOM), modal.incremental)
+    axis, incremental = modal.plane.axes[2], modal.incremental and not rule.cycle.as_written
+    relative = dict.fromkeys((REFERENCE, BOTTOM), incremental)
     if calls != rule.cycle.lasting:
         for address, value in rule.addresses(control.settings.axes.names[axis]).items():
             word = control.take(address)
             if word is not None:
                 given[value] = control.number(word)
-                relative[value] = modal.incremental or word.incremental
+                relative[value] = incremental or word.incremental
     from_where = relative[REFERENCE], relative[BOTTOM]
     block = CycleBlock(calls, axis, control.programmed[axis], modal.unit, from_where)
     read_words(rule.cycle, control.cycle_state, given, block)
@@ -201,6 +202,18 @@ def refuse_hole(control: Control, rule: CycleRule, hole: Hole) -> NoReturn:
         control.fail("cycle-depth", f"{name} needs pecks above 0")
     message = f"{name} must drill downwards, not from {hole.reference:g} to {hole.bottom:g}"
     control.fail("cycle-depth", message)
+
+
+def go_to_height(control: Control, height: float, *, rapid: bool = True) -> None:
+    """Go straight to a height of the axis across the plane, programmed coordinates [mm]."""
+    there = list(control.programmed)
+    there[control.modal.plane.axes[2]] = height
+    control.line_to(there, rapid=rapid)
+
+
+def turn_spindle(control: Control, function: str) -> None:
+    """Report that M3 or M4 turns the spindle, with the speed in force."""
+    control.function(function, {} if control.spindle is None else {"S": control.spindle})
 
 
 def drill(control: Control, hole: Hole, target: list[float] | None) -> None:

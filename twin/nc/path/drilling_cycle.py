@@ -66,6 +66,8 @@ class Retract(enum.IntEnum):
     """Rapidly, the spindle stopped."""
     REVERSED_LEFT = 4
     """As ``REVERSED``, of a spindle that turned counter-clockwise."""
+    FEED_ALL = 5
+    """With the feed, as far as it goes back."""
 
 
 class Pecking(enum.IntEnum):
@@ -97,8 +99,10 @@ class Cycle(NamedTuple):
         retract: A ``Retract``.
         lift: How far the tool withdraws between pecks where its words do not say it; 0: to the
             reference plane [mm].
-        repeats_only: The compiled tier drills the holes behind the call whose block names an axis, in absolute coordinates, from
-            the reference plane or above; all else is for the interpreter tier.
+        as_written: It remembers heights as they are written, and at each hole they count from what is in
+            force there. The compiled tier drills holes behind its call whose block names an axis, in
+            absolute coordinates, from the reference plane or above, with a feed that counts no blocks; all
+            else is for the interpreter tier.
     """
 
     lasting: bool
@@ -109,7 +113,7 @@ class Cycle(NamedTuple):
     clearance: float = CHIP_CLEARANCE
     retract: int = int(Retract.RAPID)
     lift: float = 0.0
-    repeats_only: bool = False
+    as_written: bool = False
 
 
 @compilable

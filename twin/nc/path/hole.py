@@ -77,7 +77,7 @@ class Fault(enum.IntEnum):
 
 
 _FEED, _REVERSED, _STOPPED = int(Retract.FEED), int(Retract.REVERSED), int(Retract.STOPPED)
-_REVERSED_LEFT = int(Retract.REVERSED_LEFT)
+_REVERSED_LEFT, _FEED_ALL = int(Retract.REVERSED_LEFT), int(Retract.FEED_ALL)
 _STRAIGHT, _COUNTED = int(Pecking.NONE), int(Pecking.COUNTED)
 _PASSES, _UNSIGNED_PASSES = int(Pecking.PASSES), int(Pecking.UNSIGNED_PASSES)
 _MISSING, _PLANE, _PECKS = int(Fault.MISSING), int(Fault.PLANE), int(Fault.PECKS)
@@ -326,8 +326,9 @@ def write_acts(hole: Hole, height: float, acts: Values, amounts: Values) -> int:
     if reverses or hole.retract == _STOPPED:
         acts[at], amounts[at] = outwards if reverses else _M5, 0.0
         at += 1
-    if reverses or hole.retract == _FEED:
-        acts[at], amounts[at] = _BACK, hole.reference
+    if reverses or hole.retract in (_FEED, _FEED_ALL):
+        out = hole.back if hole.retract == _FEED_ALL else hole.reference
+        acts[at], amounts[at] = _BACK, out
         at += 1
     if reverses:
         acts[at], amounts[at] = inwards, 0.0

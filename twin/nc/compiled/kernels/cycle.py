@@ -5,13 +5,12 @@ import numpy as np
 from twin.compilation.compilable import compilable
 from twin.nc.bytecode.effects import Affected, BlockPlace, report_act
 from twin.nc.bytecode.registers import (
-    CORNER,
     CYCLE,
     CYCLE_STATE,
     CYCLE_WORDS,
+    FEED_MODE,
     INCREMENTAL,
     PLANE,
-    RAPID_FEED,
     TO_REFERENCE,
     UNIT,
     BlockTables,
@@ -20,27 +19,18 @@ from twin.nc.bytecode.registers import (
 )
 from twin.nc.bytecode.token_kinds import AXIS, RADIUS, UNSUPPORTED
 from twin.nc.canonical import FloatArray
-from twin.nc.compiled.kernels.move_row import (
-    FEED,
-    LINE,
-    RAPID,
-    STOP,
-    Travel,
-    has_pace,
-    pace_of,
-    put_move,
-    put_positions,
-)
+from twin.nc.compiled.kernels.move_row import LINE, has_pace, put_move, put_positions, travel_of
 from twin.nc.compiled.kernels.target import PlainBlock, put_target
 from twin.nc.path.drilling_cycle import VALUES, Cycle, CycleBlock, cycle_of, read_words
 from twin.nc.path.hole import MOST_STOPS, NO_MOVE, Hole, hole_of, most_acts, next_place, write_acts
 from twin.nc.path.moves import LARGEST_COORDINATE, line_length
+from twin.nc.path.paces import counts_blocks
 from twin.nc.path.rows import Rows, copy
 
 NO_ROOM = -2
 """The rows are full."""
 _WORDS = len(Cycle._fields)
-_REPEATS_ONLY = Cycle._fields.index("repeats_only")
+_AS_WRITTEN = Cycle._fields.index("as_written")
 
 
 @compilable
@@ -68,12 +58,14 @@ def drill(
         The number of rows after it, ``NO_ROOM``, or ``UNSUPPORTED`` with the cycle untouched.
     """
     plane = constants.planes[int(block.modal[PLANE])]
-    repeats_only = tables.cycles[int(block.modal[CYCLE])][_REPEATS_ONLY] != 0.0
+    as_written = tables.cycles[int(block.modal[CYCLE])][_AS_WRITTEN] != 0.0
     names_place = block.polar or block.seen >> AXIS != 0
-    if repeats_only and (called[0] or block.modal[INCREMENTAL] != 0.0 or not names_place):
+    modal, other = block.modal, called[0] or not names_place
+    other = other or modal[INCREMENTAL] != 0.0 or counts_blocks(int(modal[FEED_MODE]))
+    if as_written and other:
         return UNSUPPORTED
     taken, hole = _read_cycle(block, called, tables, constants, state)
-    if repeats_only and state.programmed[plane[2]] < hole.reference:
+    if as_written and state.programmed[plane[2]] < hole.reference:
         return UNSUPPORTED
     if hole.fault != 0 or hole.stops > MOST_STOPS:
         return UNSUPPORTED
@@ -181,9 +173,6 @@ def _go(
     if length == 0.0:
         return row
     copy(position[1], part)
-    travel = Travel(RAPID, state.registers[RAPID_FEED], STOP)
-    if speed > 0.0:
-        pace = pace_of(block.feed * speed, block, length, False, constants, state)
-        travel = Travel(FEED, pace, int(block.modal[CORNER]))
+    travel = travel_of(block, speed, length, False, constants, state)
     put_move(block, travel, LINE, state, rows, row)
     return row + 1

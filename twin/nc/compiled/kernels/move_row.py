@@ -8,9 +8,11 @@ from twin.compilation.compilable import inlined
 from twin.nc.bytecode.coordinates import turn_place
 from twin.nc.bytecode.registers import (
     ACCELERATION,
+    CORNER,
     CORNER_TOLERANCE,
     DECELERATION,
     FEED_MODE,
+    RAPID_FEED,
     SPINDLE,
     SPINDLE_TURNS,
     UNIT,
@@ -28,6 +30,7 @@ from twin.nc.path.paces import (
     feed_per_minute,
     finding_of_feed,
     needs_own_feed,
+    rapid_feed,
 )
 from twin.nc.path.rows import Rows
 
@@ -60,19 +63,34 @@ def has_pace(block: PlainBlock, constants: Constants, state: State) -> bool:
 
 
 @inlined
-def pace_of(
-    feed: float,
+def travel_of(
     block: PlainBlock,
+    speed: float,
     length: float,
     turning: bool,
     constants: Constants,
     state: State,
-) -> float:
-    """Pace of a move with a feed, where its block ``has_pace``; the other arguments are those of ``feed_per_minute``."""
+) -> Travel:
+    """How a move of a block goes, which ``has_pace`` where it has a feed.
+
+    Args:
+        block: The block.
+        speed: How many times as fast as F says; 0: rapidly.
+        length: How far the move goes [mm or deg].
+        turning: Only rotary axes move.
+        constants: What stays.
+        state: S is among its registers.
+    """
+    registers = state.registers
+    if speed == 0.0:
+        own = constants.own_rapid_feed
+        pace = registers[RAPID_FEED] if np.isnan(own) else rapid_feed(own, block.feed)
+        return Travel(RAPID, pace, STOP)
     mode, unit = int(block.modal[FEED_MODE]), block.modal[UNIT]
     otherwise = (constants.default_feed, constants.default_rotary_feed)
-    speed = state.registers[SPINDLE]
-    return feed_per_minute(feed, mode, length, turning, unit, speed, otherwise)
+    feed, spindle = block.feed * speed, registers[SPINDLE]
+    pace = feed_per_minute(feed, mode, length, turning, unit, spindle, otherwise)
+    return Travel(FEED, pace, int(block.modal[CORNER]))
 
 
 @inlined

@@ -13,9 +13,9 @@ from twin.nc.bytecode.registers import (
     ACTIVE,
     ARC,
     CODES,
-    CORNER,
     CYCLE,
     EARLY,
+    FEED_LINE,
     INTERPOLATION,
     NO_MOTION,
     OF_PLAIN_BLOCKS,
@@ -23,7 +23,6 @@ from twin.nc.bytecode.registers import (
     POLAR_ANGLE,
     POLAR_RADIUS,
     PROGRAMMED_FEED,
-    RAPID_FEED,
     RAPID_LINE,
     BlockTables,
     Machine,
@@ -39,25 +38,12 @@ from twin.nc.bytecode.token_kinds import (
     UNSUPPORTED,
 )
 from twin.nc.canonical import NO_BLOCK_NUMBER, FloatArray, IntArray
-from twin.nc.compiled.kernels import move_row
 from twin.nc.compiled.kernels.arc import emit_arc
 from twin.nc.compiled.kernels.cycle import drill
-from twin.nc.compiled.kernels.move_row import (
-    Travel,
-    has_pace,
-    pace_of,
-    put_move,
-    put_positions,
-)
+from twin.nc.compiled.kernels.move_row import has_pace, put_move, put_positions, travel_of
 from twin.nc.compiled.kernels.target import PlainBlock, put_target
 from twin.nc.path import move_columns
-from twin.nc.path.moves import (
-    LARGEST_COORDINATE,
-    SMALLEST_MOVE,
-    line_length,
-    only_turns,
-)
-from twin.nc.path.paces import rapid_feed
+from twin.nc.path.moves import LARGEST_COORDINATE, SMALLEST_MOVE, line_length, only_turns
 from twin.nc.path.rows import copy
 from twin.nc.text.arithmetic import is_whole
 from twin.nc.text.line_reader import LARGEST_LABEL
@@ -234,16 +220,9 @@ def _move(block: PlainBlock, machine: Machine, row: int) -> int:
         length = line_length(position[0], position[1])
     if length < SMALLEST_MOVE:
         return row if length >= 0.0 else UNSUPPORTED
-    pace = state.registers[RAPID_FEED]
-    own = constants.own_rapid_feed
-    if kind == RAPID_LINE and not np.isnan(own):
-        pace = rapid_feed(own, block.feed)
-    elif kind != RAPID_LINE:
-        turning = not is_arc and only_turns(position[0], position[1], constants.linear)
-        pace = pace_of(block.feed, block, length, turning, constants, state)
-    motion, corner = move_row.FEED, int(modal[CORNER])
-    if kind == RAPID_LINE:
-        motion, corner = move_row.RAPID, move_row.STOP
+    speed = 0.0 if kind == RAPID_LINE else 1.0
+    turning = kind == FEED_LINE and only_turns(position[0], position[1], constants.linear)
+    travel = travel_of(block, speed, length, turning, constants, state)
     shape = move_columns.ARC if is_arc else move_columns.LINE
-    put_move(block, Travel(motion, pace, corner), shape, state, rows, row)
+    put_move(block, travel, shape, state, rows, row)
     return row + 1

@@ -1,6 +1,7 @@
 """Where a block of the Fagor CNC 8070 goes: Cartesian, polar, or a coordinate and an angle."""
 
 import dataclasses
+import math
 from collections.abc import Iterable
 
 from twin.nc.bytecode import opcodes
@@ -38,7 +39,8 @@ class Goal:
 
 def forget_polar(control: Control) -> None:
     """The last polar values no longer hold: they are seen anew from where the tool stands."""
-    control.perform(write_forgotten_polar)
+    if not math.isnan(control.registers[POLAR_RADIUS]):  # both are, or none
+        control.perform(write_forgotten_polar)
 
 
 def write_forgotten_polar(assembler: Assembler) -> None:

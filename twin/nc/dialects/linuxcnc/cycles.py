@@ -14,8 +14,16 @@ from twin.nc.control.interpolation import CycleRule
 from twin.nc.dialects.linuxcnc.memory import memory_of
 from twin.nc.dialects.linuxcnc.motion import check_feed, target
 from twin.nc.dialects.linuxcnc.offsets import refuse_in_compensation
-from twin.nc.iso.drilling import drill, refuse_hole, repeats_of
+from twin.nc.iso.drilling import (
+    drill,
+    go_to_height,
+    refuse_hole,
+    repeats_of,
+    take_words,
+    turn_spindle,
+)
 from twin.nc.path.drilling_cycle import (
+    AXIS,
     BOTTOM,
     DWELL,
     PECK,
@@ -25,7 +33,6 @@ from twin.nc.path.drilling_cycle import (
     Pecking,
     Retract,
     Values,
-    forget,
 )
 from twin.nc.path.hole import Fault, hole_of
 from twin.nc.path.paces import FeedMode
@@ -73,22 +80,15 @@ class Kind(NamedTuple):
     work: Cycle | Work
 
     @property
-    def rule(self) -> CycleRule | None:
-        """Its rule, where both tiers have one."""
-        if not isinstance(self.work, Cycle):
-            return None
+    def rule(self) -> CycleRule:
+        """Its words, and what both tiers do at the hole where they have a rule for that."""
+        cycle = self.work if isinstance(self.work, Cycle) else _G81
         letters = {letter: place for letter, place in _PLACES.items() if letter in self.words}
-        return CycleRule(f"G{self.number}", self.work, {"R": REFERENCE, **letters})
+        return CycleRule(f"G{self.number}", cycle, {"R": REFERENCE, **letters})
 
 
 _NAME_PLACES = frozenset("XYZ@^")
-_PLACES = {"R": REFERENCE, "P": DWELL, "Q": PECK}
-
-
-def _height(control: Control, height: float, *, rapid: bool = True) -> None:
-    goal = list(control.programmed)
-    goal[control.modal.plane.axes[2]] = height
-    control.line_to(goal, rapid=rapid)
+_PLACES = {"P": DWELL, "Q": PECK}
 
 
 def _dwell(control: Control, hole: Drilling) -> None:
@@ -108,32 +108,22 @@ def _drill(control: Control, hole: Drilling, rule: CycleRule) -> None:
     drill(control, found, None)
 
 
-def _tap(control: Control, hole: Drilling, *, clockwise: bool) -> None:
-    code = "G84" if clockwise else "G74"
-    sense = memory_of(control).functions.get("spindle")
-    if not control.spindle_turns or sense != (3.0 if clockwise else 4.0):
-        wanted = "M3" if clockwise else "M4"
-        control.fail("spindle-needed", f"{code} needs the spindle turning by {wanted}")
-    speed = {} if control.spindle is None else {"S": control.spindle}
-    _height(control, hole.bottom, rapid=False)
-    control.function("M4" if clockwise else "M3", speed)
-    _dwell(control, hole)
-    _height(control, hole.clear, rapid=False)
-    control.function("M3" if clockwise else "M4", speed)
+def _tap(inwards: int, outwards: int) -> Work:
+    """Tap with a spindle that turns by these M functions."""
 
+    def work(control: Control, hole: Drilling) -> None:
+        turns = memory_of(control).functions.get("spindle") == inwards
+        if not control.spindle_turns or not turns:
+            code = "G84" if inwards == 3 else "G74"
+            message = f"{code} needs the spindle turning by M{inwards}"
+            control.fail("spindle-needed", message)
+        go_to_height(control, hole.bottom, rapid=False)
+        turn_spindle(control, f"M{outwards}")
+        _dwell(control, hole)
+        go_to_height(control, hole.clear, rapid=False)
+        turn_spindle(control, f"M{inwards}")
 
-def _tap_right(control: Control, hole: Drilling) -> None:
-    _tap(control, hole, clockwise=True)
-
-
-def _tap_left(control: Control, hole: Drilling) -> None:
-    _tap(control, hole, clockwise=False)
-
-
-def _ream_and_wait(control: Control, hole: Drilling) -> None:
-    _height(control, hole.bottom, rapid=False)
-    _dwell(control, hole)
-    _height(control, hole.clear, rapid=False)
+    return work
 
 
 def _start_again(control: Control, code: str) -> Callable[[], None]:
@@ -141,16 +131,15 @@ def _start_again(control: Control, code: str) -> Callable[[], None]:
     if not control.spindle_turns:
         control.fail("spindle-needed", f"{code} needs the spindle turning", hint="write M3 before")
     sense = memory_of(control).functions.get("spindle", 3.0)
-    speed = {} if control.spindle is None else {"S": control.spindle}
-    return lambda: control.function(f"M{int(sense)}", speed)
+    return lambda: turn_spindle(control, f"M{int(sense)}")
 
 
 def _bore(control: Control, hole: Drilling) -> None:
     start = _start_again(control, "G86")
-    _height(control, hole.bottom, rapid=False)
+    go_to_height(control, hole.bottom, rapid=False)
     _dwell(control, hole)
     control.function("M5", {})
-    _height(control, hole.clear)
+    go_to_height(control, hole.clear)
     start()
 
 
@@ -163,14 +152,14 @@ def _bore_back(control: Control, hole: Drilling) -> None:
     beside[second] += hole.back_boring[1]
     control.line_to(beside, rapid=True)
     control.function("M5", {})
-    _height(control, hole.bottom)
+    go_to_height(control, hole.bottom)
     _across(control, over)
     start()
-    _height(control, hole.back_boring[2], rapid=False)
-    _height(control, hole.bottom, rapid=False)
+    go_to_height(control, hole.back_boring[2], rapid=False)
+    go_to_height(control, hole.bottom, rapid=False)
     control.function("M5", {})
     _across(control, beside)
-    _height(control, hole.clear)
+    go_to_height(control, hole.clear)
     _across(control, over)
     start()
 
@@ -190,33 +179,26 @@ def _take_words(control: Control, kind: Kind) -> None:
     Raises:
         ProgramError: One is missing.
     """
-    state, memory, plane = control.cycle_state, memory_of(control), control.modal.plane
-    across = control.settings.axes.names[plane.axes[2]]
+    state, memory, axis = control.cycle_state, memory_of(control), control.modal.plane.axes[2]
     if math.isnan(state[START]):
         memory.cycle = 0
-        forget(state)
-        state[START], state[1] = control.programmed[plane.axes[2]], float(plane.axes[2])
-    elif state[1] != plane.axes[2]:
+    elif state[AXIS] != axis:
         message = f"G{kind.number} was called in another plane"
         control.fail("cycle-plane", message, hint="end it by G80 before the plane changes")
-    words = {letter: control.take(letter) for letter in ("R", across, *kind.words)}
     if memory.cycle != kind.number:
-        missing = [letter for letter in ("R", across, *kind.needed) if words[letter] is None]
+        needed = ("R", control.settings.axes.names[axis], *kind.needed)
+        missing = [letter for letter in needed if letter not in control.words]
         if missing:
             control.fail("cycle-word", f"G{kind.number} needs {' and '.join(missing)}")
         memory.back_boring = (0.0, 0.0, 0.0)
-    for letter, word in words.items():
-        if word is not None and letter == "P" and control.number(word) < 0.0:
-            control.fail("dwell", "a dwell cannot be negative", word)
-        if word is not None and letter in _PLACES:
-            in_mm = letter != "P"
-            state[_PLACES[letter]] = control.length(word) if in_mm else control.number(word)
-    depth = words[across]
-    if depth is not None:
-        state[BOTTOM] = control.length(depth)
+    dwell = control.words.get("P") if "P" in kind.words else None
+    if dwell is not None and control.number(dwell) < 0.0:
+        control.fail("dwell", "a dwell cannot be negative", dwell)
+    take_words(control, kind.rule, calls=True)
+    take_words(control, kind.rule)
     if kind.words == "IJK":
         memory.back_boring = tuple(
-            old if (word := words[letter]) is None else control.length(word)
+            old if (word := control.take(letter)) is None else control.length(word)
             for letter, old in zip("IJK", memory.back_boring, strict=True)
         )
     memory.cycle = kind.number
@@ -250,7 +232,7 @@ def _refuse_rotary(control: Control) -> None:
 
 
 def _drill_holes(control: Control, kind: Kind, repeats: int) -> None:
-    state, memory, rule = control.cycle_state, memory_of(control), kind.rule
+    state, memory = control.cycle_state, memory_of(control)
     axis, incremental = control.modal.plane.axes[2], control.modal.incremental
     words = {letter: control.words[letter] for letter in (*"XYZ@^",) if letter in control.words}
     reference = state[REFERENCE] + (state[START] if incremental else 0.0)
@@ -260,7 +242,7 @@ def _drill_holes(control: Control, kind: Kind, repeats: int) -> None:
         control.fail("cycle-depth", message)
     start = state[START]
     if start < reference:
-        _height(control, reference)
+        go_to_height(control, reference)
         start = reference
     clear = reference if control.modal.return_to_reference else start
     i, j, k = memory.back_boring
@@ -274,10 +256,10 @@ def _drill_holes(control: Control, kind: Kind, repeats: int) -> None:
         over = target(control) if number == 0 or incremental else list(control.programmed)
         over[axis] = current if number == 0 else clear
         control.line_to(over, rapid=True)
-        _height(control, reference)
-        if rule is not None:
-            _drill(control, hole, rule)
-        elif not isinstance(kind.work, Cycle):
+        go_to_height(control, reference)
+        if isinstance(kind.work, Cycle):
+            _drill(control, hole, kind.rule)
+        else:
             kind.work(control, hole)
 
 
@@ -287,7 +269,7 @@ _G81 = Cycle(
     needed=1 << REFERENCE | 1 << BOTTOM,
     dwells=False,
     clearance=CLEARANCE,
-    repeats_only=True,
+    as_written=True,
 )
 _PECKING = _G81._replace(needed=_G81.needed | 1 << PECK, pecking=int(Pecking.TO_BOTTOM))
 
@@ -299,20 +281,26 @@ KINDS = (
         "Q",
         _PECKING._replace(lift=CLEARANCE),
     ),
-    Kind(74, "tapping, left-hand", "P", "", _tap_left),
+    Kind(74, "tapping, left-hand", "P", "", _tap(4, 3)),
     Kind(81, "drilling", "", "", _G81),
     Kind(82, "drilling with P seconds at the bottom", "P", "P", _G81._replace(dwells=True)),
     Kind(83, "drilling in pecks of Q", "Q", "Q", _PECKING),
-    Kind(84, "tapping, right-hand", "P", "", _tap_right),
+    Kind(84, "tapping, right-hand", "P", "", _tap(3, 4)),
     Kind(85, "reaming, out with the feed", "", "", _G81._replace(retract=int(Retract.FEED))),
     Kind(86, "boring, out with the spindle stopped", "P", "P", _bore),
     Kind(87, "boring from behind: I J beside the hole, K its top", "IJK", "IJK", _bore_back),
-    Kind(89, "reaming with P seconds at the bottom", "P", "P", _ream_and_wait),
+    Kind(
+        89,
+        "reaming with P seconds at the bottom",
+        "P",
+        "P",
+        _G81._replace(dwells=True, retract=int(Retract.FEED_ALL)),
+    ),
 )
 
 
 def _code(kind: Kind) -> GCode:
-    mode = Interpolation(_perform(kind), rule=kind.rule)
+    mode = Interpolation(_perform(kind), rule=kind.rule if isinstance(kind.work, Cycle) else None)
     return GCode(
         meaning=kind.meaning,
         group="motion",

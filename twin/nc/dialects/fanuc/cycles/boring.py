@@ -12,15 +12,17 @@ from twin.nc.control.interpolation import CycleRule
 from twin.nc.dialects.fanuc.memory import Variant, memory_of
 from twin.nc.dialects.fanuc.motion import holes_of, target
 from twin.nc.dialects.fanuc.transformations import refuse_scaled_pecks
-from twin.nc.iso.drilling import cycle_code, take_words
-from twin.nc.path.drilling_cycle import BOTTOM, DWELL, PECK, REFERENCE, START, Cycle, either
+from twin.nc.iso.drilling import cycle_code, go_to_height, refuse_hole, take_words, turn_spindle
+from twin.nc.path.drilling_cycle import BOTTOM, DWELL, PECK, REFERENCE, START, Cycle
+from twin.nc.path.hole import Fault, hole_of
 
 _WORDS = {"R": REFERENCE, "P": DWELL, "Q": PECK}
+_NEEDED = 1 << REFERENCE | 1 << BOTTOM | 1 << PECK
 
 
 def boring_code(number: int, meaning: str, variant: Variant) -> GCode:
     """The code that calls G76 or G87."""
-    cycle = Cycle(lasting=True, across=BOTTOM, needed=0)
+    cycle = Cycle(lasting=True, across=BOTTOM, needed=_NEEDED)
     rule = CycleRule(f"G{number}", cycle, _WORDS)
     code = cycle_code(rule, f"{meaning}: X Y Z R P Q", holes_of(variant))
     begin = code.action
@@ -36,22 +38,18 @@ def boring_code(number: int, meaning: str, variant: Variant) -> GCode:
 
     def perform(control: Control) -> None:
         take_words(control, rule)
-        _bore(control, rule.name, target(control), back=number == 87)
+        _bore(control, rule, target(control), back=number == 87)
 
     return dataclasses.replace(code, sets={"cycle": Interpolation(perform)}, action=call)
 
 
-def _bore(control: Control, name: str, hole: list[float], *, back: bool) -> None:
+def _bore(control: Control, rule: CycleRule, hole: list[float], *, back: bool) -> None:
     """Bore at a programmed position; ``back``: from below, R lies under the part."""
-    values, axis = control.cycle_state, control.modal.plane.axes[2]
-    missing = [
-        letter
-        for letter, value in (("R", REFERENCE), ("Z", BOTTOM), ("Q", PECK))
-        if values[value] != values[value]
-    ]
-    if missing:
-        control.fail("cycle-word", f"{name} needs {' and '.join(missing)}")
-    reference, bottom, shift = values[REFERENCE], values[BOTTOM], values[PECK]
+    values, name, axis = control.cycle_state, rule.name, control.modal.plane.axes[2]
+    found = hole_of(rule.cycle, values, axis, control.modal.return_to_reference)
+    if found.fault in (Fault.MISSING, Fault.PLANE):
+        refuse_hole(control, rule, found)
+    reference, bottom, shift = found.reference, found.bottom, values[PECK]
     if shift < 0.0:
         control.fail("cycle-depth", f"{name} needs a shift Q not below 0")
     upwards = bottom > reference
@@ -63,26 +61,23 @@ def _bore(control: Control, name: str, hole: list[float], *, back: bool) -> None
         message = "G87 returns to the height of its call: its plane R lies under the part"
         control.fail("cycle-depth", message, hint="write G98")
     over = values[START] if back else max(control.programmed[axis], reference)
-    _rise(control, axis, over, rapid=True)
+    go_to_height(control, over)
     hole[axis] = over
     control.line_to(hole, rapid=True)
-    turning = {} if control.spindle is None else {"S": control.spindle}
     if back:
         _orient(control, shift)
-        _rise(control, axis, reference, rapid=True)
+        go_to_height(control, reference)
         _shift(control, -shift)
-        control.function("M3", turning)
+        turn_spindle(control, "M3")
     else:
-        _rise(control, axis, reference, rapid=True)
-    _rise(control, axis, bottom, rapid=False)
-    seconds = either(values[DWELL], 0.0)
-    if seconds > 0.0:
-        control.dwell(seconds)
+        go_to_height(control, reference)
+    go_to_height(control, bottom, rapid=False)
+    if found.dwell > 0.0:
+        control.dwell(found.dwell)
     _orient(control, shift)
-    to_start = back or not control.modal.return_to_reference
-    _rise(control, axis, max(values[START], reference) if to_start else reference, rapid=True)
+    go_to_height(control, found.back)
     _shift(control, -shift)
-    control.function("M3", turning)
+    turn_spindle(control, "M3")
 
 
 def _orient(control: Control, shift: float) -> None:
@@ -94,9 +89,3 @@ def _shift(control: Control, way: float) -> None:
     there = list(control.programmed)
     there[control.modal.plane.axes[0]] += way
     control.line_to(there, rapid=True)
-
-
-def _rise(control: Control, axis: int, height: float, *, rapid: bool) -> None:
-    there = list(control.programmed)
-    there[axis] = height
-    control.line_to(there, rapid=rapid)
