@@ -4,6 +4,7 @@ import dataclasses
 import random
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from tests.nc.fuzz import REAL, mutated
@@ -297,3 +298,32 @@ def test_a_process_that_has_run_the_kernels_takes_them_early() -> None:
     assert moves == 200
     assert next_run.compiled_after is not None
     assert next_run.compiled_after <= interpreter.AT_HAND_FROM + 1
+
+
+RESTORED = """N10 G16 I1 K1
+N20 STEP{2}
+N30 G3 I10 K-10 T360 F10
+N40 G17 G90 G1 X5 Y5
+N50 G36 O$i$ D3
+N60 STEP{1}
+N70 G1 X1 Y2 E50
+N80 G37 O$i$ D-1
+N90 G20 L60 K$i$>0
+N95 M30
+SUBPROGRAM STEP{#x : LREAL} RESTORE
+N1 G17 G91 G1 X#x Y1 F10
+N2 G1 X#x Y2
+N3 G98 G2 X3 Y0 I1 J1
+N4 G18
+RETURN
+END_SUBPROGRAM
+"""
+"""Subprograms that end what is in force, the first called in a plane that the compiled tier does not know."""
+
+
+@pytest.mark.parametrize("speed", [Speed.COLD, Speed.HOT], ids=lambda speed: speed.value)
+def test_what_is_in_force_is_restored_alike(speed: Speed) -> None:
+    made = assert_same(source_from_text(RESTORED), "codesys", speed=speed)
+    assert made.error is None
+    turns = abs(made.moves.sweep) == 360.0
+    assert made.moves.normal[turns] == pytest.approx(np.array([[0.5**0.5, 0.0, 0.5**0.5]]))

@@ -107,8 +107,9 @@ class ControlState:
         registers: Those of its registers, one by one.
         constants: What stays, for both tiers.
         frame: From programmed to part coordinates, on the columns of the state.
-        programmed: Where it stands, as its screen shows it, shape (k,) [mm or deg].
-        part: Where it stands in part coordinates, shape (k,) [mm or deg].
+        programmed: Where it stands, as its screen shows it, shape (k,) [mm or deg]; a list, which the columns
+            get for a run or an instruction: to work on columns costs a plain block 8 % of its time here.
+        part: Where it stands in part coordinates, likewise, shape (k,) [mm or deg].
         tools: The tools in use.
         path: Where moves and events go.
         axis_letters: Addresses that name axes.
