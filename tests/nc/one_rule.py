@@ -187,6 +187,18 @@ CHANGES = (
         "bytecode/flow", "stack[top - 1] + width", "stack[top - 1] - width", "fagor8070/rules/flow"
     ),
     Change(
+        "bytecode/instructions",
+        "going_to(instruction.operand, to)",
+        "going_to(to.behind, to)",
+        "fagor8070/rules/flow",
+    ),
+    Change(
+        "control/block_order",
+        "steps.move(instead)",
+        "steps.move(None)",
+        "gost/codes/G04",
+    ),
+    Change(
         "bytecode/variables",
         "memory.local[depth, ~slot] = value",
         "memory.local[depth, ~slot] = value + 1.0",

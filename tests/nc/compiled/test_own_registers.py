@@ -118,6 +118,7 @@ def test_registers_of_a_dialect_act_alike_at_both_tiers_without_the_interpreter(
 @pytest.mark.parametrize("compiled_from", [0, 10**9])
 def test_a_check_that_does_not_hold_says_so(compiled_from):
     _, _, error = run("P1=0\nG900 K[P1]\nM30\n", compiled_from, Speed.COLD)
+    assert error is not None
     assert (error.code, error.line, error.message) == (
         "feed-range",
         2,

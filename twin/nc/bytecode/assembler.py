@@ -4,7 +4,6 @@ An assembler of the compiled tier writes them down; that of the interpreter tier
 """
 
 import abc
-import math
 from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
@@ -95,8 +94,7 @@ class Assembler(abc.ABC):
 
     def empty_register(self, place: int) -> None:
         """A register has no value from here on."""
-        self.constant(math.nan)
-        self.set_register(place)
+        self.emit(opcodes.EMPTY_REGISTER, place)
 
     @abc.abstractmethod
     def check(

@@ -78,45 +78,52 @@ def run_effect(
     """Run one instruction.
 
     Args:
-        instruction: One from ``REGISTER`` on.
+        instruction: One from ``FUNCTION`` on.
         stack: Values.
         top: How many there are.
         block: Whose it is.
         on: What it runs on.
 
     Returns:
-        How many values are left, or ``BAILOUT`` where a check does not hold.
+        How many values are left.
     """
-    opcode = instruction.opcode
-    if opcode <= opcodes.TO_MILLIMETRES:
-        return _use_register(instruction, stack, top, block, on)
+    opcode, operand = instruction.opcode, instruction.operand
     if opcode == opcodes.FUNCTION:
-        report_function(instruction.operand, block, on)
+        report_function(operand, block, on)
     elif opcode == opcodes.REPORT:
         top -= 1
-        report(on.rows, on.state, block.made, block.line, instruction.operand, 0, stack[top])
-    elif opcode <= opcodes.TOOL_RADIUS:
-        return _use_tool(instruction, stack, top, on)
-    elif opcode <= opcodes.TRANSFORM:
-        return _shift_coordinates(instruction, stack, top, on)
+        report(on.rows, on.state, block.made, block.line, operand, 0, stack[top])
+    elif opcode == opcodes.TOOL_RADIUS:
+        tool = _tool(on.constants, on.state.registers[IN_SPINDLE])
+        stack[top] = on.constants.radii[tool]
+        top += 1
+    elif opcode == opcodes.COORDINATE:
+        stack[top] = _in_plane(on.constants, on.state)[operand]
+        top += 1
     else:
-        return _choose_plane(instruction, stack, top, on)
+        top = _change_frame(instruction, stack, top, on)
     return top
 
 
-@compilable
-def _use_register(
+@inlined
+def use_register(
     instruction: Instruction, stack: Stack, top: int, block: BlockPlace, on: Affected
 ) -> int:
-    """Registers, and what must hold of a value; as ``run_effect``."""
+    """Run an instruction of registers, one from ``REGISTER`` to ``CHECK``; as ``run_effect``.
+
+    Returns:
+        How many values are left, or ``BAILOUT`` where a check does not hold.
+    """
     opcode, operand = instruction.opcode, instruction.operand
-    registers = on.state.registers
     if opcode == opcodes.REGISTER:
-        stack[top] = registers[operand]
+        stack[top] = on.state.registers[operand]
         return top + 1
     if opcode == opcodes.SET_REGISTER:
-        registers[operand] = stack[top - 1]
+        on.state.registers[operand] = stack[top - 1]
         return top - 1
+    if opcode == opcodes.EMPTY_REGISTER:
+        on.state.registers[operand] = np.nan
+        return top
     if opcode == opcodes.TO_MILLIMETRES:
         stack[top - 1] *= on.state.modal[UNIT]
         return top
@@ -124,7 +131,7 @@ def _use_register(
     return top if _holds(instruction, value, block, on.constants) else BAILOUT
 
 
-@compilable
+@inlined
 def _holds(instruction: Instruction, value: float, block: BlockPlace, constants: Constants) -> bool:
     """Whether a check holds of a value."""
     check, bound = instruction.operand, instruction.immediate
@@ -167,26 +174,17 @@ def report_act(act: int, amount: float, block: BlockPlace, on: Affected) -> None
 
 
 @compilable
-def _use_tool(instruction: Instruction, stack: Stack, top: int, on: Affected) -> int:
-    """The tool in use, its length and its radius; as ``run_effect``."""
-    state, registers = on.state, on.state.registers
-    tool = _tool(on.constants, registers[IN_SPINDLE])
-    if instruction.opcode == opcodes.TOOL_RADIUS:
-        stack[top] = on.constants.radii[tool]
-        return top + 1
-    state.shifts[_LENGTH, :] = 0.0
-    if registers[OFFSET_ON] != 0.0:
-        state.shifts[_LENGTH, 2] = on.constants.longer[tool]
-    reframe(state)
-    return top
-
-
-@compilable
-def _shift_coordinates(instruction: Instruction, stack: Stack, top: int, on: Affected) -> int:
-    """Shifts, other coordinates for the present position, mirror, scale and rotation; as ``run_effect``."""
+def _change_frame(instruction: Instruction, stack: Stack, top: int, on: Affected) -> int:
+    """Lengths of tools, shifts, mirror, scale and rotation, and the plane; as ``run_effect``."""
     opcode, operand = instruction.opcode, instruction.operand
-    state = on.state
-    if opcode == opcodes.SHIFT:
+    state, registers = on.state, on.state.registers
+    if opcode == opcodes.TOOL_LENGTH:
+        state.shifts[_LENGTH, :] = 0.0
+        if registers[OFFSET_ON] != 0.0:
+            tool = _tool(on.constants, registers[IN_SPINDLE])
+            state.shifts[_LENGTH, 2] = on.constants.longer[tool]
+        reframe(state)
+    elif opcode == opcodes.SHIFT:
         top -= len(state.part)
         for axis in range(len(state.part)):
             state.shifts[operand, axis] = stack[top + axis]
@@ -205,21 +203,12 @@ def _shift_coordinates(instruction: Instruction, stack: Stack, top: int, on: Aff
             state.shifts[operand, axis] = shift + state.part[axis] - here[axis]
             state.programmed[axis] = state.target[axis]
         add_up(state.shifts, state.total)
-    else:
+    elif opcode == opcodes.TRANSFORM:
         transform(on.constants, state)
-    return top
-
-
-@compilable
-def _choose_plane(instruction: Instruction, stack: Stack, top: int, on: Affected) -> int:
-    """The plane, and where the control stands in it; as ``run_effect``."""
-    state, registers = on.state, on.state.registers
-    if instruction.opcode == opcodes.COORDINATE:
-        stack[top] = _in_plane(on.constants, state)[instruction.operand]
-        return top + 1
-    state.modal[PLANE] = instruction.operand
-    registers[POLAR_ABSCISSA] = registers[POLAR_ORDINATE] = 0.0
-    registers[POLAR_RADIUS] = registers[POLAR_ANGLE] = np.nan
+    else:
+        state.modal[PLANE] = operand
+        registers[POLAR_ABSCISSA] = registers[POLAR_ORDINATE] = 0.0
+        registers[POLAR_RADIUS] = registers[POLAR_ANGLE] = np.nan
     return top
 
 

@@ -77,7 +77,7 @@ class Operation(NamedTuple):
     """One instruction of an expression.
 
     Attributes:
-        opcode: One from ``CONSTANT`` to ``TERNARY``.
+        opcode: One from ``LOAD`` to ``DEFINED``, or from ``CONSTANT`` to ``TERNARY``.
         operand: Number of a function.
         immediate: A constant; of a variable the value where it has none, NaN: none either.
         name: Of the variable, of the operator or of the function.

@@ -6,7 +6,7 @@ import numpy as np
 
 from twin.compilation.compilable import inlined
 from twin.nc.bytecode import opcodes
-from twin.nc.bytecode.bytecode import PART_BITS, Instruction
+from twin.nc.bytecode.bytecode import Instruction
 from twin.nc.bytecode.frames import (
     AGAIN,
     BACK,
@@ -17,11 +17,9 @@ from twin.nc.bytecode.frames import (
     FIRST,
     FURTHEST,
     LAST,
-    LINE,
     NO_LOCATION,
     NOTHING_RESTORED,
     OWNS_SCOPE,
-    PART,
     RESTORES,
     VariableStore,
     go_to,
@@ -60,10 +58,8 @@ class Transfer(NamedTuple):
 
 
 @inlined
-def straight_on(progress: IntArray, ends_line: bool) -> Transfer:
-    """To the block behind the one that comes next."""
-    line, part = progress[LINE], progress[PART]
-    behind = (line + 1) << PART_BITS if ends_line else (line << PART_BITS | part) + 1
+def straight_on(progress: IntArray, behind: int) -> Transfer:
+    """To the block behind, which begins at this location."""
     return Transfer(
         behind, behind, progress[DEPTH], progress[CALLS], NO_LOCATION, 0, NOTHING_RESTORED, False
     )

@@ -1,11 +1,11 @@
-"""Runs the instructions that both tiers run alike: all but those of variables, words and moves."""
+"""Runs the instructions that both tiers run alike: those from ``CONSTANT`` on."""
 
 from typing import NamedTuple
 
 from twin.compilation.compilable import inlined
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.bytecode import Instruction
-from twin.nc.bytecode.effects import Affected, BlockPlace, run_effect
+from twin.nc.bytecode.effects import Affected, BlockPlace, run_effect, use_register
 from twin.nc.bytecode.expressions import compute_value
 from twin.nc.bytecode.flow import Stack, Transfer, count_loop, going_to, jumps, transfer
 from twin.nc.bytecode.frames import VariableStore
@@ -36,8 +36,7 @@ def run_instruction(
     """Run one instruction, by its kind.
 
     Args:
-        instruction: One that computes of values on the stack, or one from ``JUMP`` on but
-            ``ACTIVATE`` and ``NO_PECKS``.
+        instruction: One from ``CONSTANT`` on.
         stack: Values.
         top: How many there are.
         to: Where the block leads so far.
@@ -47,15 +46,17 @@ def run_instruction(
         How many values there are then, below 0 where something is wrong; and where the block leads.
     """
     opcode, memory = instruction.opcode, around.memory
-    if opcode >= opcodes.REGISTER:
+    if opcode <= opcodes.DROP:
+        return compute_value(instruction, stack, top), to
+    if opcode >= opcodes.FUNCTION:
         return run_effect(instruction, stack, top, around.block, around.on), to
+    if opcode >= opcodes.REGISTER:
+        return use_register(instruction, stack, top, around.block, around.on), to
     if opcode >= opcodes.CHECK_CALL:
         known, to = transfer(instruction, stack[top - 1], to, around.calls, memory.local)
         return top if known else BAILOUT, to
     if opcode >= opcodes.BEGIN_FOR:
         return count_loop(instruction, stack, top, to.depth, memory), to
-    if opcode >= opcodes.JUMP:
-        if jumps(instruction, stack, top):
-            to = going_to(instruction.operand, to)
-        return top if opcode == opcodes.JUMP else top - 1, to
-    return compute_value(instruction, stack, top), to
+    if jumps(instruction, stack, top):
+        to = going_to(instruction.operand, to)
+    return top if opcode == opcodes.JUMP else top - 1, to

@@ -6,8 +6,6 @@ from collections.abc import Callable
 import numpy as np
 
 from twin.compilation.compilable import compilable, inlined
-from twin.nc.bytecode import opcodes
-from twin.nc.bytecode.bytecode import Instruction
 from twin.nc.bytecode.frames import DEPTH, STORES, Scratch, VariableStore
 from twin.nc.canonical import FloatArray, IntArray
 
@@ -49,43 +47,6 @@ def store(memory: VariableStore, depth: int, slot: int, value: float) -> None:
         memory.common[slot] = value
     else:
         memory.local[depth, ~slot] = value
-
-
-@inlined
-def assign(
-    instruction: Instruction,
-    top: int,
-    depth: int,
-    numbered: IntArray,
-    memory: VariableStore,
-    scratch: Scratch,
-) -> bool:
-    """Run one of the instructions that store the topmost value.
-
-    Args:
-        instruction: One from ``STORE`` to ``STORE_NUMBERED``.
-        top: How many values there are.
-        depth: Row of the local variables.
-        numbered: Slots of the variables that have a number.
-        memory: The variables.
-        scratch: The values; takes what the variable held before.
-
-    Returns:
-        Whether there is such a variable.
-    """
-    slot = instruction.operand
-    if instruction.opcode == opcodes.STORE_NUMBERED:
-        slot = slot_of_number(numbered, scratch.stack[top - 2])
-        if slot == NO_SLOT:
-            return False
-    before = own_value(memory, depth, slot)
-    if instruction.opcode == opcodes.STORE_DECLARED and np.isnan(before):
-        return False
-    stores = scratch.counts[STORES]
-    scratch.slots[stores], scratch.before[stores] = slot, before
-    scratch.counts[STORES] = stores + 1
-    store(memory, depth, slot, scratch.stack[top - 1])
-    return True
 
 
 @inlined

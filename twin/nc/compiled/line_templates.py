@@ -14,12 +14,19 @@ from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.bytecode import BytecodeTable
 from twin.nc.bytecode.token_kinds import CODE, FUNCTION
 from twin.nc.canonical import FloatArray, IntArray
+from twin.nc.text.arithmetic import is_whole
 from twin.nc.text.expressions import LARGEST_NUMBER
-from twin.nc.text.plain_word import BLANKS_BETWEEN, NUMBER, SIGNED_NUMBER, SIGNED_POINTED_NUMBER
+from twin.nc.text.line_reader import LARGEST_LABEL
+from twin.nc.text.plain_word import (
+    BLANKS,
+    BLANKS_BETWEEN,
+    NUMBER,
+    SIGNED_NUMBER,
+    SIGNED_POINTED_NUMBER,
+)
 
-_LABEL = re.compile(r"[ \t]*N[ \t]*([0-9]{1,9})(?=[ \t])", re.IGNORECASE)
-_SHARED = (opcodes.SNAPSHOT, opcodes.SET_REGISTER)
-"""Opcodes of lines that may share a template, besides those that compute and move."""
+_SHARED = (*range(opcodes.CONSTANT, opcodes.JUMP), opcodes.SNAPSHOT, opcodes.SET_REGISTER)
+"""Opcodes of lines that may share a template, besides those of variables, words and moves."""
 _MOST_TEMPLATES = 1000
 """Templates that are kept: a program that has more gains nothing by them."""
 
@@ -47,36 +54,34 @@ class LineTemplates:
             letters: Those of words whose value does not change what the block is.
             pointed: Those of words whose number does so where it has no decimal point.
         """
-        # A word with its number, or a number that belongs to no name.
+        # The block's number, a word with its number, or a number that belongs to no name.
+        label = rf"\A{BLANKS}N{BLANKS_BETWEEN}{NUMBER}"
         plain, others = "".join(letters - pointed), "".join(letters & pointed)
         word = [rf"[{plain}]{BLANKS_BETWEEN}{SIGNED_NUMBER}"] if plain else []
         if others:
             word.append(rf"[{others}]{BLANKS_BETWEEN}{SIGNED_POINTED_NUMBER}")
         self._number = re.compile(
-            rf"((?<![\w.$#])(?:{'|'.join(word)})|(?<![\w.$#]){NUMBER})", re.IGNORECASE
+            rf"({label}|(?<![\w.$#])(?:{'|'.join([*word, NUMBER])}))", re.IGNORECASE
         )
         self._templates: dict[tuple[str, ...], Template] = {}
 
     def split(self, text: str) -> tuple[tuple[str, ...], list[float]]:
         """A line without its numbers, and these."""
-        label = _LABEL.match(text)
-        pieces = self._number.split(text if label is None else text[label.end() :])
-        words = pieces[1::2]
-        numbers = [0.0 if label is None else float(label[1])]
-        for at, word in enumerate(words):
-            letter = word[0] if word[0].isalpha() else ""
-            numbers.append(float(word[1:] if letter else word))
+        pieces, numbers = self._number.split(text), []
+        for at, word in enumerate(pieces[1::2]):
+            written = word.strip()
+            letter = written[0] if written[0].isalpha() else ""
+            numbers.append(float(written[len(letter) :]))
             pieces[2 * at + 1] = letter
-        if label is not None:
-            return ("N", *pieces), numbers
-        return tuple(pieces), numbers[1:]
+        return tuple(pieces), numbers
 
     def find(self, key: tuple[str, ...], numbers: list[float]) -> Template | None:
         """The template for a line that was split, or None."""
         template = self._templates.get(key)
         if template is None or any(not abs(number) <= LARGEST_NUMBER for number in numbers):
             return None
-        return template
+        labelled = key[1:2] == ("N",)
+        return None if labelled and not is_whole(numbers[0], LARGEST_LABEL) else template
 
     def keep(
         self,

@@ -49,14 +49,15 @@ class BlockCompiler:
         """Sort the words of a block, before those that are computed have a value.
 
         Raises:
-            UnsupportedError: A code is computed, or no whole number.
+            UnsupportedError: A code is computed.
             ProgramError: Some of them cannot stand in one block.
         """
-        words = list(words)
-        for word in words:
+
+        def evaluate(_value: Expression, word: Word) -> None:
             if word.address in ("G", "M"):
-                _number(word)
-        return self._sort(words, lambda _value, _word: None)
+                raise UnsupportedError
+
+        return self._sort(list(words), evaluate)
 
     def block(self, block: Block) -> None:
         """Compile a block.
@@ -165,22 +166,15 @@ class BlockCompiler:
 
     def _acts(self, words: list[Word]) -> bool:
         """Whether the block does more than its plain words."""
-        functions = 0
-        for word in words:
-            if word.address in self.acting:
-                return True
-            if isinstance(word.value, Expression):
-                continue
-            if word.address == "G":
-                code = self.vocabulary.g.get(word.value)
-                if code is not None and code.writer is not None:
-                    return True
-            elif word.address == "M":
-                function = self.vocabulary.m.get(int(word.value))
-                functions += 1
-                if function is not None and function.writer is not None:
-                    return True
-        return functions > 1
+        values = (word.value for word in words if word.address == "M")
+        functions = [value for value in values if isinstance(value, float)]
+        known = (self.vocabulary.m.get(int(number)) for number in functions)
+        codes = (*self.known_codes(words), *filter(None, known))
+        return (
+            len(functions) > 1
+            or any(word.address in self.acting for word in words)
+            or any(code.writer is not None for code in codes)
+        )
 
 
 def _number(word: Word) -> int:

@@ -11,14 +11,8 @@ from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler, Finding, Otherwise, Target, found
 from twin.nc.bytecode.bytecode import MOST_VALUES, Instruction, number_of_location
 from twin.nc.bytecode.effects import BlockPlace
-from twin.nc.bytecode.flow import Transfer, keep_codes
-from twin.nc.bytecode.frames import (
-    CALLS,
-    DEPTH,
-    NO_LOCATION,
-    NOTHING_RESTORED,
-    go_to,
-)
+from twin.nc.bytecode.flow import keep_codes, straight_on
+from twin.nc.bytecode.frames import CALLS, DEPTH, go_to
 from twin.nc.bytecode.instructions import Surroundings, run_instruction
 from twin.nc.bytecode.variables import store
 from twin.nc.control.compensation import compensate
@@ -72,22 +66,12 @@ class Performer(Assembler):
 
     def __init__(self, control: Control, span: tuple[int, int]) -> None:
         counter = control.program_counter
-        here, progress = number_of_location(counter.location), counter.progress
         self._span = span
         self._control = control
         self._stack = [0.0] * MOST_VALUES
         self._top = 0
         self._word: Word | None = None
-        self._to = Transfer(
-            here,
-            here,
-            int(progress[DEPTH]),
-            int(progress[CALLS]),
-            NO_LOCATION,
-            0,
-            NOTHING_RESTORED,
-            False,
-        )
+        self._to = straight_on(counter.progress, number_of_location(counter.location))
 
     def _slot(self, name: str) -> int:
         return self._control.variables.slot(name)
@@ -165,11 +149,7 @@ class Performer(Assembler):
             compensate(self._control, float(operand), float(self._pop()))
         elif opcode == opcodes.END_COMPENSATION:
             self._control.path.end_compensation()
-        elif opcode == opcodes.PLANE and self._control.path.compensates_in(
-            self._control.part_plane()
-        ):
-            return  # it is in force already
-        elif opcode in (opcodes.REGISTER, opcodes.SET_REGISTER):
+        elif opcodes.REGISTER <= opcode <= opcodes.EMPTY_REGISTER:
             self._add(opcode, operand)
         else:
             self._control.begin_effect()

@@ -1,6 +1,7 @@
 """Arc blocks: from end point and radius or centre to centre and sweep."""
 
 import dataclasses
+import functools
 import math
 from collections.abc import Callable
 from typing import NoReturn
@@ -53,7 +54,11 @@ def take_center(control: Control, letters: str = "IJK") -> CenterWords:
 
 def plane_center_letters(control: Control) -> str:
     """The centre words of the working plane: I along X, J along Y, K along Z."""
-    normal = control.modal.plane.normal
+    return _letters_across(control.modal.plane.normal)
+
+
+@functools.lru_cache
+def _letters_across(normal: Vector) -> str:
     return "".join(letter for letter, along in zip("IJK", normal, strict=True) if abs(along) < 0.5)
 
 

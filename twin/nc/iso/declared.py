@@ -1,15 +1,14 @@
 """G codes as the tables of dialects declare them, a line each: by the manual of their control."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Unpack
 
 from twin.nc.bytecode import opcodes
-from twin.nc.bytecode.assembler import Assembler, Finding
+from twin.nc.bytecode.assembler import Assembler
 from twin.nc.bytecode.registers import ROTATION
-from twin.nc.control.codes import Action, CodeWriter, Effect, GCode, Ground, Interpolation, MCode
+from twin.nc.control.codes import Action, CodeWriter, GCode, Ground, Interpolation, MCode
 from twin.nc.control.control import Control
 from twin.nc.control.modal import ModalChanges
-from twin.nc.control.performer import refuse
 from twin.nc.geometry.planes import PLANE_ORDER, Plane
 from twin.nc.iso.findings import PLANE_COMPENSATED, PLANE_ROTATED
 
@@ -52,31 +51,22 @@ def plane_code(
     meaning: str, plane: Plane, action: Action | None = None, ground: Ground = "manual"
 ) -> GCode:
     """A code of a working plane; ``action``: what the interpreter tier does in its place."""
-    number = PLANE_ORDER.index(plane)
-    effect = Effect(lambda control, assembler: write_plane(control, number, assembler))
-    write = None if action is None else effect.write
-    return modal(meaning, "plane", action or effect, compiler=write, ground=ground, plane=plane)
+
+    def write(_control: Control, assembler: Assembler) -> None:
+        write_plane(PLANE_ORDER.index(plane), assembler)
+
+    def choose(control: Control) -> None:
+        if not control.path.compensates_in(control.part_plane()):  # else it is in force already
+            control.perform(lambda assembler: write(control, assembler))
+
+    return modal(meaning, "plane", action or choose, compiler=write, ground=ground, plane=plane)
 
 
-def write_plane(control: Control, number: int, assembler: Assembler) -> None:
-    """A plane becomes active; compensation that acts in it already lets it be.
-
-    Args:
-        control: Whose block it is.
-        number: As ``planes.PLANE_ORDER`` counts them.
-        assembler: Takes the instructions.
-    """
-
-    def unless_compensated_in(finding: Finding) -> Callable[[], None]:
-        def refuse_other() -> None:
-            if not control.path.compensates_in(control.part_plane()):
-                refuse(control, finding)
-
-        return refuse_other
-
-    assembler.check(opcodes.UNCOMPENSATED, unless_compensated_in(PLANE_COMPENSATED))
+def write_plane(number: int, assembler: Assembler) -> None:
+    """The plane with a number of ``planes.PLANE_ORDER`` becomes active."""
+    assembler.check(opcodes.UNCOMPENSATED, PLANE_COMPENSATED)
     assembler.register(ROTATION)
-    assembler.check(opcodes.ABSENT, unless_compensated_in(PLANE_ROTATED))
+    assembler.check(opcodes.ABSENT, PLANE_ROTATED)
     assembler.drop()
     assembler.emit(opcodes.PLANE, number)
 

@@ -49,6 +49,7 @@ class Grammar:
         word = rf"({syntax.address}){BLANKS_BETWEEN}({SIGNED_NUMBER})(?!{continues}){suffix}"
         self.words = _compiled(rf"({BLANKS})({word})|(?s:.+)")
         self._comments = comment_marks(syntax.comments)
+        self._endless = tuple(each.opening for each in syntax.comments if not each.closing)
         self.comment = re.compile(BLANKS + closed_comment(self._comments))
         self.comment_openings = {comment.opening[0] for comment in syntax.comments}
         self.address = _compiled(rf"{BLANKS}({syntax.address}){BLANKS_BETWEEN}")
@@ -60,6 +61,11 @@ class Grammar:
     def comment_end(self, line: str, at: int) -> int:
         """The place behind a line's comment that begins at a place, or as ``comments.comment_end``."""
         return comment_end(line.encode("ascii", "replace"), 0, at, len(line), self._comments)
+
+    def end_comment(self, line: str, start: int) -> int:
+        """Where behind a place the comment begins that the end of the line closes, or that end."""
+        begins = (begin for begin, _ in comments_of(line, self._comments) if begin >= start)
+        return next((at for at in begins if line.startswith(self._endless, at)), len(line))
 
     def without_comments(self, line: str) -> tuple[str, int]:
         """A line with blanks in place of its comments, as ``comments.without_comments``."""

@@ -208,10 +208,7 @@ class LineReader:
 
     def _statement_text(self, start: int) -> str:
         """What belongs to a statement: up to a comment that ends the line, or the next block."""
-        end = len(self._line)
-        for comment in self._syntax.comments:
-            if not comment.closing and (found := self._line.find(comment.opening, start)) >= 0:
-                end = min(end, found)
+        end = self._grammar.end_comment(self._line, start)
         if self._syntax.several_blocks and (label := _NEXT_LABEL.search(self._line, start, end)):
             end = label.start()
         text = self._line[start:end]

@@ -40,7 +40,7 @@ from twin.nc.bytecode.variables import undo_stores
 from twin.nc.canonical import FloatArray
 from twin.nc.compiled.kernels.block import BlockBegin, run_words
 from twin.nc.compiled.kernels.cycle import NO_ROOM
-from twin.nc.compiled.kernels.expression import compute
+from twin.nc.compiled.kernels.variables import use_variable
 from twin.nc.path.compensation import leads
 from twin.nc.path.compensation.contour import OFF, STAGE, Contour
 from twin.nc.path.compensation.lookahead import hold_events
@@ -68,7 +68,8 @@ def dispatch_loop(
     stack, memory = scratch.stack, execution.memory
     line, here = progress[LINE] + 1, progress[LINE] << PART_BITS | progress[PART]
     budget = progress[INSTRUCTION_BUDGET] - (here <= progress[FURTHEST])
-    to = straight_on(progress, table.operand[row] == 0)
+    ends_line = table.operand[row] == 0
+    to = straight_on(progress, (progress[LINE] + 1) << PART_BITS if ends_line else here + 1)
     top, why = 0, TRAPPED
     made, first_event = progress[MADE], state.event_count[0]
     has_snapshot = compensates = contour.counts[STAGE] != OFF
@@ -78,8 +79,24 @@ def dispatch_loop(
         row += 1
         instruction = Instruction(table.opcode[row], table.operand[row], table.immediate[row])
         opcode = instruction.opcode
-        if opcodes.CONSTANT <= opcode <= opcodes.WORD_CONSTANT:
-            top = compute(instruction, top, to.depth, table.numbered, memory, scratch)
+        if opcode >= opcodes.CONSTANT:
+            around = Surroundings(
+                memory,
+                execution.calls,
+                BlockPlace(line, made, contour.counts[STAGE] != OFF),
+                Affected(machine.constants, state, machine.rows),
+            )
+            top, to = run_instruction(instruction, stack, top, to, around)
+            if top < 0 or (
+                opcode == opcodes.CHECK_RETURN and not _may_return(to, machine.tables, execution)
+            ):
+                break
+            if opcodes.CALL <= opcode <= opcodes.RETURN:
+                keep_codes(opcode, to, state.modal, execution.saved)
+            if to.ends:
+                opcode = opcodes.NEXT
+        elif opcodes.LOAD <= opcode <= opcodes.WORD_CONSTANT:
+            top = use_variable(instruction, top, to.depth, table.numbered, memory, scratch)
         elif opcodes.RUN <= opcode <= opcodes.RUN_POLAR:
             begun = BlockBegin(line, made, first_event)
             after = run_words(instruction, top, begun, machine, contour, scratch)
@@ -105,23 +122,8 @@ def dispatch_loop(
         elif opcode == opcodes.ACTIVATE:
             group = machine.tables.group[instruction.operand]
             state.modal[ACTIVE + group] = instruction.operand
-        elif opcode == opcodes.TRAP or opcode == opcodes.NO_PECKS:
-            if opcode == opcodes.TRAP or _pecks(machine):
-                break
-        elif opcode != opcodes.NEXT:
-            around = Surroundings(
-                memory,
-                execution.calls,
-                BlockPlace(line, made, contour.counts[STAGE] != OFF),
-                Affected(machine.constants, state, machine.rows),
-            )
-            top, to = run_instruction(instruction, stack, top, to, around)
-            if top < 0 or (
-                opcode == opcodes.CHECK_RETURN and not _may_return(to, machine.tables, execution)
-            ):
-                break
-            keep_codes(opcode, to, state.modal, execution.saved)
-            opcode = opcodes.NEXT if to.ends else opcode
+        elif opcode == opcodes.TRAP or (opcode == opcodes.NO_PECKS and _pecks(machine)):
+            break
         if opcode == opcodes.NEXT:
             progress[INSTRUCTION_BUDGET], progress[MADE] = budget, made
             arrive(to, here, progress)

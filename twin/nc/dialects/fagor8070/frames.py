@@ -23,7 +23,7 @@ def any_plane(control: Control) -> None:
     """
     if control.path.compensating:
         refuse(control, PLANE_COMPENSATED)
-    control.perform(lambda assembler: write_plane(control, 0, assembler))
+    control.perform(lambda assembler: write_plane(0, assembler))
     roles: dict[int, Vector] = {}
     for index, word in control.take_axis_words():
         role = int(control.number(word))
