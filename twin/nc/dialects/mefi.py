@@ -128,7 +128,7 @@ def _arc(control: Control, rule: ArcRule) -> None:
     target = control.target()
     center = arc_center(control, target, rule)
     start, end = start_and_end(control, target)
-    sweep = sweep_between(start[:2], end[:2], center, rule.clockwise)
+    sweep = sweep_between(start, end, center, rule.clockwise)
     for index, lead in leads.items():
         target[index] += lead * abs(sweep) / 360.0
     control.arc_to(target, center, sweep)

@@ -92,6 +92,10 @@ class Plane:
         """Abscissa, ordinate and normal."""
         return (self.abscissa, self.ordinate, self.normal)
 
+    def point(self, place: Vector | list[float]) -> tuple[float, float]:
+        """Abscissa and ordinate of a place of X, Y, Z (further axes are ignored)."""
+        return point_of(self.directions, (place[0], place[1], place[2]))
+
     def local(self, point: Vector | list[float]) -> Local:
         """A point of X, Y, Z (further axes are ignored) seen from the plane."""
         place = (point[0], point[1], point[2])

@@ -19,7 +19,7 @@ from twin.nc.geometry.arcs import (
     programmed_center,
     sweep_between,
 )
-from twin.nc.geometry.planes import Local, Vector
+from twin.nc.geometry.planes import Vector
 from twin.nc.text.blocks import Word
 
 BOUNDS = Bounds(mismatch=0.01, mismatch_share=0.001, shift=0.1, shift_share=0.01)
@@ -158,17 +158,15 @@ def sweep_arc(
         clockwise: Seen against the plane's normal.
         turns: Whole turns besides the part from start to end.
     """
-    plane = control.modal.plane
-    start, end = plane.local(control.programmed), plane.local(target)
-    sweep = sweep_between(start[:2], end[:2], center, clockwise=clockwise)
+    sweep = sweep_between(*start_and_end(control, target), center, clockwise=clockwise)
     sweep += -360.0 * turns if clockwise else 360.0 * turns
     control.arc_to(target, center, sweep)
 
 
-def start_and_end(control: Control, target: list[float]) -> tuple[Local, Local]:
-    """Where the arc begins and ends, as the plane sees it."""
+def start_and_end(control: Control, target: list[float]) -> tuple[Point, Point]:
+    """Abscissa and ordinate of where the arc begins and ends."""
     plane = control.modal.plane
-    return plane.local(control.programmed), plane.local(target)
+    return plane.point(control.programmed), plane.point(target)
 
 
 def arc_center(control: Control, target: list[float], rule: ArcRule) -> Point:
@@ -177,11 +175,11 @@ def arc_center(control: Control, target: list[float], rule: ArcRule) -> Point:
     Raises:
         ProgramError: There is no centre, or it does not fit.
     """
-    start, end = (each[:2] for each in start_and_end(control, target))
+    start, end = start_and_end(control, target)
     radius, centre = control.take("R"), take_center(control, plane_center_letters(control))
     words = ArcWords(math.nan, math.nan, math.nan)
     if centre.words:
-        words = ArcWords(math.nan, *control.modal.plane.local(centre.vector)[:2])
+        words = ArcWords(math.nan, *control.modal.plane.point(centre.vector))
     if radius is not None:
         words = words._replace(radius=control.length(radius))
     absolute = control.modal.center_absolute

@@ -46,13 +46,13 @@ def spatial_length(move: Segment) -> float:
 
 def element_of(move: Segment, plane: Plane) -> Curve | None:
     """A move as a plane sees it; None where it is no line or arc there, or has no length."""
-    start, end = plane.local(move.start)[:2], plane.local(move.end)[:2]
+    start, end = plane.point(move.start), plane.point(move.end)
     if move.center is None:
         return curves.line(start, end) if distance(start, end) >= SAME_POINT else None
     sense = dot(move.normal, plane.normal)
     if abs(sense) < IN_PLANE:
         return None
-    return curves.arc(start, end, plane.local(move.center)[:2], move.sweep * sense)
+    return curves.arc(start, end, plane.point(move.center), move.sweep * sense)
 
 
 def part_of(move: Segment, element: Curve, plane: Plane, first: float, last: float) -> Segment:

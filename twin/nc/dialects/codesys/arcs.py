@@ -37,9 +37,9 @@ def _radius_arc(control: Control, word: Word, *, clockwise: bool) -> None:
     if take_center(control).words:
         refuse_arc(control, arcs.OVERDEFINED, word)
     radius = abs(control.length(word))
-    finding, center = arcs.center_of_radius(start[:2], end[:2], radius, clockwise, signed=False)
+    finding, center = arcs.center_of_radius(start, end, radius, clockwise, signed=False)
     if finding == arcs.SHORT_RADIUS:
-        half = distance(start[:2], end[:2]) / 2.0
+        half = distance(start, end) / 2.0
         message = (
             f"the radius is shorter than half the distance, {half:.4f}: a straight line instead"
         )
@@ -57,9 +57,9 @@ def _center_arc(control: Control, rule: ArcRule) -> None:
     if center is None:
         _line_instead(control, target, "the arc has no centre and no radius: a straight line", None)
         return
-    finding, fitted = arcs.fitted_center(start[:2], end[:2], center, rule.bounds)
+    finding, fitted = arcs.fitted_center(start, end, center, rule.bounds)
     if finding in (arcs.ON_CENTER, arcs.UNEQUAL):
-        first, last = distance(start[:2], center), distance(end[:2], center)
+        first, last = distance(start, center), distance(end, center)
         message = (
             f"start and end are {first:.4f} and {last:.4f} from the centre, "
             "more than 10 % apart: a straight line instead"
@@ -87,11 +87,11 @@ def _opening_arc(control: Control, opening: Word, *, clockwise: bool) -> None:
         message = "the opening angle decides where the arc ends; the target in the plane is ignored"
         control.warn("arc-opening-wins", message, opening)
     target = control.target()
-    start = plane.local(control.programmed)
-    if distance(start[:2], center) < SAME_POINT:
+    start = plane.point(control.programmed)
+    if distance(start, center) < SAME_POINT:
         control.fail("arc-center", "the centre lies on the arc's start", word)
     sweep = -angle if clockwise else angle
-    end = turned(start[:2], center, sweep)
+    end = turned(start, center, sweep)
     plane.aim(target, end)
     control.arc_to(target, center, sweep)
 

@@ -72,7 +72,7 @@ def ellipse(control: Control, *, clockwise: bool) -> None:
         x, y = point[0] - center[0], point[1] - center[1]
         return (cosine * x + sine * y, cosine * y - sine * x)
 
-    first, last = turned(start[:2]), turned(end[:2])
+    first, last = turned(start), turned(end)
     if abs(abs(first[1]) - abs(last[1])) < _SAME_DISTANCE:
         if ratio is None:
             hint = "write R, the short by the long half axis"

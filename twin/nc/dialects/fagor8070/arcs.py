@@ -57,13 +57,13 @@ def _arc(control: Control, rule: ArcRule) -> None:
         if centre.words:
             refuse_arc(control, arcs.OVERDEFINED, circle)
         value = control.length(circle)
-        center = center_of_radius(control, start[:2], end[:2], value, circle, clockwise=clockwise)
+        center = center_of_radius(control, start, end, value, circle, clockwise=clockwise)
     elif memory.circle_radius is not None and not centre.words and not goal.polar:
         center = center_of_radius(
-            control, start[:2], end[:2], memory.circle_radius, None, clockwise=clockwise
+            control, start, end, memory.circle_radius, None, clockwise=clockwise
         )
     elif centre.words:
-        center = _given_center(control, centre.words, start[:2])
+        center = _given_center(control, centre.words, start)
     elif goal.polar:
         center = polar_origin(control)
     else:
@@ -74,7 +74,7 @@ def _arc(control: Control, rule: ArcRule) -> None:
         memory.circle_radius = None
     if goal.in_plane or pitch is None:
         word = centre.words[0] if centre.words else None
-        fitted = fitted_center(control, (start[:2], end[:2]), center, rule.bounds, word)
+        fitted = fitted_center(control, (start, end), center, rule.bounds, word)
         if control.modal.correct_center:
             center = fitted
         else:
@@ -85,9 +85,9 @@ def _arc(control: Control, rule: ArcRule) -> None:
 def _end_on_circle(control: Control, goal: Goal, center: Point) -> None:
     """G264: the centre stays, the radius is the start's, and the end moves onto this circle."""
     start, end = start_and_end(control, goal.target)
-    far = distance(start[:2], center) / distance(end[:2], center)
+    far = distance(start, center) / distance(end, center)
     onto = (center[0] + (end[0] - center[0]) * far, center[1] + (end[1] - center[1]) * far)
-    if onto != end[:2]:
+    if onto != end:
         control.modal.plane.aim(goal.target, onto)
         forget_polar(control)
 
@@ -122,7 +122,7 @@ def tangent_arc(control: Control) -> None:
     tangent = control.modal.plane.local(direction_before)
     if math.hypot(tangent[0], tangent[1]) < SAME_POINT:
         control.fail("tangent-arc", "the move before G08 has no direction in the plane")
-    center = arcs.center_tangent(start[:2], end[:2], tangent[:2])
+    center = arcs.center_tangent(start, end, tangent[:2])
     if center is None:
         message = "the end lies straight ahead or at the start: no arc leads there"
         control.fail("tangent-arc", message)
@@ -147,7 +147,7 @@ def three_point_arc(control: Control) -> None:
     via = (abscissa, ordinate)
     if control.modal.incremental:
         via = (start[0] + abscissa, start[1] + ordinate)
-    center = arcs.center_through(start[:2], via, end[:2])
+    center = arcs.center_through(start, via, end)
     if center is None:
         control.fail("three-point-arc", "the three points lie on a line", words[0])
     side = (via[0] - start[0]) * (end[1] - start[1]) - (via[1] - start[1]) * (end[0] - start[0])
@@ -159,9 +159,10 @@ def _sweep(
 ) -> None:
     plane = control.modal.plane
     start, end = start_and_end(control, goal.target)
-    sweep = sweep_between(start[:2], end[:2], center, clockwise=clockwise)
+    sweep = sweep_between(start, end, center, clockwise=clockwise)
     if pitch is not None:
-        wanted = _helix_sweep(control, end.height - start.height, pitch, clockwise=clockwise)
+        height = plane.local(goal.target).height - plane.local(control.programmed).height
+        wanted = _helix_sweep(control, height, pitch, clockwise=clockwise)
         if goal.in_plane:
             turns = max(0, round((abs(wanted) - abs(sweep)) / TURN))
             sweep = math.copysign(abs(sweep) + turns * TURN, sweep)
@@ -176,7 +177,7 @@ def _sweep(
             if wanted == 0.0:
                 control.fail("helix-height", "a helix by its pitch alone needs a height", pitch)
             sweep = wanted
-            plane.aim(goal.target, turned(start[:2], center, sweep))
+            plane.aim(goal.target, turned(start, center, sweep))
             forget_polar(control)
     control.arc_to(goal.target, center, sweep)
 
@@ -217,18 +218,18 @@ def _arc_about_own_center(control: Control, *, clockwise: bool) -> None:
         message = f"G31 needs Q and {letters[0]} or {letters[1]}"
         control.fail("temporary-origin", message, control.code_word(31))
     plane = control.modal.plane
-    start = plane.local(control.programmed)
-    center = _given_center(control, centre.words, start[:2])
-    if distance(start[:2], center) < SAME_POINT:
+    start = plane.point(control.programmed)
+    center = _given_center(control, centre.words, start)
+    if distance(start, center) < SAME_POINT:
         control.fail("arc-center", "the centre lies on the arc's start", centre.words[0])
     value = control.number(angle)
     incremental = control.modal.incremental or angle.incremental
-    by = value if incremental else value - arcs.angle_of(start[:2], center)
-    end = turned(start[:2], center, by)
+    by = value if incremental else value - arcs.angle_of(start, center)
+    end = turned(start, center, by)
     target = control.target()
     plane.aim(target, end)
     forget_polar(control)
-    sweep = sweep_between(start[:2], end, center, clockwise=clockwise)
+    sweep = sweep_between(start, end, center, clockwise=clockwise)
     control.arc_to(target, center, sweep)
 
 

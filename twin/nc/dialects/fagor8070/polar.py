@@ -144,7 +144,7 @@ def temporary_polar_origin(control: Control) -> None:
 
 def current_polar(control: Control) -> tuple[float, float]:
     """R and Q of where the tool stands: as last programmed, else measured [mm, deg]."""
-    here, registers = control.modal.plane.local(control.programmed)[:2], control.registers
+    here, registers = control.modal.plane.point(control.programmed), control.registers
     return seen_from(polar_origin(control), here, registers[POLAR_RADIUS], registers[POLAR_ANGLE])
 
 
@@ -183,7 +183,7 @@ def _polar_target(control: Control, *, arc: bool) -> list[float]:
     if radius_word is not None and (radius < 0.0 or (arc and radius == 0.0)):
         message = f"the polar radius {radius:g} must be positive" + ("" if arc else " or 0")
         control.fail("polar-radius", message, radius_word)
-    end = point_at(polar_origin(control), plane.local(control.programmed)[:2], radius, angle)
+    end = point_at(polar_origin(control), plane.point(control.programmed), radius, angle)
     plane.aim(target, end)
     control.registers[POLAR_RADIUS], control.registers[POLAR_ANGLE] = radius, angle
     return target

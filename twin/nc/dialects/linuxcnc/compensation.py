@@ -81,7 +81,7 @@ class Compensation:
     def line(self, goal: list[float], *, rapid: bool) -> None:
         """A straight move to a programmed position."""
         plane = self._control.modal.plane
-        start, end = plane.local(self._control.programmed)[:2], plane.local(goal)[:2]
+        start, end = plane.point(self._control.programmed), plane.point(goal)
         if not self.entered:
             self._enter_by_line(start, end, goal, rapid=rapid)
         elif start == end:
@@ -93,7 +93,7 @@ class Compensation:
     def arc(self, goal: list[float], center: Point, turns: int) -> None:
         """An arc to a programmed position; ``turns`` below 0: clockwise."""
         plane = self._control.modal.plane
-        start, end = plane.local(self._control.programmed)[:2], plane.local(goal)[:2]
+        start, end = plane.point(self._control.programmed), plane.point(goal)
         radius = distance(center, end)
         inside = self._is_inside(turns)
         if inside and radius <= self.radius:

@@ -166,7 +166,7 @@ def mill_pocket(control: Control, name: str, *, circular: bool) -> None:
     passes = _passes(control, name, tool.radius)
     plane = control.modal.plane
     pocket = Pocket(
-        plane.local(goal)[:2],
+        plane.point(goal),
         abs(values["J"]) - tool.radius,
         None if circular else values["K"] - tool.radius,
         values.get("A", 0.0),
