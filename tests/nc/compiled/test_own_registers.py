@@ -63,6 +63,7 @@ DIALECT = dataclasses.replace(
         **FAGOR8070.g,
         900: modal("feed scale", action=Effect(scale_feeds)),
         901: modal("count", action=Effect(count)),
+        902: modal("count in increments", action=Effect(count), incremental=True),
     },
     words={**FAGOR8070.words, "F": WordEffect(scaled_feed), "H": WordEffect(report_count)},
     feed_letter="",
@@ -124,3 +125,10 @@ def test_a_check_that_does_not_hold_says_so(compiled_from):
         2,
         "K0 is no scale of the feed",
     )
+
+
+@pytest.mark.parametrize("compiled_from", [0, 10**9])
+def test_a_code_that_acts_also_puts_into_force_what_it_sets(compiled_from):
+    moves, _, error = run("G1 X1 F100\nG902\nX1\nX1\nM30\n", compiled_from, Speed.COLD)
+    assert error is None
+    assert moves.end[:, 0].tolist() == [1.0, 2.0, 3.0]

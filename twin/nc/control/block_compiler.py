@@ -16,6 +16,8 @@ from twin.nc.text.expressions import Expression
 
 _BESIDE_CYCLE = "ST"
 """Words that may stand beside the call of a cycle: they change nothing of where the tool stands."""
+_WRITTEN = frozenset(("plane", "cycle"))
+"""What a code with instructions of its own may set: they put these into force, and nothing else."""
 
 
 Sort = Callable[[Sequence[Word], Callable[[Expression, Word], float | None]], SortedBlock]
@@ -105,7 +107,7 @@ class BlockCompiler:
         """Write what a code does before the block moves."""
         if code.writer is None:
             return
-        if code.after is not None or code.once or code.alone:
+        if code.after is not None or code.once or code.alone or code.sets.keys() - _WRITTEN:
             raise UnsupportedError
         if code.group and not code.begins_cycle:
             self.assembler.emit(opcodes.ACTIVATE, _number(word))
