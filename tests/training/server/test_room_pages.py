@@ -72,7 +72,10 @@ def chromium(leader):
 
 @pytest.fixture(scope="module", params=["chromium", "firefox"])
 def led(request, leader):
-    """Each of the browsers."""
+    """Each of the browsers, for what they do in ways of their own: keys, wheels, fields, pages that freeze.
+
+    ``scripts/plays --firefox`` plays every scene in the other one too.
+    """
     if request.param == "firefox" and FIREFOX is None:
         pytest.skip("no Firefox here; Debian has it in the package firefox-esr")
     if request.param == "chromium":
@@ -102,7 +105,16 @@ def room(tmp_path):
 
 @pytest.fixture
 def context(led):
-    opened = led.new_context()
+    yield from _context_of(led)
+
+
+@pytest.fixture
+def chromium_context(chromium):
+    yield from _context_of(chromium)
+
+
+def _context_of(browser):
+    opened = browser.new_context()
     without_view(opened)
     yield opened
     opened.close()
@@ -173,8 +185,8 @@ def test_a_held_key_stops_when_it_is_let_go_or_its_page_freezes(room, context):
         page.mouse.up()
 
 
-def test_the_machine_is_worked_by_hand_from_the_sheets(room, context):
-    player = Player(room, open_page(room, context))
+def test_the_machine_is_worked_by_hand_from_the_sheets(room, chromium_context):
+    player = Player(room, open_page(room, chromium_context))
     page, machine = player.page, player.machine
     player.press("mode_jog", "mode")
     page.click("#tab-manual")
@@ -215,8 +227,8 @@ def test_a_handwheel_that_is_spun_is_heard_to_its_last_click(room, context):
     assert page.evaluate("document.body.dataset.line") == "up"
 
 
-def test_what_the_machine_refuses_is_said_and_taken_back_on_the_page(room, context):
-    player = Player(room, open_page(room, context))
+def test_what_the_machine_refuses_is_said_and_taken_back_on_the_page(room, chromium_context):
+    player = Player(room, open_page(room, chromium_context))
     page, machine = player.page, player.machine
     page.click("#tab-tools")
     length = page.input_value("[data-key='length 1']")
@@ -262,8 +274,8 @@ def test_what_is_typed_counts_though_its_sheet_is_drawn_anew(room, context):
         player.until(lambda want=expected: machine.tables.lengths[1] == want, "the length")
 
 
-def test_a_program_is_begun_in_its_midst_and_held_and_left_and_found_again(room, context):
-    player = Player(room, open_page(room, context))
+def test_a_program_is_begun_in_its_midst_and_held_and_left_and_found_again(room, chromium_context):
+    player = Player(room, open_page(room, chromium_context))
     page, machine = player.page, player.machine
     page.click("#tab-run")
     page.check("[data-key='switch optional_stop']")
@@ -289,14 +301,14 @@ def test_a_program_is_begun_in_its_midst_and_held_and_left_and_found_again(room,
     player.until(lambda: machine.running == "program" and machine.moving, "the program")
 
 
-def test_the_panel_is_handed_over_and_the_trainer_acts_beside_it(room, context):
-    first = open_page(room, context)
-    second = open_page(room, context)
+def test_the_panel_is_handed_over_and_the_trainer_acts_beside_it(room, chromium_context):
+    first = open_page(room, chromium_context)
+    second = open_page(room, chromium_context)
     second.click('[data-key="panel ask"]')
     first.click('[data-key="panel give"]')
     second.wait_for_selector("[data-key=cycle_start]:enabled")
     first.wait_for_selector("[data-key=cycle_start]:disabled")
-    trainer = Player(room, open_page(room, context, "trainer"))
+    trainer = Player(room, open_page(room, chromium_context, "trainer"))
     trainer.page.click("#tab-trainer")
     trainer.page.select_option("[data-key='fault kind']", "backlash")
     assert trainer.page.input_value("[data-key='fault value']") == "0.05"
@@ -309,13 +321,13 @@ def test_the_panel_is_handed_over_and_the_trainer_acts_beside_it(room, context):
     assert room.session.log[-1].who == "trainer"
 
 
-def test_a_lost_page_stops_nothing_and_the_next_one_finds_it(room, context):
-    player = Player(room, open_page(room, context))
+def test_a_lost_page_stops_nothing_and_the_next_one_finds_it(room, chromium_context):
+    player = Player(room, open_page(room, chromium_context))
     player.press("cycle_start", "cycle_start")
     player.page.close()
     time.sleep(0.2)
     assert player.machine.running == "program"
-    again = Player(room, open_page(room, context))
+    again = Player(room, open_page(room, chromium_context))
     again.press("feed_hold", "feed_hold")
     again.until(lambda: again.machine.held, "the hold")
 

@@ -1,4 +1,4 @@
-"""Drilling cycles, compiled: what ``drilling`` does for a block of plain words, with the same ``holes``."""
+"""Drilling cycles on columns: what ``iso.drilling`` does for a block of plain words, by the same ``path.hole``."""
 
 import numpy as np
 
