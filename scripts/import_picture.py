@@ -36,12 +36,10 @@ FLOORS: Mapping[str, tuple[str, ...]] = {
         "canonical geometry",
         "functions text",
         "path",
-        "bytecode",
         "control",
         "iso",
-        "compiled dialects",
+        "dialects",
         "interpreter",
-        "compile_all",
         "jsonl",
     ),
     "twin.motion": (

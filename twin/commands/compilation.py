@@ -66,27 +66,11 @@ def compile_kernels() -> None:
     """Let Numba compile what the commands call, or load it where it is compiled already."""
     programs = resource_root("programs")
     jobs = [programs / name for name in JOBS]
-    steps: list[Callable[[], object]] = [lambda: _interpret(programs)]
-    steps += [lambda job=job: _run(job) for job in jobs]
+    steps: list[Callable[[], object]] = [lambda job=job: _run(job) for job in jobs]
     steps += [lambda: _plan(jobs[0]), _circle, _train]
     for step in steps:
         step()
     note_complete(writable_folder())
-
-
-def _interpret(programs: Path) -> None:
-    """Every shipped program through the compiled interpreter, which short ones do without."""
-    from twin.compilation.speed import Speed
-    from twin.nc.interpreter import Interpretation
-    from twin.run.preparation import prepare
-
-    for job in sorted(programs.glob("*/*.toml")):
-        made = prepare(job)
-        interpretation = Interpretation(
-            made.source, made.dialect, made.settings, compiled_from=0, speed=Speed.HOT
-        )
-        for _ in interpretation.chunks():
-            pass
 
 
 def _run(job: Path) -> None:

@@ -52,7 +52,7 @@ class ActiveCodes:
     def fork(self) -> "ActiveCodes":
         """A copy that changes by itself."""
         fork = ActiveCodes(self._codes)
-        fork._codes.update(self._codes)  # noqa: SLF001 (its own kind)
+        fork._codes.update(self._codes)
         return fork
 
 

@@ -20,7 +20,7 @@ from twin.nc.dialects.fanuc.memory import Variant, memory_of
 from twin.nc.dialects.fanuc.tool_offsets import compensation_code, length_code
 from twin.nc.iso import base, fixed_cycles
 from twin.nc.iso.declared import flow_function, instead, modal, motion_code, refused
-from twin.nc.iso.tool_compensation import end_compensation, LEFT, RIGHT, set_length
+from twin.nc.iso.tool_compensation import LEFT, RIGHT, end_compensation, set_length
 from twin.nc.path.paces import FeedMode
 
 
