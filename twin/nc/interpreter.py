@@ -1,6 +1,6 @@
 """Runs a program: text in, chunks of canonical moves out."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
@@ -8,6 +8,8 @@ from twin.nc.canonical import Chunk, FloatArray
 from twin.nc.control.dialect import Dialect
 from twin.nc.control.executor import Executor
 from twin.nc.control.settings import ControlSettings
+from twin.nc.line_kernel.choice import usual_kernel
+from twin.nc.line_kernel.plain_state import LineKernel, LineRuns
 from twin.nc.path.move_columns import CHUNK
 from twin.nc.text.diagnostics import Diagnostic, ProgramError
 from twin.nc.text.source import Source
@@ -22,10 +24,26 @@ class Interpretation:
         settings: What the control was told of the machine and the job.
     """
 
-    def __init__(self, source: Source, dialect: Dialect, settings: ControlSettings) -> None:
+    def __init__(
+        self,
+        source: Source,
+        dialect: Dialect,
+        settings: ControlSettings,
+        *,
+        kernel: Callable[[int], LineKernel | None] = usual_kernel,
+    ) -> None:
+        """Take a program.
+
+        Args:
+            source: The program.
+            dialect: The language it is read in.
+            settings: What the control is told of the machine and the job.
+            kernel: What runs plain lines, given how many lines the program has; None: Python alone.
+        """
         self.source = source
         self.dialect = dialect
         self.settings = settings
+        self._kernel = kernel
         self._control = Executor(dialect, settings, source)
 
     @property
@@ -50,9 +68,15 @@ class Interpretation:
             ProgramError: The program is wrong; the moves before the error have been yielded.
         """
         control = self._control
+        kernel = self._kernel(len(self.source.lines))
+        lines = None if kernel is None else LineRuns(control, kernel)
         try:
             control.prepare()
             while not control.ended:
+                if lines is not None and lines.run():
+                    if len(control.path) >= CHUNK:
+                        yield control.path.take()
+                    continue
                 block = control.program_counter.next()
                 if block is None:
                     break

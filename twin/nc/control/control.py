@@ -3,6 +3,7 @@
 import abc
 import math
 from collections.abc import Iterable, Mapping
+from typing import Any
 
 from twin.nc.canonical import Dwell, Function
 from twin.nc.control.program_counter import Call
@@ -133,6 +134,19 @@ class Control(ControlWords):
             self.path.add_point(self._last, flat=spline[0])
         self.programmed = target
         self.part = end
+
+    def take_rows(self, rows: Iterable[Any], programmed: list[float], part: list[float]) -> None:
+        """Moves that were made elsewhere lead to these positions, shape (k,).
+
+        Args:
+            rows: As ``Path.add_rows`` takes them.
+            programmed: Programmed position [mm or deg].
+            part: Part position [mm or deg].
+        """
+        last = self.path.add_rows(*rows)
+        self.programmed, self.part = programmed, part
+        if last is not None:
+            self._last = last
 
     @property
     def direction(self) -> Vector | None:

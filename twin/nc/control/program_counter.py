@@ -166,6 +166,23 @@ class ProgramCounter:
         """Go on at a location."""
         self._line, self._part = location
 
+    @property
+    def fresh_line(self) -> int | None:
+        """The line that comes next and has never been run, from 0; None where there is no such one."""
+        line, part = self.location
+        if line == self._here_line and part >= len(self._here):
+            line, part = line + 1, 0
+        repeats = bool(self.calls) and self.calls[-1].last is not None
+        if part or repeats or line <= self._furthest.line or line >= self._line_count:
+            return None
+        return line
+
+    def pass_lines(self, line: int, behind: int) -> None:
+        """The lines before one, of one block at most, were run elsewhere; ``behind`` lies behind the last block."""
+        if behind:
+            self._furthest = Location(behind - 1, 0)
+        self.go(Location(line, 0))
+
     def end(self) -> None:
         """Go on behind the last line, which ends the program here."""
         self._told_to_end = True

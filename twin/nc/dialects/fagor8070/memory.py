@@ -69,18 +69,15 @@ def memory_of(control: Control) -> FagorMemory:
 
 
 def acts_on_lines(control: Control) -> bool:
-    """A radius, a modal call, machine coordinates or module axes, which plain blocks heed; or G53.
-
-    While G53 is in force there are no polar coordinates (E1530).
-    """
+    """A radius, a modal call, machine coordinates or module axes, polar values that Cartesian moves end."""
     memory = memory_of(control)
     return (
         memory.temporary
         or memory.modal_call is not None
         or memory.circle_radius is not None
         or memory.part_frame is not None
+        or not math.isnan(memory.polar_radius)
         or control.settings.module_rotary
-        or control.active.get("offset") == 53
     )
 
 
