@@ -10,11 +10,13 @@ from twin.nc.dialects.fanuc import (
     codes,
     corners,
     decimal_point,
+    feeds,
     flow,
     haas,
     macro_calls,
     offsets,
     programs,
+    reference_points,
     tool_offsets,
     variables,
 )
@@ -33,6 +35,7 @@ def prepare(control: Control) -> None:
     programs.begin(control)
     memory.writes_offsets = holds_any(lines, offsets.WRITES_OFFSETS)
     memory.transforms = holds_any(lines, offsets.TRANSFORMS)
+    memory.own_feeds = feeds.has_own_feeds(control)
     memory.overrules_cycles = holds_any(lines, OVERRULED_CYCLE)
     memory.bare_compensation = holds_any(lines, tool_offsets.BARE_COMPENSATION)
     offsets.put_into_force(control)
@@ -45,6 +48,7 @@ def before_motion(control: Control, rapid: bool) -> None:
     Raises:
         ProgramError: G93 without F, or F of another feed mode.
     """
+    reference_points.warn_of_cancelled_length(control)
     if not rapid:
         base.require_feed_of_block(control)
         if memory_of(control).feed_lost and control.feed is None:
@@ -159,6 +163,7 @@ FANUC = Dialect(
     disturbed=acts_on_plain_blocks,
     pointless=decimal_point.pointless,
     count=as_read,
+    feed_rule=feeds.fanuc_rule,
 )
 
 HAAS = dataclasses.replace(
@@ -197,5 +202,6 @@ HAAS = dataclasses.replace(
         shared_marks.CYLINDER,
     ),
     memory=lambda: FanucMemory(HAAS_VARIANT),
+    feed_rule=feeds.haas_rule,
 )
 """The Haas mills."""
