@@ -24,7 +24,7 @@ from twin.nc.dialects.fanuc.cycles.canned_cycles import OVERRULED_CYCLE, as_read
 from twin.nc.dialects.fanuc.decisions import DECISIONS
 from twin.nc.dialects.fanuc.memory import FANUC as FANUC_VARIANT
 from twin.nc.dialects.fanuc.memory import HAAS as HAAS_VARIANT
-from twin.nc.dialects.fanuc.memory import FanucMemory, acts_on_plain_blocks, holds_any, memory_of
+from twin.nc.dialects.fanuc.memory import FanucMemory, holds_any, memory_of
 from twin.nc.iso import base, shared_marks
 from twin.nc.text.syntax import HEADING, Comment, Mark, Syntax
 
@@ -35,7 +35,6 @@ def prepare(control: Control) -> None:
     programs.begin(control)
     memory.writes_offsets = holds_any(lines, offsets.WRITES_OFFSETS)
     memory.transforms = holds_any(lines, offsets.TRANSFORMS)
-    memory.own_feeds = feeds.has_own_feeds(control)
     memory.overrules_cycles = holds_any(lines, OVERRULED_CYCLE)
     memory.bare_compensation = holds_any(lines, tool_offsets.BARE_COMPENSATION)
     offsets.put_into_force(control)
@@ -160,7 +159,7 @@ FANUC = Dialect(
     finish=programs.finish,
     library=programs.LIBRARY,
     compile_block=block_compiler.compile_block,
-    disturbed=acts_on_plain_blocks,
+    disturbed=feeds.needs_interpreter,
     pointless=decimal_point.pointless,
     count=as_read,
     feed_rule=feeds.fanuc_rule,

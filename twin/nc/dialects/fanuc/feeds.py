@@ -13,7 +13,7 @@ import math
 
 from twin.nc.control.control import Control
 from twin.nc.control.settings import ControlSettings
-from twin.nc.dialects.fanuc.memory import letter_patterns
+from twin.nc.dialects.fanuc.memory import acts_on_plain_blocks, letter_patterns, memory_of
 from twin.nc.path.paces import FeedRule
 
 DEGREE_AS_LENGTH = 1.0
@@ -53,3 +53,11 @@ def has_own_feeds(control: Control) -> bool:
     )
     turns = (pattern for name in rotary for pattern in letter_patterns(name, rb"[ \t]*[-+.0-9#\[]"))
     return any(lines.any_holds(pattern) for pattern in (*OWN_FEEDS, *turns))
+
+
+def needs_interpreter(control: Control) -> bool:
+    """Whether plain blocks are more than the compiled tier knows."""
+    memory = memory_of(control)
+    if memory.own_feeds is None:
+        memory.own_feeds = has_own_feeds(control)
+    return memory.own_feeds or acts_on_plain_blocks(control)

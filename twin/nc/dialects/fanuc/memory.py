@@ -187,7 +187,7 @@ class FanucMemory:
         length_number: H in force; None: none yet.
         radius_number: D in force; None: none yet.
         intermediate: Where the last G28 or G30 passed, part coordinates by column, for G29.
-        own_feeds: Some line may move so that F does not count the path in X, Y and Z.
+        own_feeds: Some line may move so that F does not count the path in X, Y and Z; None: nobody has looked.
         length_cancelled: Code that has cancelled the tool length while G43 or G44 stays in force; empty: none.
         overrules_cycles: Some line holds a motion code behind that of a cycle.
         feed_mode: What F counted when it was written.
@@ -220,7 +220,7 @@ class FanucMemory:
     length_number: int | None = None
     radius_number: int | None = None
     intermediate: dict[int, float] = dataclasses.field(default_factory=dict)
-    own_feeds: bool = False
+    own_feeds: bool | None = None
     length_cancelled: str = ""
     overrules_cycles: bool = False
     feed_mode: FeedMode = FeedMode.PER_MINUTE
@@ -248,7 +248,7 @@ def memory_of(control: Control) -> FanucMemory:
 def acts_on_plain_blocks(control: Control) -> bool:
     """Polar coordinates, a scale, a modal call or a cylinder in force, F lost: plain blocks heed them."""
     memory = memory_of(control)
-    if memory.own_feeds or memory.length_cancelled or memory.overrules_cycles:
+    if memory.length_cancelled or memory.overrules_cycles:
         return True
     if memory.feed_lost and control.feed is None:
         return True
