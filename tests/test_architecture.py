@@ -5,10 +5,13 @@ import sys
 from collections import Counter
 from pathlib import Path
 
+import pytest
+
 TESTS = Path(__file__).parent
 PACKAGE = TESTS.parent / "twin"
 
 
+@pytest.mark.seconds("imports half of the package in a process of its own")
 def test_what_computes_loads_without_mujoco_or_opengl() -> None:
     code = (
         "import sys, pkgutil, importlib\n"

@@ -14,6 +14,7 @@ from twin.training.scene.scene_file import read_scene, scene_path
 from twin.web.server import THREE
 
 pytestmark = [
+    pytest.mark.browser,
     pytest.mark.skipif(
         CHROMIUM is None, reason="no Chromium here; Debian has it in the package chromium"
     ),
