@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from twin.training.scene.scene_file import read_scene, scene_names, scene_path
-from twin.training.server.launch import CELLS_ACROSS
+from twin.training.server.attempts import CELLS_ACROSS
 from twin.training.session.session import Session
 
 SCENE = """
