@@ -15,6 +15,7 @@ from twin.training.server.attempts import next_scene
 from twin.web.server import THREE
 
 pytestmark = [
+    pytest.mark.browser,
     pytest.mark.skipif(
         CHROMIUM is None, reason="no Chromium here; Debian has it in the package chromium"
     ),

@@ -91,6 +91,7 @@ def test_without_a_material_no_force_is_shown(tmp_path):
     assert session.room.alarm is None
 
 
+@pytest.mark.seconds("a tool is worn until it breaks")
 def test_a_broken_tool_is_told_and_goes_on_until_it_is_changed(tmp_path):
     session = session_of(tmp_path, 6000)
     run_to_end(session)
