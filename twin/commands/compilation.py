@@ -66,11 +66,30 @@ def compile_kernels() -> None:
     """Let Numba compile what the commands call, or load it where it is compiled already."""
     programs = resource_root("programs")
     jobs = [programs / name for name in JOBS]
-    steps: list[Callable[[], object]] = [lambda job=job: _run(job) for job in jobs]
+    steps: list[Callable[[], object]] = [_read_lines]
+    steps += [lambda job=job: _run(job) for job in jobs]
     steps += [lambda: _plan(jobs[0]), _circle, _train]
     for step in steps:
         step()
     note_complete(writable_folder())
+
+
+def _read_lines() -> None:
+    """Plain lines, which long programs have."""
+    from twin.nc.canonical import Axes
+    from twin.nc.control.settings import ControlSettings
+    from twin.nc.dialects import dialect_named
+    from twin.nc.interpreter import Interpretation
+    from twin.nc.line_kernel.choice import compiled_kernel
+    from twin.nc.text.source import source_from_text
+
+    source = source_from_text("G0 X1\nX2\nM30\n")
+    settings = ControlSettings(axes=Axes(("X", "Y", "Z"), ("linear", "linear", "linear")))
+    interpretation = Interpretation(
+        source, dialect_named("gost"), settings, kernel=lambda _lines: compiled_kernel()
+    )
+    for _ in interpretation.chunks():
+        pass
 
 
 def _run(job: Path) -> None:

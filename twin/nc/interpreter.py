@@ -65,9 +65,9 @@ class Interpretation:
         """Run the program once; a few thousand moves at a time.
 
         Raises:
-            ProgramError: The program is wrong; the moves before the error have been yielded.
+            ProgramError: The program is wrong; the moves before the wrong block have been yielded.
         """
-        control = self._control
+        control, refused = self._control, None
         kernel = self._kernel(len(self.source.lines))
         lines = None if kernel is None else LineRuns(control, kernel)
         try:
@@ -80,11 +80,13 @@ class Interpretation:
                 block = control.program_counter.next()
                 if block is None:
                     break
+                refused = control.path.refusal(block.line)
                 control.run(block)
+                refused = None
                 if len(control.path) >= CHUNK:
                     yield control.path.take()
             control.finish()
         except ProgramError:
-            yield control.path.take()
+            yield control.path.take(refused)
             raise
         yield control.path.take()

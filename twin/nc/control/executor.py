@@ -37,6 +37,7 @@ class Executor(Control):
     def __init__(self, dialect: Dialect, settings: ControlSettings, source: Source) -> None:
         super().__init__(dialect, settings, source, dialect.new_modal())
         self.dialect = dialect
+        self.feed_rule = dialect.feed_rule(settings)
         self._pointless = dialect.pointless(settings)
         self._special = frozenset(("G", "M", *dialect.signed, *dialect.series))
         expressions = dialect.syntax.expressions

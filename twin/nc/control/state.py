@@ -13,6 +13,7 @@ from twin.nc.control.variables import Variables
 from twin.nc.geometry.frame import Frame
 from twin.nc.path.drilling_cycle import START, no_values
 from twin.nc.path.move_columns import NAN, Segment
+from twin.nc.path.paces import PATH_COUNTS
 from twin.nc.path.path import Path
 from twin.nc.text.blocks import Block, Statement, Word
 from twin.nc.text.lexer import Lexer
@@ -89,12 +90,14 @@ class ControlState:
         axis_accelerations: Their largest acceleration [mm/s² or deg/s²].
         axis_decelerations: Their largest deceleration [mm/s² or deg/s²].
         ended: An end code was run.
+        feed_rule: Which part of a move F counts.
     """
 
     def __init__(
         self, language: ControlLanguage, settings: ControlSettings, source: Source, modal: Modal
     ) -> None:
         self.settings = settings
+        self.feed_rule = PATH_COUNTS
         self.report = Reporter(source, strict=settings.strict)
         self.axis_index = {name: index for index, name in enumerate(settings.axes.names)}
         self.linear = tuple(kind == "linear" for kind in settings.axes.kinds)

@@ -41,6 +41,7 @@ from twin.nc.path.moves import (
 from twin.nc.path.paces import (
     PACED,
     WITHOUT_FEED,
+    counts_blocks,
     feed_per_minute,
     finding_of_feed,
     needs_own_feed,
@@ -83,6 +84,8 @@ class PlainRules(NamedTuple):
         signed_radius: A negative radius asks for the larger arc, else it is not plain.
         fits_radius: A centre found by its radius is fitted like a given one.
         linear: Which axes are linear, shape (k,).
+        rotary: Roles of the words of the others, as bits.
+        path_counts: F counts the path in X, Y and Z of every move: helices and rotary axes are plain.
         default_feed: Where none is programmed [mm/min].
         default_rotary_feed: Where none is programmed and only rotary axes move [deg/min].
     """
@@ -93,6 +96,8 @@ class PlainRules(NamedTuple):
     signed_radius: bool
     fits_radius: bool
     linear: FloatArray
+    rotary: int
+    path_counts: bool
     default_feed: float
     default_rotary_feed: float
 
@@ -205,7 +210,10 @@ def _run_line(
     if moves:
         if kind == NO_MOTION or (not is_arc and seen & _ARC_WORDS):
             return NOT_PLAIN
-        if kind != RAPID_LINE and not _has_pace(seen, feed, state):
+        if kind != RAPID_LINE and not (
+            _has_pace(seen, feed, state)
+            and (rules.path_counts or _counts_path(seen, kind, rules, state))
+        ):
             return NOT_PLAIN
         length = _place(seen, kind, rules, state, rows, row)
         if length < 0.0:
@@ -229,6 +237,15 @@ def _has_pace(seen: int, feed: float, state: PlainState) -> bool:
         return False
     finding = finding_of_feed(feed, state.feed_mode, state.spindle, state.spindle_turns)
     return finding == PACED or (finding == WITHOUT_FEED and state.feed_may_lack)
+
+
+@inlined
+def _counts_path(seen: int, kind: int, rules: PlainRules, state: PlainState) -> bool:
+    """Whether F counts the path of a line also where it counts other lengths of other moves."""
+    if seen & rules.rotary:
+        return False
+    helix = seen >> (AXIS + state.plane_axes[2]) & 1 or state.turned
+    return kind < CLOCKWISE or not (helix or counts_blocks(state.feed_mode))
 
 
 @inlined

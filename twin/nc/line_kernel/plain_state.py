@@ -34,6 +34,7 @@ from twin.nc.line_kernel.reading import (
     LineFormat,
 )
 from twin.nc.path.move_columns import CHUNK
+from twin.nc.path.paces import PATH_COUNTS
 from twin.nc.text.comments import comment_marks
 
 LineKernel = Callable[[PageColumns, PlainRules, PlainState, MoveRows], int]
@@ -169,6 +170,8 @@ def plain_rules(control: Executor) -> PlainRules:
         signed_radius=arc.signed_radius,
         fits_radius=arc.fits_radius,
         linear=_flags(control.linear),
+        rotary=sum(1 << (AXIS + axis) for axis, linear in enumerate(control.linear) if not linear),
+        path_counts=control.feed_rule is PATH_COUNTS,
         default_feed=settings.default_feed,
         default_rotary_feed=settings.default_rotary_feed,
     )

@@ -3,6 +3,7 @@
 from twin.nc.control.codes import MCode
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Dialect
+from twin.nc.control.settings import ControlSettings
 from twin.nc.dialects.fagor8070 import (
     arcs,
     corners,
@@ -18,12 +19,18 @@ from twin.nc.dialects.fagor8070.library import LIBRARY
 from twin.nc.dialects.fagor8070.memory import FagorMemory, acts_on_lines
 from twin.nc.iso import base, shared_marks
 from twin.nc.iso.declared import flow_function
+from twin.nc.path.paces import PATH_COUNTS, FeedRule
 from twin.nc.text.syntax import Comment, Mark, Syntax
 
 
 def _prepare(control: Control) -> None:
     subroutines.begin(control)
     corners.prepare(control)
+
+
+def _feed_rule(settings: ControlSettings) -> FeedRule:
+    """F counts X, Y and Z; with FEEDND rotary axes beside them, a degree as one programmed unit."""
+    return FeedRule(degree=1.0) if settings.feed_of_all_axes else PATH_COUNTS
 
 
 FAGOR8070 = Dialect(
@@ -155,4 +162,5 @@ FAGOR8070 = Dialect(
     after_motion=subroutines.call_after_motion,
     finish=statements.warn_of_missing_end,
     acts_on_lines=acts_on_lines,
+    feed_rule=_feed_rule,
 )

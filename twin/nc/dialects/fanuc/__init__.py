@@ -8,11 +8,13 @@ from twin.nc.dialects.fanuc import (
     codes,
     corners,
     decimal_point,
+    feeds,
     flow,
     haas,
     macro_calls,
     offsets,
     programs,
+    reference_points,
     tool_offsets,
     variables,
 )
@@ -40,6 +42,7 @@ def before_motion(control: Control, rapid: bool) -> None:
     Raises:
         ProgramError: G93 without F, or F of another feed mode.
     """
+    reference_points.warn_of_cancelled_length(control)
     if not rapid:
         base.require_feed_of_block(control)
         if memory_of(control).feed_lost and control.feed is None:
@@ -152,6 +155,7 @@ FANUC = Dialect(
     acts_on_lines=acts_on_lines,
     pointless=decimal_point.pointless,
     count=as_read,
+    feed_rule=feeds.fanuc_rule,
 )
 
 HAAS = dataclasses.replace(
@@ -190,5 +194,6 @@ HAAS = dataclasses.replace(
         shared_marks.CYLINDER,
     ),
     memory=lambda: FanucMemory(HAAS_VARIANT),
+    feed_rule=feeds.haas_rule,
 )
 """The Haas mills."""
