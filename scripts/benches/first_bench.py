@@ -57,7 +57,7 @@ def rows() -> Iterator[Row]:
         twice = folder / "twice.nc"
         twice.write_text(long.read_text() * 2)
         commands[f"first moves of {2 * LINES} lines"] = ["-c", _FIRST_MOVES, str(twice)]
-        cold = {}
+        cold, kernels = {}, folder / "kernels"
         for number, task in enumerate((*tuple(tasks)[:2], *tuple(commands)[-1:])):
             kernels = folder / f"kernels{number}"
             cold[task] = _seconds(commands[task], kernels)

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from twin.compilation.compilable import inlined
-from twin.nc.canonical import NO_BLOCK_NUMBER, FloatArray, IntArray, Motion
+from twin.nc.canonical import NO_BLOCK_NUMBER, BoolArray, FloatArray, IntArray, Motion
 from twin.nc.geometry import arcs
 from twin.nc.geometry.arcs import ArcWords, Bounds, Sense
 from twin.nc.geometry.frame import arc_about, arc_of_part, to_part
@@ -95,7 +95,7 @@ class PlainRules(NamedTuple):
     bounds: Bounds
     signed_radius: bool
     fits_radius: bool
-    linear: FloatArray
+    linear: BoolArray
     rotary: int
     path_counts: bool
     default_feed: float
@@ -156,6 +156,10 @@ class MoveRows(NamedTuple):
     codes: IntArray
     values: FloatArray
     positions: FloatArray
+
+    def first(self, count: int) -> "MoveRows":
+        """The first rows."""
+        return MoveRows(self.codes[:count], self.values[:count], self.positions[:count])
 
 
 def run_lines(page: PageColumns, rules: PlainRules, state: PlainState, rows: MoveRows) -> int:
@@ -258,7 +262,7 @@ def _place(
         here = state.position[0, axis]
         goal = here
         if seen >> (AXIS + axis) & 1:
-            value, linear = state.values[AXIS + axis], rules.linear[axis] != 0.0
+            value, linear = state.values[AXIS + axis], rules.linear[axis]
             goal = axis_target(value, state.unit, linear, state.incremental, here)
         if not abs(goal) <= LARGEST_COORDINATE:
             return _DOUBTFUL

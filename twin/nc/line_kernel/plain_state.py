@@ -6,7 +6,6 @@ from collections.abc import Callable
 
 import numpy as np
 
-from twin.nc.canonical import FloatArray
 from twin.nc.control.codes import GCode
 from twin.nc.control.executor import Executor
 from twin.nc.control.interpolation import ArcRule, LineRule, MotionMode
@@ -73,8 +72,8 @@ class LineRuns:
             return False
         page = control.program_counter.lines.page_of(line)
         columns = PageColumns(page.data, page.starts, page.ends, page.lines.start)
-        state, room_left = self._state(line), MoveRows(*(each[:room] for each in self._rows))
-        made = self._kernel(columns, self._rules, state, room_left)
+        state = self._state(line)
+        made = self._kernel(columns, self._rules, state, self._rows.first(room))
         came_to = int(state.line[0])
         if made < _WORTHWHILE and came_to < page.lines.stop:
             self._pause = min(2 * self._pause + 1, _LONGEST_PAUSE)
@@ -82,7 +81,7 @@ class LineRuns:
         else:
             self._pause = 0
         if came_to > line:
-            self._take_back(state, came_to, MoveRows(*(each[:made] for each in self._rows)))
+            self._take_back(state, came_to, self._rows.first(made))
         return came_to > line
 
     def _state(self, line: int) -> PlainState:
@@ -169,16 +168,12 @@ def plain_rules(control: Executor) -> PlainRules:
         bounds=arc.bounds,
         signed_radius=arc.signed_radius,
         fits_radius=arc.fits_radius,
-        linear=_flags(control.linear),
+        linear=np.array(control.linear),
         rotary=sum(1 << (AXIS + axis) for axis, linear in enumerate(control.linear) if not linear),
         path_counts=control.feed_rule is PATH_COUNTS,
         default_feed=settings.default_feed,
         default_rotary_feed=settings.default_rotary_feed,
     )
-
-
-def _flags(values: tuple[bool, ...]) -> FloatArray:
-    return np.array(values, np.float64)
 
 
 def _kind_of_code(code: GCode) -> int:
