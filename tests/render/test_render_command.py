@@ -128,7 +128,7 @@ def test_filament_without_a_driver_is_refused(
 
 
 def test_the_part_is_written_and_measured(recorded: Path, twin: Twin, tmp_path: Path) -> None:
-    arguments = ("--glb", "--inspect", "commanded", "--tolerance", 5)
+    arguments = ("--glb", "--inspect", "commanded", "--tolerance", 10)
     done = twin("render", recorded, "--out", tmp_path, *arguments)
     assert done.code == 0, done.stderr
     part = trimesh.load(tmp_path / "part.glb", force="mesh")
