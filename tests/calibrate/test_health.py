@@ -13,6 +13,8 @@ from twin.calibrate.health import look_at_axis, look_at_clock, look_at_fit, look
 from twin.calibrate.result import Calibration
 from twin.logs.machine_log import MachineLog
 
+pytestmark = pytest.mark.seconds("a machine is simulated, and fitted to its log")
+
 
 def found(log: MachineLog) -> tuple[Calibration, dict[str, str]]:
     """The calibration, and the findings about the log by their code."""

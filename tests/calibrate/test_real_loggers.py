@@ -55,6 +55,7 @@ def short() -> Iterator[None]:
     ],
     ids=["uneven", "held", "clipped"],
 )
+@pytest.mark.seconds("an axis is integrated and fitted whole")
 @pytest.mark.usefixtures("short")
 def test_intervals_of_another_integrator_s_axis_hold_the_truth(axis: Axis, code: str) -> None:
     result = fitted(axis)

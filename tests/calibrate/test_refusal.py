@@ -176,6 +176,7 @@ def test_the_step_of_quantised_values_is_found() -> None:
     assert resolution(values) == 0.0
 
 
+@pytest.mark.seconds("a machine is fitted")
 def test_require_turns_a_share_into_an_exit_code(twin: Twin, tmp_path: Path) -> None:
     first = write_log(tmp_path / "first.csv", logged(mill(), strokes(2.0)))
     other = write_log(tmp_path / "other.csv", logged(mill(kv=5.0), strokes(1.5)))

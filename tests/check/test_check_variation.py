@@ -77,6 +77,7 @@ def check_that_loses_its_worker_once(task: Variant) -> CheckOutcome:
     )
 
 
+@pytest.mark.processes
 def test_a_lost_worker_is_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("ray", reason="the extra 'cluster' is not installed")
     monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parent))
@@ -86,6 +87,7 @@ def test_a_lost_worker_is_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     assert (tmp_path / "died").exists()
 
 
+@pytest.mark.processes
 def test_a_cluster_on_this_computer_gives_the_same_outcomes() -> None:
     pytest.importorskip("ray", reason="the extra 'cluster' is not installed")
     tasks = variants(JOB, ["machine.axes.X.kw=1:3:3"])

@@ -20,6 +20,8 @@ from twin.files.toml import read_toml
 from twin.job.job_file import BaselineTable, ToleranceTable
 from twin.version import __version__
 
+pytestmark = pytest.mark.documentation
+
 ROOT = Path(__file__).parents[2]
 CHECK, COMPARE = ROOT / "twin" / "check" / "README.md", ROOT / "twin" / "compare" / "README.md"
 EXAMPLES = CHECK.parent / "examples"

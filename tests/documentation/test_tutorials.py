@@ -14,6 +14,8 @@ from typer.main import get_command
 
 from twin.cli import app
 
+pytestmark = pytest.mark.documentation
+
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 PAGES = sorted(path.relative_to(DOCS).as_posix() for path in DOCS.rglob("*.md"))
