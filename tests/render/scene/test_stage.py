@@ -233,6 +233,7 @@ def test_a_stock_that_is_cut_away_is_seen_no_more(scene: Scene) -> None:
     assert after == 0
 
 
+@pytest.mark.seconds("pictures are drawn without a graphics card")
 def test_shadows_fall(scene: Scene) -> None:
     pictures = []
     for quality in (DRAFT, dataclasses.replace(DRAFT, passes=4)):
@@ -243,6 +244,7 @@ def test_shadows_fall(scene: Scene) -> None:
     assert darker.any(axis=2).sum() > 20
 
 
+@pytest.mark.seconds("pictures are drawn without a graphics card")
 def test_passes_smooth_edges_and_shadows(scene: Scene) -> None:
     """Between the levels of a rough picture lie those of a smooth one."""
     levels = []
