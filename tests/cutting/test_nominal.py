@@ -10,6 +10,8 @@ from twin.errors import ConfigError
 from twin.files.shipped import resource_root
 from twin.job.job_file import read_job
 
+pytestmark = pytest.mark.seconds("a program is run and its part cut")
+
 SHIPPED = resource_root("programs") / "alarms" / "fagor8070"
 
 

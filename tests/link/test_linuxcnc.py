@@ -44,6 +44,7 @@ def cannot_run() -> str:
 
 
 pytestmark = [
+    pytest.mark.oracle,
     pytest.mark.skipif(bool(cannot_run()), reason=cannot_run() or "it can"),
     pytest.mark.xdist_group("linuxcnc"),
 ]

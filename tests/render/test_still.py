@@ -28,6 +28,7 @@ def take(scene: Scene, out: Path, end: int, **more: Any) -> np.ndarray[Any, Any]
     return np.asarray(Image.open(out)).astype(int)
 
 
+@pytest.mark.seconds("a run is drawn at several moments")
 def test_one_pass_draws_all_moments_with_the_running_block(scene: Scene, tmp_path: Path) -> None:
     shots = [Shot(tmp_path / f"{line}.png", moment(scene.recording, line=line)) for line in (3, 2)]
     stills(scene, shots)

@@ -13,7 +13,7 @@ from twin.compare.trace import Trace
 from twin.compare.verdict import Check, judge
 from twin.coupling.cutting_process import CuttingProcess
 from twin.coupling.operations import ProgramOperation, program_process, speeds_are_known
-from twin.cutting.forces.axis_load import AxisLoad
+from twin.cutting.axis_load import AxisLoad
 from twin.cutting.forces.load_log import LoadLog
 from twin.cutting.nominal import NominalGouge
 from twin.cutting.program_summary import ProgramSummary

@@ -240,6 +240,7 @@ def test_a_stock_that_is_cut_away_is_seen_no_more(scene: Scene) -> None:
     assert after == 0
 
 
+@pytest.mark.seconds("pictures are drawn without a graphics card")
 @pytest.mark.parametrize("quality", [DRAFT, dataclasses.replace(DRAFT, passes=3)])
 def test_frames_that_are_drawn_ahead_are_those_drawn_one_by_one(
     scene: Scene, quality: Quality
@@ -280,6 +281,7 @@ def test_the_order_of_drawing_hides_nothing_and_leaves_the_model_as_it_was(scene
         assert not np.array_equal(play.begin_picture("overview")(), first)
 
 
+@pytest.mark.seconds("pictures are drawn without a graphics card")
 def test_shadows_fall(scene: Scene) -> None:
     pictures = []
     for quality in (DRAFT, dataclasses.replace(DRAFT, passes=4)):
@@ -290,6 +292,7 @@ def test_shadows_fall(scene: Scene) -> None:
     assert darker.any(axis=2).sum() > 20
 
 
+@pytest.mark.seconds("pictures are drawn without a graphics card")
 def test_passes_smooth_edges_and_shadows(scene: Scene) -> None:
     """Between the levels of a rough picture lie those of a smooth one."""
     levels = []
