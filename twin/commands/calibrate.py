@@ -13,6 +13,7 @@ from rich.table import Table
 
 from twin.calibrate.programs import write_programs
 from twin.errors import ExitCode, UsageError
+from twin.extras import require_extra
 from twin.files.atomic import write_text
 from twin.files.shipped import machine_file
 from twin.logs.ball_bar import read_ball_bar
@@ -88,7 +89,7 @@ def calibrate_and_print(request: Request) -> ExitCode:
             typer.echo(f"wrote {path}")
     if not request.fits:
         return ExitCode.OK
-    _need_scipy()
+    require_extra("calibrate", "twin calibrate")
     from twin.calibrate.calibrate import calibrate
     from twin.calibrate.machine_text import machine_text
 
@@ -122,15 +123,6 @@ def calibrate_and_print(request: Request) -> ExitCode:
         figures.judged_share > request.require for figures in judged
     )
     return ExitCode.FAILED if failed else ExitCode.OK
-
-
-def _need_scipy() -> None:
-    try:
-        import scipy  # noqa: F401 (asked for before anything is read)
-    except ImportError as error:
-        raise UsageError(
-            "twin calibrate needs scipy: pip install 'mill-twin[calibrate]'"
-        ) from error
 
 
 def _base_for(base: str, out: Path) -> str:
