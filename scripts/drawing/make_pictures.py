@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Take the pictures of each shipped machine for its README: ``scripts/make_pictures [MACHINE ...]``."""
+"""Take the pictures of each shipped machine for its README: ``python scripts/drawing/make_pictures.py [MACHINE ...]``."""
 
 import os
 import sys
@@ -10,11 +10,11 @@ import mujoco
 import numpy as np
 from PIL import Image
 
+from twin.files.shipped import machine_file, machine_names
 from twin.machine.circle.circle_plot import write_circle_plot
 from twin.machine.circle.circular_test import circular_test
 from twin.machine.description.config import read_machine
 from twin.machine.model.model import build_spec
-from twin.files.shipped import machine_file, machine_names
 
 SIZE = (1280, 900)
 VIEWS = {

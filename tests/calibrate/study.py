@@ -1,6 +1,6 @@
 """Synthetic machines whose truth is known: do the intervals of ``twin calibrate`` cover it?
 
-``python scripts/calibration_study.py [MACHINES]`` draws machines (200 by default) with random drives, noise,
+``python -m tests.calibrate.study [MACHINES]`` draws machines (200 by default) with random drives, noise,
 quantisation, delay and rates from 50 Hz to 4 kHz, with force, with a current or with positions alone;
 half of them have a dead time, a filter of speed or command, an integrator, or a log behind a measuring
 filter. ``--first N`` passes over those before, ``--processes N`` fits so many at a time, ``--json FILE``

@@ -26,7 +26,7 @@ from twin.run.progress import no_progress
 from twin.run.replay import scene_of
 from twin.run.run import Run
 
-RENDERS = Path(__file__).resolve().parent.parent / "renders"
+RENDERS = Path(__file__).resolve().parents[2] / "renders"
 LARGEST_BYTES = 300_000
 COLOURS = (256, 192, 128, 96, 64)
 

@@ -20,7 +20,7 @@ from pathlib import Path
 
 from left_behind import complaints
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 JOB = ROOT / "programs" / "fagor8070" / "bolt_hole_ring.toml"
 CODES = {0, 1, 2, 3, 4, 130}
 """The exit codes of the contract."""
@@ -247,7 +247,7 @@ def broken_recording(bench: Bench) -> Iterator[str]:
 def training_room(bench: Bench) -> Iterator[str]:
     """Strangers, floods, pages that do not read, a folder that vanishes, in one training room."""
     del bench
-    import room_attacks
+    from bad_days import room_attacks
 
     return room_attacks.complaints()
 
@@ -255,7 +255,7 @@ def training_room(bench: Bench) -> Iterator[str]:
 def agent(bench: Bench) -> Iterator[str]:
     """Fifty streams, clients that do not read and nonsense, all at once, for ``twin serve``."""
     del bench
-    import agent_attacks
+    from bad_days import agent_attacks
 
     return agent_attacks.complaints()
 

@@ -22,7 +22,7 @@ PROGRAMS = (
     "fagor8070/scroll",
     "fagor8070/three_planes",
 )
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 COMMANDS = {"own": ("run",), "linuxcnc": ("link", "linuxcnc", "--headless")}
 VERDICTS = (0, 1)
 

@@ -25,7 +25,7 @@ from typing import NamedTuple
 from urllib.parse import urlsplit
 from xml.etree import ElementTree as ET
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 JOB = ROOT / "programs" / "codesys" / "semicircle_by_radius.toml"
 CROWD, SLOW = 50, 20
 """Clients that stream everything, and clients that ask for everything and read nothing."""
