@@ -1,6 +1,6 @@
 """Every state's documents against what the schemas of MTConnect 2.0 ask of the elements in them.
 
-The official schemas are in no package: ``scripts/mtconnect_schemas FOLDER`` takes them. Those beside
+The official schemas are in no package: ``test_official_schemas.py`` takes them from a folder. Those beside
 these tests were written after them, for what this agent writes alone.
 """
 
@@ -16,6 +16,8 @@ from twin.serve.buffer import NORMAL, Condition, Value
 from twin.serve.clock import Clock
 from twin.serve.device import device_of
 from twin.serve.forms import XML
+
+pytestmark = pytest.mark.oracle
 
 AXES = Axes(("X", "Y", "Z", "C"), ("linear", "linear", "linear", "rotary"))
 MOVING: dict[str, Value] = {
