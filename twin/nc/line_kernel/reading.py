@@ -1,18 +1,17 @@
-"""The bytes of a plain line to words: letters with plain numbers, and comments passed over.
+"""The bytes of a plain line to values: letters with plain numbers, and comments passed over.
 
-A line is plain when the reading of lines (``line_reader``) would find nothing in it but words of
-the letters that ``DecodeTables`` names, each with a plain number, and comments. How these are
-written, ``text.plain_word`` and ``text.comments`` say for both. Whatever else the line holds, right or
-wrong, is left to that reader: it alone makes diagnostics.
+How words and comments are written, ``text.plain_word`` and ``text.comments`` say for Python's reader and for
+this one. Whatever else a line holds, right or wrong, is left to Python: it alone makes diagnostics.
 """
 
+from typing import NamedTuple
+
 import numpy as np
+import numpy.typing as npt
 
 from twin.compilation.compilable import compilable, inlined
-from twin.nc.bytecode.registers import MOST_WORDS
-from twin.nc.bytecode.token_kinds import NUMBER, OTHER, UNSUPPORTED, ByteArray, LineTables
 from twin.nc.canonical import FloatArray, IntArray
-from twin.nc.text.comments import comment_end
+from twin.nc.text.comments import CommentMarks, comment_end
 from twin.nc.text.plain_word import (
     ADDRESS,
     BEGIN,
@@ -24,6 +23,12 @@ from twin.nc.text.plain_word import (
     WALK,
 )
 
+ByteArray = npt.NDArray[np.uint8]
+
+OTHER, NUMBER, CODE, FEED, RADIUS, CENTER, AXIS = -1, 0, 1, 2, 3, 4, 7
+"""Roles of letters: none in a plain line; N, G, F, R; I, J, K from ``CENTER`` on; axes by their column from
+``AXIS`` on."""
+NOT_PLAIN = -1
 _MINUS, _POINT, _DIGIT_0 = ord("-"), ord("."), ord("0")
 _LETTER_A, _TO_UPPER = ord("A"), 0xDF
 _EXACT_MANTISSA = 2**53 // 10 - 1
@@ -36,52 +41,60 @@ A quotient of two exact doubles is the double nearest to the decimal number, as 
 """
 
 
+class LineFormat(NamedTuple):
+    """How a dialect writes plain lines on a machine.
+
+    Attributes:
+        roles: Of each letter, shape (26,).
+        pointed: Numbers of the letter are plain with a decimal point only, unless 0, shape (26,).
+        comments: How comments are marked.
+        longest: Bytes of a line that may be plain.
+    """
+
+    roles: IntArray
+    pointed: npt.NDArray[np.bool_]
+    comments: CommentMarks
+    longest: int
+
+
 @compilable
-def read_words(
-    data: ByteArray,
-    begin: int,
-    end: int,
-    tables: LineTables,
-    token_kinds: IntArray,
-    values: FloatArray,
-) -> int:
+def read_line(data: ByteArray, begin: int, end: int, form: LineFormat, values: FloatArray) -> int:
     """Read a line.
 
     Args:
         data: The program as UTF-8.
         begin: First byte of the line.
         end: Behind its last byte.
-        tables: How the dialect's lines are read.
-        token_kinds: Filled with what each word's letter is, shape (``MOST_WORDS``,).
-        values: Filled with the words' values, shape (``MOST_WORDS``,).
+        form: How lines are written.
+        values: Filled with the value of each role that the line has, shape (roles,).
 
     Returns:
-        How many words it has, or ``UNSUPPORTED``.
+        The roles that it has, as bits; or ``NOT_PLAIN``.
     """
-    count, at = 0, begin
+    seen, at = int(np.int64(0)), begin
     while True:
         stage, letter, value, at = _read_word(data, at, end)
         if stage == BEGIN:
             if at == end:
-                return count
-            at = comment_end(data, begin, at, end, tables.comments)
+                return seen
+            at = comment_end(data, begin, at, end, form.comments)
             if at < 0:
-                return UNSUPPORTED
+                return NOT_PLAIN
             continue
-        token_kind = tables.token_kinds[letter]
-        if token_kind == OTHER or count == MOST_WORDS or (token_kind == NUMBER and count > 0):
-            return UNSUPPORTED
-        if at == UNSUPPORTED or (stage != FRACTION and value != 0.0 and tables.pointed[letter]):
-            return UNSUPPORTED
-        token_kinds[count], values[count] = token_kind, value
-        count += 1
+        role = form.roles[letter]
+        if role == OTHER or seen >> role & 1 or (role == NUMBER and seen):
+            return NOT_PLAIN
+        if at == NOT_PLAIN or (stage != FRACTION and value != 0.0 and form.pointed[letter]):
+            return NOT_PLAIN
+        seen |= 1 << role
+        values[role] = value
 
 
 @compilable
 def _read_word(data: ByteArray, at: int, end: int) -> tuple[int, int, float, int]:
     """A word: the stage that it has come to, its letter from 0, its number, and the place behind it.
 
-    That place is ``UNSUPPORTED`` where the word has no number or a very long one. A number's stages
+    That place is ``NOT_PLAIN`` where the word has no number or a very long one. A number's stages
     follow from its digits and its point: a loop that went by them from byte to byte would wait for each.
     """
     at = _stay(data, at, end, BEGIN)
@@ -98,7 +111,7 @@ def _read_word(data: ByteArray, at: int, end: int) -> tuple[int, int, float, int
         byte = int(data[at])
         if IS_DIGIT[byte]:
             if mantissa > _EXACT_MANTISSA:
-                return stage, letter, 0.0, UNSUPPORTED
+                return stage, letter, 0.0, NOT_PLAIN
             mantissa = 10 * mantissa + byte - _DIGIT_0
             digits += 1
             decimals += pointed
@@ -114,7 +127,7 @@ def _read_word(data: ByteArray, at: int, end: int) -> tuple[int, int, float, int
     if decimals > 0:
         stage = int(WALK[stage << 8 | _DIGIT_0])
     if not IS_WORD[stage] or decimals >= len(_POWERS):
-        return stage, letter, 0.0, UNSUPPORTED
+        return stage, letter, 0.0, NOT_PLAIN
     value = mantissa / _POWERS[decimals]
     return stage, letter, (-value if negative else value), at
 
