@@ -96,7 +96,9 @@ def test_a_clock_that_stands_is_a_jump_too() -> None:
 def test_uneven_samples_are_told() -> None:
     log = log_of(Logger())
     shaken = 0.0004 * np.random.default_rng(1).uniform(-1.0, 1.0, len(log.time))
-    assert "unevenly" in told_of_clock(dataclasses.replace(log, time=log.time + shaken))["jitter"]
+    assert (
+        "as they are" in told_of_clock(dataclasses.replace(log, time=log.time + shaken))["uneven"]
+    )
 
 
 def test_a_command_that_is_held_over_samples_is_told() -> None:

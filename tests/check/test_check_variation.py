@@ -6,6 +6,7 @@ import signal
 from pathlib import Path
 
 import pytest
+from command_line import Twin
 
 from twin.check.outcome import CheckOutcome
 from twin.check.runner import check_variant, run_tasks
@@ -75,6 +76,13 @@ def check_that_loses_its_worker_once(task: Variant) -> CheckOutcome:
     return CheckOutcome(
         program=str(task.path), verdict="pass", exit_code=ExitCode.OK, changes=task.changes
     )
+
+
+@pytest.mark.parametrize("vary", ["machine.axes.X.kw=5,6", "job.nonsense=5"])
+def test_a_key_that_does_not_exist_is_a_wrong_command_line(twin: Twin, vary: str) -> None:
+    done = twin("sweep", JOB, "--vary", vary, "--jobs", 1)
+    assert done.code == 2
+    assert "unknown key" in done.stderr
 
 
 @pytest.mark.processes

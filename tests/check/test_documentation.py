@@ -138,7 +138,8 @@ def test_a_build_server_runs_its_example(shop: Path, monkeypatch: pytest.MonkeyP
     store_baselines(Path("programs/part.toml"))
     write_job(shop / "programs", "part", PROGRAM.replace("G02", "G03"))
     install, check = steps(example)
-    assert f"pip install mill-twin=={__version__}" in install
+    assert 'pip install "$MILL_TWIN"' in install
+    assert f"mill-twin=={__version__} after publication" in (EXAMPLES / example).read_text("utf-8")
     shell(install)
     told = shell(check, code=1)
     assert "part.nc:3:1: error baseline-path: arc counter-clockwise by 180 degrees" in told
