@@ -95,8 +95,6 @@ def _run(variant: Variant, settings: CheckSettings) -> CheckOutcome:
     differing = _baseline_reasons(preparation, figures, settings)
     if any(found.code == "empty-program" for found in dry_run.warnings):
         raise EmptyProgramError(f"{path}: the program is empty: no line holds a block")
-    if not dry_run.moves and not alarmed:
-        differing.insert(0, Reason("empty-program", "the program makes no move", 0, 0.0))
     failed = bool(differing) and not alarmed
     return CheckOutcome(
         program=str(path),
@@ -111,6 +109,7 @@ def _run(variant: Variant, settings: CheckSettings) -> CheckOutcome:
             *_findings(preparation, differing),
         ),
         warnings=tuple(_diagnostic_finding(found) for found in outcome.warnings),
+        scope=tuple(outcome.scope.lines()),
     )
 
 
