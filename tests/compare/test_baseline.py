@@ -53,7 +53,7 @@ def test_the_same_run_holds_however_it_is_chunked(stored: Path):
 
 def test_the_file_is_text_with_a_line_an_entry_and_no_word_twice(stored: Path):
     assert stored.read_text(encoding="utf-8").splitlines() == [
-        "twin baseline 4",
+        "twin baseline 5",
         "cycle_time_s 20.000000",
         "contour_um 5.000",
         "axes X Y Z C",

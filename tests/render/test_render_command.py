@@ -131,7 +131,7 @@ def test_filament_without_a_driver_is_refused(
 
 @pytest.mark.seconds("a run is filmed")
 def test_the_part_is_written_and_measured(recorded: Path, twin: Twin, tmp_path: Path) -> None:
-    arguments = ("--glb", "--inspect", "commanded", "--tolerance", 5)
+    arguments = ("--glb", "--inspect", "commanded", "--tolerance", 10)
     done = twin("render", recorded, "--out", tmp_path, *arguments)
     assert done.code == 0, done.stderr
     part = trimesh.load(tmp_path / "part.glb", force="mesh")
@@ -153,7 +153,7 @@ def test_a_nominal_part_in_program_coordinates(recorded: Path, twin: Twin, tmp_p
     figures = json.loads((tmp_path / "inspection.json").read_text())
     slot = (40.0 + 7.85) * 10.0 * 3.0
     assert figures["missing_mm3"] == pytest.approx(slot, rel=0.1), "slot and hole are missing"
-    assert figures["min_um"] == pytest.approx(-5000.0, abs=700.0)
+    assert figures["min_um"] == pytest.approx(-3000.0, abs=1.0), "what is left is so far off"
     assert figures["standing_mm3"] == 0.0
 
 

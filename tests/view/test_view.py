@@ -165,7 +165,7 @@ def test_a_run_is_played_and_scrubbed_on_its_page(recorded):
 def test_feed_is_that_of_the_tip_over_the_part_and_a_change_of_tool_is_none(
     columns_each: int, jump: float
 ) -> None:
-    time = 0.001 * columns_each * np.arange(6)
+    time = 0.001 * columns_each * np.arange(6, dtype=np.float64)
     tool = np.array([1, 1, 1, 2, 2, 2])
     tips = np.zeros((3, 6))
     tips[0] = 20.0 * time

@@ -84,6 +84,8 @@ def report_of(
         tolerance=run.preparation.job.file.tolerance,
         trace=run.trace,
         result=content,
+        scope=tuple(outcome.scope.lines()),
+        warnings=tuple((found.line, found.code, found.message) for found in outcome.warnings),
         stills=stills,
     )
 
@@ -99,6 +101,7 @@ def _summary(run: Run, outcome: Outcome) -> RunSummary:
         wall_s=run.clock.wall_s,
         stages={f"{name}_s": seconds for name, seconds in run.clock.seconds.items()},
         near_miss=None if outcome.near_miss is None else dataclasses.asdict(outcome.near_miss),
+        scope=outcome.scope.as_json(),
         cut=_cut(outcome, preparation.job.file.stock),
         commanded=named(outcome.final_commanded),
         simulated=named(outcome.final_simulated),
@@ -110,7 +113,15 @@ def _cut(outcome: Outcome, stock: StockTable | None) -> dict[str, Any] | None:
     if outcome.cut is None:
         return None
     gouge = None if outcome.gouge is None else outcome.gouge.as_json()
-    cut = {**outcome.cut.as_json(), "nominal_gouge": gouge, "force_simulated": False, "loads": []}
+    cut = {
+        **outcome.cut.as_json(),
+        "nominal_gouge": gouge,
+        "nominal": None,
+        "force_simulated": False,
+        "loads": [],
+    }
+    if outcome.inspection is not None:
+        cut["nominal"] = outcome.inspection.as_json()
     material = None if stock is None or outcome.cut.force_n is None else kienzle(stock)
     if stock is not None and material is not None:
         cut["material"] = {"name": stock.material, **dataclasses.asdict(material)}
