@@ -116,6 +116,12 @@ def test_with_nothing_to_write_to_kernels_last_as_long_as_the_process(package: P
     assert outcome(package, **nowhere) == ["21", "0"]
 
 
+def test_what_kernels_alone_call_is_kept_within_them(package: Path) -> None:
+    assert outcome(package) == ["21", "0"]
+    assert len(kept(package.parents[1], "outer")) == 1
+    assert kept(package.parents[1], "inner") == []
+
+
 @pytest.mark.parametrize("damage", ["cut", "emptied", "a bit"])
 def test_a_damaged_kernel_is_compiled_again(package: Path, damage: str) -> None:
     assert outcome(package) == ["21", "0"]
