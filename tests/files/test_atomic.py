@@ -56,7 +56,7 @@ def test_a_device_is_not_replaced():
     before = Path("/dev/null").stat().st_ino
     write_text(Path("/dev/null"), "gone")
     assert Path("/dev/null").stat().st_ino == before
-    with pytest.raises(OSError, match="No space"):
+    with pytest.raises(OSError, match="the disk is full"):
         write_text(Path("/dev/full"), "text")
 
 

@@ -21,6 +21,20 @@ _COMPILERS = (
     # Within a minor version NumPy keeps the layout of arrays and the types of results.
     ".".join(np.__version__.split(".")[:2]),
 )
+REQUIREMENTS = "requirements.txt"
+"""What of the compilers compiled kernels need, in a folder of them."""
+
+
+def compilers() -> tuple[str, ...]:
+    """Requirements of pip under which kernels that are compiled here are found again."""
+    minor = ".".join(np.__version__.split(".")[:2])
+    return (
+        f"numba=={numba.__version__}",
+        f"llvmlite=={llvmlite.__version__}",
+        f"numpy=={minor}.*",
+    )
+
+
 _IMPORT = re.compile(
     r"^(?:from (?P<origin>twin[\w.]*) import (?P<names>\([^)]*\)|[^\n]*)|import (?P<module>twin[\w.]+))",
     re.MULTILINE,
