@@ -85,7 +85,9 @@ def draw(random: np.random.Generator) -> Drawn:
         return draw(random)
     rate, kind = int(random.choice(RATES)), str(random.choice(["positions", "current", "force"]))
     asked = _course(random)
-    command = command_of("linear", _FINE_S, asked, asked)
+    command = command_of(
+        "linear", np.linspace(0.0, _FINE_S * (len(asked) - 1), len(asked)), asked, asked
+    )
     motion = simulate_axis(truth, command)
     every = round(1.0 / rate / _FINE_S)
     seen = seen_at(motion.position, motion.velocity, command, truth.delay)[::every]
@@ -148,9 +150,9 @@ def fit(drawn: Drawn) -> AxisFit:
             more={role: _mean(values, times) for role, values in axis.more.items()},
         )  # fmt: skip
         rate = _AVERAGED
-    time = np.arange(len(axis.command)) / rate
+    time = np.linspace(0.0, (len(axis.command) - 1) / rate, len(axis.command))
     base = of_base(_shipped_axis(), BASE_MASS)
-    return fit_axis("linear", stretches_of(axis, time, 1.0 / rate, ((0, len(time)),)), base)
+    return fit_axis("linear", stretches_of(axis, time, ((0, len(time)),)), base)
 
 
 def _mean(values: FloatArray, times: int) -> FloatArray:

@@ -18,7 +18,8 @@ _need_packages() {
 
 _has_library() { PATH="$PATH:/sbin:/usr/sbin" ldconfig -p | grep -q "$1"; }
 
-declare -A extra=([run]="" [docs]="[docs]" [dev]="[dev]")
+declare -A extra=([run]="" [docs]="[docs]" [dev]="[dev]" [exhaustive]="[exhaustive]")
+declare -A contained_in=([run]="run docs dev exhaustive" [docs]="docs exhaustive" [dev]="dev exhaustive" [exhaustive]="exhaustive")
 
 _find_python() {
     local candidate
@@ -39,7 +40,15 @@ compile_kernels() {
     .venv/bin/twin doctor --compile >/dev/null || true
 }
 
-# setup_environment [dev|docs]: with that extra, or with what a run needs alone.
+_is_set_up() {
+    local larger
+    for larger in ${contained_in[$1]}; do
+        [ "$(cat ".venv/stamp-$larger" 2>/dev/null)" != "$2" ] || return 0
+    done
+    return 1
+}
+
+# setup_environment [dev|docs|exhaustive]: with that extra, or with what a run needs alone.
 setup_environment() {
     local python stamp wanted="${1:-run}"
     python=$(_find_python)
@@ -49,8 +58,7 @@ setup_environment() {
         _need_packages libegl1 libegl-mesa0 libgl1-mesa-dri || true
     fi
     stamp=$(cat pyproject.toml constraints.txt | sha256sum | cut -d' ' -f1)
-    if [ "$(cat .venv/stamp-dev 2>/dev/null)" != "$stamp" ] &&
-        [ "$(cat ".venv/stamp-$wanted" 2>/dev/null)" != "$stamp" ]; then
+    if ! _is_set_up "$wanted" "$stamp"; then
         echo "setting up .venv"
         [ -x .venv/bin/python ] || "$python" -m venv .venv
         # By the environment, so that the isolated build keeps to the same versions.

@@ -1,7 +1,9 @@
-"""Run the command line inside the test's own process, as a shell would see it."""
+"""What all tests share: the command line in the test's own process, kinds of tests, and what they cost."""
 
 import os
 import sys
+from collections.abc import Iterator
+from importlib.util import find_spec
 
 import pytest
 from command_line import Finished, Twin
@@ -16,7 +18,73 @@ os.environ.setdefault(VARIABLE, "wait")
 settings.register_profile(
     "untimed", deadline=None, suppress_health_check=[HealthCheck.too_slow], print_blob=True
 )
+settings.register_profile("short", settings.get_profile("untimed"), max_examples=20)
 settings.load_profile("untimed")
+
+KINDS = frozenset(
+    {"thorough", "browser", "played", "processes", "oracle", "documentation", "bench"}
+)
+"""Markers of what ``scripts/test`` leaves to ``scripts/test --all``."""
+_NEED = {
+    "compare/report/test_report_page.py": "playwright",
+    "motion/profile/test_time_optimality.py": "toppra",
+    "serve/test_independent_client.py": "pymtconnect",
+    "serve/test_schemas.py": "xmlschema",
+}
+"""Exhaustive tests that cannot even be read without a package of the extra ``exhaustive``."""
+collect_ignore = [file for file, package in _NEED.items() if find_spec(package) is None]
+_BEGUN = pytest.StashKey[float]()
+_COST = "processor_seconds"
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_itemcollected(item: pytest.Item) -> None:
+    """Mark what is of one of the kinds, so that one word leaves all of them out."""
+    if any(item.get_closest_marker(kind) for kind in KINDS):
+        item.add_marker("exhaustive")
+
+
+def pytest_report_header() -> list[str]:
+    """Name what is left out, and why."""
+    return [
+        f"tests/{file} is left out: {_NEED[file]} is missing, which the extra 'exhaustive' brings"
+        for file in collect_ignore
+    ]
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    item.stash[_BEGUN] = _processor_seconds()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_teardown(item: pytest.Item) -> Iterator[None]:
+    """Note what a test cost that says no reason for taking long."""
+    yield
+    if not any(item.get_closest_marker(each) for each in ("exhaustive", "seconds")):
+        cost = _processor_seconds() - item.stash[_BEGUN]
+        item.user_properties.append((_COST, cost))
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """Name the tests that took more than a second of processor time without a reason."""
+    costs = [
+        (float(value), report.nodeid)
+        for reports in terminalreporter.stats.values()
+        for report in reports
+        if getattr(report, "when", None) == "teardown"
+        for name, value in report.user_properties
+        if name == _COST and float(value) > 1.0
+    ]
+    if costs:
+        terminalreporter.section("more than a second of processor time, without a reason")
+        for cost, name in sorted(costs, reverse=True):
+            terminalreporter.write_line(f"{cost:6.1f} s  {name}")
+
+
+def _processor_seconds() -> float:
+    """Of this process and of those that it waited for."""
+    return sum(os.times()[:4])
 
 
 @pytest.fixture

@@ -15,6 +15,8 @@ from tests.left_behind import complaints
 from twin.errors import UsageError
 from twin.run.run_folder import run_folder
 
+pytestmark = pytest.mark.processes
+
 JOB = Path(__file__).parents[1] / "programs" / "fagor8070" / "bolt_hole_ring.toml"
 
 

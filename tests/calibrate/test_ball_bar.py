@@ -15,6 +15,8 @@ from twin.machine.circle.circular_test import circular_test
 from twin.machine.description.config import Machine
 from twin.nc.canonical import FloatArray
 
+pytestmark = pytest.mark.seconds("a machine is simulated, and fitted to its log")
+
 RADIUS, SPEED = 150.0, 50.0
 GAPS, SQUARE, LAGS = (0.012, 0.007), 40e-6, (0.008, 0.0078)
 """Backlash [mm], angle beyond 90 degrees [rad], lags [s]."""

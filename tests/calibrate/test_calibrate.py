@@ -26,6 +26,8 @@ from twin.logs.column_map import read_column_map
 from twin.logs.machine_log import MachineLog, read_machine_log
 from twin.machine.description.config import read_machine
 
+pytestmark = pytest.mark.seconds("a machine is simulated, and fitted to its log")
+
 TRUTH = {
     "kv": 5.0, "damping_ratio": 0.7, "dry_friction": 350.0, "viscous_friction": 3.0,
     "constant_force": 40.0, "mass": 800.0,

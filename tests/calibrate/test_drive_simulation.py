@@ -41,7 +41,7 @@ def test_an_axis_moves_as_in_mujoco(changes: dict[str, float], within_um: float)
     moved = drives(machine, build_spec(machine).compile())[0].moved
     motion = simulate_axis(
         of_base(machine.axis("X"), moved),
-        command_of("linear", PERIOD, axis.command, axis.actual),
+        command_of("linear", log.time, axis.command, axis.actual),
     )
     assert np.abs(motion.position - axis.actual)[20:].max() * 1e3 < within_um
     off = motion.force - axis.more["force"]
@@ -50,7 +50,8 @@ def test_an_axis_moves_as_in_mujoco(changes: dict[str, float], within_um: float)
 
 def test_a_delay_between_samples_is_seen_to_a_hundredth_of_a_micrometre() -> None:
     course = strokes(2.0)
-    command = command_of("linear", PERIOD, course[:, 0], course[:, 0])
+    time = np.asarray(np.arange(len(course)) * PERIOD, np.float64)
+    command = command_of("linear", time, course[:, 0], course[:, 0])
     delay = 0.00037
     seen = seen_at(course[:, 0], course[:, 1], command, delay)
     meant = course[:, 0] - delay * course[:, 1] + delay**2 / 2 * course[:, 2]

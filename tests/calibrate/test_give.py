@@ -62,17 +62,20 @@ def without(log: MachineLog, *roles: str) -> MachineLog:
 
 
 def test_a_second_encoder_tells_backlash_and_stiffness(log: MachineLog) -> None:
-    fitted = calibrate(mill(), [log]).axes["X"].fit.fitted
-    assert fitted["backlash"].value == pytest.approx(GAP, rel=0.05)
-    assert fitted["stiffness"].value == pytest.approx(SPRING, rel=0.1)
-    for name, true in (("backlash", GAP), ("stiffness", SPRING)):
-        assert fitted[name].low < true < fitted[name].high
+    fit = calibrate(mill(), [log]).axes["X"].fit
+    backlash, (stiffness, given) = fit.fitted["backlash"], fit.conditional["stiffness"]
+    assert backlash.value == pytest.approx(GAP, rel=0.05)
+    assert stiffness.value == pytest.approx(SPRING, rel=0.1)
+    for interval, true in ((backlash, GAP), (stiffness, SPRING)):
+        assert interval.low < true < interval.high
+    assert given == ("motor_inertia", "screw_inertia")
+    assert "only its ratio to what lies behind the gap" in fit.undetermined["stiffness"]
 
 
 def test_without_a_force_stiffness_stands_on_the_base_s_mass(log: MachineLog) -> None:
     fit = calibrate(mill(), [without(log, "force")]).axes["X"].fit
     assert fit.fitted["backlash"].value == pytest.approx(GAP, rel=0.1)
-    assert fit.conditional["stiffness"][1] == ("mass",)
+    assert fit.conditional["stiffness"][1] == ("mass", "motor_inertia", "screw_inertia")
 
 
 def test_without_a_second_encoder_they_are_named_as_undetermined(log: MachineLog) -> None:

@@ -13,6 +13,8 @@ from twin.calibrate.health import look_at_axis, look_at_clock, look_at_fit, look
 from twin.calibrate.result import Calibration
 from twin.logs.machine_log import MachineLog
 
+pytestmark = pytest.mark.seconds("a machine is simulated, and fitted to its log")
+
 
 def found(log: MachineLog) -> tuple[Calibration, dict[str, str]]:
     """The calibration, and the findings about the log by their code."""
@@ -94,7 +96,9 @@ def test_a_clock_that_stands_is_a_jump_too() -> None:
 def test_uneven_samples_are_told() -> None:
     log = log_of(Logger())
     shaken = 0.0004 * np.random.default_rng(1).uniform(-1.0, 1.0, len(log.time))
-    assert "unevenly" in told_of_clock(dataclasses.replace(log, time=log.time + shaken))["jitter"]
+    assert (
+        "as they are" in told_of_clock(dataclasses.replace(log, time=log.time + shaken))["uneven"]
+    )
 
 
 def test_a_command_that_is_held_over_samples_is_told() -> None:

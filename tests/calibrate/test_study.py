@@ -1,8 +1,11 @@
 """A sample of the study of synthetic machines; scripts/calibration_study.py runs all 200."""
 
 import numpy as np
+import pytest
 
 from scripts.calibration_study import covered, draw, extras_of, fit, unnamed
+
+pytestmark = pytest.mark.bench
 
 
 def test_intervals_cover_the_truth_and_what_is_hidden_is_named() -> None:

@@ -32,6 +32,7 @@ def write_job(folder: Path, name: str, text: str = PROGRAM, tolerance: float = 5
     return job
 
 
+@pytest.mark.seconds("programs are run by workers")
 def test_programs_pass_fail_and_break_beside_each_other(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ):
@@ -82,6 +83,7 @@ MISTAKES = {
 }
 
 
+@pytest.mark.seconds("programs are run by workers")
 def test_a_broken_post_processor_is_caught_at_its_line(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
@@ -150,6 +152,7 @@ def test_programs_are_spread_over_processes(tmp_path: Path):
     assert str(os.getpid()) not in {path.read_text() for path in tmp_path.iterdir()}
 
 
+@pytest.mark.processes
 def test_a_process_that_dies_takes_no_other_program_with_it():
     outcomes = list(check_all([Path("bad"), Path("one"), Path("two")], die_if_bad, jobs=2))
     verdicts = {outcome.program: outcome.verdict for outcome in outcomes}

@@ -6,6 +6,7 @@ import signal
 from pathlib import Path
 
 import pytest
+from command_line import Twin
 
 from twin.check.outcome import CheckOutcome
 from twin.check.runner import check_variant, run_tasks
@@ -77,6 +78,14 @@ def check_that_loses_its_worker_once(task: Variant) -> CheckOutcome:
     )
 
 
+@pytest.mark.parametrize("vary", ["machine.axes.X.kw=5,6", "job.nonsense=5"])
+def test_a_key_that_does_not_exist_is_a_wrong_command_line(twin: Twin, vary: str) -> None:
+    done = twin("sweep", JOB, "--vary", vary, "--jobs", 1)
+    assert done.code == 2
+    assert "unknown key" in done.stderr
+
+
+@pytest.mark.processes
 def test_a_lost_worker_is_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("ray", reason="the extra 'cluster' is not installed")
     monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parent))
@@ -86,6 +95,7 @@ def test_a_lost_worker_is_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     assert (tmp_path / "died").exists()
 
 
+@pytest.mark.processes
 def test_a_cluster_on_this_computer_gives_the_same_outcomes() -> None:
     pytest.importorskip("ray", reason="the extra 'cluster' is not installed")
     tasks = variants(JOB, ["machine.axes.X.kw=1:3:3"])

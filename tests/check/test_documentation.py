@@ -20,6 +20,8 @@ from twin.files.toml import read_toml
 from twin.job.job_file import BaselineTable, ToleranceTable
 from twin.version import __version__
 
+pytestmark = pytest.mark.documentation
+
 ROOT = Path(__file__).parents[2]
 CHECK, COMPARE = ROOT / "twin" / "check" / "README.md", ROOT / "twin" / "compare" / "README.md"
 EXAMPLES = CHECK.parent / "examples"
@@ -136,7 +138,8 @@ def test_a_build_server_runs_its_example(shop: Path, monkeypatch: pytest.MonkeyP
     store_baselines(Path("programs/part.toml"))
     write_job(shop / "programs", "part", PROGRAM.replace("G02", "G03"))
     install, check = steps(example)
-    assert f"pip install mill-twin=={__version__}" in install
+    assert 'pip install "$MILL_TWIN"' in install
+    assert f"mill-twin=={__version__} after publication" in (EXAMPLES / example).read_text("utf-8")
     shell(install)
     told = shell(check, code=1)
     assert "part.nc:3:1: error baseline-path: arc counter-clockwise by 180 degrees" in told

@@ -22,6 +22,7 @@ def program(folder: Path, text: str, job: str = "") -> Path:
     return path
 
 
+@pytest.mark.seconds("a program is run whole")
 def test_a_run_writes_all_that_the_contract_names(twin: Twin, tmp_path: Path):
     done = twin("run", PROGRAMS / "codesys" / "semicircle_by_radius.nc", "--out", tmp_path)
     assert done.code == 0, done.stderr
@@ -131,6 +132,7 @@ def test_a_folder_is_for_check(twin: Twin, tmp_path: Path):
     assert "twin check" in done.stderr
 
 
+@pytest.mark.seconds("a program is run whole")
 def test_a_dull_drive_fails_the_tolerance_and_names_the_line(twin: Twin, tmp_path: Path):
     path = PROGRAMS / "mefi" / "helix.toml"
     machine = machine_with_gain(tmp_path, 0.5)

@@ -8,6 +8,8 @@ import pytest
 
 from twin.commands.interruption import let_interruption_stop
 
+pytestmark = pytest.mark.processes
+
 NUMBERS = (signal.SIGINT, signal.SIGTERM)
 IN_COMPILED_CODE = """
 import os, signal, sys, threading, time, types

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from examples import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -52,7 +53,7 @@ def test_the_same_run_holds_however_it_is_chunked(stored: Path):
 
 def test_the_file_is_text_with_a_line_an_entry_and_no_word_twice(stored: Path):
     assert stored.read_text(encoding="utf-8").splitlines() == [
-        "twin baseline 4",
+        "twin baseline 5",
         "cycle_time_s 20.000000",
         "contour_um 5.000",
         "axes X Y Z C",
@@ -219,7 +220,7 @@ def test_another_machine_is_no_traceback(stored: Path):
     assert other.message == "axes X Y Z, baseline X Y Z C"
 
 
-@settings(max_examples=25, derandomize=True, deadline=None)
+@settings(max_examples=examples(25), derandomize=True, deadline=None)
 @given(st.integers(0, 2**31), st.integers(1, 12))
 def test_what_is_stored_is_what_comes_back(seed: int, count: int):
     random = np.random.default_rng(seed)

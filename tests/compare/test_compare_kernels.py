@@ -4,6 +4,7 @@ import itertools
 
 import numpy as np
 import pytest
+from examples import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
@@ -25,7 +26,7 @@ from twin.compare.statistics import RESOLUTION, Distribution
 from twin.compare.statistics_kernels import LEAST_EXPONENT
 from twin.nc.canonical import FloatArray, IntArray
 
-checked = settings(max_examples=40, derandomize=True, deadline=None)
+checked = settings(max_examples=examples(40), derandomize=True, deadline=None)
 
 
 def nearest_rank(values: FloatArray, percent: float) -> float:

@@ -2,6 +2,7 @@ import itertools
 
 import numpy as np
 import pytest
+from examples import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -188,7 +189,7 @@ def test_a_tool_that_stays_behind_has_left_the_path():
     assert figures.contour.max == pytest.approx((4.0 - REACH_S) * 25e3)
 
 
-@settings(max_examples=15, derandomize=True, deadline=None)
+@settings(max_examples=examples(15), derandomize=True, deadline=None)
 @given(st.integers(1, 700), st.lists(st.integers(0, 6), min_size=2, max_size=6))
 def test_chunks_make_no_difference(rows: int, cuts: list[int]):
     corners = [at(0, 0), at(5, 0), at(5, 5), at(0, 5), at(2, 1), at(7, 3, 2, 40), at(1, 1)]

@@ -116,7 +116,7 @@ def test_logs_are_read_by_their_headings(tmp_path: Path, heading: str):
         ("time_s,X_commanded,X_actual\n0,1,2\n", "two rows"),
         ("time_s,X_commanded,X_actual\n0,1,2\n1,2\n", "two rows"),
         ("time_s,X_commanded,X_actual\n0,1,2\n0,2,3\n", "does not rise"),
-        ("time_s,X_commanded,X_actual\n0,1,\n1,2,3\n", "not a number"),
+        ("time_s,X_commanded,X_actual\n0,1,\n1,2,3\n", "has no number in row 1"),
         ("time_s,X_commanded,X_actual\n0,1,x\n1,2,3\n", "not a number"),
     ],
 )

@@ -10,6 +10,8 @@ from twin.errors import ConfigError
 from twin.files.shipped import resource_root
 from twin.job.job_file import read_job
 
+pytestmark = pytest.mark.seconds("a program is run and its part cut")
+
 SHIPPED = resource_root("programs") / "alarms" / "fagor8070"
 
 
@@ -59,11 +61,33 @@ def test_what_the_job_allows_passes(tmp_path: Path, changes: tuple[tuple[str, st
     assert outcome.gouge is None
 
 
-def test_a_wall_is_gouged_from_one_and_a_half_cells_on(tmp_path: Path):
+def test_a_wall_is_gouged_in_its_line(tmp_path: Path):
     beside = ("X60\nN70 G00", "X60 Y3\nN70 G00")
     outcome = api.run(job(tmp_path, ("Z-8", "Z-5"), beside), out=tmp_path / "out").outcome
     (alarm,) = outcome.alarms
     assert (alarm.code, alarm.line) == ("gouge", 7)
+
+
+@pytest.mark.parametrize("aside", [0.05, 0.15])
+def test_a_gouge_into_a_wall_is_seen_closer_than_by_cells(tmp_path: Path, aside: float):
+    beside = ("X60\nN70 G00", f"X60 Y{2 * aside}\nN70 G00")
+    outcome = api.run(job(tmp_path, ("Z-8", "Z-5"), beside), out=tmp_path / "out").outcome
+    assert [alarm.code for alarm in outcome.alarms] == ["gouge"] * (aside > 0.1)
+
+
+def test_the_part_of_a_run_is_accepted_as_nominal_and_what_is_left_on_it_is_not(tmp_path: Path):
+    zero = ("[stock]", "[part_zero]\nX = 13.0\nY = -7.0\nZ = -260.0\n\n[stock]")
+    deep = ('gouge = "alarm"', "gouge_um = 5000.0")
+    first = api.run(job(tmp_path, zero, deep, ('expect = "gouge"', "")), out=tmp_path / "out")
+    assert first.outcome.verdict.outcome == "pass"
+    own = ('"gouge.stl"', '"out/part.stl"')
+    close = ('gouge = "alarm"', "gouge_um = 5.0\nstanding_um = 5.0")
+    again = api.run(job(tmp_path, zero, own, close), out=tmp_path / "again").outcome
+    assert again.verdict.outcome == "pass"
+    less = api.run(job(tmp_path, zero, own, close, ("Z-8", "Z-7.9")), out=tmp_path / "less").outcome
+    (reason,) = less.verdict.reasons
+    assert reason.what == "standing_um"
+    assert reason.message.startswith("material left on the nominal part 100.0 µm exceeds")
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ import hypothesis
 import hypothesis.strategies as st
 import numpy as np
 import pytest
+from examples import examples
 
 from twin.cutting.height_map import HeightMap
 from twin.cutting.kernels.sweep import Marks, Removal
@@ -62,7 +63,7 @@ coordinate = st.floats(-4.0, 12.0)
 points = st.lists(st.tuples(coordinate, coordinate, st.floats(-5.0, 1.0)), min_size=2, max_size=4)
 
 
-@hypothesis.settings(derandomize=True, max_examples=40, deadline=None)
+@hypothesis.settings(derandomize=True, max_examples=examples(40), deadline=None)
 @hypothesis.given(points, st.sampled_from(PROFILES))
 def test_sweep_agrees_with_many_small_steps(
     corners: list[tuple[float, float, float]], cutter: Profile
@@ -93,7 +94,7 @@ steps = st.lists(
 )
 
 
-@hypothesis.settings(derandomize=True, max_examples=60, deadline=None)
+@hypothesis.settings(derandomize=True, max_examples=examples(60), deadline=None)
 @hypothesis.given(steps, st.sampled_from(PROFILES))
 def test_what_is_passed_over_was_cut_before(
     ways: list[tuple[float, float, float]], cutter: Profile

@@ -17,6 +17,8 @@ from twin.run.preparation import prepare
 from twin.run.progress import no_progress
 from twin.run.run import Run
 
+pytestmark = pytest.mark.documentation
+
 ROOT = Path(__file__).parents[2]
 
 

@@ -51,6 +51,7 @@ def test_columns_of_other_lengths_or_shapes_are_refused(tmp_path: Path, column: 
         pass
 
 
+@pytest.mark.processes
 def test_a_recording_on_which_hdf5_searches_without_end_is_refused(tmp_path: Path) -> None:
     data = bytearray(fuzz_kinds.whole_recording()[:-SEAL_LENGTH])
     alarm = b'"an alarm"]]'

@@ -15,6 +15,8 @@ from twin.link.place import Places
 from twin.motion.planner import plan
 from twin.nc.canonical import Chunk, Corner, Dwell, Function
 
+pytestmark = pytest.mark.oracle
+
 RS274 = shutil.which("rs274")
 NEEDS_RS274 = pytest.mark.skipif(RS274 is None, reason="rs274 of linuxcnc-uspace is not installed")
 

@@ -40,6 +40,7 @@ def test_compare_reads_every_form(twin: Twin, name: str) -> None:
     assert done.code == 0, done.stderr
 
 
+@pytest.mark.seconds("a machine is fitted")
 @pytest.mark.parametrize("name", ["twincat_scope.csv", "codesys_trace.csv"])
 def test_calibrate_reads_what_is_no_plain_table(twin: Twin, tmp_path: Path, name: str) -> None:
     out = tmp_path / "mine.toml"

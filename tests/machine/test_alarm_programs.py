@@ -12,6 +12,8 @@ from twin.check.task import CheckSettings
 from twin.commands.pictures import ALARMS_OF_CONTACT
 from twin.files.shipped import resource_root
 
+pytestmark = pytest.mark.seconds("each program is run up to its alarm, and that is drawn")
+
 FOLDER = resource_root("programs") / "alarms" / "fagor8070"
 EXPECTED = {
     "soft_limit": ("soft-limit", 5, "X would go to 450.000 mm"),

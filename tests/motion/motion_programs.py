@@ -6,6 +6,7 @@ import math
 
 import hypothesis
 import numpy as np
+from examples import examples
 from hypothesis import strategies as st
 
 from twin.columns import join
@@ -32,7 +33,7 @@ ZERO = np.array([100.0, -50.0, 25.0, 30.0])
 SETTINGS = hypothesis.settings(
     derandomize=True,
     deadline=None,
-    max_examples=60,
+    max_examples=examples(60),
     # Shrinking a program of thousands of setpoints takes minutes and explains little.
     phases=[hypothesis.Phase.explicit, hypothesis.Phase.generate],
 )

@@ -72,6 +72,7 @@ def recorded(folder: Path, twin: Twin) -> Path:
     return path
 
 
+@pytest.mark.seconds("a run is filmed")
 def test_a_recording_is_filmed_with_the_jobs_own_settings(recorded: Path, twin: Twin) -> None:
     done = twin("render", recorded, "--seconds", 0.5)
     assert done.code == 0, done.stderr
@@ -106,6 +107,7 @@ def test_a_split_film_for_a_page_without_display(
     assert left.tobytes() != right.tobytes()
 
 
+@pytest.mark.thorough
 def test_filament_draws_by_choice(recorded: Path, twin: Twin, tmp_path: Path) -> None:
     if probe(FILAMENT).error:
         pytest.skip("no Vulkan driver for Filament here: see twin doctor")
@@ -127,8 +129,9 @@ def test_filament_without_a_driver_is_refused(
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.seconds("a run is filmed")
 def test_the_part_is_written_and_measured(recorded: Path, twin: Twin, tmp_path: Path) -> None:
-    arguments = ("--glb", "--inspect", "commanded", "--tolerance", 5)
+    arguments = ("--glb", "--inspect", "commanded", "--tolerance", 10)
     done = twin("render", recorded, "--out", tmp_path, *arguments)
     assert done.code == 0, done.stderr
     part = trimesh.load(tmp_path / "part.glb", force="mesh")
@@ -150,7 +153,7 @@ def test_a_nominal_part_in_program_coordinates(recorded: Path, twin: Twin, tmp_p
     figures = json.loads((tmp_path / "inspection.json").read_text())
     slot = (40.0 + 7.85) * 10.0 * 3.0
     assert figures["missing_mm3"] == pytest.approx(slot, rel=0.1), "slot and hole are missing"
-    assert figures["min_um"] == pytest.approx(-5000.0, abs=700.0)
+    assert figures["min_um"] == pytest.approx(-3000.0, abs=1.0), "what is left is so far off"
     assert figures["standing_mm3"] == 0.0
 
 
@@ -199,6 +202,7 @@ def test_what_is_no_recording_is_refused(twin: Twin, tmp_path: Path) -> None:
         assert message in done.stderr
 
 
+@pytest.mark.seconds("a run is filmed")
 def test_a_job_is_run_first(folder: Path, twin: Twin, tmp_path: Path) -> None:
     done = twin("render", folder / "two.toml", "--out", tmp_path / "a", "--at", 0.2)
     assert done.code == 0, done.stderr

@@ -10,6 +10,8 @@ from twin.check.runner import check_program
 from twin.check.task import CheckSettings
 from twin.files.shipped import resource_root
 
+pytestmark = pytest.mark.seconds("each program that ships is run whole")
+
 PROGRAMS = resource_root("programs")
 JOBS = sorted(job for job in PROGRAMS.glob("*/*.toml") if job.parent.name != "alarms")
 """Programs that provoke alarms have tests of their own."""
@@ -24,16 +26,22 @@ FINAL = {
 """Where the axes stand in the end, as the seeds say it: the table's physical angle, the helix."""
 
 
-@pytest.mark.parametrize("job", JOBS, ids=lambda path: f"{path.parent.name}/{path.stem}")
-def test_it_passes_ends_where_it_shall_and_fails_with_half_the_gain(
-    twin: Twin, tmp_path: Path, job: Path
-):
-    done = twin("run", job, "--out", tmp_path / "full")
+each_job = pytest.mark.parametrize("job", JOBS, ids=lambda path: f"{path.parent.name}/{path.stem}")
+
+
+@each_job
+def test_it_passes_and_ends_where_it_shall(twin: Twin, tmp_path: Path, job: Path):
+    done = twin("run", job, "--out", tmp_path)
     assert done.code == 0, done.stderr
-    final = json.loads((tmp_path / "full" / "result.json").read_text(encoding="utf-8"))["final"]
+    final = json.loads((tmp_path / "result.json").read_text(encoding="utf-8"))["final"]
     for axis, value in FINAL.get(f"{job.parent.name}/{job.stem}", {}).items():
         assert final["commanded"][axis] == pytest.approx(value, abs=1e-9)
         assert final["simulated"][axis] == pytest.approx(value, abs=2e-3)
+
+
+@pytest.mark.thorough
+@each_job
+def test_it_fails_with_half_the_gain(tmp_path: Path, job: Path):
     dull = check_program(job, CheckSettings(machine=str(machine_with_gain(tmp_path, 0.5))))
     assert (dull.verdict, dull.exit_code) == ("fail", 1)
     assert any(f"{job.stem}.nc:" in str(finding) for finding in dull.findings)

@@ -81,6 +81,7 @@ def test_without_the_keys_nothing_is_counted():
 PROGRAM = "G90 G71\nS6000 M3\nG0 X10\nM5\nT2 M6\nS3000 M4\nG1 X0 F600\nM30\n"
 
 
+@pytest.mark.seconds("a program is run whole")
 def test_a_run_counts_them_and_records_a_standstill(tmp_path: Path):
     (tmp_path / "part.nc").write_text(PROGRAM)
     job = 'program = "part.nc"\ndialect = "fagor8070"\nmachine = "{}"\n'

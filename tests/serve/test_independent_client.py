@@ -19,6 +19,8 @@ from twin.serve.device import Component, DataItem, device_of
 from twin.serve.forms import JSON, XML, accepted_form
 from twin.serve.playback import Tick
 
+pytestmark = pytest.mark.oracle
+
 PERIOD_S = 0.01
 SHIFT = [
     ("READY", NORMAL), ("ACTIVE", NORMAL), ("STOPPED", FAULT), ("READY", NORMAL),

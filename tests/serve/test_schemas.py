@@ -17,6 +17,8 @@ from twin.serve.clock import Clock
 from twin.serve.device import device_of
 from twin.serve.forms import XML
 
+pytestmark = pytest.mark.oracle
+
 AXES = Axes(("X", "Y", "Z", "C"), ("linear", "linear", "linear", "rotary"))
 MOVING: dict[str, Value] = {
     "X_position": "-12.345678", "X_position_commanded": "-12.300000", "X_load": "3.25",

@@ -2,6 +2,7 @@ import math
 
 import numpy as np
 import pytest
+from examples import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -63,7 +64,7 @@ def any_move(draw: st.DrawFn) -> Moves:
     return moves_of(arc(start, center, normal, sweep, lead=lead, turn=turn))
 
 
-@settings(max_examples=60, derandomize=True, deadline=None)
+@settings(max_examples=examples(60), derandomize=True, deadline=None)
 @given(any_move(), point3, fractions, st.floats(0, 1))
 def test_nearest_point_agrees_with_brute_force(
     moves: Moves, point: FloatArray, window: list[float], guess: float
@@ -76,7 +77,7 @@ def test_nearest_point_agrees_with_brute_force(
     assert found == pytest.approx(brute_force(moves, 0, window[0], window[1], point), abs=1e-6)
 
 
-@settings(max_examples=50, derandomize=True, deadline=None)
+@settings(max_examples=examples(50), derandomize=True, deadline=None)
 @given(any_move(), st.floats(0.01, 0.99))
 def test_derivatives_agree_with_differences(moves: Moves, u: float):
     path = path_columns(moves, FRAME, PART_ZERO)

@@ -56,7 +56,12 @@ def test_what_cannot_be_opened_is_refused(arguments: list[str], message: str) ->
 
 @pytest.mark.skipif(not THREE.is_dir(), reason="three.js is missing: run scripts/fetch_three.py")
 @pytest.mark.parametrize(
-    ("number", "visited"), [(signal.SIGINT, True), (signal.SIGINT, False), (signal.SIGTERM, False)]
+    ("number", "visited"),
+    [
+        pytest.param(signal.SIGINT, True, marks=pytest.mark.seconds("the room is opened")),
+        pytest.param(signal.SIGINT, False, marks=pytest.mark.processes),
+        pytest.param(signal.SIGTERM, False, marks=pytest.mark.processes),
+    ],
 )
 def test_the_room_opens_on_loopback_and_an_asked_end_keeps_the_sheet(
     tmp_path: Path, number: signal.Signals, visited: bool

@@ -99,6 +99,7 @@ def test_what_cannot_be_viewed_is_refused(tmp_path):
         view(tmp_path / "nothing.h5", 0)
 
 
+@pytest.mark.browser
 @pytest.mark.skipif(
     CHROMIUM is None, reason="no Chromium here; Debian has it in the package chromium"
 )

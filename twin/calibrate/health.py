@@ -7,7 +7,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from twin.calibrate.findings import Finding, resolution
 from twin.calibrate.fit.solve import Interval
+from twin.calibrate.fit.stretch import stamp_step
 from twin.calibrate.refusal import straight_law
 from twin.errors import UsageError
 from twin.logs.machine_log import AxisLog, MachineLog
@@ -15,11 +17,18 @@ from twin.nc.canonical import FloatArray
 
 GAP = 1.5
 """A step of the clock above this, in periods, is a gap."""
+_BRIDGED, _BRIDGED_S = 5.5, 0.012
+"""A gap of no more periods, nor longer [s], is no end of a stretch: the command is drawn over it."""
+_SPREAD = 0.02
+"""Share of steps above ``GAP`` that are the clock's unevenness rather than gaps."""
+_UNEVEN_GAP = 4.0
+"""And what is a gap then, in periods."""
 SLOW_S = 0.025
 """A log with longer periods does not show how a position loop settles [s]."""
 SHORTEST = 50
 """Samples of a stretch that is fitted."""
-_JITTER = 0.2
+_JITTER = 0.02
+"""Standard deviation of the steps of a clock, in periods, from which it is told as uneven."""
 _SKEWED_S = 2e-4
 """Columns that were taken less apart count as taken together [s]."""
 _BANDS, _BAND = (0.12, 0.26, 0.42), 0.08
@@ -43,20 +52,6 @@ _HELD = 0.5
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Finding:
-    """Something about a log that a person should know.
-
-    Attributes:
-        code: ``gap``, ``clock-jump``, ``slow``, ``coarse``, ``held``, ``jitter``, ``skew``,
-            ``filtered``, ``scale``, ``offset``, ``unit``.
-        message: In words, with what can still be fitted.
-    """
-
-    code: str
-    message: str
-
-
-@dataclasses.dataclass(frozen=True, slots=True)
 class Health:
     """What the clock of a log is like.
 
@@ -75,20 +70,33 @@ def look_at_clock(log: MachineLog) -> Health:
     """Find the period of a log and where its clock breaks."""
     steps = np.diff(log.time)
     rising = steps[steps > 0]
-    period = float(np.median(rising)) if len(rising) else 1.0
-    gaps = steps > GAP * period
+    period = _period(rising)
+    uneven = float(np.mean(steps > GAP * period)) > _SPREAD
+    gaps = steps > (_UNEVEN_GAP if uneven else GAP) * period
     jumps = steps <= 0
-    cuts = np.flatnonzero(gaps | jumps) + 1
+    ends = steps > min(_BRIDGED * period, max(_BRIDGED_S, GAP * period))
+    cuts = np.flatnonzero((gaps & ends) | jumps) + 1
     edges = [0, *cuts.tolist(), len(log.time)]
     long = [(a, b) for a, b in itertools.pairwise(edges) if b - a >= SHORTEST]
     findings = []
+    if len(log.missing):
+        rows = ", ".join(str(row) for row in log.missing[:5])
+        findings.append(
+            Finding(
+                "missing",
+                f"{len(log.missing)} rows miss a number and are gaps: row {rows}"
+                + ("" if len(log.missing) <= 5 else " and so on"),
+            )
+        )
     if gaps.any():
         lost = float(np.sum(steps[gaps]) - period * np.count_nonzero(gaps))
+        where = int(np.flatnonzero(gaps)[0])
         findings.append(
             Finding(
                 "gap",
-                f"{np.count_nonzero(gaps)} gaps, {lost:.3g} s without samples; what lies between is "
-                "fitted piece by piece",
+                f"{np.count_nonzero(gaps)} gaps, {lost:.3g} s without samples, first at "
+                f"{float(log.time[where]):.6g} s; short ones are bridged, what lies between others "
+                "is fitted piece by piece",
             )
         )
     if jumps.any():
@@ -100,12 +108,16 @@ def look_at_clock(log: MachineLog) -> Health:
                 f"{first:.6g} s; what lies between is fitted piece by piece",
             )
         )
-    even = rising[rising < GAP * period]
-    if len(even) and float(np.std(even)) > _JITTER * period:
+    steady = rising[rising < GAP * period]
+    spread = float(np.std(steady)) if len(steady) else 0.0
+    if spread > _JITTER * period and stamp_step(log.time) < spread:
         findings.append(
-            Finding("jitter", f"samples come every {period * 1e3:.3g} ms, but unevenly; they are "
-                    "taken as even, which blurs what is faster")
-        )  # fmt: skip
+            Finding(
+                "uneven",
+                f"samples come every {period * 1e3:.3g} ms, give or take {spread * 1e3:.2g} ms; time "
+                "stamps are taken as they are",
+            )
+        )
     if period > SLOW_S:
         findings.append(
             Finding(
@@ -116,6 +128,14 @@ def look_at_clock(log: MachineLog) -> Health:
             )
         )
     return Health(period, tuple(long), tuple(findings))
+
+
+def _period(rising: FloatArray) -> float:
+    """Typical time between samples [s]: the mean, of a clock with few digits too."""
+    if not len(rising):
+        return 1.0
+    middle = float(np.median(rising))
+    return float(np.mean(rising[rising < GAP * middle]))
 
 
 def refuse_broken_clock(log: MachineLog, health: Health) -> None:
@@ -144,21 +164,6 @@ def refuse_broken_clock(log: MachineLog, health: Health) -> None:
     raise UsageError(
         f"{log.name}: has no stretch of {SHORTEST} samples in a row without a gap: nothing can be fitted"
     )
-
-
-def resolution(values: FloatArray) -> float:
-    """The step that values come in, 0 where they come in none.
-
-    The least difference counts when (nearly) all others are its multiples.
-    """
-    steps = np.abs(np.diff(np.unique(values)))
-    steps = steps[steps > 1e-12 * max(1.0, float(np.abs(values).max()))]
-    if len(steps) < 2:
-        return 0.0
-    least = float(np.min(steps))
-    parts = steps / least
-    even = np.abs(parts - np.round(parts)) < 0.02
-    return least if float(np.mean(even)) > 0.95 else 0.0
 
 
 def is_filtered(command: FloatArray, actual: FloatArray) -> bool:
@@ -264,6 +269,9 @@ def look_at_fit(
             if min(abs(skew.low), abs(skew.high)) < _SKEWED_S:
                 continue
             when = "later" if skew.value > 0.0 else "earlier"
+            if key == "delay" and skew.high < 0.0:
+                findings.append(_feed_forward(name, skew))
+                continue
             findings.append(
                 Finding(
                     "skew",
@@ -298,6 +306,17 @@ def look_at_fit(
             )
         )
     return findings
+
+
+def _feed_forward(name: str, delay: Interval) -> Finding:
+    """What an actual position says that seems to be logged before it is there."""
+    return Finding(
+        "feed-forward",
+        f"{name}: actual position seems to be logged {abs(delay.value) * 1e3:.3g} ms earlier than the "
+        f"command ({_milliseconds(delay)}): unless the columns are that far apart, the drive is told the "
+        "speed of the command (velocity_feedforward), and kv, damping_ratio and the share of "
+        "feed-forward are not told apart; where it is the log, give the map a delay_s of the column",
+    )
 
 
 def _milliseconds(interval: Interval) -> str:

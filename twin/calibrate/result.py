@@ -3,17 +3,20 @@
 import dataclasses
 import math
 from collections.abc import Mapping
+from pathlib import Path
 
+from twin.calibrate.findings import Finding
 from twin.calibrate.fit.ball_bar import ONE_DIRECTION, BallBarFit
 from twin.calibrate.fit.solve import Interval
 from twin.calibrate.fit.stages import NOT_ASKED, AxisFit
-from twin.calibrate.health import Finding
 from twin.calibrate.limits import Limits
 from twin.machine.description.config import AxisTable
 from twin.nc.canonical import FloatArray
 from twin.units import AxisKind
 
 FIT, HOLD_OUT = "fit", "hold-out"
+_UNEXPLAINED = 0.5
+"""Share of a force that may be left."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -27,6 +30,8 @@ class Course:
         slow: Whether it is the lag of velocity at single samples within ramps.
         logged_force: Force [N or N m] or what the control shows [A]; empty where none is logged.
         predicted_force: The model's force or current.
+        force_time: When, which is not always when positions were [s].
+        speed: Commanded, beside ``logged`` [mm/s or deg/s].
     """
 
     time: FloatArray
@@ -35,6 +40,28 @@ class Course:
     slow: bool
     logged_force: FloatArray
     predicted_force: FloatArray
+    force_time: FloatArray
+    speed: FloatArray
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class SlowFigures:
+    """How well velocities within the ramps of a slow log are predicted.
+
+    Attributes:
+        logged_rms: Of the lag of velocity in single samples [mm/s or deg/s].
+        left_rms: Of what the model leaves of it.
+        ramps: So many samples fell into ramps that tell.
+    """
+
+    logged_rms: float
+    left_rms: float
+    ramps: int
+
+    @property
+    def share(self) -> float:
+        """What is left of the lag of velocity."""
+        return self.left_rms / self.logged_rms
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -50,7 +77,7 @@ class LogFigures:
         left_rms: Of what the model leaves of it [mm or deg].
         force_share: What it leaves of the force, as a share; None where none is logged.
         current_correlation: Of logged and predicted current where the axis moves; None likewise.
-        velocity_share: What it leaves of the lag of velocity in ramps; None where not looked at.
+        ramps: What it leaves of the lag of velocity in ramps; None where not looked at.
         course: For plots.
     """
 
@@ -62,15 +89,35 @@ class LogFigures:
     left_rms: float
     force_share: float | None
     current_correlation: float | None
-    velocity_share: float | None
+    ramps: SlowFigures | None
     course: Course
 
     @property
     def share(self) -> float:
-        """What is left of the following error; where the log is slow, of the lag of velocity."""
-        if self.velocity_share is not None:
-            return self.velocity_share
+        """What is left of the following error."""
         return self.left_rms / self.logged_rms if self.logged_rms else math.inf
+
+    @property
+    def judged_share(self) -> float:
+        """What the fit is judged by: of a slow log the lag of velocity in ramps, where it has any."""
+        return self.share if self.ramps is None else self.ramps.share
+
+    @property
+    def ramps_line(self) -> str:
+        """What is left within the ramps of a slow log, in words; empty where none was looked at."""
+        if self.ramps is None:
+            return ""
+        unit = "mm/s" if self.kind == "linear" else "deg/s"
+        return (
+            f"{Path(self.log).name}, {self.axis}: lag of velocity within {self.ramps.ramps} ramps: "
+            f"{self.ramps.logged_rms:.3g} {unit} rms logged, {self.ramps.left_rms:.3g} {unit} left "
+            f"({100 * self.ramps.share:.1f} %)"
+        )
+
+    @property
+    def force_is_unexplained(self) -> bool:
+        """Whether more than half of a logged force is left: no fit of it deserves trust."""
+        return self.force_share is not None and self.force_share > _UNEXPLAINED
 
     def as_contract(self) -> dict[str, object]:
         """As ``--json`` writes it."""
@@ -83,9 +130,17 @@ class LogFigures:
             f"left_rms_{unit}": self.left_rms * 1e3,
             "share": self.share,
         }
-        for name in ("force_share", "current_correlation", "velocity_share"):
+        for name in ("force_share", "current_correlation"):
             if getattr(self, name) is not None:
                 told[name] = getattr(self, name)
+        if self.ramps is not None:
+            unit = "mm_per_s" if self.kind == "linear" else "deg_per_s"
+            told |= {
+                f"velocity_logged_rms_{unit}": self.ramps.logged_rms,
+                f"velocity_left_rms_{unit}": self.ramps.left_rms,
+                "velocity_share": self.ramps.share,
+                "ramps": self.ramps.ramps,
+            }
         return told
 
 
@@ -203,13 +258,19 @@ def verdict_sentence(name: str, axis: AxisResult, logs: tuple[LogFigures, ...]) 
     own = [figures for figures in logs if figures.axis == name]
     unseen = [figures for figures in own if figures.role == HOLD_OUT]
     judged = unseen or own
-    what = "lag of velocity in ramps" if judged and judged[0].velocity_share is not None else "lag"
+    ramps = sum(figures.ramps.ramps for figures in judged if figures.ramps is not None)
+    what = f"lag of velocity in {ramps} ramps" if ramps else "lag"
     if not judged:
         told = ", ".join(axis.fit.fitted) or "nothing"
         return f"{name}: of a ball-bar alone, which tells {told}."
-    shares = max((figures.share for figures in judged), default=math.inf)
+    shares = max((figures.judged_share for figures in judged), default=math.inf)
     seen = "of a log that it has not seen" if unseen else "of the fitted log"
     sentence = f"{name}: predicts the {what} {seen} to {100 * shares:.2g} %"
+    forces = [figures for figures in judged if figures.force_is_unexplained]
+    if forces:
+        sentence += (
+            f", but leaves {100 * (forces[0].force_share or 0.0):.0f} % of the force unexplained"
+        )
     open_ones = [
         told
         for told, why in axis.fit.undetermined.items()

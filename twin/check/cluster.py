@@ -7,6 +7,7 @@ from typing import Any, TypeVar
 
 from twin.check.outcome import CheckOutcome, died
 from twin.errors import UsageError
+from twin.extras import require_extra
 
 TaskT = TypeVar("TaskT")
 
@@ -52,10 +53,9 @@ def _checked(check: Callable[[TaskT], CheckOutcome], task: TaskT) -> CheckOutcom
 
 
 def _connected(address: str) -> Any:
-    try:
-        import ray
-    except ImportError as error:
-        raise UsageError("--cluster needs Ray: pip install 'mill-twin[cluster]'") from error
+    require_extra("cluster", "--cluster")
+    import ray
+
     path = os.pathsep.join(filter(None, [str(Path.cwd()), os.environ.get("PYTHONPATH")]))
     here = {"PYTHONPATH": path}
     options: dict[str, Any] = {"log_to_driver": False, "logging_level": "error"}

@@ -21,11 +21,15 @@ from twin.job.job_file import Job
 from twin.job.layers import layers_of
 from twin.machine.watching.alarms import Alarm
 from twin.nc.text.diagnostics import Diagnostic, ProgramError
+from twin.recording.reader import LONGEST_TEXT
 from twin.run.messages import alarm_diagnostic, reason_text
 from twin.run.outcome import Outcome
 from twin.run.preparation import Preparation, prepare
 from twin.run.progress import no_progress
 from twin.run.run import Run
+
+_FILES_OF_MACHINE = {"model"}
+"""Keys of a machine file that name another file."""
 
 
 def run_variant(variant: Variant, settings: CheckSettings) -> CheckOutcome:
@@ -122,10 +126,18 @@ def _baseline_reasons(
     keys = _settings(preparation)
     if not settings.update_baseline:
         limits = preparation.job.file.baseline
-        return compare_baseline(file, figures, axes, chunks, limits, keys)
+        return compare_baseline(file, figures, axes, chunks, limits, keys, _source(preparation))
     if figures is not None:
-        write_baseline(file, figures, axes, chunks, keys)
+        write_baseline(file, figures, axes, chunks, keys, _source(preparation))
     return []
+
+
+def _source(preparation: Preparation) -> list[str]:
+    """The lines of the program; none of one that is too long to keep."""
+    source = preparation.source
+    if source.lines.size > LONGEST_TEXT:
+        return []
+    return source.text.encode("utf-8", "replace").decode("utf-8").split("\n")
 
 
 def _figures(outcome: Outcome) -> RunFigures:
@@ -145,17 +157,23 @@ def _figures(outcome: Outcome) -> RunFigures:
 
 
 def _settings(preparation: Preparation) -> dict[str, str]:
-    """The whole job as keys and texts, defaults and where program zero comes to lie with it."""
+    """The whole job and the machine as keys and texts, defaults and where program zero comes to lie with it."""
     file = preparation.job.file
     content = file.model_dump(mode="json", exclude={"program", "video"}, exclude_none=True)
     content["dialect"], content["machine"] = (
         preparation.dialect.name,
-        preparation.machine.file.name,
+        _machine_keys(preparation),
     )
     content["tools"] = {str(tool.pop("number")): tool for tool in content["tools"]}
     if "stock" in content and "file" in content["stock"]:
         content["stock"]["file"] = Path(content["stock"]["file"]).name
     return dict(_flat("", content))
+
+
+def _machine_keys(preparation: Preparation) -> dict[str, Any]:
+    """What the machine file comes to, but for the files that it names, which lie anywhere."""
+    keys = preparation.machine.file.model_dump(mode="json", exclude_none=True, by_alias=True)
+    return {key: value for key, value in keys.items() if key not in _FILES_OF_MACHINE}
 
 
 def _flat(key: str, value: Any) -> Iterator[tuple[str, str]]:
@@ -197,8 +215,11 @@ def _findings(preparation: Preparation, reasons: Iterable[Reason]) -> tuple[Find
 def _finding(preparation: Preparation, reason: Reason) -> Finding:
     job = preparation.job.path
     if reason.what == "baseline-job" and job is not None:
+        key = reason.message.partition(" is ")[0]
         files = [layer.path for layer in layers_of(job, load_toml(job))]
-        file, line = place_of_key(files, reason.message.split()[0])
+        if key.startswith("machine."):
+            files, key = [preparation.machine.path], key.removeprefix("machine.")
+        file, line = place_of_key(files, key)
         text = f"{file}:{line}: error {reason.what}: {reason.message}"
         return Finding(reason.what, reason.message, str(file), line, text=text)
     program, text = str(preparation.job.program), reason_text(reason, preparation.source)

@@ -15,6 +15,7 @@ from rich.table import Table
 
 from twin.calibrate.programs import write_programs
 from twin.errors import ExitCode, UsageError
+from twin.extras import require_extra
 from twin.files.atomic import STDOUT, write_text
 from twin.files.shipped import machine_file
 from twin.logs.ball_bar import read_ball_bar
@@ -90,7 +91,7 @@ def calibrate_and_print(request: Request) -> ExitCode:
             typer.echo(f"wrote {path}")
     if not request.fits:
         return ExitCode.OK
-    _need_scipy()
+    require_extra("calibrate", "twin calibrate")
     from twin.calibrate.calibrate import calibrate
     from twin.calibrate.machine_text import machine_text
 
@@ -98,7 +99,9 @@ def calibrate_and_print(request: Request) -> ExitCode:
     meant = read_column_map(request.columns) if positions and request.columns else None
 
     def read(paths: Sequence[Path]) -> list[MachineLog]:
-        return [read_machine_log(path, meant, units_needed=True) for path in paths]
+        return [
+            read_machine_log(path, meant, units_needed=True, gaps_allowed=True) for path in paths
+        ]
 
     wanted = [name.strip().upper() for name in request.axes.split(",")] if request.axes else []
     circles = [read_ball_bar(path, request.columns) for path in request.ball_bars]
@@ -121,18 +124,9 @@ def calibrate_and_print(request: Request) -> ExitCode:
         _print(result)
     judged = [figures for figures in result.logs if figures.role == "hold-out"]
     failed = request.require is not None and any(
-        figures.share > request.require for figures in judged
+        figures.judged_share > request.require for figures in judged
     )
     return ExitCode.FAILED if failed else ExitCode.OK
-
-
-def _need_scipy() -> None:
-    try:
-        import scipy  # noqa: F401 (asked for before anything is read)
-    except ImportError as error:
-        raise UsageError(
-            "twin calibrate needs scipy: pip install 'mill-twin[calibrate]'"
-        ) from error
 
 
 def _base_for(base: str, out: Path) -> str:
@@ -191,6 +185,9 @@ def _print_logs(console: Console, result: "Calibration") -> None:
             "" if figures.current_correlation is None else f"{figures.current_correlation:.3f}",
         )  # fmt: skip
     console.print(table)
+    for figures in result.logs:
+        if figures.ramps_line:
+            typer.echo(figures.ramps_line)
 
 
 def _circle_line(circle: "BallBarFit") -> str:

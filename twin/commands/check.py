@@ -89,7 +89,7 @@ def check_and_print(
     _tell_server(outcomes, environment)
     if interrupted:
         raise KeyboardInterrupt
-    return _exit_code(outcomes)
+    return exit_code_of(outcomes)
 
 
 def _write(
@@ -132,7 +132,8 @@ def _without_program(baseline: Path) -> CheckOutcome:
     )
 
 
-def _exit_code(outcomes: Sequence[CheckOutcome]) -> ExitCode:
+def exit_code_of(outcomes: Sequence[CheckOutcome]) -> ExitCode:
+    """Of many programs: whether all pass, one falls short, or the twin itself failed at one."""
     if any(outcome.exit_code is ExitCode.CRASH for outcome in outcomes):
         return ExitCode.CRASH
     return ExitCode.OK if all(outcome.passed for outcome in outcomes) else ExitCode.FAILED

@@ -7,16 +7,15 @@ import socket
 import tempfile
 import threading
 from collections.abc import Callable, Coroutine, Iterator
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import typer
 
 from twin.commands.interruption import let_interruption_stop
-from twin.commands.train import require_extra
 from twin.compilation.announcement import announce_compilation
 from twin.errors import ExitCode, UsageError
+from twin.extras import require_extra
 from twin.run.preparation import prepare
 from twin.run.progress import shown_progress
 from twin.run.run import Run
@@ -62,7 +61,7 @@ def serve_job(path: Path, source: Source) -> ExitCode:
         UsageError: The web server is not installed, or nobody can listen there.
         TwinError: Something is wrong with the job; see each error's exit code.
     """
-    _require_server()
+    require_extra("serve", "twin serve")
     from twin.serve.agent import Agent
     from twin.serve.clock import Clock
     from twin.serve.device import device_of
@@ -101,8 +100,7 @@ def serve_scene(name: str, source: Source) -> ExitCode:
     """
     if source.speed != 1.0:
         raise UsageError("--speed is for jobs: the clock of a training room is the day's")
-    _require_server()
-    require_extra()
+    require_extra("train", "twin serve --scene")
     from twin.serve.agent import Agent
     from twin.serve.clock import Clock
     from twin.serve.device import device_of
@@ -137,17 +135,6 @@ def serve_scene(name: str, source: Source) -> ExitCode:
                     typer.echo(f"{scene.name}, {role}: {address}", err=True)
                 room.serve()
     return ExitCode.OK
-
-
-def _require_server() -> None:
-    """Refuse where the web server is missing.
-
-    Raises:
-        UsageError: It is.
-    """
-    missing = [name for name in ("starlette", "uvicorn") if find_spec(name) is None]
-    if missing:
-        raise UsageError(f"twin serve needs {missing[0]}: pip install 'mill-twin[serve]'")
 
 
 def _produce(run: Run, folder: Path) -> "Production":

@@ -12,6 +12,7 @@ from twin.check.outcome import CheckOutcome
 from twin.check.runner import check_variant, run_tasks
 from twin.check.task import CheckSettings
 from twin.check.variation import variants
+from twin.commands.check import exit_code_of
 from twin.commands.console import table_console
 from twin.errors import ExitCode, UsageError
 from twin.files.atomic import STDOUT, require_writable, write_text
@@ -38,7 +39,8 @@ def sweep_and_print(
         cluster: Address of the Ray cluster to run on instead; ``local`` starts one here.
 
     Returns:
-        ``OK`` when every run passes, else ``FAILED``.
+        ``OK`` when every run passes; ``CRASH`` when the twin itself failed at one; ``USAGE`` when none of the
+        combinations is a job that can be run, as with a key that does not exist; else ``FAILED``.
 
     Raises:
         UsageError: The job is missing, or a text says no values.
@@ -59,7 +61,9 @@ def sweep_and_print(
     if json_file is not None:
         write_text(json_file, forms.json_text(outcomes))
     _print(outcomes, [key for key, _ in tasks[0].changes], to_stderr=json_file == STDOUT)
-    return ExitCode.OK if all(outcome.passed for outcome in outcomes) else ExitCode.FAILED
+    if all(outcome.exit_code is ExitCode.USAGE for outcome in outcomes):
+        return ExitCode.USAGE
+    return exit_code_of(outcomes)
 
 
 def _print(outcomes: Sequence[CheckOutcome], keys: Sequence[str], *, to_stderr: bool) -> None:

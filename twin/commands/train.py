@@ -1,13 +1,13 @@
 """``twin train``: the training room."""
 
 import contextlib
-from importlib.util import find_spec
 from pathlib import Path
 
 import typer
 
 from twin.commands.interruption import let_interruption_stop
 from twin.errors import ExitCode, UsageError
+from twin.extras import require_extra
 from twin.training.scene.scene_file import read_scene, scene_names, scene_path
 from twin.training.scene.vocabulary import LANGUAGES, Language, in_language
 
@@ -102,7 +102,7 @@ def train(
     """
     from twin.compilation.announcement import announce_compilation
 
-    require_extra()
+    require_extra("train", "the training room")
     from twin.training.server.launch import open_room
     from twin.web.server import LOOPBACK
 
@@ -131,16 +131,3 @@ def train(
         judge = room.session.room.judge
     typer.echo(f"{scene.name}: {judge.score} of {scene.points} points; sheet in {room.folder}")
     return ExitCode.FAILED if judge.over and judge.score < scene.points else ExitCode.OK
-
-
-def require_extra() -> None:
-    """Refuse to open a page where the server's packages are missing.
-
-    Raises:
-        UsageError: They are; the message says how to get them.
-    """
-    missing = [name for name in ("starlette", "uvicorn", "websockets") if find_spec(name) is None]
-    if missing:
-        raise UsageError(
-            f"pages need {', '.join(missing)}: install mill-twin with its extra 'train'"
-        )

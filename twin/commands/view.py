@@ -8,9 +8,9 @@ import typer
 
 from twin.commands.interruption import let_interruption_stop
 from twin.commands.run import run_and_print
-from twin.commands.train import require_extra
 from twin.compilation.announcement import announce_compilation
 from twin.errors import ExitCode, UsageError
+from twin.extras import require_extra
 from twin.run.replay import open_scene
 
 RECORDING_SUFFIX = ".h5"
@@ -28,7 +28,7 @@ def view(path: Path, port: int) -> ExitCode:
     """
     if not path.is_file():
         raise UsageError(f"{path}: no such file")
-    require_extra()
+    require_extra("train", "twin view")
     from twin.view.app import open_view
     from twin.view.recorded_run import RecordedRun
 

@@ -6,7 +6,7 @@ key of the job, and every figure of the run and of its cut.
 
 import itertools
 from collections import deque
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -22,6 +22,7 @@ from twin.compare.baseline_text import (
     write,
 )
 from twin.compare.block_difference import block_differences, same_end
+from twin.compare.changed_lines import changed_lines, told_by_line, without_comments
 from twin.compare.verdict import Reason
 from twin.errors import UsageError
 from twin.files.atomic import complete_or_absent
@@ -51,6 +52,7 @@ def write_baseline(
     axes: Axes,
     chunks: Iterable[Chunk],
     settings: Mapping[str, str] | None = None,
+    source: Sequence[str] = (),
 ) -> None:
     """Store a baseline, complete or not at all.
 
@@ -60,9 +62,11 @@ def write_baseline(
         axes: Of the moves.
         chunks: The program.
         settings: Keys of the job and their values, as text.
+        source: Lines of the program.
     """
     with complete_or_absent(path) as temporary, temporary.open("w", encoding="utf-8") as file:
-        write(file, Head(figures, axes.names, settings or {}), entries(chunks))
+        lines = [line for line in without_comments(source) if line]
+        write(file, Head(figures, axes.names, settings or {}, lines), entries(chunks))
 
 
 def compare_baseline(
@@ -72,6 +76,7 @@ def compare_baseline(
     chunks: Iterable[Chunk],
     limits: BaselineTable,
     settings: Mapping[str, str] | None = None,
+    source: Sequence[str] = (),
 ) -> list[Reason]:
     """Hold a run to its baseline.
 
@@ -82,6 +87,7 @@ def compare_baseline(
         chunks: The program; where it no longer interprets, the baseline tells what was there.
         limits: How far they may differ.
         settings: Keys of the job and their values, as text.
+        source: Lines of the program, of which the changed ones are named.
 
     Returns:
         A reason for every key of the job, every block and every figure that differs too much.
@@ -101,7 +107,9 @@ def compare_baseline(
                 reasons.append(Reason("baseline-path", told, 0, 0.0))
             else:
                 pairs = _Pairs(read_entries(lines, head.axes), entries(chunks), limits)
-                reasons += _first_of(_program_reasons(pairs, head.axes, limits))
+                changed = changed_lines(head.source, source) if head.source else []
+                found = _program_reasons(pairs, head.axes, limits)
+                reasons += _first_of(told_by_line(found, changed))
     except (ValueError, IndexError, TypeError) as error:
         message = f"{path}: is not a baseline of this twin: {error}; --update-baseline stores one"
         raise UsageError(message) from error

@@ -1,12 +1,14 @@
 """Baselines as text: one entry a line, modal like an NC program, so that they are small and diff well.
 
-    twin baseline 4
+    twin baseline 5
     cycle_time_s 12.5
     contour_um 3.2
     axes X Y Z C
     cut removed_mm3 812.5
     cut tool.1 812.5
     job tolerance.contour_um 20.0
+    job "offsets.G54.1 P1.X" 10.0
+    source N10 G01 X50 F600
     M3 S3000
     start X0 Y0 Z50 C0
     corner exact-path
@@ -17,18 +19,19 @@
 
 An axis, a feed, a corner mode (``corner continuous 0.05``) or a programmed acceleration
 (``acceleration 500 400``) is written where it changes; source lines are not, so that a comment more changes
-nothing.
+nothing; the program's words stand there once, to say which of its lines has changed.
 """
 
 import dataclasses
 import itertools
+import json
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple, TextIO
 
 from twin.nc.canonical import Chunk, Corner, Dwell, Event, Function, Motion, Moves, Shape
 
-HEADING = "twin baseline 4"
+HEADING = "twin baseline 5"
 _DECIMALS = 6
 """Of coordinates in the file: a nanometre, far below any tolerance."""
 
@@ -55,11 +58,13 @@ class Head(NamedTuple):
         figures: What the run came to.
         axes: Names of the axes.
         settings: Keys of the job and their values, as text.
+        source: The lines of the program without comments; none where it is too long to keep.
     """
 
     figures: RunFigures
     axes: tuple[str, ...]
     settings: Mapping[str, str]
+    source: Sequence[str] = ()
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -180,7 +185,8 @@ def write(file: TextIO, head: Head, program: Iterable[Entry]) -> None:
     file.write(f"cycle_time_s {figures.cycle_time_s:.6f}\ncontour_um {figures.contour_um:.3f}\n")
     file.write(f"axes {' '.join(head.axes)}\n")
     file.writelines(f"cut {name} {number(value)}\n" for name, value in figures.cut.items())
-    file.writelines(f"job {key} {value}\n" for key, value in sorted(head.settings.items()))
+    file.writelines(f"job {_quoted(key)} {value}\n" for key, value in sorted(head.settings.items()))
+    file.writelines(f"source {line}\n" for line in head.source)
     position: tuple[float, ...] = ()
     feed = 0.0
     modal = dict.fromkeys(_MODAL, "")
@@ -194,6 +200,19 @@ def write(file: TextIO, head: Head, program: Iterable[Entry]) -> None:
                 modal[name] = value
         file.write(text(entry, head.axes, entry.start, feed) + "\n")
         position, feed = entry.end or position, entry.feed or feed
+
+
+def _quoted(key: str) -> str:
+    """A key as one word: those with blanks, such as ``offsets.G54.1 P1.X``, stand in quotation marks."""
+    return json.dumps(key, ensure_ascii=False) if " " in key or key.startswith('"') else key
+
+
+def _key_and_value(text: str) -> tuple[str, str]:
+    if text.startswith('"'):
+        key, end = json.JSONDecoder().raw_decode(text)
+        return key, text[end + 1 :]
+    key, _, value = text.partition(" ")
+    return key, value
 
 
 def text(entry: Entry, names: tuple[str, ...], position: tuple[float, ...], feed: float) -> str:
@@ -246,18 +265,22 @@ def read_head(lines: Iterator[str]) -> tuple[Head, Iterator[str]]:
         values[key] = rest
     cut: dict[str, float] = {}
     settings: dict[str, str] = {}
+    source: list[str] = []
     for line in lines:
         kind, _, rest = line.rstrip("\n").partition(" ")
-        key, _, value = rest.partition(" ")
-        if kind == "cut":
-            cut[key] = float(value)
-        elif kind == "job":
-            settings[key] = value
+        if kind == "source":
+            source.append(rest)
+        elif kind in ("cut", "job"):
+            key, value = _key_and_value(rest)
+            if kind == "cut":
+                cut[key] = float(value)
+            else:
+                settings[key] = value
         else:
             lines = itertools.chain([line], lines)
             break
     figures = RunFigures(float(*values["cycle_time_s"]), float(*values["contour_um"]), cut)
-    return Head(figures, tuple(values["axes"]), settings), lines
+    return Head(figures, tuple(values["axes"]), settings, source), lines
 
 
 def read_entries(lines: Iterator[str], names: tuple[str, ...]) -> Iterator[Entry]:

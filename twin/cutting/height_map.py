@@ -121,7 +121,7 @@ def blank(stock: StockTable, corner: FloatArray, cell: float) -> HeightMap:
     result = HeightMap(origin, cell, bottom, heights, top, edge, uncut, behind)
     within = edge.contains(result.x, result.y[:, None])
     heights[~within] = bottom
-    if edge.round:
+    if stock.file is None:
         inside = edge.inside(result.x, result.y[:, None])
         beside = within & (inside <= cell)
         behind[beside] = np.column_stack(np.broadcast_arrays(inside[beside] / cell + KNOWN, bottom))

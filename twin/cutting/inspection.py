@@ -5,15 +5,28 @@ from typing import Any
 
 import numpy as np
 
+from twin.cutting.cut import WALL_MM
 from twin.cutting.height_map import HeightMap
-from twin.cutting.outline import BoolArray
+from twin.cutting.kernels.surface_distance import (
+    BY_CELLS,
+    BY_HEIGHT,
+    Surface,
+    surface_distances,
+)
+from twin.cutting.kernels.wall_distance import KNOWN, WallDistance
 from twin.errors import ConfigError
-from twin.nc.canonical import FloatArray
+from twin.nc.canonical import BoolArray, FloatArray
 from twin.units import UM_PER_MM
 
 STEEPEST = 1.0
-"""Slope above which a height says nothing of the distance between surfaces: a wall that is
-displaced by a hair's breadth differs by its whole height."""
+"""Slope up to which the distance between surfaces follows from the difference of their heights: a wall
+that is displaced by a hair's breadth differs by its whole height."""
+WALL_ERROR_MM = 2.0 * WALL_MM
+"""What the places of two walls that tools have left are off by at most [mm]."""
+_BESIDE = 0.75
+"""Every wall has a cell behind it whose middle is as near [cells]."""
+_RAW = 1e-3
+"""A wall that is where the blank's own side is, to this, is that side [cells]."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
@@ -21,8 +34,14 @@ class Inspection:
     """What measuring the part found; positive deviations are material left standing."""
 
     deviation_mm: FloatArray
-    """Distance of the part's surface from the nominal one over each cell, shape (ny, nx) [mm];
-    NaN where either is steep, where there is no part, and on the blank's own skin."""
+    """Distance of the part's surface from the nominal one over each cell, shape (ny, nx) [mm]; over a
+    cell beside a wall the greater of those of wall and top. NaN on the blank's own skin, and where the
+    place of a wall is not known and no cell differs."""
+    bound_mm: float
+    """How much farther the part's surface may be from the nominal one than was measured [mm]: a cell,
+    if there are walls whose place is known to a cell only."""
+    judged: int
+    """Cells that belong to what was machined, or should have been."""
     tolerance_um: float
     """What ``within_share`` counts [µm]."""
     standing_mm3: float
@@ -34,6 +53,11 @@ class Inspection:
     def measured(self) -> BoolArray:
         """Cells that were measured, shape (ny, nx)."""
         return np.isfinite(self.deviation_mm)
+
+    @property
+    def most_standing_mm(self) -> float:
+        """The most that was left standing [mm]."""
+        return float(self.deviation_mm[self.measured].max(initial=0.0))
 
     @property
     def holds(self) -> bool:
@@ -50,7 +74,8 @@ class Inspection:
         return (
             f"part: {figures['min_um']:+.1f} to {figures['max_um']:+.1f} µm, mean "
             f"{figures['mean_um']:+.2f} µm, {100 * figures['within_share']:.2f} % within "
-            f"±{self.tolerance_um:g} µm"
+            f"±{self.tolerance_um:g} µm; {100 * figures['measured_share']:.1f} % measured, walls "
+            f"to {figures['bound_um']:.0f} µm"
         )
 
     def as_json(self) -> dict[str, Any]:
@@ -61,7 +86,8 @@ class Inspection:
             return {"measured_share": 0.0, **volumes}
         return {
             **volumes,
-            "measured_share": float(self.measured.mean()),
+            "measured_share": len(here) / self.judged,
+            "bound_um": UM_PER_MM * self.bound_mm,
             "max_um": float(here.max()),
             "min_um": float(here.min()),
             "mean_um": float(here.mean()),
@@ -90,26 +116,82 @@ def inspect(part: HeightMap, nominal: HeightMap, tolerance_um: float) -> Inspect
         )
     if not np.allclose(part.origin, nominal.origin, atol=1e-6):
         raise ConfigError("the two parts do not lie at the same place")
-    steepness = np.maximum(_steepness(part), _steepness(nominal))
-    gentle = (steepness <= STEEPEST) & part.solid() & nominal.solid()
-    touched = part.machined() | nominal.machined()
-    cosine = 1.0 / np.sqrt(1.0 + _steepness(nominal) ** 2)
-    deviation = (part.heights - nominal.heights) * cosine
-    off = (part.heights - nominal.heights) * part.cell**2
+    slope, above = steepness(nominal.heights, nominal.cell), part.heights - nominal.heights
+    touched = (part.machined() | nominal.machined()) & (part.solid() | nominal.solid())
+    flat = np.maximum(steepness(part.heights, part.cell), slope) <= STEEPEST
+    gentle = touched & flat & part.solid() & nominal.solid() & (np.abs(above) <= part.cell)
+    deviation = np.where(gentle, above / np.sqrt(1.0 + slope**2), np.nan)
+    # At the blank's own sides it is not noted what else is near: there the next row of cells tells.
+    edge = _raw_sides(part) | _raw_sides(nominal)
+    upright = (_beside_walls(part) | _beside_walls(nominal)) & ~edge
+    rest = (touched & ~edge | upright) & ~gentle
+    told_by = np.full(rest.shape, BY_HEIGHT)
+    one, other = (Surface(each.heights, _without(each.behind, edge)) for each in (part, nominal))
+    surface_distances(
+        one,
+        other,
+        part.cell,
+        rest,
+        flat,
+        deviation,
+        told_by,
+    )
+    unseen = rest & upright & (told_by == BY_HEIGHT) & (deviation == 0.0)
+    unseen &= ~_both_slope(part, nominal)
+    unseen |= _nominal_within_raw_side(part, nominal)
+    off = above * part.cell**2
+    coarse = unseen.any() or bool((told_by == BY_CELLS).any())
     return Inspection(
-        deviation_mm=np.where(gentle & touched, deviation, np.nan),
+        deviation_mm=np.where(unseen, np.nan, deviation),
+        bound_mm=part.cell if coarse else min(WALL_ERROR_MM, part.cell),
+        judged=int((touched | rest).sum()),
         tolerance_um=tolerance_um,
         standing_mm3=float(off.clip(min=0.0).sum()),
         missing_mm3=float((-off).clip(min=0.0).sum()),
     )
 
 
-def _steepness(height_map: HeightMap) -> FloatArray:
-    """Steepest slope from each cell to a neighbour, shape (ny, nx)."""
+def _beside_walls(height_map: HeightMap) -> BoolArray:
+    """Cells from which it goes down steeply, or whose wall is known, but for the blank's own sides."""
     heights = height_map.heights
+    drop = np.zeros_like(heights)
+    for axis in (0, 1):
+        step = np.diff(heights, axis=axis)
+        before, after = [(0, 0), (0, 0)], [(0, 0), (0, 0)]
+        before[axis], after[axis] = (1, 0), (0, 1)
+        drop = np.maximum(drop, np.maximum(np.pad(step, before), np.pad(-step, after)))
+    walls = height_map.behind[..., 0]
+    near = (walls > KNOWN) & (walls <= KNOWN + _BESIDE)
+    steep = (drop > STEEPEST * height_map.cell) & (walls <= KNOWN)
+    return height_map.solid() & ~_raw_sides(height_map) & (steep | near)
+
+
+def _raw_sides(height_map: HeightMap) -> BoolArray:
+    """Cells whose nearest wall is the blank's own side."""
+    inside = height_map.outline.inside(height_map.x, height_map.y[:, None]) / height_map.cell
+    return np.abs(height_map.behind[..., 0] - KNOWN - inside) < _RAW
+
+
+def _without(behind: WallDistance, cells: BoolArray) -> WallDistance:
+    return np.where(cells[..., None], np.float32(0.0), behind)
+
+
+def _nominal_within_raw_side(part: HeightMap, nominal: HeightMap) -> BoolArray:
+    """Cells at a side of the blank that no tool has touched although the nominal part ends before it."""
+    own, walls = _raw_sides(part) & ~_raw_sides(nominal), nominal.behind
+    return own & (walls[..., 0] > KNOWN) & (walls[..., 1] <= part.behind[..., 1] + part.cell)
+
+
+def _both_slope(part: HeightMap, nominal: HeightMap) -> BoolArray:
+    """Where both are known to be a slope, of which heights tell all."""
+    return (part.behind[..., 0] == KNOWN) & (nominal.behind[..., 0] == KNOWN)
+
+
+def steepness(heights: FloatArray, cell: float) -> FloatArray:
+    """Steepest slope from each cell to a neighbour, shape (ny, nx)."""
     result = np.zeros_like(heights)
     for axis in (0, 1):
-        step = np.abs(np.diff(heights, axis=axis)) / height_map.cell
+        step = np.abs(np.diff(heights, axis=axis)) / cell
         before = [(0, 0), (0, 0)]
         after = [(0, 0), (0, 0)]
         before[axis], after[axis] = (1, 0), (0, 1)

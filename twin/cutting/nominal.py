@@ -8,7 +8,16 @@ import numpy as np
 
 from twin.cutting.cut import Cutter
 from twin.cutting.height_map import HeightMap
-from twin.cutting.kernels.drape import drape
+from twin.cutting.inspection import STEEPEST, steepness
+from twin.cutting.kernels.drape import drape, note_sides
+from twin.cutting.kernels.surface_distance import (
+    BY_CELLS,
+    REACH,
+    SAME_MM,
+    Surface,
+    surface_distances,
+)
+from twin.cutting.kernels.wall_distance import KNOWN
 from twin.errors import ConfigError
 from twin.files.stl import read_stl
 from twin.job.job_file import NominalTable
@@ -19,6 +28,10 @@ from twin.units import UM_PER_MM
 
 _CELLS = 256
 """Of the cells that a chunk cut too deep, so many are traced back to their samples."""
+
+
+_RAW = 1e-3
+"""A wall that is where the blank's own side is, to this, is that side [cells]."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -61,16 +74,19 @@ def nominal_map(
     result.heights[:] = part.bottom
     triangles = np.ascontiguousarray(read_stl(file).triangles + corner, dtype=np.float64)
     drape(result.heights, result.origin, result.cell, triangles)
+    result.behind[:] = 0.0
+    note_sides(result.heights, result.behind, result.origin, result.cell, triangles)
     return result
 
 
 class NominalWatch:
     """Looks after every chunk whether what it cut reaches into the nominal part.
 
-    On a wall of it, which may lie anywhere between two rows of cells, a cell counts as what is lowest in
-    it and its neighbours: a gouge into a wall is seen from one and a half cells on.
+    What counts is how far from what is left of the part the nominal surface is, straight down or sideways.
+    A gouge into a wall whose place is not known closer than by cells is seen from a cell more on.
 
     Attributes:
+        surface: The nominal part on the grid of the machined one.
         worst: The deepest so far, None without any.
     """
 
@@ -88,13 +104,12 @@ class NominalWatch:
         Raises:
             ConfigError: Its file cannot be read, or it lies beside the blank.
         """
-        surface = nominal_map(cutter.map, Path(nominal.file), part_frame, part_zero)
-        if not surface.solid().any():
+        self.surface = nominal_map(cutter.map, Path(nominal.file), part_frame, part_zero)
+        if not self.surface.solid().any():
             raise ConfigError(
                 f"job key 'nominal.file': {nominal.file} has nothing over the stock: it counts in "
                 "program coordinates, in mm"
             )
-        self._floor = _lowest_around(surface.heights)
         self._allowed = nominal.gouge_um / UM_PER_MM
         self._cutter, self._frame = cutter, part_frame
         self._corner = part_zero[:3] - np.array([*part_frame.center, 0.0])
@@ -110,26 +125,43 @@ class NominalWatch:
             Where it first went too deep, and in which sample; None where it did not.
         """
         row, row_end, column, column_end = self._cutter.changed
-        window = (slice(row, row_end), slice(column, column_end))
-        heights, floor = self._cutter.map.heights[window], self._floor[window]
-        depth = floor - heights
-        if not depth.size or depth.max() <= self._allowed:
+        if row >= row_end:
+            return None
+        # Walls are noted beside what was cut, and what is left of the part is looked for around it.
+        rows, columns = (
+            slice(max(0, first - REACH), end + REACH)
+            for first, end in ((row, row_end), (column, column_end))
+        )
+        depth = self._depths(rows, columns)
+        if depth.max() <= self._allowed:
             return None
         deepest = np.unravel_index(int(depth.argmax()), depth.shape)
-        greatest = float(depth[deepest])
-        rows, columns = np.nonzero(depth > self._allowed)
-        thin = slice(None, None, max(1, len(rows) // _CELLS))
-        rows, columns = np.append(rows[thin], deepest[0]), np.append(columns[thin], deepest[1])
-        limit = floor[rows, columns] - self._allowed
-        limit[-1] = heights[deepest]
-        cells = np.column_stack([rows + row, columns + column])
-        reached = self._first_samples(samples, cells, limit)
-        if self.worst is None or greatest > self.worst.depth_mm:
-            self.worst = self._gouge(samples, int(reached[-1]), cells[-1], greatest)
+        cells = np.argwhere(depth > self._allowed)
+        cells = np.concatenate([cells[:: max(1, len(cells) // _CELLS)], [deepest]])
+        depths = depth[tuple(cells.T)]
+        cells += [rows.start, columns.start]
+        reached = self._first_samples(samples, cells)
+        if self.worst is None or depths[-1] > self.worst.depth_mm:
+            self.worst = self._gouge(samples, int(reached[-1]), cells[-1], float(depths[-1]))
         first = int(reached.argmin())
-        depth_there = float(depth[rows[first], columns[first]])
         sample = int(reached[first])
-        return self._gouge(samples, sample, cells[first], depth_there), sample
+        return self._gouge(samples, sample, cells[first], float(depths[first])), sample
+
+    def _depths(self, rows: slice, columns: slice) -> FloatArray:
+        """How deep it is cut into the nominal part over the cells of a window [mm]."""
+        cut, cell = self._cutter.map, self._cutter.map.cell
+        heights, behind = cut.heights[rows, columns], cut.behind[rows, columns]
+        nominal, walls = self.surface.heights[rows, columns], self.surface.behind[rows, columns]
+        before = (walls[..., 0] - behind[..., 0]) * cell
+        before[(walls[..., 0] <= KNOWN) | (behind[..., 0] <= KNOWN)] = 0.0
+        inside = cut.outline.inside(cut.x[columns], cut.y[rows, None]) / cell
+        before[np.abs(behind[..., 0] - KNOWN - inside) < _RAW] = 0.0
+        wanted = (nominal - heights > self._allowed) | (before > self._allowed)
+        found, told_by = np.zeros(heights.shape), np.zeros(heights.shape, np.int64)
+        flat = np.maximum(steepness(heights, cell), steepness(nominal, cell)) <= STEEPEST
+        part, whole = Surface(heights, behind), Surface(nominal, walls)
+        surface_distances(part, whole, cell, wanted, flat, found, told_by)
+        return np.where(told_by == BY_CELLS, -found - cell, -found)
 
     def _gouge(
         self, samples: Samples, sample: int, cell: IntArray, depth_mm: float
@@ -141,32 +173,27 @@ class NominalWatch:
         spot = (float(place[0]), float(place[1]), float(place[2]))
         return NominalGouge(depth_mm, int(asked.line[sample]), float(asked.time[sample]), spot)
 
-    def _first_samples(self, samples: Samples, cells: IntArray, height: FloatArray) -> IntArray:
-        """In which sample the tool is first over each cell at a height or below it."""
+    def _first_samples(self, samples: Samples, cells: IntArray) -> IntArray:
+        """In which sample the tool first cuts too deep at each cell."""
         tip = self._frame.position(samples.real(self._frame))
         radius = np.zeros(len(tip))
         for run, tool in self._cutter.plan.runs(samples.setpoint.move):
             tip[run, 2] -= self._cutter.plan.longer(tool)
             radius[run] = tool.diameter / 2.0
-        height_map = self._cutter.map
-        x, y = height_map.x[cells[:, 1]], height_map.y[cells[:, 0]]
+        cut = self._cutter.map
         found = np.full(len(cells), len(tip) - 1)
-        for index in range(len(cells)):
-            away = np.hypot(tip[:, 0] - x[index], tip[:, 1] - y[index])
-            over = (away <= radius + height_map.cell) & (tip[:, 2] <= height[index] + 1e-6)
-            if over.any():
-                found[index] = int(over.argmax())
+        for index, (row, column) in enumerate(cells):
+            top = self.surface.heights[row, column]
+            below = np.full(len(tip), top - self._allowed)
+            reach = radius
+            if cut.heights[row, column] >= below[0]:
+                # It stands, and the wall before it is where it should not be.
+                below[:] = top - SAME_MM
+                behind = self.surface.behind[row, column, 0] - KNOWN
+                reach = radius + behind * cut.cell - self._allowed
+            away = np.hypot(tip[:, 0] - cut.x[column], tip[:, 1] - cut.y[row]) - reach
+            low = tip[:, 2] <= below + 1e-6
+            if low.any():
+                away[~low] = np.inf
+                found[index] = int((away <= max(0.0, float(away.min()))).argmax())
         return found
-
-
-def _lowest_around(heights: FloatArray) -> FloatArray:
-    """The lowest of every cell and its eight neighbours."""
-    result = heights
-    for axis in (0, 1):
-        before, after = np.roll(result, 1, axis), np.roll(result, -1, axis)
-        first, last = (0, slice(None)), (-1, slice(None))
-        if axis == 1:
-            first, last = first[::-1], last[::-1]
-        before[first], after[last] = result[first], result[last]
-        result = np.minimum(np.minimum(before, after), result)
-    return result

@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from twin.cutting.colours import RAW_RGB, Colours, surface_colours
 from twin.cutting.height_map import HeightMap
@@ -102,12 +103,18 @@ def write_glb(height_map: HeightMap, path: Path, colours: Colours | None = None)
         mesh.export(temporary, file_type="glb")
 
 
-def write_stl(height_map: HeightMap, path: Path) -> None:
+def write_stl(height_map: HeightMap, path: Path, zero: ArrayLike = (0.0, 0.0, 0.0)) -> None:
     """Write the part as binary STL [mm], complete or not at all.
+
+    Args:
+        height_map: The cut stock.
+        path: The file.
+        zero: Where the file's coordinates have their origin in the part's frame, shape (3,) [mm].
 
     Raises:
         OSError: The file cannot be written.
     """
     mesh = part_mesh(height_map)
+    mesh.apply_translation(-np.asarray(zero))
     with complete_or_absent(path) as temporary:
         mesh.export(temporary, file_type="stl")

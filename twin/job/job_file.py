@@ -217,7 +217,10 @@ class NominalTable(Table):
     file: str
     """STL in program coordinates [mm], relative to the job file; the highest surface counts."""
     gouge_um: Positive = 100.0
-    """How far below its surface the tool may cut [µm]."""
+    """How far into its surface, floors and walls, the tool may cut [µm]."""
+    standing_um: Positive | None = None
+    """How far beyond its surface material may be left at the end [µm]; not judged by default, since a program
+    may be one of several that make the part."""
     gouge: Literal["fail", "alarm"] = "fail"
     """What a deeper cut is: a tolerance that is not kept, or an alarm that stops the machine."""
 

@@ -20,6 +20,7 @@ class Channel:
         time: When each was recorded, shape (n,) [s]; None where one clock serves all channels.
         aliases: Other names that the file gives it, such as the path of its symbol.
         unit: As the file writes it; empty where it does not say.
+        strange: Row and text of the first cell that is neither a number nor missing, counted from 1.
     """
 
     name: str
@@ -27,22 +28,28 @@ class Channel:
     time: FloatArray | None = None
     aliases: tuple[str, ...] = ()
     unit: str = ""
+    strange: tuple[int, str] | None = None
 
     def numbers(self, path: Path) -> FloatArray:
-        """Its values, shape (n,).
+        """Its values, shape (n,), not a number where a cell is missing.
 
         Raises:
-            UsageError: One is not a finite number; the message says which row.
+            UsageError: A cell is something else than a finite number; the message says which row.
         """
+        strange = self.strange
         if isinstance(self.cells, np.ndarray):
             values = np.asarray(self.cells, np.float64)
         else:
-            values = np.array([_number(cell) for cell in self.cells])
-        wrong = np.flatnonzero(~np.isfinite(values))
-        if len(wrong):
+            found = [missing_or_number(cell) for cell in self.cells]
+            if None in found:
+                strange = (found.index(None) + 1, self.cells[found.index(None)])
+            values = np.array([np.nan if value is None else value for value in found])
+        if np.isinf(values).any():
+            strange = (int(np.flatnonzero(np.isinf(values))[0]) + 1, "inf")
+        if strange is not None:
             raise UsageError(
-                f"{path}: column '{self.name}' is not a number in row {wrong[0] + 1} of the values: "
-                f"{self.cells[int(wrong[0])]!r}"
+                f"{path}: column '{self.name}' is not a number in row {strange[0]} of the values: "
+                f"{strange[1]!r}"
             )
         return values
 
@@ -80,6 +87,18 @@ def _number(cell: str) -> float:
         return float(cell)
     except ValueError:
         return float("nan")
+
+
+_MISSING = ("", "nan", "n/a", "#n/a", "na", "null", "none", "-", "--")
+"""How logs write that there is no value."""
+
+
+def missing_or_number(cell: str) -> float | None:
+    """A cell's number, NaN where it is missing, None where it holds something else."""
+    value = _number(cell)
+    if np.isfinite(value):
+        return value
+    return float("nan") if cell.strip().lower() in _MISSING else None
 
 
 def is_number(cell: str) -> bool:

@@ -3,7 +3,7 @@
 import difflib
 import re
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import pydantic
 from pydantic import Field
@@ -28,6 +28,14 @@ class ColumnTable(Table):
     """What is added to it then."""
     delay_s: float = 0.0
     """How much later than the time of its row the value was taken, where that is known [s]."""
+
+
+class ExternalForceTable(ColumnTable):
+    """A known force that is not of the control's making."""
+
+    at: Literal["drive", "load"] = "load"
+    """Where it acts: ``drive``, added to what the motor gives, so that the drive's force holds it;
+    ``load``, at the axis from outside."""
 
 
 class TimeTable(Table):
@@ -57,8 +65,8 @@ class AxisColumns(Table):
     """Actual acceleration."""
     force: ColumnTable | None = None
     """Force of the drive, at the axis."""
-    external_force: ColumnTable | None = None
-    """Known force from outside on the axis."""
+    external_force: ExternalForceTable | None = None
+    """Known force that is injected at the drive or pushes at the load."""
     current: ColumnTable | None = None
     """Current, torque or voltage of the drive: a force of unknown scale."""
 
@@ -94,6 +102,17 @@ class ColumnMap(Table):
     time: TimeTable | None = None
     period_s: Positive | None = None
     line: str | None = None
+
+    @property
+    def named(self) -> frozenset[str | int]:
+        """Names and numbers of all columns that it names."""
+        found: set[str | int] = {name for name in (self.line,) if name is not None}
+        if self.time is not None and self.time.column is not None:
+            found.add(self.time.column)
+        for axis in self.axes.values():
+            columns = (getattr(axis, role) for role in QUANTITIES)
+            found |= {column.column for column in columns if column is not None}
+        return frozenset(found)
 
 
 def read_column_map(path: Path) -> ColumnMap:
@@ -185,7 +204,7 @@ def guessed_map(log: RawLog, *, units_needed: bool) -> ColumnMap:
     return ColumnMap(
         where=str(log.path),
         axes={
-            name: AxisColumns(**roles)
+            name: AxisColumns.model_validate(roles)
             for name, roles in found.items()
             if {"command", "actual"} <= set(roles)
         },

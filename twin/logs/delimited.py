@@ -9,13 +9,17 @@ channel. Times are milliseconds since the start, or ticks of 100 ns (Beckhoff, T
 """
 
 import csv
+import itertools
 import re
+from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
 
 from twin.errors import UsageError
 from twin.logs.channels import Channel, RawLog, is_number
+from twin.logs.numbers import NumberColumns, split_cells
+from twin.logs.text_pieces import whole_text
 from twin.logs.units import UNITS
 
 _SEPARATORS = (";", "\t", ",")
@@ -26,64 +30,78 @@ _TICKS = 1e12
 """A time above this is in ticks of 100 ns since 1601, not in milliseconds since the start."""
 _TICK_S, _MILLISECOND_S = 1e-7, 1e-3
 _END = "EOF"
-_COMMAS = ": are its decimals written with commas? Then its cells need ';' or tabs between them"
 
 
-def read_delimited(path: Path, text: str) -> RawLog:
+def read_delimited(
+    path: Path, first: str, more: Iterator[str], wanted: Collection[str | int] | None
+) -> RawLog:
     """Read a table of text.
 
     Args:
         path: The file, for messages.
-        text: Its content.
+        first: Its first lines, all that stand above its numbers among them.
+        more: The others, some at a time.
+        wanted: Names or numbers of the columns that are kept; all by default.
 
     Raises:
         UsageError: It holds no table of numbers, or rows of unequal length.
     """
+    lines = first.splitlines()
+    separator = _separator(lines[:_PREAMBLE])
     try:
-        rows = _rows(text)
+        rows = _rows(lines[: 2 * _PREAMBLE], separator)
+        if rows and rows[0][0] == "Name":
+            rows = _rows(whole_text(path, first, more).splitlines(), separator)
+            start = _first_row_of_numbers(rows)
+            return _twincat(path, rows[:start], rows[start:])
+        start = _first_row_of_numbers(rows)
+        heading, units = _heading(rows[:start], rows[start:])
+        if not heading:
+            raise UsageError(
+                f"{path}: is empty; a log has a heading such as time_s,X_commanded,X_actual"
+            )
+        kept = [
+            number for number, name in enumerate(heading)
+            if wanted is None or name in wanted or number + 1 in wanted
+        ]  # fmt: skip
+        columns = NumberColumns(path, len(heading), kept, separator)
+        below = lines[_line_of_row(lines, start, separator) :]
+        for piece in itertools.chain([below], (text.splitlines() for text in more)):
+            columns.take(piece, lambda part: _rows(part, separator))
     except csv.Error as error:
         raise UsageError(f"{path}: is not a log: {error}") from error
-    start = _first_row_of_numbers(rows)
-    if rows and rows[0][0] == "Name":
-        return _twincat(path, rows[:start], rows[start:])
-    heading, units = _heading(rows[:start], rows[start:])
-    if not heading:
-        raise UsageError(
-            f"{path}: is empty; a log has a heading such as time_s,X_commanded,X_actual"
-        )
-    body = rows[start:]
-    if len(body) < 2:
+    if columns.rows < 2:
         raise UsageError(f"{path}: needs two rows or more, each with {len(heading)} values")
-    wrong = next((index for index, row in enumerate(body) if len(row) != len(heading)), None)
-    if wrong is not None:
-        width = len(body[wrong])
-        raise UsageError(
-            f"{path}: needs two rows or more, each with {len(heading)} values; row {wrong + 1} of the "
-            f"values has {width}" + (_COMMAS if width > len(heading) and "," in text else "")
-        )
-    columns = list(zip(*body, strict=True))
     return RawLog(
         path,
         tuple(
-            Channel(name, columns[index], unit=units[index]) for index, name in enumerate(heading)
+            Channel(
+                name, columns.column(index), unit=units[index], strange=columns.strange.get(index)
+            )
+            for index, name in enumerate(heading)
         ),
     )
 
 
-def _rows(text: str) -> list[list[str]]:
-    lines = text.splitlines()
-    sample = "\n".join(lines[:_PREAMBLE])
-    separator = next((mark for mark in _SEPARATORS if mark in sample), None)
-    if separator is None:
-        rows = [line.split() for line in lines]
-    else:
-        rows = [[cell.strip() for cell in row] for row in csv.reader(lines, delimiter=separator)]
+def _separator(lines: Sequence[str]) -> str | None:
+    sample = "\n".join(lines)
+    return next((mark for mark in _SEPARATORS if mark in sample), None)
+
+
+def _rows(lines: Sequence[str], separator: str | None) -> list[list[str]]:
+    rows = split_cells(lines, separator)
     if separator != ",":
         rows = [
             [cell.replace(",", ".") if _DECIMAL_COMMA.fullmatch(cell) else cell for cell in row]
             for row in rows
         ]
     return [row for row in rows if any(row) and row != [_END]]
+
+
+def _line_of_row(lines: Sequence[str], row: int, separator: str | None) -> int:
+    """The line in which a row stands: empty lines and rows count for lines alone."""
+    filled = (number for number, line in enumerate(lines) if _rows([line], separator))
+    return next(itertools.islice(filled, row, None), len(lines))
 
 
 def _first_row_of_numbers(rows: list[list[str]]) -> int:

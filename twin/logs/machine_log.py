@@ -1,9 +1,8 @@
 """A log of a machine: what its axes were told and what they did, in the shop's units."""
 
-import codecs
 import dataclasses
 import difflib
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +18,7 @@ from twin.logs.column_map import (
     template,
 )
 from twin.logs.delimited import read_delimited
+from twin.logs.text_pieces import text_pieces, whole_text
 from twin.logs.traces import (
     CODESYS_FIRST_LINE,
     read_codesys_trace,
@@ -26,8 +26,11 @@ from twin.logs.traces import (
     read_sinumerik_trace,
 )
 from twin.logs.units import factor, kind_of, time_factor
-from twin.nc.canonical import FloatArray, IntArray
+from twin.nc.canonical import BoolArray, FloatArray, IntArray
 from twin.units import AxisKind
+
+_MOST_MISSING = 0.5
+"""Share of rows with a missing cell, above which a column rather is no column of numbers."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -49,6 +52,11 @@ class AxisLog:
     more: Mapping[str, FloatArray]
     columns: AxisColumns
 
+    def of_rows(self, rows: slice | BoolArray) -> "AxisLog":
+        """The same columns, of some rows."""
+        more = {role: values[rows] for role, values in self.more.items()}
+        return AxisLog(self.kind, self.command[rows], self.actual[rows], more, self.columns)
+
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class MachineLog:
@@ -59,49 +67,39 @@ class MachineLog:
         time: As logged, which may jump, shape (n,) [s].
         axes: By name.
         line: Program line of every sample, 0 where none is known, shape (n,).
+        missing: Rows that were left out, because a cell of them is missing, counted from 1.
     """
 
     name: str
     time: FloatArray
     axes: Mapping[str, AxisLog]
     line: IntArray
+    missing: IntArray = dataclasses.field(default_factory=lambda: np.zeros(0, np.int64))
 
 
-def read_raw_log(path: Path, *, tick_s: float | None = None) -> RawLog:
+def read_raw_log(
+    path: Path, *, tick_s: float | None = None, wanted: Collection[str | int] | None = None
+) -> RawLog:
     """Read a file of any known form.
 
     Args:
         path: The file.
         tick_s: What a time stamp counts, where a trace does not say it [s].
+        wanted: Names or numbers of the columns that are kept of a table; all by default.
 
     Raises:
         UsageError: The file cannot be read, or is of no known form.
     """
-    try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise UsageError(f"{path}: cannot be read: {error.strerror}") from error
-    text = _decoded(content, path)
-    start = text.lstrip()[:1]
-    if text.lstrip().startswith(CODESYS_FIRST_LINE):
-        return read_codesys_trace(path, text, tick_s)
-    if start == "<":
-        return read_sinumerik_trace(path, text)
-    if start in ("{", "["):
-        return read_edge_capture(path, text)
-    return read_delimited(path, text)
-
-
-def _decoded(content: bytes, path: Path) -> str:
-    """UTF-8 or UTF-16 as its mark says, else the code page that controls in Europe write."""
-    if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-        return content.decode("utf-16", errors="replace")
-    if b"\0" in content:
-        raise UsageError(f"{path}: is not a log: it is no text")
-    try:
-        return content.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        return content.decode("cp1252", errors="replace")
+    pieces = text_pieces(path)
+    first = next(pieces)
+    begin = first.lstrip()
+    if begin.startswith(CODESYS_FIRST_LINE):
+        return read_codesys_trace(path, whole_text(path, first, pieces), tick_s)
+    if begin.startswith("<"):
+        return read_sinumerik_trace(path, whole_text(path, first, pieces))
+    if begin.startswith(("{", "[")):
+        return read_edge_capture(path, whole_text(path, first, pieces))
+    return read_delimited(path, first, pieces, wanted)
 
 
 def read_machine_log(
@@ -110,6 +108,7 @@ def read_machine_log(
     *,
     period_s: float | None = None,
     units_needed: bool = False,
+    gaps_allowed: bool = False,
 ) -> MachineLog:
     """Read a log of any known form.
 
@@ -118,6 +117,7 @@ def read_machine_log(
         columns: What its columns are; by default what its headings say.
         period_s: Between the samples of a log without a clock [s].
         units_needed: Without a map, refuse headings that say no unit.
+        gaps_allowed: Leave out rows with missing cells, instead of refusing them.
 
     Raises:
         UsageError: The file cannot be read, or what its columns are is not known; the message holds
@@ -126,7 +126,7 @@ def read_machine_log(
     tick = None
     if columns is not None and columns.time is not None and columns.time.column is None:
         tick = time_factor(columns.time.unit, columns.where)
-    raw = read_raw_log(path, tick_s=tick)
+    raw = read_raw_log(path, tick_s=tick, wanted=None if columns is None else columns.named)
     meant = columns or guessed_map(raw, units_needed=units_needed)
     if not meant.axes:
         raise UsageError(
@@ -139,8 +139,29 @@ def read_machine_log(
     axes = {name: _axis(raw, meant.where, name, table, time) for name, table in meant.axes.items()}
     line = np.zeros(len(time), np.int64)
     if meant.line is not None and (channel := raw.find(meant.line)) is not None:
-        line = channel.numbers(path).astype(np.int64)
-    return MachineLog(str(path), time, axes, line)
+        line = np.nan_to_num(channel.numbers(path)).astype(np.int64)
+    return _without_missing(MachineLog(str(path), time, axes, line), gaps_allowed=gaps_allowed)
+
+
+def _without_missing(log: MachineLog, *, gaps_allowed: bool) -> MachineLog:
+    """A log without the rows in which a number is missing."""
+    named = {"time": log.time}
+    for name, axis in log.axes.items():
+        named |= {f"command of {name}": axis.command, f"actual of {name}": axis.actual}
+        named |= {f"{role} of {name}": values for role, values in axis.more.items()}
+    complete = np.logical_and.reduce([np.isfinite(values) for values in named.values()])
+    missing = np.flatnonzero(~complete)
+    if not len(missing):
+        return log
+    what = next(what for what, values in named.items() if not np.isfinite(values[missing[0]]))
+    if not gaps_allowed or len(missing) > _MOST_MISSING * len(complete):
+        raise UsageError(
+            f"{log.name}: {what} has no number in row {missing[0] + 1} of the values, and so "
+            f"{'do' if len(missing) > 2 else 'does'} {len(missing) - 1} more of {len(complete)} rows: "
+            "leave out rows or columns without numbers"
+        )
+    axes = {name: axis.of_rows(complete) for name, axis in log.axes.items()}
+    return MachineLog(log.name, log.time[complete], axes, log.line[complete], missing + 1)
 
 
 def _clock(raw: RawLog, meant: ColumnMap, period_s: float | None) -> FloatArray:
@@ -198,8 +219,11 @@ def _axis(raw: RawLog, where: str, name: str, table: AxisColumns, time: FloatArr
         if len(clock) != len(numbers):
             raise UsageError(f"{place}: has {len(numbers)} values, its time {len(clock)}")
         taken = clock + column.delay_s
-        if len(taken) != len(time) or not np.array_equal(taken, time):
-            numbers = np.interp(time, taken, numbers)
+        if len(taken) != len(time) or not np.array_equal(taken, time, equal_nan=True):
+            there = np.isfinite(numbers) & np.isfinite(taken)
+            numbers = np.interp(time, taken[there], numbers[there])
+            if channel.time is None:
+                numbers[~there] = np.nan
         values[role] = numbers
     command = values.pop("command")
     actual = values.pop("actual") if "actual" in values else command - values["following_error"]

@@ -91,9 +91,9 @@ class Interpretation:
         """Run the program once; a few thousand moves at a time.
 
         Raises:
-            ProgramError: The program is wrong; the moves before the error have been yielded.
+            ProgramError: The program is wrong; the moves before the wrong block have been yielded.
         """
-        control = self._control
+        control, refused = self._control, None
         try:
             control.prepare()
             done, moves, due = 0, 0, self._compiled_after()
@@ -103,7 +103,9 @@ class Interpretation:
                     block = control.program_counter.next()
                     if block is None:
                         break
+                    refused = control.path.refusal(block.line)
                     control.run(block)
+                    refused = None
                 before, moves = moves, len(control.path)
                 if machine is None:
                     done += 1 + moves - before
@@ -114,7 +116,7 @@ class Interpretation:
                     moves = 0
             control.finish()
         except ProgramError:
-            yield control.path.take()
+            yield control.path.take(refused)
             raise
         yield control.path.take()
 

@@ -66,6 +66,7 @@ def _legend(found: Inspection, scale: float) -> Image.Image:
             ("left standing", f"{figures['max_um']:+.1f} µm"),
             ("too deep", f"{figures['min_um']:+.1f} µm"),
             ("mean", f"{figures['mean_um']:+.2f} µm"),
+            ("walls known to", f"{figures['bound_um']:.0f} µm"),
             (f"within ±{tolerance} µm", f"{100 * figures['within_share']:.2f} %"),
         ]
     pixels = [max(1, round(scale * value)) for value in (14, 270, 24, 16)]

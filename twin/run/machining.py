@@ -7,6 +7,7 @@ import numpy as np
 from twin.cutting.cut import CutResult, Cutter
 from twin.cutting.events import CutEvent
 from twin.cutting.forces.load_log import LoadLog
+from twin.cutting.inspection import Inspection, inspect
 from twin.cutting.nominal import NominalGouge, NominalWatch
 from twin.cutting.part import write_stl
 from twin.cutting.program_summary import ProgramSummary
@@ -46,8 +47,10 @@ class Machining:
         """
         self._summary = summary
         self.loads = LoadLog()
+        self._zero = part_zero[:3] - np.array([*part_frame.center, 0.0])
         self._cutter: Cutter | None = None
         self._nominal: NominalWatch | None = None
+        self._gouge_um = None if job.nominal is None else job.nominal.gouge_um
         self._gouge_stops = job.nominal is not None and job.nominal.gouge == "alarm"
         if job.stock is not None:
             head = head_shape(machine).above_tip
@@ -61,6 +64,12 @@ class Machining:
     def gouge(self) -> NominalGouge | None:
         """The deepest cut into the nominal part beyond what it allows."""
         return None if self._nominal is None else self._nominal.worst
+
+    def inspect(self) -> Inspection | None:
+        """How far the part is from the nominal one by now; None where the job names none."""
+        if self._cutter is None or self._nominal is None or self._gouge_um is None:
+            return None
+        return inspect(self._cutter.map, self._nominal.surface, self._gouge_um)
 
     def add(self, samples: Samples) -> tuple[Samples, Alarm | None]:
         """Cut along a chunk.
@@ -108,7 +117,7 @@ class Machining:
         if self._cutter is None:
             return None
         if out is not None:
-            write_stl(self._cutter.map, out / "part.stl")
+            write_stl(self._cutter.map, out / "part.stl", self._zero)
         return self._cutter.result()
 
 

@@ -6,6 +6,7 @@ from twin.compare.figures import Figures
 from twin.compare.verdict import Verdict
 from twin.cutting.cut import CutResult
 from twin.cutting.forces.load_log import LoadLog
+from twin.cutting.inspection import Inspection
 from twin.cutting.nominal import NominalGouge
 from twin.machine.watching.alarms import Alarm, NearMiss
 from twin.nc.canonical import FloatArray
@@ -21,6 +22,7 @@ class Outcome:
         figures: Following and contour error.
         cut: What the cut told; None without a stock.
         gouge: The deepest cut into the nominal part, beyond what the job allows.
+        inspection: How far the part is from the nominal one; None without one.
         loads: The greatest of what the tools felt.
         alarms: Alarms of the machine, in order.
         near_miss: The closest that the tool's side and the part's came, below the machine's limit.
@@ -36,6 +38,7 @@ class Outcome:
     figures: Figures
     cut: CutResult | None
     gouge: NominalGouge | None
+    inspection: Inspection | None
     loads: LoadLog
     alarms: tuple[Alarm, ...]
     near_miss: NearMiss | None

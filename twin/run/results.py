@@ -110,7 +110,15 @@ def _cut(outcome: Outcome, stock: StockTable | None) -> dict[str, Any] | None:
     if outcome.cut is None:
         return None
     gouge = None if outcome.gouge is None else outcome.gouge.as_json()
-    cut = {**outcome.cut.as_json(), "nominal_gouge": gouge, "force_simulated": False, "loads": []}
+    cut = {
+        **outcome.cut.as_json(),
+        "nominal_gouge": gouge,
+        "nominal": None,
+        "force_simulated": False,
+        "loads": [],
+    }
+    if outcome.inspection is not None:
+        cut["nominal"] = outcome.inspection.as_json()
     material = None if stock is None or outcome.cut.force_n is None else kienzle(stock)
     if stock is not None and material is not None:
         cut["material"] = {"name": stock.material, **dataclasses.asdict(material)}

@@ -13,8 +13,9 @@ from twin.compare.trace import Trace
 from twin.compare.verdict import Check, judge
 from twin.coupling.cutting_process import CuttingProcess
 from twin.coupling.operations import ProgramOperation, program_process, speeds_are_known
-from twin.cutting.forces.axis_load import AxisLoad
+from twin.cutting.axis_load import AxisLoad
 from twin.cutting.forces.load_log import LoadLog
+from twin.cutting.inspection import Inspection
 from twin.cutting.nominal import NominalGouge
 from twin.cutting.program_summary import ProgramSummary
 from twin.errors import ConfigError
@@ -155,6 +156,7 @@ class Run:
                     writer.note_alarms([(each.time_s, each.message) for each in alarms])
         with self.clock.stage("cut"):
             cut = machining.finish(out) if len(reached) else None
+            inspection = machining.inspect() if len(reached) else None
         figures = comparison.result()
         alarms = (*self._breaks(reached.time_s), *(() if alarm is None else (alarm,)))
         duration_s = min(self._planned_s or reached.last_motion_s, reached.time_s)
@@ -166,13 +168,14 @@ class Run:
                 alarms,
                 cycle_time_s=duration_s,
                 more=[
-                    *self._gouge_checks(machining.gouge),
+                    *self._nominal_checks(machining.gouge, inspection),
                     *_load_checks(tolerance, machining.loads),
                 ],
             ),
             figures=figures,
             cut=cut,
             gouge=machining.gouge,
+            inspection=inspection,
             loads=machining.loads,
             alarms=alarms,
             near_miss=near_miss,
@@ -193,15 +196,23 @@ class Run:
         for chunk in self.clock.watch("interpret", self.preparation.interpretation().chunks()):
             comparison.expect(chunk.moves)
 
-    def _gouge_checks(self, gouge: NominalGouge | None) -> list[Check]:
+    def _nominal_checks(
+        self, gouge: NominalGouge | None, inspection: Inspection | None
+    ) -> Iterator[Check]:
         nominal = self.preparation.job.file.nominal
-        if nominal is None or nominal.gouge == "alarm":
-            return []
-        depth, line, when = (0.0, 0, 0.0)
-        if gouge is not None:
-            depth, line, when = gouge.depth_mm * UM_PER_MM, gouge.line, gouge.time_s
-        limit = nominal.gouge_um
-        return [Check("gouge_um", "gouge into the nominal part", depth, limit, "µm", line, when)]
+        if nominal is None:
+            return
+        if nominal.gouge == "fail":
+            depth, line, when = (0.0, 0, 0.0)
+            if gouge is not None:
+                depth, line, when = gouge.depth_mm * UM_PER_MM, gouge.line, gouge.time_s
+            figure = "gouge into the nominal part"
+            yield Check("gouge_um", figure, depth, nominal.gouge_um, "µm", line, when)
+        if nominal.standing_um is not None and inspection is not None:
+            figure = "material left on the nominal part"
+            left = inspection.most_standing_mm * UM_PER_MM
+            bound = f" (walls are known to {inspection.bound_mm * UM_PER_MM:.0f} µm)"
+            yield Check("standing_um", figure, left, nominal.standing_um, "µm", 0, 0.0, bound)
 
     def _setpoints(self, comparison: Comparison) -> Iterator[Setpoints]:
         """The planned motion; those who judge it hear of every move before it is simulated."""

@@ -29,13 +29,16 @@ class Doorkeeper:
         tokens: By role, made anew for every session.
     """
 
-    def __init__(self, roles: Sequence[str], port: int) -> None:
+    def __init__(self, roles: Sequence[str], port: int, *, encrypted: bool = False) -> None:
         """Make the tokens.
 
         Args:
             roles: Names of the roles; each is the first part of its pages' paths.
             port: Of the server: browsers share cookies between ports.
+            encrypted: Whether the pages are served over https. Safari keeps no ``Secure`` cookie that
+                came over http, not even from this computer.
         """
+        self._secure = " Secure;" if encrypted else ""
         self.tokens = {role: secrets.token_urlsafe(TOKEN_BYTES) for role in roles}
         self._port = port
         self._passes: OrderedDict[str, str] = OrderedDict()
@@ -61,7 +64,7 @@ class Doorkeeper:
         self._passes[key] = role
         while len(self._passes) > MOST_PASSES:
             self._passes.popitem(last=False)
-        return f"{self._cookie(role)}={key}; Path=/{role}; Secure; HttpOnly; SameSite=Strict"
+        return f"{self._cookie(role)}={key}; Path=/{role};{self._secure} HttpOnly; SameSite=Strict"
 
     def knows(self, role: str, cookies: str) -> bool:
         """Whether a request's cookies show that it comes from a browser with this role."""

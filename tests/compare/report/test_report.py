@@ -19,6 +19,8 @@ from twin.nc.canonical import Moves
 from twin.nc.text.lines import Lines
 from twin.recording.reader import RecordingHeader
 
+pytestmark = pytest.mark.seconds("a program is run and its page drawn")
+
 CORNER = np.array([50.0, 0, 0, 0])
 MOVES = moves_of(
     line(np.zeros(4), CORNER),

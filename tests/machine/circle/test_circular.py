@@ -90,6 +90,7 @@ def test_mismatched_loops_give_an_ellipse_at_45_degrees():
     assert min(abs(longest - 45), abs(longest - 135)) < 3.0
 
 
+@pytest.mark.seconds("circles are driven both ways")
 def test_backlash_gives_steps_of_its_size():
     """Either axis is behind by half the gap and by what friction bends, whichever way it goes.
 
@@ -125,6 +126,7 @@ def test_friction_with_integral_action_gives_peaks_that_fade():
     assert result.quadrant_names == ("+X", "+Y", "-X", "-Y")
 
 
+@pytest.mark.seconds("circles are driven both ways")
 def test_a_step_is_no_peak():
     """Backlash shifts one side against the other; friction leaps out of both."""
     play = shipped_machine(backlash=0.02, dry_friction=100.0, **PERFECT)

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from examples import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -106,7 +107,7 @@ def test_on_a_line_only_the_filter_of_the_command_adds_to_the_lag(
     turns=st.integers(3, 20), per_turn=st.integers(40, 400),
     time_constant=st.floats(2e-5, 0.05), start=st.integers(1, 60),
 )  # fmt: skip
-@settings(max_examples=40, deadline=None, derandomize=True)
+@settings(max_examples=examples(40), deadline=None, derandomize=True)
 def test_a_filter_lags_as_its_closed_form_says_however_it_is_fed(
     turns: int, per_turn: int, time_constant: float, start: int
 ) -> None:

@@ -9,6 +9,7 @@ import hypothesis.strategies as st
 import mujoco
 import numpy as np
 import pytest
+from examples import examples
 
 from tests.machine.machine_fixtures import setpoints, shipped_machine, three_axis_machine
 from twin.job.fixture import FixtureTable
@@ -182,7 +183,7 @@ stop = st.tuples(
 )
 
 
-@hypothesis.settings(derandomize=True, max_examples=60, deadline=None)
+@hypothesis.settings(derandomize=True, max_examples=examples(60), deadline=None)
 @hypothesis.given(st.lists(stop, min_size=2, max_size=5), st.sampled_from([40, 400]))
 def test_any_way_with_a_turning_table_agrees_with_the_closed_form(
     stops: list[tuple[float, float, float, float]], samples: int

@@ -4,6 +4,7 @@ from typing import Any
 import hypothesis
 import numpy as np
 import pytest
+from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 from motion_checks import assert_consistent, assert_on_path, assert_within_limits, points_on_path
@@ -16,7 +17,7 @@ from twin.motion.pieces.rounding_kernels import add_rounding
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Corner, FloatArray
 
-FEWER = hypothesis.settings(SETTINGS, max_examples=40)
+FEWER = hypothesis.settings(SETTINGS, max_examples=examples(40))
 STEPS: dict[str, Any] = {"junction_velocity_step": 1.0, "junction_acceleration_step": 400.0}
 
 
@@ -32,6 +33,7 @@ def deviation(setpoints: Setpoints, program: Program) -> FloatArray:
     return np.linalg.norm((setpoints.position - points)[:, :3], axis=1)
 
 
+@pytest.mark.seconds("whole programs are planned")
 @FEWER
 @given(programs(most=12, corners=(Corner.EXACT_PATH,)), limits())
 def test_exact_path_keeps_path_and_limits(program: Program, machine: MotionLimits) -> None:
@@ -42,6 +44,7 @@ def test_exact_path_keeps_path_and_limits(program: Program, machine: MotionLimit
     assert np.array_equal(setpoints.position[-1], program.position + ZERO)
 
 
+@pytest.mark.seconds("whole programs are planned")
 @FEWER
 @given(programs(most=12, corners=(Corner.CONTINUOUS,)), limits())
 def test_continuous_path_keeps_tolerance_and_limits(

@@ -3,6 +3,7 @@ import math
 import hypothesis
 import numpy as np
 import pytest
+from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 from motion_checks import assert_consistent, assert_on_path, assert_within_limits
@@ -14,7 +15,7 @@ from twin.motion.live.live_motion import LiveMotion
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Chunk, Corner, Moves
 
-FEWER = hypothesis.settings(SETTINGS, max_examples=40)
+FEWER = hypothesis.settings(SETTINGS, max_examples=examples(40))
 
 
 def live(program: Program, machine: MotionLimits, largest_override: float = 1.5) -> LiveMotion:

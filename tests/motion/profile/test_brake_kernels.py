@@ -6,6 +6,7 @@ import math
 import hypothesis
 import numpy as np
 import pytest
+from examples import examples
 from hypothesis import example, given
 from hypothesis import strategies as st
 from motion_programs import SETTINGS
@@ -20,7 +21,7 @@ from twin.motion.profile.state import Brake, Course, State
 from twin.motion.ramp_kernels import brake_distance, brake_time
 from twin.nc.canonical import FloatArray
 
-FEWER = hypothesis.settings(SETTINGS, max_examples=40)
+FEWER = hypothesis.settings(SETTINGS, max_examples=examples(40))
 LARGE = st.floats(1.0, 1000.0)
 DECELERATION, JERK = st.floats(50.0, 2e4), st.floats(500.0, 1e6)
 

@@ -4,6 +4,8 @@ import pytest
 from motion_programs import Program, duration
 from toppra_bound import bound, fast_machine, slot, wave
 
+pytestmark = pytest.mark.oracle
+
 SLACK = 1.05
 
 

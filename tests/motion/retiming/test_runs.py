@@ -6,6 +6,7 @@ import itertools
 import hypothesis
 import numpy as np
 import pytest
+from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 from motion_checks import (
@@ -23,7 +24,7 @@ from twin.motion.live.live_motion import LiveMotion
 from twin.motion.phase_planner import plan_phases
 from twin.nc.canonical import Corner
 
-FEWER = hypothesis.settings(SETTINGS, max_examples=25)
+FEWER = hypothesis.settings(SETTINGS, max_examples=examples(25))
 COLUMNS = ("time", "line", "move", "fraction", "position", "velocity", "acceleration")
 
 

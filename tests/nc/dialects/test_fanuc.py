@@ -125,19 +125,43 @@ def test_g54_is_in_force_when_the_program_starts() -> None:
     assert ends("G0 X1.", offsets={"G54": {"X": 10.0}}) == [(11.0, 0.0, 0.0)]
 
 
-def test_g28_goes_by_its_point_and_leaves_the_length_alone() -> None:
-    zero = {"X": -50.0, "Y": 0.0, "Z": 200.0}
-    tools = {1: ToolData(5.0, 60.0), 2: ToolData(5.0, 85.0)}
+HOME = {"X": -50.0, "Y": 0.0, "Z": 200.0}
+LONGER = {1: ToolData(5.0, 60.0), 2: ToolData(5.0, 85.0)}
+
+
+def heights(text: str, dialect: str = "fanuc", **changes: Any) -> list[float]:
+    """Where Z ends in each move, with a tool 25 mm longer than the first."""
+    outcome = good(f"O1\n{text}\nM30", dialect, machine_zero=HOME, tools=LONGER, **changes)
+    return [float(end[2]) for end in outcome.moves.end]
+
+
+def test_g28_goes_by_its_point_and_cancels_the_length() -> None:
     made = ends(
-        "G0 X10. Z5.\nG43 Z10. H2\nG91 G28 X2. Z1.\nG90 G0 Z10.", machine_zero=zero, tools=tools
+        "G0 X10. Z5.\nG43 Z10. H2\nG91 G28 X2. Z1.\nG90 G0 Z10.", machine_zero=HOME, tools=LONGER
     )
     assert made == [
         (10.0, 0.0, 5.0),
         (10.0, 0.0, 35.0),
         (12.0, 0.0, 36.0),
         (-50.0, 0.0, 200.0),
-        (-50.0, 0.0, 35.0),
+        (-50.0, 0.0, 10.0),
     ]
+
+
+def test_a_cancelled_length_comes_back_by_g43_or_h_or_a_parameter() -> None:
+    for home in ("G91 G28 Z0", "G91 G30 P2 Z0", "G53 Z0"):
+        start = f"G43 Z10. H2\n{home}\nG90 G0"
+        assert heights(f"{start} Z10.") == [35.0, 200.0, 10.0]
+        assert heights(f"{start} G43 H2 Z10.") == [35.0, 200.0, 35.0]
+        assert heights(f"{start} H2 Z10.") == [35.0, 200.0, 35.0]
+        assert heights(f"{start} Z10.", length_returns="next block") == [35.0, 200.0, 35.0]
+
+
+def test_g28_without_z_cancels_a_length_on_a_haas_alone() -> None:
+    text = "G43 Z10. H2\nG91 G28 X0\nG90 G0 Z10."
+    assert heights(text) == [35.0, 35.0]
+    assert heights(text, "haas") == [35.0, 35.0, 10.0]
+    assert heights("G43 Z10. H2\nG53 Z0\nG0 Z10.", "haas") == [35.0, 200.0, 35.0]
 
 
 def test_g53_of_a_fanuc_is_rapid_and_of_a_haas_follows_the_motion_code() -> None:

@@ -107,12 +107,14 @@ def test_moved(text: str) -> None:
     assert made.moves[-1].end[:3] == pytest.approx(ENDS[text])
 
 
+@pytest.mark.oracle
 @pytest.mark.skipif(RS274 is None, reason="LinuxCNC's rs274 is not installed (linuxcnc-uspace)")
 @pytest.mark.parametrize("text", [*REFUSED, *ENDS])
 def test_as_rs274(text: str) -> None:
     assert not difference(text)
 
 
+@pytest.mark.oracle
 @pytest.mark.skipif(RS274 is None, reason="LinuxCNC's rs274 is not installed (linuxcnc-uspace)")
 @pytest.mark.parametrize(
     "begin", ["G5.2", "G5.2 P2", "G5.2 P2 L4", "G5.2 L2", "G5.2 X1 Y-1 P3", "G5.2 P2\n(and)\n"]

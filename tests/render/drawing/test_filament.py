@@ -30,6 +30,8 @@ from twin.render.scene.scene import Scene
 from twin.render.scene.stage import stage
 from twin.render.still import Shot, stills
 
+pytestmark = pytest.mark.thorough
+
 Record = Callable[..., Path]
 SIZE = (160, 120)
 

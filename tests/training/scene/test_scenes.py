@@ -70,6 +70,7 @@ def test_every_text_is_told_in_every_language(name):
         assert re.search("[А-Яа-я]", text["ru"])
 
 
+@pytest.mark.played
 @pytest.mark.parametrize("name", scene_names())
 def test_the_solution_reaches_full_points(name):
     done = played(name, "solution")
@@ -77,6 +78,7 @@ def test_the_solution_reaches_full_points(name):
     assert done.score == scene(name).points
 
 
+@pytest.mark.played
 @pytest.mark.parametrize("name", scene_names())
 def test_the_mistake_fails_as_intended(name):
     done = played(name, "mistake")
@@ -86,6 +88,7 @@ def test_the_mistake_fails_as_intended(name):
     assert done.score < scene(name).points
 
 
+@pytest.mark.played
 @pytest.mark.parametrize("name", scene_names())
 def test_every_alarm_of_a_scenes_scripts_is_translated(name):
     for script in ("solution", "mistake"):

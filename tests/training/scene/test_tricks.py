@@ -85,6 +85,17 @@ def test_lines_of_mdi_are_no_lines_of_the_program():
     assert session.room.judge.evidence.held == set()
 
 
+@pytest.mark.parametrize("text", ["G01 X-30 E5 F1000", "G1 X1e308 F1000", "G01 X-30 F1000 X-20"])
+def test_a_refused_line_of_mdi_moves_nothing(text):
+    session = opened("fagor_first_steps")
+    give(session, "mode", mode="mdi")
+    before = session.room.machine.position.copy()
+    give(session, "mdi", text=text)
+    give(session, "cycle_start")
+    settle(session)
+    assert session.room.machine.position == pytest.approx(before, abs=1e-6)
+
+
 def test_a_second_blank_is_counted_where_there_is_but_one():
     session = opened("fagor_climb")
     give(session, "mode", mode="jog")

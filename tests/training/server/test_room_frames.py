@@ -10,6 +10,7 @@ import numpy as np
 from twin.cutting.patches import LEVELS
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.server.app import RoomApp
+from twin.training.server.attempts import CELLS_ACROSS
 from twin.training.server.driver import Driver
 from twin.training.server.frames import (
     Changes,
@@ -19,7 +20,6 @@ from twin.training.server.frames import (
     path_message,
     state_message,
 )
-from twin.training.server.launch import CELLS_ACROSS
 from twin.training.server.seats import MESSAGES, MOST_PAGES, Seats
 from twin.training.session.live_cut import Loads
 from twin.training.session.session import Session

@@ -11,9 +11,11 @@ from browsers import CHROMIUM, FIREFOX
 from panel_player import Player, launch, open_page, play, served, without_view
 
 from twin.training.scene.scene_file import read_scene, scene_path
+from twin.training.server.attempts import next_scene
 from twin.web.server import THREE
 
 pytestmark = [
+    pytest.mark.browser,
     pytest.mark.skipif(
         CHROMIUM is None, reason="no Chromium here; Debian has it in the package chromium"
     ),
@@ -475,4 +477,84 @@ def test_the_way_of_the_program_is_told_before_it_runs_and_why_it_is_not(chromiu
     page.wait_for_selector("#path-note.refusal >> text=line 2")
     page.click("[data-key=preview]")
     page.wait_for_selector("#path-note", state="hidden")
+    context.close()
+
+
+def test_what_cannot_be_taken_back_asks_once_and_the_lesson_is_told_in_the_page(chromium, room):
+    context = chromium.new_context(bypass_csp=True)
+    without_view(context)
+    page = open_page(room, context, query="?language=en")
+    player, first = Player(room, page), room.folder
+    page.click("[data-key=hint]")
+    page.click("[data-key='hint no']")
+    assert player.done("hint") == 0
+    page.click("[data-key=finish]")
+    page.click("[data-key='finish no']")
+    assert player.done("finish") == 0
+    player.hand_in()
+    page.wait_for_selector("#score >> text=The trap of this scene")
+    if AXE.is_file():
+        page.add_script_tag(path=AXE)
+        assert page.evaluate(SERIOUS) == []
+    page.click("[data-key=close_sheet]")
+    page.click("[data-key='score sheet']")
+    page.click("#score [data-key=again]")
+    player.until(lambda: room.app.attempt.number == 2, "the second attempt")
+    page.wait_for_selector("[data-key=finish]")
+    assert not room.session.room.judge.over
+    sheet = json.loads((first / "score.json").read_text(encoding="utf-8"))
+    assert sheet["handed_in"]
+    assert room.folder != first
+    context.close()
+
+
+def test_the_next_scene_follows_in_the_same_page_and_only_behind_a_hand_in(chromium, room):
+    context = chromium.new_context()
+    without_view(context)
+    page = open_page(room, context, query="?language=en")
+    scene = room.session.scene.name
+    for asked in (next_scene(scene), "fagor_climb", "../x"):
+        page.evaluate("(name) => { const line = new WebSocket(new URL('stream', location.href).href.replace('http', 'ws')); line.onopen = () => line.send(JSON.stringify({ attempt: name })); }", asked)  # fmt: skip
+    player = Player(room, page)
+    player.hand_in()
+    assert room.app.attempt.number == 1
+    page.click("#score [data-key='next scene']")
+    player.until(lambda: room.session.scene.name == next_scene(scene), "the next scene")
+    page.wait_for_selector(f"#sheet >> text={room.session.scene.file.title['en']}")
+    context.close()
+
+
+REACHED = """() => {
+  const box = (one) => one.getBoundingClientRect(), out = [];
+  if (document.documentElement.scrollWidth > innerWidth + 1) out.push("wider than the screen");
+  const stop = box(document.getElementById("emergency"));
+  for (const one of document.querySelectorAll("#work button, #work input, #program, #sheet, #language")) {
+    if (!one.checkVisibility()) continue;
+    one.scrollIntoView({ block: "center", inline: "center" });
+    const now = box(one), outer = one.closest("#tabs, #sheet, #desk, #views, #screen, #head").getBoundingClientRect();
+    const name = one.dataset.key || one.id;
+    if (now.right > outer.right + 1 || now.left < outer.left - 1 || now.right > innerWidth + 1) out.push(`${name} cut off`);
+    // What is higher than the screen is cut off where its scrolling parent ends.
+    const shown = one.closest("#work")?.getBoundingClientRect() ?? now;
+    const top = Math.max(now.top, shown.top), right = Math.min(now.right, shown.right);
+    if (now.left < stop.right - 1 && stop.left < right - 1 && top < stop.bottom - 1 && stop.top < now.bottom - 1) out.push(`${name} under the emergency stop`);
+    if (now.bottom < 1 || now.top > innerHeight - 1) out.push(`${name} out of reach`);
+  }
+  if (stop.top < -1 || stop.left < -1 || stop.right > innerWidth + 1 || stop.bottom > innerHeight + 1) out.push("emergency stop off the page");
+  return out;
+}"""
+SMALL = [(800, 600), (390, 844), (844, 390), (683, 384), (360, 640)]
+"""Old screens, phones both ways, and 1366x768 at 200 % zoom [px]."""
+
+
+@pytest.mark.parametrize("size", SMALL, ids=str)
+def test_a_small_screen_scrolls_and_hides_nothing_under_anything(chromium, room, size):
+    room.driver.ask({"do": "emergency_stop"}, "trainer", 0)
+    context = chromium.new_context(viewport={"width": size[0], "height": size[1]}, has_touch=True)
+    without_view(context)
+    page = open_page(room, context, query="?language=ru")
+    page.wait_for_selector("#emergency[aria-pressed=true]")
+    for tab in page.locator("#tabs button").all():
+        tab.click()
+        assert page.evaluate(REACHED) == [], tab.inner_text()
     context.close()

@@ -9,6 +9,7 @@ from typing import Any
 import hypothesis.strategies as st
 import numpy as np
 import pytest
+from examples import examples
 from hypothesis import Phase, given, settings
 
 from twin.training.scene.scene_file import Scene, read_scene, scene_path
@@ -94,7 +95,7 @@ def live(session: Session, what: dict[str, Any], slices: int, who: Any) -> None:
 
 
 @given(STEPS)
-@settings(max_examples=12, derandomize=True, deadline=None, phases=[Phase.generate])
+@settings(max_examples=examples(12), derandomize=True, deadline=None, phases=[Phase.generate])
 def test_random_commands_never_end_the_room_and_leave_no_trace_where_they_are_refused(steps):
     session = Session(scene())
     for step in steps:

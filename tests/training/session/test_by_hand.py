@@ -41,6 +41,7 @@ def held(session: Session) -> None:
     do(session, "mode", mode="jog")
 
 
+@pytest.mark.seconds("axes are driven to their reference points in turn")
 def test_between_the_ways_to_the_reference_point_nothing_else_begins(session):
     do(session, "jog", axis="X", direction=1, step=20.0)
     rest(session)

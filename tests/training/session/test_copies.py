@@ -166,6 +166,7 @@ def lived(room: Room, acts: list[tuple[int, dict[str, Any]]]) -> list[tuple[Any,
     return seen
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", ENDLESS)
 def test_going_back_in_an_endless_program_is_the_same_to_the_last_bit(name):
     room = Room(read_scene(scene_path(SCENES[name])))

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from twin.training.scene.scene_file import read_scene, scene_names, scene_path
-from twin.training.server.launch import CELLS_ACROSS
+from twin.training.server.attempts import CELLS_ACROSS
 from twin.training.session.session import Session
 
 SCENE = """
@@ -91,6 +91,7 @@ def test_without_a_material_no_force_is_shown(tmp_path):
     assert session.room.alarm is None
 
 
+@pytest.mark.seconds("a tool is worn until it breaks")
 def test_a_broken_tool_is_told_and_goes_on_until_it_is_changed(tmp_path):
     session = session_of(tmp_path, 6000)
     run_to_end(session)

@@ -15,6 +15,8 @@ from twin.training.session.observed import block_number
 from twin.training.session.program_run import ProgramRun, RunOptions
 from twin.training.session.session import Session
 
+pytestmark = pytest.mark.seconds("programs are run at a panel")
+
 
 @pytest.fixture
 def session() -> Session:

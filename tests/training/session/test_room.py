@@ -5,6 +5,7 @@ import json
 import hypothesis.strategies as st
 import numpy as np
 import pytest
+from examples import examples
 from hypothesis import given, settings
 
 from twin.errors import UsageError
@@ -255,7 +256,7 @@ NAMES = st.sampled_from(["jog", "mode", "edit", "override", "set_tool", "inject"
 
 
 @given(ANYTHING | st.dictionaries(st.sampled_from(["do", "axis", "step", "mode", "line", "fault"]), ANYTHING | NAMES))  # fmt: skip
-@settings(max_examples=200, derandomize=True, deadline=None)
+@settings(max_examples=examples(200), derandomize=True, deadline=None)
 def test_malformed_commands_are_refused_in_words(data):
     try:
         command = command_from(data)

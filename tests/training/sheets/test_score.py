@@ -105,6 +105,25 @@ def test_a_course_is_in_the_language_of_most_sheets_and_counts_the_best_of_each_
     assert trainees(rows) == [Trainee("Eva", 3, 1, 10, 10), Trainee("Jan", 1, 0, 6, 10)]
 
 
+def test_a_sheet_that_was_handed_in_is_kept_when_a_trainer_goes_back(tmp_path):
+    session = Session(read_scene(scene_path("fagor_first_steps")))
+    writer = SheetWriter(session, Words("en", "fagor8070"), tmp_path)
+    session.submit({"do": "sign", "name": "Eva"})
+    session.advance(20)
+    session.submit({"do": "finish"})
+    session.advance(1)
+    writer._write()
+    first = writer.folder
+    session.submit({"do": "rewind", "seconds": 0.1}, "trainer")
+    session.submit({"do": "go_on"}, "trainer")
+    session.advance(1)
+    writer.close()
+    assert writer.folder != first
+    rows, unread = course_of(tmp_path)
+    assert not unread
+    assert sorted(row.handed_in for row in rows) == [False, True]
+
+
 @pytest.mark.parametrize(
     "wrong", ['"points": 1e999', '"points": 1e400, "of": NaN', '"alarms": ' + "[" * 100_000, '"name": "\\ud800"', "\xff"]
 )  # fmt: skip

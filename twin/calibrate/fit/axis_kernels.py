@@ -42,22 +42,22 @@ def step_axis(transition, now, then, push, inputs, state, dry, moved):
 
 
 @array_kernel
-def read_cubics(values, rises, every, late):
-    """Values at every so many inputs, read late, by cubics with the rates at both ends.
+def read_cubics(values, rises, places, late):
+    """Values between inputs, read late, by cubics with the rates at both ends.
 
     Args:
         values: At the inputs, shape (n,).
         rises: Their rates times the step, shape (n,).
-        every: Inputs per sample.
+        places: Of the samples, in steps, shape (samples,).
         late: Delay, in steps.
 
     Returns:
-        At the samples, shape ((n - 1) // every + 1,).
+        At the samples, shape (samples,).
     """
     last = len(values) - 1
-    seen = values[::every].copy()
+    seen = places.copy()
     for i in range(len(seen)):
-        place = min(max(i * every - late, 0.0), float(last))
+        place = min(max(places[i] - late, 0.0), float(last))
         before = min(int(place), last - 1)
         part = place - before
         rest = 1.0 - part

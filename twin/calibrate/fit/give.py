@@ -105,21 +105,64 @@ def _columns(
 ) -> tuple[FloatArray, FloatArray]:
     """One, half the side, the force, of samples whose side is known; and how far the motor is ahead."""
     assert stretch.load is not None
-    period = stretch.command.step_s * stretch.command.every
-    window = max(5, 2 * round(smoothed_s / period / 2.0) + 1)
-    speed, change = (
-        np.asarray(savgol_filter(stretch.load, window, 3, deriv=order, delta=period))
-        for order in (1, 2)
-    )
+    speed, change = _kinematics(stretch.time, stretch.load, smoothed_s)
     moves = np.abs(speed) > 0.01 * np.abs(speed).max(initial=1e-9)
     force = carried * to_si(kind) * change + parameters.viscous_friction * speed
     force += parameters.dry_friction * np.sign(speed) * moves - parameters.constant_force
+    if stretch.pushed is not None:
+        force -= stretch.pushed
     typical = float(np.sqrt(np.mean(force[moves] ** 2))) if moves.any() else 1.0
     side = np.where(np.abs(force) > _LEAST * typical, np.sign(force), 0.0)
     began = np.concatenate([[0], np.flatnonzero(np.diff(side) != 0.0) + 1])
     since = began[np.searchsorted(began, np.arange(len(side)), side="right") - 1]
-    known = (np.arange(len(side)) - since) * period > _SETTLED_S
+    known = stretch.time - stretch.time[since] > _SETTLED_S
     known &= (side != 0.0) & moves
-    known[: stretch.first] = False
+    known &= stretch.seen
     columns = np.column_stack([np.ones(len(side)), side / 2.0, force])
     return columns[known], (stretch.actual - stretch.load)[known]
+
+
+def _kinematics(
+    clock: FloatArray, place: FloatArray, smoothed_s: float
+) -> tuple[FloatArray, FloatArray]:
+    """Speed and acceleration of logged positions, shape (n,) each."""
+    period = float(clock[-1] - clock[0]) / (len(clock) - 1)
+    window = max(5, 2 * round(smoothed_s / period / 2.0) + 1)
+    even = np.linspace(clock[0], clock[-1], len(clock))
+    places = np.interp(even, clock, place)
+    speed, change = (
+        np.interp(
+            clock, even, np.asarray(savgol_filter(places, window, 3, deriv=order, delta=period))
+        )
+        for order in (1, 2)
+    )
+    return speed, change
+
+
+def rigid_errors(stretches: Sequence[Stretch]) -> dict[str, float]:
+    """What a model without a gap makes of mass and friction, as shares of them.
+
+    The motor crosses the gap without what lies behind it. How far mass and friction of the motor's motion
+    differ from those of the axis's motion says how much that matters.
+
+    Args:
+        stretches: All that is fitted, with positions of a second encoder, and a force or current.
+    """
+    forces = [stretch.logged_force for stretch in stretches]
+    force = np.concatenate([column for column in forces if column is not None] or [np.zeros(0)])
+    if any(column is None for column in forces) or not len(force):
+        return {}
+    found = []
+    for of_load in (False, True):
+        columns = []
+        for stretch in stretches:
+            place = stretch.load if of_load else stretch.actual
+            assert place is not None
+            speed, change = _kinematics(stretch.time, place, _SMOOTHED_S[0])
+            moves = np.abs(speed) > 0.01 * np.abs(speed).max(initial=1e-9)
+            table = [change, speed, np.sign(speed) * moves, np.ones(len(speed))]
+            columns.append(np.column_stack(table)[stretch.felt])
+        fitted, *_ = np.linalg.lstsq(np.vstack(columns), force, rcond=None)
+        found.append(fitted)
+    shares = np.abs(found[1] - found[0])[:3] / np.maximum(np.abs(found[0][:3]), 1e-12)
+    return dict(zip(("mass", "viscous_friction", "dry_friction"), shares.tolist(), strict=True))

@@ -130,7 +130,7 @@ def _likeliest(axis: AxisLog, row: int, rate: float, cycle_s: float) -> tuple[fl
     change = np.gradient(best, _STEP_S)
     position = np.concatenate([[0.0], np.cumsum((best[1:] + best[:-1]) / 2) * _STEP_S])
     command = Command(
-        axis.kind, _STEP_S, 1, np.column_stack([position, best, change]), np.zeros(len(best)),
+        axis.kind, _STEP_S, np.arange(len(best), dtype=np.float64), np.column_stack([position, best, change]), np.zeros(len(best)),
         (0.0, float(best[0])),
     )  # fmt: skip
     lag = float(asked[row] - axis.more["velocity"][row])

@@ -17,7 +17,7 @@ from scipy.linalg import expm
 
 from twin.calibrate.fit.axis_kernels import read_cubics, step_axis
 from twin.calibrate.fit.parameters import Parameters
-from twin.nc.canonical import FloatArray
+from twin.nc.canonical import BoolArray, FloatArray
 from twin.units import AxisKind, kv_per_second, to_si
 
 LONGEST_STEP_S = 1e-3
@@ -30,6 +30,8 @@ _FASTEST_FILTER_S = 1e-6
 """A filter faster than this is none [s]."""
 _STANDS = 1e-3
 """An axis slower than this stands [mm/s or deg/s]."""
+_ON_AN_INPUT = 1e-3
+"""A sample that is taken so near to an input, in steps, is taken at it."""
 _START_S = 0.01
 """Over this time the first speed of a log is seen [s]."""
 
@@ -41,7 +43,7 @@ class Command:
     Attributes:
         kind: Of the axis.
         step_s: Between inputs [s].
-        every: Inputs per logged sample.
+        places: Of the logged samples, in steps from the first input, shape (samples,).
         position: Setpoint, velocity and acceleration, shape (n, 3) [mm or deg, per s, per s²].
         push: Known force from outside, shape (n,) [N or N m].
         start: Logged position and speed at the first input [mm or deg, per s].
@@ -49,10 +51,22 @@ class Command:
 
     kind: AxisKind
     step_s: float
-    every: int
+    places: FloatArray
     position: FloatArray
     push: FloatArray
     start: tuple[float, float]
+
+    @property
+    def kinematics(self) -> FloatArray:
+        """Commanded speed and acceleration at the logged samples, shape (samples, 2)."""
+        inputs = np.arange(len(self.position), dtype=np.float64)
+        columns = (np.interp(self.places, inputs, column) for column in self.position[:, 1:].T)
+        return np.column_stack(list(columns))
+
+    @property
+    def is_drawn(self) -> bool:
+        """Whether it runs between samples by a rule, rather than being logged at every input."""
+        return len(self.position) > len(self.places) or bool(np.any(self.places % 1.0))
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -74,55 +88,60 @@ class Motion:
 
 def command_of(
     kind: AxisKind,
-    period_s: float,
+    time: FloatArray,
     command: FloatArray,
     actual: FloatArray,
     push: FloatArray | None = None,
+    knots: BoolArray | None = None,
 ) -> Command:
     """A logged command as inputs of the simulation.
 
     Args:
         kind: Of the axis.
-        period_s: Between samples [s].
+        time: Of the samples, rising, as even as they were taken, shape (n,) [s].
         command: Commanded positions, shape (n,) [mm or deg].
         actual: Actual positions; the first tell how the axis starts, shape (n,).
         push: Known force from outside, shape (n,) [N or N m].
+        knots: Which samples of the command are its own, and no repetitions or spikes, shape (n,);
+            all by default.
     """
-    every = max(1, math.ceil(period_s / LONGEST_STEP_S - 1e-9))
-    samples = np.arange(len(command), dtype=np.float64)
-    fine = np.arange((len(command) - 1) * every + 1) / every
-    spline = CubicSpline(samples, command)
-    position = np.column_stack(
-        [spline(fine), spline(fine, 1) / period_s, spline(fine, 2) / period_s**2]
-    )
-    pushed = np.zeros(len(fine)) if push is None else np.interp(fine, samples, push)
-    return Command(
-        kind, period_s / every, every, position, pushed, _start(period_s, actual, position[0])
-    )
+    since = time - time[0]
+    period = float(since[-1]) / (len(since) - 1)
+    every = max(1, math.ceil(period / LONGEST_STEP_S - 1e-9))
+    step = period / every
+    places = since / step
+    whole = np.round(places)
+    if np.all(np.abs(places - whole) < _ON_AN_INPUT):
+        places = whole
+    fine = np.arange(math.ceil(places[-1] - _ON_AN_INPUT) + 1) * step
+    own = slice(None) if knots is None else knots
+    spline = CubicSpline(places[own] * step, command[own])
+    position = np.column_stack([spline(fine), spline(fine, 1), spline(fine, 2)])
+    pushed = np.zeros(len(fine)) if push is None else np.interp(fine, since, push)
+    return Command(kind, step, places, position, pushed, _start(since, actual, position[0]))
 
 
-def drawn_otherwise(command: Command, asked: FloatArray) -> Command:
+def drawn_otherwise(command: Command, asked: FloatArray, knots: BoolArray) -> Command:
     """A copy of the command, drawn between its samples by another rule (monotone cubics).
 
     Args:
         command: As drawn by a spline.
         asked: Its samples, shape (n,) [mm or deg].
+        knots: Which of them are its own, shape (n,).
     """
-    curve = PchipInterpolator(np.arange(len(asked), dtype=np.float64), asked)
-    fine = np.arange(len(command.position)) / command.every
-    period = command.step_s * command.every
+    curve = PchipInterpolator(command.places[knots] * command.step_s, asked[knots])
+    fine = np.arange(len(command.position)) * command.step_s
     slope, bend = (np.asarray(curve.derivative(order)(fine)) for order in (1, 2))
-    position = np.column_stack([np.asarray(curve(fine)), slope / period, bend / period**2])
+    position = np.column_stack([np.asarray(curve(fine)), slope, bend])
     return dataclasses.replace(command, position=position)
 
 
-def _start(period_s: float, actual: FloatArray, first: FloatArray) -> tuple[float, float]:
+def _start(since: FloatArray, actual: FloatArray, first: FloatArray) -> tuple[float, float]:
     """Position and speed of the first sample, by a parabola through the first of them."""
-    count = min(len(actual), max(5, 1 + int(_START_S / period_s)))
-    if (count - 1) * period_s > 5 * _START_S:
+    count = min(len(actual), max(5, int(np.searchsorted(since, _START_S, side="right"))))
+    if since[count - 1] > 5 * _START_S:
         return float(actual[0]), float(first[1])
-    place = np.arange(count) * period_s
-    _, slope, origin = np.polyfit(place, actual[:count], 2)
+    _, slope, origin = np.polyfit(since[:count], actual[:count], 2)
     return float(origin), float(slope)
 
 
@@ -314,4 +333,4 @@ def seen_at(values: FloatArray, rates: FloatArray, command: Command, delay_s: fl
     Returns:
         Shape (samples,), by cubics between inputs.
     """
-    return read_cubics(values, rates * command.step_s, command.every, delay_s / command.step_s)
+    return read_cubics(values, rates * command.step_s, command.places, delay_s / command.step_s)

@@ -4,17 +4,14 @@ import dataclasses
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
 from twin.calibrate.fit.parameters import Parameters, coordinates
 from twin.calibrate.fit.ramps import Ramp, predict_ramp
 from twin.calibrate.fit.solve import BATCHES, Interval, Problem, Solution, solve
 from twin.calibrate.fit.stages import AxisFit
 from twin.logs.machine_log import AxisLog
-from twin.nc.canonical import FloatArray, IntArray
+from twin.nc.canonical import BoolArray, FloatArray, IntArray
 from twin.units import AxisKind, kv_per_second, to_si
-
-BoolArray = npt.NDArray[np.bool_]
 
 _FEW = 3
 """Ramps that are needed."""
@@ -69,9 +66,16 @@ def fit_slow(kind: AxisKind, logs: Sequence[SlowLog], base: Parameters, fastest:
             "velocity_feedforward": "the log does not tell a drive's lag from a delay of its columns"
         }
     fitted = dict(best.intervals)
+    feed = fitted.pop("velocity_feedforward", None)
     unit = "mm" if kind == "linear" else "deg"
     conditional: dict[str, tuple[Interval, tuple[str, ...]]] = {}
     parameters = best.parameters
+    of_ramps = {} if feed is None else {"velocity_feedforward": (feed, ("kv",))}
+    if feed is not None:
+        told["velocity_feedforward"] = (
+            f"only the lag that it leaves is told; {feed.value:.3g} holds for the base's kv "
+            f"{parameters.kv:.4g}"
+        )
     if all("current" in log.axis.more for log in logs):
         reached = max(float(np.abs(_speed(log)).max(initial=0.0)) for log in logs)
         reaches = reached >= _REACHES * fastest
@@ -92,7 +96,7 @@ def fit_slow(kind: AxisKind, logs: Sequence[SlowLog], base: Parameters, fastest:
             ("dry_friction", "viscous_friction", "constant_force"),
             "positions of a slow log do not tell it",
         )
-    return AxisFit(parameters, fitted, conditional, told, best.free, best.correlations)
+    return AxisFit(parameters, fitted, of_ramps | conditional, told, best.free, best.correlations)
 
 
 def _fit_ramps(kind: AxisKind, ramps: list[Ramp], base: Parameters) -> Solution:

@@ -30,6 +30,7 @@ OF_THE_LOG = ("delay", "force_delay", "measuring_filter")
 """Parameters of a log's columns; the machine has none."""
 _FILTER_S = 0.003
 """Where the search for a filter of the log begins [s]."""
+_NOTHING = np.zeros(0)
 _WRONG = 1e6
 """Weighted residual of what is not finite."""
 NOT_ASKED = "the log does not ask for another value"
@@ -102,7 +103,7 @@ def fit_axis(
         name: NOT_ASKED for name in EXTRAS
         if name not in fitted and name not in undetermined and name not in OF_THE_LOG
     }  # fmt: skip
-    if any(stretch.command.every > 1 for stretch in stretches):
+    if any(stretch.command.is_drawn for stretch in stretches):
         fitted = _allowing_for_drawing(kind, stretches, best, fitted)
     return _told(stretches, best, fitted, undetermined)
 
@@ -167,7 +168,9 @@ def _allowing_for_drawing(
 ) -> dict[str, Interval]:
     """Widen intervals by what it does to draw the command between its samples by another rule."""
     others = [
-        dataclasses.replace(stretch, command=drawn_otherwise(stretch.command, stretch.asked))
+        dataclasses.replace(
+            stretch, command=drawn_otherwise(stretch.command, stretch.asked, stretch.knots)
+        )
         for stretch in stretches
     ]
     other = solve(_weighted(kind, others, best.parameters), best.parameters, best.free)
@@ -201,21 +204,21 @@ def _has(stretches: Sequence[Stretch], role: str) -> bool:
 
 def _first_guess(kind: AxisKind, stretches: Sequence[Stretch], base: Parameters) -> Parameters:
     """Loop gain from the lag over speed, mass or scale from force over acceleration."""
-    speed = np.concatenate([_kinematics(stretch)[:, 0] for stretch in stretches])
-    change = np.concatenate([_kinematics(stretch)[:, 1] for stretch in stretches])
+    speed, change = np.vstack([_kinematics(stretch)[stretch.seen] for stretch in stretches]).T
     lag = np.concatenate([stretch.lag for stretch in stretches])
     slope = float(speed @ lag / max(speed @ speed, 1e-12))
     trail = (1.0 - base.velocity_feedforward) / kv_per_second(base.kv)
     kv = base.kv * trail / slope if slope > 0.05 * trail and trail else base.kv
     guess = dataclasses.replace(base, kv=kv)
+    speed, change = np.vstack([_kinematics(stretch)[stretch.felt] for stretch in stretches]).T
     columns = np.column_stack([change, speed, np.sign(speed), np.ones(len(speed))])
+    logged = [stretch.logged_force for stretch in stretches]
+    shown = np.concatenate([column for column in logged if column is not None] or [_NOTHING])
     if _has(stretches, "force"):
-        force = np.concatenate([s.force[s.first :] for s in stretches if s.force is not None])
-        found, *_ = np.linalg.lstsq(columns, force, rcond=None)
+        found, *_ = np.linalg.lstsq(columns, shown, rcond=None)
         mass = max(float(found[0]) / to_si(kind), 1e-3 * base.mass)
         guess = dataclasses.replace(guess, mass=mass)
     elif _has(stretches, "current"):
-        shown = np.concatenate([s.current[s.first :] for s in stretches if s.current is not None])
         found, *_ = np.linalg.lstsq(columns, shown, rcond=None)
         scale = base.mass * to_si(kind) / max(float(found[0]), 1e-9 * base.mass)
         guess = dataclasses.replace(guess, current_scale=scale, current_at_rest=float(found[3]))
@@ -224,8 +227,8 @@ def _first_guess(kind: AxisKind, stretches: Sequence[Stretch], base: Parameters)
 
 
 def _kinematics(stretch: Stretch) -> FloatArray:
-    """Commanded speed and acceleration at the samples that are looked at, (n, 2)."""
-    return stretch.command.position[:: stretch.command.every, 1:][stretch.first :]
+    """Commanded speed and acceleration at all samples, (n, 2)."""
+    return stretch.command.kinematics
 
 
 def _force_scale(kind: AxisKind, stretches: Sequence[Stretch], of: Parameters) -> float:
@@ -250,7 +253,7 @@ def _weighted(kind: AxisKind, stretches: Sequence[Stretch], at: Parameters) -> P
             return np.clip(np.nan_to_num(np.concatenate(whole), nan=_WRONG), -_WRONG, _WRONG)
 
     return Problem(
-        residuals, _batches(stretches, len(weights)),
+        residuals, _batches(stretches, forced=len(weights) > 1),
         coordinates(kind, _force_scale(kind, stretches, at)),
     )  # fmt: skip
 
@@ -261,24 +264,24 @@ def _columns_left(stretches: Sequence[Stretch], parameters: Parameters) -> list[
     parts = []
     for stretch in stretches:
         predicted = predict(parameters, stretch)
-        columns = [predicted.actual - stretch.actual[stretch.first :]]
+        columns = [(predicted.actual - stretch.actual)[stretch.seen]]
         if forced and stretch.force is not None:
-            columns.append(predicted.force - stretch.force[stretch.first :])
+            columns.append((predicted.force - stretch.force)[stretch.felt])
         elif shown and stretch.current is not None:
-            columns.append(predicted.current - stretch.current[stretch.first :])
+            columns.append((predicted.current - stretch.current)[stretch.felt])
         parts.append(columns)
     return parts
 
 
-def _batches(stretches: Sequence[Stretch], columns: int) -> IntArray:
+def _batches(stretches: Sequence[Stretch], *, forced: bool) -> IntArray:
     """Which of the stretches of time each residual belongs to."""
-    total = sum(len(stretch.time) - stretch.first for stretch in stretches)
+    total = sum(np.count_nonzero(stretch.seen) for stretch in stretches)
     before, parts = 0, []
     for stretch in stretches:
-        rows = len(stretch.time) - stretch.first
-        number = (before + np.arange(rows)) * BATCHES // total
-        parts += [number] * columns
-        before += rows
+        number = (before + np.cumsum(stretch.seen) - stretch.seen) * BATCHES // total
+        number = np.minimum(number, BATCHES - 1)
+        parts += [number[rows] for rows in (stretch.seen, *[stretch.felt] * forced)]
+        before += np.count_nonzero(stretch.seen)
     return np.concatenate(parts).astype(np.int64)
 
 

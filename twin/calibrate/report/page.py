@@ -45,7 +45,21 @@ def calibration_page(result: Calibration) -> str:
             for finding in findings
         ],
         figures=[_row(figures) for figures in result.logs],
+        ramps=[line for figures in result.logs if (line := figures.ramps_line)],
+        unexplained=_unexplained(result.logs),
         axes=[_axis(name, axis, result.logs) for name, axis in result.axes.items()],
+    )
+
+
+def _unexplained(logs: tuple[LogFigures, ...]) -> str:
+    """What a page says first, of which more than half of a force is left; empty where none is."""
+    bad = [f"{Path(one.log).name}, {one.axis}" for one in logs if one.force_is_unexplained]
+    if not bad:
+        return ""
+    return (
+        f"More than half of the logged force is left unexplained ({'; '.join(bad)}): mass and friction "
+        "are not to be relied upon. Is the column this axis's force, is its unit right, is something "
+        "injected that the map does not name (external_force)?"
     )
 
 

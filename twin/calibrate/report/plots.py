@@ -80,7 +80,7 @@ def force_plot(figures: LogFigures) -> str:
         if course.slow:
             axes.plot(values, color=color, linewidth=width, label=label)
         else:
-            time, thin = _thinned(course.time, values)
+            time, thin = _thinned(course.force_time, values)
             axes.plot(time, thin, color=color, linewidth=width, label=label)
     amperes = figures.current_correlation is not None
     axes.set_ylabel(

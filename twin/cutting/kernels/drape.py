@@ -3,7 +3,11 @@
 import math
 
 from twin.compilation.kernel import array_kernel
+from twin.cutting.kernels.wall_distance import EQUAL_MM, FARTHEST, WallDistance, note_wall
 from twin.nc.canonical import FloatArray
+
+_UPRIGHT = 0.5
+"""A face that goes sideways by more than this is a slope, which heights tell [cells]."""
 
 
 @array_kernel
@@ -41,3 +45,60 @@ def drape(
                 if u >= 0.0 and v >= 0.0 and u + v <= 1.0:
                     z = a[2] + u * (b[2] - a[2]) + v * (c[2] - a[2])
                     heights[row, column] = max(heights[row, column], z)
+
+
+@array_kernel
+def note_sides(
+    heights: FloatArray,
+    behind: WallDistance,
+    origin: tuple[float, float],
+    cell: float,
+    triangles: FloatArray,
+) -> None:
+    """Note how far the middles of cells are behind the upright faces of a mesh, at their upper edges.
+
+    Args:
+        heights: The mesh as a height map, shape (ny, nx) [mm].
+        behind: What is known of its walls; written.
+        origin: X and Y of the middle of cell ``[0, 0]`` [mm].
+        cell: Side of a cell [mm].
+        triangles: Corners, counter-clockwise from outside, shape (n, 3, 3) [mm].
+    """
+    for i in range(len(triangles)):
+        corners = triangles[i]
+        ab, ac = corners[1] - corners[0], corners[2] - corners[0]
+        out_x, out_y = ab[1] * ac[2] - ab[2] * ac[1], ab[2] * ac[0] - ab[0] * ac[2]
+        level = math.hypot(out_x, out_y)
+        upwards = abs(ab[0] * ac[1] - ab[1] * ac[0])
+        low, high = corners[:, 2].min(), corners[:, 2].max()
+        if level == 0.0 or upwards * (high - low) > _UPRIGHT * cell * level:
+            continue
+        out_x, out_y = out_x / level, out_y / level
+        highest = corners[corners[:, 2].argmax()]
+        wall = highest[0] * out_x + highest[1] * out_y
+        along = corners[:, 1] * out_x - corners[:, 0] * out_y
+        begin, end = along.min(), along.max()
+        rows = _beside(corners[:, 1], origin[1], cell, heights.shape[0])
+        columns = _beside(corners[:, 0], origin[0], cell, heights.shape[1])
+        for row in range(rows[0], rows[1]):
+            for column in range(columns[0], columns[1]):
+                x, y = origin[0] + column * cell, origin[1] + row * cell
+                inside, place = wall - x * out_x - y * out_y, y * out_x - x * out_y
+                off = math.hypot(inside, max(begin - place, place - end, 0.0)) / cell
+                if inside <= 0.0 or off > FARTHEST:
+                    continue
+                beyond = inside / cell + 1.0
+                next_row, next_column = round(row + beyond * out_y), round(column + beyond * out_x)
+                free = True
+                if 0 <= next_row < heights.shape[0] and 0 <= next_column < heights.shape[1]:
+                    # Faces between solids that touch each other are no walls.
+                    free = heights[next_row, next_column] < heights[row, column] - EQUAL_MM
+                if free:
+                    note_wall(heights, behind, row, column, low + EQUAL_MM, off)
+
+
+@array_kernel
+def _beside(places: FloatArray, origin: float, cell: float, count: int) -> tuple[int, int]:
+    """The first cell along an axis whose middle is as near to some places as walls are noted, and the one after the last."""
+    first = math.ceil((places.min() - origin) / cell - FARTHEST)
+    return max(0, first), min(count, math.floor((places.max() - origin) / cell + FARTHEST) + 1)

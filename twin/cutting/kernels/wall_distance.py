@@ -25,11 +25,13 @@ lowest that one of these was [mm], shape (ny, nx, 2); 0: none has passed."""
 
 KNOWN = 1.0
 """Added to distances, so that 0 can say that none is known [cells]."""
+FARTHEST = 1.1
+"""Distance up to which a wall is noted: a little more than to the row behind one that lies on a middle [cells]."""
 HALF = 0.5
 """Distance that a height map is allowed not to know [cells]."""
 _LEVEL_SHARE = 0.01
 """Rise of a way below which it counts as level."""
-_EQUAL_MM = 1e-3
+EQUAL_MM = 1e-3
 """What passed no deeper below a cell's top than this has not passed beside it [mm]."""
 
 
@@ -59,10 +61,10 @@ def note_walls(
         radius: Of the tool [mm].
         flat: Radius of the level part of its lower end [mm].
     """
-    cell, outer = grid.cell, radius + grid.cell
+    cell, outer = grid.cell, radius + FARTHEST * grid.cell
     for i in range(len(points) - 1):
         a, b = points[i], points[i + 1]
-        level = max(min(a[2], b[2]), grid.bottom) + _EQUAL_MM
+        level = max(min(a[2], b[2]), grid.bottom) + EQUAL_MM
         if level >= grid.top:
             continue
         rise, way = abs(b[2] - a[2]), math.hypot(b[0] - a[0], b[1] - a[1])
@@ -79,17 +81,17 @@ def note_walls(
                 squared = _squared_distance(grid, first, y, a, b)
                 if squared <= radius * radius:
                     break
-                _note(heights, behind, row, first, level, (math.sqrt(squared) - radius) / cell)
+                note_wall(heights, behind, row, first, level, (math.sqrt(squared) - radius) / cell)
                 first += 1
             while end > first:
                 squared = _squared_distance(grid, end - 1, y, a, b)
                 if squared <= radius * radius:
                     break
                 end -= 1
-                _note(heights, behind, row, end, level, (math.sqrt(squared) - radius) / cell)
+                note_wall(heights, behind, row, end, level, (math.sqrt(squared) - radius) / cell)
             if slopes:
                 for column in range(first, end):
-                    _note(heights, behind, row, column, level, 0.0)
+                    note_wall(heights, behind, row, column, level, 0.0)
 
 
 @inlined
@@ -101,8 +103,8 @@ def _squared_distance(grid, column, y, a, b):
 
 
 @inlined
-def _note(heights, behind, row, column, level, off):
-    """Note how far the middle of a cell is from a tool [cells], if that is below its top."""
+def note_wall(heights, behind, row, column, level, off):
+    """Note how far the middle of a cell is from a wall [cells] that goes down to a level, below its top."""
     height = heights[row, column]
     if height <= level:
         return

@@ -231,6 +231,17 @@ class ControlTable(Table):
     """``fagor8070``: the sign of an absolute rotary target is the direction of rotation."""
     decimal_point: Literal["calculator", "increments"] | None = None
     """``fanuc``, ``haas``: ``X10`` is 10 mm ("calculator"), or 0.010 mm ("increments")."""
+    helical_feed: Literal["arc", "path"] | None = None
+    """``fanuc``, parameter 1403 #5 (HTG): F of a helix counts the arc in its plane (0, the control's default), or
+    the path (1)."""
+    rotary_diameter: Positive | None = None
+    """``haas``, setting 34: diameter at which F counts the way of rotary axes [mm]; without it a degree counts
+    1 mm beside linear axes, and F of rotary axes alone is deg/min."""
+    feed_of_all_axes: bool = False
+    """``fagor8070``, FEEDND: F counts rotary axes beside X, Y and Z, a degree as 1 mm; the control's default is No."""
+    length_returns: Literal["by code", "next block"] = "by code"
+    """``fanuc``, parameter 5001 #6 (EVO): a tool length that G28, G30 or G53 has cancelled counts again from G43,
+    G44 or H (0, the control's default), or from the next block (1)."""
     m_functions: MachineFunctions = Field(default_factory=dict)
     """M codes of the machine's builder: ``M10 = "clamp the table"``."""
 

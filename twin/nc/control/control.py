@@ -32,16 +32,20 @@ from twin.nc.path.moves import (
     RAPIDS_END,
     SMALLEST_MOVE,
     arc_length,
+    arc_radius,
     axis_target,
     line_length,
     only_turns,
 )
 from twin.nc.path.paces import (
     PACED,
+    PATH_COUNTS,
     STANDING,
     WITHOUT_SPEED,
+    Displacement,
     feed_per_minute,
     finding_of_feed,
+    pace_by_rule,
     rapid_feed,
 )
 from twin.nc.path.segments import direction_of
@@ -116,6 +120,8 @@ class Control(ControlWords):
             feed = rapid_feed(registers[RAPID_FEED], registers[PROGRAMMED_FEED])
         else:
             feed = self._feed_per_minute(end, is_arc, length)
+            if self.feed_rule is not PATH_COUNTS:
+                feed = self._pace_by_rule(feed, end, length, center, sweep)
         acceleration, deceleration = registers[ACCELERATION], registers[DECELERATION]
         if rapid:
             acceleration = _either(self.rapid_acceleration, acceleration)
@@ -174,6 +180,20 @@ class Control(ControlWords):
         turning = not is_arc and only_turns(self.part, end, self.linear)
         otherwise = (settings.default_feed, settings.default_rotary_feed)
         return feed_per_minute(feed, mode, length, turning, cells[UNIT], speed, otherwise)
+
+    def _pace_by_rule(
+        self, pace: float, end: list[float], length: float, center: Vector | None, sweep: float
+    ) -> float:
+        """The pace of a move whose F counts another length than that of its path [mm/min or deg/min]."""
+        ways = (new - old for new, old in zip(end, self.part, strict=True))
+        turned = math.hypot(*(way for way, line in zip(ways, self.linear, strict=True) if not line))
+        turning = center is None and only_turns(self.part, end, self.linear)
+        move = Displacement(length, turned, turning)
+        if center is not None:
+            radius = arc_radius(self.part, center)
+            move = move._replace(radius=radius, around=radius * math.radians(abs(sweep)))
+        cells = self.modal.cells
+        return pace_by_rule(self.feed_rule, pace, move, int(cells[FEED_MODE]), cells[UNIT])
 
     def _blame_feed(self, finding: int) -> None:
         """Say what is wrong with the pace of a move.

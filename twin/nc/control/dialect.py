@@ -10,6 +10,7 @@ from twin.nc.control.control import Control
 from twin.nc.control.interpolation import MotionMode
 from twin.nc.control.modal import Modal, ModalChanges, new_modal
 from twin.nc.control.settings import ControlSettings
+from twin.nc.path.paces import PATH_COUNTS, FeedRule
 from twin.nc.text.blocks import Assignment, Block
 from twin.nc.text.source import Source
 from twin.nc.text.syntax import Language, Mark
@@ -62,6 +63,7 @@ class Dialect(Vocabulary):
         library: Adds files that the program calls, looked for in the folder of the program and read as the
             dialect is.
         pointless: Addresses whose numbers without a decimal point ``count`` must look at.
+        feed_rule: Which part of a move F counts, by the parameters of the control.
         count: Gives words without a decimal point their value in the units of the others.
         prepare: Done before the first block.
         after_motion: Done when a block has moved.
@@ -97,6 +99,7 @@ class Dialect(Vocabulary):
     library: Callable[[Source, Path, Language], Source] | None = None
     pointless: Callable[[ControlSettings], frozenset[str]] = lambda _settings: frozenset()
     count: Callable[[Control, Block], Block] = lambda _control, block: block
+    feed_rule: Callable[[ControlSettings], FeedRule] = lambda _settings: PATH_COUNTS
     prepare: Action | None = None
     after_motion: Action | None = None
     must_end: bool = False

@@ -42,6 +42,7 @@ class Executor(Control):
         super().__init__(dialect, settings, source, dialect.new_modal())
         self._sets: dict[float, list[tuple[int, float]]] = {}
         self.dialect = dialect
+        self.feed_rule = dialect.feed_rule(settings)
         self._pointless = dialect.pointless(settings)
         self._special = frozenset(("G", "M", *dialect.signed, *dialect.series))
         expressions = dialect.syntax.expressions

@@ -77,6 +77,19 @@ class ControlSettings:
     module_rotary: bool = False
     """``fagor8070``: the sign of an absolute rotary target is the direction of rotation."""
 
+    helical_feed: Literal["arc", "path"] | None = None
+    """``fanuc``: F of a helix counts the arc in its plane, or the path (parameter 1403 #5); None: as the
+    control does when it comes from its maker."""
+
+    rotary_diameter: float | None = None
+    """``haas``: diameter at which F counts the way of rotary axes (setting 34) [mm]."""
+
+    feed_of_all_axes: bool = False
+    """``fagor8070``: F counts rotary axes beside the main axes (FEEDND)."""
+
+    length_returns: Literal["by code", "next block"] = "by code"
+    """``fanuc``: when a tool length counts again that G28, G30 or G53 has cancelled (parameter 5001 #6)."""
+
     strict: bool = False
     """Turn warnings into errors."""
 

@@ -36,6 +36,7 @@ from twin.nc.geometry.planes import PLANE_ORDER
 from twin.nc.path.drilling_cycle import START, forget
 from twin.nc.path.hole import MOST_STOPS, most_acts
 from twin.nc.path.move_columns import NAN, Segment
+from twin.nc.path.paces import PATH_COUNTS
 from twin.nc.path.path import Path
 from twin.nc.path.rows import new_rows
 from twin.nc.text.blocks import Block, Word
@@ -130,6 +131,7 @@ class ControlState:
         axis_accelerations: Their largest acceleration [mm/s² or deg/s²].
         axis_decelerations: Their largest deceleration [mm/s² or deg/s²].
         ended: An end code was run.
+        feed_rule: Which part of a move F counts.
     """
 
     acceleration = Register(ACCELERATION)
@@ -143,6 +145,7 @@ class ControlState:
         self, language: ControlLanguage, settings: ControlSettings, source: Source, modal: Modal
     ) -> None:
         self.settings = settings
+        self.feed_rule = PATH_COUNTS
         self.report = Reporter(source, strict=settings.strict)
         self.axis_index = {name: index for index, name in enumerate(settings.axes.names)}
         self.linear = tuple(kind == "linear" for kind in settings.axes.kinds)

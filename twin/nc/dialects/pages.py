@@ -10,6 +10,7 @@ from twin.files.atomic import write_text
 from twin.nc.control.codes import GCode
 from twin.nc.control.dialect import Dialect
 from twin.nc.dialects import DIALECTS, OWN
+from twin.nc.dialects.feed_tables import feed_rows
 
 _GROUND = {
     "seed": "the control's own page",
@@ -47,6 +48,7 @@ def describe(dialect: Dialect) -> str:
         "## Words",
         _word_table(dialect),
         *_expression_sections(dialect),
+        *_feed_sections(dialect),
         "## Refused",
         _REFUSED,
         _refused_table(refused),
@@ -111,6 +113,20 @@ def _word_table(dialect: Dialect) -> str:
     for word, meaning in sorted(dialect.word_meanings.items()):
         rows.setdefault(meaning, []).append(word)
     return _table(("word", "meaning"), [(" ".join(words), text) for text, words in rows.items()])
+
+
+def _feed_sections(dialect: Dialect) -> list[str]:
+    """What F counts in every kind of move; the column of inverse time where the control has it."""
+    if dialect.name not in OWN:
+        return []
+    rows, timed = feed_rows(dialect.name), 93 in dialect.g
+    head = ("move", "F as a rate", *(("F of G93",) if timed else ()), "known from")
+    cells = [(r.kind, r.rate, *((r.inverse,) if timed else ()), r.ground) for r in rows]
+    return [
+        "## What F counts",
+        f"Each cell is shown, with its time, by a program of `tests/golden/{dialect.name}/feeds`.",
+        _table(head, cells),
+    ]
 
 
 def _expression_sections(dialect: Dialect) -> list[str]:

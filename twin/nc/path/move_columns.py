@@ -2,8 +2,10 @@
 
 import dataclasses
 import math
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from twin.nc.canonical import (
     Axes,
@@ -86,11 +88,41 @@ class Segment:
         )
 
 
+class Refused(NamedTuple):
+    """A block that was refused while it ran: whatever it did is not to happen.
+
+    What it let go of earlier blocks, which were waiting for it, stays.
+
+    Attributes:
+        moves: How many moves there were before it.
+        events: How many events there were before it.
+        line: Its line.
+    """
+
+    moves: int
+    events: int
+    line: int
+
+    def kept_events(self, events: Events, kept: NDArray[np.bool_]) -> Events:
+        """The events of other blocks, at their places among the moves that are kept, shape (n,)."""
+        places = np.concatenate(([0], np.cumsum(kept)))
+        return Events(
+            [
+                [
+                    dataclasses.replace(event, before=int(places[event.before]))
+                    for number, event in enumerate(events)
+                    if number < self.events or event.line != self.line
+                ]
+            ]
+        )
+
+
 class MoveColumns:
     """The moves and events since the last ``take``.
 
     Attributes:
         count: How many moves.
+        events: How many events.
     """
 
     def __init__(self, axes: Axes) -> None:
@@ -104,7 +136,7 @@ class MoveColumns:
         self._parts: list[tuple[IntArray, FloatArray, FloatArray]] = []
         self._event_parts: list[list[Event] | EventRows] = []
         self._event_list: list[Event] = []
-        self.count = 0
+        self.count = self.events = 0
         self._clear_lists()
 
     def _clear_lists(self) -> None:
@@ -146,11 +178,13 @@ class MoveColumns:
 
     def add_event(self, event: Event) -> None:
         """Append an event after the moves so far."""
+        self.events += 1
         self._event_list.append(dataclasses.replace(event, before=self.count))
 
     def add_event_rows(self, events: EventRows) -> None:
         """Append events as columns; their places count from the next move."""
         if len(events):
+            self.events += len(events)
             self._close_event_list()
             self._event_parts.append(events.behind(self.count))
 
@@ -159,8 +193,8 @@ class MoveColumns:
             self._event_parts.append(self._event_list)
             self._event_list = []
 
-    def take(self) -> Chunk:
-        """All that was appended, as columns; nothing is left here."""
+    def take(self, refused: "Refused | None" = None) -> Chunk:
+        """All that was appended but for what a refused block did, as columns; nothing is left here."""
         self._close_lists()
         k = len(self._axes)
         none = (np.zeros((0, 5), np.int64), np.zeros((0, 11)), np.zeros((0, 3, k)))
@@ -168,6 +202,11 @@ class MoveColumns:
         codes, values, positions = (np.concatenate(each) for each in columns)
         self._close_event_list()
         events = Events(self._event_parts)
+        if refused is not None:
+            kept = codes[:, 2] != refused.line
+            kept[: refused.moves] = True
+            events = refused.kept_events(events, kept)
+            codes, values, positions = codes[kept], values[kept], positions[kept]
         self._clear()
         start, end = positions[:, 0], positions[:, 1]
         shape = codes[:, 1].astype(np.uint8)

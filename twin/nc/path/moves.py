@@ -64,12 +64,18 @@ def line_length(start: Position, end: Position) -> float:
 
 
 @inlined
+def arc_radius(start: Position, center: Vector) -> float:
+    """Radius of an arc whose centre lies at the height of its start [mm]."""
+    x, y, z = start[0] - center[0], start[1] - center[1], start[2] - center[2]
+    return math.sqrt(x * x + y * y + z * z)
+
+
+@inlined
 def arc_length(
     start: Position, end: Position, center: Vector, normal: Vector, sweep: float
 ) -> float:
     """What the feed counts of an arc or a helix in X, Y and Z [mm]; the sweep in degrees."""
-    x, y, z = start[0] - center[0], start[1] - center[1], start[2] - center[2]
-    around = math.sqrt(x * x + y * y + z * z) * math.radians(sweep)
+    around = arc_radius(start, center) * math.radians(sweep)
     advance = along((end[0] - start[0], end[1] - start[1], end[2] - start[2]), normal)
     return math.sqrt(around * around + advance * advance)
 

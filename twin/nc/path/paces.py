@@ -1,7 +1,9 @@
 """How fast moves go, by what F counts: for both tiers."""
 
 import enum
+import math
 from collections.abc import Mapping
+from typing import NamedTuple
 
 from twin.compilation.compilable import inlined
 
@@ -80,6 +82,69 @@ def feed_per_minute(
     if mode == _PER_SECOND:
         return counted * 60.0
     return counted * speed if mode == _PER_REVOLUTION else counted
+
+
+class FeedRule(NamedTuple):
+    """Which part of a move F counts, by the control and its parameters.
+
+    Attributes:
+        degree: What a degree of a rotary axis counts beside linear axes [programmed unit of length, or mm];
+            0: nothing, rotary axes arrive with the others.
+        surface: ``degree`` is the length on a surface that turns [mm]: F counts it also where only a rotary
+            axis moves. Otherwise F then counts degrees.
+        helix_by_arc: F of an arc counts the arc in its plane alone; all other axes arrive with it.
+        arc_by_radius: With ``BLOCKS_PER_MINUTE`` F of an arc is speed by radius, not the inverse of its time.
+    """
+
+    degree: float = 0.0
+    surface: bool = False
+    helix_by_arc: bool = False
+    arc_by_radius: bool = False
+
+
+PATH_COUNTS = FeedRule()
+"""F counts the path in X, Y and Z; where that rests, the other axes."""
+
+
+class Displacement(NamedTuple):
+    """How far a move goes.
+
+    Attributes:
+        length: As ``canonical`` measures it [mm, or deg where only rotary axes move].
+        turned: Of the rotary axes together [deg].
+        turning: Only rotary axes move.
+        around: Of an arc in its plane [mm]; 0 of a line.
+        radius: Of an arc [mm].
+    """
+
+    length: float
+    turned: float
+    turning: bool
+    around: float = 0.0
+    radius: float = 0.0
+
+
+def pace_by_rule(rule: FeedRule, pace: float, move: Displacement, mode: int, unit: float) -> float:
+    """Pace along the path of a move whose F counts another length [mm/min or deg/min].
+
+    Args:
+        rule: What F counts.
+        pace: As ``feed_per_minute`` has it, where F counts the path.
+        move: How far it goes.
+        mode: What F counts, as ``FeedMode`` numbers it.
+        unit: Of programmed lengths [mm].
+    """
+    by_time = counts_blocks(mode)
+    if by_time and not (rule.arc_by_radius and move.around):
+        return pace
+    if move.turning:
+        return pace * (unit / rule.degree) if rule.surface else pace
+    if move.around and rule.helix_by_arc:
+        counted = move.around
+    else:
+        degree = rule.degree if rule.surface else rule.degree * unit
+        counted = math.hypot(move.length, move.turned * degree)
+    return pace * ((move.radius if by_time else move.length) / counted)
 
 
 FEED_FACTORS: Mapping[FeedMode, float] = {FeedMode.PER_MINUTE: 1.0, FeedMode.PER_SECOND: 60.0}

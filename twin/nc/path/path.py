@@ -21,7 +21,7 @@ from twin.nc.path.compensation.contour import (
 from twin.nc.path.compensation.stage import Compensation, Refuse, Warn
 from twin.nc.path.event_columns import EventRows
 from twin.nc.path.loops import Loops
-from twin.nc.path.move_columns import MoveColumns, Segment
+from twin.nc.path.move_columns import MoveColumns, Refused, Segment
 from twin.nc.path.rounding import Rounding
 from twin.nc.path.rows import Row
 from twin.nc.path.splines import Spline
@@ -51,9 +51,13 @@ class Path:
     def __len__(self) -> int:
         return self._columns.count
 
-    def take(self) -> Chunk:
-        """All that has been emitted, as columns."""
-        return self._columns.take()
+    def take(self, refused: Refused | None = None) -> Chunk:
+        """All that has been emitted but for what a refused block did, as columns."""
+        return self._columns.take(refused)
+
+    def refusal(self, line: int) -> Refused:
+        """That the block of a line, which comes next, is refused."""
+        return Refused(self._columns.count, self._columns.events, line)
 
     def finish(self) -> None:
         """Nothing follows: emit what the stages hold."""

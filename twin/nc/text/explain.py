@@ -23,7 +23,7 @@ class Finding(pydantic.BaseModel):
     """What it means."""
     remedy: str
     """What to do."""
-    settings: dict[str, bool] = {}
+    settings: dict[str, bool | dict[str, float]] = {}
     """What the example needs of the control's settings."""
 
 

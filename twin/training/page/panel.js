@@ -6,11 +6,15 @@ import { Connection } from "./connection.js";
 import { Desk } from "./desk.js";
 import { act_on, make, Words } from "./parts.js";
 import { Preview } from "./preview.js";
+import { Score } from "./score.js";
 import { Screen } from "./screen.js";
 import { Sheets } from "./sheets.js";
 
 const VIEWS = ["front", "top", "tool", "part", "fit"];
 const LANGUAGE_NAMES = { en: "English", ru: "Русский", it: "Italiano", cs: "Čeština" };
+
+// The entry takes the token out of the address; a browser that is known already comes here with it.
+if (location.hash) history.replaceState(null, "", location.pathname + location.search);
 
 const scene = await (await fetch("scene.json")).json();
 const now = { role: location.pathname.split("/")[1] };
@@ -31,7 +35,9 @@ const line = new Connection(hear, (down) => {
   }
 });
 const preview = new Preview(view);
-const desk = new Desk(scene, line), screen = new Screen(scene, line), sheets = new Sheets(scene, line, view, desk, screen);
+const score = new Score(scene, line);
+const desk = new Desk(scene, line), screen = new Screen(scene, line), sheets = new Sheets(scene, line, view, desk, screen, score);
+let attempt = null;
 screen.on_choice = () => { if (now.mode !== undefined && words) sheets.show(now, words); };
 
 function banner(name, detail = "") {
@@ -47,6 +53,9 @@ function hear(data) {
     const said = JSON.parse(data);
     for (const name of Object.keys(said)) changed.add(name);
     Object.assign(now, said);
+    // Another attempt has another machine, and perhaps another scene: the page begins anew with it.
+    attempt ??= now.attempt;
+    if (now.attempt !== attempt) return location.reload();
     if (now.tool !== tool) view.say("load", tool = now.tool);
     return show_soon();
   }
@@ -71,6 +80,7 @@ function show_soon() {
       desk.show(now, words);
       screen.show(now, words, changed);
       sheets.show(now, words);
+      score.show(now, words);
       preview.show(now, changed);
       show_hand_over();
       changed.clear();

@@ -8,8 +8,8 @@ const BACK_S = [10, 60];
 const SHOWN = ["trail", "stock", "collision"];
 
 export class Sheets {
-  constructor(scene, line, view, desk, screen) {
-    Object.assign(this, { scene, line, view, desk, screen, sheet: "tasks", shown: { trail: true, stock: true, collision: false }, drawn: "", state: null });
+  constructor(scene, line, view, desk, screen, score) {
+    Object.assign(this, { scene, line, view, desk, screen, score, asking: "", sheet: "tasks", shown: { trail: true, stock: true, collision: false }, drawn: "", state: null });
     document.addEventListener("next-sheet", () => {
       const names = this.names();
       this.choose(names[(names.indexOf(this.sheet) + 1) % names.length]);
@@ -23,6 +23,7 @@ export class Sheets {
 
   choose(sheet) {
     this.sheet = sheet;
+    this.asking = "";
     this.show(this.now, this.words);
   }
 
@@ -42,7 +43,7 @@ export class Sheets {
     for (const tab of tabs.children) tab.setAttribute("aria-selected", tab.id === `tab-${this.sheet}`);
     sheet.setAttribute("aria-labelledby", `tab-${this.sheet}`);
     const acts = now.role === "trainer" || now.has_panel;
-    const what = { tasks: [now.verdicts, now.answers, now.hints, now.score, now.over, now.signature], manual: [now.spindle, now.counter_clockwise, now.spindle_override, now.suspended, this.desk.hand], run: [now.optional_stop, now.block_skip, now.dry_run, now.searched, now.changed, this.screen.chosen], offsets: [now.zero, now.offsets], tools: [now.tools, now.tool, now.broken], history: [now.alarms], display: [this.shown], trainer: [now.faults, now.frozen, now.replaying] };
+    const what = { tasks: [now.verdicts, now.answers, now.hints, now.score, now.over, now.signature, this.asking], manual: [now.spindle, now.counter_clockwise, now.spindle_override, now.suspended, this.desk.hand], run: [now.optional_stop, now.block_skip, now.dry_run, now.searched, now.changed, this.screen.chosen], offsets: [now.zero, now.offsets], tools: [now.tools, now.tool, now.broken], history: [now.alarms], display: [this.shown], trainer: [now.faults, now.frozen, now.replaying] };
     const drawn = JSON.stringify([this.sheet, words.language, acts, now.refusals, what[this.sheet]]);
     if (drawn === this.drawn) return;
     // What is being typed stays; what has been sent is shown as the machine has it.
@@ -68,12 +69,26 @@ export class Sheets {
       return make("li", { class: state }, make("span", { "aria-hidden": "true" }, `${MARKS[state]} `), `${words.text(task.text)} (${task.points}) `, make("span", { class: "sr", hidden: true }, state), ...choices);
     });
     const hints = scene.hints.slice(0, now.hints).map((hint) => make("p", { class: "hint" }, words.text(hint)));
-    const more = now.hints < scene.hints.length && !now.over
-      ? this.button("hint", `${words.label("hint")} (${words.label("hint_cost", { cost: scene.hint_cost })})`, () => line.say({ do: "hint" })) : null;
-    const finish = now.over ? make("b", { class: "done" }, words.label("over")) : this.button("finish", words.label("finish"), () => line.say({ do: "finish" }));
+    const more = now.hints < scene.hints.length
+      ? this.asked("hint", `${words.label("hint")} (${words.label("hint_cost", { cost: scene.hint_cost })})`, scene.hint_cost > 0) : [];
+    const closing = now.over
+      ? [make("b", { class: "done" }, words.label("over")), this.button("score sheet", words.label("score_sheet"), () => this.score.open())]
+      : this.asking ? this.asked(this.asking, "", true) : [...more, ...this.asked("finish", words.label("finish"), true)];
     return [
       make("h2", {}, words.text(scene.title)), make("p", { class: "quiet" }, words.text(scene.story)), make("ul", {}, ...tasks), ...hints,
-      this.signature(), make("p", { class: "points" }, `${words.label("score")}: ${now.score} / ${scene.points}`), make("div", { class: "row" }, more, finish),
+      this.signature(), make("p", { class: "points" }, `${words.label("score")}: ${now.score} / ${scene.points}`), make("div", { class: "row", role: this.asking ? "alert" : null }, ...closing),
+    ];
+  }
+
+  /** What cannot be taken back asks once before it is done. */
+  asked(name, text, asks) {
+    const { words, line, scene } = this;
+    const turn = (asking) => { this.asking = asking; this.show(this.now, words); };
+    const send = () => { turn(""); line.say({ do: name }); };
+    if (this.asking !== name) return [this.button(name, text, () => (asks ? turn(name) : send()))];
+    return [
+      make("b", { class: "hint" }, words.label(`ask_${name}`, { cost: scene.hint_cost })),
+      this.button(`${name} yes`, words.label("yes"), send), this.button(`${name} no`, words.label("no"), () => turn("")),
     ];
   }
 

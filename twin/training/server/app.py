@@ -10,7 +10,7 @@ from typing import Any
 import anyio.to_thread
 from starlette.applications import Starlette
 from starlette.requests import Request
-from starlette.responses import FileResponse, JSONResponse, Response
+from starlette.responses import FileResponse, HTMLResponse, JSONResponse, Response
 from starlette.routing import Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
 from starlette.websockets import WebSocket, WebSocketDisconnect
@@ -27,7 +27,8 @@ from twin.training.scene.scene_file import (
     RAPID_OVERRIDES,
     SPINDLE_OVERRIDES,
 )
-from twin.training.scene.vocabulary import LANGUAGES, Language, Words
+from twin.training.scene.vocabulary import LANGUAGES, Words
+from twin.training.server.attempts import Attempt, Attempts, next_scene
 from twin.training.server.driver import Driver, Look
 from twin.training.server.frames import (
     Changes,
@@ -57,20 +58,24 @@ class RoomApp:
     """What the pages of a room are served.
 
     Attributes:
+        attempt: What is played.
         seats: Who sits where.
         bytes_sent: Through all streams so far.
         messages: Heard from all pages so far.
     """
 
-    def __init__(self, driver: Driver, language: Language) -> None:
+    def __init__(self, driver: Driver, attempts: Attempts, attempt: Attempt) -> None:
         """Prepare it.
 
         Args:
             driver: Steps the session.
-            language: What the pages speak unless they choose another.
+            attempts: Begins the next attempt.
+            attempt: The first one.
         """
         self._driver = driver
-        self._language = language
+        self._attempts = attempts
+        self.attempt = attempt
+        self._changing: asyncio.Task[None] | None = None
         self.seats = Seats()
         self.bytes_sent = 0
         self.messages = 0
@@ -86,6 +91,7 @@ class RoomApp:
             Route("/machine.json", self._machine),
             Route("/machine.glb", self._glb),
             Route("/path.bin", self._path),
+            Route("/sheet.html", self._sheet),
             WebSocketRoute("/stream", self._stream),
             Mount("/view", StaticFiles(directory=ASSETS, follow_symlink=False)),
             Mount("/page", StaticFiles(directory=PAGE, follow_symlink=False)),
@@ -102,8 +108,9 @@ class RoomApp:
         return JSONResponse(
             {
                 "name": scene.name,
-                "language": self._language,
+                "language": self._attempts.language,
                 "languages": LANGUAGES,
+                "next": next_scene(scene.name),
                 "title": file.title,
                 "story": file.story,
                 "tasks": [
@@ -138,6 +145,40 @@ class RoomApp:
             return Response(status_code=404)
         words = Words(language, self._driver.session.scene.preparation.dialect.name)
         return JSONResponse(words.as_data())
+
+    async def _sheet(self, request: Request) -> Response:
+        """The score sheet as it is now, in the page's language; of what was handed in alone."""
+        language = request.query_params.get("language", "")
+        if language not in LANGUAGES or not self._driver.session.room.judge.over:
+            return Response(status_code=404)
+        words = Words(language, self._driver.session.scene.preparation.dialect.name)
+        page = await anyio.to_thread.run_sync(self.attempt.writer.page, words)
+        return HTMLResponse(page)
+
+    def _begin_again(self, page: Page, name: str) -> None:
+        """Begin the scene again, or the next one, for who has handed in; for a trainer always."""
+        over = self._driver.session.room.judge.over
+        acts = page.role == "trainer" or (over and self.seats.may(page, None))
+        known = name in ("", next_scene(self.attempt.scene.name))
+        if acts and known and (self._changing is None or self._changing.done()):
+            self._changing = asyncio.create_task(self._change(name))
+
+    async def _change(self, name: str) -> None:
+        before = self.attempt
+        after = await anyio.to_thread.run_sync(self._attempts.after, before, name)
+        unwritten = ""
+        try:
+            await anyio.to_thread.run_sync(before.writer.close)
+        except OSError as error:
+            unwritten = f"{before.writer.folder}: {error.strerror or error}"
+        await asyncio.wrap_future(
+            self._driver.change(
+                after.session, after.writer.changed, lambda: unwritten or after.writer.trouble()
+            )
+        )
+        self._drawn.cache_clear()
+        self._last_path = None, b""
+        self.attempt = after
 
     async def _machine(self, request: Request) -> Response:
         drawn = await self._drawing(request)
@@ -218,6 +259,8 @@ class RoomApp:
                 self._driver.beat(page.number)
             elif "panel" in said:
                 self.seats.hand_over(page, str(said["panel"]))
+            elif "attempt" in said:
+                self._begin_again(page, str(said["attempt"]))
             elif self.seats.may(page, said):
                 who = "trainer" if page.role == "trainer" else "operator"
                 self._driver.ask(said, who, page.number)
@@ -241,7 +284,8 @@ class RoomApp:
             look = self._driver.look
             self._stock.note(self._driver.seen)
             patch, epoch, version = self._stock.patch(epoch, version)
-            words = changes.since_last(self._words_of(look) | as_texts(self.seats.words(page)))
+            own = self.seats.words(page) | {"attempt": self.attempt.number}
+            words = changes.since_last(self._words_of(look) | as_texts(own))
             messages: list[bytes | str] = [state_message(look, cutting=patch is not None)]
             if words:
                 messages.append(words)

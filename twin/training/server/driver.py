@@ -113,6 +113,24 @@ class Driver:
         self._wake.set()
         return answer
 
+    def change(
+        self, session: Session, changed: Callable[[], None], trouble: Callable[[], str]
+    ) -> "Future[None]":
+        """Play another session from the next slice on, from any thread.
+
+        Args:
+            session: What is played.
+            changed: Called after every command.
+            trouble: What is wrong outside the machine.
+        """
+
+        def take_over(_room: Room) -> None:
+            self.session, self._changed, self.trouble = session, changed, trouble
+            self.lost_s = self._owed_s = 0.0
+            self._holder, self._shown = None, -1.0
+
+        return self.inquire(take_over)
+
     def beat(self, page: int) -> None:
         """A page says that its key is still held."""
         self._beats[page] = time.perf_counter()

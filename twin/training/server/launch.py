@@ -1,26 +1,21 @@
 """From a scene to its pages, and the files that are left of it."""
 
 import contextlib
-import dataclasses
 import gc
 import sys
 from collections.abc import Iterator
 from pathlib import Path
 
 from twin.training.scene.scene_file import Scene
-from twin.training.scene.vocabulary import Language, Words
+from twin.training.scene.vocabulary import Language
 from twin.training.server.app import ROLES, RoomApp
+from twin.training.server.attempts import Attempts
 from twin.training.server.driver import Driver
 from twin.training.session.log import Who
 from twin.training.session.session import Session
-from twin.training.sheets.score import SheetWriter
 from twin.web.doorkeeper import Doorkeeper
 from twin.web.guard import Guard
 from twin.web.server import LOOPBACK, WebServer, require_three
-
-CELLS_ACROSS = 400
-"""Cells of the live stock along its shorter side, at least: a step of 0.2 mm can be seen."""
-
 
 TURNS_S = 0.0005
 """How long a thread keeps the interpreter while another waits for it [s]: a press must not wait."""
@@ -59,28 +54,28 @@ class OpenRoom:
     """A room that is open.
 
     Attributes:
-        session: What is played.
         driver: Lets its time go on.
         app: What its pages are served.
         addresses: By role; each has a token of its own.
-        folder: Where log and score sheet lie; None for nowhere.
     """
 
     def __init__(
-        self,
-        driver: Driver,
-        app: RoomApp,
-        addresses: dict[str, str],
-        folder: Path | None,
-        *,
-        promptly: bool,
+        self, driver: Driver, app: RoomApp, addresses: dict[str, str], *, promptly: bool
     ) -> None:
         self._promptly = promptly
-        self.session = driver.session
         self.driver = driver
         self.app = app
         self.addresses = addresses
-        self.folder = folder
+
+    @property
+    def session(self) -> Session:
+        """What is played now."""
+        return self.driver.session
+
+    @property
+    def folder(self) -> Path | None:
+        """Where log and score sheet of what is played now lie; None for nowhere."""
+        return self.app.attempt.writer.folder
 
     def serve(self) -> None:
         """Let time go on until Ctrl+C is pressed or the room is stopped."""
@@ -121,24 +116,23 @@ def open_room(
     require_three()
     server = WebServer(host, port, certificate, key)
     spoken = language or scene.file.language
-    scene = dataclasses.replace(scene, cells_across=CELLS_ACROSS)
-    warm_up(scene)
-    session = Session(scene)
-    writer = SheetWriter(session, Words(spoken, scene.preparation.dialect.name), out)
-    driver = Driver(session, writer.changed)
-    driver.trouble = writer.trouble
-    app = RoomApp(driver, spoken)
-    doorkeeper = Doorkeeper(ROLES, server.port)
+    attempts = Attempts(spoken, out)
+    warm_up(attempts.prepared(scene))
+    attempt = attempts.begin(scene)
+    driver = Driver(attempt.session, attempt.writer.changed)
+    driver.trouble = attempt.writer.trouble
+    app = RoomApp(driver, attempts, attempt)
+    doorkeeper = Doorkeeper(ROLES, server.port, encrypted=certificate is not None)
     addresses = {
         role: f"{server.origin}/{role}/#{token}" for role, token in doorkeeper.tokens.items()
     }
     server.start(Guard(app.asgi, doorkeeper, local=server.local), promptly=promptly)
     try:
         with _prompt_threads():
-            yield OpenRoom(driver, app, addresses, writer.folder, promptly=promptly)
+            yield OpenRoom(driver, app, addresses, promptly=promptly)
     finally:
         server.stop()
-        writer.close()
+        app.attempt.writer.close()
 
 
 @contextlib.contextmanager

@@ -426,7 +426,7 @@ class ProgramRun:
 
     def _interpret(self, most: int) -> None:
         """Interpret at most so many blocks, until there are enough moves or the part ends."""
-        control = self._control
+        control, refused = self._control, None
         enough = False
         try:
             while most > 0 and not enough and self.ending is None:
@@ -443,7 +443,9 @@ class ProgramRun:
                     self._arrive(block)
                     break
                 mark = self._count + len(control.path)
+                refused = control.path.refusal(block.line)
                 control.run(block)
+                refused = None
                 if self._searched:
                     self._collect(control.path.take())
                     continue
@@ -456,7 +458,7 @@ class ProgramRun:
             chunk, self._arrival = self._arrival, None
             self._finish_chunk(chunk)
         elif enough or self.ending is not None:
-            self._finish_chunk(control.path.take())
+            self._finish_chunk(control.path.take(refused))
 
     def _end_by(self, finding: Diagnostic) -> None:
         """The program is wrong."""

@@ -2,6 +2,7 @@
 
 import base64
 import datetime as dt
+import itertools
 import json
 import threading
 from collections.abc import Sequence
@@ -169,20 +170,38 @@ class SheetWriter:
         """
         self._session = session
         self._words = words
+        self._out = out
         self._logged = 0
         self._trouble = ""
-        self.folder: Path | None = None
-        if out is None:
-            return
-        now = dt.datetime.now().astimezone()
-        self._date = now.strftime("%Y-%m-%d %H:%M")
+        self._handed_in = False
+        self._date = ""
         self._pictures: dict[float, bytes | None] = {}
         self._part: bytes | None = None
-        self.folder = out / f"{session.scene.name}_{now.strftime('%Y-%m-%d_%H%M%S')}"
+        self.folder: Path | None = None
+        self._begin_folder()
+        if out is None:
+            return
         self._due = threading.Event()
         self._over = threading.Event()
         self._thread = threading.Thread(target=self._keep_writing, daemon=True, name="sheet")
         self._thread.start()
+
+    def _begin_folder(self) -> None:
+        """Choose a folder that no other sheet has."""
+        now = dt.datetime.now().astimezone()
+        self._date = now.strftime("%Y-%m-%d %H:%M")
+        self._logged, self._handed_in, self._part = 0, False, None
+        if self._out is not None:
+            name = f"{self._session.scene.name}_{now.strftime('%Y-%m-%d_%H%M%S')}"
+            names = (f"{name}_{number}" if number else name for number in itertools.count())
+            self.folder = next(each for each in map(self._out.joinpath, names) if not each.exists())
+
+    def page(self, words: Words) -> str:
+        """The sheet as it is now, as a page in a language, with its pictures."""
+        sheet = score_sheet(self._session, words, self._date)
+        room = self._session.room
+        part = None if room.handed_in is None else room.handed_in.moment.picture()
+        return score_page(sheet, words, [one.picture() for one in tuple(room.moments)], part)
 
     def changed(self) -> None:
         """Something was done: the files are due."""
@@ -203,15 +222,15 @@ class SheetWriter:
             self._over.set()
             self._due.set()
             self._thread.join()
-            self._write(self.folder)
+            self._write()
 
     def _keep_writing(self) -> None:
         while not self._over.is_set():
             self._due.wait()
             self._due.clear()
-            if self.folder is not None and not self._over.is_set():
+            if not self._over.is_set():
                 try:
-                    self._write(self.folder)
+                    self._write()
                     self._trouble = ""
                 except OSError as error:
                     self._trouble = f"{self.folder}: {error.strerror or error}"
@@ -219,9 +238,17 @@ class SheetWriter:
                     self._due.set()
                 self._over.wait(WRITTEN_EVERY_S)
 
-    def _write(self, folder: Path) -> None:
-        """Write what there is by now: lines are added to the log, the sheet is written anew."""
+    def _write(self) -> None:
+        """Write what there is by now: lines are added to the log, the sheet is written anew.
+
+        A sheet that was handed in is final: where a trainer goes back behind the hand-in, what
+        follows has a folder of its own.
+        """
         sheet = score_sheet(self._session, self._words, self._date)
+        if self._handed_in and not sheet["handed_in"]:
+            self._begin_folder()
+        folder = self.folder
+        assert folder is not None
         moments = tuple(self._session.room.moments)
         known = self._pictures
         self._pictures = {
@@ -245,3 +272,4 @@ class SheetWriter:
             self._part = handed_in.moment.picture()
         write_text(folder / "score.json", json.dumps(sheet, ensure_ascii=False, indent=1))
         write_text(folder / "score.html", score_page(sheet, self._words, pictures, self._part))
+        self._handed_in = bool(sheet["handed_in"])

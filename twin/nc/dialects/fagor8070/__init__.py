@@ -3,6 +3,7 @@
 from twin.nc.control.codes import Effect, MCode, WordEffect
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Dialect
+from twin.nc.control.settings import ControlSettings
 from twin.nc.dialects.fagor8070 import (
     arcs,
     block_compiler,
@@ -20,12 +21,18 @@ from twin.nc.dialects.fagor8070.library import LIBRARY
 from twin.nc.dialects.fagor8070.memory import FagorMemory, acts_on_plain_blocks
 from twin.nc.iso import base, shared_marks
 from twin.nc.iso.declared import flow_function
+from twin.nc.path.paces import PATH_COUNTS, FeedRule
 from twin.nc.text.syntax import Comment, Mark, Syntax
 
 
 def _prepare(control: Control) -> None:
     subroutines.begin(control)
     corners.prepare(control)
+
+
+def _feed_rule(settings: ControlSettings) -> FeedRule:
+    """F counts X, Y and Z; with FEEDND rotary axes beside them, a degree as one programmed unit."""
+    return FeedRule(degree=1.0) if settings.feed_of_all_axes else PATH_COUNTS
 
 
 FAGOR8070 = Dialect(
@@ -159,4 +166,5 @@ FAGOR8070 = Dialect(
     finish=statements.warn_of_missing_end,
     compile_block=block_compiler.compile_block,
     disturbed=acts_on_plain_blocks,
+    feed_rule=_feed_rule,
 )

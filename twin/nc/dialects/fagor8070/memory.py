@@ -66,6 +66,7 @@ def acts_on_plain_blocks(control: Control) -> bool:
         or memory.circle_radius is not None
         or memory.part_frame is not None
         or control.settings.module_rotary
+        or control.settings.feed_of_all_axes
         or control.active.get("offset") == 53
     )
 

@@ -10,11 +10,13 @@ from twin.nc.dialects.fanuc import (
     codes,
     corners,
     decimal_point,
+    feeds,
     flow,
     haas,
     macro_calls,
     offsets,
     programs,
+    reference_points,
     tool_offsets,
     variables,
 )
@@ -22,7 +24,7 @@ from twin.nc.dialects.fanuc.cycles.canned_cycles import OVERRULED_CYCLE, as_read
 from twin.nc.dialects.fanuc.decisions import DECISIONS
 from twin.nc.dialects.fanuc.memory import FANUC as FANUC_VARIANT
 from twin.nc.dialects.fanuc.memory import HAAS as HAAS_VARIANT
-from twin.nc.dialects.fanuc.memory import FanucMemory, acts_on_plain_blocks, holds_any, memory_of
+from twin.nc.dialects.fanuc.memory import FanucMemory, holds_any, memory_of
 from twin.nc.iso import base, shared_marks
 from twin.nc.text.syntax import HEADING, Comment, Mark, Syntax
 
@@ -45,6 +47,7 @@ def before_motion(control: Control, rapid: bool) -> None:
     Raises:
         ProgramError: G93 without F, or F of another feed mode.
     """
+    reference_points.warn_of_cancelled_length(control)
     if not rapid:
         base.require_feed_of_block(control)
         if memory_of(control).feed_lost and control.feed is None:
@@ -156,9 +159,10 @@ FANUC = Dialect(
     finish=programs.finish,
     library=programs.LIBRARY,
     compile_block=block_compiler.compile_block,
-    disturbed=acts_on_plain_blocks,
+    disturbed=feeds.needs_interpreter,
     pointless=decimal_point.pointless,
     count=as_read,
+    feed_rule=feeds.fanuc_rule,
 )
 
 HAAS = dataclasses.replace(
@@ -197,5 +201,6 @@ HAAS = dataclasses.replace(
         shared_marks.CYLINDER,
     ),
     memory=lambda: FanucMemory(HAAS_VARIANT),
+    feed_rule=feeds.haas_rule,
 )
 """The Haas mills."""

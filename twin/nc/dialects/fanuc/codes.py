@@ -17,10 +17,10 @@ from twin.nc.dialects.fanuc import (
 )
 from twin.nc.dialects.fanuc.cycles.canned_cycles import cycles
 from twin.nc.dialects.fanuc.memory import Variant, memory_of
-from twin.nc.dialects.fanuc.tool_offsets import compensation_code, length_code
+from twin.nc.dialects.fanuc.tool_offsets import compensation_code, end_length, length_code
 from twin.nc.iso import base, fixed_cycles
 from twin.nc.iso.declared import flow_function, instead, modal, motion_code, refused
-from twin.nc.iso.tool_compensation import END_OF_COMPENSATION, LEFT, RIGHT, set_length
+from twin.nc.iso.tool_compensation import END_OF_COMPENSATION, LEFT, RIGHT
 from twin.nc.path.paces import FeedMode
 
 
@@ -110,7 +110,7 @@ _TOOL: Mapping[float, GCode] = {
     42: modal("compensation by D, tool right", "compensation", compensation_code(42, RIGHT)),
     43: modal("tool length by H", "length", length_code(43, 1.0)),
     44: modal("tool length by H, reversed", "length", length_code(44, -1.0)),
-    49: modal("tool length off", "length", lambda control: set_length(control, 0.0)),
+    49: modal("tool length off", "length", end_length),
 }
 _TRANSFORMATIONS: Mapping[float, GCode] = {
     50: modal("scale off", "scale", transformations.end("scale")),

@@ -12,7 +12,7 @@ from twin.nc.control.control import Control
 from twin.nc.dialects.fanuc.memory import memory_of
 from twin.nc.geometry.arcs import sweep_between
 from twin.nc.iso.circular import center_of_radius
-from twin.nc.path.paces import FeedMode
+from twin.nc.path.paces import FeedMode, FeedRule
 
 CHORD_ERROR = 0.001
 """How far a chord may leave its arc [mm]."""
@@ -41,20 +41,10 @@ def line_to(control: Control, goal: list[float]) -> None:
     if memory.cylinder is None:
         control.line_to(goal, rapid=False)
         return
-    axis, radius = memory.cylinder
-    ways = [there - here for there, here in zip(goal, control.programmed, strict=True)]
-    straight = math.hypot(
-        *(way for way, linear in zip(ways, control.linear, strict=True) if linear)
-    )
-    turn, feed = abs(ways[axis]), control.feed
-    surface = math.hypot(straight, math.radians(turn) * radius)
-    if not turn or feed is None or control.modal.feed_mode is not FeedMode.PER_MINUTE:
-        control.line_to(goal, rapid=False)
-        return
-    minutes = surface / (feed * control.modal.unit)
-    control.feed = straight / minutes / control.modal.unit if straight else turn / minutes
+    kept = control.feed_rule
+    control.feed_rule = FeedRule(math.radians(memory.cylinder[1]), surface=True)
     control.line_to(goal, rapid=False)
-    control.feed = feed
+    control.feed_rule = kept
 
 
 def arc_to(control: Control, goal: list[float], *, clockwise: bool) -> bool:
@@ -73,6 +63,9 @@ def arc_to(control: Control, goal: list[float], *, clockwise: bool) -> bool:
     word = control.take("R")
     if word is None:
         control.fail("cylinder", "an arc on a cylinder needs its radius R")
+    if control.modal.feed_mode is FeedMode.BLOCKS_PER_MINUTE:
+        message = "what F of G93 counts in an arc on a cylinder is not known"
+        control.fail("cylinder", message, word, "write G94 and F along the surface")
     abscissa, ordinate, _ = plane.axes
     named = [each for each in (abscissa, ordinate) if goal[each] != control.programmed[each]]
     if len(named) > 1:

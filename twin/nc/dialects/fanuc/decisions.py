@@ -99,6 +99,13 @@ DECISIONS: tuple[Decision, ...] = (
         example="reference_points",
     ),
     Decision(
+        "When does a tool length count again that G28, G30 or G53 in Z has cancelled?",
+        "From the next G43, G44 or H; an absolute Z before it is warned of. length_returns = "
+        '"next block" of the machine file gives it back at once.',
+        "Parameter 5001 #6 (EVO) is 0 when a control comes from its maker.",
+        example="length_behind_g28",
+    ),
+    Decision(
         "How far do G73 and G83 withdraw?",
         "G73 by 0.5 mm; G83 to R, and back with rapid to 0.5 mm above where it was.",
         "Parameters 5114 and 5115 decide.",

@@ -225,6 +225,12 @@ DECISIONS: tuple[Decision, ...] = (
         example="settings",
     ),
     Decision(
+        "Which G28 cancels the tool length?",
+        "Every one, whatever axes it names, until the next G43, G44 or H.",
+        "The manual says that G28 cancels tool lengths for the lines that follow, and excepts no axis.",
+        example="length_behind_g28",
+    ),
+    Decision(
         "What does R of G68 count from in G91?",
         "From the plane's first axis, as in G90; over a rotation in force with a warning.",
         "Setting 73, G68 incremental angle, is OFF when a control comes from its maker.",

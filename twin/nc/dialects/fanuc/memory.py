@@ -68,6 +68,7 @@ class Variant(NamedTuple):
         then_takes_words: Words may follow THEN.
         repeats_motion: L repeats the motion of its block.
         adds_rotation: When controls of this kind add the R of G68 in G91 to the rotation in force.
+        reference_cancels_any_length: G28 cancels the tool length whatever axes it names, not with Z alone.
         transformed_keeps_origin: Neither work offsets nor presets nor moves to reference points stand under
             a scale, a mirror or a rotation.
     """
@@ -81,6 +82,7 @@ class Variant(NamedTuple):
     machine_by_motion: bool = False
     last_code_counts: bool = True
     transformed_keeps_origin: bool = True
+    reference_cancels_any_length: bool = False
     modal_groups: Mapping[int, str] = MODAL_GROUPS
     further_offset: str = "G54.1"
     home_without_axes: bool = False
@@ -108,6 +110,7 @@ HAAS = Variant(
     own_cycle_words=True,
     counting="L",
     machine_by_motion=True,
+    reference_cancels_any_length=True,
     last_code_counts=False,
     transformed_keeps_origin=False,
     modal_groups={
@@ -184,6 +187,8 @@ class FanucMemory:
         length_number: H in force; None: none yet.
         radius_number: D in force; None: none yet.
         intermediate: Where the last G28 or G30 passed, part coordinates by column, for G29.
+        own_feeds: Some line may move so that F does not count the path in X, Y and Z; None: nobody has looked.
+        length_cancelled: Code that has cancelled the tool length while G43 or G44 stays in force; empty: none.
         overrules_cycles: Some line holds a motion code behind that of a cycle.
         feed_mode: What F counted when it was written.
         feed_lost: F was written for another feed mode and counts no more.
@@ -215,6 +220,8 @@ class FanucMemory:
     length_number: int | None = None
     radius_number: int | None = None
     intermediate: dict[int, float] = dataclasses.field(default_factory=dict)
+    own_feeds: bool | None = None
+    length_cancelled: str = ""
     overrules_cycles: bool = False
     feed_mode: FeedMode = FeedMode.PER_MINUTE
     feed_lost: bool = False
@@ -241,7 +248,9 @@ def memory_of(control: Control) -> FanucMemory:
 def acts_on_plain_blocks(control: Control) -> bool:
     """Polar coordinates, a scale, a modal call or a cylinder in force, F lost: plain blocks heed them."""
     memory = memory_of(control)
-    if memory.overrules_cycles or (memory.feed_lost and control.feed is None):
+    if memory.length_cancelled or memory.overrules_cycles:
+        return True
+    if memory.feed_lost and control.feed is None:
         return True
     remembered = (memory.scale, memory.modal_call, memory.cylinder)
     return memory.polar or any(each is not None for each in remembered)

@@ -2,12 +2,22 @@
 
 The first reference point is machine zero. Decision: the second to fourth (parameters 1241 to 1243)
 lie there as well, which is how a control comes from its maker.
+
+G28, G30 and G53 that move Z cancel the tool length, while G43 or G44 stays displayed (manual); it counts again from
+the next G43, G44 or H, or with parameter 5001 #6 (EVO) at 1 from the next block. On a Haas G28 cancels it, whatever
+axes it names, and G53 holds for its block (its manual of G28 and G53).
 """
 
 from twin.nc.control.control import Control
 from twin.nc.dialects.fanuc.memory import memory_of, refuse_transformed
 from twin.nc.dialects.fanuc.programs import whole
 from twin.nc.iso.machine_coordinates import machine_frame
+from twin.nc.iso.tool_compensation import set_length
+
+Z = 2
+"""Column of the axis along which tool lengths lie."""
+NO_LENGTH = 49
+"""Code of the group of tool lengths that ends them."""
 
 
 def go_to_reference(control: Control) -> None:
@@ -36,6 +46,30 @@ def go_home(control: Control, code: str = "G28") -> None:
         for index in axes:
             there[index] = 0.0
         control.line_to(there, rapid=True)
+    if Z in axes or memory_of(control).variant.reference_cancels_any_length:
+        _cancel_length(control, code)
+
+
+def _cancel_length(control: Control, code: str) -> None:
+    """The tool length counts no more, where the control's parameters say so."""
+    if control.settings.length_returns == "next block":
+        return
+    if control.active.get("length", NO_LENGTH) != NO_LENGTH:
+        memory_of(control).length_cancelled = code
+        set_length(control, 0.0)
+
+
+def warn_of_cancelled_length(control: Control) -> None:
+    """A block that moves Z while its tool length is cancelled may go deeper than was meant."""
+    code, word = memory_of(control).length_cancelled, control.words.get("Z")
+    if code and word is not None and not control.modal.incremental:
+        control.report.warn_once(
+            "length-cancelled",
+            f"{code} has cancelled the tool length: {word.text} counts without it",
+            word.column,
+            word.width,
+            hint="write G43 H again before; G49 says that it is meant so",
+        )
 
 
 def _named_axes(control: Control) -> list[int]:
@@ -95,5 +129,8 @@ def machine_move(control: Control) -> None:
     motion, by_motion = control.active.get("motion"), memory_of(control).variant.machine_by_motion
     if motion not in (0, 1) and by_motion:
         control.fail("no-motion-code", "G53 moves by G0 or G1", word)
+    moves_z = "Z" in control.words
     with machine_frame(control, "G53"):
         control.line_to(control.target(), rapid=motion == 0 or not by_motion)
+    if moves_z and not by_motion:
+        _cancel_length(control, "G53")

@@ -70,7 +70,14 @@ def length_code(number: int, sign: float) -> Action:
     return action
 
 
+def end_length(control: Control) -> None:
+    """G49."""
+    memory_of(control).length_cancelled = ""
+    set_length(control, 0.0)
+
+
 def _apply_length(control: Control, sign: float, word: Word | None) -> None:
+    memory_of(control).length_cancelled = ""
     number = memory_of(control).length_number
     if number is None:
         code = "G43" if word is None else word.text

@@ -1,4 +1,7 @@
-"""Every command and every example of the tutorials, run in their order, with what they are said to print."""
+"""What README and the pages print, run in its order, with what it is said to print.
+
+A block that no test runs says why in the line above it: ``<!-- not run by a test: REASON -->``.
+"""
 
 import os
 import re
@@ -14,21 +17,25 @@ from typer.main import get_command
 
 from twin.cli import app
 
+pytestmark = pytest.mark.documentation
+
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
-PAGES = sorted(path.relative_to(DOCS).as_posix() for path in DOCS.rglob("*.md"))
+PAGES = ["../README.md", *sorted(path.relative_to(DOCS).as_posix() for path in DOCS.rglob("*.md"))]
 
 
 class Block(NamedTuple):
     """A fenced block of a page.
 
     Attributes:
-        language: ``sh`` is run; ``console`` is what cannot be run here, a server or a real machine's log.
+        reason: Why it is not run; empty for what is.
+        language: ``sh`` is run.
         title: The file that it is; empty for what is none.
         exit_code: Of a command, as its comment says.
         text: Its lines.
     """
 
+    reason: str
     language: str
     title: str
     exit_code: int
@@ -37,15 +44,19 @@ class Block(NamedTuple):
 
 def blocks(page: str) -> Iterator[Block]:
     found = re.finditer(
-        r"^( *)```(\w+)([^\n]*)\n(.*?)^\1```$",
+        r"^(?: *<!-- not run by a test: (.+?) -->\n)?( *)```(\w+)([^\n]*)\n(.*?)^\2```$",
         (DOCS / page).read_text("utf-8"),
         re.MULTILINE | re.DOTALL,
     )
-    for _, language, about, text in (block.groups() for block in found):
+    for reason, _, language, about, text in (block.groups() for block in found):
         title = re.search(r'title="(.*?)"', about)
         code = re.search(r"# ends with exit code (\d+)$", text)
         yield Block(
-            language, title[1] if title else "", int(code[1]) if code else 0, textwrap.dedent(text)
+            reason or "",
+            language,
+            title[1] if title else "",
+            int(code[1]) if code else 0,
+            textwrap.dedent(text),
         )
 
 
@@ -83,10 +94,13 @@ def shows(said: str, shown: str) -> bool:
     return all(re.search(rf"^\s*{pattern}$", said, re.MULTILINE) for pattern in patterns)
 
 
-@pytest.mark.parametrize("page", [page for page in PAGES if page.startswith("tutorials/")])
-def test_a_tutorial_does_what_it_says(desk: Path, page: str):
+@pytest.mark.parametrize("page", PAGES)
+def test_a_page_does_what_it_says(desk: Path, page: str):
     said, names = "", {}
     for block in blocks(page):
+        if block.reason:
+            continue
+        assert block.language != "console", f"neither run nor said why: {block.text}"
         if block.title:
             file = desk / block.title
             file.parent.mkdir(exist_ok=True)
@@ -101,7 +115,7 @@ def test_a_tutorial_does_what_it_says(desk: Path, page: str):
             )
             said = done.stdout + done.stderr
             assert done.returncode == block.exit_code, block.text + said
-        elif block.language == "text":
+        elif block.language == "text" and said:
             assert shows(said, block.text), block.text + said
         elif block.language == "python":
             exec(compile(block.text, page, "exec"), names)  # noqa: S102 (our own page)
@@ -110,14 +124,25 @@ def test_a_tutorial_does_what_it_says(desk: Path, page: str):
         assert {"start_X", "end_C", "corner"} <= set(names["frame"].columns)
 
 
+def unknown_options(call: str) -> set[str]:
+    """Options behind ``twin`` in a line that the command does not have."""
+    command: Any = get_command(app)
+    for word in call.split():
+        command = getattr(command, "commands", {}).get(word, command)
+    known = {option for parameter in command.params for option in parameter.opts}
+    return set(re.findall(r"--[a-z][a-z-]*", call)) - known - {"--help"}
+
+
 @pytest.mark.parametrize("page", PAGES)
 def test_commands_of_the_pages_and_their_options_exist(page: str):
-    root: Any = get_command(app)
     for block in blocks(page):
         commands = block.text if block.language in ("sh", "console") else ""
         for call in re.findall(r"^(?:\$ )?twin (.*)", commands, re.MULTILINE):
-            command: Any = root
-            for word in call.split():
-                command = getattr(command, "commands", {}).get(word, command)
-            known = {option for parameter in command.params for option in parameter.opts}
-            assert set(re.findall(r"(?<=\s)--[a-z][a-z-]*", call)) <= known | {"--help"}, call
+            assert not unknown_options(call), call
+
+
+def test_options_in_the_table_of_commands_exist():
+    calls = re.findall(r"`twin ([^`]+)`", (ROOT / "README.md").read_text("utf-8"))
+    assert len(calls) > 15
+    for call in calls:
+        assert not unknown_options(call), call

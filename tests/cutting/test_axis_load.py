@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from tests.cutting.conftest import Motion
+from twin.cutting.axis_load import AxisLoad
 from twin.cutting.cut import Cutter
-from twin.cutting.forces.axis_load import AxisLoad
 from twin.cutting.program_summary import ProgramSummary
 from twin.cutting.tools import ToolPlan
 from twin.errors import ConfigError

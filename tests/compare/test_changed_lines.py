@@ -1,0 +1,44 @@
+"""Which line of a program a difference of blocks follows from."""
+
+from twin.compare.changed_lines import changed_lines, told_by_line, without_comments
+from twin.compare.verdict import Reason
+
+PROGRAM = ["O1", "G0 Z5", "G83 X0 Z-10 Q2", "X10", "X20 (the last)", "G80", "M30"]
+STORED = without_comments(PROGRAM)
+
+
+def test_comments_and_blanks_change_nothing():
+    assert changed_lines(STORED, PROGRAM) == []
+    other = ["O1 ; name", "G0  Z5", "G83 X0 Z-10 Q2", "X10 (second)", "X20", "G80", "M30"]
+    assert changed_lines(STORED, other) == []
+    assert changed_lines(STORED, ["", "(new)", *PROGRAM, ""]) == []
+    assert changed_lines(STORED, ["(new)", *PROGRAM[:3], "X11", *PROGRAM[4:]]) == [5]
+
+
+def test_changed_new_and_lost_lines():
+    assert changed_lines(STORED, [*PROGRAM[:2], "G83 X0 Z-12 Q2", *PROGRAM[3:]]) == [3]
+    assert changed_lines(STORED, [*PROGRAM[:3], "X5", *PROGRAM[3:]]) == [4]
+    assert changed_lines(STORED, [*PROGRAM[:5], PROGRAM[6]]) == [6]
+    assert changed_lines(STORED, PROGRAM[:-1]) == [6]
+
+
+def test_what_a_word_of_a_cycle_changes_is_told_once_at_its_line():
+    found = [
+        Reason("baseline-path", f"ends at Z{z}", line, 0.0) for line in (3, 4, 5) for z in (1, 2)
+    ]
+    found += [Reason("baseline-feed", "feed 2", 5, 0.0)]
+    assert list(told_by_line(found, [3])) == [
+        Reason("baseline-path", "ends at Z1 (and 5 more of this change)", 3, 0.0),
+        Reason("baseline-feed", "line 5 feed 2", 3, 0.0),
+    ]
+
+
+def test_a_round_of_a_loop_before_its_changed_line_is_told_there():
+    found = [Reason("baseline-path", f"ends at X{x}", 2, 0.0) for x in (1, 2, 3)]
+    (only,) = told_by_line(found, [4])
+    assert only == Reason("baseline-path", "line 2 ends at X1 (and 2 more of this change)", 4, 0.0)
+
+
+def test_without_a_changed_line_all_are_told():
+    found = [Reason("baseline-path", "ends at X1", 2, 0.0), Reason("baseline-path", "lost", 3, 0.0)]
+    assert list(told_by_line(found, [])) == found

@@ -1,0 +1,4 @@
+(TIME 4.000000 s: the seconds of F)
+G93
+G1 X20 C40 F4
+M30

@@ -1,0 +1,4 @@
+(TIME 30.000000 s: 50 by 0.1 x 1000 each minute)
+G95 S1000 M3
+G1 X30 Y40 F0.1
+M30

@@ -1,0 +1,4 @@
+(TIME 12.000000 s: 20 by 0.1 x 1000 each minute)
+G95 S1000 M3
+G1 X20 C40 F0.1
+M30

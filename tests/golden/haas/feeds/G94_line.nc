@@ -1,0 +1,5 @@
+O0001
+(TIME 10.000000 s: 50 by 300 each minute)
+G91 G94
+G1 X30. Y40. F300.
+M30

@@ -1,0 +1,4 @@
+(TIME 6.283185 s: 10 pi by 300 each minute)
+G91 G94
+G2 X20 Y0 I10 J0 F300
+M2

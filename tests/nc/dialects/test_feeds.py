@@ -1,0 +1,101 @@
+"""How long every kind of move takes, by what F counts: each program says the time by its control's rule."""
+
+import dataclasses
+import math
+import re
+import subprocess
+from itertools import product
+from pathlib import Path
+
+import pytest
+
+from tests.nc.linuxcnc.oracle import RS274
+from tests.nc.running import ROOT, SETTINGS, good
+from twin.nc.dialects import OWN
+from twin.nc.dialects.feed_tables import KINDS, feed_rows
+
+PROGRAMS = sorted((ROOT / "tests" / "golden").glob("*/feeds/*.nc"))
+
+
+def seconds(text: str, dialect: str, **changes: object) -> float:
+    moves = good(text, dialect, **changes).moves
+    return float((moves.length / moves.feed).sum() * 60.0)
+
+
+@pytest.mark.parametrize("path", PROGRAMS, ids=lambda path: f"{path.parts[-3]}/{path.stem}")
+def test_a_move_takes_the_time_of_its_controls_rule(path: Path) -> None:
+    text = path.read_text(encoding="utf-8")
+    written = re.search(r"TIME ([0-9.]+) s", text)
+    assert written is not None
+    taken = seconds(text, path.parts[-3])
+    assert math.isclose(taken, float(written[1]), abs_tol=1e-6)
+
+
+@pytest.mark.parametrize("name", OWN)
+def test_every_cell_of_the_table_has_its_program(name: str) -> None:
+    rows = feed_rows(name)
+    assert [row.kind for row in rows] == list(KINDS)
+    feeds = [f"G{number:g}" for number in (93, 94, 95) if number in OWN[name].g] or ["F"]
+    shown = {path.stem for path in PROGRAMS if path.parts[-3] == name}
+    assert shown == {f"{mode}_{file}" for mode, file in product(feeds, KINDS.values())}
+
+
+def test_the_example_of_the_manual_takes_its_time() -> None:
+    taken = seconds("O1\nG91 G1 X20. C40. F300.\nM30", "fanuc")
+    assert round(taken / 60.0, 5) == 0.14907
+
+
+def test_in_inches_a_degree_counts_an_inch() -> None:
+    taken = seconds("O1\nG20 G91 G1 X20. C40. F300.\nM30", "fanuc")
+    assert round(taken / 60.0, 5) == 0.14907
+
+
+def test_a_parameter_lets_f_of_a_helix_count_the_path() -> None:
+    text = "O1\nG2 X20. Y0. Z-5. C40. I10. F300.\nM30"
+    way = math.hypot(10.0 * math.pi, 5.0, 40.0)
+    assert math.isclose(seconds(text, "fanuc", helical_feed="path"), way / 5.0)
+
+
+def test_inverse_time_of_an_arc_counts_the_path_by_the_same_parameter() -> None:
+    text = "O1\nG93 G2 X20. Y0. Z-5. I10. F2.\nM30"
+    way = math.hypot(10.0 * math.pi, 5.0)
+    assert math.isclose(seconds(text, "fanuc", helical_feed="path"), way / 20.0 * 60.0)
+
+
+def test_a_haas_counts_the_surface_of_its_setting() -> None:
+    surface = math.pi * 80.0 / 4.0
+    assert math.isclose(
+        seconds("O1\nG1 C90. F300.\nM30", "haas", rotary_diameter=80.0), surface / 5.0
+    )
+    way = math.hypot(20.0, surface)
+    text = "O1\nG1 X20. C90. F300.\nM30"
+    assert math.isclose(seconds(text, "haas", rotary_diameter=80.0), way / 5.0)
+    inches = "O1\nG20 G1 C90. F10.\nM30"
+    taken = seconds(inches, "haas", rotary_diameter=80.0)
+    assert math.isclose(taken, surface / 254.0 * 60.0)
+
+
+def test_feednd_lets_a_fagor_count_all_axes() -> None:
+    text = "G94\nG1 X20 C40 F300\nM30"
+    way = math.hypot(20.0, 40.0)
+    assert math.isclose(seconds(text, "fagor8070", feed_of_all_axes=True), way / 5.0)
+
+
+def test_the_keys_of_a_machine_file_are_those_of_the_control() -> None:
+    from twin.machine.description.config import ControlTable
+
+    known = {field.name for field in dataclasses.fields(SETTINGS)}
+    keys = {"helical_feed", "rotary_diameter", "feed_of_all_axes", "length_returns"}
+    assert keys <= known & set(ControlTable.model_fields)
+
+
+@pytest.mark.skipif(RS274 is None, reason="LinuxCNC's rs274 is not installed (linuxcnc-uspace)")
+@pytest.mark.parametrize("kind", KINDS.values())
+def test_inverse_time_has_the_rate_of_linuxcnc_itself(kind: str) -> None:
+    path = ROOT / "tests" / "golden" / "linuxcnc" / "feeds" / f"G93_{kind}.nc"
+    done = subprocess.run(
+        [str(RS274), "-g", path], capture_output=True, text=True, check=False, timeout=30
+    )
+    rates = re.findall(r"SET_FEED_RATE\(([0-9.]+)\)", done.stdout)
+    moves = good(path.read_text(encoding="utf-8"), "linuxcnc").moves
+    assert math.isclose(float(rates[0]), float(moves.feed[0]), abs_tol=1e-4)

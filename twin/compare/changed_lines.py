@@ -1,0 +1,64 @@
+"""Which lines of a program have changed since its baseline, and what followed from each."""
+
+import difflib
+import re
+from collections.abc import Iterable, Iterator, Sequence
+
+from twin.compare.verdict import Reason
+
+_COMMENT = re.compile(r"\([^()]*\)|;.*")
+"""What most controls read as a comment; a line that differs in nothing else has not changed."""
+
+
+def without_comments(lines: Iterable[str]) -> list[str]:
+    """The lines of a program as they are compared: without comments, blanks once; empty ones stay."""
+    return [" ".join(_COMMENT.sub(" ", line).split()) for line in lines]
+
+
+def changed_lines(before: Sequence[str], now: Sequence[str]) -> list[int]:
+    """Lines of a program that were changed or are new, and those before which one was lost, from 1.
+
+    Args:
+        before: The lines of the stored program that say anything, without comments.
+        now: All lines of the program.
+    """
+    numbered = [(n, line) for n, line in enumerate(without_comments(now), 1) if line]
+    numbers, texts = [n for n, _ in numbered], [line for _, line in numbered]
+    found = set[int]()
+    matcher = difflib.SequenceMatcher(None, before, texts, autojunk=False)
+    for what, _, _, begin, end in matcher.get_opcodes():
+        if what == "delete":
+            found.update(numbers[begin : begin + 1] or numbers[-1:])
+        elif what != "equal":
+            found.update(numbers[begin:end])
+    return sorted(found)
+
+
+def told_by_line(reasons: Iterable[Reason], changed: Sequence[int]) -> Iterator[Reason]:
+    """Differences of blocks, gathered at the changed lines that they follow from.
+
+    A word of a cycle changes all its holes, a word in a loop all its rounds: each code is told once a
+    changed line, with the first difference and how many there are. A difference belongs to its own line
+    if that has changed, or else to the last changed line before it, or to the first behind it.
+
+    Args:
+        reasons: One for each block that differs.
+        changed: The lines that have changed; none: nothing is gathered.
+    """
+    if not changed:
+        yield from reasons
+        return
+    first: dict[tuple[int, str], Reason] = {}
+    count: dict[tuple[int, str], int] = {}
+    for reason in reasons:
+        line = max((each for each in changed if each <= reason.line), default=changed[0])
+        key = line, reason.what
+        first.setdefault(key, reason)
+        count[key] = count.get(key, 0) + 1
+    for (line, what), reason in first.items():
+        message, more = reason.message, count[line, what] - 1
+        if reason.line != line:
+            message = f"line {reason.line} {message}"
+        if more:
+            message += f" (and {more} more of this change)"
+        yield Reason(what, message, line, reason.time_s)
