@@ -77,11 +77,6 @@ def kernel_cache(function: Callable[..., Any], form: Form[Any]) -> "KernelCache 
     return KernelCache(function, file, form) if file.is_relative_to(PACKAGE) else None
 
 
-def is_loaded(kernel: Any) -> bool:
-    """Whether a kernel has been compiled, or loaded, in this process."""
-    return bool(kernel.signatures)
-
-
 def is_compiled(kernel: Any, arguments: Iterable[object]) -> bool:
     """Whether a call of a kernel with these arguments would have to wait for no compiler."""
     types = tuple(map(kernel.typeof_pyval, arguments))
