@@ -68,8 +68,8 @@ def serve_job(path: Path, source: Source) -> ExitCode:
         UsageError: The web server is not installed, or nobody can listen there.
         TwinError: Something is wrong with the job; see each error's exit code.
     """
-    require_extra("serve", "twin serve")
     _check_opcua(source)
+    require_extra("serve", "twin serve")
     from twin.serve.agent import Agent
     from twin.serve.clock import Clock
     from twin.serve.device import device_of
