@@ -29,6 +29,7 @@ _NEED = {
     "compare/report/test_report_page.py": "playwright",
     "motion/profile/test_time_optimality.py": "toppra",
     "serve/test_independent_client.py": "pymtconnect",
+    "serve/test_official_schemas.py": "xmlschema",
     "serve/test_schemas.py": "xmlschema",
 }
 """Exhaustive tests that cannot even be read without a package of the extra ``exhaustive``."""

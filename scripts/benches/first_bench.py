@@ -30,7 +30,6 @@ run = Interpretation(
 )
 assert len(next(iter(run.chunks())).moves) > 0
 """
-_COMPILE = "from twin.nc.compile_all import compile_all; compile_all()"
 TEN = ("codesys", "fagor8070/omitted_words.toml", "fagor8070/full_circles.toml",
        "fagor8070/three_planes.toml", "mefi")  # fmt: skip
 """Ten small programs."""
@@ -58,9 +57,8 @@ def rows() -> Iterator[Row]:
         twice = folder / "twice.nc"
         twice.write_text(long.read_text() * 2)
         commands[f"first moves of {2 * LINES} lines"] = ["-c", _FIRST_MOVES, str(twice)]
-        commands["whole compilation of the language"] = ["-c", _COMPILE]
-        cold = {}
-        for number, task in enumerate((*tuple(tasks)[:2], *tuple(commands)[-2:])):
+        cold, kernels = {}, folder / "kernels"
+        for number, task in enumerate((*tuple(tasks)[:2], *tuple(commands)[-1:])):
             kernels = folder / f"kernels{number}"
             cold[task] = _seconds(commands[task], kernels)
         for task, command in commands.items():

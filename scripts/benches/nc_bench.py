@@ -65,7 +65,7 @@ def rows() -> Iterator[Row]:
 
 def _cold_row(task: str, path: Path, blocks: int) -> Row:
     """The interpreter tier alone."""
-    seconds = median_cpu_seconds(lambda: _interpret(path, "gost", compiled_from=10**9))
+    seconds = median_cpu_seconds(lambda: _interpret(path, "gost"))
     return Row("nc", f"{task}, nothing compiled", blocks / seconds, "blocks/s")
 
 
@@ -118,10 +118,8 @@ def _contour() -> Iterator[str]:
         yield f"G1 X{x:.3f} Y{chance.uniform(0.0, 4.0):.3f}"
 
 
-def _interpret(path: Path, dialect: str, compiled_from: int | None = None) -> int:
-    interpretation = Interpretation(
-        read_source(path), dialect_named(dialect), _SETTINGS, compiled_from=compiled_from
-    )
+def _interpret(path: Path, dialect: str) -> int:
+    interpretation = Interpretation(read_source(path), dialect_named(dialect), _SETTINGS)
     return sum(len(chunk.moves) for chunk in interpretation.chunks())
 
 

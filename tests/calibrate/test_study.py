@@ -1,9 +1,9 @@
-"""A sample of the study of synthetic machines; scripts/calibration_study.py runs all 200."""
+"""A sample of the study of synthetic machines; ``python -m tests.calibrate.study`` runs all 200."""
 
 import numpy as np
 import pytest
 
-from scripts.calibration_study import covered, draw, extras_of, fit, unnamed
+from tests.calibrate.study import covered, draw, extras_of, fit, unnamed
 
 pytestmark = pytest.mark.bench
 

@@ -22,7 +22,7 @@ from tests.machine.machine_fixtures import three_axis_machine
 from twin.columns import join
 from twin.files.shipped import machine_file
 from twin.link.component import is_installed, module_folder
-from twin.link.linuxcnc import LOCK, processes_at_home
+from twin.link.linuxcnc import LOCK, process_name, processes_at_home
 from twin.machine.description.config import read_machine
 from twin.machine.model.model import build_spec
 from twin.machine.simulation.simulate import simulate
@@ -344,3 +344,37 @@ def test_no_question_is_missed_with_a_busy_process_on_each_core(folder: Path, tw
     assert told["alarms"] == []
     assert told["link"]["missed"] == 0
     assert told["link"]["f_error_difference"] < 1e-6
+
+
+STOPS = "G21 G90 G61\nG1 X2 F1000\nM0\nG1 X3\nM1\nG1 X4\nM60\nG1 X5\nM2\n"
+
+
+def test_a_program_that_waits_for_somebody_goes_on_and_says_so(folder: Path, twin: Twin):
+    ran = linked(twin, folder, STOPS, "--machine", "mill4")
+    assert ran.code == 0, ran.stderr
+    assert ran.stderr.count("the program stops (M0, M1 or M60)") == 2
+    told = result(folder)
+    assert told["dialect"] == "linuxcnc"
+    assert told["alarms"] == []
+
+
+@takes_minutes
+@pytest.mark.parametrize("part", ["milltask", "rtapi_app"])
+def test_a_killed_part_of_linuxcnc_ends_the_run_and_is_named(folder: Path, part: str):
+    home = folder / "out" / "linuxcnc"
+    with running_link(folder) as process:
+        time.sleep(2.0)
+        (number,) = [each for each in processes_at_home(home) if process_name(each) == part]
+        os.kill(number, signal.SIGKILL)
+        output, _ = process.communicate(timeout=300)
+    assert process.returncode == 4, output
+    (alarm,) = result(folder)["alarms"]
+    assert alarm["code"] == "control-stop"
+    assert f"its process {part} has gone" in alarm["message"]
+
+
+def test_a_soft_limit_ends_the_run_at_once(folder: Path, twin: Twin):
+    ran = linked(twin, folder, "G21 G90 G61\nG1 X5 F1000\nG1 X5000\nM2\n", "--machine", "mill4")
+    assert ran.code == 4
+    assert "soft-limit" in ran.stderr
+    assert result(folder)["wall_s"] < 15.0

@@ -10,6 +10,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from twin.commands.link import _explain_blending
 from twin.errors import UsageError
 from twin.link import linuxcnc
 from twin.link.headless_screen import FailedError, Operator
@@ -59,3 +60,22 @@ def test_the_operator_leaves_as_soon_as_the_twin_has_gone():
         operator.switch_on(1)
     operator.tell("failed", "the twin has gone")
     assert json.loads(log.getvalue()) == {"event": "failed", "text": "the twin has gone"}
+
+
+@pytest.mark.parametrize(
+    ("block", "explained"),
+    [
+        ("G64", True),
+        ("G21 g064 G1 X1", True),
+        ("G64 P0.01", False),
+        ("(G64)", False),
+        ("G1 X64", False),
+    ],
+)
+def test_a_g64_without_p_is_explained_with_its_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], block: str, explained: bool
+) -> None:
+    program = tmp_path / "part.ngc"
+    program.write_text(f"G21\n{block}\nM2\n", encoding="utf-8")
+    _explain_blending(program)
+    assert ("part.ngc:2: G64 without P" in capsys.readouterr().err) == explained

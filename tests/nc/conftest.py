@@ -3,14 +3,6 @@
 import pytest
 
 KINDS = {
-    "test_both_tiers": "thorough",
-    "test_compiled_compensation": "thorough",
-    "test_compiled_cycles": "thorough",
-    "test_compiled_loops": "thorough",
-    "test_compiled_paces": "thorough",
-    "test_compiled_transformations": "thorough",
-    "test_own_registers": "thorough",
-    "test_one_rule": "thorough",
     "test_oracle": "oracle",
     "test_rs274": "oracle",
 }

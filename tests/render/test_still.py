@@ -171,3 +171,14 @@ def test_load_bars_move_and_are_shown_only_where_force_was_simulated(scene: Scen
     green, amber, red_ = filled[1][0], filled[2][1], filled[3][2]
     assert 0 < green < amber < red_
     assert [sum(row) for row in filled[1:]] == [green, amber, red_]
+
+
+def test_what_a_frame_shows_is_not_left_on_the_next(scene: Scene) -> None:
+    gauge = gauge_at(scene, 601)
+    display, reading = gauge.display((1280, 720), 2.0), gauge.reading(no_warning)
+    other = dataclasses.replace(reading, position=reading.position + 123.4, tool=7, time_s=77.7)
+    grey = np.full((720, 1280, 3), 90, np.uint8)
+    first, second, again = (display.draw(grey, each) for each in (reading, other, reading))
+    assert np.array_equal(first, again)
+    assert 200 < (first != second).any(axis=2).sum() < 20_000
+    assert (grey == 90).all()

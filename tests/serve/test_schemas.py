@@ -1,6 +1,6 @@
 """Every state's documents against what the schemas of MTConnect 2.0 ask of the elements in them.
 
-The official schemas are in no package: ``scripts/mtconnect_schemas FOLDER`` takes them. Those beside
+The official schemas are in no package: ``test_official_schemas.py`` takes them from a folder. Those beside
 these tests were written after them, for what this agent writes alone.
 """
 

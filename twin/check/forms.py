@@ -88,8 +88,9 @@ def _add_case(suite: ET.Element, outcome: CheckOutcome) -> None:
         about = {"type": first.code, "message": _printable(first.message)}
         problem = ET.SubElement(case, kind, about)
         problem.text = _printable("\n".join(str(finding) for finding in outcome.findings))
-    if told := figures(outcome):
-        ET.SubElement(case, "system-out").text = "\n".join(f"{k}: {v}" for k, v in told)
+    told = [*(f"{key}: {value}" for key, value in figures(outcome)), *outcome.scope]
+    if told:
+        ET.SubElement(case, "system-out").text = _printable("\n".join(told))
     if outcome.warnings:
         text = "\n".join(str(warning) for warning in outcome.warnings)
         ET.SubElement(case, "system-err").text = _printable(text)

@@ -52,6 +52,7 @@ class CheckOutcome:
         warnings: What the interpreter had to say beside that.
         changes: What a sweep changed for it, keys of job or machine and their values.
         expected: The code that its job expects and that it ended with, so that it passes.
+        scope: What the verdict looked at, one sentence each.
     """
 
     program: str
@@ -65,6 +66,7 @@ class CheckOutcome:
     warnings: tuple[Finding, ...] = ()
     changes: tuple[tuple[str, Any], ...] = ()
     expected: str | None = None
+    scope: tuple[str, ...] = ()
 
     @property
     def passed(self) -> bool:

@@ -93,8 +93,6 @@ def _run(variant: Variant, settings: CheckSettings) -> CheckOutcome:
     ended = not alarmed or preparation.job.file.expect is not None
     figures = _figures(outcome) if ended else None
     differing = _baseline_reasons(preparation, figures, settings)
-    if not dry_run.moves and not alarmed:
-        differing.insert(0, Reason("empty-program", "the program makes no move", 0, 0.0))
     failed = bool(differing) and not alarmed
     return CheckOutcome(
         program=str(path),
@@ -109,6 +107,7 @@ def _run(variant: Variant, settings: CheckSettings) -> CheckOutcome:
             *_findings(preparation, differing),
         ),
         warnings=tuple(_diagnostic_finding(found) for found in outcome.warnings),
+        scope=tuple(outcome.scope.lines()),
     )
 
 

@@ -66,7 +66,7 @@ def compile_kernels() -> None:
     """Let Numba compile what the commands call, or load it where it is compiled already."""
     programs = resource_root("programs")
     jobs = [programs / name for name in JOBS]
-    steps: list[Callable[[], object]] = [lambda: _interpret(programs)]
+    steps: list[Callable[[], object]] = [_read_lines]
     steps += [lambda job=job: _run(job) for job in jobs]
     steps += [lambda: _plan(jobs[0]), _circle, _train]
     for step in steps:
@@ -74,19 +74,22 @@ def compile_kernels() -> None:
     note_complete(writable_folder())
 
 
-def _interpret(programs: Path) -> None:
-    """Every shipped program through the compiled interpreter, which short ones do without."""
-    from twin.compilation.speed import Speed
+def _read_lines() -> None:
+    """Plain lines, which long programs have."""
+    from twin.nc.canonical import Axes
+    from twin.nc.control.settings import ControlSettings
+    from twin.nc.dialects import dialect_named
     from twin.nc.interpreter import Interpretation
-    from twin.run.preparation import prepare
+    from twin.nc.line_kernel.choice import compiled_kernel
+    from twin.nc.text.source import source_from_text
 
-    for job in sorted(programs.glob("*/*.toml")):
-        made = prepare(job)
-        interpretation = Interpretation(
-            made.source, made.dialect, made.settings, compiled_from=0, speed=Speed.HOT
-        )
-        for _ in interpretation.chunks():
-            pass
+    source = source_from_text("G0 X1\nX2\nM30\n")
+    settings = ControlSettings(axes=Axes(("X", "Y", "Z"), ("linear", "linear", "linear")))
+    interpretation = Interpretation(
+        source, dialect_named("gost"), settings, kernel=lambda _lines: compiled_kernel()
+    )
+    for _ in interpretation.chunks():
+        pass
 
 
 def _run(job: Path) -> None:

@@ -23,7 +23,6 @@ def print_interpretation(
         raise UsageError(f"no format '{form}': known formats are {', '.join(FORMATS)}")
     preparation = prepare(program, dialect=dialect, machine=machine, strict=strict)
     interpretation = preparation.interpretation()
-    interpretation.before_compiled_tier = _announce
     try:
         for line in FORMATS[form](interpretation):
             sys.stdout.write(f"{line}\n")
@@ -31,9 +30,3 @@ def print_interpretation(
         sys.stdout.flush()
         for warning in interpretation.diagnostics:
             sys.stderr.write(f"{warning}\n")
-
-
-def _announce() -> None:
-    from twin.compilation.announcement import announce_compilation
-
-    announce_compilation()

@@ -14,7 +14,7 @@ from twin.run.preparation import prepare
 from twin.run.progress import shown_progress
 from twin.run.results import RESULT_FILES, write_results
 from twin.run.run import Run
-from twin.run.run_folder import run_folder
+from twin.run.run_folder import program_stem, run_folder, without_verdict
 
 
 def run_and_print(
@@ -40,11 +40,12 @@ def run_and_print(
         TwinError: Something is wrong before the run could end; see each error's exit code.
     """
     announce_compilation()
-    preparation = prepare(path, dialect=dialect, machine=machine, strict=strict)
-    folder = out or Path("out") / preparation.job.program.stem
-    run = Run(preparation)
-    dry_run = run.dry_run()
-    with run_folder(folder, RESULT_FILES):
+    folder = out or Path("out") / program_stem(path)
+    with without_verdict(folder):
+        preparation = prepare(path, dialect=dialect, machine=machine, strict=strict)
+        run = Run(preparation)
+        dry_run = run.dry_run()
+    with run_folder(folder, RESULT_FILES), without_verdict(folder):
         with shown_progress() as progress:
             outcome = run.execute(dry_run, folder, progress)
             if video and outcome.samples:
@@ -55,6 +56,8 @@ def run_and_print(
                     _draw_contact(run, dry_run, folder)
         write_results(run, outcome, folder)
     print_findings(run, outcome)
+    for line in outcome.scope.lines():
+        typer.echo(f"  {line}")
     typer.echo(summary(run, outcome, folder))
     return outcome.verdict.exit_code
 

@@ -61,6 +61,7 @@ class Operator:
         command.wait_complete()
         command.program_open(program)
         command.wait_complete()
+        command.set_optional_stop(False)
         command.auto(linuxcnc.AUTO_RUN, 0)
         self.tell("running")
         began = time.monotonic()
@@ -71,12 +72,26 @@ class Operator:
                 time.sleep(10 * PAUSE_S)
                 self._look()
                 raise FailedError("the machine is off")
+            if status.interp_state == linuxcnc.INTERP_PAUSED:
+                self._go_on()
+                continue
             idle = status.interp_state == linuxcnc.INTERP_IDLE and status.inpos
             if idle and time.monotonic() - began > 10 * PAUSE_S:
                 break
             time.sleep(PAUSE_S)
         if self._look():
             raise FailedError("LinuxCNC reported an error")
+
+    def _go_on(self) -> None:
+        """Press cycle start where the program waits for somebody who does: at M0, M1 or M60."""
+        linuxcnc, status = self._linuxcnc, self._status
+        line = status.current_line
+        self.tell(
+            "message",
+            f"after line {line} the program stops (M0, M1 or M60); nobody is here, it goes on",
+        )
+        self._command.auto(linuxcnc.AUTO_RESUME)
+        self._wait("go on", lambda: status.interp_state != linuxcnc.INTERP_PAUSED)
 
     def _wait(self, what: str, done: Callable[[], bool]) -> None:
         end = time.monotonic() + ANSWER_S

@@ -31,6 +31,8 @@ _NOT_PLAIN = re.compile(r"[^\w/.+-]")
 _LEAVING_TIMEOUT_S = 30.0
 """How long LinuxCNC may take from its component's farewell to its end [s]."""
 _END_TIMEOUT_S = 10.0
+_PARTS = ("milltask", "rtapi_app")
+"""Processes without which the others wait for ever: the task controller and the realtime part."""
 
 
 class Event(NamedTuple):
@@ -46,16 +48,27 @@ class LinuxCnc:
     Attributes:
         folder: Of its configuration.
         log: What it printed.
+        lost: The part of it that has gone while others went on; empty where none has.
     """
 
     def __init__(self, process: subprocess.Popen[bytes], folder: Path, log: Path) -> None:
         self._process = process
         self.folder = folder
         self.log = log
+        self.lost = ""
+        self._parts: dict[str, int] = {}
 
     def goes_on(self) -> bool:
-        """Whether it is still there."""
-        return self._process.poll() is None
+        """Whether it is still there: its start script, and each part that has been seen running."""
+        if self._process.poll() is not None:
+            return False
+        self.lost = next(
+            (name for name, number in self._parts.items() if process_name(number) != name), ""
+        )
+        if not self.lost and len(self._parts) < len(_PARTS):
+            names = {process_name(number): number for number in processes_at_home(self.folder)}
+            self._parts = {name: names[name] for name in _PARTS if name in names}
+        return not self.lost
 
     def events(self) -> list[Event]:
         """What its operator had to say so far."""
@@ -64,16 +77,17 @@ class LinuxCnc:
         return [Event(**json.loads(line)) for line in lines]
 
     def end_soon(self) -> None:
-        """Wait until it has ended by itself; it is ended where it does not."""
+        """Wait until it has ended by itself; it is ended where it does not, or where a part is lost."""
+        finished = any(event.event in ("finished", "failed") for event in self.events())
         try:
-            self._process.wait(_LEAVING_TIMEOUT_S)
+            self._process.wait(0.0 if self.lost and not finished else _LEAVING_TIMEOUT_S)
         except subprocess.TimeoutExpired:
             self.end()
 
     def end(self) -> None:
         """End it, and all that it started."""
         for number in (signal.SIGTERM, signal.SIGKILL):
-            if not self.goes_on():
+            if self._process.poll() is not None:
                 break
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(self._process.pid, number)
@@ -169,6 +183,16 @@ def processes_at_home(folder: Path) -> list[int]:
             if home in path.read_bytes().split(b"\0"):
                 found.append(int(path.parent.name))
     return found
+
+
+def process_name(number: int) -> str:
+    """What a process is called; empty where there is none, or where it has ended and nobody asked."""
+    try:
+        text = Path(f"/proc/{number}/stat").read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return ""
+    name, _, rest = text.partition("(")[2].rpartition(")")
+    return "" if rest.split()[:1] == ["Z"] else name
 
 
 def operator_log(folder: Path) -> Path:

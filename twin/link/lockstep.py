@@ -9,6 +9,7 @@ a recording, played back, gives the joints of the run bit for bit.
 import dataclasses
 import enum
 import socket
+import time
 from collections.abc import Callable, Iterator
 from typing import Self
 
@@ -41,6 +42,8 @@ SETTLING_S = 0.25
 """How long the end of a program is kept after its last motion [s]."""
 LONGEST_SILENCE_S = 15.0
 """A control that has asked and then says nothing for so long is gone [s]."""
+_ASKED_S = 0.5
+"""How often the control is looked after while it asks [s]."""
 _WAKE_S = 0.2
 """How often the twin looks around while nobody asks [s]."""
 _LOOPBACK = "127.0.0.1"
@@ -65,6 +68,7 @@ class LockstepMotion:
         missed: How many questions never came, by their numbers.
         greatest_disagreement: Largest difference between the following error that the control saw
             and the one that is recorded for the same instant [mm or deg].
+        left: Whether the control took its leave; else nobody answers it any more.
         goes_on: Asked while nothing comes: whether the control is still there.
         last_word: Asked when the control has left: the alarm that it raised itself, told when [s]
             and in which line the samples ended.
@@ -100,7 +104,7 @@ class LockstepMotion:
         self._commands = Commands(self._period, live.position)
         self._session = session
         self._phase = _Phase.RUNNING if session else _Phase.BEFORE
-        self._enabled, self._left = False, False
+        self._enabled, self.left = False, False
         self._log = SampleLog(self._period)
         self._line = self._source_line = 0
         self._sequence = 0
@@ -129,7 +133,12 @@ class LockstepMotion:
         question, answer = bytearray(REQUEST_LAYOUT.size + 1), bytearray(ANSWER_LAYOUT.size)
         view = memoryview(question)
         silent_s, control = 0.0, None
-        while not self._left:
+        looked = time.monotonic()
+        while not self.left:
+            if time.monotonic() - looked > _ASKED_S:
+                looked = time.monotonic()
+                if not self.goes_on():
+                    break
             try:
                 size, sender = self._socket.recvfrom_into(question)
             except TimeoutError:
@@ -166,7 +175,7 @@ class LockstepMotion:
 
     def _hear(self, request: Request) -> None:
         """Go one servo period on as the control asks."""
-        self._left = bool(request.state & REQUEST_STATES["leaving"])
+        self.left = bool(request.state & REQUEST_STATES["leaving"])
         self.missed += max(0, request.sequence - self._sequence - 1) if self._sequence else 0
         self._sequence = request.sequence
         position = np.array(request.command[: self._count])

@@ -105,7 +105,10 @@ def run_on_twin(
                 if not session:
                     motion.last_word = _last_word(linuxcnc, axes.names)
                 outcome = run.execute(dry_run, folder, progress, motion)
-                linuxcnc.end_soon()
+                if motion.left:
+                    linuxcnc.end_soon()
+                else:
+                    linuxcnc.end()
                 for event in linuxcnc.events():
                     if event.text:
                         say(f"linuxcnc: {event.text}")
@@ -158,6 +161,8 @@ def _last_word(linuxcnc: LinuxCnc, axes: tuple[str, ...]) -> Callable[[float, in
             if found := _FOLLOWING_ERROR.search(text):
                 code, axis = "following-error", axes[int(found.group(1))]
         said = "; ".join(errors or [event.text for event in events[-1:]])
+        if linuxcnc.lost:
+            said = f"its process {linuxcnc.lost} has gone"
         reason = f"LinuxCNC stopped: {said}" if said else "LinuxCNC ended before the program did"
         return Alarm(code, line, time_s, axis, reason)
 

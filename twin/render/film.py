@@ -1,16 +1,19 @@
 """Films of a recorded run."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from twin.errors import RenderError
 from twin.job.job_file import VideoTable
-from twin.render.drawing.canvas import quality_named
+from twin.nc.canonical import IntArray
+from twin.recording.reader import Recording
+from twin.render.drawing.canvas import Pixels, quality_named
 from twin.render.encoder import video_writer
 from twin.render.frames import deal, frame_ends
 from twin.render.gauge import Gauge
+from twin.render.hud import Reading
 from twin.render.scene.scene import Scene
-from twin.render.scene.stage import stage
+from twin.render.scene.stage import Stage, stage
 
 Progress = Callable[[int, int], None]
 """Told how many frames are drawn, and of how many."""
@@ -55,21 +58,42 @@ def film(scene: Scene, *, video: VideoTable, out: Path, progress: Progress | Non
         stage(scene, size, quality, renderer=video.renderer) as play,
         video_writer(out, size, video.fps) as writer,
     ):
-        done = 0
-        for samples, due in deal(recording, ends):
-            play.advance(samples)
-            gauge.add(samples)
-            if not due:
-                continue
-            cameras = video.cameras
-            if video.layout == "sequence":
-                cameras = (cameras[done * len(cameras) // frames],)
-            pixels, reading = play.picture(*cameras), gauge.reading(play.warning)
+        for done, (pixels, reading) in enumerate(_frames(play, gauge, video, recording, ends), 1):
             if video.display:
                 writer.write(lambda pixels=pixels, reading=reading: display.draw(pixels, reading))
             else:
                 writer.write(lambda pixels=pixels: pixels)
-            done += 1
             if progress is not None:
                 progress(done, frames)
     return out
+
+
+def _frames(
+    play: Stage, gauge: Gauge, video: VideoTable, recording: Recording, ends: IntArray
+) -> Iterator[tuple[Pixels, Reading]]:
+    """Draw a film's frames, with what there is to read off; each is drawn while the next one is cut.
+
+    Args:
+        play: Draws.
+        gauge: Reads.
+        video: Which cameras are shown.
+        recording: What is filmed.
+        ends: How many samples lie behind each frame.
+    """
+    begun: tuple[Callable[[], Pixels], Reading] | None = None
+    number = 0
+    for samples, due in deal(recording, ends):
+        play.advance(samples)
+        gauge.add(samples)
+        if not due:
+            continue
+        play.refresh()
+        if begun is not None:
+            yield begun[0](), begun[1]
+        cameras = video.cameras
+        if video.layout == "sequence":
+            cameras = (cameras[number * len(cameras) // len(ends)],)
+        begun = play.begin_picture(*cameras), gauge.reading(play.warning)
+        number += 1
+    if begun is not None:
+        yield begun[0](), begun[1]

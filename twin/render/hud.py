@@ -27,6 +27,8 @@ LOAD_INKS = ((0.7, (38, 132, 88, 255)), (1.0, (214, 137, 16, 255)), (math.inf, A
 """Colours of a load's bar below these shares of what is borne."""
 PANEL_WIDTH = 262
 """Of the panels at the right [px]."""
+UNIT_WIDTH = 38
+"""From the end of an axis's value to the panel's padding [px]."""
 
 BASE_HEIGHT = 720
 """Height of a picture for which the sizes below are written [px]."""
@@ -164,7 +166,7 @@ class Display:
         draw.text((padding, self._px(19)), text, font=self._heading, fill=ink, anchor="lm")
         return panel
 
-    @functools.lru_cache(maxsize=4)  # noqa: B019 (a display lives as long as its film)
+    @functools.lru_cache(maxsize=32)  # noqa: B019 (a display lives as long as its film)
     def _program_panel(self, line: int) -> Image.Image:
         padding, row = self._px(12), self._px(25)
         shown = min(LINES_SHOWN, len(self._source))
@@ -195,36 +197,59 @@ class Display:
         return panel
 
     def _axes_panel(self, reading: Reading) -> Image.Image:
+        panel = self._axes_form.copy()
+        draw = ImageDraw.Draw(panel)
+        right = panel.width - self._px(14)
+        middle = self._px(14) + self._px(30) // 2
+        for value in reading.position:
+            text = f"{value:.3f}" if abs(value) < 1e6 else f"{value:.6g}"
+            place = (right - self._px(UNIT_WIDTH), middle)
+            number = text.replace("-0.000", "0.000")
+            draw.text(place, number, font=self._bold, fill=INK, anchor="rm")
+            middle += self._px(30)
+        middle = self._first_small_row
+        draw.text(
+            (self._px(14), middle + self._px(23)),
+            f"tool {reading.tool}",
+            font=self._small,
+            fill=MUTED,
+            anchor="lm",
+        )
+        for text in (
+            f"{reading.feed:.0f} {reading.feed_unit}",
+            _turning(reading.spindle),
+            f"{reading.error_um:.1f} µm",
+            _clock(reading.time_s),
+        ):
+            draw.text((right, middle), text, font=self._mono, fill=INK, anchor="rm")
+            middle += self._px(23)
+        return panel
+
+    @property
+    def _first_small_row(self) -> int:
+        """Middle of the first row below the axes."""
+        row, small_row = self._px(30), self._px(23)
+        axes = self._px(14) + row // 2 + len(self._axes.names) * row
+        return axes + self._px(10) - (row - small_row) // 2
+
+    @functools.cached_property
+    def _axes_form(self) -> Image.Image:
+        """What the panel of the axes shows in every frame: names, units, the scale of the trail."""
         padding, row, small_row = self._px(14), self._px(30), self._px(23)
-        small = [
-            ("feed", f"{reading.feed:.0f} {reading.feed_unit}"),
-            (f"tool {reading.tool}", _turning(reading.spindle)),
-            (self._error_name, f"{reading.error_um:.1f} µm"),
-            ("time", _clock(reading.time_s)),
-        ]
-        width = self._px(PANEL_WIDTH)
+        small = ("feed", "", self._error_name, "time")
         legend = self._error_scale is not None
         rows = len(self._axes.names) * row + self._px(10) + (len(small) + legend) * small_row
-        panel, draw = self._panel(width, rows + 2 * padding, PAPER)
-        middle = padding + row // 2
-        right = width - padding
-        unit_width = self._px(38)
-        for name, kind, value in zip(
-            self._axes.names, self._axes.kinds, reading.position, strict=True
-        ):
+        panel, draw = self._panel(self._px(PANEL_WIDTH), rows + 2 * padding, PAPER)
+        middle, right = padding + row // 2, panel.width - padding
+        for name, kind in zip(self._axes.names, self._axes.kinds, strict=True):
             draw.text((padding, middle), name, font=self._bold, fill=ACCENT, anchor="lm")
-            text = f"{value:.3f}" if abs(value) < 1e6 else f"{value:.6g}"
-            number = text.replace("-0.000", "0.000")
-            place = (right - unit_width, middle)
-            draw.text(place, number, font=self._bold, fill=INK, anchor="rm")
+            place = (right - self._px(UNIT_WIDTH) + self._px(8), middle)
             unit = "mm" if kind == "linear" else "°"
-            place = (right - unit_width + self._px(8), middle)
             draw.text(place, unit, font=self._small, fill=MUTED, anchor="lm")
             middle += row
-        middle += self._px(10) - (row - small_row) // 2
-        for name, text in small:
+        middle = self._first_small_row
+        for name in small:
             draw.text((padding, middle), name, font=self._small, fill=MUTED, anchor="lm")
-            draw.text((right, middle), text, font=self._mono, fill=INK, anchor="rm")
             middle += small_row
         if self._error_scale is not None:
             scale = f"{self._error_scale:.3g} µm"
@@ -272,9 +297,9 @@ def lay_over(frame: Pixels, panel: Image.Image, left: int, top: int) -> None:
     """Lay a panel over a frame, as much of it as fits."""
     left, top = max(0, left), max(0, top)
     part = frame[top : top + panel.height, left : left + panel.width]
-    over = np.asarray(panel)[: part.shape[0], : part.shape[1]].astype(np.uint16)
-    alpha = over[..., 3:]
-    part[:] = ((part * (255 - alpha) + over[..., :3] * alpha) // 255).astype(np.uint8)
+    under = Image.fromarray(part)
+    under.paste(panel, mask=panel)
+    part[:] = np.asarray(under)
 
 
 def _printable(line: str) -> str:

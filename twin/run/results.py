@@ -84,6 +84,8 @@ def report_of(
         tolerance=run.preparation.job.file.tolerance,
         trace=run.trace,
         result=content,
+        scope=tuple(outcome.scope.lines()),
+        warnings=tuple((found.line, found.code, found.message) for found in outcome.warnings),
         stills=stills,
     )
 
@@ -99,6 +101,7 @@ def _summary(run: Run, outcome: Outcome) -> RunSummary:
         wall_s=run.clock.wall_s,
         stages={f"{name}_s": seconds for name, seconds in run.clock.seconds.items()},
         near_miss=None if outcome.near_miss is None else dataclasses.asdict(outcome.near_miss),
+        scope=outcome.scope.as_json(),
         cut=_cut(outcome, preparation.job.file.stock),
         commanded=named(outcome.final_commanded),
         simulated=named(outcome.final_simulated),

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Literal
 
 import pytest
 from browsers import CHROMIUM, QUIET
@@ -109,8 +110,10 @@ def brightness(page: Page, of: str, what: str) -> float:
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_text_stands_out_on_a_light_and_on_a_dark_page(page: Page, scheme: str):
-    page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
+def test_text_stands_out_on_a_light_and_on_a_dark_page(
+    page: Page, scheme: Literal["light", "dark"]
+):
+    page.emulate_media(color_scheme=scheme)
     paper = brightness(page, "section", "backgroundColor")
     assert (paper > 0.5) == (scheme == "light")
     for of, what in (("h1", "color"), ("svg text", "fill"), (".soft", "color")):

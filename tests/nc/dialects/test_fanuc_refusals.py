@@ -2,12 +2,9 @@
 
 import pytest
 
-from tests.nc.compiled.test_both_tiers import ALWAYS, NEVER, seen
 from tests.nc.running import WITH_TABLES, run
-from twin.compilation.speed import Speed
 from twin.nc.canonical import Function
 from twin.nc.dialects import dialect_named
-from twin.nc.text.source import source_from_text
 
 CALLS = "O1\nG0 X0. Y0. Z10.\nG81 X1. Y1. Z-5. R2. F100. {none}\nM98 P{number}\nG80\nM30\n"
 PROGRAMS = "O2\nX99.\nM99\nO2000\nX2.\nM99\n"
@@ -94,15 +91,9 @@ WITHOUT = "O1\n#1=#0\nG0 X5. Y5.\nG1 Y9. F100.\nX1.\nG2 X3. Y11. R2.\nG1 X7.\n\n
 
 
 @pytest.mark.parametrize("dialect", ["fanuc", "haas"])
-@pytest.mark.parametrize("compiled_from", [NEVER, ALWAYS], ids=["interpreter", "compiled"])
-def test_a_word_of_a_vacant_variable_is_as_if_it_were_not_written(
-    dialect: str, compiled_from: int
-) -> None:
+def test_a_word_of_a_vacant_variable_is_as_if_it_were_not_written(dialect: str) -> None:
     """Codes, axes, feeds and words of cycles; in a sum the variable counts as 0 (Macro B)."""
-    with_words, without = (
-        seen(source_from_text(text), dialect, WITH_TABLES, compiled_from, Speed.COLD)
-        for text in (VACANT, WITHOUT)
-    )
+    with_words, without = (run(text, dialect, WITH_TABLES) for text in (VACANT, WITHOUT))
     assert with_words.error is None
     assert without.error is None
     assert len(without.moves) == 12

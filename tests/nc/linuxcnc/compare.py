@@ -1,4 +1,4 @@
-"""``scripts/rs274 10000 7``: so many random programs, from that seed on, through twin and ``rs274``."""
+"""``scripts/fuzz rs274 10000 7``: so many random programs, from that seed on, through twin and ``rs274``."""
 
 import collections
 import sys

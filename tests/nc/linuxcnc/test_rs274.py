@@ -1,6 +1,6 @@
 """LinuxCNC's own interpreter and the dialect ``linuxcnc`` make the same of programs.
 
-``scripts/rs274 10000`` compares many more.
+``scripts/fuzz rs274 10000`` compares many more.
 """
 
 from pathlib import Path

@@ -3,15 +3,9 @@
 import dataclasses
 import re
 
-import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.nc.running import WITH_TABLES
-from twin.nc.bytecode.registers import MOST_WORDS
-from twin.nc.bytecode.token_kinds import UNSUPPORTED
-from twin.nc.compiled.decode_tables import DecodeTables
-from twin.nc.compiled.kernels.tokenizer import read_words
 from twin.nc.dialects import dialect_named
 from twin.nc.text.comments import (
     OPEN_COMMENT,
@@ -20,34 +14,14 @@ from twin.nc.text.comments import (
     comment_marks,
     comments_of,
 )
-from twin.nc.text.diagnostics import ProgramError
 from twin.nc.text.grammar import Grammar
 from twin.nc.text.lexer import Lexer
-from twin.nc.text.plain_word import NUMBER, SIGNED_NUMBER, SIGNED_POINTED_NUMBER
+from twin.nc.text.plain_word import NUMBER, SIGNED_NUMBER
 from twin.nc.text.reporter import Reporter
 from twin.nc.text.source import source_from_text
 
 DIALECT = dialect_named("codesys")
-TABLES = DecodeTables(DIALECT, WITH_TABLES, DIALECT.new_modal(), ())
 """``codesys`` has comments of every kind: of two characters, of one, up to the end, of a whole line."""
-LINES = st.text("XYyG1205.+-( *)/%\t#é\v\f\x01", max_size=16)
-
-
-@given(LINES)
-def test_what_the_tokenizer_reads_the_reader_reads_as_well(line: str):
-    data = np.frombuffer(line.encode(), np.uint8)
-    kinds, values = np.zeros(MOST_WORDS, np.int64), np.zeros(MOST_WORDS)
-    count = read_words(data, 0, len(data), TABLES.lines, kinds, values)
-    try:
-        report = Reporter(source_from_text(line), strict=False)
-        blocks = Lexer(DIALECT, report).blocks(line, 1)
-    except ProgramError:
-        blocks = None
-    if count != UNSUPPORTED:
-        words = [word for block in blocks or () for word in block.words]
-        assert blocks is not None
-        assert values[:count].tolist() == [word.value for word in words]
-        assert kinds[:count].tolist() == [TABLES.token_kinds[word.address] for word in words]
 
 
 def test_blanks_within_numbers_are_closed_up_and_those_of_comments_are_not():
@@ -89,4 +63,3 @@ def test_a_number_has_digits_one_sign_and_one_point_at_most(text: str):
     is_signed = is_number and len(text) - len(plain) <= 1
     assert bool(re.fullmatch(NUMBER, text)) == (is_number and text == plain)
     assert bool(re.fullmatch(SIGNED_NUMBER, text)) == is_signed
-    assert bool(re.fullmatch(SIGNED_POINTED_NUMBER, text)) == (is_signed and "." in text)

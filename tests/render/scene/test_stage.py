@@ -13,7 +13,14 @@ from twin.job.job_file import StockTable, ToolTable
 from twin.machine.description.config import Machine
 from twin.nc.canonical import FloatArray
 from twin.recording.reader import Recording, open_recording
-from twin.render.drawing.canvas import DRAFT, FINAL, Pixels
+from twin.render.drawing.canvas import (
+    DRAFT,
+    FINAL,
+    HIDDEN_GROUP,
+    SHOWN_GROUPS,
+    Pixels,
+    Quality,
+)
 from twin.render.frames import deal
 from twin.render.scene.placement import tip_position
 from twin.render.scene.scene import Scene
@@ -231,6 +238,47 @@ def test_a_stock_that_is_cut_away_is_seen_no_more(scene: Scene) -> None:
         after = stock_pixels(play, "top").sum()
     assert before > 50
     assert after == 0
+
+
+@pytest.mark.seconds("pictures are drawn without a graphics card")
+@pytest.mark.parametrize("quality", [DRAFT, dataclasses.replace(DRAFT, passes=3)])
+def test_frames_that_are_drawn_ahead_are_those_drawn_one_by_one(
+    scene: Scene, quality: Quality
+) -> None:
+    ends = np.linspace(100, 1000, 5).astype(int)
+    drawn: list[list[Pixels]] = [[], []]
+    with stage(scene, SIZE, quality) as play:
+        for chunk, due in deal(scene.recording, ends):
+            play.advance(chunk)
+            if due:
+                drawn[0].append(play.picture("overview"))
+    with stage(scene, SIZE, quality) as play:
+        begun = None
+        for chunk, due in deal(scene.recording, ends):
+            play.advance(chunk)
+            if due:
+                play.refresh()
+                if begun is not None:
+                    drawn[1].append(begun())
+                begun = play.begin_picture("overview")
+        assert begun is not None
+        drawn[1].append(begun())
+    assert np.array_equal(drawn[0], drawn[1])
+    assert not np.array_equal(drawn[0][1], drawn[0][3])
+
+
+def test_the_order_of_drawing_hides_nothing_and_leaves_the_model_as_it_was(scene: Scene) -> None:
+    with stage(scene, SIZE, DRAFT) as play:
+        play_to(play, scene.recording, 400)
+        play.refresh()
+        groups = play.model.geom_group.copy()
+        first = play.begin_picture("overview")()
+        assert np.array_equal(play.model.geom_group, groups)
+        for group in SHOWN_GROUPS:
+            play.model.geom_group[np.isin(groups, SHOWN_GROUPS)] = group
+            assert np.array_equal(play.begin_picture("overview")(), first)
+        play.model.geom_group[:] = HIDDEN_GROUP
+        assert not np.array_equal(play.begin_picture("overview")(), first)
 
 
 @pytest.mark.seconds("pictures are drawn without a graphics card")

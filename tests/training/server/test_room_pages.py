@@ -76,7 +76,7 @@ def chromium(leader):
 def led(request, leader):
     """Each of the browsers, for what they do in ways of their own: keys, wheels, fields, pages that freeze.
 
-    ``scripts/plays --firefox`` plays every scene in the other one too.
+    ``TWIN_TEST_BROWSER=firefox`` has every scene played in that one too (``test_played_scenes.py``).
     """
     if request.param == "firefox" and FIREFOX is None:
         pytest.skip("no Firefox here; Debian has it in the package firefox-esr")

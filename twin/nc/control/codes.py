@@ -4,7 +4,6 @@ import dataclasses
 from collections.abc import Callable, Mapping
 from typing import Literal
 
-from twin.nc.bytecode.assembler import Assembler
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import MotionMode
 from twin.nc.control.modal import ModalChanges
@@ -15,51 +14,6 @@ from twin.nc.text.blocks import Statement, Word
 Action = Callable[[Control], None]
 WordAction = Callable[[Control, Word], None]
 StatementAction = Callable[[Control, Statement], None]
-
-CodeWriter = Callable[[Control, Assembler], None]
-WordWriter = Callable[[Control, Word, Assembler], None]
-StatementWriter = Callable[[Control, Statement, Assembler], None]
-
-
-@dataclasses.dataclass(frozen=True, slots=True)
-class Effect:
-    """The action of a code that is said as instructions, for both tiers.
-
-    Attributes:
-        write: Says it, taking the words that belong to it. It may look at the program and at the
-            settings, but not at what the control remembers: that is for the instructions.
-    """
-
-    write: CodeWriter
-
-    def __call__(self, control: Control) -> None:
-        """Do it."""
-        control.perform(lambda assembler: self.write(control, assembler))
-
-
-@dataclasses.dataclass(frozen=True, slots=True)
-class WordEffect:
-    """The action of a word that is said as instructions; as ``Effect``."""
-
-    write: WordWriter
-
-    def __call__(self, control: Control, word: Word) -> None:
-        """Do it."""
-        span = word.column, word.width
-        control.perform(lambda assembler: self.write(control, word, assembler), span)
-
-
-@dataclasses.dataclass(frozen=True, slots=True)
-class StatementEffect:
-    """The action of a statement that is said as instructions; as ``Effect``."""
-
-    write: StatementWriter
-
-    def __call__(self, control: Control, statement: Statement) -> None:
-        """Do it."""
-        span = statement.column, len(statement.keyword)
-        control.perform(lambda assembler: self.write(control, statement, assembler), span)
-
 
 Ground = Literal["seed", "manual", "decision"]
 """On what a code's meaning rests: the control's own page, its manuals, or this project."""
@@ -94,8 +48,6 @@ class GCode:
         alone: No other word may stand in its block.
         yields: Another code of its group in the block takes its place.
         refused: Why the twin refuses a code that the control knows; empty: it does not.
-        compiler: Says as instructions what an ``action`` does that is no ``Effect``; None: it has no
-            compiled form.
         ground: On what the meaning rests.
     """
 
@@ -110,13 +62,7 @@ class GCode:
     alone: bool = False
     yields: bool = False
     refused: str = ""
-    compiler: CodeWriter | None = None
     ground: Ground = "decision"
-
-    @property
-    def writer(self) -> CodeWriter | None:
-        """Says what it does as instructions; None: it has no compiled form."""
-        return _writer(self.action or self.perform, self.compiler)
 
     @property
     def refusal(self) -> str:
@@ -153,15 +99,6 @@ class MCode:
     action: Action | None = None
     ground: Ground = "decision"
 
-    @property
-    def writer(self) -> CodeWriter | None:
-        """Says what it does as instructions; None: it has no compiled form."""
-        return _writer(self.action, None)
-
-
-def _writer(action: Action | None, compiler: CodeWriter | None) -> CodeWriter | None:
-    return action.write if isinstance(action, Effect) else compiler
-
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
 class Vocabulary(ControlLanguage):
@@ -169,7 +106,7 @@ class Vocabulary(ControlLanguage):
 
     Attributes:
         groups: Modal groups in the order in which they take effect.
-        g: G codes by number, such as 54 or 54.1; those with a point run at the interpreter tier.
+        g: G codes by number, such as 54 or 54.1.
         m: M codes by number.
         any_m: M codes outside the table are functions too.
         last_of_group_counts: Of several G codes of a modal group in a block the last one counts; else they

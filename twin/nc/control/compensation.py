@@ -1,28 +1,14 @@
 """How a control begins radius compensation, and the tools that its words name."""
 
-from collections.abc import Mapping
-
-from twin.nc.bytecode.compensation import BEGINS, IN_FORCE, LEADS_OUT, NO_RADIUS, begin, may_begin
 from twin.nc.control.control import Control
 from twin.nc.control.state import integer_of
+from twin.nc.geometry.matrices import handedness
+from twin.nc.path.compensation import leads
+from twin.nc.path.compensation.contour import LEADING_OUT, OFF, STAGE
 from twin.nc.text.blocks import Word
 
 NEEDS_TOOL = "give the job a tool with its radius and length: [[tools]]"
 """Hint where a code needs a tool that the job does not have."""
-_FINDINGS: Mapping[int, tuple[str, str, str | None]] = {
-    NO_RADIUS: ("compensation-radius", "a tool cannot have the radius {radius:g}", None),
-    IN_FORCE: (
-        "compensation-change",
-        "compensation is in force already",
-        "end it by G40 before it starts on another side or with another radius",
-    ),
-    LEADS_OUT: (
-        "compensation-end",
-        "compensation has ended, and no line has led out of it yet",
-        "write a straight move in the plane before it starts anew",
-    ),
-}
-"""Code, message and hint of why compensation cannot begin."""
 
 
 def tool_numbered(control: Control, word: Word) -> int:
@@ -51,10 +37,20 @@ def compensate(control: Control, side: float, radius: float) -> None:
         ProgramError: It is in force already, or the radius is no radius.
     """
     path = control.path
-    answer = may_begin(radius, path.contour)
-    if answer < 0:
-        code, message, hint = _FINDINGS[answer]
-        control.fail(code, message.format(radius=radius), hint=hint)
-    if answer == BEGINS:
-        path.flush()
-        begin(side, radius, control.constants, control.state, path.contour)
+    stage = path.contour.counts[STAGE]
+    if not radius >= 0.0:
+        control.fail("compensation-radius", f"a tool cannot have the radius {radius:g}")
+    if stage == LEADING_OUT:
+        message = "compensation has ended, and no line has led out of it yet"
+        hint = "write a straight move in the plane before it starts anew"
+        control.fail("compensation-end", message, hint=hint)
+    if stage != OFF:
+        hint = "end it by G40 before it starts on another side or with another radius"
+        control.fail("compensation-change", "compensation is in force already", hint=hint)
+    if radius == 0.0:
+        return
+    path.flush()
+    signed_offset = side * radius * handedness(control.frame.matrix)
+    modal, contour = control.modal, path.contour
+    contour.plane[:] = control.part_plane().directions
+    leads.begin(contour, signed_offset, modal.square_corners, modal.indirect_leads)

@@ -2,30 +2,15 @@
 
 import abc
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Iterable, Mapping
+from typing import Any
 
-from twin.nc.bytecode.assembler import Assembler
-from twin.nc.bytecode.effects import Affected
-from twin.nc.bytecode.registers import (
-    ACCELERATION,
-    CORNER,
-    CORNER_TOLERANCE,
-    DECELERATION,
-    FEED_MODE,
-    INCREMENTAL,
-    PROGRAMMED_FEED,
-    RAPID_FEED,
-    SPINDLE,
-    SPINDLE_TURNS,
-    UNIT,
-)
 from twin.nc.canonical import Dwell, Function
-from twin.nc.control.modal import CORNERS
+from twin.nc.control.program_counter import Call
 from twin.nc.control.words import ControlWords
 from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.frame import arc_about, moved_shift
 from twin.nc.geometry.planes import Plane, Vector
-from twin.nc.path.event_columns import EventRows
 from twin.nc.path.move_columns import FEED, NAN, RAPID, Segment
 from twin.nc.path.moves import (
     LARGEST_COORDINATE,
@@ -49,7 +34,10 @@ from twin.nc.path.paces import (
     rapid_feed,
 )
 from twin.nc.path.segments import direction_of
-from twin.nc.text.blocks import Block
+from twin.nc.text.blocks import Block, Location, Statement, Word
+
+MOST_CALLS = 64
+"""Parts of a program within each other: more than any control allows."""
 
 
 class Control(ControlWords):
@@ -57,8 +45,8 @@ class Control(ControlWords):
 
     def target(self) -> list[float]:
         """Take the axis words; the programmed position that they ask for, shape (k,)."""
-        target, cells, linear = list(self.programmed), self.modal.cells, self.linear
-        unit, relative = cells[UNIT], cells[INCREMENTAL] != 0.0
+        target, linear = list(self.programmed), self.linear
+        unit, relative = self.modal.unit, self.modal.incremental
         for index, word in self.take_axis_words():
             incremental = relative or word.incremental
             here = target[index]
@@ -112,17 +100,16 @@ class Control(ControlWords):
         if length < SMALLEST_MOVE:
             self.programmed = target
             return
-        cells, registers = self.modal.cells, self.registers
-        is_arc = center is not None
+        modal, is_arc = self.modal, center is not None
         if self.series:
             self.place_switches(length)
         if rapid:
-            feed = rapid_feed(registers[RAPID_FEED], registers[PROGRAMMED_FEED])
+            feed = rapid_feed(self.rapid_feed, NAN if self.feed is None else self.feed)
         else:
             feed = self._feed_per_minute(end, is_arc, length)
             if self.feed_rule is not PATH_COUNTS:
                 feed = self._pace_by_rule(feed, end, length, center, sweep)
-        acceleration, deceleration = registers[ACCELERATION], registers[DECELERATION]
+        acceleration, deceleration = self.acceleration, self.deceleration
         if rapid:
             acceleration = _either(self.rapid_acceleration, acceleration)
             deceleration = _either(self.rapid_deceleration, deceleration)
@@ -139,8 +126,8 @@ class Control(ControlWords):
             end,
             target,
             feed,
-            RAPIDS_END if rapid else CORNERS[cells[CORNER]],
-            cells[CORNER_TOLERANCE],
+            RAPIDS_END if rapid else modal.corner,
+            modal.corner_tolerance,
             acceleration,
             deceleration,
             center,
@@ -154,8 +141,15 @@ class Control(ControlWords):
         self.programmed = target
         self.part = end
 
-    def resume_at(self, programmed: list[float], part: list[float], last: Segment | None) -> None:
-        """Blocks that went past the control have ended here; ``last`` is their last move, if any."""
+    def take_rows(self, rows: Iterable[Any], programmed: list[float], part: list[float]) -> None:
+        """Moves that were made elsewhere lead to these positions, shape (k,).
+
+        Args:
+            rows: As ``Path.add_rows`` takes them.
+            programmed: Programmed position [mm or deg].
+            part: Part position [mm or deg].
+        """
+        last = self.path.add_rows(*rows)
         self.programmed, self.part = programmed, part
         if last is not None:
             self._last = last
@@ -172,14 +166,15 @@ class Control(ControlWords):
         return [1.0, 1.0, 1.0, *shares[3:]] if is_arc else shares
 
     def _feed_per_minute(self, end: list[float], is_arc: bool, length: float) -> float:
-        registers, cells, settings = self.registers, self.modal.cells, self.settings
-        feed, mode, speed = registers[PROGRAMMED_FEED], int(cells[FEED_MODE]), registers[SPINDLE]
-        finding = finding_of_feed(feed, mode, speed, registers[SPINDLE_TURNS])
+        modal, settings = self.modal, self.settings
+        feed = NAN if self.feed is None else self.feed
+        speed = NAN if self.spindle is None else self.spindle
+        finding = finding_of_feed(feed, modal.feed_mode, speed, float(self.spindle_turns))
         if finding != PACED:
             self._blame_feed(finding)
         turning = not is_arc and only_turns(self.part, end, self.linear)
         otherwise = (settings.default_feed, settings.default_rotary_feed)
-        return feed_per_minute(feed, mode, length, turning, cells[UNIT], speed, otherwise)
+        return feed_per_minute(feed, modal.feed_mode, length, turning, modal.unit, speed, otherwise)
 
     def _pace_by_rule(
         self, pace: float, end: list[float], length: float, center: Vector | None, sweep: float
@@ -192,8 +187,7 @@ class Control(ControlWords):
         if center is not None:
             radius = arc_radius(self.part, center)
             move = move._replace(radius=radius, around=radius * math.radians(abs(sweep)))
-        cells = self.modal.cells
-        return pace_by_rule(self.feed_rule, pace, move, int(cells[FEED_MODE]), cells[UNIT])
+        return pace_by_rule(self.feed_rule, pace, move, self.modal.feed_mode, self.modal.unit)
 
     def _blame_feed(self, finding: int) -> None:
         """Say what is wrong with the pace of a move.
@@ -209,7 +203,7 @@ class Control(ControlWords):
         self.report.warn_once(
             "no-feed",
             "no feed is programmed: the machine's default is used",
-            *self._blamed(None),
+            *self.span_of(None),
             hint="write F in the first block that needs it",
         )
 
@@ -221,28 +215,93 @@ class Control(ControlWords):
         """Report a function at this place of the path."""
         self.path.event(Function(0, self.block.line, word, dict(arguments), at))
 
-    def begin_effect(self) -> Affected:
-        """Let the columns show where the control stands, for an instruction."""
-        state = self.state
-        state.event_count[0] = 0
-        state.programmed[:], state.part[:] = self.programmed, self.part
-        return self.affected
+    # --- flow
 
-    @property
-    def affected(self) -> Affected:
-        """What instructions change; only the registers are up to date between two of them."""
-        return Affected(self.constants, self.state, self._event_room)
+    def jump(self, location: Location) -> None:
+        """Let the program go on at a location."""
+        self.program_counter.go(location)
+        self._end_forgotten_cycle()
 
-    def end_effect(self) -> None:
-        """Take back what an instruction has changed, and report what happened."""
-        state, room = self.state, self._event_room
-        self.programmed = state.programmed.tolist()
-        self.frame.refresh()
-        for event in EventRows(room.events, room.event_values).part(0, int(state.event_count[0])):
-            if isinstance(event, Dwell):
-                self.dwell(event.seconds)
-            elif isinstance(event, Function):
-                self.function(event.word, event.arguments)
+    def _end_forgotten_cycle(self) -> None:
+        if self.modal.cycle is None:
+            self.forget_cycle()
+
+    def call(
+        self,
+        first: Location,
+        deepest: int,
+        blamed: Word | Statement,
+        values: Iterable[tuple[str, float]] | None = None,
+        *,
+        restores: bool = False,
+        times: float = 1.0,
+    ) -> None:
+        """Run the part that begins at a location and ends by a word.
+
+        Args:
+            first: Where it begins.
+            deepest: Parts that may call each other.
+            blamed: What asks for it.
+            values: Of its own variables by name; None: it has the caller's.
+            restores: Its end puts back into force what is in force now.
+            times: How often it runs.
+
+        Raises:
+            ProgramError: Too many parts call each other, or the number of runs is none.
+        """
+        call = self._begin_call(first, deepest, blamed, times)
+        if restores:
+            call.restores = self.modal.fork()
+        if values is not None:
+            call.owns_variables = True
+            self.variables.enter()
+            for name, value in values:
+                self.variables.write(name, value)
+
+    def repeat(
+        self, first: Location, last: Location, deepest: int, blamed: Statement, times: float
+    ) -> None:
+        """Run a range of blocks so often; as ``call``."""
+        self._begin_call(first, deepest, blamed, times).last = last
+
+    def _begin_call(
+        self, first: Location, deepest: int, blamed: Word | Statement, times: float
+    ) -> Call:
+        counter = self.program_counter
+        if counter.depth >= min(deepest, MOST_CALLS):
+            self.fail("call-depth", f"more than {deepest} calls within calls", blamed)
+        if not times >= 1.0 or times != math.floor(times):
+            self.fail("repeat-range", "the range or the number of runs is none", blamed)
+        call = Call(counter.location, first, int(times) - 1)
+        counter.calls.append(call)
+        self.jump(first)
+        return call
+
+    def require_caller(self, blamed: Word | Statement | None = None) -> None:
+        """A part must be being run that a word ends.
+
+        Raises:
+            ProgramError: None is.
+        """
+        if all(call.last is not None for call in self.program_counter.calls):
+            self.fail("return-outside", "there is no subroutine to return from", blamed)
+
+    def go_back(self, blamed: Word | Statement | None = None) -> None:
+        """The end of a subroutine: back behind its call, or to its beginning again.
+
+        Raises:
+            ProgramError: There is no subroutine.
+        """
+        self.require_caller(blamed)
+        ended = self.program_counter.end_call()
+        if ended is not None:
+            if ended.owns_variables:
+                self.variables.leave()
+            if ended.restores is not None:
+                self.modal.restore(ended.restores)
+        self._end_forgotten_cycle()
+
+    # --- coordinates
 
     def part_plane(self) -> Plane:
         """The working plane as the part sees it."""
@@ -272,17 +331,6 @@ class Control(ControlWords):
     @abc.abstractmethod
     def run(self, block: Block) -> None:
         """Run one block, also one that stands within a statement."""
-
-    @abc.abstractmethod
-    def perform(
-        self, write: Callable[[Assembler], None], span: tuple[int, int] | None = None
-    ) -> None:
-        """Do at once what is said as instructions.
-
-        Args:
-            write: Says it.
-            span: Column and width of what is blamed; None: the block's last code or first word.
-        """
 
     @abc.abstractmethod
     def place_switches(self, length: float) -> None:

@@ -1,14 +1,12 @@
 """What a dialect declares: its codes, words, syntax, start state and the decisions behind them."""
 
 import dataclasses
-from collections.abc import Callable, Container, Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from twin.nc.control.block_compiler import BlockCompiler
 from twin.nc.control.codes import Action, Vocabulary
 from twin.nc.control.control import Control
-from twin.nc.control.interpolation import MotionMode
-from twin.nc.control.modal import Modal, ModalChanges, new_modal
+from twin.nc.control.modal import ActiveCodes, Modal, ModalChanges
 from twin.nc.control.settings import ControlSettings
 from twin.nc.path.paces import PATH_COUNTS, FeedRule
 from twin.nc.text.blocks import Assignment, Block
@@ -58,7 +56,6 @@ class Dialect(Vocabulary):
         read_variable: Value of a variable, given its name and index.
         write_variable: Gives a variable a value, told its name, its index and the assignment; None:
             variables are written as they are named.
-        live_variables: Variables that no memory holds: the dialect knows their value itself.
         place_switches: Reports the block's switch points, told the length of its move.
         library: Adds files that the program calls, looked for in the folder of the program and read as the
             dialect is.
@@ -69,10 +66,8 @@ class Dialect(Vocabulary):
         after_motion: Done when a block has moved.
         must_end: A program without an end code is wrong.
         finish: Done when the program ends without an end code.
-        compile_block: Compiles one of its blocks that is more than plain words; raises
-            ``UnsupportedError`` for what is left to the interpreter tier.
-        disturbed: Something that only this dialect remembers acts on plain blocks, so that the
-            interpreter tier must run them; None: nothing can.
+        acts_on_lines: Something that only this dialect remembers acts on plain lines, so that the kernel
+            cannot run them.
     """
 
     title: str
@@ -94,7 +89,6 @@ class Dialect(Vocabulary):
     before_motion: Callable[[Control, bool], None] | None = None
     read_variable: Callable[[Control, str, float | None], float] | None = None
     write_variable: Callable[[Control, str, float | None, float, Assignment], None] | None = None
-    live_variables: Container[str] = frozenset()
     place_switches: Callable[[Control, float], None] | None = None
     library: Callable[[Source, Path, Language], Source] | None = None
     pointless: Callable[[ControlSettings], frozenset[str]] = lambda _settings: frozenset()
@@ -104,15 +98,9 @@ class Dialect(Vocabulary):
     after_motion: Action | None = None
     must_end: bool = False
     finish: Action | None = None
-    compile_block: Callable[[BlockCompiler, Block], None] = BlockCompiler.block
-    disturbed: Callable[[Control], bool] | None = None
+    acts_on_lines: Callable[[Control], bool] = lambda _control: False
 
     def new_modal(self) -> Modal:
         """What is in force of its codes: nothing; groups that have one at the start come first."""
         codes = (*(self.g[number] for number in self.start), *self.g.values())
-        sets = [code.sets for code in codes]
-        modes = [each.get(name) for each in sets for name in ("interpolation", "cycle")]
-        return new_modal(
-            [mode for mode in modes if isinstance(mode, MotionMode)],
-            dict.fromkeys(code.group for code in codes if code.group),
-        )
+        return Modal(ActiveCodes(code.group for code in codes if code.group))

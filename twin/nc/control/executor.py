@@ -4,12 +4,9 @@ Every word must be used by something; a word that nothing wants is an error, bec
 be a guess.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import NoReturn
 
-from twin.nc.bytecode.assembler import Assembler
-from twin.nc.bytecode.expressions import evaluate
-from twin.nc.bytecode.registers import CYCLE, INTERPOLATION
 from twin.nc.control.block_order import (
     Conflict,
     SortedBlock,
@@ -21,13 +18,12 @@ from twin.nc.control.block_order import (
 from twin.nc.control.codes import GCode, Interpolation, MCode
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Dialect
-from twin.nc.control.modal import Places
-from twin.nc.control.performer import perform
+from twin.nc.control.modal import ModalChanges
 from twin.nc.control.settings import ControlSettings
 from twin.nc.control.state import integer_of, number_of
 from twin.nc.functions import starts_spindle, turns_behind
 from twin.nc.text.blocks import Assignment, Block, Statement, Word
-from twin.nc.text.expressions import Expression, ExpressionError, NumberedVariable
+from twin.nc.text.expressions import Expression, ExpressionError, NumberedVariable, compiled
 from twin.nc.text.source import Source
 
 
@@ -40,7 +36,6 @@ class Executor(Control):
 
     def __init__(self, dialect: Dialect, settings: ControlSettings, source: Source) -> None:
         super().__init__(dialect, settings, source, dialect.new_modal())
-        self._sets: dict[float, list[tuple[int, float]]] = {}
         self.dialect = dialect
         self.feed_rule = dialect.feed_rule(settings)
         self._pointless = dialect.pointless(settings)
@@ -48,21 +43,18 @@ class Executor(Control):
         expressions = dialect.syntax.expressions
         self._vacant = expressions is not None and expressions.vacant
         self._codes: list[tuple[Word, GCode]] = []
-        self.modal.put(self.modal.places(dialect.start_state))
+        self.modal.put(dialect.start_state)
         for number in dialect.start:
             self.put_into_force(number, dialect.g[number])
 
     def put_into_force(self, number: float, code: GCode) -> None:
         """Apply a modal code."""
-        places = self._sets.get(number)
-        if places is None:
-            places = self._sets[number] = self.modal.places(code.sets)
-            if code.group:
-                places.append((self.modal.groups[code.group], number))
-        cells = self.modal.cells
-        for place, value in places:
-            cells[place] = value
-        if not cells[CYCLE]:
+        modal = self.modal
+        for name, value in code.sets.items():
+            setattr(modal, name, value)
+        if code.group:
+            modal.active.put(code.group, number)
+        if modal.cycle is None:
             self.forget_cycle()
 
     def run(self, block: Block) -> None:
@@ -82,7 +74,7 @@ class Executor(Control):
         if block.statement is not None:
             self._run_statement(block.statement)
             return
-        codes, functions = self.sort_words(block.words, self.evaluate)
+        codes, functions = self._sort_words(block.words)
         if block.assignments:
             self._assign(block.assignments)
         restore = self._apply_codes()
@@ -109,8 +101,8 @@ class Executor(Control):
             span, target, index = (each.column, each.width), each.target, None
             try:
                 if isinstance(target, NumberedVariable):
-                    index = evaluate(target.index, self)
-                value = evaluate(each.value, self)
+                    index = compiled(target.index)(self)
+                value = each.value.compute(self)
             except ExpressionError as error:
                 self.report.fail(error.code, str(error), *span, error.hint)
             given.append((each, target.name, index, value))
@@ -161,25 +153,19 @@ class Executor(Control):
             self.dialect.finish(self)
         self.path.finish()
 
-    def _apply_codes(self) -> list[Places]:
+    def _apply_codes(self) -> list[ModalChanges]:
         """Apply the block's codes; what those for this block only have replaced."""
-        restore: list[Places] = []
+        restore: list[ModalChanges] = []
         for word, code in self._codes:
             if code.once:
-                restore.append(self.modal.standing(code.sets))
+                restore.append(self.modal.values_of(code.sets))
             if code.alone and len(self.block.words) > 1:
                 self.fail("alone", f"{word.text} must stand alone in its block", word)
             self.put_into_force(number_of(word), code)
         return restore
 
-    def sort_words(
-        self, block: Sequence[Word], evaluate: Callable[[Expression, Word], float | None]
-    ) -> SortedBlock:
+    def _sort_words(self, block: Sequence[Word]) -> SortedBlock:
         """Sort the words of a block; those that are no codes become ``words`` and ``series``.
-
-        Args:
-            block: Its words.
-            evaluate: The value of a computed one; None: it is not known yet.
 
         Raises:
             ProgramError: Some of them cannot stand in one block.
@@ -196,10 +182,7 @@ class Executor(Control):
                 words[address] = word
                 continue
             if isinstance(value, Expression) and address not in dialect.references:
-                value = evaluate(value, word)
-                if value is None:
-                    self._add_word(word)
-                    continue
+                value = self.evaluate(value, word)
                 word = word._replace(value=value)
                 if value != value:
                     if not self._vacant:
@@ -303,7 +286,7 @@ class Executor(Control):
         if function.silent:
             return
         arguments, number = self.take_function_arguments(word), integer_of(number_of(word))
-        self.spindle_turns = turns_behind(number, self.spindle_turns) != 0.0
+        self.spindle_turns = turns_behind(number, float(self.spindle_turns)) != 0.0
         self.function(f"M{number}", arguments)
         if function.dwell > 0.0:
             self.dwell(function.dwell)
@@ -332,8 +315,8 @@ class Executor(Control):
         if motion_words.isdisjoint(words) and not any(code.begins_cycle for _, code in self._codes):
             self._stand_alone()
             return
-        cells = self.modal.cells
-        interpolation = self.modal.modes[cells[CYCLE] or cells[INTERPOLATION]]
+        modal = self.modal
+        interpolation = modal.interpolation if modal.cycle is None else modal.cycle
         if interpolation is None:
             word = next(each for each in words.values() if each.address in motion_words)
             if word.address not in self.dialect.axis_letters:
@@ -345,7 +328,7 @@ class Executor(Control):
                 word,
                 hint="write G0, G1, G2 or G3",
             )
-        if self.path.compensating and cells[CYCLE]:
+        if self.path.compensating and modal.cycle is not None:
             message = "a canned cycle cannot run while radius compensation is in force"
             self.fail("compensation-change", message, hint="end it by G40 first")
         if self.dialect.before_motion is not None:
@@ -377,12 +360,6 @@ class Executor(Control):
 
     def _meaning_of(self, address: str) -> str:
         return f"{address} in {self.dialect.name}: {self.dialect.word_meanings[address]}"
-
-    def perform(
-        self, write: Callable[[Assembler], None], span: tuple[int, int] | None = None
-    ) -> None:
-        """Do at once what is said as instructions."""
-        perform(self, write, self._blamed(None) if span is None else span)
 
     def place_switches(self, length: float) -> None:
         """Report the block's switch points, told the length of its move."""

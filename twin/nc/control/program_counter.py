@@ -1,24 +1,12 @@
-"""Which block comes next: straight on, jumps, and a guard against programs without an end."""
+"""Which block comes next: straight on, jumps, calls, and a guard against programs without an end."""
 
+import dataclasses
 import re
 from collections.abc import Callable, Container, Iterator
 from typing import NoReturn, TypeVar
 
-import numpy as np
-
-from twin.nc.bytecode.bytecode import PART_BITS
-from twin.nc.bytecode.frames import (
-    CALL_COLUMNS,
-    CALLS,
-    FURTHEST,
-    INSTRUCTION_BUDGET,
-    LINE,
-    MOST_CALLS,
-    PART,
-    PROGRESS,
-    end_parts,
-)
 from twin.nc.canonical import NO_BLOCK_NUMBER
+from twin.nc.control.modal import Modal
 from twin.nc.text.blocks import Block, Location
 from twin.nc.text.diagnostics import ProgramError
 from twin.nc.text.lexer import Lexer
@@ -38,12 +26,32 @@ class FoundInText(dict[Key, Found]):
     """What was found in a program's text, which does not change: whoever looks again finds the same."""
 
 
+@dataclasses.dataclass(slots=True)
+class Call:
+    """A part of the program that is being run for a caller.
+
+    Attributes:
+        back: Where the caller goes on.
+        first: Where the part begins.
+        again: How often it still runs anew before that.
+        last: Its last block, where it ends by its location; None: a word ends it.
+        owns_variables: It has variables of its own, which its end forgets.
+        restores: What its end puts back into force; None: nothing.
+    """
+
+    back: Location
+    first: Location
+    again: int = 0
+    last: Location | None = None
+    owns_variables: bool = False
+    restores: Modal | None = None
+
+
 class ProgramCounter:
     """The program counter.
 
     Attributes:
-        progress: How far the program has come, as ``frames`` has it, shape (``PROGRESS``,).
-        calls: The parts that are being run for a caller, the innermost last, as ``frames`` has them.
+        calls: The parts that are being run for a caller, the innermost last.
     """
 
     def __init__(self, source: Source, lexer: Lexer, step_limit: int, report: Reporter) -> None:
@@ -53,10 +61,10 @@ class ProgramCounter:
         self._lexer = lexer
         self._report = report
         self._step_limit = step_limit
-        self.progress = np.zeros(PROGRESS, np.int64)
-        self._now = self.progress.data
-        self._now[FURTHEST], self._now[INSTRUCTION_BUDGET] = -1, step_limit
-        self.calls = np.zeros((MOST_CALLS, CALL_COLUMNS), np.int64)
+        self._line = self._part = 0
+        self._furthest = Location(-1, 0)
+        self._budget = step_limit
+        self.calls: list[Call] = []
         self._labels: FoundInText[int | str, list[Location]] | None = None
         self._cache = FoundInText[int, tuple[Block, ...]]()
         self._told_to_end = False
@@ -76,22 +84,22 @@ class ProgramCounter:
     @property
     def begun(self) -> bool:
         """A block was run."""
-        return self._now[FURTHEST] >= 0
+        return self._furthest.line >= 0
 
     @property
     def location(self) -> Location:
         """The block that comes next."""
-        return Location(self._now[LINE], self._now[PART])
+        return Location(self._line, self._part)
 
     @property
     def is_calling(self) -> bool:
         """A part of the program is being run for a caller."""
-        return self._now[CALLS] > 0
+        return bool(self.calls)
 
     @property
     def depth(self) -> int:
         """How many parts of the program are being run for callers."""
-        return int(self._now[CALLS])
+        return len(self.calls)
 
     def next(self) -> Block | None:
         """The next block, or None at the end of the program.
@@ -99,55 +107,81 @@ class ProgramCounter:
         Raises:
             ProgramError: Its line cannot be read, or the program runs without end.
         """
-        now = self._now
-        if now[CALLS]:
-            end_parts(self.progress, self.calls)
-        line, part = now[LINE], now[PART]
+        if self.calls:
+            self._end_passed()
+        line, part = self._line, self._part
         if line == self._here_line and part >= len(self._here):
             line, part = line + 1, 0
         while line < self._line_count:
             blocks = self._blocks(line)
             if part < len(blocks):
-                now[LINE], now[PART] = line, part + 1
-                here = line << PART_BITS | part
-                if here > now[FURTHEST]:
-                    now[FURTHEST] = here
+                self._line, self._part = line, part + 1
+                if (line, part) > self._furthest:
+                    self._furthest = Location(line, part)
                 else:
                     self._count_again(line)
                 return blocks[part]
             line, part = line + 1, 0
-        now[LINE], now[PART] = line, 0
+        self._line, self._part = line, 0
         if not self._told_to_end:
             self._run_out()
         return None
+
+    def _end_passed(self) -> None:
+        """Parts that end by their location and have been passed run again, or go back."""
+        while self.calls:
+            call = self.calls[-1]
+            if call.last is None or self.location <= call.last:
+                return
+            if call.again > 0:
+                call.again -= 1
+                self.go(call.first)
+            else:
+                self.calls.pop()
+                self.go(call.back)
+
+    def end_call(self) -> Call | None:
+        """Go on behind the innermost call that a word ends, or run its part again.
+
+        Returns:
+            The call that has ended; None: its part runs again.
+        """
+        while self.calls[-1].last is not None:
+            self.calls.pop()
+        call = self.calls[-1]
+        if call.again > 0:
+            call.again -= 1
+            self.go(call.first)
+            return None
+        self.calls.pop()
+        self.go(call.back)
+        return call
 
     def _run_out(self) -> None:
         """The last line has been passed; what is to be said of that stands at the last text."""
         written = (line for line in range(len(self._lines), 0, -1) if self._lines[line - 1].strip())
         self._report.line = next(written, 0)
 
-    def leave_line(self) -> None:
-        """Let the next line come next where the last block of one was run."""
-        now = self._now
-        if now[PART] > 0 and now[LINE] == self._here_line and now[PART] >= len(self._here):
-            now[LINE], now[PART] = now[LINE] + 1, 0
-
-    def quiet_blocks(self, line: int) -> tuple[Block, ...] | None:
-        """A line's blocks, read before it is run; None where there is something to say of it."""
-        with self._report.quietly() as has_said:
-            try:
-                blocks = self._lexer.blocks(self._lines[line], line + 1)
-            except ProgramError:
-                return None
-            if has_said():
-                return None
-        if blocks:
-            self._here, self._here_line = blocks, line
-        return blocks
-
     def go(self, location: Location) -> None:
         """Go on at a location."""
-        self._now[LINE], self._now[PART] = location
+        self._line, self._part = location
+
+    @property
+    def fresh_line(self) -> int | None:
+        """The line that comes next and has never been run, from 0; None where there is no such one."""
+        line, part = self.location
+        if line == self._here_line and part >= len(self._here):
+            line, part = line + 1, 0
+        repeats = bool(self.calls) and self.calls[-1].last is not None
+        if part or repeats or line <= self._furthest.line or line >= self._line_count:
+            return None
+        return line
+
+    def pass_lines(self, line: int, behind: int) -> None:
+        """The lines before one, of one block at most, were run elsewhere; ``behind`` lies behind the last block."""
+        if behind:
+            self._furthest = Location(behind - 1, 0)
+        self.go(Location(line, 0))
 
     def end(self) -> None:
         """Go on behind the last line, which ends the program here."""
@@ -225,7 +259,7 @@ class ProgramCounter:
         if blocks is None:
             text = self._lines.page_of(line).line(line)
             blocks = self._lexer.blocks(text, line + 1, self._line_before)
-            if line <= self._now[FURTHEST] >> PART_BITS and len(self._cache) < _CACHED_LINES:
+            if line <= self._furthest.line and len(self._cache) < _CACHED_LINES:
                 self._cache[line] = blocks
         self._here, self._here_line = blocks, line
         return blocks
@@ -236,9 +270,8 @@ class ProgramCounter:
 
     def _count_again(self, line: int) -> None:
         """A block of a line runs that has run before, or that one behind it has."""
-        now = self._now
-        now[INSTRUCTION_BUDGET] -= 1
-        if now[INSTRUCTION_BUDGET] < 0:
+        self._budget -= 1
+        if self._budget < 0:
             self._report.line = line + 1
             message = f"more than {self._step_limit} blocks were repeated"
             hint = "if the program is meant to run this long, raise the job's step_limit"

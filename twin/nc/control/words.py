@@ -4,10 +4,9 @@ import abc
 from collections.abc import Callable
 from typing import NoReturn, TypeVar
 
-from twin.nc.bytecode.expressions import evaluate
 from twin.nc.control.state import ControlState, number_of
 from twin.nc.text.blocks import Block, Statement, Word
-from twin.nc.text.expressions import Expression, ExpressionError, Tree
+from twin.nc.text.expressions import Expression, ExpressionError
 
 Found = TypeVar("Found")
 Read = Callable[[str, int], tuple[Found, int]]
@@ -33,8 +32,14 @@ class ControlWords(ControlState, abc.ABC):
         return word.value
 
     def number(self, word: Word) -> float:
-        """The value of a word."""
+        """The value of a word that has been computed."""
         return number_of(word)
+
+    def value(self, word: Word) -> float:
+        """The value of a word, which may have to be computed."""
+        if isinstance(word.value, Expression):
+            return self.evaluate(word.value, word)
+        return word.value
 
     def length(self, word: Word | None) -> float:
         """The value of a word that counts a length [mm]; 0 where there is none."""
@@ -68,7 +73,7 @@ class ControlWords(ControlState, abc.ABC):
     def evaluate(self, expression: Expression, word: Word) -> float:
         """Compute an expression; errors point at the word."""
         try:
-            return evaluate(expression, self)
+            return expression.compute(self)
         except ExpressionError as error:
             self.fail(error.code, str(error), word, hint=error.hint)
 
@@ -120,13 +125,12 @@ class ControlWords(ControlState, abc.ABC):
         """Refuse a statement; the caret stands under its keyword."""
         self.report.fail(code, message, statement.column, len(statement.keyword), hint)
 
-    def compute(self, expression: Expression | Tree, column: int) -> float:
+    def compute(self, expression: Expression, column: int) -> float:
         """Compute an expression of a statement; errors point at its column."""
         try:
-            return evaluate(expression, self)
+            return expression.compute(self)
         except ExpressionError as error:
-            width = len(expression.text) if isinstance(expression, Expression) else 0
-            self.report.fail(error.code, str(error), column, width, error.hint)
+            self.report.fail(error.code, str(error), column, len(expression.text), error.hint)
 
     @abc.abstractmethod
     def read_variable(self, name: str, index: float | None) -> float:

@@ -193,5 +193,5 @@ GOST = Dialect(
     memory=dict,
     before_motion=recalculate_start,
     prepare=warn_of_foreign_commands,
-    disturbed=lambda control: bool(_periods(control)),
+    acts_on_lines=lambda control: bool(_periods(control)),
 )

@@ -5,9 +5,6 @@ Its own page (seed) says all about G09, G10, G73 and G98; the rest is the base o
 
 import dataclasses
 
-from twin.nc.bytecode import opcodes
-from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.control.block_compiler import BlockCompiler
 from twin.nc.control.codes import GCode
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Decision, Dialect
@@ -16,7 +13,6 @@ from twin.nc.geometry.arcs import sweep_between
 from twin.nc.iso import base, shared_decisions, shared_marks
 from twin.nc.iso.circular import BOUNDS, arc_center, both_senses, start_and_end
 from twin.nc.iso.declared import instead, modal, motion_code
-from twin.nc.text.blocks import Block, Location, Word
 from twin.nc.text.syntax import HEADING, Comment, Mark, Syntax
 
 
@@ -27,10 +23,12 @@ class Dragging:
     Attributes:
         leads: Lead of each dragged axis per full circle, by column [mm or deg].
         on: G09 is in force.
+        jumps_left: How often each G73 still jumps, by its line and part, while it does.
     """
 
     leads: dict[int, float] = dataclasses.field(default_factory=dict)
     on: bool = False
+    jumps_left: dict[tuple[int, int], float] = dataclasses.field(default_factory=dict)
 
 
 def _dragging(control: Control) -> Dragging:
@@ -66,50 +64,26 @@ def switch_off(control: Control) -> None:
 
 
 def jump_with_repeat(control: Control) -> None:
-    """G73: after the block's own motion go on at block L, Q times."""
+    """G73: after the block's own motion go on at block L, Q times; the counter begins anew behind that."""
     target, count = control.take("L"), control.take("Q")
-    control.perform(lambda assembler: _jump(control, target, count, assembler))
-
-
-def _jump(control: Control, target: Word | None, count: Word | None, assembler: Assembler) -> None:
-    """Write the jump of G73."""
     if target is None:
         numbers = ", ".join(f"N{label}" for label in list(control.program_counter.labels())[:12])
         code = control.code_word(73)
         message = "G73 needs L: the block to jump to"
         control.fail("jump-target", message, code, hint=f"blocks here: {numbers}")
-    wanted = 1.0 if count is None else assembler.known(count)
+    wanted = 1.0 if count is None else control.number(count)
     if not (wanted >= 0.0 and wanted == int(wanted)):
         control.fail("repeat-count", "Q must count jumps", count)
-    counter = f"G73 {control.block.line}.{control.block.part}"
-    assembler.jump_counted(lambda: _destination(control, target), counter, wanted)
-
-
-def _destination(control: Control, target: Word) -> Location:
+    counters, block = _dragging(control).jumps_left, (control.block.line, control.block.part)
+    left = counters.pop(block, wanted)
+    if left == 0.0:
+        return
+    counters[block] = left - 1.0
     number = control.number(target)
     if number != int(number):
         control.fail("jump-target", f"{target.text} is no block number", target)
-    return control.program_counter.find_label(int(number), (target.column, target.width), "L")
-
-
-def compile_block(compiler: BlockCompiler, block: Block) -> None:
-    """Write a block as instructions for the compiled tier, its jump behind all else.
-
-    Raises:
-        UnsupportedError: It is left to the interpreter tier.
-    """
-    jumps = [word for word in block.words if word.address == "G" and word.value == 73.0]
-    targets = [word for word in block.words if jumps and word.address == "L"]
-    counts = [word for word in block.words if jumps and word.address == "Q"]
-    taken = (*jumps[:1], *targets[:1], *counts[:1])
-    if counts:  # a cycle with pecks would take Q as its own
-        if any(code.begins_cycle for code in compiler.known_codes(block.words)):
-            raise UnsupportedError
-        compiler.assembler.emit(opcodes.NO_PECKS)
-    compiler.words(word for word in block.words if word not in taken)
-    if jumps:
-        target, count = (*targets, None)[0], (*counts, None)[0]
-        _jump(compiler.control, target, count, compiler.assembler)
+    span = (target.column, target.width)
+    control.jump(control.program_counter.find_label(int(number), span, "L"))
 
 
 def _arc(control: Control, rule: ArcRule) -> None:
@@ -233,6 +207,5 @@ MEFI = Dialect(
         shared_marks.G73_WITH_Q,
     ),
     memory=Dragging,
-    compile_block=compile_block,
-    disturbed=lambda control: _dragging(control).on,
+    acts_on_lines=lambda control: _dragging(control).on,
 )

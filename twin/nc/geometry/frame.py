@@ -125,78 +125,55 @@ def moved_shift(shift: float, part: float, there: float) -> float:
     return shift + part - there
 
 
-@compilable
-def add_up(shifts: FloatArray, total: FloatArray) -> None:
-    """Fill in the sum of all shifts, from the first to the last."""
-    for axis in range(len(total)):
-        value = 0.0
-        for shift in range(len(shifts)):
-            value += shifts[shift, axis]
-        total[axis] = value
-
-
 class Frame:
     """``part = matrix · programmed + shift`` for X, Y, Z; further axes are shifted only.
 
     The shift is the sum of named ones (a work offset, a preset, whole turns of a rotary axis), so
     that each can be changed without knowing of the others.
+
+    Attributes:
+        total: Sum of all shifts, shape (k,) [mm or deg].
+        matrix: Mirror, rotation and scale of X, Y, Z.
+        is_identity: The matrix is the identity.
     """
 
-    def __init__(
-        self, shifts: FloatArray, total: FloatArray, matrix: FloatArray, turned: FloatArray
-    ) -> None:
-        """Work on columns that others read as well.
-
-        Args:
-            shifts: In the order of ``SHIFTS``, shape (s, k) [mm or deg].
-            total: Their sum, shape (k,) [mm or deg].
-            matrix: Mirror, rotation and scale, row by row, shape (9,).
-            turned: 1 where that is not the identity, else 0, shape (1,).
-        """
-        self._shifts = shifts
-        self._total = total
-        self._matrix = matrix
-        self._turned = turned
-        self.refresh()
-
-    def refresh(self) -> None:
-        """See what the columns hold."""
-        self.total = self._total.tolist()
-        """Sum of all shifts, shape (k,) [mm or deg]."""
-        a, b, c, d, e, f, g, h, i = self._matrix.tolist()
-        self.matrix: Matrix = ((a, b, c), (d, e, f), (g, h, i))
-        """Mirror, rotation and scale of X, Y, Z."""
-        self.is_identity = self._turned[0] == 0.0
-        """The matrix is the identity."""
+    def __init__(self, axes: int) -> None:
+        """Programmed coordinates are those of the part; for so many axes."""
+        self._shifts: dict[str, list[float]] = {name: [0.0] * axes for name in SHIFTS}
+        self.total = [0.0] * axes
+        self.matrix: Matrix = IDENTITY
+        self.is_identity = True
 
     def shift(self, name: str) -> list[float]:
         """The named shift, shape (k,)."""
-        return self._shifts[SHIFTS.index(name)].tolist()
+        return list(self._shifts[name])
 
     def set_shift(self, name: str, values: list[float]) -> None:
         """Replace the named shift."""
-        self._shifts[SHIFTS.index(name)] = values
+        self._shifts[name] = list(values)
         self._add_up()
 
     @property
     def shifts(self) -> list[list[float]]:
         """All of them in the order of ``SHIFTS``, shape (s, k)."""
-        return self._shifts.tolist()
+        return [self.shift(name) for name in SHIFTS]
 
     def set_shifts(self, shifts: list[list[float]]) -> None:
         """Replace all of them, in this order."""
-        self._shifts[:] = shifts
+        self._shifts = {name: list(each) for name, each in zip(SHIFTS, shifts, strict=True)}
         self._add_up()
 
     def _add_up(self) -> None:
-        add_up(self._shifts, self._total)
-        self.total = self._total.tolist()
+        """From the first to the last: the order of a sum is part of its value."""
+        total = [0.0] * len(self.total)
+        for shift in self._shifts.values():
+            total = list(map(operator.add, total, shift))
+        self.total = total
 
     def set_matrix(self, matrix: Matrix) -> None:
         """Replace mirror, rotation and scale."""
-        self._matrix[:] = np.ravel(matrix)
-        self._turned[0] = matrix != IDENTITY
-        self.refresh()
+        self.matrix = matrix
+        self.is_identity = matrix == IDENTITY
 
     def to_part(self, programmed: list[float]) -> list[float]:
         """Part coordinates of a programmed position, shape (k,)."""

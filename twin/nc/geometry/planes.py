@@ -122,7 +122,7 @@ XY = Plane("XY (G17)", _X, _Y, _Z)
 ZX = Plane("ZX (G18)", _Z, _X, _Y)
 YZ = Plane("YZ (G19)", _Y, _Z, _X)
 PLANE_ORDER = (XY, ZX, YZ)
-"""Those along the axes, as the compiled tier numbers them."""
+"""Those along the axes."""
 
 
 OWN_PLANE = "of the program"

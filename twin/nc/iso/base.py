@@ -4,10 +4,7 @@ import dataclasses
 import re
 from collections.abc import Callable, Mapping
 
-from twin.nc.bytecode import opcodes
-from twin.nc.bytecode.assembler import Assembler
-from twin.nc.bytecode.registers import IN_SPINDLE, SELECTED, SPINDLE
-from twin.nc.control.codes import Action, Effect, GCode, Interpolation, MCode, WordEffect
+from twin.nc.control.codes import Action, GCode, Interpolation, MCode
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Dialect
 from twin.nc.control.interpolation import ArcRule, LineRule
@@ -16,14 +13,13 @@ from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.planes import XY, YZ, ZX
 from twin.nc.iso.circular import BOUNDS, both_senses, iso_arc
 from twin.nc.iso.declared import instead, modal, motion_code, plane_code
-from twin.nc.iso.findings import NEGATIVE_DWELL, NEGATIVE_SPEED, NO_TOOL_NUMBER
 from twin.nc.iso.fixed_cycles import CYCLES
 from twin.nc.iso.offsets import OFFSETS, PRESET
 from twin.nc.iso.tool_compensation import COMPENSATION, LENGTH
-from twin.nc.path import event_columns
 from twin.nc.path.paces import FeedMode, feed_per_minute, needs_own_feed
 from twin.nc.path.splines import MOST_CHORDS
-from twin.nc.text.blocks import Word
+from twin.nc.text.arithmetic import is_whole
+from twin.nc.text.blocks import Statement, Word
 from twin.nc.text.expressions import LARGEST_NUMBER
 
 
@@ -86,56 +82,53 @@ def set_feed(control: Control, word: Word) -> None:
     control.feed = feed
 
 
-def spindle_speed(control: Control, word: Word, assembler: Assembler) -> None:
+def spindle_speed(control: Control, word: Word) -> None:
     """S: the spindle's speed [1/min]; reported where no spindle start carries it."""
-    assembler.word_value(word)
+    speed = control.number(word)
+    if not speed >= 0.0:
+        control.fail("spindle-range", f"the speed {word.text} is negative", word)
+    control.spindle = speed
     others = control.block.words
     functions = (other.value for other in others if other.address == "M")
-    starts = any(isinstance(number, float) and starts_spindle(number) for number in functions)
-    assembler.check(opcodes.AT_LEAST, NEGATIVE_SPEED)
-    assembler.set_register(SPINDLE)
-    if not starts:
-        assembler.register(SPINDLE)
-        assembler.emit(opcodes.REPORT, event_columns.SPEED)
+    if not any(isinstance(number, float) and starts_spindle(number) for number in functions):
+        control.function("S", {"S": speed})
 
 
-def next_tool(_control: Control, word: Word, assembler: Assembler) -> None:
+def next_tool(control: Control, word: Word) -> None:
     """T: the tool that comes next."""
-    assembler.word_value(word)
-    select_tool(assembler)
+    number = control.number(word)
+    if not is_whole(number, LARGEST_NUMBER):
+        control.fail("tool-number", f"{word.text} is no tool number", word)
+    control.tools.selected = int(number)
+    control.function(f"T{int(number)}", {})
 
 
-def select_tool(assembler: Assembler) -> None:
-    """The topmost value is the number of the tool that comes next."""
-    assembler.check(opcodes.WHOLE, NO_TOOL_NUMBER, LARGEST_NUMBER)
-    assembler.set_register(SELECTED)
-    assembler.register(SELECTED)
-    assembler.emit(opcodes.REPORT, event_columns.TOOL)
-
-
-def change_tool(_control: Control, assembler: Assembler) -> None:
+def change_tool(control: Control) -> None:
     """M6: the selected tool goes into the spindle."""
-    assembler.register(SELECTED)
-    assembler.set_register(IN_SPINDLE)
+    control.tools.change()
 
 
-def dwell(letters: str, message: str, hint: str) -> Effect:
+def dwell(letters: str, message: str, hint: str) -> Action:
     """A dwell whose seconds stand in one of these words; the message where there is none or more."""
 
-    def write(control: Control, assembler: Assembler) -> None:
+    def action(control: Control) -> None:
         words = [control.words.pop(letter) for letter in letters if letter in control.words]
         if len(words) != 1:
             control.fail("dwell", message, hint=hint)
-        assembler.word_value(words[0])
-        write_dwell(assembler)
+        wait(control, control.number(words[0]), words[0])
 
-    return Effect(write)
+    return action
 
 
-def write_dwell(assembler: Assembler) -> None:
-    """Wait as many seconds as the topmost value."""
-    assembler.check(opcodes.AT_LEAST, NEGATIVE_DWELL)
-    assembler.emit(opcodes.REPORT, event_columns.DWELL)
+def wait(control: Control, seconds: float, blamed: Word | Statement) -> None:
+    """Wait.
+
+    Raises:
+        ProgramError: For less than no time.
+    """
+    if not seconds >= 0.0:
+        control.fail("dwell", "a dwell cannot be negative", blamed)
+    control.dwell(seconds)
 
 
 PLANES: dict[float, GCode] = {
@@ -224,14 +217,14 @@ M_CODES = {
     3: MCode(meaning="spindle clockwise", group="spindle"),
     4: MCode(meaning="spindle counter-clockwise", group="spindle"),
     5: MCode(meaning="spindle stop", group="spindle", late=True),
-    6: MCode(meaning="tool change", action=Effect(change_tool)),
+    6: MCode(meaning="tool change", action=change_tool),
     7: MCode(meaning="mist on"),
     8: MCode(meaning="coolant on", group="coolant"),
     9: MCode(meaning="coolant off", group="coolant", late=True),
     30: MCode(meaning="end of program and back to its start", group="stop", late=True, ends=True),
 }
 
-WORDS = {"F": set_feed, "S": WordEffect(spindle_speed), "T": WordEffect(next_tool)}
+WORDS = {"F": set_feed, "S": spindle_speed, "T": next_tool}
 
 WORD_MEANINGS = {
     "N": "block number",

@@ -3,14 +3,10 @@
 from collections.abc import Mapping
 from typing import Unpack
 
-from twin.nc.bytecode import opcodes
-from twin.nc.bytecode.assembler import Assembler
-from twin.nc.bytecode.registers import ROTATION
-from twin.nc.control.codes import Action, CodeWriter, GCode, Ground, Interpolation, MCode
+from twin.nc.control.codes import Action, GCode, Ground, Interpolation, MCode
 from twin.nc.control.control import Control
 from twin.nc.control.modal import ModalChanges
-from twin.nc.geometry.planes import PLANE_ORDER, Plane
-from twin.nc.iso.findings import PLANE_COMPENSATED, PLANE_ROTATED
+from twin.nc.geometry.planes import Plane
 
 
 def modal(
@@ -18,7 +14,6 @@ def modal(
     group: str = "",
     action: Action | None = None,
     *,
-    compiler: CodeWriter | None = None,
     once: bool = False,
     ground: Ground = "manual",
     **sets: Unpack[ModalChanges],
@@ -29,7 +24,6 @@ def modal(
         group=group,
         sets=sets,
         action=action,
-        compiler=compiler,
         once=once,
         ground=ground,
     )
@@ -50,25 +44,29 @@ def motion_code(meaning: str, interpolation: Interpolation, ground: Ground = "ma
 def plane_code(
     meaning: str, plane: Plane, action: Action | None = None, ground: Ground = "manual"
 ) -> GCode:
-    """A code of a working plane; ``action``: what the interpreter tier does in its place."""
-
-    def write(_control: Control, assembler: Assembler) -> None:
-        write_plane(PLANE_ORDER.index(plane), assembler)
-
-    def choose(control: Control) -> None:
-        if not control.path.compensates_in(control.part_plane()):  # else it is in force already
-            control.perform(lambda assembler: write(control, assembler))
-
-    return modal(meaning, "plane", action or choose, compiler=write, ground=ground, plane=plane)
+    """A code of a working plane; ``action``: done instead of refusing it while compensation is in force."""
+    return modal(meaning, "plane", action or keep_compensated_plane, ground=ground, plane=plane)
 
 
-def write_plane(number: int, assembler: Assembler) -> None:
-    """The plane with a number of ``planes.PLANE_ORDER`` becomes active."""
-    assembler.check(opcodes.UNCOMPENSATED, PLANE_COMPENSATED)
-    assembler.register(ROTATION)
-    assembler.check(opcodes.ABSENT, PLANE_ROTATED)
-    assembler.drop()
-    assembler.emit(opcodes.PLANE, number)
+def keep_compensated_plane(control: Control) -> None:
+    """The plane has changed.
+
+    Raises:
+        ProgramError: Compensation is in force in another one.
+    """
+    if not control.path.compensates_in(control.part_plane()):  # else it is in force already
+        refuse_compensated_plane(control)
+
+
+def refuse_compensated_plane(control: Control) -> None:
+    """The plane is about to change.
+
+    Raises:
+        ProgramError: Compensation is in force.
+    """
+    if control.path.compensating:
+        message = "the plane cannot change while compensation is in force"
+        control.fail("compensation-plane", message, hint="end it by G40 first")
 
 
 def refused(meaning: str, reason: str, *numbers: float, group: str = "") -> Mapping[float, GCode]:
@@ -82,9 +80,3 @@ def flow_function(meaning: str, action: Action, group: str = "") -> MCode:
     return MCode(
         meaning=meaning, group=group, late=True, action=action, silent=True, ground="manual"
     )
-
-
-def go_back(assembler: Assembler) -> None:
-    """The end of a subprogram: back behind its call."""
-    assembler.check_return()
-    assembler.end_call()

@@ -4,10 +4,7 @@ import math
 from collections.abc import Callable
 from typing import NamedTuple, NoReturn
 
-from twin.nc.bytecode.assembler import Assembler
-from twin.nc.bytecode.effects import BlockPlace, report_act
-from twin.nc.bytecode.registers import CYCLE_WORDS
-from twin.nc.control.codes import CodeWriter, GCode, Ground, Interpolation
+from twin.nc.control.codes import GCode, Ground, Interpolation
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import CycleRule
 from twin.nc.path.drilling_cycle import (
@@ -24,6 +21,7 @@ from twin.nc.path.drilling_cycle import (
 from twin.nc.path.hole import (
     MOST_PECKS,
     NO_MOVE,
+    Act,
     Fault,
     Hole,
     hole_of,
@@ -31,7 +29,6 @@ from twin.nc.path.hole import (
     next_place,
     write_acts,
 )
-from twin.nc.text.blocks import Word
 
 
 class Holes(NamedTuple):
@@ -57,7 +54,7 @@ def cycle_code(rule: CycleRule, meaning: str, holes: Holes = ONE_HOLE) -> GCode:
     """The code that calls a cycle with its words, told to people by its meaning."""
 
     def call(control: Control) -> None:
-        _take_options(control, rule, control.number)
+        _take_options(control, rule)
         take_words(control, rule, calls=True)
 
     def perform(control: Control) -> None:
@@ -75,7 +72,6 @@ def cycle_code(rule: CycleRule, meaning: str, holes: Holes = ONE_HOLE) -> GCode:
         group="cycle",
         sets={"cycle": Interpolation(perform, rule=rule)},
         action=call,
-        compiler=_write_words(rule),
         ground=holes.ground,
     )
 
@@ -112,7 +108,7 @@ def take_words(control: Control, rule: CycleRule, *, calls: bool = False) -> Non
     read_words(rule.cycle, control.cycle_state, given, block)
 
 
-def _take_options(control: Control, rule: CycleRule, value: Callable[[Word], float]) -> None:
+def _take_options(control: Control, rule: CycleRule) -> None:
     """Take words of the call that change nothing of the path.
 
     Raises:
@@ -120,25 +116,9 @@ def _take_options(control: Control, rule: CycleRule, value: Callable[[Word], flo
     """
     for letter, known in rule.options.items():
         word = control.take(letter)
-        if word is not None and value(word) not in known:
+        if word is not None and control.number(word) not in known:
             values = " or ".join(f"{letter}{value:g}" for value in known)
             control.fail("unsupported-word", f"only {values} is followed here", word)
-
-
-def _write_words(rule: CycleRule) -> CodeWriter:
-    """Write the words of the call as instructions; those of axes stay with those of the hole."""
-
-    def write(control: Control, assembler: Assembler) -> None:
-        _take_options(control, rule, assembler.known)
-        for address, value in rule.words.items():
-            word = control.take(address)
-            if word is not None and word.incremental:
-                assembler.rare()
-            if word is not None:
-                assembler.word_value(word)
-                assembler.set_register(CYCLE_WORDS + value)
-
-    return write
 
 
 def hole_in_force(control: Control, rule: CycleRule) -> Hole:
@@ -240,6 +220,14 @@ def drill(control: Control, hole: Hole, target: list[float] | None) -> None:
             control.line_to(list(goal), rapid=speed == 0.0)
             control.feed = feed
         else:
-            place = BlockPlace(control.block.line, 0, control.path.compensating)
-            report_act(act, amount, place, control.begin_effect())
-            control.end_effect()
+            _report(control, Act(act), amount)
+
+
+def _report(control: Control, act: Act, amount: float) -> None:
+    """What happens at a hole and is no move: a dwell [s], or an M function of the spindle."""
+    if act is Act.DWELL:
+        control.dwell(amount)
+    elif act is Act.M5:
+        control.function(act.name, {})
+    else:
+        turn_spindle(control, act.name)

@@ -7,11 +7,8 @@ machine zero until the next work offset.
 
 from collections.abc import Iterable, Mapping
 
-from twin.nc.bytecode import opcodes
-from twin.nc.bytecode.assembler import Assembler
-from twin.nc.control.codes import Effect, GCode
+from twin.nc.control.codes import GCode
 from twin.nc.control.control import Control
-from twin.nc.geometry.frame import SHIFTS
 from twin.nc.text.blocks import Word
 
 
@@ -65,79 +62,45 @@ def machine_zero(control: Control, code: str) -> Mapping[str, float]:
 
 def shift_by(control: Control, values: Mapping[str, float], *, ends_preset: bool = True) -> None:
     """Put a work offset by its values into force, 0 for axes that it leaves out [mm or deg]."""
-    control.perform(
-        lambda assembler: write_offset(control, values, assembler, ends_preset=ends_preset)
-    )
-
-
-def write_offset(
-    control: Control,
-    values: Mapping[str, float],
-    assembler: Assembler,
-    *,
-    ends_preset: bool = True,
-) -> None:
-    """As ``shift_by``, said as instructions."""
     names = control.settings.axes.names
-    compile_shift("offset", [values.get(name, 0.0) for name in names], assembler)
+    control.frame.set_shift("offset", [values.get(name, 0.0) for name in names])
     if ends_preset:
-        compile_shift("preset", [0.0] * len(names), assembler)
-    assembler.emit(opcodes.REFRAME)
+        control.frame.set_shift("preset", [0.0] * len(names))
+    control.reframed()
 
 
-def compile_shift(name: str, values: Iterable[float], assembler: Assembler) -> None:
-    """A shift with fixed values."""
-    for value in values:
-        assembler.constant(value)
-    assembler.emit(opcodes.SHIFT, SHIFTS.index(name))
-
-
-def programmed_shift(name: str, control: Control, assembler: Assembler) -> None:
+def programmed_shift(control: Control, name: str) -> None:
     """A shift with the block's values, 0 for the axes that it leaves out."""
     words = dict(control.take_axis_words())
-    for index in range(len(control.settings.axes)):
-        if index in words:
-            _write_coordinate(control, index, words[index], assembler)
-        else:
-            assembler.constant(0.0)
-    assembler.emit(opcodes.SHIFT, SHIFTS.index(name))
-    assembler.emit(opcodes.REFRAME)
+    axes = range(len(control.settings.axes))
+    values = [control.axis_value(axis, words[axis]) if axis in words else 0.0 for axis in axes]
+    control.frame.set_shift(name, values)
+    control.reframed()
 
 
-def preset(control: Control, assembler: Assembler) -> None:
+def preset(control: Control) -> None:
     """G92: the place where the machine stands gets the coordinates of the block."""
     words = control.take_axis_words()
     if not words:
         control.fail("preset", "G92 needs the coordinates that this place shall have")
-    set_position(control, words, "preset", assembler)
+    set_position(control, words, "preset")
 
 
-def set_position(
-    control: Control, words: Iterable[tuple[int, Word]], shift: str, assembler: Assembler
-) -> None:
+def set_position(control: Control, words: Iterable[tuple[int, Word]], shift: str) -> None:
     """Words of axes give the place where the machine stands other coordinates, by a shift."""
-    assembler.emit(opcodes.BEGIN_TARGET)
+    programmed = list(control.programmed)
     for index, word in words:
-        _write_coordinate(control, index, word, assembler)
-        assembler.emit(opcodes.TARGET, index)
-    assembler.emit(opcodes.SET_POSITION, SHIFTS.index(shift))
-
-
-def _write_coordinate(control: Control, index: int, word: Word, assembler: Assembler) -> None:
-    """Put the value of an axis's word on the stack [mm or deg]."""
-    assembler.word_value(word)
-    if control.linear[index]:
-        assembler.emit(opcodes.TO_MILLIMETRES)
+        programmed[index] = control.axis_value(index, word)
+    control.set_position(programmed, shift)
 
 
 def _work_offset(number: int) -> GCode:
     name = f"G{number}"
 
-    def write(control: Control, assembler: Assembler) -> None:
-        values = offset_of_job(control, name, control.code_word(number))
-        write_offset(control, values, assembler)
+    def action(control: Control) -> None:
+        select_offset(control, name, control.code_word(number))
 
-    return GCode(meaning=f"work offset {name} of the job", group="offset", action=Effect(write))
+    return GCode(meaning=f"work offset {name} of the job", group="offset", action=action)
 
 
 OFFSETS = {
@@ -146,4 +109,4 @@ OFFSETS = {
     ),
     **{number: _work_offset(number) for number in range(54, 60)},
 }
-PRESET = {92: GCode(meaning="preset the position", perform=Effect(preset))}
+PRESET = {92: GCode(meaning="preset the position", perform=preset)}

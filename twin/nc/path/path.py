@@ -6,20 +6,16 @@ out, additional axes that go evenly. Each is there only while a program asks for
 
 from collections.abc import Callable
 
-from twin.nc.canonical import Axes, Chunk, Event, Motion
+from twin.nc.canonical import Axes, Chunk, Event, FloatArray, IntArray, Motion
 from twin.nc.geometry.planes import Plane
 from twin.nc.path.blends import Blend
 from twin.nc.path.compensation.contour import (
-    MOVED,
-    MOVED_EVENTS,
-    MOVED_ROWS,
     OFF,
     STARTED,
     Contour,
     plane_of,
 )
 from twin.nc.path.compensation.stage import Compensation, Refuse, Warn
-from twin.nc.path.event_columns import EventRows
 from twin.nc.path.loops import Loops
 from twin.nc.path.move_columns import MoveColumns, Refused, Segment
 from twin.nc.path.rounding import Rounding
@@ -76,50 +72,22 @@ class Path:
         self._before = move
         self._round(move)
 
-    def begin_rows(self) -> Contour | None:
-        """A run of rows begins where the path has come to.
+    @property
+    def passes_on(self) -> bool:
+        """No stage holds or changes moves: what is added is emitted as it is."""
+        stages = (self._spline, self._rounding, self._loops, self._synchronous)
+        return self._compensation.stage == OFF and all(stage is None for stage in stages)
 
-        Returns:
-            Compensation, which the run goes on with; None where another stage holds or changes moves,
-            or events wait for a move's end.
-        """
-        if self._spline or self._rounding or self._loops or self._synchronous:
+    def add_rows(
+        self, codes: IntArray, values: FloatArray, positions: FloatArray
+    ) -> Segment | None:
+        """Programmed moves as ``MoveColumns`` takes them, while ``passes_on``; the last of them."""
+        if not len(codes):
             return None
-        if self._compensation.holds_events:
-            return None
-        contour = self._compensation.contour
-        contour.position[:] = self.position
-        contour.counts[[MOVED, MOVED_ROWS, MOVED_EVENTS]] = 0
-        return contour
-
-    def add_rows(self, moves: Row, events: EventRows) -> Segment | None:
-        """What a run of rows has made, as compensation has let it go.
-
-        Args:
-            moves: Moves that are driven.
-            events: Those between them, ``before`` counted from the first of them; then those that wait
-                for the end of the held move.
-
-        Returns:
-            The run's last programmed move, or None.
-        """
-        made, placed = len(moves.codes), int((events.before >= 0).sum())
-        self._columns.add_event_rows(events.part(0, placed))
-        if made:
-            self._columns.add_rows(*moves)
-            self.position = moves.positions[-1, 1].tolist()
-        contour = self._compensation.contour
-        latest = contour.latest.segment if contour.counts[MOVED] else None
-        event_behind = len(events) > contour.counts[MOVED_EVENTS]
-        if made > contour.counts[MOVED_ROWS]:
-            latest = Row(*(column[-1] for column in moves)).segment
-            event_behind = placed > 0 and events.before[placed - 1] == made
-        if latest is not None or len(events):
-            self._before = None if event_behind else latest
-        waiting = events.part(placed, len(events))
-        for place, event in zip(waiting.before.tolist(), waiting, strict=True):
-            self._compensation.hold_event(event, place)
-        return latest
+        self._columns.add_rows(codes, values, positions)
+        self._before = Row(codes[-1], values[-1], positions[-1]).segment
+        self.position = self._before.end
+        return self._before
 
     def add_point(self, move: Segment, *, flat: bool) -> None:
         """The straight way to the next point of a spline; ``flat``: its height goes linearly."""

@@ -7,7 +7,7 @@ are the same for all.
 import dataclasses
 import math
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Protocol
+from typing import Protocol
 
 from twin.nc.text import arithmetic
 
@@ -64,12 +64,15 @@ class Expression:
     Attributes:
         text: As the program writes it.
         tree: What it is made of.
-        code: Its instructions, from when it is first computed on.
+        compute: Its value in a scope; raises ``ExpressionError`` where it has none.
     """
 
     text: str
     tree: "Tree"
-    code: list[Any] = dataclasses.field(default_factory=list, compare=False, repr=False)
+    compute: "Compute" = dataclasses.field(init=False, compare=False, repr=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "compute", compiled(self.tree))
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -222,3 +225,85 @@ class Exists:
 
 
 Tree = Number | Variable | NumberedVariable | OrZero | Negative | Computed | Exists
+
+Compute = Callable[[Scope], float]
+"""A value in a scope."""
+
+
+def compiled(tree: Tree) -> Compute:
+    """A tree as a function of the scope, built once from functions of its parts."""
+    match tree:
+        case Number(value):
+            return lambda _scope: value
+        case Variable(name):
+            return lambda scope: float(scope.read_variable(name, None))
+        case NumberedVariable(name, index):
+            at = compiled(index)
+            return lambda scope: float(scope.read_variable(name, at(scope)))
+        case OrZero(operand):
+            vacant = compiled(operand)
+            return lambda scope: value if (value := vacant(scope)) == value else 0.0
+        case Negative(operand):
+            positive = compiled(operand)
+            return lambda scope: -positive(scope)
+        case Exists(operand):
+            return _existence(compiled(operand))
+        case Computed(what, function, operands):
+            return _computation(what, function, tuple(map(compiled, operands)))
+
+
+def _existence(value: Compute) -> Compute:
+    def exists(scope: Scope) -> float:
+        try:
+            value(scope)
+        except ExpressionError:
+            return 0.0
+        return 1.0
+
+    return exists
+
+
+def _computation(
+    what: str, function: Callable[..., float], operands: tuple[Compute, ...]
+) -> Compute:
+    """A function of values; of a first value that is not there (NaN) the result may be NaN too."""
+
+    def one(scope: Scope) -> float:
+        a = first(scope)
+        try:
+            value = function(a)
+        except (ArithmeticError, ValueError):
+            value = math.nan
+        return value if -LARGEST_NUMBER <= value <= LARGEST_NUMBER else checked(value, (a,))
+
+    def two(scope: Scope) -> float:
+        a, b = first(scope), second(scope)
+        try:
+            value = function(a, b)
+        except (ArithmeticError, ValueError):
+            value = math.nan
+        return value if -LARGEST_NUMBER <= value <= LARGEST_NUMBER else checked(value, (a, b))
+
+    def several(scope: Scope) -> float:
+        values = [operand(scope) for operand in operands]
+        try:
+            value = function(*values)
+        except (ArithmeticError, ValueError):
+            value = math.nan
+        return checked(value, values)
+
+    def checked(value: float, values: Sequence[float]) -> float:
+        if not abs(value) <= LARGEST_NUMBER:
+            if value == value:
+                raise ExpressionError.too_large()
+            if values[0] == values[0]:
+                raise ExpressionError.undefined(what, values)
+        return value
+
+    if len(operands) == 1:
+        (first,) = operands
+        return one
+    if len(operands) == 2:
+        first, second = operands
+        return two
+    return several

@@ -3,6 +3,7 @@
 import abc
 import dataclasses
 import math
+from collections.abc import Callable
 
 import mujoco
 import numpy as np
@@ -117,6 +118,8 @@ class Canvas(abc.ABC):
         self._option.geomgroup[list(SHOWN_GROUPS)] = True
         self._camera = mujoco.MjvCamera()
         self._camera.type = mujoco.mjtCamera.mjCAMERA_FIXED
+        self._changed_meshes: set[int] = set()
+        self._changed_textures: set[int] = set()
 
     def draw(
         self,
@@ -126,7 +129,22 @@ class Canvas(abc.ABC):
         focus: Focus | None = None,
         spray: Chips | None = None,
     ) -> Pixels:
-        """Draw one frame, top row first.
+        """Draw one frame: ``begin`` it and wait for it.
+
+        Returns:
+            Shape (height, width, 3), top row first.
+        """
+        return self.begin(data, camera, size, focus, spray)()
+
+    def begin(
+        self,
+        data: mujoco.MjData,
+        camera: int,
+        size: tuple[int, int] | None = None,
+        focus: Focus | None = None,
+        spray: Chips | None = None,
+    ) -> Callable[[], Pixels]:
+        """Begin to draw one frame, while which the caller goes on to the next.
 
         Args:
             data: Positions of everything (after ``mj_forward`` or the like).
@@ -136,22 +154,48 @@ class Canvas(abc.ABC):
             spray: Chips in the air; they cast no shadows.
 
         Returns:
-            Shape (height, width, 3).
+            What waits for the frame and gives its pixels, shape (height, width, 3), top row first; to be
+            called once, before anything else is drawn.
         """
         width, height = size or self._size
         self._camera.fixedcamid = camera
+        self._send_changes()
         if self._passes == 1:
             self._update(data, spray)
-            return self._take(width, height)
+            self._render(width, height)
+            return lambda: self._read(width, height)
         total = np.zeros((height, width, 3), np.uint16)
         directions = data.light_xdir.copy()
         for number in range(self._passes):
+            if number:
+                total += self._read(width, height)
             self._aim_lamps(data, directions, number, focus)
             self._update(data, spray)
             self._shift(height, (number * _GRID_STEPS) % 1.0 - 0.5)
-            total += self._take(width, height)
+            self._render(width, height)
         data.light_xdir[:] = directions
-        return ((total + self._passes // 2) // self._passes).astype(np.uint8)
+
+        def mean() -> Pixels:
+            sums = total + self._read(width, height)
+            return ((sums + self._passes // 2) // self._passes).astype(np.uint8)
+
+        return mean
+
+    def upload_mesh(self, mesh: int) -> None:
+        """Send a mesh of the model that was changed to the renderer, with the next picture."""
+        self._changed_meshes.add(mesh)
+
+    def upload_texture(self, texture: int) -> None:
+        """Send a texture of the model that was changed to the renderer, with the next picture."""
+        self._changed_textures.add(texture)
+
+    def _send_changes(self) -> None:
+        for mesh in self._changed_meshes:
+            self._send_mesh(mesh)
+        for texture in self._changed_textures:
+            self._send_texture(texture)
+        self._changed_meshes.clear()
+        self._changed_textures.clear()
 
     @abc.abstractmethod
     def draw_objects(self, data: mujoco.MjData, camera: int) -> npt.NDArray[np.int32]:
@@ -162,11 +206,11 @@ class Canvas(abc.ABC):
         """
 
     @abc.abstractmethod
-    def upload_mesh(self, mesh: int) -> None:
+    def _send_mesh(self, mesh: int) -> None:
         """Send a mesh of the model that was changed to the renderer."""
 
     @abc.abstractmethod
-    def upload_texture(self, texture: int) -> None:
+    def _send_texture(self, texture: int) -> None:
         """Send a texture of the model that was changed to the renderer."""
 
     @abc.abstractmethod
@@ -178,8 +222,12 @@ class Canvas(abc.ABC):
         """Bring the renderer's scene, and the cameras of ``_scene``, to the state of ``data``."""
 
     @abc.abstractmethod
-    def _take(self, width: int, height: int) -> Pixels:
-        """Draw the scene once, shape (height, width, 3), top row first."""
+    def _render(self, width: int, height: int) -> None:
+        """Begin to draw the scene once."""
+
+    @abc.abstractmethod
+    def _read(self, width: int, height: int) -> Pixels:
+        """Wait for what was rendered, shape (height, width, 3), top row first."""
 
     @abc.abstractmethod
     def _limit_shadows(self, radius: float) -> None:

@@ -103,8 +103,6 @@ class FilamentCanvas(Canvas):
         self._bodies.set_options(self._option)
         self._groups = model.geom_group.copy()
         self._meshes: dict[int, FilamentMesh] = {}
-        self._changed_meshes: set[int] = set()
-        self._changed_textures: set[int] = set()
         self._targets: dict[tuple[int, int], Any] = {}
         self._chips: list[Any] = []
         self._flying = 0
@@ -124,6 +122,7 @@ class FilamentCanvas(Canvas):
     def draw_objects(self, data: mujoco.MjData, camera: int) -> npt.NDArray[np.int32]:
         """Which geom every pixel shows, as ``Canvas`` says."""
         self._camera.fixedcamid = camera
+        self._send_changes()
         self._update(data)
         mode = self._filament.DrawMode.DRAW_MODE_SEGMENTATION_BY_ID
         red, green, blue = np.moveaxis(self._take(*self._size, mode).astype(np.int64), 2, 0)
@@ -137,23 +136,14 @@ class FilamentCanvas(Canvas):
                     geoms[known] = geom
         return geoms[number]
 
-    def upload_mesh(self, mesh: int) -> None:
-        """Send a mesh of the model that was changed to Filament, with the next picture."""
-        self._changed_meshes.add(mesh)
-
-    def upload_texture(self, texture: int) -> None:
-        """Send a texture of the model that was changed to Filament, with the next picture."""
-        self._changed_textures.add(texture)
-
     def _send_changes(self) -> None:
-        for mesh in self._changed_meshes:
-            if mesh not in self._meshes:
-                self._meshes[mesh] = self._own_mesh(mesh)
-            self._on_the_way.append(self._meshes[mesh].send())
-        for texture in self._changed_textures:
-            self._send_texture(texture)
-        self._changed_meshes.clear()
-        self._changed_textures.clear()
+        with self._hush():
+            super()._send_changes()
+
+    def _send_mesh(self, mesh: int) -> None:
+        if mesh not in self._meshes:
+            self._meshes[mesh] = self._own_mesh(mesh)
+        self._on_the_way.append(self._meshes[mesh].send())
 
     def _send_texture(self, texture: int) -> None:
         model = self._model
@@ -187,7 +177,6 @@ class FilamentCanvas(Canvas):
     def _update(self, data: mujoco.MjData, spray: Chips | None = None) -> None:
         mujoco.mjv_updateCamera(self._model, data, self._camera, self._scene)
         with self._hush():
-            self._send_changes()
             self._regroup()
             self._lights.update(data)
             self._bodies.update(data)
@@ -228,6 +217,13 @@ class FilamentCanvas(Canvas):
         color = np.array(CHIP_RGBA, np.float32)
         chip.set_material(self._filament.Material(color=color, metallic=1.0, roughness=0.3))
         return chip
+
+    def _render(self, width: int, height: int) -> None:
+        self._pixels = self._take(width, height)
+
+    def _read(self, width: int, height: int) -> Pixels:
+        assert self._pixels.shape[:2] == (height, width)
+        return self._pixels
 
     def _take(self, width: int, height: int, mode: Any = None) -> Pixels:
         filament = self._filament

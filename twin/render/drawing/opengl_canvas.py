@@ -1,5 +1,6 @@
 """Draws with MuJoCo's OpenGL renderer, off-screen."""
 
+import importlib
 from typing import Any
 
 import mujoco
@@ -7,7 +8,15 @@ import numpy as np
 import numpy.typing as npt
 
 from twin.errors import RenderError
-from twin.render.drawing.canvas import Canvas, Pixels, Quality, prepare_size
+from twin.nc.canonical import IntArray
+from twin.render.drawing.canvas import (
+    HIDDEN_GROUP,
+    SHOWN_GROUPS,
+    Canvas,
+    Pixels,
+    Quality,
+    prepare_size,
+)
 from twin.render.drawing.chips import RGBA as CHIP_RGBA
 from twin.render.drawing.chips import Chips
 from twin.render.drawing.gl import choose_backend, open_context
@@ -61,6 +70,9 @@ class OpenGLCanvas(Canvas):
                 "try a smaller size or the draft quality"
             ) from error
         mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN, self._context)
+        # PyOpenGL looks at its first import which library the context is of.
+        self._perturbation = mujoco.MjvPerturb()
+        self._flush = importlib.import_module("OpenGL.GL").glFlush
 
     def close(self) -> None:
         """Close the OpenGL context."""
@@ -70,11 +82,13 @@ class OpenGLCanvas(Canvas):
     def draw_objects(self, data: mujoco.MjData, camera: int) -> npt.NDArray[np.int32]:
         """Which geom every pixel shows, as ``Canvas`` says."""
         self._camera.fixedcamid = camera
+        self._send_changes()
         self._update(data)
         flags = self._scene.flags.copy()
         self._scene.flags[mujoco.mjtRndFlag.mjRND_SEGMENT] = True
         self._scene.flags[mujoco.mjtRndFlag.mjRND_IDCOLOR] = True
-        pixels = self._take(*self._size)
+        self._render(*self._size)
+        pixels = self._read(*self._size)
         self._scene.flags[:] = flags
         red, green, blue = np.moveaxis(pixels.astype(np.int64), 2, 0)
         number = red + 256 * green + 65536 * blue
@@ -84,29 +98,46 @@ class OpenGLCanvas(Canvas):
                 geoms[geom.segid + 1] = geom.objid
         return geoms[number]
 
-    def upload_mesh(self, mesh: int) -> None:
-        """Send a mesh of the model that was changed to OpenGL."""
+    def _send_mesh(self, mesh: int) -> None:
         mujoco.mjr_uploadMesh(self._model, self._context, mesh)
 
-    def upload_texture(self, texture: int) -> None:
-        """Send a texture of the model that was changed to OpenGL."""
+    def _send_texture(self, texture: int) -> None:
         mujoco.mjr_uploadTexture(self._model, self._context, texture)
 
     def _limit_shadows(self, radius: float) -> None:
         self._context.shadowClip = radius
 
     def _update(self, data: mujoco.MjData, spray: Chips | None = None) -> None:
-        mujoco.mjv_updateScene(
-            self._model,
-            data,
-            self._option,
-            None,
-            self._camera,
-            mujoco.mjtCatBit.mjCAT_ALL,
-            self._scene,
-        )
+        """Bring the scene to the state of ``data``, near geoms first: what they hide is not shaded.
+
+        MuJoCo draws in the order in which geoms are added, and adds those of a group at a time.
+        """
+        groups = self._model.geom_group.copy()
+        everything = mujoco.mjtCatBit.mjCAT_ALL
+        self._model.geom_group[:] = self._near_first(data)
+        self._option.geomgroup[:] = False
+        for group in range(HIDDEN_GROUP):
+            self._option.geomgroup[group] = True
+            parts = (self._model, data, self._option)
+            if group == 0:
+                mujoco.mjv_updateScene(*parts, None, self._camera, everything, self._scene)
+            else:
+                mujoco.mjv_addGeoms(*parts, self._perturbation, everything, self._scene)
+            self._option.geomgroup[group] = False
+        self._model.geom_group[:] = groups
         if spray is not None:
             self._add_chips(spray)
+
+    def _near_first(self, data: mujoco.MjData) -> IntArray:
+        """A group for every geom, by its distance along the camera's axis; of those hidden the last."""
+        model, camera = self._model, self._camera.fixedcamid
+        axis = data.cam_xmat[camera].reshape(3, 3)[:, 2]
+        distance = (data.cam_xpos[camera] - data.geom_xpos) @ axis
+        distance[model.geom_type == mujoco.mjtGeom.mjGEOM_PLANE] = np.inf
+        # The pieces of the stock are in one place, and go together.
+        steps, rank = np.unique(distance.round(3), return_inverse=True)
+        shown = np.isin(model.geom_group, SHOWN_GROUPS)
+        return np.where(shown, rank * HIDDEN_GROUP // len(steps), HIDDEN_GROUP)
 
     def _add_chips(self, spray: Chips) -> None:
         scene = self._scene
@@ -127,9 +158,11 @@ class OpenGLCanvas(Canvas):
             geom.specular = 1.0
             scene.ngeom += 1
 
-    def _take(self, width: int, height: int) -> Pixels:
-        view = mujoco.MjrRect(0, 0, width, height)
-        mujoco.mjr_render(view, self._scene, self._context)
+    def _render(self, width: int, height: int) -> None:
+        mujoco.mjr_render(mujoco.MjrRect(0, 0, width, height), self._scene, self._context)
+        self._flush()
+
+    def _read(self, width: int, height: int) -> Pixels:
         pixels = np.zeros((height, width, 3), np.uint8)
-        mujoco.mjr_readPixels(pixels, None, view, self._context)
+        mujoco.mjr_readPixels(pixels, None, mujoco.MjrRect(0, 0, width, height), self._context)
         return pixels[::-1]

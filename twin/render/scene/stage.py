@@ -2,7 +2,7 @@
 
 import contextlib
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 import mujoco
@@ -136,26 +136,37 @@ class Stage:
 
     def picture(self, *cameras: str) -> Pixels:
         """Draw what cameras see now, side by side in equal fields, shape (height, width, 3)."""
-        self._refresh()
+        self.refresh()
+        return self.begin_picture(*cameras)()
+
+    def begin_picture(self, *cameras: str) -> Callable[[], Pixels]:
+        """Begin to draw what cameras see, as of the last ``refresh``.
+
+        Returns:
+            What waits for the picture and gives it; to be called once, before anything else is drawn.
+        """
         spray = self._spray()
+        if len(cameras) == 1:
+            return self._begin(cameras[0], self._size, spray)
         width, height = self._size
         columns = math.ceil(math.sqrt(len(cameras)))
         rows = -(-len(cameras) // columns)
         field = (width // columns, height // rows)
         whole = np.full((height, width, 3), BETWEEN_FIELDS, np.uint8)
         for number, camera in enumerate(cameras):
-            number_of = int(self.model.camera(camera).id)
-            view = self._drawing.draw(self.data, number_of, field, self._focus(camera), spray)
-            if len(cameras) == 1:
-                return view
+            view = self._begin(camera, field, spray)()
             top, left = field[1] * (number // columns), field[0] * (number % columns)
             edge = (field[1] - (1 if rows > 1 else 0), field[0] - 1)
             whole[top : top + edge[0], left : left + edge[1]] = view[: edge[0], : edge[1]]
-        return whole
+        return lambda: whole
+
+    def _begin(self, camera: str, size: tuple[int, int], spray: Chips) -> Callable[[], Pixels]:
+        number = int(self.model.camera(camera).id)
+        return self._drawing.begin(self.data, number, size, self._focus(camera), spray)
 
     def objects(self, camera: str) -> np.ndarray[tuple[int, int], np.dtype[np.int32]]:
         """Number of the geom that every pixel shows now, -1 for none, shape (height, width)."""
-        self._refresh()
+        self.refresh()
         return self._drawing.draw_objects(self.data, int(self.model.camera(camera).id))
 
     @property
@@ -181,7 +192,8 @@ class Stage:
         center = table.xpos + table.xmat.reshape(3, 3) @ self.placement.points(middle[None])[0]
         return Focus(center, SHADOWS_OVER_PART * MM * max(radius, SMALLEST_MM))
 
-    def _refresh(self) -> None:
+    def refresh(self) -> None:
+        """Bring what is drawn to where the machine and the stock are now."""
         turns = self._scene.summary.spindle.at(self._move)
         self._tools.show(self._tool, 1.0 if turns is None else float(np.sign(turns)))
         self._joints.set(self.data, self._position)

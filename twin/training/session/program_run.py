@@ -540,7 +540,7 @@ class ProgramRun:
         """What an MDI block leaves in force for the next one."""
         control = self._control
         shifts = [list(shift) for shift in control.frame.shifts]
-        return Inherited(control.modal.saved(), shifts, control.feed, control.spindle)
+        return Inherited(control.modal.fork(), shifts, control.feed, control.spindle)
 
     def _inherit(self, before: Inherited) -> None:
         control = self._control

@@ -1,14 +1,14 @@
 """CODESYS SoftMotion CNC (DIN 66025 with SoftMotion's own codes)."""
 
 from twin.nc.canonical import Corner
-from twin.nc.control.codes import MCode, StatementEffect
+from twin.nc.control.codes import MCode
+from twin.nc.control.control import Control
 from twin.nc.control.dialect import Dialect
 from twin.nc.dialects.codesys import actions, program, subprograms, words
 from twin.nc.dialects.codesys.actions import ADDITIONAL
 from twin.nc.dialects.codesys.codes import CODES, INSTEAD
 from twin.nc.dialects.codesys.decisions import DECISIONS
 from twin.nc.iso import base, shared_marks
-from twin.nc.iso.declared import go_back
 from twin.nc.path.paces import FeedMode
 from twin.nc.text.syntax import HEADING, Comment, Mark, Syntax
 
@@ -67,14 +67,11 @@ CODESYS = Dialect(
     },
     spindle_letter="",
     statements={
-        "LET": StatementEffect(program.let),
+        "LET": program.let,
         "SUBPROGRAM": subprograms.define,
-        **dict.fromkeys(
-            ("END_SUBPROGRAM", "RETURN"),
-            StatementEffect(lambda _control, _statement, assembler: go_back(assembler)),
-        ),
+        **dict.fromkeys(("END_SUBPROGRAM", "RETURN"), Control.go_back),
     },
-    other_statement=StatementEffect(subprograms.assign_or_call),
+    other_statement=subprograms.assign_or_call,
     word_meanings={
         "N": "block number",
         "G": "preparatory code",
@@ -142,5 +139,5 @@ CODESYS = Dialect(
     place_switches=words.place_switches,
     prepare=words.prepare,
     library=subprograms.LIBRARY,
-    disturbed=program.acts_on_plain_blocks,
+    acts_on_lines=program.acts_on_lines,
 )

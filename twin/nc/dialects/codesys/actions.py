@@ -2,17 +2,14 @@
 
 import math
 
-from twin.nc.bytecode import opcodes
-from twin.nc.bytecode.assembler import Assembler
 from twin.nc.control.codes import Action
+from twin.nc.control.compensation import compensate
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import LineRule
-from twin.nc.control.performer import refuse
 from twin.nc.dialects.codesys.program import variables
 from twin.nc.geometry.planes import XY, plane_with_normal
 from twin.nc.iso import offsets
-from twin.nc.iso.findings import PLANE_COMPENSATED
-from twin.nc.iso.offsets import compile_shift, programmed_shift
+from twin.nc.iso.declared import refuse_compensated_plane
 from twin.nc.path.blends import Blend, BlendKind
 from twin.nc.text.blocks import Word
 
@@ -43,9 +40,21 @@ def plane_changed(control: Control) -> None:
         ProgramError: It has moved in another one.
     """
     if control.path.compensation_has_moved:
-        refuse(control, PLANE_COMPENSATED)
+        refuse_compensated_plane(control)
     if control.path.compensating:
         control.path.compensate_in(control.part_plane())
+
+
+def compensation_by_radius(side: float) -> Action:
+    """G41, G42: compensation by the radius D, else by the one that was given last."""
+
+    def action(control: Control) -> None:
+        word, memory = control.take("D"), variables(control)
+        if word is not None:
+            memory.radius = control.length(word)
+        compensate(control, side, memory.radius)
+
+    return action
 
 
 def probe(control: Control) -> None:
@@ -185,17 +194,16 @@ def _keep_ramp(control: Control) -> None:
         control.programmed[axis] += pending
 
 
-def reset_shift(control: Control, assembler: Assembler) -> None:
+def reset_shift(control: Control) -> None:
     """G53: decoder and machine coordinates coincide."""
-    compile_shift("offset", [0.0] * len(control.settings.axes), assembler)
-    assembler.emit(opcodes.REFRAME)
-    assembler.disturbed(lambda: _keep_ramp(control))
+    offsets.shift_by(control, {}, ends_preset=False)
+    _keep_ramp(control)
 
 
-def shift_absolutely(control: Control, assembler: Assembler) -> None:
+def shift_absolutely(control: Control) -> None:
     """G54: the decoder's zero lies at the given position of the machine's coordinates."""
-    programmed_shift("offset", control, assembler)
-    assembler.disturbed(lambda: _keep_ramp(control))
+    offsets.programmed_shift(control, "offset")
+    _keep_ramp(control)
 
 
 def shift_relatively(control: Control) -> None:
@@ -208,12 +216,12 @@ def shift_relatively(control: Control) -> None:
     _keep_ramp(control)
 
 
-def set_reference(control: Control, assembler: Assembler) -> None:
+def set_reference(control: Control) -> None:
     """G56: the place where the machine stands gets the given coordinates.
 
     Decision: the manual's page is not fully known; this is what its title says.
     """
-    offsets.set_position(control, control.take_axis_words(), "offset", assembler)
+    offsets.set_position(control, control.take_axis_words(), "offset")
 
 
 def set_position(control: Control) -> None:

@@ -1,6 +1,6 @@
 """G codes of CODESYS SoftMotion."""
 
-from twin.nc.control.codes import Effect, GCode
+from twin.nc.control.codes import GCode
 from twin.nc.dialects.codesys import actions, jumps, program
 from twin.nc.dialects.codesys.arcs import CLOCKWISE, COUNTER_CLOCKWISE
 from twin.nc.dialects.codesys.curves import (
@@ -13,7 +13,7 @@ from twin.nc.dialects.codesys.curves import (
 from twin.nc.geometry.planes import XY, YZ, ZX
 from twin.nc.iso import base
 from twin.nc.iso.declared import instead, modal, motion_code, plane_code, refused
-from twin.nc.iso.tool_compensation import END_OF_COMPENSATION, LEFT, RIGHT, compensation_by_radius
+from twin.nc.iso.tool_compensation import LEFT, RIGHT, end_compensation
 from twin.nc.path.blends import BlendKind
 
 _PROFILE = "what it sets in the path preprocessing has no counterpart in the twin"
@@ -37,17 +37,21 @@ CODES: dict[float, GCode] = {
     19: plane_code("3D mode, plane Y Z", YZ, actions.plane_changed),
     20: instead(
         "jump to L (or the label L? behind) when K is not 0",
-        Effect(jumps.conditional_jump),
+        jumps.conditional_jump,
         takes="L!",
     ),
     31: instead("probe", actions.probe),
-    36: instead("write D to the variable O", Effect(program.write_variable), takes="D"),
-    37: instead("add D to the variable O", Effect(program.add_to_variable), takes="D"),
+    36: instead("write D to the variable O", program.write_variable, takes="D"),
+    37: instead("add D to the variable O", program.add_to_variable, takes="D"),
     **refused("state flags", _PROFILE, 38),
     **refused("parameters of the preprocessing", _PROFILE, 39),
-    40: modal("radius compensation off", "compensation", END_OF_COMPENSATION),
-    41: modal("radius compensation left, radius D", "compensation", compensation_by_radius(LEFT)),
-    42: modal("radius compensation right, radius D", "compensation", compensation_by_radius(RIGHT)),
+    40: modal("radius compensation off", "compensation", end_compensation),
+    41: modal(
+        "radius compensation left, radius D", "compensation", actions.compensation_by_radius(LEFT)
+    ),
+    42: modal(
+        "radius compensation right, radius D", "compensation", actions.compensation_by_radius(RIGHT)
+    ),
     43: modal(
         "tool length vector I J K; the next move leads into it", "length", actions.length_vector
     ),
@@ -62,10 +66,10 @@ CODES: dict[float, GCode] = {
         "smoothing",
         actions.smooth_corners(BlendKind.ARC),
     ),
-    53: instead("coordinate shift off", Effect(actions.reset_shift)),
-    54: instead("coordinate shift, absolute", Effect(actions.shift_absolutely)),
+    53: instead("coordinate shift off", actions.reset_shift),
+    54: instead("coordinate shift, absolute", actions.shift_absolutely),
     55: instead("coordinate shift, relative", actions.shift_relatively),
-    56: instead("set the reference here", Effect(actions.set_reference)),
+    56: instead("set the reference here", actions.set_reference),
     60: modal("loop avoidance off", "loops", actions.keep_loops),
     61: modal("loop avoidance on: loops are cut out", "loops", actions.cut_loops),
     70: instead(

@@ -1,11 +1,9 @@
 """Jumps of CODESYS SoftMotion."""
 
-from twin.nc.bytecode.assembler import Assembler
 from twin.nc.control.control import Control
 from twin.nc.dialects.codesys.program import COUNTER, read_variable
 from twin.nc.dialects.codesys.subprograms import own_lines
 from twin.nc.text.blocks import Location, Word
-from twin.nc.text.expressions import Variable
 
 
 def destination(control: Control, target: Word) -> Location:
@@ -20,7 +18,7 @@ def destination(control: Control, target: Word) -> Location:
     )
 
 
-def conditional_jump(control: Control, assembler: Assembler) -> None:
+def conditional_jump(control: Control) -> None:
     """G20: go on at block L when K (or the internal variable) is not 0.
 
     A label L?4 is looked for forwards as L!4; where it is missing, the blocks behind the jump are
@@ -30,24 +28,26 @@ def conditional_jump(control: Control, assembler: Assembler) -> None:
     target = number or label
     if target is None:
         control.fail("jump-target", "G20 needs L: the block to jump to", hint="write G20 L10 K1")
-    value = assembler.known(target)
+    value = control.number(target)
     if value != int(value) or value < 0.0:
         control.fail("jump-target", f"{target.text} is no block number", target)
     if number is None:
-        assembler.interpreted(lambda: _seek_label(control, target, condition))
-        return
+        _seek_label(control, target, condition)
+    elif _holds(control, condition):
+        control.jump(destination(control, number))
+
+
+def _holds(control: Control, condition: Word | None) -> bool:
+    """Whether K, or without it the internal variable, is not 0."""
     if condition is None:
-        assembler.value(Variable(COUNTER))
-    else:
-        assembler.word_value(condition)
-    assembler.jump_if(lambda: destination(control, number))
+        return read_variable(control, COUNTER, None) != 0.0
+    return control.number(condition) != 0.0
 
 
 def _seek_label(control: Control, target: Word, condition: Word | None) -> None:
     """Go on at the next block with this label, or behind the program, if a condition holds."""
     value, here = control.number(target), own_lines(control)
-    counter = read_variable(control, COUNTER, None)
-    if (counter if condition is None else control.number(condition)) == 0.0:
+    if not _holds(control, condition):
         return
     if not control.program_counter.seek(
         lambda block: (

@@ -5,7 +5,6 @@ import math
 import re
 from collections.abc import Mapping
 
-from twin.nc.bytecode.assembler import Assembler
 from twin.nc.control.control import Control
 from twin.nc.geometry.planes import Vector
 from twin.nc.path.blends import BlendKind
@@ -95,6 +94,7 @@ class Variables:
     """What a program knows by name.
 
     Attributes:
+        radius: That D has given compensation last [mm].
         length_ramp: What G43 has changed and no move has led into yet [mm].
         smoothing: Distance from a corner at which its moves are cut [mm].
         smoothed_by: What takes the corners' place; None: nothing.
@@ -102,6 +102,7 @@ class Variables:
         subprograms: By name; None before the program was searched for them.
     """
 
+    radius: float = 0.0
     length_ramp: Vector = (0.0, 0.0, 0.0)
     smoothing: float = 0.0
     smoothed_by: BlendKind | None = None
@@ -115,8 +116,8 @@ def variables(control: Control) -> Variables:
     return control.memory
 
 
-def acts_on_plain_blocks(control: Control) -> bool:
-    """A period, or a length that the next move leads into: plain blocks heed them."""
+def acts_on_lines(control: Control) -> bool:
+    """A period, or a length that the next move leads into."""
     memory = variables(control)
     return bool(memory.periods) or any(memory.length_ramp)
 
@@ -150,7 +151,7 @@ def given_variable(given: Mapping[str, float], name: str) -> float | None:
     return None
 
 
-def let(control: Control, statement: Statement, assembler: Assembler) -> None:
+def let(control: Control, statement: Statement) -> None:
     """LET: declare a local variable, 0 unless it is given a value.
 
     Raises:
@@ -161,25 +162,32 @@ def let(control: Control, statement: Statement, assembler: Assembler) -> None:
         hint = "LET #x : LREAL := 1"
         control.report.fail("declaration", "LET needs a variable", statement.column, 3, hint)
     rest, column = statement.text[match.end() :], statement.text_column + match.end()
+    value = 0.0
     if match[2]:
-        assembler.value(control.expression(rest, column), column)
+        value = control.compute(control.expression(rest, column), column)
     elif rest.strip():
         control.report.fail("declaration", "this cannot follow a declaration", column)
-    else:
-        assembler.constant(0.0)
-    assembler.assign(match[1].upper())
+    control.variables.write(match[1].upper(), value)
 
 
-def assign(control: Control, statement: Statement, assembler: Assembler) -> None:
+def assign(control: Control, statement: Statement) -> None:
     """``#x := value``."""
     name = statement.keyword.strip()
     text, column = statement.text.lstrip()[2:], statement.text_column + 2
-    assembler.value(control.expression(text, column), column)
-    assembler.assign(name, undeclared=_hint(name))
+    value = control.compute(control.expression(text, column), column)
+    _require_declared(control, name, statement)
+    control.variables.write(name, value)
 
 
-def _hint(name: str) -> str:
-    return f"write LET {name} : LREAL"
+def _require_declared(control: Control, name: str, blamed: Statement | None = None) -> None:
+    """A local variable must have been declared.
+
+    Raises:
+        ProgramError: It is not.
+    """
+    if name.startswith("#") and control.variables.read(name) is None:
+        hint = f"write LET {name} : LREAL"
+        control.fail("unknown-variable", f"{name} is not declared", blamed, hint)
 
 
 def _reference(control: Control, word: Word | None) -> str:
@@ -192,20 +200,19 @@ def _reference(control: Control, word: Word | None) -> str:
     return name
 
 
-def write_variable(control: Control, assembler: Assembler) -> None:
+def write_variable(control: Control) -> None:
     """G36: variable O, or the internal one, gets the value D."""
     name = _reference(control, control.take("O"))
-    assembler.word_value(_value_word(control))
-    assembler.assign(name, undeclared=_hint(name) if name.startswith("#") else None)
+    value = control.number(_value_word(control))
+    _require_declared(control, name)
+    control.variables.write(name, value)
 
 
-def add_to_variable(control: Control, assembler: Assembler) -> None:
+def add_to_variable(control: Control) -> None:
     """G37: D is added to variable O, or to the internal one."""
     name, word = _reference(control, control.take("O")), _value_word(control)
-    change = word.value.tree if isinstance(word.value, Expression) else Number(word.value)
-    total = Computed("+", arithmetic.add, (Variable(name), change))
-    assembler.word_value(word._replace(value=Expression(name, total)))
-    assembler.assign(name)
+    total = Computed("+", arithmetic.add, (Variable(name), Number(control.number(word))))
+    control.variables.write(name, control.evaluate(Expression(name, total), word))
 
 
 def _value_word(control: Control) -> Word:

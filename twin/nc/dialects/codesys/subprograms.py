@@ -3,7 +3,6 @@
 import re
 from collections.abc import Container, Iterator
 
-from twin.nc.bytecode.assembler import Assembler
 from twin.nc.control.control import Control
 from twin.nc.dialects.codesys.program import Subprogram, assign, variables
 from twin.nc.text.blocks import Location, Statement
@@ -85,7 +84,7 @@ def define(control: Control, statement: Statement) -> None:
     control.program_counter.next()
 
 
-def _call(control: Control, statement: Statement, assembler: Assembler) -> None:
+def _call(control: Control, statement: Statement) -> None:
     """``Name{values}``: run a subprogram with its own variables."""
     name = statement.keyword.strip()
     subprogram = _subprograms(control).get(name)
@@ -102,15 +101,19 @@ def _call(control: Control, statement: Statement, assembler: Assembler) -> None:
     if len(values) != len(subprogram.formals):
         message = f"{name} takes {len(subprogram.formals)} values, not {len(values)}"
         control.report.fail("call-values", message, statement.column, len(name))
-    for each in values:
-        assembler.value(each, column)
-    begin = Location(subprogram.lines.start, 0)
-    assembler.call(begin, DEEPEST_CALL, subprogram.formals, restores=subprogram.restores)
+    computed = [control.compute(each, column) for each in values]
+    control.call(
+        Location(subprogram.lines.start, 0),
+        DEEPEST_CALL,
+        statement,
+        zip(subprogram.formals, computed, strict=True),
+        restores=subprogram.restores,
+    )
 
 
-def assign_or_call(control: Control, statement: Statement, assembler: Assembler) -> None:
+def assign_or_call(control: Control, statement: Statement) -> None:
     """A statement that begins with a name."""
     if statement.keyword.startswith("#"):
-        assign(control, statement, assembler)
+        assign(control, statement)
     else:
-        _call(control, statement, assembler)
+        _call(control, statement)

@@ -1,12 +1,11 @@
 """Fagor CNC 8070, milling model."""
 
-from twin.nc.control.codes import Effect, MCode, WordEffect
+from twin.nc.control.codes import MCode
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Dialect
 from twin.nc.control.settings import ControlSettings
 from twin.nc.dialects.fagor8070 import (
     arcs,
-    block_compiler,
     corners,
     frames,
     offset_table,
@@ -15,10 +14,9 @@ from twin.nc.dialects.fagor8070 import (
     variables,
 )
 from twin.nc.dialects.fagor8070.codes import CODES, INSTEAD, auxiliary, plain_dwell
-from twin.nc.dialects.fagor8070.control_variables import LiveVariables
 from twin.nc.dialects.fagor8070.decisions import DECISIONS
 from twin.nc.dialects.fagor8070.library import LIBRARY
-from twin.nc.dialects.fagor8070.memory import FagorMemory, acts_on_plain_blocks
+from twin.nc.dialects.fagor8070.memory import FagorMemory, acts_on_lines
 from twin.nc.iso import base, shared_marks
 from twin.nc.iso.declared import flow_function
 from twin.nc.path.paces import PATH_COUNTS, FeedRule
@@ -74,21 +72,21 @@ FAGOR8070 = Dialect(
     start=(1, 17, 40, 50, 71, 80, 90, 94, 97, 98, 108, 137, 139, 152, 197, 262, 265),
     m={
         **base.M_CODES,
-        6: MCode(meaning="tool change", action=Effect(frames.change_tool), ground="manual"),
-        17: flow_function("end of subroutine", subroutines.return_),
+        6: MCode(meaning="tool change", action=frames.change_tool, ground="manual"),
+        17: flow_function("end of subroutine", Control.go_back),
         19: MCode(meaning="spindle orientation", ground="manual"),
-        29: flow_function("end of subroutine", subroutines.return_),
+        29: flow_function("end of subroutine", Control.go_back),
         **{number: MCode(meaning="spindle gear", ground="manual") for number in range(41, 45)},
     },
     motion_words=frozenset("XYZABCUVWIJKRQ") | {"R1"},
     repeat_word="NR",
     words={
         "F": base.set_feed,
-        "S": WordEffect(base.spindle_speed),
-        "T": WordEffect(frames.next_tool),
-        "D": WordEffect(frames.tool_offset),
-        "H": WordEffect(auxiliary),
-        "G04": WordEffect(plain_dwell),
+        "S": base.spindle_speed,
+        "T": frames.next_tool,
+        "D": frames.tool_offset,
+        "H": auxiliary,
+        "G04": plain_dwell,
         "G159": offset_table.numbered_offset,
         "G263": arcs.set_circle_radius,
     },
@@ -159,12 +157,10 @@ FAGOR8070 = Dialect(
     before_motion=frames.turn_in_commanded_direction,
     read_variable=variables.read_variable,
     is_local=variables.is_local,
-    live_variables=LiveVariables(),
     library=LIBRARY,
     prepare=_prepare,
     after_motion=subroutines.call_after_motion,
     finish=statements.warn_of_missing_end,
-    compile_block=block_compiler.compile_block,
-    disturbed=acts_on_plain_blocks,
+    acts_on_lines=acts_on_lines,
     feed_rule=_feed_rule,
 )

@@ -9,7 +9,7 @@ import math
 from twin.nc.control.codes import Interpolation
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import ArcRule
-from twin.nc.dialects.fagor8070.memory import memory_of, polar_origin
+from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.dialects.fagor8070.polar import Goal, forget_polar, take_goal
 from twin.nc.geometry import arcs
 from twin.nc.geometry.arcs import SAME_POINT, TURN, Point, distance, sweep_between, turned
@@ -65,7 +65,7 @@ def _arc(control: Control, rule: ArcRule) -> None:
     elif centre.words:
         center = _given_center(control, centre.words, start)
     elif goal.polar:
-        center = polar_origin(control)
+        center = memory_of(control).polar_origin
     else:
         message = "the arc has neither a centre nor a radius"
         hint = f"write {letters[0]} and {letters[1]}, or R"

@@ -1,9 +1,7 @@
 """G codes of the Fagor CNC 8070."""
 
-from twin.nc.bytecode import opcodes
-from twin.nc.bytecode.assembler import Assembler, Finding
 from twin.nc.canonical import Corner
-from twin.nc.control.codes import CodeWriter, Effect, GCode
+from twin.nc.control.codes import Action, GCode
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070 import arcs, frames, polar, transformations
 from twin.nc.dialects.fagor8070.corners import blend_code
@@ -13,41 +11,38 @@ from twin.nc.dialects.fagor8070.offset_table import offset_code
 from twin.nc.geometry.planes import XY, YZ, ZX
 from twin.nc.iso import base, fixed_cycles, offsets
 from twin.nc.iso.declared import instead, modal, motion_code, plane_code, refused
-from twin.nc.iso.tool_compensation import END_OF_COMPENSATION, LEFT, RIGHT, compensation_by_tool
+from twin.nc.iso.tool_compensation import LEFT, RIGHT, end_compensation
 from twin.nc.path.blends import BlendKind
-from twin.nc.path.event_columns import AUXILIARY
 from twin.nc.path.paces import FeedMode
+from twin.nc.text.arithmetic import is_whole
 from twin.nc.text.blocks import Word
 
-_OTHER_AUXILIARY = Finding(
-    "number-range", "{word} is no number of a function: whole ones up to 999999 are"
-)
 
-
-def plain_dwell(control: Control, word: Word, assembler: Assembler) -> None:
+def plain_dwell(control: Control, word: Word) -> None:
     """G04 1.5: the seconds stand right behind the code."""
     if control.words or len(control.block.words) > 1:
         control.fail("dwell", "G04 must stand alone in its block", word)
-    assembler.word_value(word)
-    base.write_dwell(assembler)
+    base.wait(control, control.number(word), word)
 
 
-def auxiliary(_control: Control, word: Word, assembler: Assembler) -> None:
+def auxiliary(control: Control, word: Word) -> None:
     """H: an auxiliary function of the machine."""
-    assembler.word_value(word)
-    assembler.check(opcodes.WHOLE, _OTHER_AUXILIARY, 999_999.0)
-    assembler.emit(opcodes.REPORT, AUXILIARY)
+    number = control.number(word)
+    if not is_whole(number, 999_999.0):
+        message = f"{word.text} is no number of a function: whole ones up to 999999 are"
+        control.fail("number-range", message, word)
+    control.function(f"H{int(number)}", {})
 
 
-def _forgetting_polar(write: CodeWriter) -> Effect:
+def _forgetting_polar(action: Action) -> Action:
     """Work offsets and presets: the last R and Q no longer hold."""
 
-    def both(control: Control, assembler: Assembler) -> None:
-        assembler.disturbed(lambda: refuse_change(control))
-        write(control, assembler)
-        polar.write_forgotten_polar(assembler)
+    def both(control: Control) -> None:
+        refuse_change(control)
+        action(control)
+        polar.forget_polar(control)
 
-    return Effect(both)
+    return both
 
 
 def _passed_over(number: int, meaning: str, letters: str) -> GCode:
@@ -104,18 +99,16 @@ CODES: dict[float, GCode] = {
         interpolation=arcs.THREE_POINTS,
         cycle=None,
     ),
-    10: modal("mirror off", action=Effect(transformations.mirror_off)),
+    10: modal("mirror off", action=transformations.mirror_off),
     11: modal("mirror X", action=transformations.mirror(0)),
     12: modal("mirror Y", action=transformations.mirror(1)),
     13: modal("mirror Z", action=transformations.mirror(2)),
-    14: instead(
-        "mirror the given axes: X-1", Effect(transformations.mirror_axes), ground="decision"
-    ),
-    17: plane_code("plane X Y", XY, ground="seed"),
-    18: plane_code("plane Z X", ZX, ground="seed"),
-    19: plane_code("plane Y Z", YZ, ground="seed"),
+    14: instead("mirror the given axes: X-1", transformations.mirror_axes, ground="decision"),
+    17: plane_code("plane X Y", XY, frames.choose_plane, "seed"),
+    18: plane_code("plane Z X", ZX, frames.choose_plane, "seed"),
+    19: plane_code("plane Y Z", YZ, frames.choose_plane, "seed"),
     20: modal("any plane: X1 Z2", "plane", frames.any_plane),
-    30: modal("polar origin: I J, or where the tool stands", action=Effect(polar.set_polar_origin)),
+    30: modal("polar origin: I J, or where the tool stands", action=polar.set_polar_origin),
     31: modal("temporary polar origin at the arc's centre", action=polar.temporary_polar_origin),
     **refused("threading", "the twin's spindle has no angle", 33),
     36: instead(
@@ -125,18 +118,16 @@ CODES: dict[float, GCode] = {
     39: instead(
         "corner chamfered at the distance I", blend_code(BlendKind.CHAMFER, 39), ground="decision"
     ),
-    40: modal("radius compensation off", "compensation", END_OF_COMPENSATION),
-    41: modal("compensation, tool left", "compensation", compensation_by_tool(LEFT)),
-    42: modal("compensation, tool right", "compensation", compensation_by_tool(RIGHT)),
+    40: modal("radius compensation off", "compensation", end_compensation),
+    41: modal("compensation, tool left", "compensation", frames.compensation_by_tool(LEFT)),
+    42: modal("compensation, tool right", "compensation", frames.compensation_by_tool(RIGHT)),
     **refused("tangential control", "the twin has no axis that turns the tool", 45),
     50: modal("semi-rounded corner", "corner", corner=Corner.EXACT_PATH),
     51: _passed_over(51, "look-ahead of the CNC 8055: tolerance E and angle A", "AE"),
     53: modal(
         "offsets cancelled",
         "offset",
-        _forgetting_polar(
-            lambda control, assembler: assembler.interpreted(lambda: offsets.cancel_offset(control))
-        ),
+        _forgetting_polar(offsets.cancel_offset),
     ),
     **{
         n: modal(f"work offset G{n} of the job", "offset", _forgetting_polar(offset_code(n)))
@@ -147,8 +138,8 @@ CODES: dict[float, GCode] = {
     **refused("rigid tapping", "the twin's spindle has no angle", 63),
     70: modal("inches", "units", unit=25.4),
     71: modal("millimetres", "units", unit=1.0),
-    72: instead("scale S, about part zero", Effect(transformations.scale), takes="S"),
-    73: instead("rotation by Q about I J; alone: off", Effect(transformations.rotate)),
+    72: instead("scale S, about part zero", transformations.scale, takes="S"),
+    73: instead("rotation by Q about I J; alone: off", transformations.rotate),
     **refused("home search", "the twin starts homed", 74),
     **CYCLES,
     90: modal("absolute coordinates", "distance", incremental=False),
@@ -182,7 +173,7 @@ CODES: dict[float, GCode] = {
     **refused("programming in diameters", "a mill has none", 151),
     152: modal("programming in radii", "diameters"),
     **refused("axes without offset", _UNKNOWN, 157),
-    158: instead("incremental offset", Effect(frames.incremental_offset)),
+    158: instead("incremental offset", frames.incremental_offset),
     **refused("multiple machining", "write the positions one by one", *range(160, 166)),
     **refused("Hirth axes", _UNKNOWN, *range(170, 172)),
     **refused("set the machine coordinate", _UNKNOWN, 174),

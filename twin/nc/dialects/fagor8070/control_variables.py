@@ -10,7 +10,6 @@ their value.
 import re
 from collections.abc import Callable, Mapping
 
-from twin.nc.bytecode import registers
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.memory import OFFSETS_BY_NUMBER, memory_of, offset_name
 from twin.nc.iso.offsets import machine_zero
@@ -21,27 +20,19 @@ POLAR_ABSCISSA, POLAR_ORDINATE = "V.G.PORGF", "V.G.PORGS"
 _OFFSET = re.compile(r"V\.A\.ORGT\[[ \t]*(P?)([0-9]+)[ \t]*\]\.([A-Z])1?")
 
 _READ: Mapping[str, Callable[[Control], float]] = {
-    POLAR_ABSCISSA: lambda control: control.registers[registers.POLAR_ABSCISSA],
-    POLAR_ORDINATE: lambda control: control.registers[registers.POLAR_ORDINATE],
+    POLAR_ABSCISSA: lambda control: memory_of(control).polar_origin[0],
+    POLAR_ORDINATE: lambda control: memory_of(control).polar_origin[1],
     "V.TM.TOOL": lambda control: float(control.tools.spindle or 0),
     "V.TM.NXTOOL": lambda control: float(control.tools.selected or 0),
     "V.G.TOOL": lambda control: float(control.tools.spindle or 0),
     "V.G.NXTOOL": lambda control: float(control.tools.selected or 0),
-    "V.G.TOD": lambda control: control.registers[registers.OFFSET_ON],
+    "V.G.TOD": lambda control: float(memory_of(control).offset_on),
 }
 
 
 def is_live(name: str) -> bool:
     """Whether the control knows a variable, which no memory holds."""
     return name.startswith("V.") and not name.startswith(("V.P.", "V.S."))
-
-
-class LiveVariables:
-    """All of them, as a container of names."""
-
-    def __contains__(self, name: object) -> bool:
-        """Whether the control knows it."""
-        return isinstance(name, str) and is_live(name)
 
 
 def read_live(control: Control, name: str) -> float | None:

@@ -2,14 +2,14 @@
 
 import re
 
-from twin.nc.bytecode.assembler import Assembler
-from twin.nc.control.codes import StatementAction, StatementEffect
+from twin.nc.control.codes import StatementAction
 from twin.nc.control.constructs import Construct, Structure
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.dialects.fagor8070.structure import structure_of
 from twin.nc.dialects.fagor8070.subroutines import lines_around
 from twin.nc.text.blocks import Location, Statement
+from twin.nc.text.expressions import Expression, Variable
 
 _PLACE = re.compile(r"[ \t]*(?:N[ \t]*([0-9]+)|\[[ \t]*([A-Z_]\w*)[ \t]*\])[ \t]*", re.IGNORECASE)
 
@@ -79,92 +79,107 @@ def destination(control: Control, statement: Statement) -> Location:
 # --- what the statements do
 
 
-def _if(control: Control, statement: Statement, assembler: Assembler) -> None:
+def _if(control: Control, statement: Statement) -> None:
     """$IF: run the first branch whose condition holds; or jump, with $GOTO on the same line."""
     head, goto, target = statement.text.partition("$")
     column = statement.text_column
-    assembler.value(control.expression(head, column), column)
+    holds = control.compute(control.expression(head, column), column) != 0.0
     if goto:
         jump = _jump_behind_condition(control, statement, head, target)
-        assembler.jump_if(lambda: destination(control, jump))
+        if holds:
+            control.jump(destination(control, jump))
         return
     construct = construct_of(control, statement)
-    assembler.jump_if(Location(control.block.line, 0))
+    if holds:
+        control.jump(Location(control.block.line, 0))
+        return
     for branch in construct.branches:
-        if branch.keyword == "$ELSE":
-            assembler.jump(Location(branch.line + 1, 0))
+        if branch.keyword == "$ELSE" or value_of(control, control.statement_of(branch.line)):
+            control.jump(Location(branch.line + 1, 0))
             return
-        put_value(control, control.statement_of(branch.line), assembler)
-        assembler.jump_if(Location(branch.line + 1, 0))
-    assembler.jump(construct.behind)
+    control.jump(construct.behind)
 
 
-def _else(control: Control, statement: Statement, assembler: Assembler) -> None:
+def _else(control: Control, statement: Statement) -> None:
     """$ELSEIF, $ELSE reached from the branch before: go on behind $ENDIF."""
-    assembler.jump(construct_of(control, statement).behind)
+    control.jump(construct_of(control, statement).behind)
 
 
-def _nothing(control: Control, statement: Statement, _assembler: Assembler) -> None:
+def _nothing(control: Control, statement: Statement) -> None:
     """$DO, $ENDIF, $ENDSWITCH: only mark a place, which must have its counterpart."""
     construct_of(control, statement)
 
 
-def _while(control: Control, statement: Statement, assembler: Assembler) -> None:
+def _while(control: Control, statement: Statement) -> None:
     """$WHILE: run the body as long as the condition holds."""
     construct = construct_of(control, statement)
-    put_value(control, statement, assembler)
-    assembler.jump_unless(construct.behind)
+    if not value_of(control, statement):
+        control.jump(construct.behind)
 
 
-def _again(control: Control, statement: Statement, assembler: Assembler) -> None:
+def _again(control: Control, statement: Statement) -> None:
     """$ENDWHILE: look at the condition again."""
-    assembler.jump(Location(construct_of(control, statement).begin, 0))
+    control.jump(Location(construct_of(control, statement).begin, 0))
 
 
-def _end_do(control: Control, statement: Statement, assembler: Assembler) -> None:
+def _end_do(control: Control, statement: Statement) -> None:
     """$ENDDO condition: run the body again as long as it holds."""
     construct = construct_of(control, statement)
-    put_value(control, statement, assembler)
-    assembler.jump_if(Location(construct.begin + 1, 0))
+    if value_of(control, statement):
+        control.jump(Location(construct.begin + 1, 0))
 
 
-def _for(control: Control, statement: Statement, assembler: Assembler) -> None:
+def _for(control: Control, statement: Statement) -> None:
     """$FOR P1 = first, last, step."""
     construct = construct_of(control, statement)
-    name = _for_values(control, statement, assembler)
-    assembler.begin_for(name, construct.behind)
+    name, first, last, step = _for_values(control, statement, statement)
+    control.variables.write(name, first)
+    if (first - last) * step > 0.0:
+        control.jump(construct.behind)
 
 
-def _end_for(control: Control, statement: Statement, assembler: Assembler) -> None:
+def _end_for(control: Control, statement: Statement) -> None:
     """$ENDFOR: step on, and run the body again until the last value is passed."""
     construct = construct_of(control, statement)
-    name = _for_values(control, control.statement_of(construct.begin), assembler)
-    assembler.step_for(name, Location(construct.begin + 1, 0))
+    values = _for_values(control, control.statement_of(construct.begin), statement)
+    name, _, last, step = values
+    value = control.compute(Expression("", Variable(name)), 0) + step
+    control.variables.write(name, value)
+    if (value - last) * step <= 0.0:
+        control.jump(Location(construct.begin + 1, 0))
 
 
-def _for_values(control: Control, statement: Statement, assembler: Assembler) -> str:
-    """Put first, last and step on the stack; the parameter."""
+def _for_values(
+    control: Control, statement: Statement, blamed: Statement
+) -> tuple[str, float, float, float]:
+    """The parameter, first and last value and step of $FOR.
+
+    Raises:
+        ProgramError: They cannot be read, or the step is 0.
+    """
     variable = control.program_counter.lexer.expressions.variable.match(statement.text.lstrip(), 0)
     name, equals, values = statement.text.partition("=")
     if variable is None or not equals:
         control.refuse(statement, "structure", "$FOR needs its parameter", "$FOR P1=0,10,1")
     column = statement.text_column + len(name) + 1
-    for each in control.expressions(values, column, 3):
-        assembler.value(each, column)
-    return variable[0].upper()
+    first, last, step = (
+        control.compute(each, column) for each in control.expressions(values, column, 3)
+    )
+    if step == 0.0:
+        control.refuse(blamed, "structure", "a step of 0 never ends")
+    return variable[0].upper(), first, last, step
 
 
-def _switch(control: Control, statement: Statement, assembler: Assembler) -> None:
+def _switch(control: Control, statement: Statement) -> None:
     """$SWITCH: go to the $CASE with the same value, else to $DEFAULT."""
     construct = construct_of(control, statement)
-    put_value(control, statement, assembler)
+    value = value_of(control, statement)
     for branch in construct.branches:
-        if branch.keyword == "$DEFAULT":
-            assembler.jump(Location(branch.line + 1, 0))
+        is_default = branch.keyword == "$DEFAULT"
+        if is_default or value_of(control, control.statement_of(branch.line)) == value:
+            control.jump(Location(branch.line + 1, 0))
             return
-        put_value(control, control.statement_of(branch.line), assembler)
-        assembler.jump_case(Location(branch.line + 1, 0))
-    assembler.jump(construct.behind)
+    control.jump(construct.behind)
 
 
 def _case(control: Control, statement: Statement) -> None:
@@ -172,50 +187,45 @@ def _case(control: Control, statement: Statement) -> None:
     control.refuse(statement, "missing-break", "the case before has no $BREAK")
 
 
-def _break(control: Control, statement: Statement, assembler: Assembler) -> None:
+def _break(control: Control, statement: Statement) -> None:
     """$BREAK: go on behind the innermost loop or $SWITCH."""
-    assembler.jump(_enclosing(control, statement, ("$IF",)).behind)
+    control.jump(_enclosing(control, statement, ("$IF",)).behind)
 
 
-def _continue(control: Control, statement: Statement, assembler: Assembler) -> None:
+def _continue(control: Control, statement: Statement) -> None:
     """$CONTINUE: go to the end of the innermost loop."""
     construct = _enclosing(control, statement, ("$IF", "$SWITCH"))
     assert construct.end is not None
-    assembler.jump(Location(construct.end, 0))
+    control.jump(Location(construct.end, 0))
 
 
-def _go_to(control: Control, statement: Statement, assembler: Assembler) -> None:
+def _go_to(control: Control, statement: Statement) -> None:
     """$GOTO N10 or $GOTO [NAME]."""
-    assembler.jump(destination(control, statement))
+    control.jump(destination(control, statement))
 
 
-def put_value(control: Control, statement: Statement, assembler: Assembler) -> None:
-    """Put the value behind a keyword on the stack."""
+def value_of(control: Control, statement: Statement) -> float:
+    """The value behind a keyword."""
     column = statement.text_column
-    assembler.value(control.expression(statement.text, column), column)
+    return control.compute(control.expression(statement.text, column), column)
 
 
 STATEMENTS: dict[str, StatementAction] = {
-    **{
-        keyword: StatementEffect(write)
-        for keyword, write in {
-            "$IF": _if,
-            "$ELSEIF": _else,
-            "$ELSE": _else,
-            "$ENDIF": _nothing,
-            "$WHILE": _while,
-            "$ENDWHILE": _again,
-            "$DO": _nothing,
-            "$ENDDO": _end_do,
-            "$FOR": _for,
-            "$ENDFOR": _end_for,
-            "$SWITCH": _switch,
-            "$ENDSWITCH": _nothing,
-            "$BREAK": _break,
-            "$CONTINUE": _continue,
-            "$GOTO": _go_to,
-        }.items()
-    },
+    "$IF": _if,
+    "$ELSEIF": _else,
+    "$ELSE": _else,
+    "$ENDIF": _nothing,
+    "$WHILE": _while,
+    "$ENDWHILE": _again,
+    "$DO": _nothing,
+    "$ENDDO": _end_do,
+    "$FOR": _for,
+    "$ENDFOR": _end_for,
+    "$SWITCH": _switch,
+    "$ENDSWITCH": _nothing,
+    "$BREAK": _break,
+    "$CONTINUE": _continue,
+    "$GOTO": _go_to,
     "$CASE": _case,
     "$DEFAULT": _case,
 }

@@ -1,19 +1,40 @@
 """Planes, offsets and tools of the Fagor CNC 8070."""
 
-from twin.nc.bytecode import opcodes
-from twin.nc.bytecode.assembler import Assembler
-from twin.nc.bytecode.registers import OFFSET_ON
-from twin.nc.control.compensation import tool_numbered
+import math
+
+from twin.nc.control.codes import Action
+from twin.nc.control.compensation import compensate, tool_numbered
 from twin.nc.control.control import Control
-from twin.nc.control.performer import refuse
 from twin.nc.dialects.fagor8070.machine_coordinates import refuse_change
-from twin.nc.dialects.fagor8070.polar import write_forgotten_polar
+from twin.nc.dialects.fagor8070.memory import memory_of
+from twin.nc.dialects.fagor8070.polar import forget_polar
 from twin.nc.geometry.planes import OWN_PLANE, Plane, Vector, cross
 from twin.nc.iso import base
-from twin.nc.iso.declared import write_plane
-from twin.nc.iso.findings import PLANE_COMPENSATED
+from twin.nc.iso.declared import refuse_compensated_plane
 from twin.nc.iso.offsets import programmed_shift
+from twin.nc.iso.tool_compensation import radius_in_spindle, set_length
 from twin.nc.text.blocks import Word
+
+
+def choose_plane(control: Control) -> None:
+    """G17, G18, G19; one that compensation is in force in stays as it is."""
+    if not control.path.compensates_in(control.part_plane()):
+        change_plane(control)
+
+
+def change_plane(control: Control) -> None:
+    """The plane becomes another, with part zero as polar origin.
+
+    Raises:
+        ProgramError: Compensation or a rotation is in force.
+    """
+    refuse_compensated_plane(control)
+    memory = memory_of(control)
+    if not math.isnan(memory.rotation):
+        message = "the plane cannot change while a rotation turns it"
+        control.fail("rotation-active", message, hint="end it by G73 alone")
+    memory.polar_origin = (0.0, 0.0)
+    forget_polar(control)
 
 
 def any_plane(control: Control) -> None:
@@ -21,9 +42,7 @@ def any_plane(control: Control) -> None:
 
     Decision: G03 turns from the abscissa towards the ordinate, whatever axes they are.
     """
-    if control.path.compensating:
-        refuse(control, PLANE_COMPENSATED)
-    control.perform(lambda assembler: write_plane(0, assembler))
+    change_plane(control)
     roles: dict[int, Vector] = {}
     for index, word in control.take_axis_words():
         role = int(control.number(word))
@@ -38,51 +57,56 @@ def any_plane(control: Control) -> None:
     control.modal.plane = Plane(OWN_PLANE, roles[1], roles[2], normal)
 
 
-def incremental_offset(control: Control, assembler: Assembler) -> None:
+def incremental_offset(control: Control) -> None:
     """G158 X Y: added to the work offset; without axes it ends."""
-    assembler.disturbed(lambda: refuse_change(control))
-    programmed_shift("increment", control, assembler)
-    write_forgotten_polar(assembler)
+    refuse_change(control)
+    programmed_shift(control, "increment")
+    forget_polar(control)
 
 
 # --- tools and the rotary axis
 
 
-def tool_offset(control: Control, word: Word, assembler: Assembler) -> None:
+def tool_offset(control: Control, word: Word) -> None:
     """D1: the tool's own length and radius; D0: none."""
-    assembler.disturbed(lambda: refuse_change(control))
-    number = assembler.known(word)
+    refuse_change(control)
+    number = control.number(word)
     if number not in (0.0, 1.0):
         message = f"the job gives every tool one offset, D1, not D{number:g}"
         control.fail("tool-offset", message, word)
-    _apply_offset(number, assembler)
+    _apply_offset(control, on=number == 1.0)
 
 
-def next_tool(control: Control, word: Word, assembler: Assembler) -> None:
+def next_tool(control: Control, word: Word) -> None:
     """T: the tool that M06 brings, known to the job; T0 leaves the spindle empty."""
-    assembler.word_value(word)
-    if control.tools.table:
-        assembler.check(opcodes.LISTED_TOOL, lambda: _look_for_tool(control, word))
-    base.select_tool(assembler)
-
-
-def change_tool(control: Control, assembler: Assembler) -> None:
-    """M06: the tool goes into the spindle with its offset D1; T0 has none."""
-    assembler.disturbed(lambda: refuse_change(control))
-    base.change_tool(control, assembler)
-    _apply_offset(1.0, assembler)
-
-
-def _look_for_tool(control: Control, word: Word) -> None:
-    if control.number(word) != 0.0:
+    number = control.number(word)
+    if control.tools.table and number not in control.tools.table and number != 0.0:
         tool_numbered(control, word)
+    base.next_tool(control, word)
 
 
-def _apply_offset(number: float, assembler: Assembler) -> None:
-    """The tool's length and radius count, or (0) do not."""
-    assembler.constant(number)
-    assembler.set_register(OFFSET_ON)
-    assembler.emit(opcodes.TOOL_LENGTH)
+def change_tool(control: Control) -> None:
+    """M06: the tool goes into the spindle with its offset D1; T0 has none."""
+    refuse_change(control)
+    base.change_tool(control)
+    _apply_offset(control, on=True)
+
+
+def _apply_offset(control: Control, *, on: bool) -> None:
+    """The tool's length and radius count, or do not."""
+    memory_of(control).offset_on = on
+    tool = control.tools.data(control.tools.spindle) if on else None
+    set_length(control, 0.0 if tool is None else control.tools.longer(tool))
+
+
+def compensation_by_tool(side: float) -> Action:
+    """G41, G42: compensation by the tool in the spindle, where it has its offset."""
+
+    def action(control: Control) -> None:
+        radius = radius_in_spindle(control)
+        compensate(control, side, radius if memory_of(control).offset_on else 0.0)
+
+    return action
 
 
 def turn_in_commanded_direction(control: Control, _rapid: bool) -> None:

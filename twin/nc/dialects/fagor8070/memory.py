@@ -1,8 +1,8 @@
 """What only the Fagor CNC 8070 remembers from block to block."""
 
 import dataclasses
+import math
 
-from twin.nc.bytecode.registers import POLAR_ABSCISSA, POLAR_ORDINATE
 from twin.nc.control.constructs import Structure
 from twin.nc.control.control import Control
 from twin.nc.geometry.arcs import Point
@@ -17,7 +17,7 @@ ModalCall = tuple[str, dict[str, float], Statement]
 
 @dataclasses.dataclass(slots=True)
 class FagorMemory:
-    """Subroutines, offsets and what lasts beside the registers of the control.
+    """Subroutines, offsets, tool, polar coordinates and transformations.
 
     Attributes:
         temporary: G31: this block's polar origin is the arc's centre.
@@ -30,7 +30,14 @@ class FagorMemory:
         structure: Which $ keywords belong together; None before it was asked for.
         modal_call: #MCALL in force.
         part_frame: What #MCS has put aside while machine coordinates are in force, or None.
-        writes_offsets: The program writes into the table of offsets; None before that was asked for.
+        offset_on: The tool in the spindle has its offset.
+        polar_origin: In the working plane, from part zero [mm].
+        polar_radius: R as programmed last [mm]; NaN: it is seen from where the tool stands.
+        polar_angle: Q as programmed last, likewise [deg].
+        signs: Of X, Y and Z, -1 where they are mirrored.
+        scale: Of all three.
+        rotation: Its angle in the working plane [deg]; NaN: none.
+        rotation_center: [mm].
         offsets: Work offsets that the program has written, by name and axis, as those of the job.
     """
 
@@ -44,7 +51,14 @@ class FagorMemory:
     structure: Structure | None = None
     modal_call: ModalCall | None = None
     part_frame: PartFrame | None = None
-    writes_offsets: bool | None = None
+    offset_on: bool = True
+    polar_origin: Point = (0.0, 0.0)
+    polar_radius: float = math.nan
+    polar_angle: float = math.nan
+    signs: list[float] = dataclasses.field(default_factory=lambda: [1.0, 1.0, 1.0])
+    scale: float = 1.0
+    rotation: float = math.nan
+    rotation_center: Point = (0.0, 0.0)
     offsets: dict[str, dict[str, float]] = dataclasses.field(default_factory=dict)
 
 
@@ -54,26 +68,17 @@ def memory_of(control: Control) -> FagorMemory:
     return control.memory
 
 
-def acts_on_plain_blocks(control: Control) -> bool:
-    """A radius, a modal call, machine coordinates or module axes, which plain blocks heed; or G53.
-
-    While G53 is in force there are no polar coordinates (E1530).
-    """
+def acts_on_lines(control: Control) -> bool:
+    """A radius, a modal call, machine coordinates or module axes, polar values that Cartesian moves end."""
     memory = memory_of(control)
     return (
         memory.temporary
         or memory.modal_call is not None
         or memory.circle_radius is not None
         or memory.part_frame is not None
+        or not math.isnan(memory.polar_radius)
         or control.settings.module_rotary
-        or control.settings.feed_of_all_axes
-        or control.active.get("offset") == 53
     )
-
-
-def polar_origin(control: Control) -> Point:
-    """The polar origin in the working plane, from part zero [mm]."""
-    return (control.registers[POLAR_ABSCISSA], control.registers[POLAR_ORDINATE])
 
 
 def offset_name(number: int) -> str:

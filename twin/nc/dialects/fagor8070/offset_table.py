@@ -1,33 +1,17 @@
 """The zero offsets of the Fagor CNC 8070: G54 to G59, G159, and what programs write into the table."""
 
-import re
-
-from twin.nc.bytecode.assembler import Assembler
-from twin.nc.control.codes import CodeWriter
+from twin.nc.control.codes import Action
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.machine_coordinates import refuse_change
 from twin.nc.dialects.fagor8070.memory import OFFSETS_BY_NUMBER, memory_of, offset_name
 from twin.nc.dialects.fagor8070.polar import forget_polar
-from twin.nc.iso.offsets import offset_of_job, select_offset, shift_by, write_offset
+from twin.nc.iso.offsets import select_offset, shift_by
 from twin.nc.text.blocks import Word
 
-_WRITTEN = re.compile(rb"\.ORGT[ \t]*\[", re.IGNORECASE)
 
-
-def offset_code(number: int) -> CodeWriter:
-    """G54 to G59, by the number of the G code; the compiled tier knows the job's values only."""
-    name = f"G{number}"
-
-    def write(control: Control, assembler: Assembler) -> None:
-        word, memory = control.code_word(number), memory_of(control)
-        if memory.writes_offsets is None:
-            memory.writes_offsets = control.program_counter.lines.any_holds(_WRITTEN)
-        if memory.writes_offsets:
-            assembler.interpreted(lambda: _select(control, name, word))
-        else:
-            write_offset(control, offset_of_job(control, name, word), assembler)
-
-    return write
+def offset_code(number: int) -> Action:
+    """G54 to G59, by the number of the G code."""
+    return lambda control: _select(control, f"G{number}", control.code_word(number))
 
 
 def numbered_offset(control: Control, word: Word) -> None:

@@ -2,21 +2,9 @@
 
 import dataclasses
 import math
-from collections.abc import Iterable
 
-from twin.nc.bytecode import opcodes
-from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.bytecode.registers import (
-    POLAR_ABSCISSA,
-    POLAR_ANGLE,
-    POLAR_ORDINATE,
-    POLAR_RADIUS,
-)
-from twin.nc.control.block_compiler import BlockCompiler
-from twin.nc.control.codes import GCode
 from twin.nc.control.control import Control
-from twin.nc.control.interpolation import CycleRule
-from twin.nc.dialects.fagor8070.memory import memory_of, polar_origin
+from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.geometry.arcs import direction
 from twin.nc.geometry.polar import changed, point_at, seen_from
 from twin.nc.text.blocks import Word
@@ -39,17 +27,11 @@ class Goal:
 
 def forget_polar(control: Control) -> None:
     """The last polar values no longer hold: they are seen anew from where the tool stands."""
-    if not math.isnan(control.registers[POLAR_RADIUS]):  # both are, or none
-        control.perform(write_forgotten_polar)
+    memory = memory_of(control)
+    memory.polar_radius = memory.polar_angle = math.nan
 
 
-def write_forgotten_polar(assembler: Assembler) -> None:
-    """As ``forget_polar``, said as instructions."""
-    assembler.empty_register(POLAR_RADIUS)
-    assembler.empty_register(POLAR_ANGLE)
-
-
-def set_polar_origin(control: Control, assembler: Assembler) -> None:
+def set_polar_origin(control: Control) -> None:
     """G30: I abscissa and J ordinate of the polar origin; neither: where the tool stands.
 
     Raises:
@@ -58,65 +40,11 @@ def set_polar_origin(control: Control, assembler: Assembler) -> None:
     abscissa, ordinate = control.take("I"), control.take("J")
     if (abscissa is None) != (ordinate is None):
         control.fail("polar-origin", "G30 needs both I and J, or neither", abscissa or ordinate)
-    if control.words or len(control.codes) > 1:
-        assembler.rare()
-    given = [word for word in (abscissa, ordinate) if word is not None]
-    for axis, register in enumerate((POLAR_ABSCISSA, POLAR_ORDINATE)):
-        if given:
-            assembler.word_value(given[axis])
-            assembler.emit(opcodes.TO_MILLIMETRES)
-        else:
-            assembler.emit(opcodes.COORDINATE, axis)
-        assembler.set_register(register)
-    write_forgotten_polar(assembler)
-
-
-def is_polar(compiler: BlockCompiler, words: Iterable[Word]) -> bool:
-    """A block with R or Q goes there, unless it names a coordinate of the plane or makes no move."""
-    words, control = list(words), compiler.control
-    codes = list(compiler.known_codes(words))
-    addresses = {word.address for word in words} - _words_of_cycles(codes)
-    names = control.settings.axes.names
-    abscissa, ordinate, _ = (names[index] for index in control.modal.plane.axes)
-    return (
-        not addresses.isdisjoint("RQ")
-        and addresses.isdisjoint((abscissa, ordinate, *"IJK"))
-        and all(code.perform is None for code in codes)
-    )
-
-
-def _words_of_cycles(codes: Iterable[GCode]) -> set[str]:
-    """Letters that belong to the drilling cycle which one of these codes calls."""
-    rules = [cycle.rule for code in codes if (cycle := code.sets.get("cycle")) is not None]
-    cycles = [rule for rule in rules if isinstance(rule, CycleRule)]
-    return {letter for rule in cycles for letter in (*rule.words, *rule.options)}
-
-
-def compile_polar(compiler: BlockCompiler, words: Iterable[Word]) -> None:
-    """Write a polar block for the compiled tier.
-
-    Raises:
-        UnsupportedError: It does more than that.
-    """
-    assembler, control = compiler.assembler, compiler.control
-    codes, functions = compiler.sorted(words)
-    cycles = [(word, code) for word, code in codes if code.begins_cycle]
-    others = [(word, code) for word, code in codes if not code.begins_cycle]
-    for _, code in cycles:
-        if code.writer is None:
-            raise UnsupportedError
-        code.writer(control, assembler)
-    radius, angle, feed = control.take("R"), control.take("Q"), control.take("F")
-    if (
-        functions
-        or control.words.keys() - control.axis_letters
-        or any(code.writer or code.action or code.perform for _, code in others)
-        or any(word is not None and word.incremental for word in (radius, angle))
-    ):
-        raise UnsupportedError
-    moving = [] if feed is None else [feed]
-    assembler.codes([*(word for word, _ in others), *moving])
-    assembler.polar(radius, angle, [*(word for word, _ in cycles), *control.words.values()])
+    origin = (control.length(abscissa), control.length(ordinate))
+    if abscissa is None:
+        origin = control.modal.plane.point(control.programmed)
+    memory_of(control).polar_origin = origin
+    forget_polar(control)
 
 
 def refuse_origin_by_g93(control: Control) -> None:
@@ -144,8 +72,8 @@ def temporary_polar_origin(control: Control) -> None:
 
 def current_polar(control: Control) -> tuple[float, float]:
     """R and Q of where the tool stands: as last programmed, else measured [mm, deg]."""
-    here, registers = control.modal.plane.point(control.programmed), control.registers
-    return seen_from(polar_origin(control), here, registers[POLAR_RADIUS], registers[POLAR_ANGLE])
+    here, memory = control.modal.plane.point(control.programmed), memory_of(control)
+    return seen_from(memory.polar_origin, here, memory.polar_radius, memory.polar_angle)
 
 
 def take_goal(control: Control, *, arc: bool) -> Goal:
@@ -183,9 +111,9 @@ def _polar_target(control: Control, *, arc: bool) -> list[float]:
     if radius_word is not None and (radius < 0.0 or (arc and radius == 0.0)):
         message = f"the polar radius {radius:g} must be positive" + ("" if arc else " or 0")
         control.fail("polar-radius", message, radius_word)
-    end = point_at(polar_origin(control), plane.point(control.programmed), radius, angle)
-    plane.aim(target, end)
-    control.registers[POLAR_RADIUS], control.registers[POLAR_ANGLE] = radius, angle
+    origin = memory_of(control).polar_origin
+    plane.aim(target, point_at(origin, plane.point(control.programmed), radius, angle))
+    memory_of(control).polar_radius, memory_of(control).polar_angle = radius, angle
     return target
 
 

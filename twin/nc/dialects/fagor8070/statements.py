@@ -4,15 +4,14 @@ import re
 from collections.abc import Iterable
 from typing import NoReturn
 
-from twin.nc.bytecode.assembler import Assembler
-from twin.nc.control.codes import StatementAction, StatementEffect
+from twin.nc.control.codes import StatementAction
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070 import flow, subroutines
 from twin.nc.dialects.fagor8070.known_statements import ENDED_ONLY, PASSED_OVER, REFUSED
 from twin.nc.dialects.fagor8070.machine_coordinates import machine_coordinates
-from twin.nc.dialects.fagor8070.transformations import write_scale
+from twin.nc.dialects.fagor8070.transformations import set_scale
 from twin.nc.dialects.fagor8070.variables import VARIABLE_STATEMENT, assign
-from twin.nc.iso.base import write_dwell
+from twin.nc.iso.base import wait
 from twin.nc.text.blocks import Location, Statement
 from twin.nc.text.expressions import Expression
 
@@ -21,10 +20,9 @@ _ROUNDED = (1, 4)
 _QUOTED = re.compile(r"[^\"]*\"([^\"]*)\".*")
 
 
-def _dwell(control: Control, statement: Statement, assembler: Assembler) -> None:
+def _dwell(control: Control, statement: Statement) -> None:
     """#TIME [s]."""
-    flow.put_value(control, statement, assembler)
-    write_dwell(assembler)
+    wait(control, flow.value_of(control, statement), statement)
 
 
 def skip_comment(control: Control, statement: Statement) -> None:
@@ -37,14 +35,10 @@ def skip_comment(control: Control, statement: Statement) -> None:
     control.refuse(statement, "open-comment", "#COMMENT END is missing")
 
 
-def _scale(control: Control, statement: Statement, assembler: Assembler) -> None:
+def _scale(control: Control, statement: Statement) -> None:
     """#SCALE[2]: lengths are multiplied; #SCALE alone or [1] ends it."""
     values = _bracketed(control, statement, 1) if statement.text.strip() else []
-    if values:
-        assembler.value(*values[0])
-    else:
-        assembler.constant(1.0)
-    write_scale(control, assembler)
+    set_scale(control, control.compute(*values[0]) if values else 1.0, statement)
 
 
 def round_parameters(control: Control, statement: Statement) -> None:
@@ -134,13 +128,13 @@ def warn_of_missing_end(control: Control) -> None:
 STATEMENTS: dict[str, StatementAction] = {
     **flow.STATEMENTS,
     **subroutines.STATEMENTS,
-    "#TIME": StatementEffect(_dwell),
+    "#TIME": _dwell,
     "#COMMENT BEGIN": skip_comment,
     "#COMMENT END": lambda control, statement: control.refuse(
         statement, "open-comment", "#COMMENT BEGIN is missing"
     ),
     "#MCS": machine_coordinates,
-    "#SCALE": StatementEffect(_scale),
+    "#SCALE": _scale,
     "#ROUNDPAR": round_parameters,
     "#WARNING": warning,
     "#WARNINGSTOP": warning,
@@ -170,15 +164,10 @@ PATTERN = _pattern(STATEMENTS)
 """What begins a statement."""
 
 
-def _other(control: Control, statement: Statement, assembler: Assembler) -> None:
+def other_statement(control: Control, statement: Statement) -> None:
     """An assignment, or a statement written with other blanks."""
     known = STATEMENTS.get(_words(statement))
     if known is None:
-        assign(control, statement, assembler)
-    elif isinstance(known, StatementEffect):
-        known.write(control, statement, assembler)
+        assign(control, statement)
     else:
-        assembler.interpreted(lambda: known(control, statement))
-
-
-other_statement = StatementEffect(_other)
+        known(control, statement)

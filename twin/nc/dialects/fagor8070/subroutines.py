@@ -3,12 +3,10 @@
 import re
 from collections.abc import Iterator, Mapping
 
-from twin.nc.bytecode.assembler import Assembler
-from twin.nc.control.codes import StatementAction, StatementEffect
+from twin.nc.control.codes import StatementAction
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.library import MARK
 from twin.nc.dialects.fagor8070.memory import memory_of
-from twin.nc.iso.declared import go_back
 from twin.nc.text.blocks import Location, Statement
 from twin.nc.text.expressions import Expression, ExpressionError
 
@@ -27,7 +25,7 @@ _NO_RANGE = "the range or the number of runs is none"
 _SUBROUTINE = re.compile(r"[ \t]*%[ \t]*L[ \t]+([A-Z_0-9]\w*)", re.IGNORECASE)
 
 
-def _repeat(control: Control, statement: Statement, assembler: Assembler) -> None:
+def _repeat(control: Control, statement: Statement) -> None:
     """#RPT[N10,N20,3]: run the blocks from one label to another, 3 times."""
     match, counter = _RANGE.fullmatch(statement.text), control.program_counter
     if match is None:
@@ -46,12 +44,11 @@ def _repeat(control: Control, statement: Statement, assembler: Assembler) -> Non
         control.refuse(statement, "repeat-range", _NO_RANGE)
     if first <= Location(control.block.line - 1, 0) <= last:
         control.refuse(statement, "repeat-range", "the range must not hold its own #RPT")
-    if match[3] is None:
-        assembler.constant(1.0)
-    else:
+    times = 1.0
+    if match[3] is not None:
         column = statement.text_column + match.start(3)
-        assembler.value(control.expression(match[3], column), column)
-    assembler.repeat(first, last, DEEPEST_CALL)
+        times = control.compute(control.expression(match[3], column), column)
+    control.repeat(first, last, DEEPEST_CALL, statement, times)
 
 
 def _range_label(text: str) -> int | str:
@@ -110,9 +107,9 @@ def heading(control: Control, statement: Statement) -> None:
         control.refuse(statement, "heading", message, hint)
 
 
-def _call(control: Control, statement: Statement, assembler: Assembler) -> None:
+def _call(control: Control, statement: Statement) -> None:
     """LL, L, #CALL: run a local or a global subroutine, or either, with the caller's parameters."""
-    assembler.call(Location(_called_line(control, statement), 0), DEEPEST_CALL)
+    control.call(Location(_called_line(control, statement), 0), DEEPEST_CALL, statement)
 
 
 def _called_line(control: Control, statement: Statement) -> int:
@@ -122,14 +119,15 @@ def _called_line(control: Control, statement: Statement) -> int:
     return _line_of(control, statement, name, tables.get(statement.keyword))
 
 
-def _call_with_parameters(control: Control, statement: Statement, assembler: Assembler) -> None:
+def _call_with_parameters(control: Control, statement: Statement) -> None:
     """#PCALL NAME A1 B2: run a local subroutine with parameters of its own."""
-    name, parameters = _name_of(control, statement), list[str]()
-    for parameter, value, column in _arguments(control, statement):
-        assembler.value(value, column)
-        parameters.append(parameter)
+    name = _name_of(control, statement)
+    values = [
+        (parameter, control.compute(value, column))
+        for parameter, value, column in _arguments(control, statement)
+    ]
     line = _line_of(control, statement, name)
-    assembler.call(Location(line, 0), DEEPEST_CALL, parameters)
+    control.call(Location(line, 0), DEEPEST_CALL, statement, values)
 
 
 def call_modally(control: Control, statement: Statement) -> None:
@@ -151,14 +149,8 @@ def call_after_motion(control: Control) -> None:
     if memory.modal_call is None or control.program_counter.is_calling:
         return
     name, values, statement = memory.modal_call
-
-    def write(assembler: Assembler) -> None:
-        line = _line_of(control, statement, name)
-        for value in values.values():
-            assembler.constant(value)
-        assembler.call(Location(line, 0), DEEPEST_CALL, values)
-
-    control.perform(write, _span(statement))
+    line = _line_of(control, statement, name)
+    control.call(Location(line, 0), DEEPEST_CALL, statement, values.items())
 
 
 def _name_of(control: Control, statement: Statement, *, alone: bool = False) -> str:
@@ -208,19 +200,14 @@ def _line_of(
     return line
 
 
-def return_(control: Control) -> None:
-    """M17, M29: back to the caller."""
-    control.perform(go_back)
-
-
 STATEMENTS: dict[str, StatementAction] = {
     "%": heading,
-    "#RPT": StatementEffect(_repeat),
-    "#CALL": StatementEffect(_call),
-    "LL": StatementEffect(_call),
-    "L": StatementEffect(_call),
-    "#PCALL": StatementEffect(_call_with_parameters),
+    "#RPT": _repeat,
+    "#CALL": _call,
+    "LL": _call,
+    "L": _call,
+    "#PCALL": _call_with_parameters,
     "#MCALL": call_modally,
     "#MDOFF": end_modal_call,
-    "#RET": StatementEffect(lambda _control, _statement, assembler: go_back(assembler)),
+    "#RET": Control.go_back,
 }

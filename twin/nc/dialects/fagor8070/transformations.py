@@ -1,45 +1,34 @@
 """Mirror, scale and rotation of the Fagor CNC 8070."""
 
-from twin.nc.bytecode import opcodes
-from twin.nc.bytecode.assembler import Assembler, Finding
-from twin.nc.bytecode.registers import (
-    ROTATION,
-    ROTATION_ABSCISSA,
-    ROTATION_ORDINATE,
-    SCALE,
-    SIGNS,
-)
-from twin.nc.control.codes import Effect
+import math
+
+from twin.nc.control.codes import Action
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.machine_coordinates import refuse_change
-from twin.nc.dialects.fagor8070.polar import write_forgotten_polar
+from twin.nc.dialects.fagor8070.memory import memory_of
+from twin.nc.dialects.fagor8070.polar import forget_polar
+from twin.nc.geometry.frame import composed
 from twin.nc.geometry.matrices import LARGEST_SCALE, SMALLEST_SCALE
-from twin.nc.iso.findings import SCALE_RANGE, TRANSFORM_COMPENSATED
-
-_MIRROR_SIGN = Finding("mirror", "a mirror takes -1 or 1 for X, Y and Z")
-_ROTATED_ALREADY = Finding("rotation-active", "a rotation is in force", "end it by G73 alone")
+from twin.nc.text.blocks import Statement, Word
 
 
-def mirror_off(control: Control, assembler: Assembler) -> None:
+def mirror_off(control: Control) -> None:
     """G10."""
-    for index in range(3):
-        assembler.constant(1.0)
-        assembler.set_register(SIGNS + index)
-    _update(control, assembler)
+    memory_of(control).signs[:] = (1.0, 1.0, 1.0)
+    _update(control)
 
 
-def mirror(index: int) -> Effect:
+def mirror(index: int) -> Action:
     """G11, G12, G13: mirror X, Y, Z."""
 
-    def write(control: Control, assembler: Assembler) -> None:
-        assembler.constant(-1.0)
-        assembler.set_register(SIGNS + index)
-        _update(control, assembler)
+    def action(control: Control) -> None:
+        memory_of(control).signs[index] = -1.0
+        _update(control)
 
-    return Effect(write)
+    return action
 
 
-def mirror_axes(control: Control, assembler: Assembler) -> None:
+def mirror_axes(control: Control) -> None:
     """G14 X-1 Y1: -1 mirrors an axis, 1 ends it."""
     words = control.take_axis_words()
     if not words:
@@ -47,50 +36,59 @@ def mirror_axes(control: Control, assembler: Assembler) -> None:
     for index, word in words:
         if index > 2:
             control.fail("mirror", "G14 takes -1 or 1 for X, Y and Z", word)
-        assembler.word_value(word)
-        assembler.check(opcodes.SIGN, _MIRROR_SIGN)
-        assembler.set_register(SIGNS + index)
-    _update(control, assembler)
+        sign = control.number(word)
+        if abs(sign) != 1.0:
+            control.fail("mirror", "a mirror takes -1 or 1 for X, Y and Z", word)
+        memory_of(control).signs[index] = sign
+    _update(control)
 
 
-def scale(control: Control, assembler: Assembler) -> None:
+def scale(control: Control) -> None:
     """G72 S2: lengths are multiplied; G72 alone or S1 ends it."""
-    assembler.word_value(control.take("S"), 1.0)
-    write_scale(control, assembler)
+    word = control.take("S")
+    set_scale(control, 1.0 if word is None else control.number(word), word)
 
 
-def write_scale(control: Control, assembler: Assembler) -> None:
-    """Multiply lengths by the topmost value."""
-    assembler.check(opcodes.AT_LEAST, SCALE_RANGE, SMALLEST_SCALE)
-    assembler.check(opcodes.AT_MOST, SCALE_RANGE, LARGEST_SCALE)
-    assembler.set_register(SCALE)
-    _update(control, assembler)
+def set_scale(control: Control, factor: float, blamed: Word | Statement | None) -> None:
+    """Multiply lengths.
+
+    Raises:
+        ProgramError: By too much or too little; or the frame cannot change now.
+    """
+    if not SMALLEST_SCALE <= factor <= LARGEST_SCALE:
+        control.fail("scale", "a scale lies between 0.001 and 1000", blamed)
+    memory_of(control).scale = factor
+    _update(control, blamed if isinstance(blamed, Statement) else None)
 
 
-def rotate(control: Control, assembler: Assembler) -> None:
+def rotate(control: Control) -> None:
     """G73 Q I J: turn by Q about I J, missing ones part zero; G73 alone ends it.
 
     Decision: a rotation must end before another begins, since adding and replacing are both known.
     """
-    angle, center = control.take("Q"), [control.take("I"), control.take("J")]
-    if angle is None:
-        assembler.empty_register(ROTATION)
+    word, memory = control.take("Q"), memory_of(control)
+    center = control.length(control.take("I")), control.length(control.take("J"))
+    if word is None:
+        memory.rotation = math.nan
     else:
-        for word in (angle, *center):
-            assembler.word_value(word)
-        assembler.register(ROTATION)
-        assembler.check(opcodes.ABSENT, _ROTATED_ALREADY, blamed=angle)
-        assembler.drop()
-        for register in (ROTATION_ORDINATE, ROTATION_ABSCISSA):
-            assembler.emit(opcodes.TO_MILLIMETRES)
-            assembler.set_register(register)
-        assembler.set_register(ROTATION)
-    _update(control, assembler)
+        if not math.isnan(memory.rotation):
+            hint = "end it by G73 alone"
+            control.fail("rotation-active", "a rotation is in force", word, hint)
+        memory.rotation, memory.rotation_center = control.number(word), center
+    _update(control)
 
 
-def _update(control: Control, assembler: Assembler) -> None:
+def _update(control: Control, blamed: Statement | None = None) -> None:
     """Scale, then mirror, then rotation about its centre in the working plane hold from here on."""
-    assembler.disturbed(lambda: refuse_change(control))
-    assembler.check(opcodes.UNCOMPENSATED, TRANSFORM_COMPENSATED)
-    assembler.emit(opcodes.TRANSFORM)
-    write_forgotten_polar(assembler)
+    refuse_change(control)
+    if control.path.compensating:
+        message = "mirror, scale and rotation cannot change while compensation is in force"
+        control.fail("compensation-change", message, blamed, "end it by G40 first")
+    memory, axes = memory_of(control), control.modal.plane.directions
+    x, y, z = memory.signs
+    matrix, shift = composed((x, y, z), memory.scale, axes, memory.rotation, memory.rotation_center)
+    control.frame.set_matrix(matrix)
+    others = [0.0] * (len(control.settings.axes) - 3)
+    control.frame.set_shift("rotation", [*shift, *others])
+    control.reframed()
+    forget_polar(control)

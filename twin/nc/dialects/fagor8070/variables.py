@@ -4,7 +4,6 @@ import dataclasses
 import math
 import re
 
-from twin.nc.bytecode.assembler import Assembler
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.control_variables import is_live, read_live, write_live
 from twin.nc.text import arithmetic
@@ -165,22 +164,26 @@ def _rest(control: Control, column: int, text: str) -> Block:
     return block._replace(number=control.block.number)
 
 
-def assign(control: Control, statement: Statement, assembler: Assembler) -> None:
+def assign(control: Control, statement: Statement) -> None:
     """Give variables their values, one after the other."""
     every, rest = assignments(control, statement)
     for each in every:
         if is_live(each.name):
-            assembler.interpreted(lambda each=each: _write_live(control, statement, each))
+            _write_live(control, statement, each)
             continue
+        name = each.name
+        index = 0.0
         if each.index is not None:
-            assembler.value(each.index, each.index_column)
-        assembler.value(_new_value(each), each.column)
+            index = control.compute(each.index, each.index_column)
+        value = control.compute(_new_value(each), each.column)
         if each.index is not None:
-            assembler.assign_numbered("P")
-        else:
-            assembler.assign(each.name)
+            if index < 0.0 or index != int(index):
+                message = f"there is no parameter {name}[{index:g}]"
+                control.fail("parameter-number", message, statement)
+            name = f"{name}{int(index)}"
+        control.variables.write(name, value)
     if rest is not None:
-        assembler.interpreted(lambda: control.run(rest))
+        control.run(rest)
 
 
 def _new_value(assignment: Assignment) -> Expression:

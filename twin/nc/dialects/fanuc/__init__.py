@@ -2,11 +2,9 @@
 
 import dataclasses
 
-from twin.nc.control.codes import WordEffect
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Dialect
 from twin.nc.dialects.fanuc import (
-    block_compiler,
     codes,
     corners,
     decimal_point,
@@ -24,7 +22,7 @@ from twin.nc.dialects.fanuc.cycles.canned_cycles import OVERRULED_CYCLE, as_read
 from twin.nc.dialects.fanuc.decisions import DECISIONS
 from twin.nc.dialects.fanuc.memory import FANUC as FANUC_VARIANT
 from twin.nc.dialects.fanuc.memory import HAAS as HAAS_VARIANT
-from twin.nc.dialects.fanuc.memory import FanucMemory, holds_any, memory_of
+from twin.nc.dialects.fanuc.memory import FanucMemory, acts_on_lines, holds_any, memory_of
 from twin.nc.iso import base, shared_marks
 from twin.nc.text.syntax import HEADING, Comment, Mark, Syntax
 
@@ -33,10 +31,7 @@ def prepare(control: Control) -> None:
     """Look over the program before it runs."""
     memory, lines = memory_of(control), control.program_counter.lines
     programs.begin(control)
-    memory.writes_offsets = holds_any(lines, offsets.WRITES_OFFSETS)
-    memory.transforms = holds_any(lines, offsets.TRANSFORMS)
     memory.overrules_cycles = holds_any(lines, OVERRULED_CYCLE)
-    memory.bare_compensation = holds_any(lines, tool_offsets.BARE_COMPENSATION)
     offsets.put_into_force(control)
     corners.prepare(control)
 
@@ -100,8 +95,8 @@ FANUC = Dialect(
         "O": programs.heading,
         ":": programs.heading,
         "F": base.set_feed,
-        "S": WordEffect(base.spindle_speed),
-        "T": WordEffect(base.next_tool),
+        "S": base.spindle_speed,
+        "T": base.next_tool,
         "H": tool_offsets.set_length_number,
         "D": tool_offsets.set_radius_number,
     },
@@ -152,14 +147,12 @@ FANUC = Dialect(
     read_variable=variables.read_variable,
     write_variable=variables.write_variable,
     is_local=variables.is_local,
-    live_variables=variables.ControlVariables(),
     before_motion=before_motion,
     after_motion=after_motion,
     statements={**flow.STATEMENTS, **macro_calls.CALLS_BY_CODE},
     finish=programs.finish,
     library=programs.LIBRARY,
-    compile_block=block_compiler.compile_block,
-    disturbed=feeds.needs_interpreter,
+    acts_on_lines=acts_on_lines,
     pointless=decimal_point.pointless,
     count=as_read,
     feed_rule=feeds.fanuc_rule,

@@ -20,7 +20,7 @@ from twin.nc.dialects.fanuc.memory import Variant, memory_of
 from twin.nc.dialects.fanuc.tool_offsets import compensation_code, end_length, length_code
 from twin.nc.iso import base, fixed_cycles
 from twin.nc.iso.declared import flow_function, instead, modal, motion_code, refused
-from twin.nc.iso.tool_compensation import END_OF_COMPENSATION, LEFT, RIGHT
+from twin.nc.iso.tool_compensation import LEFT, RIGHT, end_compensation
 from twin.nc.path.paces import FeedMode
 
 
@@ -105,7 +105,7 @@ _PLACE: Mapping[float, GCode] = {
     92.1: instead("presets end for the axes named", offsets.end_preset),
 }
 _TOOL: Mapping[float, GCode] = {
-    40: modal("radius compensation off", "compensation", END_OF_COMPENSATION),
+    40: modal("radius compensation off", "compensation", end_compensation),
     41: modal("compensation by D, tool left", "compensation", compensation_code(41, LEFT)),
     42: modal("compensation by D, tool right", "compensation", compensation_code(42, RIGHT)),
     43: modal("tool length by H", "length", length_code(43, 1.0)),

@@ -2,13 +2,12 @@
 
 import re
 
-from twin.nc.bytecode.assembler import Assembler
-from twin.nc.control.codes import StatementAction, StatementEffect
+from twin.nc.control.codes import StatementAction
 from twin.nc.control.constructs import Construct, Structure
 from twin.nc.control.control import Control
 from twin.nc.dialects.fanuc.memory import holds_any, letter_patterns, memory_of
 from twin.nc.dialects.fanuc.programs import lines_around
-from twin.nc.dialects.fanuc.variables import ControlVariables, compile_assignment, write_variable
+from twin.nc.dialects.fanuc.variables import write_variable
 from twin.nc.text.blocks import Assignment, Block, Location, Statement
 from twin.nc.text.expressions import Expression, Number, NumberedVariable, Variable
 from twin.nc.text.lines import Lines
@@ -72,7 +71,7 @@ def _operand(control: Control, statement: Statement, at: int) -> tuple[Expressio
     return control.read_operand(statement.text, at, statement.text_column)
 
 
-def _while(control: Control, statement: Statement, assembler: Assembler) -> None:
+def _while(control: Control, statement: Statement) -> None:
     """WHILE [...] DO1: run the blocks up to END1 as long as the condition holds."""
     loop = _loop(control, statement)
     condition, at = _operand(control, statement, 0)
@@ -80,21 +79,21 @@ def _while(control: Control, statement: Statement, assembler: Assembler) -> None
         message = f"{statement.keyword} needs DO and its number behind the condition, and no more"
         hint = "WHILE [#1 LT 5] DO1; what the loop does stands in lines of its own"
         control.refuse(statement, "structure", message, hint)
-    assembler.value(condition, statement.text_column)
-    assembler.jump_unless(loop.behind)
+    if not control.compute(condition, statement.text_column):
+        control.jump(loop.behind)
 
 
-def _do(control: Control, statement: Statement, _assembler: Assembler) -> None:
+def _do(control: Control, statement: Statement) -> None:
     """DO1: the blocks up to END1 run until a jump leaves them."""
     _loop(control, statement)
     _whole(control, statement)
 
 
-def _end(control: Control, statement: Statement, assembler: Assembler) -> None:
+def _end(control: Control, statement: Statement) -> None:
     """END1: back to the loop's first line."""
     loop = _loop(control, statement)
     _whole(control, statement)
-    assembler.jump(Location(loop.begin, 0))
+    control.jump(Location(loop.begin, 0))
 
 
 def _whole(control: Control, statement: Statement) -> None:
@@ -102,34 +101,27 @@ def _whole(control: Control, statement: Statement) -> None:
         control.refuse(statement, "structure", f"only a number follows {statement.keyword}")
 
 
-def _if(control: Control, statement: Statement, assembler: Assembler) -> None:
+def _if(control: Control, statement: Statement) -> None:
     """IF [...] GOTO 10, IF [...] THEN #1=5."""
     condition, at = _operand(control, statement, 0)
     match = _BEHIND_CONDITION.match(statement.text, at)
     if match is None:
         hint = "IF [#1 EQ 5] GOTO 10, or IF [#1 EQ 5] THEN #2=1"
         control.refuse(statement, "structure", "GOTO or THEN must follow the condition", hint)
-    assembler.value(condition, statement.text_column)
+    holds = control.compute(condition, statement.text_column) != 0.0
     if match[1].upper() == "GOTO":
         target = _target(control, statement, match.end())
-        number = _known(target)
-        if number is None:
-            assembler.jump_unless(Location(control.block.line, 0))
-            assembler.interpreted(lambda: _jump(control, statement, target))
-        else:
-            assembler.jump_if(lambda: destination(control, statement, number))
+        if holds:
+            _jump(control, statement, target)
         return
     block = _block_behind_then(control, statement, match.end())
     if block is not None:
-        assembler.jump_unless(Location(control.block.line, 0))
-        assembler.interpreted(lambda: control.run(block))
+        if holds:
+            control.run(block)
         return
     assignment = _assignment(control, statement, match.end())
-    assembler.jump_unless(Location(control.block.line, 0))
-    if isinstance(assignment.target, Variable) and assignment.target.name not in ControlVariables():
-        compile_assignment(assembler, assignment)
-    else:
-        assembler.interpreted(lambda: _assign(control, assignment))
+    if holds:
+        _assign(control, assignment)
 
 
 def _block_behind_then(control: Control, statement: Statement, at: int) -> Block | None:
@@ -163,19 +155,14 @@ def _assignment(control: Control, statement: Statement, at: int) -> Assignment:
 def _assign(control: Control, assignment: Assignment) -> None:
     target, index = assignment.target, None
     if isinstance(target, NumberedVariable):
-        index = control.compute(target.index, assignment.column)
+        index = control.compute(Expression("", target.index), assignment.column)
     value = control.compute(assignment.value, assignment.column)
     write_variable(control, target.name, index, value, assignment)
 
 
-def _go_to(control: Control, statement: Statement, assembler: Assembler) -> None:
+def _go_to(control: Control, statement: Statement) -> None:
     """GOTO 10, GOTO #1, GOTO [#1+10]."""
-    target = _target(control, statement, 0)
-    number = _known(target)
-    if number is None:
-        assembler.interpreted(lambda: _jump(control, statement, target))
-    else:
-        assembler.jump(destination(control, statement, number))
+    _jump(control, statement, _target(control, statement, 0))
 
 
 def _target(control: Control, statement: Statement, at: int) -> Expression:
@@ -185,13 +172,9 @@ def _target(control: Control, statement: Statement, at: int) -> Expression:
     return target
 
 
-def _known(target: Expression) -> float | None:
-    return target.tree.value if isinstance(target.tree, Number) else None
-
-
 def _jump(control: Control, statement: Statement, target: Expression) -> None:
     value = control.compute(target, statement.text_column)
-    control.program_counter.go(destination(control, statement, value))
+    control.jump(destination(control, statement, value))
 
 
 def destination(control: Control, statement: Statement, number: float) -> Location:
@@ -224,10 +207,10 @@ def _pass_over(control: Control, statement: Statement) -> None:
 
 
 STATEMENTS: dict[str, StatementAction] = {
-    "IF": StatementEffect(_if),
-    "GOTO": StatementEffect(_go_to),
-    **dict.fromkeys(("WHILE", "WH"), StatementEffect(_while)),
-    "DO": StatementEffect(_do),
-    "END": StatementEffect(_end),
+    "IF": _if,
+    "GOTO": _go_to,
+    **dict.fromkeys(("WHILE", "WH"), _while),
+    "DO": _do,
+    "END": _end,
     **dict.fromkeys(("DPRNT", "BPRNT", "POPEN", "PCLOS", "SETVN"), _pass_over),
 }

@@ -6,9 +6,7 @@ may be written ten times: the second I, or an I behind a J or K, is #7, and so o
 
 from collections.abc import Iterator
 
-from twin.nc.bytecode.assembler import Assembler
-from twin.nc.bytecode.frames import CALLS
-from twin.nc.control.codes import StatementAction, StatementEffect
+from twin.nc.control.codes import StatementAction
 from twin.nc.control.control import Control
 from twin.nc.dialects.fanuc import decimal_point
 from twin.nc.dialects.fanuc.memory import ModalCall, memory_of
@@ -63,25 +61,12 @@ def _one(control: Control, words: tuple[Word, ...], address: str) -> Word | None
     return found[0] if found else None
 
 
-def _call(control: Control, statement: Statement, assembler: Assembler) -> None:
+def _call(control: Control, statement: Statement) -> None:
     """G65 P L: run a program with variables of its own."""
     words = _words(control, statement)
-    program, often = _one(control, words, "P"), _one(control, words, "L")
-    if program is None:
+    if _one(control, words, "P") is None:
         control.refuse(statement, "call-values", "G65 needs P", "G65 P1000 A1.")
-    arguments = list(_arguments(control, words))
-    counted = any(decimal_point.is_counted(control, word) for _, word in arguments)
-    if often is not None or counted:
-        assembler.interpreted(lambda: _run(control, _modal_call(control, words)))
-        return
-    number = whole(
-        control, program._replace(value=assembler.known(program)), "call-values", "program number"
-    )
-    line = line_of(control, number, program)
-    for _, word in arguments:
-        assembler.word_value(word)
-    deepest = memory_of(control).variant.deepest_call
-    assembler.call(Location(line, 0), deepest, [name for name, _ in arguments])
+    _run(control, _modal_call(control, words), statement)
 
 
 def _modal_call(control: Control, words: tuple[Word, ...]) -> ModalCall:
@@ -107,16 +92,9 @@ def _computed(control: Control, word: Word) -> Word:
     return word
 
 
-def _run(control: Control, asked: ModalCall) -> None:
-    deepest, word = memory_of(control).variant.deepest_call, asked.word
-
-    def write(assembler: Assembler) -> None:
-        assembler.constant(float(asked.often))
-        for value in asked.values.values():
-            assembler.constant(value)
-        assembler.call(Location(asked.line, 0), deepest, asked.values, often=True)
-
-    control.perform(write, (word.column, word.width))
+def _run(control: Control, asked: ModalCall, blamed: Word | Statement) -> None:
+    deepest, values = memory_of(control).variant.deepest_call, asked.values.items()
+    control.call(Location(asked.line, 0), deepest, blamed, values, times=float(asked.often))
 
 
 def call_modally(control: Control, statement: Statement) -> None:
@@ -126,7 +104,7 @@ def call_modally(control: Control, statement: Statement) -> None:
         message = "a modal call is in force already, and one within another is not simulated"
         control.refuse(statement, "call-values", message, "end it by G67 first")
     memory.modal_call = _modal_call(control, _words(control, statement))
-    memory.modal_depth = int(control.program_counter.progress[CALLS])
+    memory.modal_depth = control.program_counter.depth
     control.active.put("modal call", 66.0)
 
 
@@ -138,9 +116,9 @@ def end_modal_call(control: Control) -> None:
 def call_after_motion(control: Control) -> None:
     """The modal call, when a block of its own program has moved."""
     memory = memory_of(control)
-    depth = int(control.program_counter.progress[CALLS])
+    depth = control.program_counter.depth
     if memory.modal_call is not None and depth == memory.modal_depth:
-        _run(control, memory.modal_call)
+        _run(control, memory.modal_call, memory.modal_call.word)
 
 
 def refuse_late_call(control: Control) -> None:
@@ -155,6 +133,6 @@ def refuse_late_call(control: Control) -> None:
 
 
 CALLS_BY_CODE: dict[str, StatementAction] = {
-    "G65": StatementEffect(_call),
+    "G65": _call,
     "G66": call_modally,
 }

@@ -180,14 +180,10 @@ class FanucMemory:
         offsets: Work offsets that the program has written, by name and axis, as those of the job.
         common_offset: The external work offset, by axis [mm or deg].
         offset: Name of the work offset in force.
-        writes_offsets: Some line of the program may write work offsets.
-        transforms: Some line of the program may scale, mirror or rotate.
-        bare_compensation: Some line calls compensation without D.
         tool_offsets: Rows of the offset memory that the program has written, by number.
         length_number: H in force; None: none yet.
         radius_number: D in force; None: none yet.
         intermediate: Where the last G28 or G30 passed, part coordinates by column, for G29.
-        own_feeds: Some line may move so that F does not count the path in X, Y and Z; None: nobody has looked.
         length_cancelled: Code that has cancelled the tool length while G43 or G44 stays in force; empty: none.
         overrules_cycles: Some line holds a motion code behind that of a cycle.
         feed_mode: What F counted when it was written.
@@ -213,14 +209,10 @@ class FanucMemory:
     offsets: dict[str, dict[str, float]] = dataclasses.field(default_factory=dict)
     common_offset: dict[str, float] = dataclasses.field(default_factory=dict)
     offset: str = "G54"
-    writes_offsets: bool = False
-    transforms: bool = False
-    bare_compensation: bool = False
     tool_offsets: dict[int, ToolOffset] = dataclasses.field(default_factory=dict)
     length_number: int | None = None
     radius_number: int | None = None
     intermediate: dict[int, float] = dataclasses.field(default_factory=dict)
-    own_feeds: bool | None = None
     length_cancelled: str = ""
     overrules_cycles: bool = False
     feed_mode: FeedMode = FeedMode.PER_MINUTE
@@ -245,7 +237,7 @@ def memory_of(control: Control) -> FanucMemory:
     return control.memory
 
 
-def acts_on_plain_blocks(control: Control) -> bool:
+def acts_on_lines(control: Control) -> bool:
     """Polar coordinates, a scale, a modal call or a cylinder in force, F lost: plain blocks heed them."""
     memory = memory_of(control)
     if memory.length_cancelled or memory.overrules_cycles:

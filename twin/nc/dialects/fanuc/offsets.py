@@ -5,24 +5,13 @@ What a program writes (G10 L2, #5221) counts from machine zero, as on the contro
 all of them alike; a work offset ends neither (manual).
 """
 
-import re
-
-from twin.nc.bytecode.assembler import Assembler
-from twin.nc.control.codes import Effect
+from twin.nc.control.codes import Action
 from twin.nc.control.control import Control
-from twin.nc.dialects.fanuc.memory import letter_patterns, memory_of, refuse_transformed
+from twin.nc.dialects.fanuc.memory import memory_of, refuse_transformed
 from twin.nc.dialects.fanuc.programs import whole
-from twin.nc.iso.offsets import machine_zero, offset_of_job, select_offset, shift_by
-from twin.nc.iso.offsets import write_offset as write_job_offset
+from twin.nc.iso.offsets import machine_zero, select_offset, shift_by
 from twin.nc.text.blocks import Word
 
-WRITES_OFFSETS = (
-    *letter_patterns("G", rb"0*10(?![0-9.])"),
-    re.compile(rb"#(?:\[|5[23][0-9]|7[0-9]|14[0-9]|[12][0-9]{3})"),
-)
-"""What may write work or tool offsets."""
-TRANSFORMS = letter_patterns("G", rb"0*(?:51|68)")
-"""What may scale, mirror or rotate."""
 LARGEST_EXTENDED = 300
 """G54.1 P1 to P300 (the largest number of pairs that the option has)."""
 
@@ -34,21 +23,16 @@ def further(control: Control, number: int) -> str:
     return next((each for each in names if each in control.settings.offsets), names[0])
 
 
-def offset_code(number: int) -> Effect:
-    """G54 to G59; ``G54 P1`` is G54.1 P1. The compiled tier knows the job's values only."""
-    name = f"G{number}"
+def offset_code(number: int) -> Action:
+    """G54 to G59; ``G54 P1`` is G54.1 P1."""
 
-    def write(control: Control, assembler: Assembler) -> None:
-        memory, word = memory_of(control), control.code_word(number)
+    def action(control: Control) -> None:
         if number == 54 and "P" in control.words:
-            assembler.interpreted(lambda: extended_offset(control))
-        elif "P" in control.words or memory.writes_offsets or memory.transforms:
-            assembler.interpreted(lambda: select(control, name, word))
+            extended_offset(control)
         else:
-            values = offset_of_job(control, name, word)
-            write_job_offset(control, values, assembler, ends_preset=False)
+            select(control, f"G{number}", control.code_word(number))
 
-    return Effect(write)
+    return action
 
 
 def extended_offset(control: Control) -> None:

@@ -7,11 +7,8 @@ subprogram that the file lacks is a file of its own beside it: O2000, O2000.nc o
 import re
 from collections.abc import Iterator
 
-from twin.nc.bytecode.assembler import Assembler
-from twin.nc.bytecode.frames import AGAIN, CALLS
 from twin.nc.control.control import Control
 from twin.nc.dialects.fanuc.memory import holds_any, letter_patterns, memory_of
-from twin.nc.iso.declared import go_back
 from twin.nc.text.blocks import Location, Word
 from twin.nc.text.library import Library
 from twin.nc.text.lines import Lines
@@ -171,18 +168,7 @@ def run_part(control: Control, first: Location, count: int, word: Word) -> None:
     if count < 1:
         control.fail("repeat-count", "a subprogram runs once at least", word)
 
-    def write(assembler: Assembler) -> None:
-        compile_call(control, first, count, assembler)
-
-    control.perform(write, (word.column, word.width))
-
-
-def compile_call(control: Control, first: Location, count: int, assembler: Assembler) -> None:
-    """``run_part`` as instructions."""
-    if count > 1:
-        assembler.constant(float(count))
-    deepest = memory_of(control).variant.deepest_call
-    assembler.call(first, deepest, often=count > 1)
+    control.call(first, memory_of(control).variant.deepest_call, word, times=float(count))
 
 
 def return_(control: Control) -> None:
@@ -193,8 +179,8 @@ def return_(control: Control) -> None:
     target, counter = control.take("P"), control.program_counter
     if counter.is_calling:
         if target is not None:
-            counter.calls[counter.progress[CALLS] - 1, AGAIN] = 0
-        control.perform(go_back)
+            counter.calls[-1].again = 0
+        control.go_back()
         around = lines_around(control, counter.location.line)
     elif target is None:
         message = "M99 in the main program begins it anew, for ever: here it ends"

@@ -6,20 +6,14 @@ their numbers; lengths count against the job's first tool. D holds radii (parame
 
 from typing import NoReturn
 
-from twin.nc.bytecode import opcodes
-from twin.nc.bytecode.assembler import Assembler
-from twin.nc.control.codes import Action, Effect
-from twin.nc.control.compensation import compensate, tool_numbered
+from twin.nc.control.codes import Action
+from twin.nc.control.compensation import NEEDS_TOOL, compensate, tool_numbered
 from twin.nc.control.control import Control
-from twin.nc.control.performer import refuse
-from twin.nc.dialects.fanuc.memory import ToolOffset, letter_patterns, memory_of
+from twin.nc.dialects.fanuc.memory import ToolOffset, memory_of
 from twin.nc.dialects.fanuc.programs import whole
-from twin.nc.iso.findings import NO_TOOL
 from twin.nc.iso.tool_compensation import set_length
 from twin.nc.text.blocks import Word
 
-BARE_COMPENSATION = letter_patterns("G", rb"0*4[12](?![0-9.])(?![^\r\n]*[Dd])")
-"""Compensation without D in its line."""
 LARGEST_OFFSET = 999
 
 
@@ -111,29 +105,18 @@ def _warn_of_default_tool(control: Control, number: int, letter: str) -> None:
         tool_numbered(control, word._replace(value=float(number)))
 
 
-def compensation_code(number: int, side: float) -> Effect:
-    """G41, G42: compensation by the row D.
-
-    The compiled tier knows D1 where every call names D and no program writes radii.
-    """
+def compensation_code(number: int, side: float) -> Action:
+    """G41, G42: compensation by the row D."""
 
     def begin(control: Control) -> None:
+        control.take("D")
         row_number = memory_of(control).radius_number
         if row_number is None:
             message = f"G{number} needs D, the number of the radius"
             control.fail("tool-offset", message, control.code_word(number), f"G{number} D1")
         compensate(control, side, _radius(control, row_number))
 
-    def write(control: Control, assembler: Assembler) -> None:
-        word, memory = control.take("D"), memory_of(control)
-        interpreted = memory.bare_compensation or memory.writes_offsets
-        if interpreted or word is None or word.value not in control.tools.table:
-            assembler.interpreted(lambda: begin(control))
-        else:
-            assembler.constant(control.tools.table[int(assembler.known(word))].radius)
-            assembler.emit(opcodes.COMPENSATE, int(side))
-
-    return Effect(write)
+    return begin
 
 
 def _radius(control: Control, number: int) -> float:
@@ -143,7 +126,8 @@ def _radius(control: Control, number: int) -> float:
     row = memory_of(control).tool_offsets.get(number)
     if radius is None:
         if not control.tools.table:
-            refuse(control, NO_TOOL)
+            message = "compensation needs a tool, and the job has none"
+            control.fail("no-such-tool", message, hint=NEEDS_TOOL)
         _refuse_row(control, number, "D")
     if row is None or row.radius is None:
         _warn_of_default_tool(control, number, "D")

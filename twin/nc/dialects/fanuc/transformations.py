@@ -6,7 +6,6 @@ block's place, and what comes before acts on them as well.
 
 from twin.nc.control.codes import Action
 from twin.nc.control.control import Control
-from twin.nc.control.performer import refuse
 from twin.nc.dialects.fanuc.memory import memory_of
 from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.matrices import (
@@ -19,7 +18,6 @@ from twin.nc.geometry.matrices import (
     stretched,
 )
 from twin.nc.geometry.planes import Vector
-from twin.nc.iso.findings import SCALE_RANGE, TRANSFORM_COMPENSATED
 
 PLAIN: Vector = (1.0, 1.0, 1.0)
 
@@ -63,7 +61,7 @@ def scale(control: Control) -> None:
     factors = [1.0 if word is None else control.number(word) for word in words]
     for word, factor in zip(words, factors, strict=True):
         if not SMALLEST_SCALE <= abs(factor) <= LARGEST_SCALE:
-            refuse(control, SCALE_RANGE, word)
+            control.fail("scale", "a scale lies between 0.001 and 1000", word)
     if control.modal.cycle is not None:
         control.fail("scale", "a scale cannot begin while a cycle is in force", None, "G80 first")
     memory_of(control).scale = (
@@ -166,7 +164,8 @@ def _transformation(control: Control) -> tuple[Matrix, Vector]:
 
 def _update(control: Control) -> None:
     if control.path.compensating:
-        refuse(control, TRANSFORM_COMPENSATED)
+        message = "mirror, scale and rotation cannot change while compensation is in force"
+        control.fail("compensation-change", message, hint="end it by G40 first")
     matrix, shift = _transformation(control)
     control.frame.set_matrix(matrix)
     others = [0.0] * (len(control.settings.axes) - 3)

@@ -8,7 +8,6 @@ it from 0, and a word that has it as its value is left out.
 import math
 import re
 
-from twin.nc.bytecode.assembler import Assembler, UnsupportedError
 from twin.nc.control.control import Control
 from twin.nc.dialects.fanuc import system_variables
 from twin.nc.dialects.fanuc.memory import memory_of
@@ -91,15 +90,6 @@ EXPRESSIONS = ExpressionSyntax(
 _ROUNDING = (arithmetic.nearest_whole_away,)
 
 
-class ControlVariables:
-    """The names of variables that only the interpreter tier reads and writes."""
-
-    def __contains__(self, name: object) -> bool:
-        """Whether it is one of them."""
-        number = int(str(name)[1:]) if str(name)[1:].isdigit() else 0
-        return number not in LOCAL and number not in COMMON and number not in KEPT
-
-
 def is_local(name: str) -> bool:
     """Whether a variable belongs to the call, not to all programs."""
     return name.startswith("#") and name[1:].isdigit() and int(name[1:]) in LOCAL
@@ -159,24 +149,6 @@ def write_variable(
             system_variables.write(control, number, value)
     except ExpressionError as error:
         control.report.fail(error.code, str(error), assignment.column, assignment.width, error.hint)
-
-
-def compile_assignment(assembler: Assembler, assignment: Assignment) -> None:
-    """An assignment as instructions.
-
-    Raises:
-        UnsupportedError: It is left to the interpreter tier.
-    """
-    target = assignment.target
-    if isinstance(target, NumberedVariable):
-        assembler.value(target.index, assignment.column)
-        assembler.value(assignment.value, assignment.column)
-        assembler.assign_numbered(target.name)
-    elif target.name in ControlVariables():
-        raise UnsupportedError
-    else:
-        assembler.value(assignment.value, assignment.column)
-        assembler.assign(target.name)
 
 
 def rounds(tree: Tree) -> bool:

@@ -1,10 +1,9 @@
 """LinuxCNC 2.9, milling: RS274/NGC."""
 
 from twin.nc.canonical import Corner
-from twin.nc.control.codes import WordEffect
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Dialect
-from twin.nc.dialects.linuxcnc import block_compiler, flow, functions, motion, offsets, parameters
+from twin.nc.dialects.linuxcnc import flow, functions, motion, offsets, parameters
 from twin.nc.dialects.linuxcnc.codes import CODES, GROUPS, START
 from twin.nc.dialects.linuxcnc.decisions import DECISIONS
 from twin.nc.dialects.linuxcnc.expressions import EXPRESSIONS
@@ -32,7 +31,7 @@ def _before_motion(control: Control, rapid: bool) -> None:
         control.report.fail("code-words", "a NURBS is ended by G5.3 before another motion")
 
 
-def _acts_on_plain_blocks(control: Control) -> bool:
+def _acts_on_lines(control: Control) -> bool:
     """What plain blocks heed.
 
     Compensation, absolute centres, a spline, a cycle that returns elsewhere; a feed that another unit was
@@ -98,11 +97,11 @@ LINUXCNC = Dialect(
     words={
         "F": functions.set_feed,
         "$": functions.choose_spindle,
-        "S": WordEffect(base.spindle_speed),
+        "S": base.spindle_speed,
         "T": functions.select_tool,
     },
     words_first=True,
-    statements={"O": flow.O_WORD, "%": flow.percent},
+    statements={"O": flow.run_o_word, "%": flow.percent},
     word_meanings={
         "N": "line number",
         "G": "preparatory code",
@@ -155,11 +154,9 @@ LINUXCNC = Dialect(
     write_variable=parameters.write_variable,
     is_local=parameters.is_local,
     given_variable=parameters.given_variable,
-    live_variables=parameters.LiveParameters(),
     library=LIBRARY,
     prepare=offsets.begin,
     must_end=True,
     finish=_finish,
-    compile_block=block_compiler.compile_block,
-    disturbed=_acts_on_plain_blocks,
+    acts_on_lines=_acts_on_lines,
 )

@@ -1,11 +1,8 @@
 """O-words of LinuxCNC: conditions, loops, subroutines; M98 and M99."""
 
-import re
 from collections.abc import Callable
 from typing import NoReturn
 
-from twin.nc.bytecode.assembler import Assembler
-from twin.nc.control.codes import StatementEffect
 from twin.nc.control.constructs import Construct
 from twin.nc.control.control import Control
 from twin.nc.control.state import integer_of
@@ -23,10 +20,9 @@ from twin.nc.dialects.linuxcnc.structure import (
     scope,
     structure,
 )
-from twin.nc.iso.declared import go_back
-from twin.nc.text import arithmetic
+from twin.nc.text.arithmetic import nearest_whole_away
 from twin.nc.text.blocks import Location, Statement
-from twin.nc.text.expressions import Computed, Expression, Number, Tree, Variable
+from twin.nc.text.expressions import Computed, Expression, Variable
 
 WITH_VALUES = ("CALL", "RETURN", "ENDSUB", "IF", "ELSEIF", "WHILE", "REPEAT")
 """Keywords that values may follow."""
@@ -100,7 +96,7 @@ def _line_of(control: Control, line: int) -> tuple[Statement, OWord]:
     return statement, word
 
 
-def _declare(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
+def _declare(control: Control, statement: Statement, word: OWord) -> None:
     """A label is given once in its subroutine, as far as the program comes to it."""
     line = control.block.line - 1
     own = scope(control, line)
@@ -111,85 +107,78 @@ def _declare(control: Control, statement: Statement, word: OWord, assembler: Ass
     ]
     if len(same) == 1:
         return
-
-    def declare() -> None:
-        before = memory_of(control).labels.setdefault(f"{own}{word.label}", line)
-        if before != line:
-            message = f"o{word.label} is the label of line {before + 1} already"
-            refuse(control, statement, "ambiguous-label", message, "give each its own label")
-
-    assembler.interpreted(declare)
+    before = memory_of(control).labels.setdefault(f"{own}{word.label}", line)
+    if before != line:
+        message = f"o{word.label} is the label of line {before + 1} already"
+        refuse(control, statement, "ambiguous-label", message, "give each its own label")
 
 
-def _if(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
-    _declare(control, statement, word, assembler)
+def _if(control: Control, statement: Statement, word: OWord) -> None:
+    _declare(control, statement, word)
     construct = _construct_of(control, statement, word)
-    assembler.value(*_condition_of(control, statement, word))
-    assembler.jump_if(Location(control.block.line, 0))
+    if control.compute(*_condition_of(control, statement, word)):
+        control.jump(Location(control.block.line, 0))
+        return
     for branch in construct.branches:
-        if branch.keyword == "ELSE":
-            assembler.jump(Location(branch.line + 1, 0))
+        is_else = branch.keyword == "ELSE"
+        if is_else or control.compute(*_condition_of(control, *_line_of(control, branch.line))):
+            control.jump(Location(branch.line + 1, 0))
             return
-        assembler.value(*_condition_of(control, *_line_of(control, branch.line)))
-        assembler.jump_if(Location(branch.line + 1, 0))
-    assembler.jump(construct.behind)
+    control.jump(construct.behind)
 
 
-def _leave(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
-    assembler.jump(_construct_of(control, statement, word).behind)
+def _leave(control: Control, statement: Statement, word: OWord) -> None:
+    control.jump(_construct_of(control, statement, word).behind)
 
 
-def _nothing(control: Control, statement: Statement, word: OWord, _assembler: Assembler) -> None:
+def _nothing(control: Control, statement: Statement, word: OWord) -> None:
     _construct_of(control, statement, word)
 
 
-def _while(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
+def _while(control: Control, statement: Statement, word: OWord) -> None:
     construct = _construct_of(control, statement, word)
     if construct.keyword == "DO":
-        assembler.value(*_condition_of(control, statement, word))
-        assembler.jump_if(Location(construct.begin + 1, 0))
+        if control.compute(*_condition_of(control, statement, word)):
+            control.jump(Location(construct.begin + 1, 0))
         return
-    _declare(control, statement, word, assembler)
-    assembler.value(*_condition_of(control, statement, word))
-    assembler.jump_unless(construct.behind)
+    _declare(control, statement, word)
+    if not control.compute(*_condition_of(control, statement, word)):
+        control.jump(construct.behind)
 
 
-def _do(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
-    _declare(control, statement, word, assembler)
+def _do(control: Control, statement: Statement, word: OWord) -> None:
+    _declare(control, statement, word)
     _construct_of(control, statement, word)
 
 
-def _again(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
-    assembler.jump(Location(_construct_of(control, statement, word).begin, 0))
+def _again(control: Control, statement: Statement, word: OWord) -> None:
+    control.jump(Location(_construct_of(control, statement, word).begin, 0))
 
 
-def _counter_of(construct: Construct) -> Variable:
+def _counter_of(construct: Construct) -> str:
     """The variable that counts the rounds of a REPEAT; no program can name it."""
-    return Variable(f"#repeat {construct.begin}")
+    return f"#repeat {construct.begin}"
 
 
-def _is_positive(value: Tree) -> Tree:
-    return Computed("GT", arithmetic.greater, (value, Number(0.0)))
-
-
-def _repeat(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
-    _declare(control, statement, word, assembler)
+def _repeat(control: Control, statement: Statement, word: OWord) -> None:
+    _declare(control, statement, word)
     construct = _construct_of(control, statement, word)
     value, column = _condition_of(control, statement, word)
-    counter = _counter_of(construct)
-    assembler.value(Computed("ROUND", arithmetic.nearest_whole_away, (value.tree,)), column)
-    assembler.assign(counter.name)
-    assembler.value(_is_positive(counter))
-    assembler.jump_unless(construct.behind)
+    rounds = control.compute(
+        Expression("", Computed("ROUND", nearest_whole_away, (value.tree,))), column
+    )
+    control.variables.write(_counter_of(construct), rounds)
+    if not rounds > 0.0:
+        control.jump(construct.behind)
 
 
-def _end_repeat(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
+def _end_repeat(control: Control, statement: Statement, word: OWord) -> None:
     construct = _construct_of(control, statement, word)
     counter = _counter_of(construct)
-    assembler.value(Computed("-", arithmetic.subtract, (counter, Number(1.0))))
-    assembler.assign(counter.name)
-    assembler.value(_is_positive(counter))
-    assembler.jump_if(Location(construct.begin + 1, 0))
+    left = control.compute(Expression("", Variable(counter)), 0) - 1.0
+    control.variables.write(counter, left)
+    if left > 0.0:
+        control.jump(Location(construct.begin + 1, 0))
 
 
 def _enclosing(control: Control, statement: Statement, word: OWord) -> Construct:
@@ -206,14 +195,14 @@ def _enclosing(control: Control, statement: Statement, word: OWord) -> Construct
     refuse(control, statement, "open-structure", message)
 
 
-def _break(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
-    assembler.jump(_enclosing(control, statement, word).behind)
+def _break(control: Control, statement: Statement, word: OWord) -> None:
+    control.jump(_enclosing(control, statement, word).behind)
 
 
-def _continue(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
+def _continue(control: Control, statement: Statement, word: OWord) -> None:
     construct = _enclosing(control, statement, word)
     assert construct.end is not None
-    assembler.jump(Location(construct.end, 0))
+    control.jump(Location(construct.end, 0))
 
 
 # --- subroutines
@@ -239,11 +228,10 @@ def _first_file(control: Control) -> int:
     return parts[0][0] - 2 if parts else len(control.program_counter.lines)
 
 
-def _called_line(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> int:
+def _called_line(control: Control, statement: Statement, word: OWord) -> int:
     """First line, from 0, of the subroutine that CALL names."""
     name, here = word.label, control.block.line - 1
     if name[0] in "#[":
-        assembler.interpreted(lambda: None)
         column = statement.text_column + len(statement.text) - len(statement.text.lstrip())
         name = str(integer_of(control.compute(control.expression(name, column), column)))
     line = _subroutine_line(control, name, here=here)
@@ -258,72 +246,49 @@ def _called_line(control: Control, statement: Statement, word: OWord, assembler:
         message = f"O{name} is a program for M98, and no subroutine"
         refuse(control, statement, "unknown-subprogram", message, f"write M98 P{name}")
     if here <= line < _first_file(control):
-        assembler.interpreted(lambda: memory_of(control).called.add(name))
+        memory_of(control).called.add(name)
     return line
 
 
-def _call(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
-    line = _called_line(control, statement, word, assembler)
+def _call(control: Control, statement: Statement, word: OWord) -> None:
+    line = _called_line(control, statement, word)
     values = values_of(control, word, statement)
     if len(values) > LOCAL_PARAMETERS:
         message = f"a call gives {LOCAL_PARAMETERS} values at most"
         refuse(control, statement, "call-values", message)
-    for value, column in values:
-        assembler.value(value, column)
-    names = [f"#{number}" for number in range(1, len(values) + 1)]
-    assembler.call(Location(line + 1, 0), DEEPEST_CALL, names)
+    given = [(f"#{number}", control.compute(*each)) for number, each in enumerate(values, 1)]
+    control.call(Location(line + 1, 0), DEEPEST_CALL, statement, given)
 
 
-def _sub(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
+def _sub(control: Control, statement: Statement, word: OWord) -> None:
     """A definition that the program comes to: its own lines are read, and it goes on behind it."""
-    _declare(control, statement, word, assembler)
+    _declare(control, statement, word)
     construct = _construct_of(control, statement, word)
     for line in lines_to_read(control, construct):
         _read_line(control, line)
-
-    def define() -> None:
-        if control.program_counter.is_calling:
-            message = "a subroutine cannot be defined within another"
-            hint = "end the one before by its endsub"
-            refuse(control, statement, "open-structure", message, hint)
-        if word.label in memory_of(control).called:
-            message = f"o{word.label} was called before this line, which defines it again"
-            hint = "end the program by M2 before it"
-            refuse(control, statement, "ambiguous-label", message, hint)
-
-    assembler.interpreted(define)
-    assembler.jump(construct.behind)
+    if control.program_counter.is_calling:
+        message = "a subroutine cannot be defined within another"
+        hint = "end the one before by its endsub"
+        refuse(control, statement, "open-structure", message, hint)
+    if word.label in memory_of(control).called:
+        message = f"o{word.label} was called before this line, which defines it again"
+        hint = "end the program by M2 before it"
+        refuse(control, statement, "ambiguous-label", message, hint)
+    control.jump(construct.behind)
 
 
-_TELLS = re.compile(rb"_value|_call_level|M[ \t]*0*7[0-3]", re.IGNORECASE)
-"""What tells of a call's end, or acts at it."""
-
-
-def _is_told(control: Control) -> bool:
-    """The program reads what a call has given, or puts aside what is in force around it."""
-    memory = memory_of(control)
-    if memory.tells_calls is None:
-        memory.tells_calls = control.program_counter.lines.any_holds(_TELLS)
-    return memory.tells_calls
-
-
-def _return(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
+def _return(control: Control, statement: Statement, word: OWord) -> None:
     values = values_of(control, word, statement)
     if len(values) > 1:
         refuse(control, statement, "o-word", "a subroutine gives one value back")
-
-    def tell() -> None:
-        value = control.compute(*values[0]) if values else 0.0
-        memory_of(control).returned = (value, bool(values))
-        restore_at_return(control)
-
-    assembler.check_return()
-    if values or _is_told(control):
-        assembler.interpreted(tell)
-    assembler.end_call()
+    control.require_caller(statement)
+    value = control.compute(*values[0]) if values else 0.0
+    memory_of(control).returned = (value, bool(values))
+    restore_at_return(control)
+    control.go_back(statement)
 
 
-_WORDS: dict[str, Callable[[Control, Statement, OWord, Assembler], None]] = {
+_WORDS: dict[str, Callable[[Control, Statement, OWord], None]] = {
     "SUB": _sub,
     "ENDSUB": _return,
     "CALL": _call,
@@ -339,17 +304,17 @@ _WORDS: dict[str, Callable[[Control, Statement, OWord, Assembler], None]] = {
     "ENDREPEAT": _end_repeat,
     "BREAK": _break,
     "CONTINUE": _continue,
-    "": lambda _control, _statement, _word, _assembler: None,  # a program for M98: it is run into
+    "": lambda _control, _statement, _word: None,  # a program for M98: it is run into
 }
 
 
-def _o_word(control: Control, statement: Statement, assembler: Assembler) -> None:
+def run_o_word(control: Control, statement: Statement) -> None:
     """A line that begins with an O-word."""
     word = o_word(statement)
     if word is None or not word.label:
         refuse(control, statement, "o-word", "O needs a label", "write o100 or o<name>")
-    write = _WORDS.get(word.keyword)
-    if write is None:
+    run = _WORDS.get(word.keyword)
+    if run is None:
         known = ", ".join(KEYWORDS).lower()
         refuse(control, statement, "o-word", f"'{word.keyword.lower()}' follows no O", known)
     if word.label[0] in "#[" and word.keyword != "CALL":
@@ -357,10 +322,7 @@ def _o_word(control: Control, statement: Statement, assembler: Assembler) -> Non
     if word.keyword not in WITH_VALUES and word.text.strip():
         message = f"nothing may follow o{word.label} {word.keyword.lower()}"
         refuse(control, statement, "o-word", message, "write it on a line of its own")
-    write(control, statement, word, assembler)
-
-
-O_WORD = StatementEffect(_o_word)
+    run(control, statement, word)
 
 
 def percent(control: Control, statement: Statement) -> None:
@@ -394,19 +356,14 @@ def call_program(control: Control) -> None:
         hint = f"it begins with O{name} alone, here or in {name}.ngc beside the program"
         control.fail("unknown-subprogram", message, number, hint)
     first = Location(line + 1, 0)
-
-    def write(assembler: Assembler) -> None:
-        assembler.constant(float(count))
-        assembler.call(first, DEEPEST_CALL, often=True)
-
-    control.perform(write, (number.column, number.width))
+    control.call(first, DEEPEST_CALL, number, times=float(count))
 
 
 def return_from_program(control: Control) -> None:
     """M99: back behind M98; in the main program from its beginning again."""
     _refuse_companions(control, "N", "M99")
     if control.program_counter.is_calling:
-        control.perform(go_back)
+        control.go_back()
     else:
         control.program_counter.go(Location(0, 0))
         memory_of(control).percent = False

@@ -59,7 +59,6 @@ class LinuxcncMemory:
         subroutines: Lines, from 0, of the definitions of subroutines by name, in the order of the text.
         garbled: Lines, from 0, within a condition, a loop or a subroutine that begin as one with an O-word
             and are none, or hold an open comment.
-        tells_calls: The program reads what calls give, or puts aside what is in force; None: not looked.
         called: Names of those that have been called.
         returned: Value of the last subroutine, and whether it gave one.
         functions: M functions in force by what they switch.
@@ -91,7 +90,6 @@ class LinuxcncMemory:
     saved: dict[int, tuple[SavedState, bool]] = dataclasses.field(default_factory=dict)
     subroutines: dict[str, list[int]] = dataclasses.field(default_factory=dict)
     garbled: list[int] = dataclasses.field(default_factory=list)
-    tells_calls: bool | None = None
     called: set[str] = dataclasses.field(default_factory=set)
     returned: tuple[float, bool] = (0.0, False)
     functions: dict[str, float] = dataclasses.field(default_factory=dict)

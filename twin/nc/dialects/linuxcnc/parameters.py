@@ -32,15 +32,6 @@ def given_variable(given: Mapping[str, float], name: str) -> float | None:
     return given.get(name, 0.0 if name[1:].isdigit() else None)
 
 
-class LiveParameters:
-    """Parameters that the control knows itself, for the compiled tier, which leaves them alone."""
-
-    def __contains__(self, name: object) -> bool:
-        assert isinstance(name, str)
-        named = name.startswith("#<_") and name[3:-1] in _NAMED
-        return named or (name[1:].isdigit() and int(name[1:]) >= 5000)
-
-
 def read_variable(control: Control, name: str, index: float | None) -> float:
     """Value of ``#5``, ``#[...]``, ``#<name>``, ``#<_name>``.
 

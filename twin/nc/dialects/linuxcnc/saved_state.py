@@ -16,7 +16,7 @@ def save(*, until_return: bool) -> Action:
     """M70, and M73, which the end of the subroutine puts back."""
 
     def action(control: Control) -> None:
-        state = SavedState(control.modal.saved(), written_feed(control), control.spindle)
+        state = SavedState(control.modal.fork(), written_feed(control), control.spindle)
         memory_of(control).saved[control.program_counter.depth] = (state, until_return)
 
     return action
@@ -59,7 +59,7 @@ def _put_back(control: Control, state: SavedState) -> None:
     compensated = memory_of(control).compensation is not None
     if compensated and any(given.get(group) != active.get(group) for group in _FRAME):
         refuse_in_compensation(control)
-    now, modal = control.modal, state.modal.saved()
+    now, modal = control.modal, state.modal.fork()
     modal.interpolation, modal.cycle = now.interpolation, now.cycle
     for group in _KEPT_GROUPS:
         modal.active.put(group, active.get(group))

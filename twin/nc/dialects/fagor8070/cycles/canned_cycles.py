@@ -13,9 +13,8 @@ B that break the chip, back by H, or without it to the reference plane.
 """
 
 import dataclasses
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 
-from twin.nc.bytecode.assembler import Assembler
 from twin.nc.control.codes import GCode, Ground, Interpolation
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import CycleRule
@@ -39,7 +38,6 @@ from twin.nc.path.drilling_cycle import (
     Pecking,
     Retract,
 )
-from twin.nc.text.blocks import Word
 
 _CLEARANCE = 1.0
 """G82: C where it is missing [mm]."""
@@ -77,29 +75,22 @@ def _hole(control: Control) -> list[float]:
 
 def _tapping(code: GCode) -> GCode:
     """Tapping: with B in passes, which are rigid; H is else the word of a function."""
-    action, writer = code.action, code.compiler
+    action = code.action
     assert action is not None
-    assert writer is not None
 
-    def begin(control: Control, value: Callable[[Word], float], take: Callable[[], None]) -> None:
+    def call(control: Control) -> None:
         passes = "B" in control.words
         options = [control.words[letter] for letter in "RJ" if letter in control.words]
-        if passes and any(value(word) != 1.0 for word in options):
+        if passes and any(control.number(word) != 1.0 for word in options):
             message = "only rigid tapping, R1, goes in passes, and back with the same feed"
             control.fail("unsupported-word", f"G84: {message}")
         function = None if passes else control.take("H")
-        take()
+        action(control)
         if function is not None:
             control.words["H"] = function
 
-    def call(control: Control) -> None:
-        begin(control, control.number, lambda: action(control))
-
-    def write(control: Control, assembler: Assembler) -> None:
-        begin(control, assembler.known, lambda: writer(control, assembler))
-
     meaning = "tapping: Z I K R J; in passes: B H"
-    return dataclasses.replace(code, meaning=meaning, action=call, compiler=write)
+    return dataclasses.replace(code, meaning=meaning, action=call)
 
 
 def _pocket(

@@ -1,0 +1,77 @@
+"""Continuous motion beside exact stops: never slower, on random programs and on those that ship; and less with more tolerance."""
+
+import dataclasses
+import itertools
+
+import numpy as np
+import pytest
+from motion_programs import Program, mill
+from random_programs import KINDS, UNEVEN_KINDS, random_machine, random_program
+
+from twin.files.shipped import resource_root
+from twin.machine.description.motion_limits import motion_limits
+from twin.motion.limits import MotionLimits
+from twin.motion.phase_planner import plan_phases
+from twin.nc.canonical import Chunk, Corner, FloatArray
+from twin.run.preparation import prepare
+
+PROGRAMS = resource_root("programs")
+JOBS = sorted(path for path in PROGRAMS.rglob("*.toml") if "alarms" not in path.parts)
+TOLERANCES = (0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0)
+SLACK = 1.0 + 1e-9
+BATCH = 50
+
+
+def seconds(chunks: list[Chunk], limits: MotionLimits, start: FloatArray) -> float:
+    """Cycle time [s]."""
+    ends = [phases.end_time for phases in plan_phases(chunks, limits, start=start)]
+    return ends[-1] if ends else 0.0
+
+
+def with_corner(chunks: list[Chunk], corner: Corner) -> list[Chunk]:
+    """A program with every corner that is not a stop passed in one way."""
+    out = []
+    for chunk in chunks:
+        kinds = np.where(chunk.moves.corner == Corner.EXACT_STOP, Corner.EXACT_STOP, corner)
+        moves = dataclasses.replace(chunk.moves, corner=kinds.astype(np.uint8))
+        out.append(dataclasses.replace(chunk, moves=moves))
+    return out
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("first", range(0, 1000, BATCH))
+def test_continuous_motion_is_never_slower_than_stops(first: int) -> None:
+    for seed in range(first, first + BATCH):
+        kinds = KINDS if seed % 2 else UNEVEN_KINDS
+        times = []
+        for corner in (Corner.CONTINUOUS, Corner.EXACT_STOP):
+            rng = np.random.default_rng(seed)
+            machine = random_machine(rng)
+            program = random_program(rng, corner, kinds=kinds)
+            times.append(seconds(program.chunks(), machine, program.start))
+        assert times[0] <= times[1] * SLACK, seed
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("job", JOBS, ids=lambda path: f"{path.parent.name}/{path.stem}")
+def test_a_shipped_program_is_never_slower_for_it(job) -> None:
+    preparation = prepare(job)
+    chunks = list(preparation.interpretation().chunks())
+    first = next(chunk.moves.start[0] for chunk in chunks if len(chunk.moves))
+    limits = motion_limits(preparation.machine)
+    continuous, stops = (
+        seconds(with_corner(chunks, corner), limits, first)
+        for corner in (Corner.CONTINUOUS, Corner.EXACT_STOP)
+    )
+    assert continuous <= stops * SLACK
+
+
+def test_more_tolerance_never_costs_time() -> None:
+    square = Program()
+    square.corner = Corner.CONTINUOUS
+    for x, y in ((50.0, 0.0), (50.0, 50.0), (0.0, 50.0), (0.0, 0.0)):
+        square.line(x, y, 0.0, 0.0, feed=3000.0)
+    times = [
+        seconds(square.chunks(), mill(corner_tolerance=wide), square.start) for wide in TOLERANCES
+    ]
+    assert all(after <= before * SLACK for before, after in itertools.pairwise(times))

@@ -1,0 +1,184 @@
+"""Plain lines in the kernel and in Python: the same moves, events, diagnostics and positions, to the bit."""
+
+import dataclasses
+import math
+import random
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests.nc.running import MILL, SETTINGS, WITH_TABLES
+from tests.nc.test_golden import PROGRAMS, RULES, interpretation_of
+from twin.nc.canonical import concatenate
+from twin.nc.control.executor import Executor
+from twin.nc.control.settings import ControlSettings
+from twin.nc.dialects import DIALECTS, dialect_named
+from twin.nc.interpreter import Interpretation
+from twin.nc.line_kernel.choice import compiled_kernel
+from twin.nc.line_kernel.kernel import run_lines
+from twin.nc.line_kernel.plain_state import LineKernel, line_format
+from twin.nc.line_kernel.reading import AXIS, NOT_PLAIN, read_line
+from twin.nc.text.diagnostics import ProgramError
+from twin.nc.text.lexer import Lexer
+from twin.nc.text.reporter import Reporter
+from twin.nc.text.source import Source, source_from_text
+
+POINTED = dataclasses.replace(WITH_TABLES, decimal_point="calculator")
+CHANGES = {
+    "gost": "G70|G71|G91|G90|G18|G17|G61|G9|G102 C360|G102 C0|G41 D1|G40|G54|G92 X1|G95|G94|G81 X1 Z-2 R1|G80",
+    "mefi": "G70|G71|G91|G90|G19|G17|Z1.05 G10|G09|G98|G54|G92 X1 Y2|G42|G40",
+    "codesys": "G91|G90|G98|G99|G18|G17|G51 D1|G50|PC360|G43 K5|FF5|E5|FX3|EF3|G41 D2|G40|G61|G60",
+    "fagor8070": "G70|G71|G91|G90|G261|G262|G264|G265|G73 Q30|G73|G11|G10|R9 Q30|G20 X1 Z2|G17|G93|G94|G53|G54",
+    "linuxcnc": "G20|G21|G91|G90|G90.1|G91.1|G64 P0.1|G61|G93|G94|G41 D1|G40|G10 L2 P1 R30|G43 H1|G49",
+    "fanuc": "G20|G21|G91|G90|G68 X0 Y0 R30.|G69|G51.1 X0|G50.1 X0|G16|G15|G93|G94|G95|G43 H1|G49|G18|G17",
+    "haas": "G20|G21|G91|G90|G68 X0 Y0 R30.|G69|G93|G94|G187 P1|G19|G17|G54|G92 X1.",
+}
+"""What changes the meaning of plain lines."""
+ALL = "M3 S1000|M5|S500|T1|M6|M8|G4 P1|N7|G1|G0|F300.|(comment)|/X5.|M30"
+
+
+def outcome(
+    source: Source, dialect: str, settings: ControlSettings, kernel: LineKernel | None
+) -> tuple[object, ...]:
+    """All that comes out of a program."""
+    run = Interpretation(source, dialect_named(dialect), settings, kernel=lambda _lines: kernel)
+    chunks, error = [], None
+    try:
+        chunks.extend(run.chunks())
+    except ProgramError as raised:
+        error = raised.diagnostic
+    moves = concatenate((chunk.moves for chunk in chunks), settings.axes)
+    columns = [np.asarray(each).tolist() for each in moves.table().values()]
+    events = [repr(event) for chunk in chunks for event in chunk.events]
+    ends = run.position.tolist(), run.display.tolist()
+    return repr(columns), events, run.diagnostics, error, ends
+
+
+def number(chance: random.Random, value: float) -> str:
+    return chance.choice(
+        (f"{value:.3f}", f"{value:.3f}", f"{value:.0f}.", f"{value:+.6f}", f"{value:.13f}")
+    )
+
+
+def plain_line(chance: random.Random) -> str:
+    """A line as a post-processor writes it."""
+    kind = chance.random()
+    words = [f"N{chance.randrange(9999)}"] if chance.random() < 0.3 else []
+    if kind < 0.6:
+        words += [chance.choice(("G1", "G0", "G01", "g1", "", ""))]
+        words += [
+            axis + number(chance, chance.uniform(-50.0, 50.0))
+            for axis in "XYZC"
+            if chance.random() < (0.1 if axis == "C" else 0.6)
+        ]
+    else:
+        begin, sweep, radius = (
+            chance.uniform(0, 6.28),
+            chance.uniform(0.1, 6.2),
+            chance.uniform(1, 30),
+        )
+        sense = chance.choice((1.0, -1.0))
+        x, y = (radius * (f(begin + sense * sweep) - f(begin)) for f in (math.cos, math.sin))
+        words += [f"G91 G{3 if sense > 0.0 else 2}"] if chance.random() < 0.5 else ["G3"]
+        words += [f"X{number(chance, x)}", f"Y{number(chance, y)}"]
+        if chance.random() < 0.6:
+            words += [f"I{-radius * math.cos(begin):.5f}", f"J{-radius * math.sin(begin):.5f}"]
+        else:
+            words += [f"R{radius if sweep < math.pi else -radius:.5f}"]
+        words += [f"Z{number(chance, chance.uniform(-1.0, 1.0))}"] if chance.random() < 0.2 else []
+    words += [f"F{chance.randrange(10, 3000)}."] if chance.random() < 0.2 else []
+    return chance.choice((" ", " ", "", "\t")).join(filter(None, words))
+
+
+def cam_program(chance: random.Random, dialect: str) -> str:
+    """Plain lines, now and then a change of what they mean, and sometimes a slip."""
+    changes = [*CHANGES[dialect].split("|"), *ALL.split("|")]
+    lines = ["G1 X0 Y0 Z0 F500."]
+    lines += [
+        plain_line(chance) if chance.random() < 0.85 else chance.choice(changes)
+        for _ in range(chance.randrange(5, 50))
+    ]
+    text = "\n".join([*lines, "M30", ""])
+    if chance.random() < 0.3:
+        at, slip = chance.randrange(len(text)), chance.choice("GXYZ-.0123 IJRF([;/%é\t")
+        text = text[:at] + slip + text[at + chance.randrange(2) :]
+    return text
+
+
+@pytest.mark.parametrize("dialect", DIALECTS)
+@given(seed=st.integers(0, 2**32))
+def test_random_lines_mean_the_same_in_the_kernel(dialect: str, seed: int) -> None:
+    chance = random.Random(seed)  # noqa: S311 (programs need no cryptography)
+    source = source_from_text(cam_program(chance, dialect))
+    settings = chance.choice((SETTINGS, WITH_TABLES, POINTED))
+    python = outcome(source, dialect, settings, None)
+    assert outcome(source, dialect, settings, run_lines) == python
+
+
+@pytest.mark.seconds("compiles the kernel where it was not compiled before")
+@pytest.mark.parametrize("dialect", DIALECTS)
+def test_the_compiled_kernel_computes_the_same_bits(dialect: str) -> None:
+    chance = random.Random(dialect)  # noqa: S311 (the same)
+    for _ in range(20):
+        source = source_from_text(cam_program(chance, dialect))
+        python = outcome(source, dialect, POINTED, None)
+        assert outcome(source, dialect, POINTED, compiled_kernel()) == python
+
+
+@pytest.mark.seconds("interprets every golden program twice")
+@pytest.mark.parametrize("dialect", DIALECTS)
+def test_golden_programs_mean_the_same_in_the_kernel(dialect: str) -> None:
+    paths = [path for path in (*PROGRAMS, *RULES) if dialect in path.parts[-3:-1]]
+    assert len(paths) > 10
+    for path in paths:
+        run = interpretation_of(path)
+        given = (run.source, dialect, run.settings)
+        assert outcome(*given, run_lines) == outcome(*given, None), path
+
+
+LONG = {
+    "linuxcnc": "G1 X{x:.3f} Y{y:.3f}",
+    "fanuc": "G1 X{x:.3f} Y{y:.3f}",
+    "haas": "N10 X{x:.3f} Y{y:.3f} (c)",
+    "gost": "G1 X{x:.3f} Y{y:.3f}",
+    "mefi": "G01X{x:.3f}Y{y:.3f}",
+    "codesys": "N10 G1 X{x:.3f} Y{y:.3f}",
+    "fagor8070": "X{x:.3f} Y{y:.3f} ; c",
+}
+
+
+@pytest.mark.parametrize("dialect", DIALECTS)
+def test_a_file_of_lines_runs_in_the_kernel_in_every_dialect(dialect: str) -> None:
+    lines = [LONG[dialect].format(x=row % 97, y=row % 89) for row in range(1000)]
+    lines = [*lines, "X1.000 Y0.000", *(f"G2 X{row % 2}.000 Y0.000 R5.000" for row in range(1000))]
+    source = source_from_text("\n".join(["G90 G17", "G1 X5. F100.", *lines, "M30"]))
+    ran = 0
+
+    def counting(*arguments: object) -> int:
+        nonlocal ran
+        made = run_lines(*arguments)  # pyright: ignore[reportArgumentType]  # handed on
+        ran += made
+        return made
+
+    outcome(source, dialect, SETTINGS, counting)
+    assert ran >= 1990
+
+
+LETTERS = st.text("XYyG1205.+-( *)/%\t#é\v\f\x01", max_size=16)
+
+
+@given(LETTERS)
+def test_what_the_kernel_reads_the_reader_reads_as_well(line: str) -> None:
+    dialect = dialect_named("codesys")  # it has comments of every kind
+    control = Executor(dialect, SETTINGS, source_from_text(line))
+    values, data = np.zeros(AXIS + len(MILL)), np.frombuffer(line.encode(), np.uint8)
+    form = line_format(control)
+    seen = read_line(data, 0, len(data), form, values)
+    if seen == NOT_PLAIN:
+        return
+    blocks = Lexer(dialect, Reporter(source_from_text(line), strict=False)).blocks(line, 1)
+    words = [word for block in blocks for word in block.words]
+    read = {int(form.roles[ord(word.address) - ord("A")]): word.value for word in words}
+    assert read == {role: values[role] for role in range(len(values)) if seen >> role & 1}

@@ -1,0 +1,58 @@
+"""What ``twin serve`` sends, against the schemas of MTConnect 2.0 as the MTConnect Institute publishes them.
+
+``TWIN_TEST_MTCONNECT`` names the folder of ``MTConnectDevices_2.0.xsd``, ``MTConnectStreams_2.0.xsd``,
+``MTConnectError_2.0.xsd`` and what these import (``xlink.xsd``).
+"""
+
+import os
+import time
+import urllib.error
+import urllib.request
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from bad_days.agent_attacks import serving
+
+from tests.serve.schema_check import Schemas
+from twin.files.shipped import resource_root
+
+FOLDER = os.environ.get("TWIN_TEST_MTCONNECT")
+pytestmark = [
+    pytest.mark.oracle,
+    pytest.mark.skipif(FOLDER is None, reason="TWIN_TEST_MTCONNECT names no folder of schemas"),
+]
+GOOD = resource_root("programs") / "codesys" / "semicircle_by_radius.toml"
+WATCHED_S = 15.0
+"""Longer than a part and its alarm take."""
+TARGETS = (
+    "/probe", "/current", "/current?path=//Controller", "/sample?count=1000", "/sample?count=-100",
+    "/sample?from=999999999", "/sample?count=x", "/lathe/current", "/assets",
+)  # fmt: skip
+
+
+def answers(address: str) -> Iterator[bytes]:
+    """Of an agent, to everything that it can be asked, again and again for some time."""
+    end = time.monotonic() + WATCHED_S
+    while time.monotonic() < end:
+        for target in TARGETS:
+            try:
+                with urllib.request.urlopen(address + target, timeout=20) as answer:  # noqa: S310 (own agent)
+                    yield answer.read()
+            except urllib.error.HTTPError as error:
+                yield error.read()
+        time.sleep(0.1)
+
+
+@pytest.mark.parametrize("alarm", [False, True])
+def test_every_answer_is_valid(tmp_path: Path, alarm: bool) -> None:
+    schemas = Schemas(Path(FOLDER or ""))
+    job = GOOD
+    if alarm:
+        job = tmp_path / "part.toml"
+        job.write_text('program = "part.nc"\ndialect = "gost"\n[part_zero]\nX = 395.0\n')
+        (tmp_path / "part.nc").write_text("G1 X20 F600\nM30\n")
+    with serving(job) as served:
+        found = list(answers(f"http://{served.host}:{served.port}"))
+    assert len(found) >= len(TARGETS)
+    assert {complaint for each in found for complaint in schemas.complaints(each)} == set()

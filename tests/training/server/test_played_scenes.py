@@ -1,0 +1,38 @@
+"""Every scene's solution and mistake, played with the keys of the real page, faster than real time and without its view.
+
+``TWIN_TEST_BROWSER=firefox`` plays them in that one.
+"""
+
+import importlib.util
+import os
+from typing import get_args
+
+import pytest
+from browsers import CHROMIUM, FIREFOX
+from panel_player import What, browser, play
+
+from twin.training.scene.scene_file import scene_names
+from twin.web.server import THREE
+
+BROWSER = os.environ.get("TWIN_TEST_BROWSER", "chromium")
+pytestmark = [
+    pytest.mark.browser,
+    pytest.mark.played,
+    pytest.mark.skipif(
+        (FIREFOX if BROWSER == "firefox" else CHROMIUM) is None, reason=f"no {BROWSER} here"
+    ),
+    pytest.mark.skipif(
+        importlib.util.find_spec("playwright") is None, reason="no playwright to lead the browser"
+    ),
+    pytest.mark.skipif(
+        not THREE.is_dir(), reason="three.js is missing: run scripts/fetch_three.py"
+    ),
+]
+
+
+@pytest.mark.parametrize("what", get_args(What))
+@pytest.mark.parametrize("scene", scene_names())
+def test_a_scene_ends_as_intended(scene: str, what: What) -> None:
+    with browser(BROWSER) as opened:
+        played = play(opened, scene, what)
+    assert played.intended, str(played)

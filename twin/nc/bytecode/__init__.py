@@ -1,1 +1,0 @@
-"""What a block is compiled to: opcodes, registers, the assembler."""

@@ -1,1 +1,0 @@
-"""The compiled tier: state transfer, tables, the virtual machine."""

@@ -1,0 +1,205 @@
+"""When a control may let plain lines run in the kernel, what it tells it, and what it takes back."""
+
+import math
+import string
+from collections.abc import Callable
+
+import numpy as np
+
+from twin.nc.control.codes import GCode
+from twin.nc.control.executor import Executor
+from twin.nc.control.interpolation import ArcRule, LineRule, MotionMode
+from twin.nc.geometry.arcs import Bounds
+from twin.nc.geometry.planes import PLANE_ORDER
+from twin.nc.line_kernel.kernel import (
+    CLOCKWISE,
+    COUNTER_CLOCKWISE,
+    FEED_LINE,
+    NO_MOTION,
+    RAPID_LINE,
+    MoveRows,
+    PageColumns,
+    PlainRules,
+    PlainState,
+)
+from twin.nc.line_kernel.reading import (
+    AXIS,
+    CENTER,
+    CODE,
+    FEED,
+    NUMBER,
+    OTHER,
+    RADIUS,
+    LineFormat,
+)
+from twin.nc.path.move_columns import CHUNK
+from twin.nc.path.paces import PATH_COUNTS
+from twin.nc.text.comments import comment_marks
+
+LineKernel = Callable[[PageColumns, PlainRules, PlainState, MoveRows], int]
+"""``kernel.run_lines``, as CPython runs it or compiled."""
+_NO_ARC = ArcRule(bounds=Bounds(0.0, 0.0, 0.0, 0.0))
+_WORTHWHILE = 4
+"""Moves that a run must make to pay for its beginning and its end."""
+_LONGEST_PAUSE = 256
+"""Blocks after which a new run is tried, where plain lines are rare."""
+
+
+class LineRuns:
+    """Runs of plain lines of one program."""
+
+    def __init__(self, control: Executor, kernel: LineKernel) -> None:
+        """Run them for a control, by this kernel."""
+        axes = len(control.settings.axes)
+        self._control = control
+        self._kernel = kernel
+        self._rules = plain_rules(control)
+        self._values = np.zeros(AXIS + axes)
+        self._rows = MoveRows(
+            np.zeros((CHUNK, 5), np.int64), np.zeros((CHUNK, 11)), np.zeros((CHUNK, 3, axes))
+        )
+        self._pause = self._wait = 0
+
+    def run(self) -> bool:
+        """Run the lines that come next, as far as they are plain; False where the next block is Python's."""
+        control = self._control
+        if self._wait > 0:
+            self._wait -= 1
+            return False
+        room = CHUNK - len(control.path)
+        line = control.program_counter.fresh_line
+        if line is None or room <= 0 or not may_run_lines(control):
+            return False
+        page = control.program_counter.lines.page_of(line)
+        columns = PageColumns(page.data, page.starts, page.ends, page.lines.start)
+        state = self._state(line)
+        made = self._kernel(columns, self._rules, state, self._rows.first(room))
+        came_to = int(state.line[0])
+        if made < _WORTHWHILE and came_to < page.lines.stop:
+            self._pause = min(2 * self._pause + 1, _LONGEST_PAUSE)
+            self._wait = self._pause
+        else:
+            self._pause = 0
+        if came_to > line:
+            self._take_back(state, came_to, self._rows.first(made))
+        return came_to > line
+
+    def _state(self, line: int) -> PlainState:
+        control, modal, frame = self._control, self._control.modal, self._control.frame
+        return PlainState(
+            line=np.array([line, 0]),
+            kind=np.array([kind_of(modal.interpolation)]),
+            feed=np.array([math.nan if control.feed is None else control.feed]),
+            position=np.array([control.programmed, control.part]),
+            values=self._values,
+            total=np.array(frame.total),
+            matrix=frame.matrix,
+            turned=not frame.is_identity,
+            plane=modal.plane.directions,
+            plane_axes=modal.plane.axes,
+            unit=modal.unit,
+            incremental=modal.incremental,
+            center_absolute=modal.center_absolute,
+            feed_mode=int(modal.feed_mode),
+            feed_may_lack=control.report.has_said("no-feed"),
+            spindle=math.nan if control.spindle is None else control.spindle,
+            spindle_turns=float(control.spindle_turns),
+            rapid_feed=control.rapid_feed,
+            corner=int(modal.corner),
+            limits=(modal.corner_tolerance, control.acceleration, control.deceleration),
+        )
+
+    def _take_back(self, state: PlainState, line: int, rows: MoveRows) -> None:
+        """The control stands where the run has come to."""
+        control, modal, feed = self._control, self._control.modal, float(state.feed[0])
+        kind = int(state.kind[0])
+        if kind != kind_of(modal.interpolation):
+            number = self._numbers[kind]
+            control.put_into_force(number, control.dialect.g[number])
+        control.feed = None if math.isnan(feed) else feed
+        programmed, part = state.position.tolist()
+        control.take_rows(rows, programmed, part)
+        control.program_counter.pass_lines(line, int(state.line[1]))
+
+    @property
+    def _numbers(self) -> dict[int, int]:
+        """The G code of each kind of motion."""
+        return {int(kind): number for number, kind in enumerate(self._rules.kinds) if kind >= 0}
+
+
+def may_run_lines(control: Executor) -> bool:
+    """Whether plain lines mean no more than the kernel knows, with all that is in force."""
+    modal = control.modal
+    return (
+        modal.cycle is None
+        and modal.correct_center
+        and modal.plane in PLANE_ORDER
+        and math.isnan(control.rapid_acceleration)
+        and math.isnan(control.rapid_deceleration)
+        and not (control.axis_limits or control.axis_accelerations or control.axis_decelerations)
+        and control.path.passes_on
+        and not control.dialect.acts_on_lines(control)
+    )
+
+
+def kind_of(mode: MotionMode | None) -> int:
+    """How the kernel moves in a mode of motion."""
+    if mode is None or mode.rule is None:
+        return NO_MOTION
+    if isinstance(mode.rule, LineRule):
+        return RAPID_LINE if mode.rapid else FEED_LINE
+    if not isinstance(mode.rule, ArcRule):
+        return NO_MOTION
+    return CLOCKWISE if mode.rule.clockwise else COUNTER_CLOCKWISE
+
+
+def plain_rules(control: Executor) -> PlainRules:
+    """What the dialect of a control says of plain lines."""
+    dialect, settings = control.dialect, control.settings
+    kinds = {number: _kind_of_code(code) for number, code in dialect.g.items()}
+    plain = {int(number): kind for number, kind in kinds.items() if kind != NO_MOTION}
+    by_number = np.full(max(plain) + 1, NO_MOTION)
+    by_number[list(plain)] = list(plain.values())
+    rules = [getattr(dialect.g[number].sets.get("interpolation"), "rule", None) for number in plain]
+    arc = next((rule for rule in rules if isinstance(rule, ArcRule)), _NO_ARC)
+    return PlainRules(
+        form=line_format(control),
+        kinds=by_number,
+        bounds=arc.bounds,
+        signed_radius=arc.signed_radius,
+        fits_radius=arc.fits_radius,
+        linear=np.array(control.linear),
+        rotary=sum(1 << (AXIS + axis) for axis, linear in enumerate(control.linear) if not linear),
+        path_counts=control.feed_rule is PATH_COUNTS,
+        default_feed=settings.default_feed,
+        default_rotary_feed=settings.default_rotary_feed,
+    )
+
+
+def _kind_of_code(code: GCode) -> int:
+    """How a G code moves that does nothing but that; ``NO_MOTION`` for all others."""
+    does = (code.action, code.perform, code.after, code.once, code.alone, code.refused)
+    if any(does) or code.sets.keys() != {"interpolation", "cycle"} or code.sets.get("cycle"):
+        return NO_MOTION
+    return kind_of(code.sets.get("interpolation"))
+
+
+def line_format(control: Executor) -> LineFormat:
+    """How plain lines are written: letters that a dialect uses otherwise as well have no role."""
+    dialect = control.dialect
+    letters = {"R": RADIUS, **{letter: CENTER + index for index, letter in enumerate("IJK")}}
+    letters |= {
+        name: AXIS + index
+        for name, index in control.axis_index.items()
+        if name in dialect.axis_letters
+    }
+    taken = {*dialect.words, *dialect.references, *dialect.signed, *dialect.series}
+    roles = {each: role for each, role in letters.items() if each in dialect.motion_words - taken}
+    roles |= {**dict.fromkeys(dialect.feed_letter, FEED), "N": NUMBER, "G": CODE}
+    pointed = dialect.pointless(control.settings)
+    return LineFormat(
+        np.array([roles.get(letter, OTHER) for letter in string.ascii_uppercase]),
+        np.array([letter in pointed for letter in string.ascii_uppercase]),
+        comment_marks(dialect.syntax.comments).columns,
+        dialect.syntax.longest_line,
+    )

@@ -1,0 +1,140 @@
+"""The bytes of a plain line to values: letters with plain numbers, and comments passed over.
+
+How words and comments are written, ``text.plain_word`` and ``text.comments`` say for Python's reader and for
+this one. Whatever else a line holds, right or wrong, is left to Python: it alone makes diagnostics.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from twin.compilation.compilable import compilable, inlined
+from twin.nc.canonical import FloatArray, IntArray
+from twin.nc.text.comments import CommentMarks, comment_end
+from twin.nc.text.plain_word import (
+    ADDRESS,
+    BEGIN,
+    END,
+    FRACTION,
+    IS_DIGIT,
+    IS_WORD,
+    SIGNED,
+    WALK,
+)
+
+ByteArray = npt.NDArray[np.uint8]
+
+OTHER, NUMBER, CODE, FEED, RADIUS, CENTER, AXIS = -1, 0, 1, 2, 3, 4, 7
+"""Roles of letters: none in a plain line; N, G, F, R; I, J, K from ``CENTER`` on; axes by their column from
+``AXIS`` on."""
+NOT_PLAIN = -1
+_MINUS, _POINT, _DIGIT_0 = ord("-"), ord("."), ord("0")
+_LETTER_A, _TO_UPPER = ord("A"), 0xDF
+_EXACT_MANTISSA = 2**53 // 10 - 1
+"""A mantissa up to here takes a further digit and is still exact as a double."""
+_POWERS = 10.0 ** np.arange(23)
+"""The powers of ten that are exact as doubles.
+
+A quotient of two exact doubles is the double nearest to the decimal number, as ``float`` gives it
+(W. D. Clinger, How to read floating point numbers accurately, 1990).
+"""
+
+
+class LineFormat(NamedTuple):
+    """How a dialect writes plain lines on a machine.
+
+    Attributes:
+        roles: Of each letter, shape (26,).
+        pointed: Numbers of the letter are plain with a decimal point only, unless 0, shape (26,).
+        comments: How comments are marked.
+        longest: Bytes of a line that may be plain.
+    """
+
+    roles: IntArray
+    pointed: npt.NDArray[np.bool_]
+    comments: CommentMarks
+    longest: int
+
+
+@compilable
+def read_line(data: ByteArray, begin: int, end: int, form: LineFormat, values: FloatArray) -> int:
+    """Read a line.
+
+    Args:
+        data: The program as UTF-8.
+        begin: First byte of the line.
+        end: Behind its last byte.
+        form: How lines are written.
+        values: Filled with the value of each role that the line has, shape (roles,).
+
+    Returns:
+        The roles that it has, as bits; or ``NOT_PLAIN``.
+    """
+    seen, at = int(np.int64(0)), begin
+    while True:
+        stage, letter, value, at = _read_word(data, at, end)
+        if stage == BEGIN:
+            if at == end:
+                return seen
+            at = comment_end(data, begin, at, end, form.comments)
+            if at < 0:
+                return NOT_PLAIN
+            continue
+        role = form.roles[letter]
+        if role == OTHER or seen >> role & 1 or (role == NUMBER and seen):
+            return NOT_PLAIN
+        if at == NOT_PLAIN or (stage != FRACTION and value != 0.0 and form.pointed[letter]):
+            return NOT_PLAIN
+        seen |= 1 << role
+        values[role] = value
+
+
+@compilable
+def _read_word(data: ByteArray, at: int, end: int) -> tuple[int, int, float, int]:
+    """A word: the stage that it has come to, its letter from 0, its number, and the place behind it.
+
+    That place is ``NOT_PLAIN`` where the word has no number or a very long one. A number's stages
+    follow from its digits and its point: a loop that went by them from byte to byte would wait for each.
+    """
+    at = _stay(data, at, end, BEGIN)
+    if at == end or WALK[BEGIN << 8 | int(data[at])] == END:
+        return BEGIN, 0, 0.0, at
+    letter = (int(data[at]) & _TO_UPPER) - _LETTER_A
+    at = _stay(data, at + 1, end, ADDRESS)
+    signed = at < end and WALK[ADDRESS << 8 | int(data[at])] == SIGNED
+    negative = at < end and data[at] == _MINUS
+    stage = SIGNED if signed else ADDRESS
+    at += signed
+    mantissa, digits, decimals, pointed = 0, 0, 0, False
+    while at < end:
+        byte = int(data[at])
+        if IS_DIGIT[byte]:
+            if mantissa > _EXACT_MANTISSA:
+                return stage, letter, 0.0, NOT_PLAIN
+            mantissa = 10 * mantissa + byte - _DIGIT_0
+            digits += 1
+            decimals += pointed
+        elif byte == _POINT and not pointed:
+            pointed = True
+        else:
+            break
+        at += 1
+    if digits > decimals:  # further digits stay at the stage of the first
+        stage = int(WALK[stage << 8 | _DIGIT_0])
+    if pointed:
+        stage = int(WALK[stage << 8 | _POINT])
+    if decimals > 0:
+        stage = int(WALK[stage << 8 | _DIGIT_0])
+    if not IS_WORD[stage] or decimals >= len(_POWERS):
+        return stage, letter, 0.0, NOT_PLAIN
+    value = mantissa / _POWERS[decimals]
+    return stage, letter, (-value if negative else value), at
+
+
+@inlined
+def _stay(data: ByteArray, at: int, end: int, stage: int) -> int:
+    """The first place from ``at`` on whose byte leads on from a stage, or ``end``."""
+    while at < end and WALK[stage << 8 | int(data[at])] == stage:
+        at += 1
+    return at
