@@ -305,6 +305,9 @@ class JobFile(Table):
     """One of ``twin dialects``; none: told apart by the program's own words."""
     machine: str = DEFAULT_MACHINE
     """A shipped machine's name, or a path relative to the job file."""
+    axes: dict[Annotated[str, Field(pattern="^[A-Z]$")], str] = Field(default_factory=dict)
+    """Words of axes that the machine lacks: ``A = "C"``, the axis of the machine that A stands for, or
+    ``A = "ignored at 0"``, allowed while it stays 0."""
     default_feed: Positive | None = None
     """Feed where the program sets none [mm/min]; none: the machine's."""
     default_rotary_feed: Positive | None = None
