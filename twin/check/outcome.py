@@ -5,8 +5,9 @@ from typing import Any, Literal
 
 from twin.errors import ExitCode
 
-CheckVerdict = Literal["pass", "fail", "alarm", "error"]
-"""``error``: the program, its job or its machine is wrong, and nothing was run to its end."""
+CheckVerdict = Literal["pass", "fail", "alarm", "error", "empty"]
+"""``empty``: the program holds no block, so that nothing was checked; it counts as a failure.
+``error``: the program, its job or its machine is wrong, and nothing was run to its end."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -52,6 +53,7 @@ class CheckOutcome:
         warnings: What the interpreter had to say beside that.
         changes: What a sweep changed for it, keys of job or machine and their values.
         expected: The code that its job expects and that it ended with, so that it passes.
+        scope: What the verdict looked at, one sentence each.
     """
 
     program: str
@@ -65,6 +67,7 @@ class CheckOutcome:
     warnings: tuple[Finding, ...] = ()
     changes: tuple[tuple[str, Any], ...] = ()
     expected: str | None = None
+    scope: tuple[str, ...] = ()
 
     @property
     def passed(self) -> bool:

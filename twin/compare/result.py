@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from twin.compare.figures import ArcFigures, AxisTracking, BlockFigures, Figures
-from twin.compare.verdict import AlarmLike, Verdict
+from twin.compare.verdict import PRINTED_DIGITS, AlarmLike, Verdict
 from twin.files.atomic import write_text
 from twin.job.job_file import ToleranceTable
 from twin.units import AxisKind
@@ -18,8 +18,6 @@ from twin.units import AxisKind
 SCHEMA = 1
 BLOCKS_KEPT = 1000
 """``blocks`` holds so many blocks at most, those with the greatest contour errors."""
-_DIGITS = 6
-"""Figures are written to the picometre or microdegree; more digits would be noise."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
@@ -38,6 +36,7 @@ class RunSummary:
         commanded: Final setpoint by axis, part coordinates [mm or deg].
         simulated: Final joint position by axis, part coordinates [mm or deg].
         near_miss: The content of the key ``near_miss``, or None when all kept their distance.
+        scope: The content of the key ``scope``: what the verdict looked at.
     """
 
     program: str
@@ -50,6 +49,7 @@ class RunSummary:
     commanded: Mapping[str, float]
     simulated: Mapping[str, float]
     near_miss: Mapping[str, Any] | None = None
+    scope: Mapping[str, Any] | None = None
 
 
 STAGES = ("interpret_s", "plan_s", "simulate_s", "compare_s", "cut_s", "render_s")
@@ -74,6 +74,7 @@ def result(
         "dialect": summary.dialect,
         "machine": summary.machine,
         "verdict": verdict.outcome,
+        "scope": None if summary.scope is None else dict(summary.scope),
         "reasons": [dataclasses.asdict(reason) for reason in verdict.reasons],
         "checks": [dataclasses.asdict(c) | {"holds": c.holds} for c in verdict.checks],
         "duration_s": summary.duration_s,
@@ -156,7 +157,7 @@ def _arc(arc: ArcFigures) -> dict[str, float]:
 
 def _rounded(value: Any) -> Any:
     if isinstance(value, float):
-        return round(value, _DIGITS) if math.isfinite(value) else None
+        return round(value, PRINTED_DIGITS) if math.isfinite(value) else None
     if isinstance(value, Mapping):
         return {key: _rounded(item) for key, item in value.items()}
     if isinstance(value, list | tuple):

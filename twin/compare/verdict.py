@@ -65,21 +65,30 @@ class Check:
     @property
     def holds(self) -> bool:
         """Whether the tolerance is kept."""
-        return self.value <= self.limit
+        return round(self.value, PRINTED_DIGITS) <= max(
+            self.limit, round(self.limit, PRINTED_DIGITS)
+        )
+
+    @property
+    def digits(self) -> int:
+        """Decimals to print value and limit with, so that one beyond the other shows."""
+        digits = 3 if self.unit == "s" else 1
+        while not self.holds and round(self.value, digits) <= self.limit:
+            if digits == PRINTED_DIGITS:
+                break
+            digits += 1
+        return digits
 
     @property
     def message(self) -> str:
         """One sentence with value, limit and unit."""
-        digits = 3 if self.unit == "s" else 1
-        while round(self.value, digits) <= self.limit < self.value and digits < _MOST_DIGITS:
-            digits += 1
         relation = "is within" if self.holds else "exceeds"
-        value = f"{self.value:.{digits}f} {self.unit}"
+        value = f"{self.value:.{self.digits}f} {self.unit}"
         return f"{self.figure} {value} {relation} {self.what} = {self.limit:g}{self.note}"
 
 
-_MOST_DIGITS = 9
-"""A value hardly above its limit is written with so many digits at most."""
+PRINTED_DIGITS = 6
+"""Decimals of ``result.json``: values are compared with their limits as they are printed."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -117,6 +126,11 @@ class Verdict:
     outcome: Outcome
     reasons: tuple[Reason, ...]
     checks: tuple[Check, ...] = ()
+
+    def with_more(self, reasons: Sequence[Reason]) -> "Verdict":
+        """The verdict with more reasons against a pass, such as checks that have judged nothing."""
+        outcome = "fail" if reasons and self.outcome == "pass" else self.outcome
+        return Verdict(outcome, (*self.reasons, *reasons), self.checks)
 
     @property
     def exit_code(self) -> ExitCode:

@@ -7,6 +7,7 @@ from typing import Any, Literal
 import numpy as np
 
 from twin.cutting.cut_log import BlockCut, CutLog
+from twin.cutting.cut_watch import CutWatch
 from twin.cutting.events import CutEvent, EventLog, StockWatch, Stretches
 from twin.cutting.forces.direction import tool_force
 from twin.cutting.forces.materials import kienzle
@@ -98,6 +99,8 @@ class Cutter:
         marks: Way of the tool at which each cell was last cut, shape (ny, nx) [mm]: its lines are
             the marks that a cutter leaves. Of no size unless asked for.
         halted: What met material that must not, at which cutting ended, if it shall.
+        watch: What the cut should not do, though nothing stops at it.
+        start_depth: How deep the tool stood in the material before anything moved [mm].
     """
 
     def __init__(
@@ -155,6 +158,8 @@ class Cutter:
         self._halts, self._head = halts, head
         self.halted: CutEvent | None = None
         self._cut_log = CutLog()
+        self.watch = CutWatch(AIR_MM * self.map.cell**2)
+        self.start_depth = 0.0
 
     def add(self, samples: Samples, rapid: BoolArray, standing: BoolArray | None = None) -> float:
         """Cut along a chunk that follows the last one.
@@ -182,9 +187,13 @@ class Cutter:
         lag = np.abs(meant - points).sum(axis=1)
         turn = self._part_frame.direction(joints)
         way = _Way(points, turn, lag, setpoint.time, setpoint.line, rapid, off)
+        if self._stand is None:
+            self.start_depth = self._depth_at(way[:1].lowered(self.plan.longer(self.tool)))
         self._stand = way[-1:]
         for run, tool in self.plan.runs(setpoint.move):
-            self._change_tools(way[run.start : run.start + 1], int(setpoint.move[run.start]))
+            self._change_tools(
+                way[run.start : run.start + 1], max(int(setpoint.move[run.start]), 0)
+            )
             if self.halted is not None:
                 break
             if tool.number != self.tool.number:
@@ -242,17 +251,26 @@ class Cutter:
 
     def _note_arrival(self, stand: "_Way", line: int) -> None:
         """Note that the tool which has just come into the spindle stands in the material."""
-        here = Points(np.repeat(stand.points, 2, axis=0), np.repeat(stand.turn, 2, axis=0))
-        contact = StockContact(self.tool, profile(self.tool), self._head)
-        met = contact.measure(self.map, here, np.ones(1, np.bool_))
-        if not met:
+        depth = self._depth_at(stand)
+        if not depth:
             return
         removal = Removal(*np.zeros((3, 1)))
-        stretches = Stretches(here.tip, stand.time, np.array([line]), stand.rapid, *removal)
-        depth = max(float(overlap.depth[0]) for overlap in met.values())
+        tip = np.repeat(stand.points, 2, axis=0)
+        stretches = Stretches(tip, stand.time, np.array([line]), stand.rapid, *removal)
         self._gouges.note(("arrival", line), "arrival", stretches, 0, depth)
         if self._halts:
             self.halted = self._gouges.event(("arrival", line))
+
+    def _depth_at(self, stand: "_Way") -> float:
+        """How deep the tool stands in the material [mm].
+
+        Args:
+            stand: Where its tip is, one sample.
+        """
+        here = Points(np.repeat(stand.points, 2, axis=0), np.repeat(stand.turn, 2, axis=0))
+        contact = StockContact(self.tool, profile(self.tool), self._head)
+        met = contact.measure(self.map, here, np.ones(1, np.bool_))
+        return max((float(overlap.depth[0]) for overlap in met.values()), default=0.0)
 
     def _cut(self, way: "_Way", *, edge: bool) -> FloatArray:
         """Cut with one tool from the last point of the run before through all of this one's.
@@ -395,6 +413,7 @@ class Cutter:
         """
         path = stretches.path
         air = stretches.removed < AIR_MM * self.map.cell**2
+        self.watch.add(stretches, self.tool)
         self._feed_path += float(path[~stretches.rapid].sum())
         self._air_path += float(path[~stretches.rapid & air].sum())
         force, pushed = None, np.zeros((len(path), 3))

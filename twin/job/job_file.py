@@ -1,6 +1,7 @@
 """The job file: which program, on which machine, with which stock, tools and tolerances."""
 
-from collections.abc import Sequence
+import os
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Annotated, Literal
@@ -45,6 +46,10 @@ class StockTable(Table):
     stock's shorter side where that is less, 0.1 at the finest."""
     material: str | None = None
     """What it is made of, for the cutting force and its weight; none: no force is reckoned."""
+    specific_force: Positive | None = None
+    """Its own kc1.1: force on a chip 1 mm wide and 1 mm thick [N/mm²]; with ``exponent``."""
+    exponent: Annotated[float, Field(ge=0, lt=1)] | None = None
+    """Its own mc: how the specific force falls with the chip's thickness."""
     density: Positive | None = None
     """For its weight, which the axes below it move [g/cm³]; none: its material's, and without one it
     weighs nothing."""
@@ -55,6 +60,8 @@ class StockTable(Table):
         needed = _SHAPES[self.shape]
         if given != set(needed):
             raise ValueError(f"shape '{self.shape}' needs {' and '.join(needed)} and nothing else")
+        if (self.specific_force is None) != (self.exponent is None):
+            raise ValueError("specific_force and exponent are given together")
         if self.bore is not None and self.diameter is not None and self.bore >= self.diameter:
             raise ValueError("the bore of a tube must be smaller than its diameter")
         return self
@@ -86,6 +93,9 @@ _SHAPES = {
 
 _POINT_ANGLES = {"drill": 118.0, "chamfer": 90.0}
 """Included angles of points where the job names none [deg]; a drill's after DIN 1412, form A."""
+
+_TEETH_OVER_CENTRE = 3
+"""End mills with so many teeth at most are slot drills, which have an edge over the centre (DIN 327)."""
 
 _USUAL_HELIX = 30.0
 """Helix angle of end mills where the job names none [deg]: DIN 1836, type N."""
@@ -122,10 +132,19 @@ class ToolTable(Table):
     """Helix angle of the edges, for the cutting force [deg]; none: 30, of drills and chamfer cutters 0."""
     speed: Positive | None = None
     """Spindle speed for the cutting force [1/min]; none: no force is reckoned."""
+    hand: Literal["right", "left"] = "right"
+    """Which way it cuts, seen from the spindle: ``right`` clockwise (M3)."""
+    center_cutting: bool | None = None
+    """Whether an end mill cuts over its centre, so that it may plunge; none: with two or three teeth it
+    does, as slot drills after DIN 327 do, with more nobody knows."""
     made_of: Literal["carbide", "hss"] = "carbide"
     """Cemented carbide or high-speed steel: how far it bends, and where it breaks."""
     force_limit: Positive | None = None
     """Level force that breaks it [N]; none: from its diameter, lengths and what it is made of."""
+    torque_limit: Positive | None = None
+    """Torque that twists it off [N m]; none: from its diameter and what it is made of."""
+    thrust_limit: Positive | None = None
+    """Force along its axis under which it breaks [N]; none: at which it buckles."""
     chip_limit: Positive | None = None
     """Chip that breaks an edge [mm]; none: a twentieth of the diameter."""
     speed_limit: Positive | None = None
@@ -156,6 +175,13 @@ class ToolTable(Table):
         if self.helix is not None:
             return self.helix
         return 0.0 if self.kind in _POINT_ANGLES else _USUAL_HELIX
+
+    @property
+    def plunges(self) -> bool:
+        """Whether it is known to cut where it is driven straight down."""
+        if self.kind in ("drill", "ball") or self.center_cutting is not None:
+            return self.center_cutting is not False
+        return self.kind != "chamfer" and self.teeth <= _TEETH_OVER_CENTRE
 
     @property
     def below_holder(self) -> float:
@@ -279,6 +305,9 @@ class JobFile(Table):
     """One of ``twin dialects``; none: told apart by the program's own words."""
     machine: str = DEFAULT_MACHINE
     """A shipped machine's name, or a path relative to the job file."""
+    axes: dict[Annotated[str, Field(pattern="^[A-Z]$")], str] = Field(default_factory=dict)
+    """Words of axes that the machine lacks: ``A = "C"``, the axis of the machine that A stands for, or
+    ``A = "ignored at 0"``, allowed while it stays 0."""
     default_feed: Positive | None = None
     """Feed where the program sets none [mm/min]; none: the machine's."""
     default_rotary_feed: Positive | None = None
@@ -354,9 +383,16 @@ class Job:
             paths.
         program: The NC program.
         path: The job file; None where a program has none.
+        tolerances_from: Which file sets each tolerance, ``default`` where none does, by its key.
     """
 
-    def __init__(self, folder: Path, file: JobFile, path: Path | None = None) -> None:
+    def __init__(
+        self,
+        folder: Path,
+        file: JobFile,
+        path: Path | None = None,
+        tolerances_from: Mapping[str, str] | None = None,
+    ) -> None:
         if file.stock is not None and file.stock.file is not None:
             whole = str((folder / file.stock.file).absolute())
             stock = file.stock.model_copy(update={"file": whole})
@@ -369,6 +405,16 @@ class Job:
         self.file = file
         self.program = folder / file.program
         self.path = path
+        self.tolerances_from = tolerances_from or _set_by(file, lambda _: "job")
+
+
+def _set_by(file: JobFile, place: Callable[[str], str]) -> dict[str, str]:
+    """Who sets each tolerance that holds, by its key."""
+    said = file.tolerance.model_dump(exclude_unset=True, exclude_none=True)
+    return {
+        key: place(f"tolerance.{key}") if key in said else "default"
+        for key in {**said, "contour_um": 0}
+    }
 
 
 def read_job(path: Path, changes: Sequence[Change] = ()) -> Job:
@@ -404,4 +450,11 @@ def _names(job: Path, program: Path) -> bool:
 
 def _layered(path: Path, data: Data, changes: Sequence[Change], job: Path | None) -> Job:
     layers = layers_of(path, changed(data, "job", changes))
-    return Job(path.parent, checked(laid_over(layers), JobFile, partial(layer_of, layers)), job)
+    file = checked(laid_over(layers), JobFile, partial(layer_of, layers))
+    told = _set_by(file, lambda key: _shown_from(layer_of(layers, key), path.parent))
+    return Job(path.parent, file, job, told)
+
+
+def _shown_from(file: Path, folder: Path) -> str:
+    """A file's path as seen from a job's folder."""
+    return os.path.relpath(file.resolve(), folder.resolve())

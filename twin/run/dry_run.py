@@ -10,7 +10,10 @@ from twin.machine.watching.travel import soft_limit_alarm
 from twin.nc.canonical import Chunk, FloatArray, Function
 from twin.nc.text.diagnostics import Diagnostic
 from twin.run.messages import speed_notice
+from twin.run.notices import shown
 from twin.run.preparation import Preparation
+from twin.run.program_text import ProgramText
+from twin.run.program_watch import ProgramWatch
 from twin.run.stages import StageClock
 
 NOTICES_KEPT = 100
@@ -26,12 +29,14 @@ class DryRun:
         warnings: What the interpreter and the spindle had to say.
         alarm: The soft-limit alarm of the first move that leaves the travel, if any.
         summary: What the program says beside its moves.
+        watch: What it tells that no axis feels.
     """
 
     moves: int
     warnings: tuple[Diagnostic, ...]
     alarm: Alarm | None
     summary: ProgramSummary
+    watch: ProgramWatch
 
 
 def interpret_all(preparation: Preparation, part_zero: FloatArray, clock: StageClock) -> DryRun:
@@ -49,11 +54,14 @@ def interpret_all(preparation: Preparation, part_zero: FloatArray, clock: StageC
     interpretation = preparation.interpretation()
     moves, alarm = 0, None
     builder = SummaryBuilder(preparation.job.file, preparation.spindle)
+    text = ProgramText(preparation.source.lines, preparation.dialect.name)
+    watch = ProgramWatch(preparation.job.file, preparation.spindle, text)
     limited: dict[int, str] = {}
     chunks: Iterable[Chunk] = clock.watch("interpret", interpretation.chunks())
     for chunk in chunks:
         moves += len(chunk.moves)
         builder.add(chunk)
+        watch.add(chunk)
         for event in chunk.events:
             if isinstance(event, Function) and (said := preparation.spindle.limited_by(event)):
                 limited.setdefault(event.line, said)
@@ -67,7 +75,9 @@ def interpret_all(preparation: Preparation, part_zero: FloatArray, clock: StageC
                 speed_notice(line, message, preparation.source)
                 for line, message in islice(limited.items(), NOTICES_KEPT)
             ),
+            *shown(watch.notices(), preparation.source, strict=preparation.settings.strict),
         ),
         alarm=alarm,
         summary=builder.summary(),
+        watch=watch,
     )

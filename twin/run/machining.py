@@ -1,5 +1,6 @@
 """What the tool does to the stock along a run, and the alarms of what must not meet it."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +19,7 @@ from twin.machine.model.head_shape import head_shape
 from twin.machine.watching.alarms import Alarm
 from twin.nc.canonical import FloatArray
 from twin.recording.form import Samples
+from twin.run.program_watch import Stop
 from twin.toolpath.part_frame import PartFrame
 
 
@@ -26,6 +28,8 @@ class Machining:
 
     Attributes:
         loads: The greatest of what the tools felt.
+        stopped: The stops at which the tool was in the cut, in order.
+        ended_in_cut: Whether the program ended with the tool in the cut.
     """
 
     def __init__(
@@ -35,6 +39,7 @@ class Machining:
         summary: ProgramSummary,
         part_frame: PartFrame,
         part_zero: FloatArray,
+        stops: Sequence[Stop] = (),
     ) -> None:
         """Lay the blank on the table.
 
@@ -44,7 +49,11 @@ class Machining:
             summary: What is in the spindle when, and which moves are rapids.
             part_frame: How the part turns under the tool.
             part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
+            stops: Where the program stops spindle or tool, in order.
         """
+        self.stopped: list[Stop] = []
+        self.ended_in_cut = False
+        self._stops = list(stops)
         self._summary = summary
         self.loads = LoadLog()
         self._zero = part_zero[:3] - np.array([*part_frame.center, 0.0])
@@ -83,6 +92,7 @@ class Machining:
         move = samples.setpoint.move
         rapid = self._summary.is_rapid(move)
         cutter.add(samples, rapid, standing(self._summary, samples.setpoint))
+        self._look_at_stops(samples)
         found = None if self._nominal is None else self._nominal.look(samples)
         if found is not None and self._gouge_stops:
             gouge, sample = found
@@ -93,9 +103,30 @@ class Machining:
         end = int(np.searchsorted(samples.setpoint.time, alarm.time_s, side="right"))
         return samples[:end], alarm
 
+    def _look_at_stops(self, samples: Samples) -> None:
+        """See whether the tool is in the cut where the program stops it, within a chunk."""
+        setpoint = samples.setpoint
+        place = setpoint.move + np.clip(setpoint.fraction, 0.0, 1.0)
+        while self._stops and len(place) and self._stops[0].place <= place[-1]:
+            stop = self._stops.pop(0)
+            row = max(int(np.searchsorted(place, stop.place)), 1) - 1
+            self._note_stop(stop, float(setpoint.time[row]))
+
+    def _note_stop(self, stop: Stop, time: float) -> None:
+        if self._cutter is not None and self._cutter.watch.engaged(time):
+            self.stopped.append(stop)
+
+    @property
+    def cutter(self) -> Cutter | None:
+        """What cuts the stock; None without one."""
+        return self._cutter
+
     def end_program(self) -> Alarm | None:
         """The alarm of a tool that comes behind the last move and stands in the part then."""
         if self._cutter is not None:
+            for stop in self._stops:
+                self._note_stop(stop, np.inf)
+            self.ended_in_cut = not self.stopped[-1:] and self._cutter.watch.engaged(np.inf)
             self._cutter.end_program()
         return self._alarm()
 

@@ -29,7 +29,7 @@ def alarm_diagnostic(alarm: Alarm, source: Source) -> Diagnostic:
         axis_word = rf"{re.escape(alarm.axis)}\s*=?\s*[-+]?[\d.#$]\S*"
         marked.insert(0, re.compile(axis_word, re.IGNORECASE))
     message = f"{alarm.message} (alarm after {alarm.time_s:.3f} s)"
-    return _at_line(source, alarm.line, alarm.code, message, *marked)
+    return at_line(source, alarm.line, alarm.code, message, *marked)
 
 
 def near_miss_diagnostic(near_miss: NearMiss, source: Source) -> Diagnostic:
@@ -46,7 +46,7 @@ def near_miss_diagnostic(near_miss: NearMiss, source: Source) -> Diagnostic:
     if near_miss.clearance_mm <= TOUCH:
         room = f"touches the {two}: there is no room between them"
     message = f"the {one} {room} (after {near_miss.time_s:.3f} s)"
-    return _at_line(source, near_miss.line, "near-miss", message, _WHOLE_LINE, severity="warning")
+    return at_line(source, near_miss.line, "near-miss", message, _WHOLE_LINE, severity="warning")
 
 
 def speed_notice(line: int, message: str, source: Source) -> Diagnostic:
@@ -57,7 +57,7 @@ def speed_notice(line: int, message: str, source: Source) -> Diagnostic:
         message: What happened.
         source: The program that runs.
     """
-    return _at_line(
+    return at_line(
         source, line, SPINDLE_LIMITED, message, _SPEED_WORD, _FIRST_WORD, severity="warning"
     )
 
@@ -73,10 +73,10 @@ def reason_text(reason: Reason, source: Source) -> str:
         return f"{source.name}: error {reason.what}: {reason.message}"
     when = f" ({reason.time_s:.3f} s)" if reason.time_s else ""
     message = reason.message + when
-    return str(_at_line(source, reason.line, reason.what, message, _WITHOUT_INDENT))
+    return str(at_line(source, reason.line, reason.what, message, _WITHOUT_INDENT))
 
 
-def _at_line(
+def at_line(
     source: Source,
     line: int,
     code: str,
@@ -91,11 +91,12 @@ def _at_line(
         line: Its line; without one, an empty line 1 is shown.
         code: Of the diagnostic.
         message: What happened.
-        marked: What the caret stands under: the first of these that the line holds.
+        marked: What the caret stands under: the first of these that the line holds; none: the line.
         severity: Of the diagnostic.
     """
     text = source.lines[line - 1] if 0 < line <= len(source.lines) else ""
-    found = next((match for pattern in marked if (match := pattern.search(text))), None)
+    patterns = marked or (_WITHOUT_INDENT,)
+    found = next((match for pattern in patterns if (match := pattern.search(text))), None)
     return Diagnostic(
         severity=severity,
         code=code,

@@ -11,6 +11,7 @@ from twin.cutting.nominal import NominalGouge
 from twin.machine.watching.alarms import Alarm, NearMiss
 from twin.nc.canonical import FloatArray
 from twin.nc.text.diagnostics import Diagnostic
+from twin.run.scope import Scope
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -26,7 +27,8 @@ class Outcome:
         loads: The greatest of what the tools felt.
         alarms: Alarms of the machine, in order.
         near_miss: The closest that the tool's side and the part's came, below the machine's limit.
-        warnings: The interpreter's.
+        warnings: Those of the interpreter, of the program and of the cut.
+        scope: What the verdict looked at.
         samples: How many samples were recorded, settling included.
         duration_s: Machine time of the program, settling not counted [s].
         final_commanded: Program coordinates at the end, shape (k,) [mm or deg].
@@ -43,6 +45,7 @@ class Outcome:
     alarms: tuple[Alarm, ...]
     near_miss: NearMiss | None
     warnings: tuple[Diagnostic, ...]
+    scope: Scope
     samples: int
     duration_s: float
     final_commanded: FloatArray

@@ -7,18 +7,19 @@ from pathlib import Path
 
 import pydantic
 
-from twin.errors import RecordingError, UsageError
+from twin.errors import ConfigError, RecordingError, UsageError
 from twin.files.overrides import Change
 from twin.files.shipped import machine_file, shipped_program
 from twin.job.job_file import Job, JobFile, read_job
 from twin.machine.description.config import Machine, read_machine
 from twin.nc.canonical import Chunk, FloatArray
 from twin.nc.control.settings import ControlSettings, MachineFunction, ToolData
-from twin.nc.dialects import Dialect, dialect_named, recognise
+from twin.nc.dialects import Dialect, dialect_named
 from twin.nc.functions import SpindleState
 from twin.nc.interpreter import Interpretation
 from twin.nc.text.source import Source, read_source, source_from_text
 from twin.recording.reader import RecordingHeader
+from twin.run.dialect_choice import chosen_dialect
 from twin.run.placement import start_position
 from twin.run.waits import with_waits
 
@@ -33,6 +34,7 @@ class Preparation:
         source: The NC program.
         dialect: The language that the program is written in.
         settings: What the interpreter is told about machine and job.
+        dialect_reason: What told the dialect of a program whose job names none; empty: the job does.
     """
 
     job: Job
@@ -40,6 +42,7 @@ class Preparation:
     source: Source
     dialect: Dialect
     settings: ControlSettings
+    dialect_reason: str = ""
 
     def interpretation(self) -> Interpretation:
         """A fresh pass over the program."""
@@ -118,8 +121,12 @@ def prepare_job(
     twin_machine = read_machine(found, changes).with_fixtures(job.file.fixtures)
     name = dialect or job.file.dialect
     named = None if name is None else dialect_named(name)
-    source = read_source(job.program, named)
-    language = named or recognise(source)
+    settings = _control_settings(job, twin_machine, strict=strict)
+    source, reason = read_source(job.program, named), ""
+    if named is None:
+        choice = chosen_dialect(job.program, settings, source)
+        named, reason = choice.dialect, choice.reason
+    language = named
     if language.library is not None:
         source = language.library(source, job.program.parent, language)
     return Preparation(
@@ -127,8 +134,18 @@ def prepare_job(
         machine=twin_machine,
         source=source,
         dialect=language,
-        settings=_control_settings(job, twin_machine, strict=strict),
+        settings=settings,
+        dialect_reason=reason,
     )
+
+
+def anywhere(preparation: Preparation) -> Preparation:
+    """The same program with some machine zero: what is cut does not depend on where that lies."""
+    settings = preparation.settings
+    if settings.machine_zero is None:
+        zero = dict.fromkeys(preparation.machine.axes.names, 0.0)
+        settings = dataclasses.replace(settings, machine_zero=zero)
+    return dataclasses.replace(preparation, settings=settings)
 
 
 def prepare_recorded(header: RecordingHeader, *, machine: str | None = None) -> Preparation:
@@ -171,6 +188,7 @@ def _control_settings(job: Job, machine: Machine, *, strict: bool) -> ControlSet
     return ControlSettings(
         axes=machine.axes,
         periodic=frozenset(name for name in machine.axes.names if machine.axis(name).periodic),
+        axis_words=_axis_words(job, machine),
         default_feed=job.file.default_feed or control.default_feed,
         default_rotary_feed=job.file.default_rotary_feed or control.default_rotary_feed,
         start=machine.axes.named(start),
@@ -203,6 +221,31 @@ def _control_settings(job: Job, machine: Machine, *, strict: bool) -> ControlSet
 def _block_skip_levels(file: JobFile) -> frozenset[int]:
     """Numbers behind the slash of blocks that are left out."""
     return frozenset() if isinstance(file.block_skip, bool) else frozenset(file.block_skip)
+
+
+IGNORED_AT_ZERO = "ignored at 0"
+"""What ``[axes]`` of a job says of an axis whose words are passed over while they stay 0."""
+_ROTARY_WORDS = "ABC"
+
+
+def _axis_words(job: Job, machine: Machine) -> dict[str, str | None]:
+    """Words of axes that the machine lacks; those of a raw program's rotary axes are passed over at 0.
+
+    Raises:
+        ConfigError: One stands for an axis that the machine lacks, or it has that axis itself.
+    """
+    names = machine.axes.names
+    if job.path is None and not job.file.axes:
+        return dict.fromkeys(set(_ROTARY_WORDS) - set(names))
+    for word, axis in job.file.axes.items():
+        if word in names:
+            raise ConfigError(f"job key 'axes.{word}': {machine.file.name} has an axis {word}")
+        if axis != IGNORED_AT_ZERO and axis not in names:
+            raise ConfigError(
+                f"job key 'axes.{word}': '{axis}' is no axis of {machine.file.name} ({', '.join(names)}), "
+                f'nor "{IGNORED_AT_ZERO}"'
+            )
+    return {w: None if axis == IGNORED_AT_ZERO else axis for w, axis in job.file.axes.items()}
 
 
 def _machine_zero(job: Job, machine: Machine) -> dict[str, float] | None:

@@ -84,6 +84,8 @@ def report_of(
         tolerance=run.preparation.job.file.tolerance,
         trace=run.trace,
         result=content,
+        scope=tuple(outcome.scope.lines()),
+        warnings=tuple((found.line, found.code, found.message) for found in outcome.warnings),
         stills=stills,
     )
 
@@ -99,6 +101,7 @@ def _summary(run: Run, outcome: Outcome) -> RunSummary:
         wall_s=run.clock.wall_s,
         stages={f"{name}_s": seconds for name, seconds in run.clock.seconds.items()},
         near_miss=None if outcome.near_miss is None else dataclasses.asdict(outcome.near_miss),
+        scope=outcome.scope.as_json(),
         cut=_cut(outcome, preparation.job.file.stock),
         commanded=named(outcome.final_commanded),
         simulated=named(outcome.final_simulated),
@@ -121,7 +124,10 @@ def _cut(outcome: Outcome, stock: StockTable | None) -> dict[str, Any] | None:
         cut["nominal"] = outcome.inspection.as_json()
     material = None if stock is None or outcome.cut.force_n is None else kienzle(stock)
     if stock is not None and material is not None:
-        cut["material"] = {"name": stock.material, **dataclasses.asdict(material)}
+        cut["material"] = {
+            "name": stock.material or "own constants",
+            **dataclasses.asdict(material),
+        }
     greatest = {name: each.value for name, each in outcome.loads.greatest.items()}
     if greatest:
         cut |= greatest | {"force_simulated": True, "loads": outcome.loads.as_json()}

@@ -1,5 +1,6 @@
 """The order of the rooms: text, moves, setpoints, samples, cut, figures, in chunks."""
 
+import dataclasses
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
@@ -9,11 +10,13 @@ import mujoco
 import numpy as np
 
 from twin.compare.comparison import Comparison
+from twin.compare.figures import Figures
 from twin.compare.trace import Trace
-from twin.compare.verdict import Check, judge
+from twin.compare.verdict import Check, Reason, Verdict, judge
 from twin.coupling.cutting_process import CuttingProcess
 from twin.coupling.operations import ProgramOperation, program_process, speeds_are_known
 from twin.cutting.axis_load import AxisLoad
+from twin.cutting.cut import CutResult
 from twin.cutting.forces.load_log import LoadLog
 from twin.cutting.inspection import Inspection
 from twin.cutting.nominal import NominalGouge
@@ -31,12 +34,20 @@ from twin.motion.setpoints.settle import settle
 from twin.nc.canonical import Chunk, FloatArray
 from twin.nc.text.source import Source
 from twin.recording.reader import LONGEST_TEXT, RecordingHeader, RecordingWriter, Samples, record
+from twin.run.cut_notices import (
+    cut_notices,
+    tolerance_notices,
+    tooth_feed_notices,
+    unjudged_limit_notices,
+)
 from twin.run.dry_run import DryRun, interpret_all
 from twin.run.machining import Machining
+from twin.run.notices import Notice, shown
 from twin.run.outcome import Outcome
 from twin.run.placement import part_zero, with_blank
 from twin.run.preparation import Preparation
 from twin.run.progress import Progress
+from twin.run.scope import nothing_judged, scope_of
 from twin.run.stages import StageClock
 from twin.toolpath.part_frame import PartFrame
 from twin.units import UM_PER_MM
@@ -122,7 +133,7 @@ class Run:
         comparison, machining = self._comparison(), self._machining(dry_run)
         self._process = None
         reached = _Reached(self.part_zero, self.preparation.start)
-        alarm, near_miss = dry_run.alarm, None
+        alarm, near_miss = dry_run.alarm or self._overspeed(dry_run), None
         if alarm is None:
             with self._recording(out) as writer:
                 if motion is None:
@@ -157,34 +168,92 @@ class Run:
         with self.clock.stage("cut"):
             cut = machining.finish(out) if len(reached) else None
             inspection = machining.inspect() if len(reached) else None
-        figures = comparison.result()
         alarms = (*self._breaks(reached.time_s), *(() if alarm is None else (alarm,)))
-        duration_s = min(self._planned_s or reached.last_motion_s, reached.time_s)
-        tolerance = self.preparation.job.file.tolerance
+        outcome = self._outcome(dry_run, machining, reached, cut, inspection, alarms, comparison)
+        return dataclasses.replace(outcome, near_miss=near_miss)
+
+    def _outcome(
+        self,
+        dry_run: DryRun,
+        machining: Machining,
+        reached: "_Reached",
+        cut: CutResult | None,
+        inspection: Inspection | None,
+        alarms: tuple[Alarm, ...],
+        comparison: Comparison,
+    ) -> Outcome:
+        """Judge what was run, and say what was looked at."""
+        figures = comparison.result()
+        job, duration_s = (
+            self.preparation.job,
+            min(self._planned_s or reached.last_motion_s, reached.time_s),
+        )
+        more = [
+            *self._nominal_checks(machining.gouge, inspection),
+            *_load_checks(job.file.tolerance, machining.loads),
+        ]
+        judged = judge(figures, job.file.tolerance, alarms, cycle_time_s=duration_s, more=more)
+        blind = () if alarms else tuple(self._unjudged(judged, dry_run, figures))
+        notices = [] if alarms else list(self._notices(dry_run, machining, cut))
+        strict = self.preparation.settings.strict
+        failing = [Reason(each.code, each.message, each.line, 0.0) for each in notices] * strict
+        scope = scope_of(
+            job,
+            dry_run.watch,
+            judged.checks,
+            cut,
+            forces=self._process is not None,
+            unjudged=blind,
+            alarms=alarms,
+        )
+        source = self.preparation.source
         return Outcome(
-            verdict=judge(
-                figures,
-                tolerance,
-                alarms,
-                cycle_time_s=duration_s,
-                more=[
-                    *self._nominal_checks(machining.gouge, inspection),
-                    *_load_checks(tolerance, machining.loads),
-                ],
-            ),
+            verdict=judged.with_more([*failing, *blind]),
             figures=figures,
             cut=cut,
             gouge=machining.gouge,
             inspection=inspection,
             loads=machining.loads,
             alarms=alarms,
-            near_miss=near_miss,
-            warnings=dry_run.warnings,
+            near_miss=None,
+            warnings=(*dry_run.warnings, *shown(notices, source, strict=False)),
+            scope=scope,
             samples=len(reached),
             duration_s=duration_s,
             final_commanded=reached.commanded,
             final_simulated=reached.simulated,
         )
+
+    def _unjudged(self, judged: Verdict, dry_run: DryRun, figures: Figures) -> Iterator[Reason]:
+        """What was asked for and judged nothing."""
+        job = self.preparation.job
+        if not dry_run.moves:
+            yield Reason("nothing-moves", "the program makes no move", 0, 0.0)
+        else:
+            yield from nothing_judged(
+                job.file.tolerance, judged.checks, job.tolerances_from, figures
+            )
+
+    def _notices(
+        self, dry_run: DryRun, machining: Machining, cut: CutResult | None
+    ) -> Iterator[Notice]:
+        """What there is to tell of a run that came to its end."""
+        job, watch = self.preparation.job.file, dry_run.watch
+        if cut is not None:
+            yield from cut_notices(job, watch, machining, cut)
+        elif watch.spindle_line and watch.first_feed:
+            message = "the spindle turns, and the job has no [stock]: nothing that is cut is judged"
+            yield Notice("no-stock", watch.spindle_line, message)
+        yield from tolerance_notices(job.tolerance, len(self.preparation.source.lines))
+        if self._process is None:
+            yield from tooth_feed_notices(watch, cut)
+            yield from unjudged_limit_notices(job, watch)
+
+    def _overspeed(self, dry_run: DryRun) -> Alarm | None:
+        """A tool that is turned faster than it bears, where no force is simulated that would show it."""
+        job = self.preparation.job.file
+        simulated = job.stock is not None and job.stock.material is not None
+        return None if simulated and job.cutting_force == "teeth" else dry_run.watch.overspeed
 
     def _breaks(self, until_s: float) -> tuple[Alarm, ...]:
         """Tools that broke, which stops no machine, up to a time [s]."""
@@ -262,6 +331,7 @@ class Run:
             dry_run.summary,
             self.part_frame,
             self.part_zero,
+            dry_run.watch.stops,
         )
 
     def _recording(self, out: Path | None) -> AbstractContextManager[RecordingWriter | None]:

@@ -3,11 +3,53 @@
 import contextlib
 import fcntl
 import os
+import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from twin.errors import UsageError
 from twin.files.atomic import LEFTOVERS
+
+VERDICT_FILES = ("result.json", "report.html", "part.stl")
+"""What tells of a run that came to its end."""
+_PROGRAM = re.compile(r"^\s*program\s*=\s*[\"'](?P<name>[^\"']+)", re.MULTILINE)
+
+
+def program_stem(path: Path) -> str:
+    """The name of the folder that a run of a program or job file gets, be the file right or wrong."""
+    if path.suffix == ".toml" and path.is_file():
+        named = _PROGRAM.search(path.read_text(encoding="utf-8", errors="replace"))
+        if named is not None:
+            return Path(named["name"]).stem
+    return path.stem
+
+
+@contextlib.contextmanager
+def without_verdict(folder: Path) -> Iterator[None]:
+    """Leave no verdict of an earlier run where this one fails before it has its own.
+
+    A folder that another run holds is left as it is, and so it is where the user interrupts.
+
+    Args:
+        folder: Of the results; it need not exist.
+    """
+    try:
+        yield
+    except Exception:
+        with contextlib.suppress(OSError, UsageError):
+            if folder.is_dir():
+                _remove_verdict(folder)
+        raise
+
+
+def _remove_verdict(folder: Path) -> None:
+    handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        for name in VERDICT_FILES:
+            (folder / name).unlink(missing_ok=True)
+    finally:
+        os.close(handle)
 
 
 @contextlib.contextmanager

@@ -30,6 +30,7 @@ class CornerCollector:
         self._before: FloatArray | None = None
         self._roundings = Distribution()
         self._worst = (0, 0.0)
+        self._begun = 0
 
     def expect(self, path: PathColumns) -> None:
         """Announce the next moves of the program, in the part's frame."""
@@ -62,6 +63,7 @@ class CornerCollector:
             self._point, self._sharp, before, point, place, time, self._nearest, self._when
         )
         self._before = point[-1].copy()
+        self._begun = max(self._begun, int(place.max()))
 
     def at_corner(self, place: IntArray, fraction: FloatArray) -> np.ndarray:
         """Which places on the path are within ``CORNER_REACH_MM`` of a corner, shape (n,)."""
@@ -78,11 +80,16 @@ class CornerCollector:
         self._sharp = self._sharp[count:].copy()
         self._begins_sharp = self._begins_sharp[count:].copy()
         self._nearest, self._when = self._nearest[count:].copy(), self._when[count:].copy()
+        self._begun -= count
 
     def figures(self, moves: Moves) -> CornerFigures:
-        """The corners so far, those of the moves at hand included."""
+        """The corners that the tool has passed, those of the moves at hand included.
+
+        The end of a move is passed once the tool is at the next: one that stopped on the way, as
+        at an alarm, says nothing about the corner ahead.
+        """
         roundings = self._roundings.copy()
-        line, time = self._evaluate(moves, len(self._nearest), roundings, self._worst)
+        line, time = self._evaluate(moves, self._begun, roundings, self._worst)
         return CornerFigures(
             count=roundings.count,
             rounding_um=roundings.greatest,

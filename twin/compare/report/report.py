@@ -76,6 +76,8 @@ class Report:
         trace: The run, thinned; empty for a run in which nothing moved.
         result: The content of ``result.json``.
         stills: Pictures of the run, PNG or JPEG, with a caption each.
+        scope: What the verdict looked at, one sentence each.
+        warnings: Line, code and message of each.
     """
 
     header: RecordingHeader
@@ -86,6 +88,8 @@ class Report:
     trace: Trace
     result: Mapping[str, Any]
     stills: Sequence[tuple[str, Path]] = ()
+    scope: Sequence[str] = ()
+    warnings: Sequence[tuple[int, str, str]] = ()
 
 
 def write_report(path: Path, report: Report) -> None:
@@ -114,6 +118,8 @@ def render_report(report: Report) -> str:
         header=report.header,
         figures=report.figures,
         verdict=report.verdict,
+        scope=report.scope,
+        warnings=report.warnings[:_TABLE_ROWS],
         result=report.result,
         outcome={"symbol": symbol, "heading": heading, "meaning": meaning},
         tolerance_um=report.tolerance.contour_um,

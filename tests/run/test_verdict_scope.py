@@ -1,0 +1,148 @@
+"""Attempts to get a green light that is a lie: each ends with an alarm, a failed check or a warning at its line."""
+
+from pathlib import Path
+from textwrap import dedent
+
+import pytest
+
+from twin.run.outcome import Outcome
+from twin.run.preparation import prepare
+from twin.run.progress import no_progress
+from twin.run.run import Run
+
+JOB = """
+program = "p.nc"
+dialect = "{dialect}"
+{top}
+[start]
+Z = {start}
+[stock]
+shape = "box"
+size = [40.0, 40.0, 10.0]
+cell = 0.5
+{stock}
+[[tools]]
+number = 1
+diameter = 8.0
+flute = 20.0
+{tool}
+[[tools]]
+number = 2
+diameter = 6.0
+kind = "drill"
+length = 62.0
+flute = 20.0
+{more}
+"""
+HEAD = "G90 G17 T1 M6\nG43 H1\nS3000 M3\n"
+CUT = "G0 X-30. Y0.\nG0 Z-2.\nG1 X30. F600.\nG0 Z20.\n"
+
+
+def run(
+    folder: Path, program: str, *, strict: bool = False, dialect: str = "fanuc", **parts: str
+) -> Outcome:
+    """Run a program on a small block."""
+    keys = {
+        "top": "",
+        "stock": "",
+        "tool": "",
+        "more": "",
+        "start": "20.0",
+        "dialect": dialect,
+    } | parts
+    (folder / "p.nc").write_text(dedent(program))
+    (folder / "p.toml").write_text(JOB.format(**keys))
+    chain = Run(prepare(folder / "p.toml", strict=strict))
+    return chain.execute(chain.dry_run(), None, no_progress)
+
+
+def codes(outcome: Outcome) -> dict[str, int]:
+    """Codes of warnings and reasons, with their lines."""
+    warned = {found.code: found.line for found in outcome.warnings}
+    return warned | {reason.what: reason.line for reason in outcome.verdict.reasons}
+
+
+def test_an_ordinary_cut_draws_nothing(tmp_path: Path) -> None:
+    outcome = run(tmp_path, HEAD + CUT + "M30\n")
+    assert not codes(outcome)
+    assert outcome.verdict.outcome == "pass"
+    assert outcome.scope.removed_mm3 == pytest.approx(8.0 * 40.0 * 2.0, rel=0.05)
+    assert outcome.scope.tools_unused == (2,)
+
+
+SLIPS: dict[str, tuple[str, dict[str, str], str, int]] = {
+    "cut in the air": (HEAD + "G1 Z5. F600.\nG1 X9.\nM30\n", {}, "nothing-cut", 4),
+    "spindle stopped in the slot": (
+        HEAD + "G0 X-30. Y0.\nG0 Z-2.\nG1 X0. F600.\nM5\nG0 Z20.\nM30\n", {}, "stops-in-cut", 7,
+    ),
+    "end in the slot": (
+        HEAD + "G0 X-30. Y0.\nG0 Z-2.\nG1 X0. F600.\nM30\n", {}, "ends-in-cut", 7,
+    ),
+    "drill milled with": (
+        HEAD + "T2 M6\nG43 H2\nS2000 M3\nG0 X0. Y0.\nG0 Z2.\nG1 Z-4. F100.\nG1 X9. F50.\nG0 Z20.\nM30\n", {},
+        "drill-sideways", 10,
+    ),
+    "four teeth straight down": (
+        HEAD + "G0 X0. Y0.\nG0 Z2.\nG1 Z-4. F100.\nG0 Z20.\nM30\n", {"tool": "teeth = 4"}, "blunt-plunge", 6,
+    ),
+    "backwards": (
+        HEAD.replace("M3", "M4") + CUT + "M30\n", {}, "counter-clockwise", 3,
+    ),
+    "spindle never started": (
+        "G90 G17 T2 M6\nG43 H2\nG0 X0. Y0.\nG0 Z2.\nG1 Z-4. F100.\nG0 Z20.\nM30\n", {},
+        "spindle-never-started", 1,
+    ),
+    "H of the drill": (
+        HEAD.replace("H1", "H2") + CUT + "M30\n", {}, "length-of-other-tool", 2,
+    ),
+    "no G43": (
+        HEAD.replace("G43 H1", "G40") + CUT + "M30\n", {}, "length-never-called", 1,
+    ),
+    "end above the contour": (
+        HEAD + CUT + "M30\nG0 Z-4.\nG1 X-30. F600.\nG0 Z20.\n", {}, "ends-before-motion", 8,
+    ),
+    "lines that are gone": (
+        HEAD + CUT + "M30\n",
+        {"more": "[[tolerance.blocks]]\nlines = [3, 900]\ncontour_um = 50.0"}, "tolerance-lines", 8,
+    ),
+    "lines without motion": (
+        HEAD + CUT + "M30\n",
+        {"more": "[[tolerance.blocks]]\nlines = [100, 900]\ncontour_um = 50.0"},
+        "blocks[0].contour_um", 0,
+    ),
+    "arcs asked for, none there": (
+        HEAD + CUT + "M30\n", {"more": "[tolerance]\ncircular_deviation_um = 5.0"},
+        "circular_deviation_um", 0,
+    ),
+    "corners asked for, none there": (
+        HEAD + "G1 Z-2. F600.\nM30\n", {"more": "[tolerance]\ncorner_um = 5.0"}, "corner_um", 0,
+    ),
+    "rapids asked for, none there": (
+        HEAD + "G1 Z-2. F600.\nG1 Z20.\nM30\n", {"more": "[tolerance]\nrapid_contour_um = 5.0"},
+        "rapid_contour_um", 0,
+    ),
+    "nothing moves": ("G90\nM30\n", {}, "nothing-moves", 0),
+    "100 mm a tooth": (
+        "G90 G17 T1 M6\nG43 H1\nS30 M3\n" + CUT.replace("F600.", "F6000.") + "M30\n", {},
+        "feed-per-tooth", 6,
+    ),
+    "too fast for the tool": (
+        HEAD + CUT + "M30\n", {"tool": "speed_limit = 2000.0"}, "tool-broken", 3,
+    ),
+    "too fast later": (
+        HEAD + CUT + "S9000\nM30\n", {"tool": "speed_limit = 4000.0"}, "tool-broken", 8,
+    ),
+    "force limit without a material": (
+        HEAD + CUT + "M30\n", {"tool": "force_limit = 5.0"}, "limit-not-judged", 6,
+    ),
+    "begin in the block": (
+        HEAD + "G1 X9. F600.\nG0 Z20.\nM30\n", {"start": "-4.0"}, "starts-in-stock", 4,
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", SLIPS)
+def test_slip_is_told_at_its_line(name: str, tmp_path: Path) -> None:
+    program, parts, code, line = SLIPS[name]
+    found = codes(run(tmp_path, program, **parts))
+    assert found.get(code) == line, found

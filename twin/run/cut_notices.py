@@ -1,0 +1,109 @@
+"""What there is to tell of a finished run beside its figures: cuts of air, slips in the material, unjudged limits."""
+
+from collections.abc import Iterator
+
+from twin.cutting.cut import CutResult
+from twin.cutting.cut_watch import CutSlip
+from twin.job.job_file import JobFile, ToleranceTable
+from twin.run.machining import Machining
+from twin.run.notices import Notice
+from twin.run.program_watch import ProgramWatch, ToothFeed
+
+LEAST_CUT_MM3 = 1e-3
+"""A line that takes less off than this does not cut [mm³]."""
+
+
+def cut_notices(
+    job: JobFile, watch: ProgramWatch, machining: Machining, cut: CutResult
+) -> Iterator[Notice]:
+    """What the cut of a whole program leaves to tell.
+
+    Args:
+        job: Its stock is there.
+        watch: What the program said.
+        machining: The cut.
+        cut: What it came to.
+    """
+    cutter = machining.cutter
+    assert cutter is not None
+    if not cut.removed_mm3 and watch.first_feed:
+        yield Notice(
+            "nothing-cut", watch.first_feed, "no move of the program takes anything off the stock"
+        )
+    if cutter.start_depth:
+        yield Notice(
+            "starts-in-stock",
+            watch.first_line,
+            f"the tool stands {cutter.start_depth:.2f} mm deep in the stock before it moves",
+        )
+    for stop in machining.stopped:
+        yield Notice("stops-in-cut", stop.line, f"{stop.what} while the tool is in the cut")
+    if machining.ended_in_cut:
+        yield Notice("ends-in-cut", watch.last_line, "the program ends with the tool in the cut")
+    for slip in cutter.watch.slips:
+        yield _slip_notice(slip)
+    if (
+        cut.removed_mm3
+        and watch.changed_at
+        and not watch.spindle_line
+        and job.tools[0].speed is None
+    ):
+        yield Notice(
+            "spindle-never-started",
+            watch.changed_at,
+            "the program changes tools, cuts, and never starts the spindle: it is taken to turn",
+        )
+
+
+def _slip_notice(slip: CutSlip) -> Notice:
+    if slip.what == "sideways":
+        message = f"drill {slip.tool} moves sideways in the material"
+        return Notice("drill-sideways", slip.line, message)
+    message = (
+        f"tool {slip.tool} plunges, and is not known to cut over its centre: ramp in, or say "
+        "center_cutting = true in its [[tools]] table"
+    )
+    return Notice("blunt-plunge", slip.line, message)
+
+
+def tooth_feed_notices(watch: ProgramWatch, cut: CutResult | None) -> Iterator[Notice]:
+    """Feeds per tooth that no edge bears, where no force is simulated that would show it.
+
+    Args:
+        watch: What the program said.
+        cut: What was cut; None without a stock: then only what no tool at all could bear is told.
+    """
+    for line, feed in watch.tooth_feeds.items():
+        if cut is None:
+            if feed.value <= 0.5 * feed.tool.diameter:
+                continue
+        elif line not in cut.blocks or cut.blocks[line].removed_mm3 < LEAST_CUT_MM3:
+            continue
+        yield Notice("feed-per-tooth", line, _tooth_feed_text(feed))
+
+
+def _tooth_feed_text(feed: ToothFeed) -> str:
+    return f"{feed.value:.3g} mm per tooth: tool {feed.tool.number} bears a chip of {feed.bears:.3g} mm"
+
+
+def unjudged_limit_notices(job: JobFile, watch: ProgramWatch) -> Iterator[Notice]:
+    """Limits of tools that only a simulated force could judge, where none is simulated."""
+    for tool in job.tools:
+        if tool.force_limit is not None and tool.number in watch.tools_used:
+            yield Notice(
+                "limit-not-judged",
+                watch.first_feed,
+                f"force_limit of tool {tool.number} is not judged: no force is simulated; it needs a "
+                '[stock] with a material, a spindle speed, and cutting_force = "teeth"',
+            )
+
+
+def tolerance_notices(tolerance: ToleranceTable, lines: int) -> Iterator[Notice]:
+    """Ranges of lines that go on behind the program's last line, of which the program has so many."""
+    for number, part in enumerate(tolerance.blocks):
+        if part.lines[1] > lines:
+            message = (
+                f"tolerance.blocks[{number}] names lines {part.lines[0]} to {part.lines[1]}, and the "
+                f"program has {lines}"
+            )
+            yield Notice("tolerance-lines", lines, message)

@@ -1,0 +1,238 @@
+"""What the moves and functions of a program tell before anything moves: slips that no axis feels."""
+
+import dataclasses
+from collections.abc import Iterator
+
+import numpy as np
+
+from twin.cutting.forces.tool_strength import tool_strength
+from twin.job.job_file import JobFile, ToolTable
+from twin.machine.watching.alarms import Alarm
+from twin.nc.canonical import Chunk, FloatArray, Function, IntArray, Motion
+from twin.nc.functions import (
+    PROGRAM_ENDS,
+    SPINDLE_SPEED,
+    SPINDLE_STARTS,
+    SPINDLE_STOPS,
+    TOOL_CHANGE,
+    SpindleState,
+)
+from twin.run.notices import Notice
+from twin.run.program_text import ProgramText
+
+_NEAR_LINES = 8
+"""A block without a move belongs to the next move that stands so many lines behind the last, at most."""
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Stop:
+    """A place of the program at which the spindle stops, or its tool is changed.
+
+    Attributes:
+        place: Number of the next move, and how much of it lies behind.
+        line: Source line.
+        what: For a message.
+    """
+
+    place: float
+    line: int
+    what: str
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class ToothFeed:
+    """The greatest feed per tooth of a line.
+
+    Attributes:
+        value: Of it [mm].
+        tool: What was in the spindle.
+    """
+
+    value: float
+    tool: ToolTable
+
+    @property
+    def bears(self) -> float:
+        """The chip that an edge of the tool bears [mm]."""
+        return tool_strength(self.tool).chip
+
+
+class ProgramWatch:
+    """Reads a program along, chunk by chunk.
+
+    Attributes:
+        stops: Where spindle or tool are stopped in blocks of their own; a cycle knows what it does.
+        overspeed: The first time that the spindle turns a tool faster than it bears.
+        tools_used: Numbers of the tools that were in the spindle while something moved.
+        first_line: Line of the first move; 0: there is none.
+        first_feed: Line of the first move at feed; 0: there is none.
+        changed_at: Line of the first tool change; 0: there is none.
+        spindle_line: Line of the first function that starts the spindle; 0: there is none.
+        text: The program's lines, and which were run.
+    """
+
+    def __init__(self, job: JobFile, spindle: SpindleState, text: ProgramText) -> None:
+        """Begin with the job's first tool in a spindle of which nothing was said.
+
+        Args:
+            job: Its tools are those that the program may bring.
+            spindle: As the machine and the control have it.
+            text: The program's lines.
+        """
+        self.stops: list[Stop] = []
+        self.overspeed: Alarm | None = None
+        self.tools_used: set[int] = set()
+        self.first_line = 0
+        self.first_feed = 0
+        self.spindle_line = 0
+        self._tools = {tool.number: tool for tool in job.tools}
+        self._tool, self._selected = job.tools[0], job.tools[0].number
+        self._state = spindle
+        self._moves = 0
+        self._line = 0
+        self.changed_at = 0
+        self._end_line = 0
+        self._change_line = 0
+        self.text = text
+        self._started_at, self._started_in_cycle = 0, False
+        self._tapped: set[int] = set()
+        self._tooth_feeds: dict[int, ToothFeed] = {}
+        self._counter: dict[int, Notice] = {}
+        self._lengths: dict[int, Notice] = {}
+
+    def add(self, chunk: Chunk) -> None:
+        """Take note of moves and functions that follow the last ones."""
+        moves = chunk.moves
+        first = 0
+        for event in chunk.events:
+            if not isinstance(event, Function):
+                continue
+            self._span(chunk, first, event.before)
+            first = event.before
+            behind = int(moves.line[first]) if first < len(moves) else 0
+            self._hear(
+                event, self._moves + event.before, in_cycle=behind == event.line == self._line
+            )
+            self.text.visit(np.array([event.line]))
+        self._span(chunk, first, len(moves))
+        self._moves += len(moves)
+
+    def _span(self, chunk: Chunk, first: int, end: int) -> None:
+        """Look at moves between which nothing else happens."""
+        if end <= first:
+            return
+        moves = chunk.moves[first:end]
+        self.first_line = self.first_line or int(moves.line[0])
+        self.tools_used.add(self._tool.number)
+        self._hold_lengths(moves.line)
+        self.text.visit(moves.line)
+        self._line = int(moves.line[-1])
+        feeds = np.flatnonzero(moves.motion != Motion.RAPID)
+        if not len(feeds):
+            return
+        line = int(moves.line[feeds[0]])
+        self.first_feed = self.first_feed or line
+        turning = self._state.turning
+        if turning is not None and turning < 0.0 and self._tool.hand == "right":
+            self._note_sense(line)
+        if turning:
+            moving = feeds[np.any(moves.start[feeds, :3] != moves.end[feeds, :3], axis=1)]
+            per_tooth = moves.feed[moving] / (abs(turning) * self._tool.teeth)
+            self._note_tooth_feed(moves.line[moving], per_tooth)
+
+    def _note_sense(self, line: int) -> None:
+        start = self._started_at or line
+        if self._started_in_cycle:
+            return
+        message = (
+            f"M4 turns tool {self._tool.number}, which cuts clockwise, backwards: write M3, "
+            'or hand = "left" in its [[tools]] table'
+        )
+        self._counter.setdefault(start, Notice("counter-clockwise", start, message))
+
+    def _note_tooth_feed(self, line: IntArray, per_tooth: FloatArray) -> None:
+        bears = ToothFeed(0.0, self._tool).bears
+        for row in np.flatnonzero(per_tooth > bears).tolist():
+            known = self._tooth_feeds.get(int(line[row]))
+            if known is None or per_tooth[row] > known.value:
+                self._tooth_feeds[int(line[row])] = ToothFeed(float(per_tooth[row]), self._tool)
+
+    def _hold_lengths(self, lines: IntArray) -> None:
+        """Hold the numbers of length calls against the tool in the spindle."""
+        before = np.concatenate([[self._line], lines[:-1]])
+        for line, number in self.text.length_calls.items():
+            if number in (0, self._tool.number) or number not in self._tools:
+                continue
+            passed = (before < line) & (line < lines) & (lines - before <= _NEAR_LINES)
+            # A call that stands before the tool's change was of the tool before it.
+            passed &= (line >= self._change_line) | (lines < self._change_line)
+            met = (lines == line).any() or any(
+                not self.text.branches(int(before[row]), int(lines[row]))
+                for row in np.flatnonzero(passed)
+            )
+            if met:
+                message = (
+                    f"H{number} is the length of tool {number}, and tool {self._tool.number} is "
+                    "in the spindle"
+                )
+                self._lengths.setdefault(line, Notice("length-of-other-tool", line, message))
+
+    def _hear(self, event: Function, place: int, *, in_cycle: bool) -> None:
+        word, was = event.word, self._state.turns
+        if word[:1] == "T" and word[1:].isdigit():
+            self._selected = int(word[1:])
+        elif word == TOOL_CHANGE:
+            self.changed_at = self.changed_at or event.line
+            self._change_line = event.line
+            if self._selected != self._tool.number:
+                self.stops.append(Stop(float(place), event.line, "the tool is changed"))
+            self._tool = self._tools.get(self._selected, self._tool)
+            self._state = dataclasses.replace(self._state, tool_speed=self._tool.speed)
+        if word in PROGRAM_ENDS:
+            self._end_line = event.line
+            return
+        self._state = self._state.after(event)
+        if word in SPINDLE_STARTS:
+            self._started_at, self._started_in_cycle = event.line, in_cycle
+            if in_cycle:
+                self._tapped.add(event.line)
+            self.spindle_line = self.spindle_line or event.line
+        elif word in SPINDLE_STOPS and was and not in_cycle:
+            self.stops.append(Stop(place + event.at, event.line, "the spindle stops"))
+        if word in SPINDLE_STARTS or word in (SPINDLE_SPEED, TOOL_CHANGE):
+            self._watch_speed(event.line)
+
+    def _watch_speed(self, line: int) -> None:
+        limit, turning = self._tool.speed_limit, abs(self._state.turning or 0.0)
+        if limit is not None and turning > limit and self.overspeed is None:
+            message = (
+                f"tool {self._tool.number} broke: {turning:.0f} /min were more than the "
+                f"{limit:.0f} /min it bears"
+            )
+            self.overspeed = Alarm("tool-broken", line, 0.0, "", message)
+
+    @property
+    def tooth_feeds(self) -> dict[int, ToothFeed]:
+        """By line, where a feed per tooth is more than an edge bears; a tap's feed is its pitch."""
+        return {line: feed for line, feed in self._tooth_feeds.items() if line not in self._tapped}
+
+    @property
+    def last_line(self) -> int:
+        """Line at which the program ended, or of its last move."""
+        return self._end_line or self._line
+
+    def notices(self) -> Iterator[Notice]:
+        """What is to be told of the whole program, as soon as it has been read."""
+        yield from self._counter.values()
+        yield from self._lengths.values()
+        if self.text.knows_lengths and self.changed_at and not self.text.calls_lengths:
+            yield Notice(
+                "length-never-called",
+                self.changed_at,
+                "a tool comes into the spindle and G43 is never written: a control whose zero "
+                "was taken at the spindle nose would drive the tool into the part",
+            )
+        behind = self.text.motion_behind(self._end_line)
+        if behind:
+            message = f"the program ends here, and lines with motion follow (line {behind})"
+            yield Notice("ends-before-motion", self._end_line, message)

@@ -1,0 +1,188 @@
+"""What a verdict looked at: watched, not watched and why, and where its tolerances come from."""
+
+import dataclasses
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from twin.compare.figures import Figures
+from twin.compare.verdict import Check, Reason
+from twin.cutting.cut import CutResult
+from twin.job.job_file import Job, JobFile, ToleranceTable
+from twin.machine.watching.alarms import Alarm
+from twin.run.program_watch import ProgramWatch
+
+DRIVES = "travel, limit switches, following error and force of every axis"
+COLLISIONS = "tool, holder, spindle and head against fixtures and machine; the table's load against the machine"
+STOCK = "rapids, standing spindle, shank, holder and head in the stock"
+FORCES = "force, chip, deflection and breakage of tools, load of the spindle"
+WALLS = "cuts into the nominal part"
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Unwatched:
+    """Something that the verdict says nothing about.
+
+    Attributes:
+        what: It.
+        why: The reason, and what would have it watched.
+    """
+
+    what: str
+    why: str
+
+
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class Scope:
+    """What a verdict looked at.
+
+    Attributes:
+        watched: What was watched, and every figure that was held to a tolerance.
+        not_watched: What was not.
+        removed_mm3: Material taken off [mm³]; None without a stock.
+        air_share: Share of the feed path that met no material; None without a stock.
+        tools_unused: Numbers of tools that the job lists and no move used.
+        lines_never_run: How many lines with words of axes were never come to.
+        tolerances_from: Where each tolerance is set: a file, or ``default``.
+    """
+
+    watched: tuple[str, ...]
+    not_watched: tuple[Unwatched, ...]
+    removed_mm3: float | None
+    air_share: float | None
+    tools_unused: tuple[int, ...]
+    lines_never_run: int
+    tolerances_from: Mapping[str, str]
+
+    def as_json(self) -> dict[str, Any]:
+        """The object ``scope`` of ``result.json``."""
+        return dataclasses.asdict(self)
+
+    def lines(self) -> Iterator[str]:
+        """The scope for a person."""
+        yield f"watched: {'; '.join(self.watched)}"
+        for each in self.not_watched:
+            yield f"not watched: {each.what}: {each.why}"
+        if self.removed_mm3 is not None:
+            air = (
+                "" if self.air_share is None else f", {self.air_share:.1%} of the feed path in air"
+            )
+            yield f"cut: {self.removed_mm3:,.1f} mm³{air}"
+        if self.tools_unused:
+            yield f"tools never used: {', '.join(map(str, self.tools_unused))}"
+        if self.lines_never_run:
+            yield f"lines with motion never run: {self.lines_never_run}"
+        told = (f"{key} from {place}" for key, place in self.tolerances_from.items())
+        yield f"tolerances: {', '.join(told)}"
+
+
+def scope_of(
+    job: Job,
+    watch: ProgramWatch,
+    checks: Sequence[Check],
+    cut: CutResult | None,
+    *,
+    forces: bool,
+    unjudged: Sequence[Reason],
+    alarms: Sequence[Alarm],
+) -> Scope:
+    """Put the scope of a run together.
+
+    Args:
+        job: What was asked for.
+        watch: What the program said.
+        checks: What was held to tolerances.
+        cut: What was cut; None without a stock.
+        forces: Whether the force of the cut was simulated.
+        unjudged: What was asked for and judged nothing.
+        alarms: What stopped the machine.
+    """
+    file = job.file
+    watched = [DRIVES, COLLISIONS]
+    watched += [STOCK] if file.stock is not None else []
+    watched += [FORCES] if forces else []
+    watched += [WALLS] if file.nominal is not None else []
+    watched += sorted({check.what for check in checks})
+    blind = (
+        *_blind(file, forces=forces),
+        *(_silent_spindle(file, watch)),
+        *(Unwatched(reason.what, reason.message) for reason in unjudged),
+        *(
+            Unwatched(f"all behind line {each.line}", "the alarm ended the run")
+            for each in alarms[:1]
+        ),
+    )
+    unused = (tool.number for tool in file.tools if tool.number not in watch.tools_used)
+    listed = "tools" in file.model_fields_set
+    return Scope(
+        watched=tuple(watched),
+        not_watched=blind,
+        removed_mm3=None if cut is None else cut.removed_mm3,
+        air_share=None if cut is None else cut.air_share,
+        tools_unused=tuple(unused) if listed else (),
+        lines_never_run=len(watch.text.never_run()),
+        tolerances_from=job.tolerances_from,
+    )
+
+
+def _blind(job: JobFile, *, forces: bool) -> Iterator[Unwatched]:
+    if job.stock is None:
+        yield Unwatched("stock, forces and walls", "the job has no [stock]")
+        return
+    if not forces:
+        yield Unwatched(FORCES, _why_no_forces(job))
+    if job.nominal is None:
+        yield Unwatched(WALLS, "the job has no [nominal]")
+    elif job.nominal.standing_um is None:
+        yield Unwatched("material left on the nominal part", "the job has no nominal.standing_um")
+
+
+def _silent_spindle(job: JobFile, watch: ProgramWatch) -> Iterator[Unwatched]:
+    if job.stock is not None and not watch.spindle_line:
+        why = "the program never speaks of it, so that it is taken to turn"
+        yield Unwatched("a standing spindle", why)
+
+
+def _why_no_forces(job: JobFile) -> str:
+    assert job.stock is not None
+    if job.stock.material is None:
+        return "the stock has no material"
+    if job.cutting_force != "teeth":
+        return f'cutting_force is "{job.cutting_force}"'
+    return "neither program nor job says how fast the spindle turns"
+
+
+def nothing_judged(
+    tolerance: ToleranceTable, checks: Sequence[Check], asked: Mapping[str, str], figures: Figures
+) -> Iterator[Reason]:
+    """Tolerances that the job asks for and that no check was made of.
+
+    Args:
+        tolerance: What the job allows.
+        checks: What was held to it.
+        asked: Where each key is set; a default was not asked for.
+        figures: What was found.
+    """
+    judged = {check.what for check in checks}
+    for key, place in asked.items():
+        if key not in judged and key != "blocks" and place != DEFAULT:
+            yield Reason(key, f"{key} has judged nothing: {_WHY.get(key, _NO_FIGURE)}", 0, 0.0)
+    for number, part in enumerate(tolerance.blocks):
+        first, last = part.lines
+        key = f"blocks[{number}].contour_um"
+        if key not in judged and figures.samples:
+            message = f"{key} has judged nothing: no move stands in lines {first} to {last}"
+            yield Reason(key, message, 0, 0.0)
+
+
+DEFAULT = "default"
+_NO_FIGURE = "the run holds nothing that it could be held against"
+_WHY = {
+    "circular_deviation_um": "the program has no arc of 90 degrees or more with the table at rest",
+    "corner_um": "the program has no corner",
+    "rapid_contour_um": "the program has no rapid",
+    "contour_um": "nothing moves, or other tolerances hold for every line",
+    "force_n": "no tool cut",
+    "power_w": "no tool cut",
+    "deflection_um": "no tool cut",
+    "chip_mm": "no tool cut",
+}
