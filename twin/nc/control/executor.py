@@ -100,8 +100,8 @@ class Executor(Control):
         for each in assignments:
             span, target, index = (each.column, each.width), each.target, None
             try:
-                if each.index is not None:
-                    index = each.index.compute(self)
+                if each.number is not None:
+                    index = each.number.compute(self)
                 value = each.value.compute(self)
             except ExpressionError as error:
                 self.report.fail(error.code, str(error), *span, error.hint)

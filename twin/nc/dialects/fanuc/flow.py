@@ -154,8 +154,8 @@ def _assignment(control: Control, statement: Statement, at: int) -> Assignment:
 
 def _assign(control: Control, assignment: Assignment) -> None:
     target, index = assignment.target, None
-    if assignment.index is not None:
-        index = control.compute(assignment.index, assignment.column)
+    if assignment.number is not None:
+        index = control.compute(assignment.number, assignment.column)
     value = control.compute(assignment.value, assignment.column)
     write_variable(control, target.name, index, value, assignment)
 
