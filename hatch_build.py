@@ -7,6 +7,7 @@ compiled when they are first used. A folder's name there takes kernels that were
 before. An editable installation never has them.
 """
 
+import contextlib
 import os
 import platform
 import shutil
@@ -48,6 +49,7 @@ class KernelBuildHook(BuildHookInterface[Any]):
         if not kernels.is_absolute():
             self._folder = Path(tempfile.mkdtemp(prefix="mill-twin-kernels-"))
             kernels = self._folder / "kernels"
+            _tell("compiling the kernels of every shipped program, which takes some minutes")
             subprocess.run(
                 [sys.executable, "-c", _COMPILE, str(kernels)],
                 cwd=self.root,
@@ -57,6 +59,7 @@ class KernelBuildHook(BuildHookInterface[Any]):
         for kernel in sorted([*kernels.glob("*/*.kernel"), *kernels.glob("complete-*")]):
             place = f"twin/_resources/kernels/{kernel.relative_to(kernels).as_posix()}"
             build_data["force_include"][str(kernel)] = place
+        build_data["dependencies"] += _requirements(kernels / "requirements.txt")
         build_data["pure_python"] = False
         build_data["tag"] = _tag()
 
@@ -68,6 +71,20 @@ class KernelBuildHook(BuildHookInterface[Any]):
         """Remove the temporary folder."""
         if hasattr(self, "_folder"):
             shutil.rmtree(self._folder)
+
+
+def _requirements(file: Path) -> list[str]:
+    """The compilers whose kernels are in the wheel: others would compile them anew."""
+    if not file.is_file():
+        raise FileNotFoundError(f"{file}: does not say which compilers made the kernels beside it")
+    return file.read_text(encoding="utf-8").split()
+
+
+def _tell(sentence: str) -> None:
+    """Say what is waited for: pip keeps to itself what a build prints, and shows the terminal nothing."""
+    print(sentence, flush=True)
+    with contextlib.suppress(OSError), Path("/dev/tty").open("w", encoding="utf-8") as terminal:
+        terminal.write(f"mill-twin: {sentence}\n")
 
 
 def _tag() -> str:

@@ -36,7 +36,7 @@ _find_python() {
 
 compile_kernels() {
     # Pictures may be impossible here, which doctor would end with.
-    echo "compiling kernels for this computer, which takes two to three minutes"
+    echo "compiling kernels for this computer, which takes one to two minutes"
     .venv/bin/twin doctor --compile >/dev/null || true
 }
 
@@ -64,7 +64,6 @@ setup_environment() {
         # By the environment, so that the isolated build keeps to the same versions.
         PIP_CONSTRAINT="$PWD/constraints.txt" MILL_TWIN_KERNELS=0 .venv/bin/python -m pip install \
             --quiet --disable-pip-version-check --editable ".${extra[$wanted]}"
-        [ "$wanted" != run ] || compile_kernels
         echo "$stamp" >".venv/stamp-$wanted"
     fi
     PATH="$PWD/.venv/bin:$PATH"

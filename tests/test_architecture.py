@@ -1,4 +1,4 @@
-"""What ``lint-imports`` does not see of the package's form: its contracts stand in ``pyproject.toml``."""
+"""The package's form; the layers of its imports stand in ``pyproject.toml``, under ``tool.importlinter``."""
 
 import subprocess
 import sys
@@ -6,9 +6,18 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
+from importlinter.cli import EXIT_STATUS_SUCCESS, lint_imports
 
 TESTS = Path(__file__).parent
 PACKAGE = TESTS.parent / "twin"
+
+
+@pytest.mark.seconds("reads every file of the package")
+def test_imports_keep_to_their_layers_and_close_no_circle(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    kept = lint_imports(str(TESTS.parent / "pyproject.toml"), no_cache=True)
+    assert kept == EXIT_STATUS_SUCCESS, capsys.readouterr().out
 
 
 @pytest.mark.seconds("imports half of the package in a process of its own")

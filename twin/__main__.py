@@ -5,6 +5,7 @@ A signal may come while the libraries are still being loaded: even then a senten
 
 import atexit
 import gc
+import logging
 import os
 import resource
 import signal
@@ -23,6 +24,8 @@ COLLECT_AFTER = 100_000
 _BOXING_NAME, _BOXING_MODULE = "_numba_unpickle", "namedtuple_"
 """What Numba calls in Python while compiled code hands its result over: a function, and constructors
 of modules of such names."""
+_LOADING = "<frozen importlib"
+"""Where Python keeps the loading of modules."""
 _SOON_S = 0.005
 
 
@@ -70,11 +73,27 @@ def is_handing_over(frame: types.FrameType | None) -> bool:
     return False
 
 
+def is_loading(frame: types.FrameType | None) -> bool:
+    """Whether a module is being loaded.
+
+    Libraries try what may be missing, and take any exception for its absence: an interruption is lost
+    there, or leaves a library half loaded.
+
+    Args:
+        frame: What is being executed.
+    """
+    while frame is not None:
+        if frame.f_code.co_filename.startswith(_LOADING):
+            return True
+        frame = frame.f_back
+    return False
+
+
 def _run(stopped: list[int]) -> None:
     """Run the command line; the signals that came are put into the list."""
 
     def stop(number: int, frame: types.FrameType | None) -> None:
-        if is_handing_over(frame):
+        if is_handing_over(frame) or is_loading(frame):
             again = threading.Timer(_SOON_S, os.kill, (os.getpid(), number))
             again.daemon = True
             again.start()
@@ -86,6 +105,8 @@ def _run(stopped: list[int]) -> None:
     signal.signal(signal.SIGTERM, stop)
     signal.signal(signal.SIGINT, stop)
     gc.set_threshold(COLLECT_AFTER)
+    # It complains where there is no home folder for what it keeps, and does without.
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)
     limit = resource.getrlimit(resource.RLIMIT_AS)[0]
     if 0 <= limit < LEAST_ADDRESS_SPACE:
         print(

@@ -30,6 +30,10 @@ class UsageError(TwinError):
     """The command line, or a value given to the API, cannot be used."""
 
 
+class EmptyProgramError(UsageError):
+    """A program holds no block: nothing, or comments alone."""
+
+
 class ConfigError(UsageError):
     """A machine file or a job file is wrong; the message names the file and the key."""
 

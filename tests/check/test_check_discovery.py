@@ -2,7 +2,7 @@ from pathlib import Path
 
 import pytest
 
-from twin.check.discovery import baselines_without_programs, find_programs, without_jobs
+from twin.check.discovery import baselines_without_programs, checkable, find_programs, without_jobs
 from twin.errors import UsageError
 
 
@@ -70,3 +70,13 @@ def test_baselines_whose_programs_are_gone_are_known(tmp_path: Path):
     (tmp_path / "alone.nc").touch()
     left = baselines_without_programs(tmp_path / "baselines")
     assert left == [tmp_path / "baselines" / "gone.baseline"]
+
+
+def test_of_files_of_any_kind_programs_and_jobs_are_checked_each_once(tmp_path: Path) -> None:
+    (tmp_path / "pyproject.toml").write_text("[project]\n")
+    (tmp_path / "job.toml").write_text('program = "run.nc"\n')
+    for name in ("run.nc", "alone.nc", "readme.md"):
+        (tmp_path / name).write_text("M30\n")
+    files = [*sorted(tmp_path.iterdir()), tmp_path / "gone.nc"]
+    assert [path.name for path in checkable(files)] == ["job.toml", "alone.nc"]
+    assert checkable([tmp_path / "pyproject.toml"]) == []

@@ -34,7 +34,7 @@ def test_a_program_that_counts_from_machine_zero_gets_a_place(tmp_path: Path, tw
     assert written.code == 0, written.stderr
     file = read_job(tmp_path / "post.toml").file
     assert file.stock is not None
-    assert list(file.part_zero) == ["Z"]
+    assert list(file.part_zero) == ["X", "Y", "Z"]
     assert twin("interpret", program).code == 0
 
 

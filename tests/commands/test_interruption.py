@@ -1,8 +1,10 @@
 """The first Ctrl+C is the regular end, the second an interruption."""
 
+import os
 import signal
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -74,4 +76,36 @@ def test_an_interruption_of_compiled_code_is_one(number: signal.Signals) -> None
     ran = subprocess.run(
         [sys.executable, "-c", script], capture_output=True, text=True, check=False, timeout=60
     )
+    assert (ran.returncode, ran.stderr) == (130, "interrupted before anything was begun\n")
+
+
+SWALLOWED = """
+import os, signal, sys
+import twin.__main__, twin.cli
+
+def run():
+    import swallows
+    for _ in range(1000):
+        signal.pause()
+
+twin.cli.main = run
+sys.argv = ["twin"]
+twin.__main__.main()
+"""
+SWALLOWS = """
+import os, signal
+try:
+    os.kill(os.getpid(), signal.SIGINT)
+except BaseException:
+    pass
+"""
+
+
+def test_an_interruption_while_a_library_is_loaded_comes_behind_it(tmp_path: Path) -> None:
+    (tmp_path / "swallows.py").write_text(SWALLOWS)
+    here = os.pathsep.join((str(tmp_path), str(Path(__file__).parents[2])))
+    ran = subprocess.run(
+        [sys.executable, "-c", SWALLOWED], capture_output=True, text=True, check=False, timeout=60,
+        env=os.environ | {"PYTHONPATH": here},
+    )  # fmt: skip
     assert (ran.returncode, ran.stderr) == (130, "interrupted before anything was begun\n")

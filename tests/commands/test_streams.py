@@ -45,7 +45,7 @@ def test_a_full_disk_behind_the_output_is_told_and_loses_no_file(tmp_path: Path)
             env=os.environ | {"PYTHONPATH": str(Path(__file__).parents[2])},
         )  # fmt: skip
     assert done.returncode == 2
-    assert "the standard output: No space left on device" in done.stderr
+    assert "the standard output: the disk is full" in done.stderr
     assert "Traceback" not in done.stderr
     assert (tmp_path / "twin.xml").read_text("utf-8").count("<testcase") == 1
 

@@ -110,12 +110,33 @@ def test_a_moved_environment_finds_what_was_compiled_before(package: Path) -> No
     assert outcome(moved / "twin") == ["21", "1"]
 
 
+def test_where_no_cache_can_be_written_to_a_temporary_folder_of_the_user_keeps_kernels(
+    package: Path,
+) -> None:
+    blocked, shared = package.parents[1] / "file", package.parents[1] / "shared"
+    blocked.touch()
+    shared.mkdir()
+    changed = {"NUMBA_CACHE_DIR": str(blocked), "XDG_CACHE_HOME": str(blocked)}
+    assert outcome(package, **changed, TMPDIR=str(shared)) == ["21", "0"]
+    assert outcome(package, **changed, TMPDIR=str(shared)) == ["21", "1"]
+
+
 def test_with_nothing_to_write_to_kernels_last_as_long_as_the_process(package: Path) -> None:
     blocked = package.parents[1] / "file"
     blocked.touch()
-    nowhere = {"NUMBA_CACHE_DIR": str(blocked), "XDG_CACHE_HOME": str(blocked)}
+    nowhere = {name: str(blocked) for name in ("NUMBA_CACHE_DIR", "XDG_CACHE_HOME")}
+    nowhere["TMPDIR"] = str(package.parents[1] / "shared")
+    foreign = package.parents[1] / "shared" / f"mill-twin-{os.geteuid()}"
+    foreign.mkdir(parents=True)
+    foreign.chmod(0o777)
     assert outcome(package, **nowhere) == ["21", "0"]
     assert outcome(package, **nowhere) == ["21", "0"]
+
+
+def test_what_kernels_alone_call_is_kept_within_them(package: Path) -> None:
+    assert outcome(package) == ["21", "0"]
+    assert len(kept(package.parents[1], "outer")) == 1
+    assert kept(package.parents[1], "inner") == []
 
 
 @pytest.mark.parametrize("damage", ["cut", "emptied", "a bit"])

@@ -1,3 +1,4 @@
+import errno
 import os
 import threading
 from pathlib import Path
@@ -56,7 +57,7 @@ def test_a_device_is_not_replaced():
     before = Path("/dev/null").stat().st_ino
     write_text(Path("/dev/null"), "gone")
     assert Path("/dev/null").stat().st_ino == before
-    with pytest.raises(OSError, match="No space"):
+    with pytest.raises(OSError, match="the disk is full"):
         write_text(Path("/dev/full"), "text")
 
 
@@ -77,3 +78,17 @@ def test_outputs_are_tried_beforehand_and_leave_nothing(tmp_path: Path):
     assert found.value.filename == str(tmp_path / "file" / "result.json")
     with pytest.raises(IsADirectoryError):
         require_writable(tmp_path)
+
+
+def test_a_full_disk_is_told_with_the_path_that_was_asked_for(tmp_path: Path):
+    target = tmp_path / "result.json"
+    with pytest.raises(OSError, match="the disk is full") as told, complete_or_absent(target):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+    assert told.value.filename == str(target)
+    with pytest.raises(FileNotFoundError) as told, complete_or_absent(target) as temporary:
+        temporary.read_bytes()
+    assert told.value.filename == str(target)
+    with pytest.raises(FileNotFoundError) as told, complete_or_absent(target):
+        (tmp_path / "other").read_bytes()
+    assert told.value.filename == str(tmp_path / "other")
+    assert list(tmp_path.iterdir()) == []

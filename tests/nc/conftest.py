@@ -2,10 +2,7 @@
 
 import pytest
 
-KINDS = {
-    "test_oracle": "oracle",
-    "test_rs274": "oracle",
-}
+KINDS = {"test_oracle": "oracle", "test_rs274": "oracle"}
 
 
 def pytest_itemcollected(item: pytest.Item) -> None:

@@ -131,7 +131,7 @@ def test_full_disk_is_said_and_leaves_nothing(
 
     monkeypatch.setattr("twin.render.encoder.VideoWriter._encode", full)
     before = sorted(tmp_path.iterdir())
-    with pytest.raises(RenderError, match=r"run\.mp4: .*No space left on device"):
+    with pytest.raises(RenderError, match=r"run\.mp4: .*the disk is full"):
         film(scene, video=VIDEO, out=tmp_path / "run.mp4")
     assert sorted(tmp_path.iterdir()) == before
 

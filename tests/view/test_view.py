@@ -16,8 +16,11 @@ from twin.cutting.recut import recut
 from twin.errors import UsageError
 from twin.run.replay import open_scene
 from twin.view.app import open_view
-from twin.view.recorded_run import RecordedRun
+from twin.view.recorded_run import RecordedRun, _feeds
 from twin.web.server import THREE
+
+SCREENS = ((1440, 900), (1280, 640), (800, 600), (390, 844), (844, 390))
+"""Width and height of the pages that are looked at [px]."""
 
 PROGRAM = "%SQUARE\nN10 G90 G17 T1 S3000 M03\nN20 G00 X0 Y0 Z5\nN30 G01 Z-2 F600\nN40 X20 F2000\nN50 Y10\nN60 M30\n"
 JOB = """
@@ -48,7 +51,7 @@ def recorded(tmp_path_factory):
 
 def columns(content: bytes) -> np.ndarray:
     count, axes = struct.unpack("<II", content[:8])
-    return np.frombuffer(content[8:], "<f4").reshape(7 + axes, count)
+    return np.frombuffer(content[8:], "<f4").reshape(9 + axes, count)
 
 
 def test_the_samples_are_those_of_the_recording(recorded):
@@ -58,9 +61,12 @@ def test_the_samples_are_those_of_the_recording(recorded):
     assert found.shape[1] == len(recording)
     assert np.allclose(found[0], recording.column("time"), atol=1e-4)
     assert np.array_equal(found[1], recording.column("line"))
-    assert np.allclose(found[7:].T, recording.column("joint/position"), atol=1e-3)
+    assert np.allclose(found[9:].T, recording.column("joint/position"), atol=1e-3)
     errors = recording.contour_um(0, len(recording))
     assert found[3].max() == pytest.approx(errors.max(), rel=1e-5)
+    assert set(found[4]) == {3000.0}, "S of the program"
+    feeds = {line: float(np.median(found[5][found[1] == line])) for line in (4, 5)}
+    assert feeds == pytest.approx({4: 600.0, 5: 2000.0}, rel=0.02), "F of the program"
 
 
 def test_of_many_samples_a_part_is_sent_that_keeps_the_greatest_error(recorded, monkeypatch):
@@ -124,4 +130,46 @@ def test_a_run_is_played_and_scrubbed_on_its_page(recorded):
         page.click("#play")
         assert page.inner_text("#play") == "Play"
         page.click("text=Worst")
+        assert page.inner_text("body").count("Worst 2 of") == 1
+        page.locator("#time").fill("0")
+        seen = []
+        for _ in range(4):
+            seen.append(page.get_attribute("body", "data-line"))
+            page.click("#on")
+        assert seen == ["2", "3", "4", "5"], "block by block"
+        page.click("#back")
+        page.click("#back")
+        assert page.get_attribute("body", "data-line") == "4"
+        box = page.locator("#chart").bounding_box()
+        assert box is not None
+        page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
+        assert "mm/min · S 3000 /min · contour error" in page.inner_text("#pointed")
+        page.mouse.down()
+        page.mouse.up()
+        end = float(page.get_attribute("#time", "max") or 0)
+        shown = float(page.evaluate("document.getElementById('time').value"))
+        assert shown == pytest.approx(0.5 * end, abs=0.1 * end)
+        for width, height in SCREENS:
+            page.set_viewport_size({"width": width, "height": height})
+            for name in ("play", "on", "back", "time", "chart", "program", "canvas"):
+                found = page.locator(f"#{name}").bounding_box()
+                assert found is not None
+                assert found["x"] >= 0
+                assert found["x"] + found["width"] <= width, (name, width, height)
+                assert found["y"] + found["height"] <= height, (name, width, height)
+                assert min(found["width"], found["height"]) > 10, (name, width, height)
     assert not wrong
+
+
+@pytest.mark.parametrize(("columns_each", "jump"), [(1, 0.0), (2, 50.0)])
+def test_feed_is_that_of_the_tip_over_the_part_and_a_change_of_tool_is_none(
+    columns_each: int, jump: float
+) -> None:
+    time = 0.001 * columns_each * np.arange(6, dtype=np.float64)
+    tool = np.array([1, 1, 1, 2, 2, 2])
+    tips = np.zeros((3, 6))
+    tips[0] = 20.0 * time
+    tips[2] = np.where(tool == 2, jump, 0.0)
+    feeds = _feeds(time, tool, tips)
+    assert feeds[[1, 2, 4, 5]] == pytest.approx(1200.0)
+    assert feeds[0] == feeds[3] == 0.0

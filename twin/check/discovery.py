@@ -49,6 +49,21 @@ def find_programs(paths: Iterable[str | Path]) -> list[Path]:
     return list(found)
 
 
+def checkable(files: Iterable[Path]) -> list[Path]:
+    """Job files and programs among files of any kind; a program that one of these jobs runs is left out.
+
+    Args:
+        files: What a commit changes, say. Files that are gone are left out too.
+    """
+    there = [path for path in files if path.is_file()]
+    run_by = {path: program_of(path) for path in there if path.suffix == ".toml"}
+    jobs = [path for path, program in run_by.items() if program is not None]
+    taken = set(run_by.values())
+    return jobs + [
+        path for path in there if path.suffix.lower() in NC_SUFFIXES and path.resolve() not in taken
+    ]
+
+
 def _expanded(paths: Iterable[str | Path]) -> Iterable[Path]:
     for path in map(str, paths):
         if Path(path).exists():

@@ -40,7 +40,7 @@ def figures(outcome: CheckOutcome) -> list[tuple[str, object]]:
 
 def summary_line(outcomes: Sequence[CheckOutcome]) -> str:
     """How many programs came out how, and how many warnings there were."""
-    counts = dict.fromkeys(("pass", "fail", "alarm", "error"), 0)
+    counts = dict.fromkeys(("pass", "fail", "alarm", "error", "empty"), 0)
     for outcome in outcomes:
         counts[outcome.verdict] += 1
     expected = sum(outcome.expected is not None for outcome in outcomes)
@@ -57,7 +57,7 @@ def junit_xml(outcomes: Sequence[CheckOutcome]) -> str:
 
     A tolerance or an alarm is a failure, a program that could not be run an error.
     """
-    failures = sum(outcome.verdict in ("fail", "alarm") for outcome in outcomes)
+    failures = sum(outcome.verdict in ("fail", "alarm", "empty") for outcome in outcomes)
     errors = sum(outcome.verdict == "error" for outcome in outcomes)
     totals = {
         "name": "twin check",

@@ -5,8 +5,9 @@ from typing import Any, Literal
 
 from twin.errors import ExitCode
 
-CheckVerdict = Literal["pass", "fail", "alarm", "error"]
-"""``error``: the program, its job or its machine is wrong, and nothing was run to its end."""
+CheckVerdict = Literal["pass", "fail", "alarm", "error", "empty"]
+"""``empty``: the program holds no block, so that nothing was checked; it counts as a failure.
+``error``: the program, its job or its machine is wrong, and nothing was run to its end."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)

@@ -14,7 +14,7 @@ from twin.check.task import CheckSettings, Variant
 from twin.compare.baseline import compare_baseline, write_baseline
 from twin.compare.baseline_text import RunFigures
 from twin.compare.verdict import Reason
-from twin.errors import ConfigError, ExitCode, TwinError, UsageError
+from twin.errors import ConfigError, EmptyProgramError, ExitCode, TwinError, UsageError
 from twin.files.toml import load_toml
 from twin.files.toml_lines import place_of_key
 from twin.job.job_file import Job
@@ -93,6 +93,8 @@ def _run(variant: Variant, settings: CheckSettings) -> CheckOutcome:
     ended = not alarmed or preparation.job.file.expect is not None
     figures = _figures(outcome) if ended else None
     differing = _baseline_reasons(preparation, figures, settings)
+    if any(found.code == "empty-program" for found in dry_run.warnings):
+        raise EmptyProgramError(f"{path}: the program is empty: no line holds a block")
     failed = bool(differing) and not alarmed
     return CheckOutcome(
         program=str(path),
@@ -188,6 +190,11 @@ def _not_run(path: Path, error: TwinError, differing: tuple[Finding, ...] = ()) 
         finding = _diagnostic_finding(error.diagnostic)
     else:
         finding = Finding("cannot-run", str(error).removeprefix(f"{path}: "), str(path))
+    if isinstance(error, EmptyProgramError):
+        empty = Finding("empty-program", finding.message, str(path))
+        return CheckOutcome(
+            program=str(path), verdict="empty", exit_code=ExitCode.FAILED, findings=(empty,)
+        )
     return CheckOutcome(
         program=str(path),
         verdict="alarm" if error.exit_code is ExitCode.ALARM else "error",

@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from twin.command_line.options import FormatOption, JsonOption, json_file_of
+
 
 def calibrate(
     logs: Annotated[
@@ -21,7 +23,8 @@ def calibrate(
     ] = None,
     axes: Annotated[str | None, typer.Option("--axes", help="Only these: X,Y.")] = None,
     out: Annotated[Path | None, typer.Option("--out", help="Write the machine file there.")] = None,
-    json_file: Annotated[Path | None, typer.Option("--json", help="Write JSON there.")] = None,
+    json_file: JsonOption = None,
+    form: FormatOption = "text",
     report: Annotated[Path | None, typer.Option("--report", help="Write the page there.")] = None,
     require: Annotated[
         float | None,
@@ -41,7 +44,7 @@ def calibrate(
 
     request = Request(
         logs=logs or [], base=base, columns=columns, hold_out=hold_out or [], axes=axes, out=out,
-        json_file=json_file, report=report, require=require, programs=programs,
+        json_file=json_file_of(form, json_file), report=report, require=require, programs=programs,
         ball_bars=ball_bars or [],
     )  # fmt: skip
     raise typer.Exit(calibrate_and_print(request))

@@ -5,6 +5,9 @@ from typing import Annotated
 
 import typer
 
+from twin.errors import UsageError
+from twin.files.atomic import STDOUT
+
 Program = Annotated[Path, typer.Argument(help="NC program.", show_default=False)]
 ProgramOrJob = Annotated[
     Path,
@@ -27,5 +30,24 @@ ClusterOption = Annotated[
     str | None,
     typer.Option("--cluster", help="Run on the Ray cluster at this address; local: start one."),
 ]
+JsonOption = Annotated[
+    Path | None,
+    typer.Option("--json", help="Write JSON there; -: as --format json, to the standard output."),
+]
 FormatOption = Annotated[str, typer.Option("--format", help="text or json.")]
 StrictOption = Annotated[bool, typer.Option("--strict", help="Turn warnings into errors.")]
+
+
+def json_file_of(form: str, json_file: Path | None) -> Path | None:
+    """Where JSON is written by a command that takes both ``--format json`` and ``--json FILE``.
+
+    Raises:
+        UsageError: The format is unknown, or both are given.
+    """
+    if form not in ("text", "json"):
+        raise UsageError(f"--format {form}: use text or json")
+    if form == "text":
+        return json_file
+    if json_file is not None:
+        raise UsageError("--format json is --json -: give one of them")
+    return STDOUT

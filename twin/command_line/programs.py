@@ -1,5 +1,6 @@
 """What one program does: ``twin interpret``, ``plan`` and ``run``; and ``init``, its first job."""
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -49,11 +50,17 @@ def run(
     dialect: DialectOption = None,
     machine: MachineOption = None,
     strict: StrictOption = False,
+    save_job: Annotated[
+        Path | None,
+        typer.Option("--save-job", help="Keep the job that is assumed for a raw program."),
+    ] = None,
 ) -> None:
     """Interpret, plan, simulate, compare and cut; write the results and print the verdict."""
     from twin.commands.run import run_and_print
 
-    code = run_and_print(job, out, dialect=dialect, machine=machine, video=video, strict=strict)
+    code = run_and_print(
+        job, out, dialect=dialect, machine=machine, video=video, strict=strict, save_job=save_job
+    )
     raise typer.Exit(code)
 
 

@@ -5,6 +5,8 @@ import io
 import os
 import sys
 
+from twin.files.atomic import with_path
+
 CLOSED_PIPE = 141
 """Exit code of a command whose output nobody reads to its end, as shells give it (128 + SIGPIPE)."""
 
@@ -29,7 +31,7 @@ class _Pipe(io.FileIO):
         except OSError as error:
             self._write_nowhere()
             name = "the standard output" if self.fileno() == 1 else "the standard error"
-            raise OSError(error.errno, error.strerror, name) from None
+            raise with_path(error, name) from None
 
     def _write_nowhere(self) -> None:
         """What is still in the buffers is lost, without a complaint of Python's."""

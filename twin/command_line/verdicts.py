@@ -10,21 +10,28 @@ from twin.command_line.options import (
     DialectOption,
     FormatOption,
     JobsOption,
+    JsonOption,
     MachineOption,
     ProgramOrJob,
     StrictOption,
+    json_file_of,
 )
 
 
 def check(
     paths: Annotated[list[str], typer.Argument(help="Programs, job files, folders, globs.")],
     junit: Annotated[Path | None, typer.Option("--junit", help="Write JUnit XML there.")] = None,
-    json_file: Annotated[Path | None, typer.Option("--json", help="Write JSON there.")] = None,
+    json_file: JsonOption = None,
+    form: FormatOption = "text",
     baseline: Annotated[
         Path | None, typer.Option("--baseline", help="Hold runs to the baselines in this folder.")
     ] = None,
     update_baseline: Annotated[
         bool, typer.Option("--update-baseline", help="Store baselines instead.")
+    ] = False,
+    changed: Annotated[
+        bool,
+        typer.Option("--changed", help="Pass over files that are no programs or jobs; all may be."),
     ] = False,
     reports: Annotated[
         Path | None, typer.Option("--reports", help="Write a report on every program there.")
@@ -36,6 +43,7 @@ def check(
     strict: StrictOption = False,
 ) -> None:
     """Run many programs without pictures; one table, exit 1 if any falls short."""
+    from twin.check.discovery import checkable
     from twin.check.task import CheckSettings
     from twin.commands.check import check_and_print
 
@@ -43,8 +51,18 @@ def check(
         dialect=dialect, machine=machine, strict=strict, baseline=baseline,
         update_baseline=update_baseline, reports=reports,
     )  # fmt: skip
+    if changed:
+        paths = [str(path) for path in checkable(map(Path, paths))]
+        if not paths:
+            typer.echo("none of the files is a program or a job: nothing was checked")
+            return
     code = check_and_print(
-        paths, settings=settings, junit=junit, json_file=json_file, jobs=jobs, cluster=cluster
+        paths,
+        settings=settings,
+        junit=junit,
+        json_file=json_file_of(form, json_file),
+        jobs=jobs,
+        cluster=cluster,
     )
     raise typer.Exit(code)
 
@@ -58,7 +76,8 @@ def sweep(
             help="machine.KEY=VALUES or job.KEY=VALUES: a,b,c or FROM:TO:COUNT; again for more.",
         ),
     ],
-    json_file: Annotated[Path | None, typer.Option("--json", help="Write JSON there.")] = None,
+    json_file: JsonOption = None,
+    form: FormatOption = "text",
     jobs: JobsOption = None,
     cluster: ClusterOption = None,
     dialect: DialectOption = None,
@@ -73,7 +92,7 @@ def sweep(
         job,
         vary,
         settings=CheckSettings(dialect=dialect, machine=machine, strict=strict),
-        json_file=json_file,
+        json_file=json_file_of(form, json_file),
         jobs=jobs,
         cluster=cluster,
     )

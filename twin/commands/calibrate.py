@@ -1,8 +1,10 @@
 """``twin calibrate LOG...``: a machine file, a report and figures from logs of a real machine."""
 
+import contextlib
 import dataclasses
 import json
 import os
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,7 +16,7 @@ from rich.table import Table
 from twin.calibrate.programs import write_programs
 from twin.errors import ExitCode, UsageError
 from twin.extras import require_extra
-from twin.files.atomic import write_text
+from twin.files.atomic import STDOUT, write_text
 from twin.files.shipped import machine_file
 from twin.logs.ball_bar import read_ball_bar
 from twin.logs.column_map import read_column_map
@@ -117,7 +119,9 @@ def calibrate_and_print(request: Request) -> ExitCode:
         from twin.calibrate.report.page import calibration_page
 
         write_text(request.report, calibration_page(result))
-    _print(result)
+    # Where the figures go to the standard output, nothing else does.
+    with contextlib.redirect_stdout(sys.stderr if request.json_file == STDOUT else sys.stdout):
+        _print(result)
     judged = [figures for figures in result.logs if figures.role == "hold-out"]
     failed = request.require is not None and any(
         figures.judged_share > request.require for figures in judged

@@ -18,7 +18,13 @@ from twin.errors import ExitCode, UsageError
 from twin.files.atomic import STDOUT, require_folder, require_writable, write_text
 from twin.run.progress import shown_progress
 
-_STYLES = {"pass": "", "fail": "bold yellow", "alarm": "bold magenta", "error": "bold red"}
+_STYLES = {
+    "pass": "",
+    "fail": "bold yellow",
+    "alarm": "bold magenta",
+    "error": "bold red",
+    "empty": "bold red",
+}
 CODE_QUALITY_FILE = "gl-code-quality-report.json"
 """Where GitLab's examples look for the report; written to the working folder on GitLab alone."""
 

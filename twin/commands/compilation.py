@@ -1,10 +1,12 @@
 """``twin doctor --compile``: every kernel compiled before anybody waits for it."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from numba.core import config as numba_config
 
+from twin.check.discovery import program_of
+from twin.compilation.content import REQUIREMENTS, compilers
 from twin.compilation.folders import SHIPPED, keep_in, writable_folder
 from twin.compilation.inventory import inventory, note_complete
 from twin.errors import UsageError
@@ -57,15 +59,23 @@ def compile_for_every_processor(folder: Path) -> None:
     keep_in(folder)
     for name, value in (("CPU_NAME", "generic"), ("CPU_FEATURES", "")):
         setattr(numba_config, name, value)
-    compile_kernels()
+    # What is installed compiles for no shipped program.
+    jobs = sorted(resource_root("programs").rglob("*.toml"))
+    compile_kernels([job for job in jobs if program_of(job) is not None])
+    text = "".join(f"{line}\n" for line in compilers())
+    (folder / REQUIREMENTS).write_text(text, encoding="utf-8")
     for path in [folder, *folder.rglob("*")]:
         path.chmod(0o755 if path.is_dir() else 0o644)
 
 
-def compile_kernels() -> None:
-    """Let Numba compile what the commands call, or load it where it is compiled already."""
+def compile_kernels(more: Sequence[Path] = ()) -> None:
+    """Let Numba compile what the commands call, or load it where it is compiled already.
+
+    Args:
+        more: Jobs that are run too, for what only they call.
+    """
     programs = resource_root("programs")
-    jobs = [programs / name for name in JOBS]
+    jobs = [*(programs / name for name in JOBS), *more]
     steps: list[Callable[[], object]] = [_read_lines]
     steps += [lambda job=job: _run(job) for job in jobs]
     steps += [lambda: _plan(jobs[0]), _circle, _train]

@@ -1,16 +1,20 @@
 """``twin run``: the whole chain into a folder, and the verdict for a person."""
 
+import dataclasses
 from pathlib import Path
 
 import typer
 
 from twin.commands.pictures import ALARMS_OF_CONTACT, draw_contact, film_run
 from twin.compilation.announcement import announce_compilation
-from twin.errors import ExitCode, RenderError
+from twin.errors import ExitCode, RenderError, UsageError
+from twin.files.atomic import write_text
+from twin.nc.text.diagnostics import ProgramError
+from twin.run.assumed_job import text_beside, with_assumptions
 from twin.run.dry_run import DryRun
 from twin.run.messages import alarm_diagnostic, near_miss_diagnostic, reason_text
 from twin.run.outcome import Outcome
-from twin.run.preparation import prepare
+from twin.run.preparation import Preparation, prepare
 from twin.run.progress import shown_progress
 from twin.run.results import RESULT_FILES, write_results
 from twin.run.run import Run
@@ -25,6 +29,7 @@ def run_and_print(
     machine: str | None,
     video: bool,
     strict: bool,
+    save_job: Path | None = None,
 ) -> ExitCode:
     """Run a program or a job, write its results and print the verdict.
 
@@ -35,6 +40,7 @@ def run_and_print(
         machine: Overrides the job's machine.
         video: Film the run too.
         strict: Warnings of the interpreter are errors.
+        save_job: Where the job is kept that is assumed for a raw program.
 
     Raises:
         TwinError: Something is wrong before the run could end; see each error's exit code.
@@ -43,6 +49,10 @@ def run_and_print(
     folder = out or Path("out") / program_stem(path)
     with without_verdict(folder):
         preparation = prepare(path, dialect=dialect, machine=machine, strict=strict)
+        if preparation.job.path is None:
+            preparation = _assumed(preparation, machine, strict=strict, save_job=save_job)
+        elif save_job is not None:
+            raise UsageError(f"--save-job: {preparation.job.path} is the program's job already")
         run = Run(preparation)
         dry_run = run.dry_run()
     with run_folder(folder, RESULT_FILES), without_verdict(folder):
@@ -60,6 +70,41 @@ def run_and_print(
         typer.echo(f"  {line}")
     typer.echo(summary(run, outcome, folder))
     return outcome.verdict.exit_code
+
+
+def _assumed(
+    preparation: Preparation, machine: str | None, *, strict: bool, save_job: Path | None
+) -> Preparation:
+    """A raw program with the job that is assumed for it, which is told and kept where that is asked for."""
+    if save_job is not None and save_job.exists():
+        raise UsageError(f"{save_job}: exists already")
+    try:
+        made, assumed = with_assumptions(preparation, machine=machine, strict=strict)
+    except ProgramError as error:
+        raise read_as(error, preparation) from error
+    typer.echo(reading_line(made), err=True)
+    for line in assumed.assumptions:
+        typer.echo(f"assumed: {line}", err=True)
+    if save_job is None:
+        typer.echo("to keep and correct this: --save-job FILE", err=True)
+    else:
+        write_text(save_job, text_beside(save_job, assumed, preparation.job.program))
+        typer.echo(f"the job is kept in {save_job}", err=True)
+    return made
+
+
+def reading_line(preparation: Preparation) -> str:
+    """In which dialect a raw program was read, and why."""
+    reason = preparation.dialect_reason or "as it was asked for"
+    return f"read as {preparation.dialect.name}: {reason}"
+
+
+def read_as(error: ProgramError, preparation: Preparation) -> ProgramError:
+    """An error of a raw program, with the dialect that it was read in."""
+    finding = error.diagnostic
+    said = f"{reading_line(preparation)}; another control: --dialect NAME"
+    hint = f"{finding.hint}; {said}" if finding.hint else said
+    return ProgramError(dataclasses.replace(finding, hint=hint))
 
 
 def _draw_contact(run: Run, dry_run: DryRun, folder: Path) -> None:

@@ -6,7 +6,10 @@ from typing import Any
 
 from numba.core import event
 
-MESSAGE = "compiling kernels for this computer, which happens once and takes about a minute\n"
+from twin.compilation.folders import lasts
+from twin.compilation.inventory import inventory
+
+MESSAGE = "compiling what this run needs for this computer, which happens once and takes a minute at most\n"
 
 
 class _Announcer(event.Listener):
@@ -20,7 +23,7 @@ class _Announcer(event.Listener):
         """A compilation begins."""
         is_first, self.is_first = self.is_first, None
         if is_first is not None and is_first():
-            sys.stderr.write(MESSAGE)
+            sys.stderr.write(MESSAGE if lasts() else f"kernels are {inventory()}\n")
             sys.stderr.flush()
 
     def on_end(self, event: Any) -> None:

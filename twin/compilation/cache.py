@@ -16,7 +16,7 @@ import pickle
 import secrets
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, Generic, NamedTuple, TypeVar
 
 from numba.core.caching import _Cache
 from numba.core.compiler import CompileResult
@@ -38,26 +38,43 @@ GENERIC = ("generic", "")
 _CHECKSUM_BYTES = hashlib.sha256().digest_size
 _SUFFIX = ".kernel"
 
-Compilable = TypeVar("Compilable")
+Compiled = TypeVar("Compiled")
 
 
-def keep_by_content(compilable: Compilable, function: Callable[..., Any]) -> Compilable:
-    """Let what Numba compiles for a function be kept here.
+class Form(NamedTuple, Generic[Compiled]):
+    """How what was compiled is written.
+
+    Attributes:
+        pack: Its bytes; None of what holds addresses of this process.
+        unpack: What was compiled, of its bytes and Numba's context, which it is loaded into.
+    """
+
+    pack: Callable[[Compiled], bytes | None]
+    unpack: Callable[[bytes, Any], Compiled]
+
+
+def _pack_result(result: Any) -> bytes | None:
+    whole = not result.lifted and not result.library.has_dynamic_globals
+    return dumps(result._reduce()) if whole else None  # noqa: SLF001 - Numba has no public place for it
+
+
+def _unpack_result(data: bytes, context: Any) -> Any:
+    return CompileResult._rebuild(context, *pickle.loads(data))  # noqa: S301, SLF001 (from folders that nobody else writes to; Numba has no public place for it)
+
+
+RESULT: Form[Any] = Form(_pack_result, _unpack_result)
+"""What Numba's own compiler gives."""
+
+
+def kernel_cache(function: Callable[..., Any], form: Form[Any]) -> "KernelCache | None":
+    """Where the compiled forms of a function are kept; None for one of another package.
 
     Args:
-        compilable: What Numba made of the function: a dispatcher or a C callback.
-        function: The function itself; one of another package is not kept.
+        function: The function itself.
+        form: How they are written.
     """
     file = Path(function.__code__.co_filename).resolve()
-    if file.is_relative_to(PACKAGE):
-        holder: Any = compilable
-        holder._cache = KernelCache(function, file)  # noqa: SLF001 - Numba has no public place for it
-    return compilable
-
-
-def is_loaded(kernel: Any) -> bool:
-    """Whether a kernel has been compiled, or loaded, in this process."""
-    return bool(kernel.signatures)
+    return KernelCache(function, file, form) if file.is_relative_to(PACKAGE) else None
 
 
 def is_compiled(kernel: Any, arguments: Iterable[object]) -> bool:
@@ -69,9 +86,10 @@ def is_compiled(kernel: Any, arguments: Iterable[object]) -> bool:
 class KernelCache(_Cache):
     """The compiled forms of one kernel."""
 
-    def __init__(self, function: Callable[..., Any], file: Path) -> None:
+    def __init__(self, function: Callable[..., Any], file: Path, form: Form[Any]) -> None:
         self._name = f"{function.__module__}.{function.__qualname__}"
         self._folder = content_key(file)
+        self._form = form
         self._locks: dict[str, int] = {}
 
     @property
@@ -89,21 +107,22 @@ class KernelCache(_Cache):
         target_context.refresh()
         data = self._read(sig, target_context)
         if data is None:
-            self._begin(self._file_name(sig, _processor(target_context)))
+            self._begin(self._file_name(sig, _processor(target_context.codegen())))
             # Another process may have compiled it while this one waited.
             data = self._read(sig, target_context)
             if data is None:
                 return None
-            self._end(self._file_name(sig, _processor(target_context)))
-        return CompileResult._rebuild(target_context, *pickle.loads(data))  # noqa: S301, SLF001 (from folders that nobody else writes to; Numba has no public place for it)
+            self._end(self._file_name(sig, _processor(target_context.codegen())))
+        return self._form.unpack(data, target_context)
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Keep what was compiled; a full disk loses it and nothing else."""
-        name = self._file_name(sig, _processor(data.target_context))
+        name = self._file_name(sig, _processor(data.library.codegen))
         try:
-            if not data.lifted and not data.library.has_dynamic_globals:
+            packed = self._form.pack(data)
+            if packed is not None:
                 with contextlib.suppress(OSError):
-                    self._write(name, dumps(data._reduce()))  # noqa: SLF001
+                    self._write(name, packed)
         finally:
             self._end(name)
 
@@ -122,7 +141,7 @@ class KernelCache(_Cache):
         """Numba asks for it; what is kept by content is never stale."""
 
     def _read(self, sig: Any, target_context: Any) -> bytes | None:
-        here = _processor(target_context)
+        here = _processor(target_context.codegen())
         own = self._file_name(sig, here)
         shipped = self._file_name(sig, (here[0], *GENERIC))
         for root, name in [(SHIPPED, shipped), *((root, own) for root in trusted_folders())]:
@@ -169,9 +188,9 @@ class KernelCache(_Cache):
         return f"{stem}-{hashlib.sha256(about.encode()).hexdigest()[:24]}{_SUFFIX}"
 
 
-def _processor(target_context: Any) -> tuple[str, ...]:
-    """System, processor and its features that kernels are compiled for."""
-    return tuple(map(str, target_context.codegen().magic_tuple()))
+def _processor(codegen: Any) -> tuple[str, ...]:
+    """System, processor and its features that Numba's generator of code compiles for."""
+    return tuple(map(str, codegen.magic_tuple()))
 
 
 def _checked(file: Path) -> bytes | None:

@@ -14,6 +14,8 @@ import numba
 import numpy as np
 
 PACKAGE = Path(__file__).resolve().parents[1]
+_DECORATORS = PACKAGE / "compilation" / "kernel.py"
+"""How kernels are compiled and kept; what declares one may import it within a function."""
 _COMPILERS = (
     sys.implementation.cache_tag,
     numba.__version__,
@@ -21,6 +23,20 @@ _COMPILERS = (
     # Within a minor version NumPy keeps the layout of arrays and the types of results.
     ".".join(np.__version__.split(".")[:2]),
 )
+REQUIREMENTS = "requirements.txt"
+"""What of the compilers compiled kernels need, in a folder of them."""
+
+
+def compilers() -> tuple[str, ...]:
+    """Requirements of pip under which kernels that are compiled here are found again."""
+    minor = ".".join(np.__version__.split(".")[:2])
+    return (
+        f"numba=={numba.__version__}",
+        f"llvmlite=={llvmlite.__version__}",
+        f"numpy=={minor}.*",
+    )
+
+
 _IMPORT = re.compile(
     r"^(?:from (?P<origin>twin[\w.]*) import (?P<names>\([^)]*\)|[^\n]*)|import (?P<module>twin[\w.]+))",
     re.MULTILINE,
@@ -29,7 +45,7 @@ _IMPORT = re.compile(
 
 @functools.cache
 def content_key(file: Path) -> str:
-    """Hash of a file, of all files of the package that it imports, and of the compilers' versions."""
+    """Hash of a file, of all files of the package that it imports, of what compiles it, and of the compilers' versions."""
     digest = hashlib.sha256("\n".join(_COMPILERS).encode())
     for source in sorted(_closure(file)):
         digest.update(source.relative_to(PACKAGE).as_posix().encode() + b"\0")
@@ -39,7 +55,7 @@ def content_key(file: Path) -> str:
 
 def _closure(file: Path) -> set[Path]:
     found: set[Path] = set()
-    waiting = [file]
+    waiting = [file, _DECORATORS]
     while waiting:
         source = waiting.pop()
         if source not in found:

@@ -45,8 +45,8 @@ def trusted_folders() -> tuple[Path, ...]:
 def writable_folder() -> Path:
     """Where kernels are kept: the first folder that can be written to and that nobody else writes to.
 
-    ``NUMBA_CACHE_DIR`` where it is set, the user's cache folder, else a temporary folder of this
-    process, whose kernels last as long as it does.
+    ``NUMBA_CACHE_DIR`` where it is set, the user's cache folder, a folder of the user's among the
+    temporary ones, else a folder of this process, whose kernels last as long as it does.
     """
     for folder in _candidates():
         try:
@@ -108,10 +108,10 @@ def _candidates() -> Iterator[Path]:
     if chosen := os.environ.get("NUMBA_CACHE_DIR"):
         yield Path(chosen) / "mill-twin"
     user_cache = os.environ.get("XDG_CACHE_HOME")
-    try:
+    with contextlib.suppress(RuntimeError):  # a user without a home folder
         yield (Path(user_cache) if user_cache else Path.home() / ".cache") / "mill-twin" / "kernels"
-    except RuntimeError:
-        return  # a user without a home folder
+    # Where nothing else can be trusted or written to, a home of mode 777 say, as build servers make it.
+    yield Path(tempfile.gettempdir()) / f"mill-twin-{os.geteuid()}" / "kernels"
 
 
 @functools.cache

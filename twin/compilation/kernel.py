@@ -10,12 +10,11 @@ import sys
 from collections.abc import Callable
 from typing import Any, TypeVar
 
-import numba
 from numba.extending import overload
 
-from twin.compilation.cache import keep_by_content
 from twin.compilation.compilable import take_declared
-from twin.compilation.part import BranchingCompiler, PartCompiler
+from twin.compilation.dispatcher import KernelDispatcher
+from twin.compilation.flags import compare_at_once
 
 _SUMS = {"reassoc", "nsz", "nnan"}
 """Freedoms that let a sum or a maximum over neighbours be taken several at a time: its terms may be
@@ -27,6 +26,7 @@ FRAMES = 4000
 """Depth of calls that the compiler may need: Numba types what a function calls while it types the function,
 some 60 frames a level, and CPython's own limit of 1000 is reached from deep within a caller's stack."""
 sys.setrecursionlimit(max(sys.getrecursionlimit(), FRAMES))
+compare_at_once()
 
 
 def array_kernel(function: Kernel) -> Kernel:
@@ -62,7 +62,7 @@ def kernel(function: Kernel) -> Kernel:
 
 def branching_kernel(function: Kernel) -> Kernel:
     """Compile a function that makes no array, and whose loops gain nothing by several rounds at a time."""
-    return _compiled(function, _nrt=False, pipeline_class=BranchingCompiler)
+    return _compiled(function, _nrt=False, vectorize=False)
 
 
 def arithmetic_kernel(function: Kernel) -> Kernel:
@@ -70,14 +70,13 @@ def arithmetic_kernel(function: Kernel) -> Kernel:
     return _compiled(function, error_model="numpy", _nrt=False)
 
 
-def _compiled(function: Kernel, **options: Any) -> Kernel:
+def _compiled(function: Kernel, *, vectorize: bool = True, **options: Any) -> Kernel:
     for called, compiled, of_part in take_declared():
         # Kernels alone call a part: it needs no form for callers from C, which Numba makes of all.
-        for_kernels = {"no_cfunc_wrapper": True, "pipeline_class": PartCompiler}
-        options_of_part: Any = {**of_part, **for_kernels}
+        options_of_part: Any = {**of_part, "no_cfunc_wrapper": True}
         overload(called, jit_options=options_of_part, strict=False)(_always(compiled))
-    jit: Any = numba.njit  # its declared options lack ``_nrt``
-    return keep_by_content(jit(**options)(function), function)
+    made: Any = KernelDispatcher(function, vectorize=vectorize, **options)
+    return made
 
 
 def _always(function: Callable[..., object]) -> Callable[..., Callable[..., object]]:

@@ -1,34 +1,59 @@
-"""How Numba keeps and optimises code: of functions that kernels take in, and of kernels of branches."""
+"""Code as it was lowered, of functions that only compiled code calls.
 
+Numba makes machine code of every function that it compiles, and again of its copy in each function
+that calls it, however deep: of a chain of ten calls ten times. Here what compiled code calls stays as it
+was lowered, and machine code is made once of each kernel that Python calls, with all that it needs.
+"""
+
+import contextlib
+from collections.abc import Iterable, Iterator
 from typing import Any
 
-from numba.core.codegen import JITCodeLibrary
-from numba.core.compiler import Compiler
+from numba.core.codegen import CodeLibrary, JITCodeLibrary
 
 
 class PartLibrary(JITCodeLibrary):
-    """Code as it was lowered; what links it optimises it and makes machine code of it.
-
-    Numba makes machine code of every function that it compiles, and again of its copy in each
-    function that calls it, however deep: of a chain of ten calls ten times.
-    """
+    """The code of one function; it has no address."""
 
     @property
     def codegen(self) -> Any:
         """Numba's, as it asks for it."""
         return _WithoutEnvironment(self._codegen)
 
+    @property
+    def module(self) -> Any:
+        """The function without those that it calls."""
+        return self._final_module
+
+    @property
+    def calls(self) -> Iterable[CodeLibrary]:
+        """What the function calls, where it is compiled too."""
+        return self._linking_libraries
+
+    def finalize(self) -> None:
+        """Nothing is linked yet; arguments as for Numba's own."""
+        self._raise_if_finalized()
+        self._finalized = True
+
     def get_pointer_to_function(self, name: str) -> int:  # noqa: ARG002 (Numba passes it)
         """No address: there is no machine code."""
         self._ensure_finalized()
         return 0
 
-    def _optimize_final_module(self) -> None:
-        pass
+    def serialize_using_object_code(self) -> Any:
+        """Never: a part is kept within the kernels that call it."""
+        raise NotImplementedError
 
-    def _finalize_final_module(self) -> None:
-        self._finalize_dynamic_globals()
-        self._finalized = True
+    def _get_module_for_linking(self) -> Any:
+        """The function with all that it calls, for a function that is compiled in Numba's way."""
+        if self._shared_module is None:
+            module = self._final_module.clone()
+            link([self], module)
+            for function in module.functions:
+                if not function.is_declaration:
+                    function.linkage = "linkonce_odr"
+            self._shared_module = module
+        return self._shared_module
 
 
 class _WithoutEnvironment:
@@ -44,34 +69,39 @@ class _WithoutEnvironment:
         """Nothing of the code is in memory yet."""
 
 
-class PartCompiler(Compiler):
-    """Compiles into such a library."""
+def link(libraries: Iterable[CodeLibrary], module: Any) -> None:
+    """Put libraries and all that they call into a module, each once.
 
-    def __init__(self, typingctx: Any, targetctx: Any, library: Any, *rest: Any) -> None:
-        if library is None:
-            library = PartLibrary(targetctx.codegen(), "part")
-        super().__init__(typingctx, targetctx, library, *rest)
-
-
-class BranchingLibrary(JITCodeLibrary):
-    """Code of branches: its few loops are not made to take several rounds at a time.
-
-    To look for such loops is a quarter of what it costs to compile a kernel that has none.
+    Args:
+        libraries: What the module calls; one whose functions it holds already is not put in again.
+        module: LLVM's.
     """
+    held = {function.name for function in module.functions if not function.is_declaration}
+    whole: dict[CodeLibrary, None] = {}
+    seen: set[CodeLibrary] = set()
+    waiting = list(libraries)
+    while waiting:
+        library = waiting.pop()
+        if library in seen:
+            continue
+        seen.add(library)
+        if not isinstance(library, PartLibrary):
+            whole[library] = None
+            continue
+        if all(function.name not in held for function in library.get_defined_functions()):
+            module.link_in(library.module, preserve=True)
+        waiting.extend(library.calls)
+    # LLVM takes of these what is called by now.
+    for library in whole:
+        module.link_in(library._get_module_for_linking(), preserve=True)  # type: ignore[attr-defined]  # noqa: SLF001 (as Numba does)
 
-    def _optimize_final_module(self) -> None:
-        for options in ({"opt": 0, "cost": "cheap"}, {}):  # the two passes of Numba
-            passes, builder = self._codegen._module_pass_manager(  # noqa: SLF001 (as Numba does)
-                loop_vectorize=False, slp_vectorize=False, **options
-            )
-            passes.run(self._final_module, builder)
 
-
-class BranchingCompiler(Compiler):
-    """Compiles into such a library."""
-
-    def __init__(self, typingctx: Any, targetctx: Any, library: Any, *rest: Any) -> None:
-        if library is None:
-            library = BranchingLibrary(targetctx.codegen(), "kernel")
-            library.enable_object_caching()
-        super().__init__(typingctx, targetctx, library, *rest)
+@contextlib.contextmanager
+def parts_only(codegen: Any) -> Iterator[None]:
+    """Let Numba put all that it compiles meanwhile into such libraries, its own functions too."""
+    usual = codegen._library_class  # noqa: SLF001 (Numba has no public place for it)
+    codegen._library_class = PartLibrary  # noqa: SLF001
+    try:
+        yield
+    finally:
+        codegen._library_class = usual  # noqa: SLF001

@@ -19,6 +19,9 @@ LEFTOVERS = ".*.part.*"
 STDOUT = Path("-")
 
 _STDOUT_NAMES = (STDOUT, Path("/dev/stdout"), Path("/dev/fd/1"), Path("/proc/self/fd/1"))
+_FULL = (errno.ENOSPC, errno.EDQUOT)
+_WRITING_FAILED = (*_FULL, errno.EFBIG, errno.EIO)
+"""Of an open file; the system does not say of which."""
 _KERNEL_FOLDERS = (Path("/dev"), Path("/proc"))
 
 
@@ -48,8 +51,25 @@ def complete_or_absent(path: Path) -> Iterator[Path]:
     try:
         yield temporary
         os.replace(temporary, path)  # noqa: PTH105 (atomic on every platform; Path.replace is this)
+    except OSError as error:
+        if error.filename is None and error.errno not in _WRITING_FAILED:
+            raise  # of something else than a file
+        if error.filename not in (None, str(temporary), temporary):
+            raise
+        raise with_path(error, path) from error
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def with_path(error: OSError, path: Path | str) -> OSError:
+    """An error of the system with the path that the user knows.
+
+    Args:
+        error: Names a temporary file, or none.
+        path: What the user asked to be written.
+    """
+    reason = "the disk is full" if error.errno in _FULL else error.strerror or str(error)
+    return OSError(error.errno, reason, str(path))
 
 
 def write_text(path: Path, text: str) -> None:
@@ -90,7 +110,7 @@ def require_folder(folder: Path, *, named: Path | None = None) -> None:
         folder.mkdir(parents=True, exist_ok=True)
         tempfile.TemporaryFile(dir=folder).close()
     except OSError as error:
-        raise OSError(error.errno, error.strerror, str(named or folder)) from error
+        raise with_path(error, named or folder) from error
 
 
 def _is_stream(path: Path) -> bool:
@@ -106,5 +126,8 @@ def _pour(whole: Path, path: Path) -> None:
         sys.stdout.buffer.write(whole.read_bytes())
         sys.stdout.buffer.flush()
         return
-    with whole.open("rb") as source, path.open("wb") as stream:
-        shutil.copyfileobj(source, stream)
+    try:
+        with whole.open("rb") as source, path.open("wb") as stream:
+            shutil.copyfileobj(source, stream)
+    except OSError as error:
+        raise with_path(error, path) from error

@@ -7,6 +7,8 @@ that is full shall be met before HDF5 writes, where it is an error like any othe
 import os
 from pathlib import Path
 
+from twin.files.atomic import with_path
+
 _STEP = 8 << 20
 """Bytes that are taken at a time."""
 
@@ -36,5 +38,5 @@ class DiskRoom:
         try:
             os.posix_fallocate(self._handle, 0, end + _STEP)
         except OSError as error:
-            raise OSError(error.errno, error.strerror, str(self._path)) from error
+            raise with_path(error, self._path) from error
         self._end = end + _STEP

@@ -14,11 +14,12 @@ from twin.job.job_file import Job, JobFile, read_job
 from twin.machine.description.config import Machine, read_machine
 from twin.nc.canonical import Chunk, FloatArray
 from twin.nc.control.settings import ControlSettings, MachineFunction, ToolData
-from twin.nc.dialects import Dialect, dialect_named, recognise
+from twin.nc.dialects import Dialect, dialect_named
 from twin.nc.functions import SpindleState
 from twin.nc.interpreter import Interpretation
 from twin.nc.text.source import Source, read_source, source_from_text
 from twin.recording.reader import RecordingHeader
+from twin.run.dialect_choice import chosen_dialect
 from twin.run.placement import start_position
 from twin.run.waits import with_waits
 
@@ -33,6 +34,7 @@ class Preparation:
         source: The NC program.
         dialect: The language that the program is written in.
         settings: What the interpreter is told about machine and job.
+        dialect_reason: What told the dialect of a program whose job names none; empty: the job does.
     """
 
     job: Job
@@ -40,6 +42,7 @@ class Preparation:
     source: Source
     dialect: Dialect
     settings: ControlSettings
+    dialect_reason: str = ""
 
     def interpretation(self) -> Interpretation:
         """A fresh pass over the program."""
@@ -118,8 +121,12 @@ def prepare_job(
     twin_machine = read_machine(found, changes).with_fixtures(job.file.fixtures)
     name = dialect or job.file.dialect
     named = None if name is None else dialect_named(name)
-    source = read_source(job.program, named)
-    language = named or recognise(source)
+    settings = _control_settings(job, twin_machine, strict=strict)
+    source, reason = read_source(job.program, named), ""
+    if named is None:
+        choice = chosen_dialect(job.program, settings, source)
+        named, reason = choice.dialect, choice.reason
+    language = named
     if language.library is not None:
         source = language.library(source, job.program.parent, language)
     return Preparation(
@@ -127,8 +134,18 @@ def prepare_job(
         machine=twin_machine,
         source=source,
         dialect=language,
-        settings=_control_settings(job, twin_machine, strict=strict),
+        settings=settings,
+        dialect_reason=reason,
     )
+
+
+def anywhere(preparation: Preparation) -> Preparation:
+    """The same program with some machine zero: what is cut does not depend on where that lies."""
+    settings = preparation.settings
+    if settings.machine_zero is None:
+        zero = dict.fromkeys(preparation.machine.axes.names, 0.0)
+        settings = dataclasses.replace(settings, machine_zero=zero)
+    return dataclasses.replace(preparation, settings=settings)
 
 
 def prepare_recorded(header: RecordingHeader, *, machine: str | None = None) -> Preparation:

@@ -13,6 +13,7 @@ from twin.nc.canonical import FloatArray, IntArray
 from twin.recording.reader import Samples
 from twin.render.machine_glb import DrawnMachine, drawn_machine
 from twin.render.scene.scene import Scene
+from twin.units import SECONDS_PER_MINUTE
 
 MOST_SAMPLES = 100_000
 """Samples that a page gets; of more every n-th, and the greatest contour error of each group."""
@@ -56,8 +57,8 @@ class RecordedRun:
     def samples(self) -> bytes:
         """The samples: number of them n and of axes k, then columns of 32 bits.
 
-        Columns: time [s], line, tool, contour error [µm], tip X, Y, Z in the part's frame [mm], and
-        the k axes' machine coordinates [mm or deg].
+        Columns: time [s], line, tool, contour error [µm], spindle speed [1/min], feed over the part
+        [mm/min], tip X, Y, Z in the part's frame [mm], and the k axes' machine coordinates [mm or deg].
         """
         recording = self._scene.recording
         rows: list[list[Any]] = []
@@ -68,13 +69,21 @@ class RecordedRun:
             tips = frame.position(samples.real(frame)) - longer
             setpoint = samples.setpoint
             rows.append(
-                [column[chosen] for column in (setpoint.time, setpoint.line, tools, *tips.T)]
-                + [column[chosen] for column in samples.joint_position.T]
+                [column[chosen] for column in (setpoint.time, setpoint.line, tools)]
+                + [self._spindle_speeds(setpoint.move[chosen])]
+                + [column[chosen] for column in (*tips.T, *samples.joint_position.T)]
             )
         columns = [np.concatenate(parts) for parts in zip(*rows, strict=True)]
         columns.insert(3, self._errors(len(columns[0])))
+        columns.insert(5, _feeds(columns[0], columns[2], np.array(columns[5:8])))
         head = struct.pack("<II", len(columns[0]), len(recording.header.axes))
         return head + b"".join(column.astype("<f4").tobytes() for column in columns)
+
+    def _spindle_speeds(self, moves: IntArray) -> FloatArray:
+        """Speed of the spindle in moves [1/min]; 0 where nothing is known of it."""
+        known, place = np.unique(moves, return_inverse=True)
+        speeds = [self._scene.summary.spindle.at(int(move)) or 0.0 for move in known]
+        return np.array(speeds)[place]
 
     def _tools(self, samples: Samples) -> tuple[IntArray, FloatArray]:
         """Number of the tool of each sample, and how much longer it is than the first, along Z."""
@@ -131,6 +140,15 @@ class RecordedRun:
                     header.part_zero,
                 )
         return None
+
+
+def _feeds(time: FloatArray, tool: IntArray, tips: FloatArray) -> FloatArray:
+    """How fast the tip goes over the part [mm/min]; tips of shape (3, n) [mm]."""
+    way = np.linalg.norm(np.diff(tips, prepend=tips[:, :1]), axis=0)
+    # Another tool's tip is elsewhere at once.
+    way[tool != np.append(tool[:1], tool[:-1])] = 0.0
+    step = np.diff(time, prepend=time[:1])
+    return SECONDS_PER_MINUTE * np.divide(way, step, out=np.zeros_like(way), where=step > 0)
 
 
 def _timed(time_s: float, patch: bytes) -> bytes:

@@ -220,6 +220,26 @@ def test_a_search_goes_up_over_and_down_and_waits(session):
     assert room.judge.evidence.ended_well
 
 
+def test_a_search_lifts_a_tool_that_stands_in_the_part_before_it_travels(session):
+    do(session, "cycle_start")
+    while session.room.line < 6:
+        session.advance()
+    do(session, "feed_hold")
+    rest(session)
+    do(session, "reset")
+    rest(session)
+    assert at(session)[2] == pytest.approx(-2.0, abs=0.01)
+    do(session, "search", line=8)
+    do(session, "cycle_start")
+    highest = -2.0
+    while not session.room.waiting and session.room.alarm is None:
+        session.advance()
+        highest = max(highest, at(session)[2])
+    assert session.room.alarm is None
+    assert highest == pytest.approx(5.0, abs=0.01)
+    assert session.room.spindle.turns
+
+
 def test_a_search_behind_a_side_leaves_the_part_unfinished(session):
     do(session, "search", line=6)
     do(session, "cycle_start")

@@ -10,7 +10,7 @@ import mujoco
 from numba import types
 from numba.core.ccallback import CFunc
 
-from twin.compilation.cache import keep_by_content
+from twin.compilation.cache import RESULT, kernel_cache
 
 
 def _no_time() -> float:
@@ -18,7 +18,8 @@ def _no_time() -> float:
 
 
 def _callback() -> Any:
-    compiled = keep_by_content(CFunc(_no_time, ((), types.float64), {}, {}), _no_time)
+    compiled: Any = CFunc(_no_time, ((), types.float64), {}, {})
+    compiled._cache = kernel_cache(_no_time, RESULT)  # noqa: SLF001 (Numba has no public place for it)
     compiled.compile()
     return compiled.ctypes
 

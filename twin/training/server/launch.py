@@ -11,6 +11,7 @@ from twin.training.scene.vocabulary import Language
 from twin.training.server.app import ROLES, RoomApp
 from twin.training.server.attempts import Attempts
 from twin.training.server.driver import Driver
+from twin.training.session.log import Who
 from twin.training.session.session import Session
 from twin.web.doorkeeper import Doorkeeper
 from twin.web.guard import Guard
@@ -20,14 +21,33 @@ TURNS_S = 0.0005
 """How long a thread keeps the interpreter while another waits for it [s]: a press must not wait."""
 
 
-WARMING = (
-    {"do": "cycle_start"},
-    {"do": "override", "dial": "feed", "percent": 50},
-    {"do": "feed_hold"},
-    {"do": "cycle_start"},
-    {"do": "emergency_stop"},
+WARMING: tuple[tuple[Who, dict[str, object]], ...] = (
+    ("operator", {"do": "mode", "mode": "auto"}),
+    ("operator", {"do": "cycle_start"}),
+    ("operator", {"do": "override", "dial": "feed", "percent": 50}),
+    ("operator", {"do": "feed_hold"}),
+    ("operator", {"do": "cycle_start"}),
+    ("operator", {"do": "emergency_stop"}),
+    ("operator", {"do": "emergency_stop", "pressed": False}),
+    ("operator", {"do": "reset"}),
+    ("operator", {"do": "mode", "mode": "jog"}),
+    ("operator", {"do": "jog", "axis": "Z", "direction": 1}),
+    ("operator", {"do": "jog_stop"}),
+    ("operator", {"do": "jog", "axis": "Z", "direction": -1, "step": 0.1}),
+    ("operator", {"do": "handwheel", "axis": "Z", "clicks": 1, "step": 0.1}),
+    ("operator", {"do": "mode", "mode": "mdi"}),
+    ("operator", {"do": "mode", "mode": "single"}),
+    ("operator", {"do": "cycle_start"}),
+    ("operator", {"do": "reset"}),
+    ("operator", {"do": "mode", "mode": "auto"}),
 )
-"""What must not take longer the first time than later."""
+"""What must not take longer the first time than later; a machine may refuse some of it."""
+RESTARTING: tuple[tuple[Who, dict[str, object]], ...] = (
+    ("operator", {"do": "cycle_start"}),
+    ("trainer", {"do": "rewind", "seconds": 0.5}),
+    ("trainer", {"do": "unfreeze"}),
+)
+"""The same, behind a search for a line."""
 
 
 class OpenRoom:
@@ -130,8 +150,11 @@ def _prompt_threads() -> Iterator[None]:
 
 
 def warm_up(scene: Scene) -> None:
-    """Run the first moves on a machine that nobody sees, so that nothing is compiled or loaded later."""
+    """Work a machine that nobody sees, so that nothing is compiled or loaded when a key is pressed."""
     session = Session(scene)
-    for command in WARMING:
-        session.submit(command)
+    middle = len(session.room.lines) // 2
+    search: tuple[Who, dict[str, object]] = ("operator", {"do": "search", "line": middle})
+    for who, command in (*WARMING, search, *RESTARTING):
+        session.submit(command, who)
         session.advance(20)
+        session.snapshot()

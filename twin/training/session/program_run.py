@@ -44,7 +44,7 @@ from twin.nc.text.blocks import Block
 from twin.nc.text.diagnostics import Diagnostic, ProgramError
 from twin.nc.text.source import Source
 from twin.run.waits import Waits
-from twin.training.session.approach import approach
+from twin.training.session.approach import Z, approach
 from twin.training.session.block_walk import BlockWalk, ModalState
 
 MOVES_AT_ONCE = 256
@@ -168,6 +168,7 @@ class ProgramRun:
         self._found: Block | None = None
         self._arrival: Chunk | None = None
         self._collected: dict[str, Function] = {}
+        self._clearance = -math.inf
         if options.inherited is not None:
             self._inherit(options.inherited)
         self._active: tuple[float, ...] = ()
@@ -550,7 +551,9 @@ class ProgramRun:
         control.feed, control.spindle = before.feed, before.spindle
 
     def _collect(self, skipped: Chunk) -> None:
-        """Of what a search passes over, keep what the spindle and the coolant were told last."""
+        """Of what a search passes over, keep the last commands of spindle and coolant, and the highest Z."""
+        if len(skipped.moves):
+            self._clearance = max(self._clearance, float(skipped.moves.end[:, Z].max()))
         for event in skipped.events:
             if isinstance(event, Function):
                 name = "coolant" if event.word in COOLANT_ON | COOLANT_OFF else event.word
@@ -578,7 +581,7 @@ class ProgramRun:
                 if name in ("spindle", "coolant", SPINDLE_SPEED)
             )
             self._note(block, self._count)
-            self._arrival = Chunk(approach(control, stand, block.line), events)
+            self._arrival = Chunk(approach(control, stand, block.line, self._clearance), events)
 
     def _require_found(self) -> None:
         if self._searched:

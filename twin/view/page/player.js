@@ -2,9 +2,12 @@
 
 import { View } from "../view/view.js";
 import { readPatch } from "../view/wire.js";
+import { Chart, worst_blocks } from "./chart.js";
 
 const VIEWS = { front: "Front", top: "Top", tool: "Tool", part: "Part", fit: "Fit" };
 const SHOWN = { trail: "Path", stock: "Part as cut", collision: "Collision bodies" };
+const WORST = 5; // Marks of the worst blocks.
+const FINEST_MM = 0.1; // Between points of the drawn path.
 const COLOURS = [[0.15, 0.34, 0.84], [0.16, 0.71, 0.66], [0.56, 0.82, 0.29], [0.95, 0.76, 0.19], [0.88, 0.23, 0.14]];
 
 const at = (id) => document.getElementById(id);
@@ -29,9 +32,16 @@ banner("Reading the recording …");
 const buffer = await (await fetch("samples.bin")).arrayBuffer();
 const [count, axes] = new Uint32Array(buffer, 0, 2);
 const column = (number) => new Float32Array(buffer, 8 + 4 * count * number, count);
-const [times, lines, tools, errors] = [0, 1, 2, 3].map(column);
-const tips = [4, 5, 6].map(column), joints = Array.from({ length: axes }, (_, axis) => column(7 + axis));
+const [times, lines, tools, errors, speeds, feeds] = [0, 1, 2, 3, 4, 5].map(column);
+const tips = [6, 7, 8].map(column), joints = Array.from({ length: axes }, (_, axis) => column(9 + axis));
 const last = count - 1;
+/** Where blocks begin: each run of samples of one line. */
+const starts = [...lines.keys()].filter((i) => i === 0 || lines[i] !== lines[i - 1]);
+const worst = run.has_error ? worst_blocks(errors, starts, WORST) : [];
+const chart = new Chart(at("chart"), at("pointed"), {
+  times, feeds, speeds, errors: run.has_error ? errors : null, worst, alarms: run.alarms.map(([when]) => when),
+  text: (index) => `${times[index].toFixed(3)} s · line ${lines[index]} · ${values(index)}`, sample, jump,
+});
 let now = 0, tool = null, playing = false, before = 0, shown_line = -1;
 
 /** The last sample that is not later than a time. */
@@ -56,9 +66,11 @@ function show(index) {
     row.cells[1].textContent = (machine[axis] - run.part_zero[axis]).toFixed(3);
     row.cells[2].textContent = machine[axis].toFixed(3);
   });
-  at("figures").textContent = `T ${tool}${run.has_error ? ` · contour error ${errors[index].toFixed(1)} µm` : ""}`;
+  at("figures").textContent = `T ${tool} · ${values(index)}`;
   at("clock").textContent = `${times[index].toFixed(3)} of ${times[last].toFixed(1)} s`;
   at("time").value = times[index];
+  at("time").setAttribute("aria-valuetext", `${times[index].toFixed(3)} s, line ${lines[index]}`);
+  chart.point(index);
   const line = lines[index];
   if (line !== shown_line) {
     at("program").querySelector(".runs")?.classList.remove("runs");
@@ -100,13 +112,34 @@ function colour(share) {
   return COLOURS[low].map((value, i) => value + (place - low) * (COLOURS[low + 1][i] - value));
 }
 
+/** The path, in stretches that can be told apart; each has the colour of its greatest error. */
 function draw_path() {
-  const places = new Float32Array(3 * count), colours = new Float32Array(3 * count);
+  const places = [], colours = [];
+  let from = null, error = 0;
   for (let i = 0; i < count; i++) {
-    for (let k = 0; k < 3; k++) places[3 * i + k] = tips[k][i];
-    colours.set(run.has_error && run.error_scale_um ? colour(errors[i] / run.error_scale_um) : [1, 0.54, 0.12], 3 * i);
+    const tip = tips.map((values) => values[i]);
+    error = Math.max(error, errors[i]);
+    if (from && i < last && Math.hypot(...tip.map((value, k) => value - from[k])) < FINEST_MM) continue;
+    places.push(...tip);
+    colours.push(...(run.has_error && run.error_scale_um ? colour(error / run.error_scale_um) : [1, 0.54, 0.12]));
+    [from, error] = [tip, 0];
   }
-  view.say("path", { places, colours });
+  view.say("path", { places: new Float32Array(places), colours: new Float32Array(colours) });
+}
+
+/** Feed, spindle speed and error at a sample. */
+function values(index) {
+  const shown = [`F ${feeds[index].toFixed(0)} mm/min`];
+  if (chart.has_speed) shown.push(`S ${Math.abs(speeds[index]).toFixed(0)} /min`);
+  if (run.has_error) shown.push(`contour error ${errors[index].toFixed(1)} µm`);
+  return shown.join(" · ");
+}
+
+/** Go to the beginning of the next block, or of this one and then the one before. */
+function step_block(way) {
+  const next = starts.findIndex((start) => start > now), place = next < 0 ? starts.length : next;
+  const here = starts[place - 1];
+  jump(way > 0 ? starts[place] ?? last : now > here ? here : starts[place - 2] ?? 0);
 }
 
 /** The cuts of the stock, each with its time. */
@@ -158,10 +191,15 @@ addEventListener("keydown", (event) => {
   event.preventDefault();
   play(!playing);
 });
-let worst = 0;
-for (let i = 0; i < count; i++) if (errors[i] > errors[worst]) worst = i;
+for (const [id, way] of [["back", -1], ["on", 1]]) at(id).addEventListener("click", () => step_block(way));
 if (run.has_error) {
-  at("moments").append(button(`Worst: ${errors[worst].toFixed(1)} µm`, () => jump(worst)));
+  let place = 0;
+  at("moments").append(button(`Worst: ${errors[worst[0]].toFixed(1)} µm`, (made) => {
+    jump(worst[place]);
+    place = (place + 1) % worst.length;
+    made.textContent = `Worst ${place + 1} of ${worst.length}: ${errors[worst[place]].toFixed(1)} µm`;
+  }));
+  for (const index of worst) at("program").children[lines[index] - 1]?.classList.add("worst");
   at("legend").hidden = false;
   at("scale").textContent = `${run.error_scale_um.toFixed(0)} µm`;
 }

@@ -6,15 +6,19 @@ import { GLTFLoader } from "./three/GLTFLoader.js";
 import { RoomEnvironment } from "./three/RoomEnvironment.js";
 import { Chips, Coolant, Trail } from "./effects.js";
 import { Stock } from "./stock.js";
+import { wideLine } from "./wide_line.js";
 import { readPatch, readState } from "./wire.js";
 
 const SOFTWARE = /swiftshader|llvmpipe|software|basic render/i;
+const BACKGROUND = 0x55616d, FLOOR = 0x3c4751;
+const STILL_MS = 700; // Without a graphics card a view that is still for so long is drawn once as well as it can be.
 const FASTEST_MS = 33;
 const SLOW_MS = 120;
 const DASH_MM = 2.5; // Of the dashes of a rapid, and between them.
+const PATH_PX = 3; // Width of the path on the page.
 const ABOVE_MM = 0.15; // What a path lies above the floor that it was cut into.
 
-let renderer, scene, camera, base, fine, by_processor, size = [1, 1], dirty = true, busy = false, last = 0, pictures = 0, drawing = 0, dots = 1, slow = 0;
+let renderer, scene, camera, key, base, moved = 0, sharp = false, most_dots = 1, fine, by_processor, size = [1, 1], dirty = true, busy = false, last = 0, pictures = 0, drawing = 0, dots = 1, slow = 0;
 let machine = null, patches = Promise.resolve(), wanted = 0;
 const orbit = { azimuth: -0.9, elevation: 0.42, distance: 2.4, target: new THREE.Vector3(0, 0, 1), follows: "part" };
 const shown = { trail: true, stock: true, collision: false };
@@ -30,11 +34,12 @@ function open({ canvas, width, height, ratio, address, quality }) {
   base = address;
   renderer.toneMapping = THREE.ACESFilmicToneMapping;
   renderer.toneMappingExposure = 0.9;
+  most_dots = ratio;
   dots = fine ? ratio : Math.min(ratio, 1);
   renderer.setPixelRatio(dots);
   scene = new THREE.Scene();
-  scene.background = new THREE.Color(0x11161b);
-  scene.fog = new THREE.Fog(0x11161b, 6, 14);
+  scene.background = new THREE.Color(BACKGROUND);
+  scene.fog = new THREE.Fog(BACKGROUND, 6, 14);
   camera = new THREE.PerspectiveCamera(34, 1, 0.01, 40);
   camera.up.set(0, 0, 1);
   light();
@@ -53,11 +58,11 @@ function light() {
     scene.environment = maker.fromScene(new RoomEnvironment(), 0.04).texture;
     scene.environmentIntensity = 0.38;
     scene.environmentRotation = new THREE.Euler(Math.PI / 2, 0, 0);
-    renderer.shadowMap.enabled = true;
   } else {
-    scene.add(new THREE.HemisphereLight(0xdfe9f5, 0x40454c, 1.1));
+    scene.add(new THREE.HemisphereLight(0xdfe9f5, 0x5a616a, 1.3));
   }
-  const key = new THREE.DirectionalLight(0xfff4e6, fine ? 2.2 : 1.5);
+  renderer.shadowMap.enabled = true;
+  key = new THREE.DirectionalLight(0xfff4e6, fine ? 2.2 : 1.5);
   key.position.set(-1.6, -2.4, 3.6);
   key.castShadow = fine;
   key.shadow.mapSize.set(2048, 2048);
@@ -67,8 +72,8 @@ function light() {
   const rim = new THREE.DirectionalLight(0x9ec8ff, 0.9);
   rim.position.set(2.5, 2, 2);
   scene.add(key, key.target, rim);
-  const floor = new THREE.Mesh(new THREE.CircleGeometry(9, 64), new THREE.MeshLambertMaterial({ color: 0x1b2127 }));
-  floor.receiveShadow = fine;
+  const floor = new THREE.Mesh(new THREE.CircleGeometry(9, 64), new THREE.MeshLambertMaterial({ color: FLOOR }));
+  floor.receiveShadow = true;
   scene.add(floor);
 }
 
@@ -108,7 +113,7 @@ function assemble(described, root) {
   const bodies = [];
   root.traverse((node) => {
     if (node.isMesh) {
-      node.castShadow = node.receiveShadow = fine;
+      node.castShadow = node.receiveShadow = true;
       if (!fine) node.material = matt(node.material);
       const hidden = [node.name, node.parent?.name].some((name) => name?.startsWith(collision));
       if (hidden) {
@@ -245,14 +250,26 @@ function draw() {
     machine.coolant.step(seconds, state.coolant);
     if (state.turns && machine.cutter) machine.cutter.rotateZ(-14 * seconds);
   }
-  if (!dirty) return;
+  const was_sharp = sharp;
+  sharp = !dirty && !fine && (sharp || now - moved > STILL_MS);
+  if (!dirty && sharp === was_sharp) return;
+  if (dirty) moved = now;
   dirty = false;
+  if (sharp !== was_sharp) refine();
   aim();
   const began = performance.now();
   renderer.render(scene, camera);
+  pictures += 1;
+  if (sharp) return;
   if (by_processor) wait_for_picture();
   drawing = performance.now() - began;
-  pictures += 1;
+}
+
+/** All dots and shadows for a view that is still; as many as can be drawn quickly for one that moves. */
+function refine() {
+  key.castShadow = fine || sharp;
+  renderer.setPixelRatio(sharp ? Math.max(most_dots, dots) : dots);
+  renderer.setSize(size[0], size[1], false);
 }
 
 setInterval(() => postMessage({ pictures, drawing_ms: drawing }), 1000);
@@ -264,8 +281,9 @@ function wait_for_picture() {
   slow = drawing > SLOW_MS ? slow + 1 : 0;
   if (!fine && slow > 2 && dots > 0.6) {
     slow = 0;
-    renderer.setPixelRatio(dots *= 0.8);
-    renderer.setSize(size[0], size[1], false);
+    dots *= 0.8;
+    refine();
+    dirty = true;  // What was drawn is gone with the old size.
   }
 }
 
@@ -285,13 +303,10 @@ function cut_until(time) {
   }
 }
 
-/** The whole path of a run: places [mm] and colours, as lines. */
+/** The whole path of a run: places [mm] and colours of the stretches that end there. */
 function drawPath({ places, colours }) {
-  const geometry = new THREE.BufferGeometry();
-  geometry.setAttribute("position", new THREE.BufferAttribute(places, 3));
-  geometry.setAttribute("color", new THREE.BufferAttribute(colours, 3));
-  path = new THREE.Line(geometry, new THREE.LineBasicMaterial({ vertexColors: true }));
-  path.frustumCulled = false;
+  path = wideLine(places, colours);
+  path.onBeforeRender = () => path.material.uniforms.pixel.value.set(PATH_PX / size[0], PATH_PX / size[1]);
   path.position.z = ABOVE_MM;
   machine?.part.add(path);
   dirty = true;

@@ -1,0 +1,180 @@
+"""What is assumed for a raw program: its dialect, its stock and zero, its tools."""
+
+from pathlib import Path
+
+import pytest
+
+from twin.errors import EmptyProgramError, UsageError
+from twin.nc.text.diagnostics import ProgramError
+from twin.run.assumed_job import AssumedJob, text_beside, with_assumptions
+from twin.run.preparation import Preparation, prepare
+from twin.run.tool_comments import numbered_tool, tool_of_comment
+
+CONTOUR = """%
+O01001 (PLATE)
+(T1 D=10. CR=0. - ZMIN=-4. - flat end mill)
+(T2 D=6.8 CR=0. TAPER=118deg - ZMIN=-12. - drill)
+N10 G90 G94 G17
+N15 G21
+N20 G53 G0 Z0.
+N25 T1 M6
+N30 S5000 M3
+N35 G54
+N40 G0 X-12. Y0.
+N45 G43 Z15. H1
+N50 Z-4.
+N55 G1 X80. F1000.
+N60 Y60.
+N65 G0 Z15.
+N70 G53 G0 Z0.
+N75 T2 M6
+N80 S3000 M3
+N85 G0 X20. Y20.
+N90 G43 Z15. H2
+N95 G98 G81 X20. Y20. Z-12. R5. F300.
+N100 X60.
+N105 G80
+N110 G53 G0 Z0.
+N115 M30
+%
+"""
+
+
+def raw(tmp_path: Path, text: str) -> tuple[Preparation, AssumedJob]:
+    path = tmp_path / "part.nc"
+    path.write_text(text)
+    return with_assumptions(prepare(path), machine=None, strict=False)
+
+
+def test_dialects_that_make_the_same_are_told_and_one_is_taken(tmp_path: Path) -> None:
+    made, _ = raw(tmp_path, CONTOUR)
+    assert made.dialect.name == "fanuc"
+    assert made.dialect_reason == "fanuc, haas and linuxcnc make the same moves of it"
+
+
+def test_dialects_that_would_move_differently_ask(tmp_path: Path) -> None:
+    path = tmp_path / "part.nc"
+    path.write_text("O1\nG21 G90 G17 G80\nG0 X10. Y0. Z2.\nG1 Z0. F300.\nG3 Z-5. I-5.\nM30\n")
+    with pytest.raises(UsageError) as raised:
+        prepare(path)
+    message = str(raised.value)
+    assert "in line 5 fanuc feeds 303" in message
+    assert "type --dialect fanuc, --dialect haas or --dialect linuxcnc" in message
+
+
+@pytest.mark.parametrize(
+    ("head", "dialect"),
+    [
+        ("(Post Processor: linuxcnc_post)", "linuxcnc"),
+        ("(POST - GENERIC HAAS 4X MILL)", "haas"),
+        ("(Post Processor: fanuc_post)", "fanuc"),
+    ],
+)
+def test_a_head_names_the_control(tmp_path: Path, head: str, dialect: str) -> None:
+    path = tmp_path / "part.nc"
+    path.write_text(f"{head}\nG21 G90\nG0 X1. Y1. Z1.\nG1 Z-1. F100.\nM30\n")
+    assert prepare(path).dialect.name == dialect
+
+
+def test_every_dialect_refuses_and_the_one_that_reads_farthest_says_why(tmp_path: Path) -> None:
+    path = tmp_path / "part.nc"
+    path.write_text("O1\nG21 G90 G17 G94\nG43 H1 Z5.\nG1 X1. F100. Q5.\nM30\n")
+    with pytest.raises(ProgramError) as raised:
+        prepare(path)
+    assert "read as fanuc" in str(raised.value)
+    assert "--dialect" in str(raised.value)
+
+
+def test_comments_alone_are_an_empty_program(tmp_path: Path) -> None:
+    path = tmp_path / "part.nc"
+    path.write_text("(nothing)\n%\n")
+    with pytest.raises(EmptyProgramError):
+        prepare(path)
+
+
+def test_stock_keeps_clear_of_plunging_rapids_and_lies_on_the_table(tmp_path: Path) -> None:
+    made, assumed = raw(tmp_path, CONTOUR)
+    file = made.job.file
+    assert file.stock is not None
+    assert file.stock.size is not None
+    left = file.stock.position[0] - file.stock.size[0] / 2.0
+    assert -12.0 + 5.0 < left < -5.0  # beside the tool that plunges at X-12
+    assert file.stock.position[2] == 0.0
+    assert file.stock.size[2] == 22.0
+    center = made.machine.part_frame.center
+    assert file.part_zero["X"] == pytest.approx(center[0] - file.stock.position[0], abs=1e-3)
+    assert "Z" in file.part_zero
+    assert any("top at Z0" in line for line in assumed.assumptions)
+
+
+def test_tools_come_from_the_list_of_the_post(tmp_path: Path) -> None:
+    made, assumed = raw(tmp_path, CONTOUR)
+    tools = [(tool.number, tool.kind, tool.diameter) for tool in made.job.file.tools]
+    assert tools == [(1, "flat", 10.0), (2, "drill", 6.8)]
+    assert "T2 drill of 6.8 mm: from its comment" in assumed.assumptions[2]
+
+
+def test_a_tool_that_only_drills_is_a_drill(tmp_path: Path) -> None:
+    text = CONTOUR.replace("(T2 D=6.8 CR=0. TAPER=118deg - ZMIN=-12. - drill)\n", "")
+    made, assumed = raw(tmp_path, text)
+    assert made.job.file.tools[1].kind == "drill"
+    assert "diameter is a guess" in assumed.assumptions[2]
+
+
+def test_stock_of_the_head_comes_before_the_path(tmp_path: Path) -> None:
+    head = "( Material Size)\n( X= 90.0, Y= 70.0, Z= 18.0)\n"
+    made, _ = raw(tmp_path, CONTOUR.replace("(T1", f"{head}(T1"))
+    assert made.job.file.stock is not None
+    assert made.job.file.stock.size == (90.0, 70.0, 18.0)
+
+
+def test_what_a_shared_file_says_holds(tmp_path: Path) -> None:
+    (tmp_path / "twin.toml").write_text(
+        '[stock]\nshape = "cylinder"\ndiameter = 200.0\nheight = 30.0\n'
+    )
+    made, _ = raw(tmp_path, CONTOUR)
+    assert made.job.file.stock is not None
+    assert made.job.file.stock.shape == "cylinder"
+
+
+def test_the_job_can_be_kept_in_another_folder(tmp_path: Path) -> None:
+    made, assumed = raw(tmp_path, CONTOUR)
+    folder = tmp_path / "jobs"
+    folder.mkdir()
+    path = folder / "kept.toml"
+    path.write_text(text_beside(path, assumed, made.job.program))
+    again = prepare(path)
+    assert again.dialect.name == "fanuc"
+    assert again.job.file.stock == made.job.file.stock
+    assert again.job.file.tools == made.job.file.tools
+
+
+@pytest.mark.parametrize(
+    ("comment", "tool"),
+    [
+        ("T1 D=10. CR=0. - ZMIN=-5. - flat end mill", (1, "flat", 10.0, None)),
+        ("T3  D=6. CR=3. - ZMIN=-3. - ball end mill", (3, "ball", 6.0, None)),
+        ("T5 D=10. CR=1. - ZMIN=-3. - bullnose end mill", (5, "bull", 10.0, 1.0)),
+        (" T1 | 10. FLAT ENDMILL | H1 | D1 | XY STOCK TO LEAVE - 0.", (1, "flat", 10.0, None)),
+        ("TOOL - 1 DIA. OFF. - 1 LEN. - 1 DIA. - 12.", (1, "", 12.0, None)),
+        ("T239|1/2 FLAT ENDMILL|H239", (239, "flat", 12.7, None)),
+        ("T1 = End Mill (6 mm)", (1, "flat", 6.0, None)),
+        ("T1 : 3.0", (1, "", 3.0, None)),
+        ("TOOL -1- MILL DIA 10.0 R0. MM ", (1, "flat", 10.0, None)),
+        ("1 = Ball Nose Bit {6.0 mm}", (1, "ball", 6.0, None)),
+        ("T4 M8 TAP", (4, "drill", 8.0, None)),
+        ("T2 90 DEG CHAMFER MILL 12 mm", (2, "chamfer", 12.0, None)),
+        ("6.8 DRILL", (None, "drill", 6.8, None)),
+        ("TC: 5mm Endmill", (None, "flat", 5.0, None)),
+    ],
+)
+def test_comments_tell_tools(comment: str, tool: tuple[object, ...]) -> None:
+    listed = numbered_tool(comment)
+    number, text = (None, comment) if listed is None else listed
+    found = tool_of_comment(text, inches=False)
+    assert (number, found.kind, found.diameter, found.corner) == tool
+
+
+def test_numbers_without_a_unit_are_inches_where_the_program_is() -> None:
+    assert tool_of_comment("0.5 FLAT ENDMILL", inches=True).diameter == 12.7
+    assert tool_of_comment("10 mm FLAT ENDMILL", inches=True).diameter == 10.0

@@ -1,0 +1,81 @@
+"""Which dialects a raw program may be written in, by its words and by what its head calls itself."""
+
+import re
+from collections.abc import Mapping
+from itertools import islice
+from typing import NamedTuple
+
+from twin.errors import EmptyProgramError, UsageError
+from twin.nc.dialects import DIALECTS, marks_found
+from twin.nc.dialects.foreign import control_of_head, is_prose
+from twin.nc.text.source import Source
+
+HEAD_LINES = 60
+"""Lines at the beginning in which comments may name the control or the post."""
+
+_NAMES: Mapping[str, str] = {
+    "fanuc": r"\bfanuc|\bmpfan\b|\brobodrill\b",
+    "haas": r"\bhaas",
+    "linuxcnc": r"linuxcnc|\bemc ?2?\b",
+    "fagor8070": r"\bfagor\b",
+    "codesys": r"\bcodesys\b|softmotion",
+    "mefi": r"\bmefi\b",
+}
+"""What comments call the controls, and posts for them."""
+
+_COMMENT = re.compile(r"\(([^()]*)\)|;(.*)|^%(.*)")
+
+
+class Reading(NamedTuple):
+    """What a program tells of its dialect.
+
+    Attributes:
+        candidates: Dialects that it may be written in; one: it is told.
+        reason: What tells it.
+    """
+
+    candidates: tuple[str, ...]
+    reason: str
+
+
+def reading_of(source: Source) -> Reading:
+    """Tell by a program's words and by its head in which dialects it may be written.
+
+    Raises:
+        UsageError: It is written for a control that is not known here, is prose, or holds nothing.
+    """
+    marks = {name: shown for name, shown in marks_found(source).items() if shown}
+    everything = {mark for shown in marks.values() for mark in shown}
+    complete = tuple(name for name, shown in marks.items() if everything <= set(shown))
+    if len(complete) == 1:
+        return Reading(complete, f"by {', '.join(marks[complete[0]])}")
+    head = head_of(source)
+    named = [name for name, pattern in _NAMES.items() if re.search(pattern, head, re.IGNORECASE)]
+    if len(named) == 1 and (not marks or named[0] in marks):
+        return Reading((named[0],), f"its head names {named[0]}")
+    foreign = None if named else control_of_head(head)
+    if foreign is not None:
+        raise UsageError(f"{source.name}: its head says that it is {foreign[0]}: {foreign[1]}")
+    if complete:
+        return Reading(complete, f"{', '.join(marks[complete[0]])}")
+    if marks:
+        seen = "; ".join(f"{', '.join(shown)} ({name})" for name, shown in marks.items())
+        return Reading(tuple(marks), f"words of several: {seen}")
+    first = "\n".join(islice(source.lines, 2000))
+    if not first.strip():
+        raise EmptyProgramError(f"{source.name}: the program is empty")
+    if not any(_COMMENT.sub("", line).strip() for line in source.lines):
+        raise EmptyProgramError(f"{source.name}: the program is empty: it holds comments alone")
+    if is_prose(first):
+        raise UsageError(
+            f"{source.name}: looks like prose: an NC program is text of blocks such as G1 X10 F100"
+        )
+    return Reading(tuple(DIALECTS), "no word of one control alone")
+
+
+def head_of(source: Source) -> str:
+    """The comments at a program's beginning, a line each."""
+    found: list[str] = []
+    for line in islice(source.lines, HEAD_LINES):
+        found += [" ".join(filter(None, match.groups())) for match in _COMMENT.finditer(line)]
+    return "\n".join(found)

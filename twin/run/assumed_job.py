@@ -1,0 +1,405 @@
+"""The job that is assumed for a raw program: stock, zero and tools, as its path and its comments tell them."""
+
+import dataclasses
+import os
+import re
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from twin.job.job_file import Job, JobFile
+from twin.machine.description.config import Machine
+from twin.machine.model.model import spindle_over_table_mm
+from twin.nc.canonical import FloatArray, Function, Motion, Moves, concatenate
+from twin.nc.dialects.recognition import HEAD_LINES
+from twin.run.placement import part_zero
+from twin.run.preparation import Preparation, anywhere, prepare_job
+from twin.run.tool_comments import ToolComment, numbered_tool, tool_of_comment
+
+MARGIN = 10.0
+"""Stock beyond the feed moves, on each side [mm]."""
+_LEAST_HEIGHT = 10.0
+_MOST_CLIPPED = 0.5
+"""Share of the stock's area that may be taken from it so that no rapid plunges into it; beyond that there is none."""
+_USUAL_DIAMETER = 10.0
+_USUAL_LENGTH, _USUAL_FLUTE = 60.0, 25.0
+_BELOW = 1e-6
+_RAPID_TOLERANCE_UM = 200.0
+"""How exactly rapids are to keep their path: no one measures it, and 0.2 mm hits nothing that is watched."""
+_NEAR_LINES = 3
+"""So far from the call of a tool a comment may stand that describes it."""
+
+_COMMENT = re.compile(r"\(([^()]*)\)|;(.*)")
+_NUMBER = r"\s*[:=-]?\s*([0-9]+(?:\.[0-9]*)?)"
+_STOCK_WORDS = r"(?:STOCK(?:/BLOCK)?|BLOCK SIZE|BLANK|MATERIAL(?: SIZE)?|WORKPIECE SIZE|ROHTEIL)"
+_STOCKS = (
+    re.compile(
+        rf"{_STOCK_WORDS}\b[^XYZ]{{0,40}}\bX{_NUMBER}\D{{0,12}}?Y{_NUMBER}\D{{0,12}}?Z{_NUMBER}",
+        re.DOTALL,
+    ),
+    re.compile(
+        rf"{_STOCK_WORDS}\b[^0-9]{{0,20}}([0-9.]+)\s*(?:MM)?\s*[X*]\s*([0-9.]+)\s*(?:MM)?\s*[X*]\s*([0-9.]+)",
+        re.DOTALL,
+    ),
+)
+
+
+@dataclasses.dataclass(frozen=True)
+class AssumedJob:
+    """A job's text, and what of it is no more than assumed.
+
+    Attributes:
+        text: The job file.
+        assumptions: What was assumed and from what, for people, a line each.
+    """
+
+    text: str
+    assumptions: tuple[str, ...]
+
+    @property
+    def tables(self) -> dict[str, object]:
+        """The keys of the job file."""
+        return tomllib.loads(self.text)
+
+
+def with_assumptions(
+    preparation: Preparation, *, machine: str | None, strict: bool
+) -> tuple[Preparation, AssumedJob]:
+    """A raw program with the job that is assumed for it.
+
+    What a ``twin.toml`` above it says holds instead of what would be assumed.
+
+    Args:
+        preparation: Of the program.
+        machine: Overrides the job's machine.
+        strict: Warnings of the interpreter are errors.
+
+    Raises:
+        ProgramError: The program is wrong.
+    """
+    assumed = assumed_job(preparation)
+    given = preparation.job.file.model_dump(exclude_unset=True)
+    file = JobFile.model_validate({**assumed.tables, **given, "dialect": preparation.dialect.name})
+    job = Job(preparation.job.folder, file)
+    made = prepare_job(job, machine=machine, strict=strict)
+    return dataclasses.replace(made, dialect_reason=preparation.dialect_reason), assumed
+
+
+def assumed_job(preparation: Preparation) -> AssumedJob:
+    """The job of a program that has none.
+
+    Raises:
+        ProgramError: The program is wrong.
+    """
+    preparation = anywhere(preparation)
+    chunks = list(preparation.interpretation().chunks())
+    moves = concatenate([chunk.moves for chunk in chunks], preparation.machine.axes)
+    calls: list[tuple[int, int, int]] = []
+    done = 0
+    for chunk in chunks:
+        calls += [
+            (int(event.word[1:]), event.line, done + event.before)
+            for event in chunk.events
+            if isinstance(event, Function) and event.word[:1] == "T" and event.word[1:].isdigit()
+        ]
+        done += len(chunk.moves)
+    inches = _is_in_inches(preparation)
+    comments = list(_comments(preparation))
+    tools, told, diameter = _tool_lines(calls, comments, moves, inches=inches)
+    stock, position, said = _stock(moves, comments, diameter / 2.0, inches=inches)
+    lines = [
+        f'program = "{preparation.job.program.name}"',
+        f'dialect = "{preparation.dialect.name}"',
+        f'machine = "{preparation.job.file.machine}"',
+        *_zero_line(preparation, moves, position, "\n".join(stock), tools),
+        "",
+        *stock,
+        *tools,
+        "[tolerance]",
+        f"contour_um = {preparation.job.file.tolerance.contour_um}",
+        f"rapid_contour_um = {_RAPID_TOLERANCE_UM}  # a guess",
+        "",
+    ]
+    return AssumedJob("\n".join(lines), (said, *told))
+
+
+def _comments(preparation: Preparation) -> Iterator[tuple[int, str]]:
+    """Every comment with its line, from 1, as long as lists of tools and tool changes may stand there."""
+    for number, line in enumerate(preparation.source.lines, 1):
+        for match in _COMMENT.finditer(line):
+            yield number, (match[1] or match[2] or "").strip()
+
+
+def _is_in_inches(preparation: Preparation) -> bool:
+    head = (line for _, line in zip(range(HEAD_LINES), preparation.source.lines, strict=False))
+    words = "\n".join(_COMMENT.sub("", line) for line in head)
+    return preparation.dialect.name in ("fanuc", "haas", "linuxcnc") and bool(
+        re.search(r"\bG20\b|G20(?![0-9.])", words, re.IGNORECASE)
+    )
+
+
+# --- stock and zero
+
+
+def _stock(
+    moves: Moves, comments: list[tuple[int, str]], radius: float, *, inches: bool
+) -> tuple[list[str], FloatArray | None, str]:
+    """Lines of the stock, the centre of its top face, and how it came about."""
+    feeds = moves.motion == Motion.FEED
+    points = np.concatenate([moves.start[feeds], moves.end[feeds]])[:, :3]
+    if not len(points):
+        return _no_stock("the program feeds nowhere")
+    low, high = points.min(axis=0), points.max(axis=0)
+    head = "\n".join(text for line, text in comments if line <= HEAD_LINES).upper()
+    told = next((match for pattern in _STOCKS if (match := pattern.search(head))), None)
+    if told is not None:
+        size = np.array([float(value) for value in told.groups()]) * (25.4 if inches else 1.0)
+        if (size > 0.0).all():
+            center = _center_of(size, low, high)
+            top = 0.0 if low[2] < 0.0 else float(size[2])
+            return _box(size, np.array([*center, top]), "a comment in the program's head")
+    if low[2] >= -_BELOW:
+        drop = moves.end[:, 2] - moves.start[:, 2]
+        flat, plunges = feeds & (np.abs(drop) < _BELOW), (feeds & (drop < -_BELOW)).any()
+        top = float(moves.end[flat, 2].max()) if plunges and flat.any() else 0.0
+        if top <= _BELOW:
+            return _no_stock("no feed goes below Z0")
+        bottom = 0.0
+    else:
+        top, bottom = 0.0, float(low[2]) - MARGIN
+    corner, far = _clipped(moves, low[:2] - MARGIN, high[:2] + MARGIN, top, radius)
+    whole = np.prod(high[:2] - low[:2] + 2.0 * MARGIN)
+    if (far <= corner).any() or np.prod(far - corner) < (1.0 - _MOST_CLIPPED) * whole:
+        return _no_stock("rapids plunge wherever it could lie")
+    size = np.array([*(far - corner), max(np.ceil(top - bottom), _LEAST_HEIGHT)])
+    size[:2] = np.floor(size[:2] * 10.0) / 10.0
+    return _box(
+        size, np.array([*((corner + far) / 2.0), top]), f"the path and {MARGIN:g} mm around it"
+    )
+
+
+def _clipped(
+    moves: Moves, corner: FloatArray, far: FloatArray, top: float, radius: float
+) -> tuple[FloatArray, FloatArray]:
+    """The box without what rapids would plunge into; holes that were fed before are none of that."""
+    fed: dict[tuple[float, float], float] = {}
+    rapid, ends = moves.motion == Motion.RAPID, moves.end[:, :3].round(3)
+    starts = moves.start[:, 2]
+    below = ends[:, 2] < top - _BELOW
+    for row in np.flatnonzero(below):
+        x, y, z = ends[row].tolist()
+        if not rapid[row]:
+            fed[x, y] = min(z, fed.get((x, y), z))
+            continue
+        if starts[row] <= z + _BELOW or fed.get((x, y), top) <= z + 1.0:
+            continue
+        if (corner < (x + radius, y + radius)).all() and (far > (x - radius, y - radius)).all():
+            width, depth = (far - corner).tolist()
+            losses = {
+                (0, "low"): (x + radius - corner[0]) * depth,
+                (0, "high"): (far[0] - x + radius) * depth,
+                (1, "low"): (y + radius - corner[1]) * width,
+                (1, "high"): (far[1] - y + radius) * width,
+            }
+            (axis, side), _ = min(losses.items(), key=lambda pair: pair[1])
+            place = (x, y)[axis]
+            corner, far = corner.copy(), far.copy()
+            if side == "low":
+                corner[axis] = place + radius + _CLEAR
+            else:
+                far[axis] = place - radius - _CLEAR
+    return corner, far
+
+
+_CLEAR = 0.5
+"""Between the stock and a tool that plunges beside it [mm]."""
+
+
+def _center_of(size: FloatArray, low: FloatArray, high: FloatArray) -> tuple[float, float]:
+    """Where stock of a known size lies: from a corner at zero, around zero, or around the path."""
+    slack = MARGIN
+    if (low[:2] >= -slack).all() and (high[:2] <= size[:2] + slack).all():
+        return float(size[0]) / 2.0, float(size[1]) / 2.0
+    if (np.abs(low[:2]) <= size[:2] / 2.0 + slack).all() and (
+        np.abs(high[:2]) <= size[:2] / 2.0 + slack
+    ).all():
+        return 0.0, 0.0
+    return float(low[0] + high[0]) / 2.0, float(low[1] + high[1]) / 2.0
+
+
+def _box(size: FloatArray, top: FloatArray, source: str) -> tuple[list[str], FloatArray, str]:
+    measures = ", ".join(f"{value:.1f}" for value in size)
+    lines = [
+        "[stock]",
+        'shape = "box"',
+        f"size = [{measures}]  # mm: from {source}",
+        f"position = [{top[0]:.3f}, {top[1]:.3f}, {top[2]:.3f}]  # centre of its top face, mm",
+        "",
+    ]
+    return (
+        lines,
+        top,
+        f"stock {' x '.join(f'{value:g}' for value in size.round(1))} mm, top at Z{top[2]:g}: from {source}",
+    )
+
+
+def _no_stock(reason: str) -> tuple[list[str], None, str]:
+    lines = [
+        f"# No stock: {reason}. With one it would read:",
+        "# [stock]",
+        '# shape = "box"',
+        "# size = [100.0, 100.0, 20.0]  # mm; its top face lies at program Z0",
+        "",
+    ]
+    return lines, None, f"no stock: {reason}, so that nothing is cut"
+
+
+def _zero_line(
+    preparation: Preparation,
+    moves: Moves,
+    top: FloatArray | None,
+    stock: str,
+    tools: list[str],
+) -> list[str]:
+    """Where program zero lies: the stock in the table's middle; its height where the program asks for it."""
+    machine = preparation.machine
+    zero: dict[str, float] = {}
+    rotary = machine.axes.rotary()
+    turns = len(moves) > 0 and bool((moves.start[:, rotary] != moves.end[:, rotary]).any())
+    if top is not None and not turns and np.abs(top[:2]).max() > _BELOW:
+        center = machine.part_frame.center
+        zero["X"], zero["Y"] = float(center[0] - top[0]), float(center[1] - top[1])
+    if _counts_from_machine_zero(preparation):
+        text = "\n".join(['program = "x"', stock, *tools])
+        zero["Z"] = _height(JobFile.model_validate(tomllib.loads(text)), machine)
+    if not zero:
+        return []
+    values = ", ".join(f"{name} = {value:.3f}" for name, value in zero.items())
+    return [f"part_zero = {{ {values} }}  # mm in machine coordinates"]
+
+
+def _height(file: JobFile, machine: Machine) -> float:
+    return float(part_zero(file, machine, spindle_over_table_mm(machine))[machine.axes.index("Z")])
+
+
+_FROM_MACHINE_ZERO = re.compile(r"G0*(?:28|30|53)(?![0-9])", re.IGNORECASE)
+
+
+def _counts_from_machine_zero(preparation: Preparation) -> bool:
+    return any(
+        _FROM_MACHINE_ZERO.search(_COMMENT.sub("", line)) for line in preparation.source.lines
+    )
+
+
+# --- tools
+
+
+def _tool_lines(
+    calls: list[tuple[int, int, int]],
+    comments: list[tuple[int, str]],
+    moves: Moves,
+    *,
+    inches: bool,
+) -> tuple[list[str], list[str], float]:
+    """Lines of the tools that the program calls, how each came about, and the largest diameter [mm]."""
+    numbers = list(dict.fromkeys(number for number, _, _ in calls if number)) or [1]
+    listed: dict[int, ToolComment] = {}
+    for _, comment in comments:
+        found = numbered_tool(comment)
+        if found is not None and found[0] in numbers:
+            tool = tool_of_comment(found[1], inches=inches)
+            if tool.diameter is not None or tool.kind:
+                listed.setdefault(found[0], tool)
+    lines: list[str] = []
+    told: list[str] = []
+    largest = 0.0
+    for number in numbers:
+        tool = listed.get(number) or _near_comment(number, calls, comments, inches=inches)
+        rows = _rows_of(number, calls, len(moves))
+        more, said, diameter = _tool_table(number, tool, moves, rows)
+        lines += more
+        told.append(said)
+        largest = max(largest, diameter)
+    return lines, told, largest
+
+
+def _near_comment(
+    number: int,
+    calls: list[tuple[int, int, int]],
+    comments: list[tuple[int, str]],
+    *,
+    inches: bool,
+) -> ToolComment | None:
+    """What a comment beside a tool's call tells of it; without a list, and one tool alone, any comment of the head."""
+    lines = [line for each, line, _ in calls if each == number]
+    near = [
+        (abs(line - call), text)
+        for line, text in comments
+        for call in lines
+        if abs(line - call) <= _NEAR_LINES
+    ]
+    if not lines:
+        near = [(line, text) for line, text in comments if line <= HEAD_LINES]
+    for _, text in sorted(near):
+        tool = tool_of_comment(text, inches=inches)
+        if tool.diameter is not None and tool.kind:
+            return tool
+    return None
+
+
+def _rows_of(number: int, calls: list[tuple[int, int, int]], count: int) -> list[int]:
+    """Moves with a tool; all of them where no tool is called."""
+    if not calls:
+        return list(range(count))
+    rows: list[int] = []
+    for place, (each, _, begin) in enumerate(calls):
+        end = calls[place + 1][2] if place + 1 < len(calls) else count
+        if each == number:
+            rows += range(begin, end)
+    return rows
+
+
+def _tool_table(
+    number: int, tool: ToolComment | None, moves: Moves, rows: list[int]
+) -> tuple[list[str], str, float]:
+    """A tool's lines, how it came about, and its diameter [mm]."""
+    feeds = [row for row in rows if moves.motion[row] == Motion.FEED]
+    ways = moves.end[feeds, :2] - moves.start[feeds, :2]
+    drills = bool(feeds) and bool((np.abs(ways) < _BELOW).all())
+    depth = max(0.0, -float(moves.end[feeds, 2].min())) if feeds else 0.0
+    kind = (tool.kind if tool else "") or ("drill" if drills else "flat")
+    diameter = (tool.diameter if tool else None) or _USUAL_DIAMETER
+    flute = max(_USUAL_FLUTE, np.ceil(depth + 5.0))
+    length = max(_USUAL_LENGTH, np.ceil(flute * 1.6 + 20.0))
+    guesses = [] if tool and tool.diameter else ["diameter"]
+    kind_from = "its comment" if tool and tool.kind else "what it does"
+    size_from = "its comment" if tool and tool.diameter else "a guess"
+    lines = [
+        "[[tools]]",
+        f"number = {number}" + (f"  # {_plain(tool.text)}" if tool else ""),
+        f'kind = "{kind}"  # flat, ball, bull, drill, chamfer: from {kind_from}',
+        f"diameter = {round(float(diameter), 4)}  # mm: {size_from}",
+        *([f"corner = {tool.corner}  # mm"] if tool and tool.corner and kind == "bull" else []),
+        f"flute = {flute:.1f}  # mm: a guess",
+        f"length = {length:.1f}  # from the spindle nose to the tip, mm: a guess",
+        "",
+    ]
+    said = f"T{number} {kind} of {diameter:g} mm: " + (
+        f"from its comment ({_plain(tool.text)})"
+        if tool and tool.diameter
+        else f"{' and '.join(guesses)} is a guess"
+    )
+    return lines, said, diameter
+
+
+def _plain(text: str) -> str:
+    """A comment of a program as one of a job file."""
+    return "".join(each for each in text if each.isprintable())[:80]
+
+
+def text_beside(path: Path, assumed: AssumedJob, program: Path) -> str:
+    """The job's text for a file that may lie in another folder than its program."""
+    relative = Path(os.path.relpath(program.resolve(), path.resolve().parent)).as_posix()
+    return f'program = "{relative}"\n{assumed.text.partition(chr(10))[2]}'
