@@ -39,14 +39,14 @@ def all_pairs(name: str) -> list[tuple[str, str, str]]:
         (name, one.name, two.name)
         for one, two in itertools.combinations(solids, 2)
         if model.geom_bodyid[one.id] != model.geom_bodyid[two.id]
-        and not built_to_pass(model, one, two)
+        and not built_to_pass(model, one.id, two.id)
     ]
 
 
-def built_to_pass(model: mujoco.MjModel, one: mujoco.MjModel, two: mujoco.MjModel) -> bool:
+def built_to_pass(model: mujoco.MjModel, one: int, two: int) -> bool:
     """Parts of the machine alone, of which neither carries the tool or the workpiece; and the stock."""
-    names = {one.name, two.name}
-    tool = [bool(model.geom_contype[each.id] & TOOL_SIDE) for each in (one, two)]
+    names = {model.geom(one).name, model.geom(two).name}
+    tool = [bool(model.geom_contype[each] & TOOL_SIDE) for each in (one, two)]
     if all(tool) or (any(tool) and BY_HEIGHT_MAP in names):
         return True
     gantry = any(name.startswith("gantry") for name in names)
@@ -119,7 +119,11 @@ def test_every_body_of_the_machine_is_in_the_matrix() -> None:
 
 @pytest.mark.parametrize(
     ("position", "into"),
-    [((0.0, 0.0, -3.0), "faceplate"), ((0.0, 30.0, 42.0), "stock"), ((12.0, 45.0, 5.0), "(arm|block)")],
+    [
+        ((0.0, 0.0, -3.0), "faceplate"),
+        ((0.0, 30.0, 42.0), "stock"),
+        ((12.0, 45.0, 5.0), "(arm|block)"),
+    ],
 )
 def test_a_fixture_in_something_else_is_refused(
     position: tuple[float, float, float], into: str
