@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from twin.errors import EmptyProgramError, UsageError
+from twin.errors import ConfigError, EmptyProgramError, UsageError
 from twin.nc.text.diagnostics import ProgramError
 from twin.run.assumed_job import AssumedJob, text_beside, with_assumptions
 from twin.run.preparation import Preparation, prepare
@@ -178,3 +178,27 @@ def test_comments_tell_tools(comment: str, tool: tuple[object, ...]) -> None:
 def test_numbers_without_a_unit_are_inches_where_the_program_is() -> None:
     assert tool_of_comment("0.5 FLAT ENDMILL", inches=True).diameter == 12.7
     assert tool_of_comment("10 mm FLAT ENDMILL", inches=True).diameter == 10.0
+
+
+def test_words_of_an_axis_that_stays_at_zero_are_passed_over(tmp_path: Path) -> None:
+    made, assumed = raw(tmp_path, CONTOUR.replace("X-12. Y0.", "X-12. Y0. A0."))
+    assert made.job.file.axes == {"A": "ignored at 0"}
+    assert assumed.assumptions[-1] == "A stays at 0: the machine has no such axis"
+    path = tmp_path / "part.nc"
+    path.write_text(CONTOUR.replace("X-12. Y0.", "X-12. Y0. A90."))
+    with pytest.raises(ProgramError, match="no axis A") as raised:
+        prepare(path)
+    assert '[axes] A = "ignored at 0"' in str(raised.value)
+    assert 'A = "C" where it stands for C' in str(raised.value)
+
+
+def test_a_word_stands_for_an_axis_of_the_machine(tmp_path: Path) -> None:
+    (tmp_path / "part.nc").write_text("O1\nG1 X10. A90. F100.\nM30\n")
+    job = tmp_path / "part.toml"
+    job.write_text('program = "part.nc"\ndialect = "fanuc"\n[axes]\nA = "C"\n')
+    moves = next(prepare(job).interpretation().chunks()).moves
+    assert moves.end[0].tolist() == [10.0, 0.0, 0.0, 90.0]
+    for wrong in ('A = "B"', 'X = "C"'):
+        job.write_text(f'program = "part.nc"\ndialect = "fanuc"\n[axes]\n{wrong}\n')
+        with pytest.raises(ConfigError, match="job key 'axes"):
+            prepare(job)

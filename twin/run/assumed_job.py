@@ -15,7 +15,7 @@ from twin.machine.model.model import spindle_over_table_mm
 from twin.nc.canonical import FloatArray, Function, Motion, Moves, concatenate
 from twin.nc.dialects.recognition import HEAD_LINES
 from twin.run.placement import part_zero
-from twin.run.preparation import Preparation, anywhere, prepare_job
+from twin.run.preparation import IGNORED_AT_ZERO, Preparation, anywhere, prepare_job
 from twin.run.tool_comments import ToolComment, numbered_tool, tool_of_comment
 
 MARGIN = 10.0
@@ -105,7 +105,7 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
             if isinstance(event, Function) and event.word[:1] == "T" and event.word[1:].isdigit()
         ]
         done += len(chunk.moves)
-    inches = _is_in_inches(preparation)
+    inches, lacking = _is_in_inches(preparation), _lacking_axes(preparation)
     comments = list(_comments(preparation))
     tools, told, diameter = _tool_lines(calls, comments, moves, inches=inches)
     stock, position, said = _stock(moves, comments, diameter / 2.0, inches=inches)
@@ -117,12 +117,28 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
         "",
         *stock,
         *tools,
+        *(
+            ["[axes]", *(f'{word} = "{IGNORED_AT_ZERO}"' for word in lacking), ""]
+            if lacking
+            else []
+        ),
         "[tolerance]",
         f"contour_um = {preparation.job.file.tolerance.contour_um}",
         f"rapid_contour_um = {_RAPID_TOLERANCE_UM}  # a guess",
         "",
     ]
-    return AssumedJob("\n".join(lines), (said, *told))
+    left_out = tuple(f"{word} stays at 0: the machine has no such axis" for word in lacking)
+    return AssumedJob("\n".join(lines), (said, *told, *left_out))
+
+
+def _lacking_axes(preparation: Preparation) -> list[str]:
+    """Words of axes that the machine lacks and the program names at 0."""
+    words = "|".join(sorted(preparation.settings.axis_words))
+    if not words:
+        return []
+    written = re.compile(rf"(?<![A-Z\[#])({words})[ \t]*[-+]?[.0-9]", re.IGNORECASE)
+    lines = (_COMMENT.sub("", line) for line in preparation.source.lines)
+    return sorted({found[1].upper() for line in lines for found in written.finditer(line)})
 
 
 def _comments(preparation: Preparation) -> Iterator[tuple[int, str]]:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pydantic
 
-from twin.errors import RecordingError, UsageError
+from twin.errors import ConfigError, RecordingError, UsageError
 from twin.files.overrides import Change
 from twin.files.shipped import machine_file, shipped_program
 from twin.job.job_file import Job, JobFile, read_job
@@ -188,6 +188,7 @@ def _control_settings(job: Job, machine: Machine, *, strict: bool) -> ControlSet
     return ControlSettings(
         axes=machine.axes,
         periodic=frozenset(name for name in machine.axes.names if machine.axis(name).periodic),
+        axis_words=_axis_words(job, machine),
         default_feed=job.file.default_feed or control.default_feed,
         default_rotary_feed=job.file.default_rotary_feed or control.default_rotary_feed,
         start=machine.axes.named(start),
@@ -220,6 +221,31 @@ def _control_settings(job: Job, machine: Machine, *, strict: bool) -> ControlSet
 def _block_skip_levels(file: JobFile) -> frozenset[int]:
     """Numbers behind the slash of blocks that are left out."""
     return frozenset() if isinstance(file.block_skip, bool) else frozenset(file.block_skip)
+
+
+IGNORED_AT_ZERO = "ignored at 0"
+"""What ``[axes]`` of a job says of an axis whose words are passed over while they stay 0."""
+_ROTARY_WORDS = "ABC"
+
+
+def _axis_words(job: Job, machine: Machine) -> dict[str, str | None]:
+    """Words of axes that the machine lacks; those of a raw program's rotary axes are passed over at 0.
+
+    Raises:
+        ConfigError: One stands for an axis that the machine lacks, or it has that axis itself.
+    """
+    names = machine.axes.names
+    if job.path is None and not job.file.axes:
+        return dict.fromkeys(set(_ROTARY_WORDS) - set(names))
+    for word, axis in job.file.axes.items():
+        if word in names:
+            raise ConfigError(f"job key 'axes.{word}': {machine.file.name} has an axis {word}")
+        if axis != IGNORED_AT_ZERO and axis not in names:
+            raise ConfigError(
+                f"job key 'axes.{word}': '{axis}' is no axis of {machine.file.name} ({', '.join(names)}), "
+                f'nor "{IGNORED_AT_ZERO}"'
+            )
+    return {w: None if axis == IGNORED_AT_ZERO else axis for w, axis in job.file.axes.items()}
 
 
 def _machine_zero(job: Job, machine: Machine) -> dict[str, float] | None:

@@ -77,6 +77,10 @@ class ControlSettings:
     module_rotary: bool = False
     """``fagor8070``: the sign of an absolute rotary target is the direction of rotation."""
 
+    axis_words: Mapping[str, str | None] = dataclasses.field(default_factory=dict)
+    """Words of axes that the machine lacks: the axis that each stands for, or None where it is left out while it
+    stays at 0."""
+
     helical_feed: Literal["arc", "path"] | None = None
     """``fanuc``: F of a helix counts the arc in its plane, or the path (parameter 1403 #5); None: as the
     control does when it comes from its maker."""

@@ -107,7 +107,12 @@ class ControlState:
         self._axis_columns = {
             name: index for name, index in self.axis_index.items() if name in self.axis_letters
         }
-        self._axes_that_lack = self.axis_letters - self.axis_index.keys()
+        self._axis_columns |= {
+            word: self.axis_index[axis]
+            for word, axis in settings.axis_words.items()
+            if axis is not None and word in self.axis_letters
+        }
+        self._axes_that_lack = self.axis_letters - self._axis_columns.keys()
         self.programmed = [settings.start.get(name, 0.0) for name in settings.axes.names]
         self.part = list(self.programmed)
         self.frame = Frame(len(self.part))

@@ -53,14 +53,29 @@ class ControlWords(ControlState, abc.ABC):
         """
         words, columns = self.words, self._axis_columns
         if not self._axes_that_lack.isdisjoint(words):
-            self.refuse_axis(next(words[each] for each in words if each in self._axes_that_lack))
+            for name in [each for each in words if each in self._axes_that_lack]:
+                self._leave_out(words.pop(name))
         return [(columns[each], words.pop(each)) for each in list(words) if each in columns]
+
+    def _leave_out(self, word: Word) -> None:
+        """Pass over the word of an axis that the machine lacks, where the job says so and it stays at 0.
+
+        Raises:
+            ProgramError: It does not, or nobody has said so.
+        """
+        if word.address not in self.settings.axis_words or number_of(word) != 0.0:
+            self.refuse_axis(word)
 
     def refuse_axis(self, word: Word) -> NoReturn:
         """The machine lacks the axis that the word names."""
         names = ", ".join(self.settings.axes.names)
         message = f"this machine has no axis {word.address}"
-        self.fail("no-such-axis", message, word, f"axes: {names}")
+        rotary = next(
+            (n for n, line in zip(names.split(", "), self.linear, strict=True) if not line), ""
+        )
+        stands = f'; {word.address} = "{rotary}" where it stands for {rotary}' if rotary else ""
+        hint = f'axes: {names}; in the job: [axes] {word.address} = "ignored at 0"{stands}'
+        self.fail("no-such-axis", message, word, hint)
 
     def axis_value(self, index: int, word: Word) -> float:
         """Value of an axis word [mm or deg]."""
