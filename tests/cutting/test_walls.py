@@ -31,7 +31,7 @@ def way(*corners: tuple[float, float], depth: float = DEPTH) -> FloatArray:
 
 def height(part: Plate, x: float, y: float) -> float:
     """What stands at a place, above the floor of the cut; NaN: no wall tells."""
-    return height_by_wall(part.material, x, y, -DEPTH)
+    return height_by_wall(part.material, x, y, (x, y), -DEPTH)
 
 
 def assert_wall(part: Plate, place: tuple[float, float], outwards: tuple[float, float]) -> None:

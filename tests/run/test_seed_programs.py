@@ -26,15 +26,33 @@ FINAL = {
 """Where the axes stand in the end, as the seeds say it: the table's physical angle, the helix."""
 
 
-each_job = pytest.mark.parametrize("job", JOBS, ids=lambda path: f"{path.parent.name}/{path.stem}")
+def name_of(job: Path) -> str:
+    return f"{job.parent.name}/{job.stem}"
+
+
+each_job = pytest.mark.parametrize("job", JOBS, ids=name_of)
 
 
 @each_job
-def test_it_passes_and_ends_where_it_shall(twin: Twin, tmp_path: Path, job: Path):
+def test_it_passes(job: Path):
+    done = check_program(job, CheckSettings())
+    assert done.passed, "\n".join(map(str, done.findings))
+
+
+@pytest.mark.parametrize(
+    "job",
+    [
+        pytest.param(
+            job, marks=() if name_of(job) in FINAL else pytest.mark.thorough, id=name_of(job)
+        )
+        for job in JOBS
+    ],
+)
+def test_it_runs_and_ends_where_it_shall(twin: Twin, tmp_path: Path, job: Path):
     done = twin("run", job, "--out", tmp_path)
     assert done.code == 0, done.stderr
     final = json.loads((tmp_path / "result.json").read_text(encoding="utf-8"))["final"]
-    for axis, value in FINAL.get(f"{job.parent.name}/{job.stem}", {}).items():
+    for axis, value in FINAL.get(name_of(job), {}).items():
         assert final["commanded"][axis] == pytest.approx(value, abs=1e-9)
         assert final["simulated"][axis] == pytest.approx(value, abs=2e-3)
 

@@ -100,6 +100,14 @@ def serve(
         int,
         typer.Option("--buffer", min=100, max=1 << 24, help="Observations that are remembered."),
     ] = 1 << 17,
+    opcua: Annotated[
+        int | None,
+        typer.Option("--opcua", metavar="PORT", min=1, max=65535, help="OPC UA beside MTConnect."),
+    ] = None,
+    opcua_trust: Annotated[
+        Path | None,
+        typer.Option("--opcua-trust", metavar="DIR", help="Certificates of OPC UA's clients."),
+    ] = None,
     dialect: DialectOption = None,
     machine: MachineOption = None,
 ) -> None:
@@ -107,8 +115,9 @@ def serve(
     from twin.commands import serve as agent
 
     source = agent.Source(
-        host=host, port=port, speed=speed, buffer=buffer, dialect=dialect, machine=machine
-    )
+        host=host, port=port, speed=speed, buffer=buffer, dialect=dialect, machine=machine,
+        opcua_port=opcua, opcua_trust=opcua_trust,
+    )  # fmt: skip
     if (job is None) == (scene is None):
         raise UsageError("give a program or a job, or --scene and a training scene")
     if scene is not None:

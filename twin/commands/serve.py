@@ -1,5 +1,6 @@
 """``twin serve``: an MTConnect agent over a job that is run again and again, or a training room."""
 
+import asyncio
 import contextlib
 import dataclasses
 import logging
@@ -21,6 +22,8 @@ from twin.run.progress import shown_progress
 from twin.run.run import Run
 
 if TYPE_CHECKING:
+    from twin.job.job_file import JobFile
+    from twin.machine.description.config import Machine
     from twin.serve.agent import Agent
     from twin.serve.playback import Production
 
@@ -40,6 +43,8 @@ class Source:
         buffer: How many observations are remembered.
         dialect: Overrides the job's dialect.
         machine: Overrides the job's machine.
+        opcua_port: Where OPC UA is told beside MTConnect; None: nowhere.
+        opcua_trust: Folder of the certificates of OPC UA's clients.
     """
 
     host: str
@@ -48,6 +53,8 @@ class Source:
     buffer: int = 1 << 17
     dialect: str | None = None
     machine: str | None = None
+    opcua_port: int | None = None
+    opcua_trust: Path | None = None
 
 
 def serve_job(path: Path, source: Source) -> ExitCode:
@@ -61,6 +68,7 @@ def serve_job(path: Path, source: Source) -> ExitCode:
         UsageError: The web server is not installed, or nobody can listen there.
         TwinError: Something is wrong with the job; see each error's exit code.
     """
+    _check_opcua(source)
     require_extra("serve", "twin serve")
     from twin.serve.agent import Agent
     from twin.serve.clock import Clock
@@ -76,10 +84,13 @@ def serve_job(path: Path, source: Source) -> ExitCode:
         description = _description(source.speed)
         agent = Agent(device, Clock(source.speed), description, source.buffer)
         stop = threading.Event()
-        with (
-            _served(agent, lambda: feed(agent, ticks(production)), listener, stop),
-            let_interruption_stop(stop.set),
-        ):
+        tools = _tools(run.preparation.job.file)
+        named = (machine, production.program, tools)
+
+        def observe() -> Coroutine[Any, Any, None]:
+            return _with_opcua(feed(agent, ticks(production)), agent, source, named)
+
+        with _served(agent, observe, listener, stop), let_interruption_stop(stop.set):
             typer.echo(_address(listener))
             while not stop.wait(_WAIT_S):
                 pass
@@ -101,6 +112,7 @@ def serve_scene(name: str, source: Source) -> ExitCode:
     if source.speed != 1.0:
         raise UsageError("--speed is for jobs: the clock of a training room is the day's")
     require_extra("train", "twin serve --scene")
+    _check_opcua(source)
     from twin.serve.agent import Agent
     from twin.serve.clock import Clock
     from twin.serve.device import device_of
@@ -124,7 +136,10 @@ def serve_scene(name: str, source: Source) -> ExitCode:
                 room.stop()
 
             def observe() -> Coroutine[Any, Any, None]:
-                return observe_room(agent, observer, lambda: room.driver.look.now)
+                seen = observe_room(agent, observer, lambda: room.driver.look.now)
+                program = scene.preparation.source.name
+                tools = _tools(scene.preparation.job.file)
+                return _with_opcua(seen, agent, source, (machine, program, tools))
 
             with (
                 _served(agent, observe, listener, stop, room.stop),
@@ -135,6 +150,49 @@ def serve_scene(name: str, source: Source) -> ExitCode:
                     typer.echo(f"{scene.name}, {role}: {address}", err=True)
                 room.serve()
     return ExitCode.OK
+
+
+def _tools(job: "JobFile") -> dict[int, str]:
+    """Names of a job's tools by their numbers."""
+    return {tool.number: f"{tool.kind} {tool.diameter:g} mm" for tool in job.tools}
+
+
+def _check_opcua(source: Source) -> None:
+    """Refuse an OPC UA server that cannot be, before anything is simulated.
+
+    Raises:
+        UsageError: It is not installed, would be open to anybody, or its port is taken.
+    """
+    if source.opcua_port is None:
+        if source.opcua_trust is not None:
+            raise UsageError("--opcua-trust is for --opcua PORT")
+        return
+    require_extra("opcua", "twin serve --opcua")
+    from twin.serve.opcua.node_sets import require_node_sets
+    from twin.serve.opcua.server import Place, check_place
+
+    require_node_sets()
+    check_place(Place(source.host, source.opcua_port, source.opcua_trust))
+
+
+def _say(text: str) -> None:
+    typer.echo(text, err=True)
+
+
+async def _with_opcua(
+    observe: Coroutine[Any, Any, None], agent: "Agent", source: Source,
+    named: tuple["Machine", str, dict[int, str]],
+) -> None:  # fmt: skip
+    """Observe a machine, and tell it in OPC UA too where that is asked for."""
+    if source.opcua_port is None:
+        await observe
+        return
+    from twin.serve.opcua.server import Content, Place, mirror
+
+    place = Place(source.host, source.opcua_port, source.opcua_trust)
+    async with asyncio.TaskGroup() as group:
+        group.create_task(mirror(agent, place, Content(*named), _say))
+        group.create_task(observe)
 
 
 def _produce(run: Run, folder: Path) -> "Production":

@@ -31,7 +31,7 @@ _LONGEST_MEAN_S = 0.05
 """Longest time that the speed of the feed is averaged over, however seldom a tooth comes [s]."""
 _STILL = 1e-9
 
-WHOLE, BY_FORCE, BY_CHIP, BY_SPEED = 0, 1, 2, 3
+WHOLE, BY_FORCE, BY_CHIP, BY_SPEED, BY_TORQUE, BY_THRUST = range(6)
 """Why a tool has lost its edge."""
 
 ANGLE, SPEED, CONTACT, STATE, VALUE, MET, FRESH, STOOD = range(8)
@@ -232,6 +232,10 @@ def _turn_and_cut(period: float, commanded: float, cut: Cut, memory: Memory) -> 
             _break(memory, BY_CHIP, memory.bench.figures[2])
         elif memory.bench.figures[0] > cut.strength.force:
             _break(memory, BY_FORCE, memory.bench.figures[0])
+        elif memory.bench.figures[1] * MM > cut.strength.torque:
+            _break(memory, BY_TORQUE, memory.bench.figures[1] * MM)
+        elif memory.bench.mean[2] > cut.strength.thrust:
+            _break(memory, BY_THRUST, memory.bench.mean[2])
         else:
             add_force_between(cut.cutter, memory.bench, numbers[ANGLE], -turned, memory.force)
     numbers[ANGLE] -= turned
@@ -316,7 +320,8 @@ def _note(cut: Cut, memory: Memory, felt: Felt, row: int, turn: tuple[float, flo
     felt.deflection[row, 0] = turn[0] * bend[0] + turn[1] * bend[1]
     felt.deflection[row, 1] = turn[0] * bend[1] - turn[1] * bend[0]
     felt.deflection[row, 2] = bend[2]
-    felt.peak_force[row] = memory.bench.figures[0] if met else 0.0
+    peak = max(memory.bench.figures[0], abs(memory.bench.mean[2]))
+    felt.peak_force[row] = peak if met else 0.0
     felt.power[row] = 2.0 * math.pi * abs(speed) * torque
     felt.chip[row] = memory.bench.figures[2] if met else 0.0
     felt.spindle_speed[row] = speed * SECONDS_PER_MINUTE

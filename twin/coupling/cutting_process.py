@@ -10,6 +10,8 @@ import numpy as np
 from twin.coupling.cutting_kernels import (
     BY_CHIP,
     BY_FORCE,
+    BY_THRUST,
+    BY_TORQUE,
     FRESH,
     SPEED,
     STATE,
@@ -25,10 +27,10 @@ from twin.coupling.spindle_kernels import SpindleDrive
 from twin.cutting.forces.cutter_form import cutter_form, force_law
 from twin.cutting.forces.materials import Kienzle
 from twin.cutting.forces.tool_strength import ToolStrength, tool_strength
-from twin.cutting.height_map import HeightMap
+from twin.cutting.height_map import HeightMap, raw_walls
 from twin.cutting.kernels.sweep import Marks
 from twin.cutting.kernels.tooth_forces import tooth_bench
-from twin.cutting.kernels.walls import Material, no_trace, no_walls
+from twin.cutting.kernels.walls import Material, no_trace
 from twin.job.job_file import ToolTable
 from twin.machine.description.config import SpindleTable
 from twin.machine.simulation.process import Physics
@@ -125,7 +127,7 @@ class CuttingProcess:
         self.breaks: list[ToolBreak] = []
         self.alarm: Alarm | None = None
         self.material = material
-        self.walls = no_walls(material.heights)
+        self.walls = raw_walls(material)
         self._resists = resists
         self._operation = operation
         self._frame = part_frame
@@ -218,6 +220,14 @@ class CuttingProcess:
         elif why == BY_FORCE:
             reason = (
                 f"a force of {value:.0f} N was greater than the {strength.force:.0f} N it bears"
+            )
+        elif why == BY_TORQUE:
+            reason = (
+                f"a torque of {value:.3g} Nm was greater than the {strength.torque:.3g} Nm it bears"
+            )
+        elif why == BY_THRUST:
+            reason = (
+                f"a thrust of {value:.0f} N was greater than the {strength.thrust:.0f} N it bears"
             )
         else:
             reason = f"{value:.0f} /min were more than the {strength.speed:.0f} /min it bears"

@@ -3,6 +3,7 @@
 import numpy as np
 
 from twin.cutting.cut import Cutter
+from twin.cutting.forces.materials import kienzle
 from twin.cutting.program_summary import ProgramSummary
 from twin.errors import ConfigError
 from twin.job.job_file import StockTable
@@ -39,8 +40,10 @@ class AxisLoad:
             ConfigError: The stock's material or any spindle speed is missing, so that no force can
                 be reckoned.
         """
-        if stock.material is None:
-            raise ConfigError("cutting_load needs stock.material, for the cutting force")
+        if kienzle(stock) is None:
+            raise ConfigError(
+                "cutting_load needs stock.material, or specific_force and exponent, for the cutting force"
+            )
         if all(tool.speed is None for tool in summary.tools.tools):
             raise ConfigError(
                 "cutting_load needs a spindle speed: S in the program, or speed of a [[tools]] table"

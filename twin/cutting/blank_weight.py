@@ -27,8 +27,8 @@ def blank_weight(stock: StockTable) -> Weight | None:
         ConfigError: The material is not known, or the STL file cannot be read.
     """
     material = kienzle(stock)
-    density = stock.density or (None if material is None else material.density)
-    if density is None:
+    density = stock.density or (0.0 if material is None else material.density)
+    if not density:
         return None
     density *= _KG_PER_MM3
     if stock.file is not None:

@@ -12,6 +12,7 @@ import numpy as np
 from twin.cutting.kernels.drape import drape
 from twin.cutting.kernels.sweep import Grid
 from twin.cutting.kernels.wall_distance import KNOWN, WallDistance, no_walls_known
+from twin.cutting.kernels.walls import BASE, REACH, WallArray, no_walls
 from twin.cutting.outline import BoolArray, Outline, outline
 from twin.errors import ConfigError
 from twin.files.stl import read_stl
@@ -20,6 +21,9 @@ from twin.nc.canonical import FloatArray
 
 CELL_LIMIT = 64_000_000
 """Cells that a height map may have: half a gigabyte of heights."""
+ASIDE_MM = 1e-5
+"""How far the grid lies beside the blank's middle [mm]. A slot whose sides go through the middles of cells,
+as round numbers do along the grid, takes those on one side only, and not a whole row too many."""
 
 
 @dataclasses.dataclass(slots=True)
@@ -110,8 +114,8 @@ def blank(stock: StockTable, corner: FloatArray, cell: float) -> HeightMap:
             f"{coarsest:.2g} mm is the finest for this stock"
         )
     origin = (
-        float(center[0]) - 0.5 * (count_x - 1) * cell,
-        float(center[1]) - 0.5 * (count_y - 1) * cell,
+        float(center[0]) - 0.5 * (count_x - 1) * cell + ASIDE_MM,
+        float(center[1]) - 0.5 * (count_y - 1) * cell + ASIDE_MM,
     )
     top, bottom = float(center[2]), float(center[2]) - height
     edge = outline(stock, (float(center[0]), float(center[1])))
@@ -135,6 +139,24 @@ def blank(stock: StockTable, corner: FloatArray, cell: float) -> HeightMap:
         result.uncut = heights.copy()
         behind[_beside_lower(heights, bottom)] = KNOWN, bottom
     return result
+
+
+def raw_walls(uncut: HeightMap) -> WallArray:
+    """The blank's own sides as walls that forces know closer than by cells; none of an STL's.
+
+    Args:
+        uncut: The blank.
+    """
+    walls = no_walls(uncut.heights)
+    if (uncut.uncut < uncut.top).any():
+        return walls
+    rows, columns = np.nonzero(
+        np.abs(uncut.outline.inside(uncut.x, uncut.y[:, None])) <= REACH * uncut.cell
+    )
+    x, y = uncut.x[columns], uncut.y[rows]
+    off = uncut.outline.inside(x, y) / uncut.cell + BASE
+    walls[rows, columns] = off[:, None] * uncut.outline.inwards(x, y)
+    return walls
 
 
 def _beside_lower(heights: FloatArray, bottom: float) -> BoolArray:

@@ -49,6 +49,19 @@ class Outline:
         outer = self.half[0] - distance
         return np.minimum(outer, distance - self.bore) if self.bore else outer
 
+    def inwards(self, x: FloatArray, y: FloatArray) -> FloatArray:
+        """Unit vectors from the nearest edge into the material, shape (n, 2)."""
+        across, along = x - self.center[0], y - self.center[1]
+        if self.round:
+            distance = np.maximum(np.hypot(across, along), 1e-12)
+            sign = np.where(distance - self.bore < self.half[0] - distance, 1.0, -1.0)
+            sign = sign if self.bore else np.full(np.shape(distance), -1.0)
+            return np.column_stack([sign * across / distance, sign * along / distance])
+        by_x = self.half[0] - np.abs(across) < self.half[1] - np.abs(along)
+        return np.column_stack(
+            [np.where(by_x, -np.sign(across), 0.0), np.where(by_x, 0.0, -np.sign(along))]
+        )
+
     def snap(self, x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Move points that lie outside onto the edge."""
         across, along = x - self.center[0], y - self.center[1]

@@ -46,6 +46,10 @@ class StockTable(Table):
     stock's shorter side where that is less, 0.1 at the finest."""
     material: str | None = None
     """What it is made of, for the cutting force and its weight; none: no force is reckoned."""
+    specific_force: Positive | None = None
+    """Its own kc1.1: force on a chip 1 mm wide and 1 mm thick [N/mm²]; with ``exponent``."""
+    exponent: Annotated[float, Field(ge=0, lt=1)] | None = None
+    """Its own mc: how the specific force falls with the chip's thickness."""
     density: Positive | None = None
     """For its weight, which the axes below it move [g/cm³]; none: its material's, and without one it
     weighs nothing."""
@@ -56,6 +60,8 @@ class StockTable(Table):
         needed = _SHAPES[self.shape]
         if given != set(needed):
             raise ValueError(f"shape '{self.shape}' needs {' and '.join(needed)} and nothing else")
+        if (self.specific_force is None) != (self.exponent is None):
+            raise ValueError("specific_force and exponent are given together")
         if self.bore is not None and self.diameter is not None and self.bore >= self.diameter:
             raise ValueError("the bore of a tube must be smaller than its diameter")
         return self
@@ -135,6 +141,10 @@ class ToolTable(Table):
     """Cemented carbide or high-speed steel: how far it bends, and where it breaks."""
     force_limit: Positive | None = None
     """Level force that breaks it [N]; none: from its diameter, lengths and what it is made of."""
+    torque_limit: Positive | None = None
+    """Torque that twists it off [N m]; none: from its diameter and what it is made of."""
+    thrust_limit: Positive | None = None
+    """Force along its axis under which it breaks [N]; none: at which it buckles."""
     chip_limit: Positive | None = None
     """Chip that breaks an edge [mm]; none: a twentieth of the diameter."""
     speed_limit: Positive | None = None

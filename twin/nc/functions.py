@@ -2,7 +2,6 @@
 
 import dataclasses
 
-from twin.compilation.compilable import compilable
 from twin.nc.canonical import Function
 
 SPINDLE_COUNTER_CLOCKWISE = "M4"
@@ -28,13 +27,11 @@ PROGRAM_ENDS = frozenset({"M2", "M30"})
 _SPINDLE_ENDS = SPINDLE_STOPS | PROGRAM_ENDS | {f"M{number}" for number in _STOPS}
 
 
-@compilable
 def starts_spindle(function: float) -> bool:
     """Whether an M code starts the spindle, at the speed that S has given last."""
     return function in _STARTS
 
 
-@compilable
 def turns_behind(function: int, turned: float) -> float:
     """Whether the spindle turns behind an M code, where it did as told before; 0 or 1.
 

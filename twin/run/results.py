@@ -124,7 +124,10 @@ def _cut(outcome: Outcome, stock: StockTable | None) -> dict[str, Any] | None:
         cut["nominal"] = outcome.inspection.as_json()
     material = None if stock is None or outcome.cut.force_n is None else kienzle(stock)
     if stock is not None and material is not None:
-        cut["material"] = {"name": stock.material, **dataclasses.asdict(material)}
+        cut["material"] = {
+            "name": stock.material or "own constants",
+            **dataclasses.asdict(material),
+        }
     greatest = {name: each.value for name, each in outcome.loads.greatest.items()}
     if greatest:
         cut |= greatest | {"force_simulated": True, "loads": outcome.loads.as_json()}

@@ -132,6 +132,8 @@ def _blind(job: JobFile, *, forces: bool) -> Iterator[Unwatched]:
         yield Unwatched(FORCES, _why_no_forces(job))
     if job.nominal is None:
         yield Unwatched(WALLS, "the job has no [nominal]")
+    elif job.nominal.standing_um is None:
+        yield Unwatched("material left on the nominal part", "the job has no nominal.standing_um")
 
 
 def _silent_spindle(job: JobFile, watch: ProgramWatch) -> Iterator[Unwatched]:

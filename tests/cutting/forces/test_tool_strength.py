@@ -52,3 +52,14 @@ def test_it_breaks_where_the_stress_is_greatest() -> None:
     )
     assert (strength.force, strength.chip, strength.speed) == (70.0, 0.2, 9000.0)
     assert tool_strength(ToolTable(number=1, diameter=10.0)).chip == pytest.approx(0.5)
+
+
+def test_it_is_twisted_off_and_buckles_by_the_formulas_of_bars() -> None:
+    tool = ToolTable(number=1, kind="drill", diameter=5.0, flute=40.0, free_length=50.0)
+    core = FLUTED_SHARE * 5.0
+    shear = STRENGTH["carbide"] / math.sqrt(3.0)
+    assert tool_strength(tool).torque == pytest.approx(1e-3 * shear * math.pi * core**3 / 16.0)
+    euler = math.pi**2 * MODULUS["carbide"] * inertia(core) / 35.0**2
+    assert tool_strength(tool).thrust == pytest.approx(euler)
+    told = tool_strength(tool.model_copy(update={"torque_limit": 2.0, "thrust_limit": 300.0}))
+    assert (told.torque, told.thrust) == (2.0, 300.0)

@@ -37,15 +37,23 @@ def materials() -> dict[str, Kienzle]:
 
 
 def kienzle(stock: StockTable) -> Kienzle | None:
-    """The constants of a stock's material, or None where the job names none.
+    """The constants of a stock's material, or None where the job gives none; its own outweigh the table's.
 
     Raises:
         ConfigError: The material is not known.
     """
+    known = materials()
+    if stock.specific_force is not None and stock.exponent is not None:
+        density = stock.density or 0.0
+        if not density and stock.material in known:
+            density = known[stock.material].density
+        return Kienzle(stock.specific_force, stock.exponent, density, "the job")
     if stock.material is None:
         return None
-    known = materials()
     if stock.material not in known:
         names = ", ".join(sorted(known))
-        raise ConfigError(f"stock.material = '{stock.material}' is not known: there are {names}")
+        raise ConfigError(
+            f"stock.material = '{stock.material}' is not known: there are {names}; of another give "
+            "stock.specific_force (kc1.1 [N/mm²]) and stock.exponent (mc)"
+        )
     return known[stock.material]

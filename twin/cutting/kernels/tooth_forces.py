@@ -44,6 +44,8 @@ _SAME_DEPTH = 1e-6
 _CLEAR = 0.75
 """How far before the cutter the material is looked at, in cells along the normal: beyond the corner
 of a cell whose middle the cutter has passed."""
+_AHEAD = 0.1
+"""And of that so much, where it is the place of a wall that counts: a round one is not where it is farther on."""
 _FARTHEST = 4.0
 """And at most, in cells along the feed."""
 _LEAST = 1e-9
@@ -357,7 +359,8 @@ def _side_depth(
     # The walls beside the cutter are its own: they are looked at where it has not come to yet.
     x_before, y_before = x + clear * way[0] / level, y + clear * way[1] / level
     lowest = max(tip[2] + cutter.side_from, material.grid.bottom)
-    height = height_by_wall(material, x_before, y_before, lowest)
+    place = x + _AHEAD * (x_before - x), y + _AHEAD * (y_before - y)
+    height = height_by_wall(material, x_before, y_before, place, lowest)
     if math.isnan(height):
         height = height_at(material, x + clear * cosine, y + clear * sine)
     return max(0.0, min(height - tip[2], cutter.flute) - cutter.side_from)

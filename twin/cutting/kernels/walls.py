@@ -214,13 +214,16 @@ _BACK = 0.75
 
 
 @kernel
-def height_by_wall(material: Material, x: float, y: float, level: float) -> float:
-    """Height of the material at a place, as the walls beside it say.
+def height_by_wall(
+    material: Material, x: float, y: float, place: tuple[float, float], level: float
+) -> float:
+    """Height of the material at a place, as the walls of a cell beside it say.
 
     Args:
         material: What is cut.
-        x: Of the place [mm].
+        x: Of the cell whose walls count [mm].
         y: And its Y.
+        place: X and Y of the place, so far from that cell that a wall may be taken for a plane [mm].
         level: Above which material is looked for; not below the grid's bottom [mm].
 
     Returns:
@@ -229,15 +232,18 @@ def height_by_wall(material: Material, x: float, y: float, level: float) -> floa
     """
     grid, cell = material.grid, material.grid.cell
     row, column = cell_number(y, grid.origin[1], cell), cell_number(x, grid.origin[0], cell)
-    if not (0 <= row < material.heights.shape[0] and 0 <= column < material.heights.shape[1]):
+    rows, columns = material.heights.shape
+    if not (-1 <= row <= rows and -1 <= column <= columns):
         return math.nan
+    # A side of the blank may lie beyond the grid, by less than a cell.
+    row, column = min(max(row, 0), rows - 1), min(max(column, 0), columns - 1)
     wall, own = material.walls[row, column], material.heights[row, column]
     if wall[0] == 0.0 and wall[1] == 0.0:
         return own if own > level else math.nan
     size = math.hypot(wall[0], wall[1])
     nx, ny, off = wall[0] / size, wall[1] / size, (size - BASE) * cell
     middle_x, middle_y = grid.origin[0] + column * cell, grid.origin[1] + row * cell
-    if off + nx * (x - middle_x) + ny * (y - middle_y) <= 0.0:
+    if off + nx * (place[0] - middle_x) + ny * (place[1] - middle_y) <= 0.0:
         before = _BACK * cell + off
         return min(own, height_at(material, middle_x - before * nx, middle_y - before * ny))
     behind = cell - off

@@ -1,4 +1,4 @@
-"""In which order a block takes effect, and which of its codes exclude each other: for both tiers.
+"""In which order a block takes effect, and which of its codes exclude each other.
 
 Modal codes by group, then set-up actions, modal words (F, S, T), early M functions, the motion or what
 stands in its place, late M functions, jumps. In some dialects the words come before the actions.

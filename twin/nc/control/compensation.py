@@ -3,8 +3,7 @@
 from twin.nc.control.control import Control
 from twin.nc.control.state import integer_of
 from twin.nc.geometry.matrices import handedness
-from twin.nc.path.compensation import leads
-from twin.nc.path.compensation.contour import LEADING_OUT, OFF, STAGE
+from twin.nc.path.compensation.stage import LEADING_OUT, OFF
 from twin.nc.text.blocks import Word
 
 NEEDS_TOOL = "give the job a tool with its radius and length: [[tools]]"
@@ -37,20 +36,22 @@ def compensate(control: Control, side: float, radius: float) -> None:
         ProgramError: It is in force already, or the radius is no radius.
     """
     path = control.path
-    stage = path.contour.counts[STAGE]
+    stage = path.compensation_stage
     if not radius >= 0.0:
         control.fail("compensation-radius", f"a tool cannot have the radius {radius:g}")
-    if stage == LEADING_OUT:
+    if stage is LEADING_OUT:
         message = "compensation has ended, and no line has led out of it yet"
         hint = "write a straight move in the plane before it starts anew"
         control.fail("compensation-end", message, hint=hint)
-    if stage != OFF:
+    if stage is not OFF:
         hint = "end it by G40 before it starts on another side or with another radius"
         control.fail("compensation-change", "compensation is in force already", hint=hint)
     if radius == 0.0:
         return
-    path.flush()
-    signed_offset = side * radius * handedness(control.frame.matrix)
-    modal, contour = control.modal, path.contour
-    contour.plane[:] = control.part_plane().directions
-    leads.begin(contour, signed_offset, modal.square_corners, modal.indirect_leads)
+    modal = control.modal
+    path.compensate(
+        control.part_plane(),
+        side * radius * handedness(control.frame.matrix),
+        square=modal.square_corners,
+        indirect=modal.indirect_leads,
+    )

@@ -23,7 +23,7 @@ from twin.nc.control.settings import ControlSettings
 from twin.nc.control.state import integer_of, number_of
 from twin.nc.functions import starts_spindle, turns_behind
 from twin.nc.text.blocks import Assignment, Block, Statement, Word
-from twin.nc.text.expressions import Expression, ExpressionError, NumberedVariable, compiled
+from twin.nc.text.expressions import Expression, ExpressionError
 from twin.nc.text.source import Source
 
 
@@ -100,8 +100,8 @@ class Executor(Control):
         for each in assignments:
             span, target, index = (each.column, each.width), each.target, None
             try:
-                if isinstance(target, NumberedVariable):
-                    index = compiled(target.index)(self)
+                if each.index is not None:
+                    index = each.index.compute(self)
                 value = each.value.compute(self)
             except ExpressionError as error:
                 self.report.fail(error.code, str(error), *span, error.hint)

@@ -1,4 +1,4 @@
-"""How axis words become a move, as data: what the compiled tier must know of it."""
+"""How axis words become a move, as data: what the kernel of plain lines must know of it."""
 
 import dataclasses
 from collections.abc import Mapping
@@ -18,7 +18,7 @@ class ArcRule:
 
     Attributes:
         clockwise: Its sense.
-        bounds: Beyond them the interpreter tier refuses or warns.
+        bounds: Beyond them an arc is refused or warned of.
         signed_radius: A negative radius asks for the larger arc; else it is not plain.
         fits_radius: A centre found by its radius is fitted to both points like a given one.
     """
@@ -59,8 +59,7 @@ class MotionMode:
 
     Attributes:
         rapid: At the machine's own speed.
-        rule: What it does in a block of plain words, for the compiled tier; None: it has no
-            compiled form.
+        rule: What it does in a block of plain words; None: it is Python's.
     """
 
     rapid: bool = False

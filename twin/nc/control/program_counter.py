@@ -3,11 +3,11 @@
 import dataclasses
 import re
 from collections.abc import Callable, Container, Iterator
-from typing import NoReturn, TypeVar
+from typing import NoReturn, TypeVar, cast
 
 from twin.nc.canonical import NO_BLOCK_NUMBER
 from twin.nc.control.modal import Modal
-from twin.nc.text.blocks import Block, Location
+from twin.nc.text.blocks import Block, Location, Statement
 from twin.nc.text.diagnostics import ProgramError
 from twin.nc.text.lexer import Lexer
 from twin.nc.text.lines import Lines
@@ -17,6 +17,7 @@ from twin.nc.text.source import Source
 _LABEL = re.compile(r"N[ \t]*[0-9]|\[", re.IGNORECASE)
 Key = TypeVar("Key")
 Found = TypeVar("Found")
+Parsed = TypeVar("Parsed")
 
 _CACHED_LINES = 10_000
 """Lines whose blocks are remembered once a program has jumped."""
@@ -67,6 +68,7 @@ class ProgramCounter:
         self.calls: list[Call] = []
         self._labels: FoundInText[int | str, list[Location]] | None = None
         self._cache = FoundInText[int, tuple[Block, ...]]()
+        self._parsed = FoundInText[Statement, object]()
         self._told_to_end = False
         self._here: tuple[Block, ...] = ()
         self._here_line = -1
@@ -231,6 +233,15 @@ class ProgramCounter:
         if len(locations) != 1:
             self._refuse_label(label, len(locations), fail_at, word)
         return locations[0]
+
+    def parsed(self, statement: Statement, parse: Callable[[], Parsed]) -> Parsed:
+        """What a statement says, read when it is run first."""
+        found = self._parsed.get(statement)
+        if found is None:
+            found = parse()
+            if len(self._parsed) < _CACHED_LINES:
+                self._parsed[statement] = found
+        return cast("Parsed", found)
 
     def labels(self) -> dict[int | str, list[Location]]:
         """Where every N number and every name of a block stands."""

@@ -26,7 +26,6 @@ def distance(left: Point, right: Point) -> float:
     return math.sqrt(x * x + y * y)
 
 
-@compilable
 def direction(angle: float) -> Point:
     """Unit vector at an angle [deg]; exact at every quarter turn."""
     rest = abs(angle) % TURN
@@ -41,7 +40,6 @@ def direction(angle: float) -> Point:
 _QUARTERS = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))
 
 
-@compilable
 def turned(point: Point, center: Point, angle: float) -> Point:
     """A point turned about a centre [deg]; exact at every quarter turn."""
     cosine, sine = direction(angle)
@@ -49,7 +47,6 @@ def turned(point: Point, center: Point, angle: float) -> Point:
     return (center[0] + cosine * x - sine * y, center[1] + sine * x + cosine * y)
 
 
-@compilable
 def angle_of(point: Point, center: Point) -> float:
     """Direction from a centre to a point, 0 to below 360 [deg]."""
     angle = math.degrees(math.atan2(point[1] - center[1], point[0] - center[0]))

@@ -1,11 +1,7 @@
-"""How the parallel of a contour passes a corner of the contour, as plain functions over tuples.
-
-Both tiers use them: the kernels of compensation compile them as they stand here.
-"""
+"""How the parallel of a contour passes a corner of the contour, as plain functions over tuples."""
 
 import math
 
-from twin.compilation.compilable import compilable
 from twin.nc.geometry import curves
 from twin.nc.geometry.arcs import Point, distance
 from twin.nc.geometry.curves import Curve
@@ -25,7 +21,6 @@ Passage = tuple[bool, bool, Point, Point]
 ends, and where that on the next begins."""
 
 
-@compilable
 def corner_of(
     before: Before, behind: Behind, turn: float, signed_offset: float, square: bool
 ) -> Passage:
@@ -51,7 +46,6 @@ def corner_of(
     return _inside_corner(before, behind)
 
 
-@compilable
 def _inside_corner(before: Before, behind: Behind) -> Passage:
     """The parallels meet; where they do so twice, at the place nearest to the contour's corner."""
     contour, parallel, begin = before

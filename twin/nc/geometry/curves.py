@@ -1,11 +1,7 @@
-"""Geometry of plane curves, lines and arcs, as plain functions over tuples.
-
-The compiled tier compiles what is ``compilable`` as it stands here, so that both tiers compute the same bits.
-"""
+"""Geometry of plane curves, lines and arcs, as plain functions over tuples."""
 
 import math
 
-from twin.compilation.compilable import compilable
 from twin.nc.geometry.arcs import Point, distance, turned
 
 Curve = tuple[bool, Point, Point, Point, float]
@@ -31,13 +27,11 @@ def arc(start: Point, end: Point, center: Point, sweep: float) -> Curve:
     return (True, start, end, center, sweep)
 
 
-@compilable
 def radius_of(curve: Curve) -> float:
     """Of an arc [mm]."""
     return distance(curve[1], curve[3])
 
 
-@compilable
 def length_of(curve: Curve) -> float:
     """Along the curve [mm]."""
     if not curve[0]:
@@ -45,14 +39,12 @@ def length_of(curve: Curve) -> float:
     return math.radians(abs(curve[4])) * radius_of(curve)
 
 
-@compilable
 def unit(x: float, y: float) -> Point:
     """The direction of a vector; none, 0 0, where a slot as wide as the tool leaves no way."""
     length = math.sqrt(x * x + y * y)
     return (x / length, y / length) if length > 0.0 else (0.0, 0.0)
 
 
-@compilable
 def tangent_of(curve: Curve, at_end: bool) -> Point:
     """Unit direction of travel at the start or the end."""
     is_arc, start, end, center, sweep = curve
@@ -63,7 +55,6 @@ def tangent_of(curve: Curve, at_end: bool) -> Point:
     return (-y, x) if sweep > 0.0 else (y, -x)
 
 
-@compilable
 def leaves_room(curve: Curve, by: float) -> bool:
     """There is a parallel curve, ``by`` to the left [mm]: an arc does not vanish."""
     if not curve[0]:
@@ -71,14 +62,12 @@ def leaves_room(curve: Curve, by: float) -> bool:
     return scale_of(curve, by) > NEAR
 
 
-@compilable
 def scale_of(curve: Curve, by: float) -> float:
     """How much larger the parallel of an arc is."""
     radius = radius_of(curve)
     return (radius - math.copysign(by, by * curve[4])) / radius
 
 
-@compilable
 def parallel_of(curve: Curve, by: float) -> Curve:
     """The parallel curve, ``by`` to the left [mm], where there is one."""
     is_arc, start, end, center, sweep = curve
@@ -90,7 +79,6 @@ def parallel_of(curve: Curve, by: float) -> Curve:
     return (True, towards(center, start, scale), towards(center, end, scale), center, sweep)
 
 
-@compilable
 def along(curve: Curve, point: Point) -> float:
     """How far along the curve a point of it lies: 0 at its start, 1 at its end.
 
@@ -125,7 +113,6 @@ def last_along(curve: Curve, point: Point) -> float:
     return share + turn * math.floor((1.0 - share) / turn + NEAR)
 
 
-@compilable
 def point_of(straight: Curve, share: float) -> Point:
     """The point of a line at a share of its way."""
     start, end = straight[1], straight[2]
@@ -150,14 +137,12 @@ def tangent_at(curve: Curve, share: float) -> Point:
     )
 
 
-@compilable
 def within(curve: Curve, fraction: float) -> bool:
     """Whether a place along the curve lies on it, with a little slack."""
     slack = NEAR / max(length_of(curve), NEAR)
     return -slack <= fraction <= 1.0 + slack
 
 
-@compilable
 def cut(curve: Curve, start: Point, end: Point) -> Curve:
     """The part between two points of it; on an arc of several turns those nearest its ends."""
     is_arc, _, _, center, sweep = curve
@@ -171,7 +156,6 @@ def cut(curve: Curve, start: Point, end: Point) -> Curve:
     return (True, start, end, center, sweep * (after - before))
 
 
-@compilable
 def box_of(curve: Curve) -> Box:
     """Where the curve lies, with a little slack; of an arc all of its circle."""
     is_arc, start, end, center, _ = curve
@@ -186,7 +170,6 @@ def box_of(curve: Curve) -> Box:
     )
 
 
-@compilable
 def turn_from(first: Curve, second: Curve) -> float:
     """Signed angle from the end of one curve to the start of the next, ±180 [deg]."""
     ax, ay = tangent_of(first, True)
@@ -199,7 +182,6 @@ Meetings = tuple[int, Point, Point]
 _NOWHERE = (0, (0.0, 0.0), (0.0, 0.0))
 
 
-@compilable
 def meetings(first: Curve, second: Curve) -> Meetings:
     """Where two curves meet that go on without limit."""
     if first[0] and second[0]:
@@ -211,7 +193,6 @@ def meetings(first: Curve, second: Curve) -> Meetings:
     return line_line(first, second)
 
 
-@compilable
 def crossing_of(older: Curve, younger: Curve) -> tuple[bool, float, float]:
     """Whether two curves cross, and where, as shares of their ways: the first place on the older."""
     count, first, second = meetings(older, younger)
@@ -226,14 +207,12 @@ def crossing_of(older: Curve, younger: Curve) -> tuple[bool, float, float]:
     return (found, left, right)
 
 
-@compilable
 def inside(curve: Curve, share: float) -> bool:
     """Whether a place lies between the curve's ends, not near them."""
     end = _END / max(length_of(curve), _END)
     return end < share < 1.0 - end
 
 
-@compilable
 def line_line(first: Curve, second: Curve) -> Meetings:
     """As ``meetings``, of two lines."""
     ax, ay = tangent_of(first, False)
@@ -246,7 +225,6 @@ def line_line(first: Curve, second: Curve) -> Meetings:
     return (1, moved(first[1], ax * far, ay * far), (0.0, 0.0))
 
 
-@compilable
 def line_circle(straight: Curve, circle: Curve) -> Meetings:
     """As ``meetings``, of a line and an arc."""
     ux, uy = tangent_of(straight, False)
@@ -260,7 +238,6 @@ def line_circle(straight: Curve, circle: Curve) -> Meetings:
     return (2, moved(foot, ux * half, uy * half), moved(foot, ux * -half, uy * -half))
 
 
-@compilable
 def circle_circle(first: Curve, second: Curve) -> Meetings:
     """As ``meetings``, of two arcs."""
     apart = distance(first[3], second[3])
@@ -276,19 +253,16 @@ def circle_circle(first: Curve, second: Curve) -> Meetings:
     return (2, moved(foot, -uy * half, ux * half), moved(foot, -uy * -half, ux * -half))
 
 
-@compilable
 def half_chord(radius: float, beside: float) -> float:
     """Half the chord that lies ``beside`` a circle's centre."""
     return math.sqrt(max(0.0, radius * radius - beside * beside))
 
 
-@compilable
 def moved(point: Point, dx: float, dy: float) -> Point:
     """A point elsewhere."""
     return (point[0] + dx, point[1] + dy)
 
 
-@compilable
 def towards(center: Point, point: Point, scale: float) -> Point:
     """A point moved from a centre by a factor."""
     return (

@@ -34,14 +34,12 @@ def to_part(matrix: Matrix, total: Values, place: Vector) -> Vector:
     return (x + total[0], y + total[1], z + total[2])
 
 
-@compilable
 def to_programmed(matrix: Matrix, total: Values, part: Vector) -> Vector:
     """The inverse of ``to_part``."""
     shifted = (part[0] - total[0], part[1] - total[1], part[2] - total[2])
     return applied(inverse(matrix), shifted)
 
 
-@compilable
 def plane_of_part(matrix: Matrix, plane: Directions) -> Directions:
     """The directions of a working plane as the part sees them."""
     normal, abscissa = turned_unit(matrix, plane[2]), turned_unit(matrix, plane[0])
@@ -91,7 +89,6 @@ def _turned_arc(arc: Arc, matrix: Matrix, total: Values) -> Arc:
     return Arc(center, turned_unit(matrix, arc.normal), sweep)
 
 
-@compilable
 def composed(
     signs: Vector, scale: float, plane: Directions, rotation: float, center: Point
 ) -> tuple[Matrix, Vector]:
@@ -113,7 +110,6 @@ def composed(
     return matrix, shift
 
 
-@compilable
 def moved_shift(shift: float, part: float, there: float) -> float:
     """A shift of an axis that gives the place where it stands other programmed coordinates.
 

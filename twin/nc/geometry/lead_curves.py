@@ -1,8 +1,7 @@
-"""Geometry of the ways to and from a compensated contour, as plain functions over tuples, for both tiers."""
+"""Geometry of the ways to and from a compensated contour, as plain functions over tuples."""
 
 import math
 
-from twin.compilation.compilable import compilable
 from twin.nc.geometry import arcs, curves
 from twin.nc.geometry.arcs import Point, distance
 from twin.nc.geometry.curves import Curve
@@ -11,14 +10,12 @@ ALLOWED_DEPTH = 0.01
 """How far a lead may cut into the contour without a warning [mm]."""
 
 
-@compilable
 def depth_of(lead: Curve, contour: Curve, radius: float) -> float:
     """How far a tool on a straight lead cuts into an element of the contour; 0 if little [mm]."""
     depth = radius - clearance(lead, contour)
     return depth if depth > ALLOWED_DEPTH else 0.0
 
 
-@compilable
 def clearance(line: Curve, curve: Curve) -> float:
     """Smallest distance between a line and a line or an arc; 0 where they cross [mm]."""
     count, first, second = curves.meetings(line, curve)
@@ -40,7 +37,6 @@ def clearance(line: Curve, curve: Curve) -> float:
     return near
 
 
-@compilable
 def distance_to(curve: Curve, point: Point) -> float:
     """From a point to the nearest point of a curve [mm]."""
     is_arc, start, end, center, _ = curve
@@ -52,7 +48,6 @@ def distance_to(curve: Curve, point: Point) -> float:
     return min(distance(point, start), distance(point, end))
 
 
-@compilable
 def way_around(start: Point, end: Point, corner: Point, signed_offset: float) -> tuple[bool, Curve]:
     """Whether there is an arc as ``leads.around`` has it, and that arc."""
     none = (False, start, end, corner, 0.0)

@@ -1,6 +1,6 @@
 """Matrices of X, Y and Z as tuples of rows: what mirror, scale and rotation do to vectors.
 
-Both tiers use them, so that they hold nothing whose bits could differ between the two, such as ``sum``.
+The kernel of plain lines uses some: they hold nothing whose compiled bits could differ, such as ``sum``.
 """
 
 import math
@@ -35,7 +35,6 @@ def determinant(matrix: Matrix) -> float:
     return along(cross(b, c), a)
 
 
-@compilable
 def inverse(matrix: Matrix) -> Matrix:
     """The matrix that undoes another."""
     a, b, c = matrix
@@ -48,20 +47,17 @@ def inverse(matrix: Matrix) -> Matrix:
     )
 
 
-@compilable
 def transposed(matrix: Matrix) -> Matrix:
     """Rows as columns."""
     a, b, c = matrix
     return ((a[0], b[0], c[0]), (a[1], b[1], c[1]), (a[2], b[2], c[2]))
 
 
-@compilable
 def dot(left: Vector, right: Vector) -> float:
     """The scalar product; its zero has no sign."""
     return 0.0 + left[0] * right[0] + left[1] * right[1] + left[2] * right[2]
 
 
-@compilable
 def product(left: Matrix, right: Matrix) -> Matrix:
     """The matrix product."""
     (a, b, c), (x, y, z) = left, transposed(right)
@@ -86,7 +82,6 @@ def handedness(matrix: Matrix) -> float:
     return math.copysign(1.0, determinant(matrix))
 
 
-@compilable
 def stretched(signs: Vector, factor: float) -> Matrix:
     """Scales by a factor, and mirrors the axes whose sign is -1."""
     return (
@@ -96,7 +91,6 @@ def stretched(signs: Vector, factor: float) -> Matrix:
     )
 
 
-@compilable
 def rotated(matrix: Matrix, axes: Matrix, angle: float, center: Point) -> tuple[Matrix, Vector]:
     """A matrix, and after it a rotation in a plane.
 

@@ -45,13 +45,11 @@ def world(plane: Directions, point: tuple[float, float], height: float) -> Vecto
     )
 
 
-@compilable
 def put_point(plane: Directions, point: tuple[float, float], height: float, target: Column) -> None:
     """Put that point into the first places of a column."""
     target[0], target[1], target[2] = world(plane, point, height)
 
 
-@compilable
 def aim(plane: Directions, point: tuple[float, float], target: Column) -> None:
     """Let a position, shape (k,), have another abscissa and ordinate in a plane, at its own height."""
     put_point(plane, point, along((target[0], target[1], target[2]), plane[2]), target)

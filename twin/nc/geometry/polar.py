@@ -1,10 +1,8 @@
 """Polar coordinates in a plane: R and Q as they were programmed last, and where they lead."""
 
-from twin.compilation.compilable import compilable
 from twin.nc.geometry.arcs import SAME_POINT, Point, angle_of, direction, distance
 
 
-@compilable
 def seen_from(origin: Point, here: Point, radius: float, angle: float) -> tuple[float, float]:
     """R and Q of a point: as programmed last, else measured.
 
@@ -21,7 +19,6 @@ def seen_from(origin: Point, here: Point, radius: float, angle: float) -> tuple[
     return radius, angle
 
 
-@compilable
 def changed(
     seen: int, old: tuple[float, float], words: tuple[float, float], relative: tuple[bool, bool]
 ) -> tuple[float, float]:
@@ -41,7 +38,6 @@ def changed(
     return radius, angle
 
 
-@compilable
 def point_at(origin: Point, here: Point, radius: float, angle: float) -> Point:
     """Where R and Q lead [mm]: to where the tool stands already, if that is the same but for rounding."""
     cosine, sine = direction(angle)

@@ -1,14 +1,12 @@
 """Drilling cycles as numbers: what is peculiar to each, and what they remember of their words.
 
-Both tiers share these functions: the interpreter tier gives them lists, the compiled one columns. What is
-not given is NaN.
+What is not given is NaN.
 """
 
 import enum
 import math
 from typing import NamedTuple, TypeAlias
 
-from twin.compilation.compilable import compilable
 from twin.nc.canonical import FloatArray
 
 Values: TypeAlias = "list[float] | FloatArray | memoryview[float]"
@@ -100,9 +98,7 @@ class Cycle(NamedTuple):
         lift: How far the tool withdraws between pecks where its words do not say it; 0: to the
             reference plane [mm].
         as_written: It remembers heights as they are written, and at each hole they count from what is in
-            force there. The compiled tier drills holes behind its call whose block names an axis, in
-            absolute coordinates, from the reference plane or above, with a feed that counts no blocks; all
-            else is for the interpreter tier.
+            force there.
     """
 
     lasting: bool
@@ -114,22 +110,6 @@ class Cycle(NamedTuple):
     retract: int = int(Retract.RAPID)
     lift: float = 0.0
     as_written: bool = False
-
-
-@compilable
-def cycle_of(column: FloatArray) -> Cycle:
-    """The cycle that a column begins with, value by value."""
-    return Cycle(
-        column[0] != 0.0,
-        int(column[1]),
-        int(column[2]),
-        int(column[3]),
-        column[4] != 0.0,
-        column[5],
-        int(column[6]),
-        column[7],
-        column[8] != 0.0,
-    )
 
 
 class CycleBlock(NamedTuple):
@@ -156,14 +136,12 @@ def no_values() -> list[float]:
     return [math.nan] * VALUES
 
 
-@compilable
 def forget(values: Values) -> None:
     """No cycle has begun."""
     for value in range(VALUES):
         values[value] = math.nan
 
 
-@compilable
 def read_words(cycle: Cycle, values: Values, given: Values, block: CycleBlock) -> None:
     """Take the words of a block.
 
@@ -194,7 +172,6 @@ def read_words(cycle: Cycle, values: Values, given: Values, block: CycleBlock) -
             values[value] = given[value]
 
 
-@compilable
 def either(value: float, default: float) -> float:
     """A value, or where there is none another one."""
     return value if value == value else default

@@ -1,13 +1,9 @@
-"""What a drilling cycle does at a hole: where it lies, how the tool goes down by pecks or passes, and leaves.
-
-Both tiers share these functions: the interpreter tier gives them lists, the compiled one columns.
-"""
+"""What a drilling cycle does at a hole: where it lies, how the tool goes down by pecks or passes, and leaves."""
 
 import enum
 import math
 from typing import NamedTuple
 
-from twin.compilation.compilable import compilable
 from twin.nc.path.drilling_cycle import (
     AXIS,
     BOTTOM,
@@ -90,8 +86,6 @@ _ACROSS, _BACK = float(Act.ACROSS), float(Act.BACK)
 _M3, _M4, _M5 = float(Act.M3), float(Act.M4), float(Act.M5)
 NO_MOVE = -1.0
 """Something happens at the hole."""
-MOST_STOPS = 500
-"""Stops of a hole that the compiled tier drills: its moves must fit into a chunk."""
 
 
 class Hole(NamedTuple):
@@ -136,7 +130,6 @@ class Hole(NamedTuple):
     faster: float
 
 
-@compilable
 def hole_of(cycle: Cycle, values: Values, axis: int, to_reference: bool) -> Hole:
     """What a cycle does at a hole.
 
@@ -207,7 +200,6 @@ def hole_of(cycle: Cycle, values: Values, axis: int, to_reference: bool) -> Hole
     )
 
 
-@compilable
 def _fault_of_pecks(values: Values) -> int:
     """Whether either the depth of all pecks is there, or the first, the reduction and the least."""
     every, first = values[PECK] == values[PECK], values[FIRST] == values[FIRST]
@@ -219,13 +211,11 @@ def _fault_of_pecks(values: Values) -> int:
     return _PECKS if values[REDUCTION] < 0.0 or values[LEAST] <= 0.0 else 0
 
 
-@compilable
 def next_peck(peck: float, factor: float, reduction: float, least: float) -> float:
     """Depth of the peck behind one [mm]."""
     return max(peck * factor - reduction, least)
 
 
-@compilable
 def count_stops(
     surface: float, bottom: float, peck: float, course: tuple[float, float, float]
 ) -> int:
@@ -246,19 +236,16 @@ def count_stops(
     return stops
 
 
-@compilable
 def count_passes(surface: float, bottom: float, depth: float) -> int:
     """How many passes of a depth lead to the bottom; more than ``MOST_PECKS`` are not counted."""
     return math.ceil(max(min((surface - bottom) / depth, MOST_PECKS + 1.0) - 1e-9, 1.0))
 
 
-@compilable
 def most_acts(stops: int) -> int:
     """Room that ``write_acts`` needs."""
     return 4 * stops + 9
 
 
-@compilable
 def next_place(
     act: float, amount: float, hole: Hole, over: Values, goal: Values, axis: int
 ) -> float:
@@ -286,7 +273,6 @@ def next_place(
     return 1.0 if act == _DOWN else 0.0
 
 
-@compilable
 def write_acts(hole: Hole, height: float, acts: Values, amounts: Values) -> int:
     """Write what happens at a hole; how many acts there are.
 

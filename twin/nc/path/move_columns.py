@@ -20,7 +20,6 @@ from twin.nc.canonical import (
     Shape,
 )
 from twin.nc.geometry.planes import Vector
-from twin.nc.path.event_columns import EventRows, Events
 
 CHUNK = 4096
 """Moves in a chunk: enough to make NumPy's overhead vanish, little to hold in memory."""
@@ -103,18 +102,25 @@ class Refused(NamedTuple):
     events: int
     line: int
 
-    def kept_events(self, events: Events, kept: NDArray[np.bool_]) -> Events:
+    def kept_events(self, events: list[Event], kept: NDArray[np.bool_]) -> list[Event]:
         """The events of other blocks, at their places among the moves that are kept, shape (n,)."""
         places = np.concatenate(([0], np.cumsum(kept)))
-        return Events(
-            [
-                [
-                    dataclasses.replace(event, before=int(places[event.before]))
-                    for number, event in enumerate(events)
-                    if number < self.events or event.line != self.line
-                ]
-            ]
-        )
+        return [
+            dataclasses.replace(event, before=int(places[event.before]))
+            for number, event in enumerate(events)
+            if number < self.events or event.line != self.line
+        ]
+
+
+def segment_of(codes: IntArray, values: FloatArray, positions: FloatArray) -> Segment:
+    """A move of columns, as ``MoveColumns.add_rows`` takes them."""
+    motion, _, line, block, corner = codes.tolist()
+    a, b, c, i, j, k, *others = values.tolist()
+    sweep, feed, tolerance, acceleration, deceleration = others
+    center = None if math.isnan(a) else (a, b, c)
+    start, end, display = positions.tolist()
+    begun = (Motion(motion), line, block, start, end, display, feed, Corner(corner))
+    return Segment(*begun, tolerance, acceleration, deceleration, center, (i, j, k), sweep)
 
 
 class MoveColumns:
@@ -122,7 +128,6 @@ class MoveColumns:
 
     Attributes:
         count: How many moves.
-        events: How many events.
     """
 
     def __init__(self, axes: Axes) -> None:
@@ -134,15 +139,19 @@ class MoveColumns:
 
     def _clear(self) -> None:
         self._parts: list[tuple[IntArray, FloatArray, FloatArray]] = []
-        self._event_parts: list[list[Event] | EventRows] = []
-        self._event_list: list[Event] = []
-        self.count = self.events = 0
+        self._events: list[Event] = []
+        self.count = 0
         self._clear_lists()
 
     def _clear_lists(self) -> None:
         self._codes: list[int] = []
         self._values: list[float] = []
         self._positions: list[float] = []
+
+    @property
+    def events(self) -> int:
+        """How many events."""
+        return len(self._events)
 
     def add(self, move: Segment) -> None:
         """Append a move."""
@@ -178,20 +187,7 @@ class MoveColumns:
 
     def add_event(self, event: Event) -> None:
         """Append an event after the moves so far."""
-        self.events += 1
-        self._event_list.append(dataclasses.replace(event, before=self.count))
-
-    def add_event_rows(self, events: EventRows) -> None:
-        """Append events as columns; their places count from the next move."""
-        if len(events):
-            self.events += len(events)
-            self._close_event_list()
-            self._event_parts.append(events.behind(self.count))
-
-    def _close_event_list(self) -> None:
-        if self._event_list:
-            self._event_parts.append(self._event_list)
-            self._event_list = []
+        self._events.append(dataclasses.replace(event, before=self.count))
 
     def take(self, refused: "Refused | None" = None) -> Chunk:
         """All that was appended but for what a refused block did, as columns; nothing is left here."""
@@ -200,8 +196,7 @@ class MoveColumns:
         none = (np.zeros((0, 5), np.int64), np.zeros((0, 11)), np.zeros((0, 3, k)))
         columns = zip(*(self._parts or [none]), strict=True)
         codes, values, positions = (np.concatenate(each) for each in columns)
-        self._close_event_list()
-        events = Events(self._event_parts)
+        events = self._events
         if refused is not None:
             kept = codes[:, 2] != refused.line
             kept[: refused.moves] = True
@@ -234,7 +229,7 @@ class MoveColumns:
             acceleration=values[:, 9].copy(),
             deceleration=values[:, 10].copy(),
         )
-        return Chunk(moves, events)
+        return Chunk(moves, tuple(events))
 
     def _measure(
         self,

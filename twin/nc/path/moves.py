@@ -1,4 +1,4 @@
-"""How far moves go: for both tiers, by the convention of ``canonical``."""
+"""How far moves go, by the convention of ``canonical``."""
 
 import math
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""How fast moves go, by what F counts: for both tiers."""
+"""How fast moves go, by what F counts."""
 
 import enum
 import math

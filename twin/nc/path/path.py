@@ -9,17 +9,10 @@ from collections.abc import Callable
 from twin.nc.canonical import Axes, Chunk, Event, FloatArray, IntArray, Motion
 from twin.nc.geometry.planes import Plane
 from twin.nc.path.blends import Blend
-from twin.nc.path.compensation.contour import (
-    OFF,
-    STARTED,
-    Contour,
-    plane_of,
-)
-from twin.nc.path.compensation.stage import Compensation, Refuse, Warn
+from twin.nc.path.compensation.stage import OFF, STARTED, Compensation, Refuse, Stage, Warn
 from twin.nc.path.loops import Loops
-from twin.nc.path.move_columns import MoveColumns, Refused, Segment
+from twin.nc.path.move_columns import MoveColumns, Refused, Segment, segment_of
 from twin.nc.path.rounding import Rounding
-from twin.nc.path.rows import Row
 from twin.nc.path.splines import Spline
 from twin.nc.path.synchronous_axes import MOST_MOVES, SynchronousAxes
 
@@ -38,7 +31,7 @@ class Path:
         self._before: Segment | None = None
         self._spline: Spline | None = None
         self._rounding: Rounding | None = None
-        self._compensation = Compensation(len(axes), self._emit, self._record, refuse, warn)
+        self._compensation = Compensation(self._emit, self._record, refuse, warn)
         self._loops: Loops | None = None
         self._synchronous: SynchronousAxes | None = None
         self.position = start
@@ -76,7 +69,7 @@ class Path:
     def passes_on(self) -> bool:
         """No stage holds or changes moves: what is added is emitted as it is."""
         stages = (self._spline, self._rounding, self._loops, self._synchronous)
-        return self._compensation.stage == OFF and all(stage is None for stage in stages)
+        return self._compensation.stage is OFF and all(stage is None for stage in stages)
 
     def add_rows(
         self, codes: IntArray, values: FloatArray, positions: FloatArray
@@ -85,7 +78,7 @@ class Path:
         if not len(codes):
             return None
         self._columns.add_rows(codes, values, positions)
-        self._before = Row(codes[-1], values[-1], positions[-1]).segment
+        self._before = segment_of(codes[-1], values[-1], positions[-1])
         self.position = self._before.end
         return self._before
 
@@ -160,15 +153,22 @@ class Path:
     # --- compensation
 
     def _compensate(self, move: Segment) -> None:
-        if self._compensation.stage == OFF:
+        if self._compensation.stage is OFF:
             self._emit(move)
         else:
             self._compensation.add(move, self.position)
 
     @property
-    def contour(self) -> Contour:
+    def compensation_stage(self) -> Stage:
         """How far compensation has come."""
-        return self._compensation.contour
+        return self._compensation.stage
+
+    def compensate(
+        self, plane: Plane, signed_offset: float, *, square: bool, indirect: bool
+    ) -> None:
+        """Compensate from the next move on; arguments as for ``Compensation.begin``."""
+        self.flush()
+        self._compensation.begin(plane.directions, signed_offset, square=square, indirect=indirect)
 
     @property
     def compensating(self) -> bool:
@@ -178,15 +178,15 @@ class Path:
     @property
     def compensation_has_moved(self) -> bool:
         """Compensation is in force and a move of its contour has come."""
-        return self.compensating and self._compensation.stage != STARTED
+        return self.compensating and self._compensation.stage is not STARTED
 
     def compensates_in(self, plane: Plane) -> bool:
         """Whether compensation is in force in a plane of the part."""
-        return self.compensating and plane_of(self.contour) == plane.directions
+        return self.compensating and self._compensation.plane == plane.directions
 
     def compensate_in(self, plane: Plane) -> None:
         """Compensation, which has not moved yet, acts in another plane."""
-        self._compensation.contour.plane[:] = plane.directions
+        self._compensation.plane = plane.directions
 
     def end_compensation(self) -> None:
         """The next line leads out."""

@@ -63,12 +63,22 @@ class Assignment(NamedTuple):
         value: What it becomes.
         column: Where the variable begins, from 0.
         width: Characters up to the end of the value.
+        index: Its number, where that is computed.
     """
 
     target: Variable | NumberedVariable
     value: Expression
     column: int
     width: int
+    index: Expression | None = None
+
+
+def assignment_of(
+    target: Variable | NumberedVariable, value: Expression, column: int, width: int
+) -> Assignment:
+    """An assignment; arguments as its attributes."""
+    index = Expression("", target.index) if isinstance(target, NumberedVariable) else None
+    return Assignment(target, value, column, width, index)
 
 
 class Block(NamedTuple):

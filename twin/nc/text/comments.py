@@ -1,4 +1,4 @@
-"""Where comments begin and end, for both tiers."""
+"""Where comments begin and end."""
 
 import re
 from collections.abc import Iterator, Sequence

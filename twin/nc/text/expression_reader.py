@@ -42,7 +42,7 @@ class ExpressionReader:
 
     def __init__(self, syntax: ExpressionSyntax) -> None:
         self._syntax = syntax
-        self._kept: dict[tuple[str, int], tuple[Expression, int]] = {}
+        self._kept: dict[tuple[str, int, bool], tuple[Expression, int]] = {}
         symbols = sorted(syntax.operators, key=len, reverse=True)
         self.operator = re.compile(
             rf"{BLANKS}({'|'.join(map(operator_pattern, symbols))})", re.IGNORECASE
@@ -58,20 +58,21 @@ class ExpressionReader:
         Raises:
             ExpressionError: There is none, or it is malformed.
         """
-        read = self._kept.get((text, start))
-        if read is None:
-            reading = _Reading(self._syntax, self, text, start)
-            tree = reading.operation(0, 0)
-            read = Expression(text[start : reading.at].strip(), tree), reading.at
-            if len(self._kept) < _MOST_KEPT:
-                self._kept[text, start] = read
-        return read
+        return self._read(text, start, operand=False)
 
     def read_operand(self, text: str, start: int) -> tuple[Expression, int]:
         """As ``read``, but up to the first operator only, such as the index of ``P[5] += 1``."""
-        reading = _Reading(self._syntax, self, text, start)
-        tree = reading.operand(0)
-        return Expression(text[start : reading.at].strip(), tree), reading.at
+        return self._read(text, start, operand=True)
+
+    def _read(self, text: str, start: int, *, operand: bool) -> tuple[Expression, int]:
+        read = self._kept.get((text, start, operand))
+        if read is None:
+            reading = _Reading(self._syntax, self, text, start)
+            tree = reading.operand(0) if operand else reading.operation(0, 0)
+            read = Expression(text[start : reading.at].strip(), tree), reading.at
+            if len(self._kept) < _MOST_KEPT:
+                self._kept[text, start, operand] = read
+        return read
 
     def read_value(self, text: str, start: int) -> tuple[Expression, int]:
         """Read the value of a word or an assignment, as far as the dialect lets it go."""

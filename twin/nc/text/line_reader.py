@@ -7,7 +7,7 @@ from typing import NoReturn
 
 from twin.nc.canonical import NO_BLOCK_NUMBER
 from twin.nc.text.arithmetic import is_whole
-from twin.nc.text.blocks import Assignment, Block, Statement, Word
+from twin.nc.text.blocks import Assignment, Block, Statement, Word, assignment_of
 from twin.nc.text.comments import NO_COMMENT, OPEN_COMMENT
 from twin.nc.text.expressions import (
     LARGEST_NUMBER,
@@ -275,7 +275,7 @@ class LineReader:
             self._refuse_value(begin, error)
         tree = target.tree
         assert isinstance(tree, (Variable, NumberedVariable))
-        self._assignments += (Assignment(tree, value, begin, end - begin),)
+        self._assignments += (assignment_of(tree, value, begin, end - begin),)
         self._at = end
         return True
 

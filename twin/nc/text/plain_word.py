@@ -1,7 +1,7 @@
 """How a plain word is written: blanks, an address, blanks, a number.
 
-One table of steps says it: regular expressions for the interpreter tier are made of it, and the
-compiled tier's tokenizer goes by it from byte to byte.
+One table of steps says it: regular expressions are made of it, and the kernel of plain lines goes by it from
+byte to byte.
 """
 
 import string

@@ -104,15 +104,13 @@ class Assignment:
         name: The variable, or ``P`` where its number is computed.
         index: That number, or None.
         index_column: Where it stands.
-        operator: What joins old and new value; empty: the new one alone counts.
-        value: The new value.
+        value: What it becomes.
         column: Where it stands.
     """
 
     name: str
     index: Expression | None
     index_column: int
-    operator: str
     value: Expression
     column: int
 
@@ -138,9 +136,8 @@ def assignments(control: Control, statement: Statement) -> tuple[list[Assignment
             control.refuse(statement, "assignment", "'=' is missing behind the name")
         value, end = control.read_expression(text, match.end(), begin)
         name = name.replace(" ", "").replace("\t", "").upper()
-        found.append(
-            Assignment(name, index, begin + index_at, match[1], value, begin + match.end())
-        )
+        value = _joined(name, index, match[1], value)
+        found.append(Assignment(name, index, begin + index_at, value, begin + match.end()))
         separator = _SEPARATOR.match(text, end)
         assert separator is not None
         at = separator.end()
@@ -166,7 +163,7 @@ def _rest(control: Control, column: int, text: str) -> Block:
 
 def assign(control: Control, statement: Statement) -> None:
     """Give variables their values, one after the other."""
-    every, rest = assignments(control, statement)
+    every, rest = control.program_counter.parsed(statement, lambda: assignments(control, statement))
     for each in every:
         if is_live(each.name):
             _write_live(control, statement, each)
@@ -175,7 +172,7 @@ def assign(control: Control, statement: Statement) -> None:
         index = 0.0
         if each.index is not None:
             index = control.compute(each.index, each.index_column)
-        value = control.compute(_new_value(each), each.column)
+        value = control.compute(each.value, each.column)
         if each.index is not None:
             if index < 0.0 or index != int(index):
                 message = f"there is no parameter {name}[{index:g}]"
@@ -186,21 +183,18 @@ def assign(control: Control, statement: Statement) -> None:
         control.run(rest)
 
 
-def _new_value(assignment: Assignment) -> Expression:
-    """What a variable becomes, its old value joined to the new one."""
-    value, operator, index = assignment.value, assignment.operator, assignment.index
+def _joined(name: str, index: Expression | None, operator: str, value: Expression) -> Expression:
+    """What a variable becomes, its old value joined to the new one; without an operator the new one."""
     if not operator:
         return value
-    old: Tree = Variable(assignment.name)
-    if index is not None:
-        old = NumberedVariable(assignment.name, index.tree)
+    old: Tree = Variable(name) if index is None else NumberedVariable(name, index.tree)
     compute = EXPRESSIONS.operators[operator].compute
     return Expression(value.text, Computed(operator, compute, (old, value.tree)))
 
 
 def _write_live(control: Control, statement: Statement, assignment: Assignment) -> None:
     """Write a variable of the control."""
-    name, value = assignment.name, control.compute(_new_value(assignment), assignment.column)
+    name, value = assignment.name, control.compute(assignment.value, assignment.column)
     try:
         written = write_live(control, name, value)
     except ExpressionError as error:

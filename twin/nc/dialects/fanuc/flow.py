@@ -8,7 +8,7 @@ from twin.nc.control.control import Control
 from twin.nc.dialects.fanuc.memory import holds_any, letter_patterns, memory_of
 from twin.nc.dialects.fanuc.programs import lines_around
 from twin.nc.dialects.fanuc.variables import write_variable
-from twin.nc.text.blocks import Assignment, Block, Location, Statement
+from twin.nc.text.blocks import Assignment, Block, Location, Statement, assignment_of
 from twin.nc.text.expressions import Expression, Number, NumberedVariable, Variable
 from twin.nc.text.lines import Lines
 
@@ -149,13 +149,13 @@ def _assignment(control: Control, statement: Statement, at: int) -> Assignment:
     if text[end:].strip():
         control.refuse(statement, "structure", "one assignment follows THEN, and no more")
     column = statement.text_column + at
-    return Assignment(target.tree, value, column, end - at)
+    return assignment_of(target.tree, value, column, end - at)
 
 
 def _assign(control: Control, assignment: Assignment) -> None:
     target, index = assignment.target, None
-    if isinstance(target, NumberedVariable):
-        index = control.compute(Expression("", target.index), assignment.column)
+    if assignment.index is not None:
+        index = control.compute(assignment.index, assignment.column)
     value = control.compute(assignment.value, assignment.column)
     write_variable(control, target.name, index, value, assignment)
 

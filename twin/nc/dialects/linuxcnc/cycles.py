@@ -70,7 +70,7 @@ class Kind(NamedTuple):
         meaning: For people.
         words: Its own words besides R and the axes.
         needed: Those that it must have when it is called.
-        work: What happens at the hole, from R on: a rule for both tiers, or what the interpreter tier does.
+        work: What happens at the hole, from R on: a rule, or a function.
     """
 
     number: int
@@ -81,7 +81,7 @@ class Kind(NamedTuple):
 
     @property
     def rule(self) -> CycleRule:
-        """Its words, and what both tiers do at the hole where they have a rule for that."""
+        """Its words, and what is done at the hole, where there is a rule for that."""
         cycle = self.work if isinstance(self.work, Cycle) else _G81
         letters = {letter: place for letter, place in _PLACES.items() if letter in self.words}
         return CycleRule(f"G{self.number}", cycle, {"R": REFERENCE, **letters})
@@ -98,7 +98,7 @@ def _dwell(control: Control, hole: Drilling) -> None:
 
 
 def _drill(control: Control, hole: Drilling, rule: CycleRule) -> None:
-    """What the cycle's rule says of the way down and back, for both tiers."""
+    """What the cycle's rule says of the way down and back."""
     modal = control.modal
     values = list(hole.values)
     values[START], values[REFERENCE], values[BOTTOM] = hole.clear, hole.reference, hole.bottom

@@ -1,1 +1,1 @@
-"""Tool radius compensation, for both tiers: the contour, its leads and corners, what it has passed."""
+"""Tool radius compensation: the contour, its leads and corners, what it has passed."""

@@ -1,198 +1,340 @@
-"""Radius compensation as a stage of the path: moves one by one, and what is said of those that do not fit."""
+"""Radius compensation: the path that keeps the tool's edge on the contour, one move after the other.
 
-from collections.abc import Callable, Mapping
+It looks one move ahead. Outside corners are rolled around on an arc about the corner, inside
+corners end where the parallel paths meet, the straight lead-in ends square to the first element of
+the contour and the straight lead-out starts square to its last; indirect leads go around the
+contour's first and last point where the straight way would cut them off. What does not fit is refused: an
+inside arc smaller than the tool, an element that its neighbours leave no room for, or a neck of the
+contour that is narrower than the tool. A lead that cuts into the contour is driven with a warning.
+"""
+
+import enum
+from collections.abc import Callable
 from typing import NoReturn
 
-import numpy as np
-
-from twin.nc.canonical import Event
-from twin.nc.path.compensation import leads
-from twin.nc.path.compensation.contour import (
-    BEGINS_ON_ARC,
-    ENDS_ON_ARC,
-    FOLLOWING,
-    LEAD_IN_CUTS,
-    LEAD_OUT_CUTS,
-    LEADING_IN,
-    LEADING_OUT,
-    MAY_CUT,
-    MOST_LET_GO,
-    NARROW_CORNER,
-    NARROW_NECK,
-    NO_ROOM_TO_WAIT,
-    OFF,
-    OUTSIDE_PLANE,
-    SMALL_ARC,
-    STAGE,
-    Contour,
-    new_contour,
-    waiting_rows,
-    with_more_room,
-)
-from twin.nc.path.compensation.follow import follow
-from twin.nc.path.compensation.lookahead import hold_events
+from twin.nc.canonical import Corner, Event
+from twin.nc.geometry import curves, lead_curves
+from twin.nc.geometry.arcs import SAME_POINT, Point, distance
+from twin.nc.geometry.corners import corner_of
+from twin.nc.geometry.curves import Curve
+from twin.nc.geometry.matrices import dot
+from twin.nc.geometry.planes import Directions, aim, along, point_of, put_point, vector_of, world
+from twin.nc.path.compensation.gouge import Passed
 from twin.nc.path.move_columns import Segment
-from twin.nc.path.rows import Row, Rows
+from twin.nc.path.segments import IN_PLANE
 
-Drive = Callable[[Segment], None]
-Happen = Callable[[Event], None]
 Refuse = Callable[[Segment, str, str], NoReturn]
 """Told the segment, the code and the message; raises."""
 Warn = Callable[[Segment, str, str], None]
 """Told of the segment, the code and the message of a warning."""
 
-_FINDINGS: Mapping[int, tuple[str, str]] = {
-    BEGINS_ON_ARC: ("compensation-start", "compensation must start on a line"),
-    ENDS_ON_ARC: ("compensation-end", "compensation must end on a line"),
-    OUTSIDE_PLANE: (
-        "compensation-plane",
-        "an arc outside the compensated plane cannot be compensated",
-    ),
-    SMALL_ARC: (
-        "compensation-radius",
-        "the tool's radius {radius:g} does not fit into the arc of radius {measured:.4f}",
-    ),
-    NARROW_CORNER: (
-        "compensation-gouge",
-        (
-            "the tool's radius {radius:g} does not fit into the inside corner: "
-            "it would cut into the contour before or after"
-        ),
-    ),
-    NARROW_NECK: (
-        "compensation-gouge",
-        (
-            "the tool's radius {radius:g} does not fit between this element and "
-            "that of line {measured:.0f}: the path crosses itself"
-        ),
-    ),
-    LEAD_IN_CUTS: (
-        "compensation-lead",
-        "on its way to the contour the tool cuts {measured:.3f} mm into it",
-    ),
-    LEAD_OUT_CUTS: (
-        "compensation-lead",
-        "on its way from the contour the tool cuts {measured:.3f} mm into it",
-    ),
-}
-"""Code and message of what is wrong with a move."""
-_OF_HELD = (NARROW_NECK, LEAD_IN_CUTS)
-"""What is wrong with the move that was held."""
-_DRIVEN = (LEAD_IN_CUTS, LEAD_OUT_CUTS)
-"""What controls drive nevertheless, with a warning."""
-_EVENTS_AT_FIRST = 16
+_NO_CURVE: Curve = (False, (0.0, 0.0), (0.0, 0.0), (0.0, 0.0), 0.0)
+_NO_PLANE: Directions = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+
+
+class Stage(enum.Enum):
+    """What compensation waits for."""
+
+    OFF = "its beginning"
+    STARTED = "the straight move that leads in"
+    LEADING_IN = "the contour's first element; the move that leads in is held"
+    FOLLOWING = "the contour's next element; the last one is held"
+    LEADING_OUT = "the straight move that leads out"
+
+
+OFF, STARTED, LEADING_IN, FOLLOWING, LEADING_OUT = Stage
 
 
 class Compensation:
     """Radius compensation of a path.
 
     Attributes:
-        contour: How far it has come; the compiled tier goes on with it.
+        stage: What it waits for.
+        plane: In which it acts: abscissa, ordinate and normal in part coordinates.
     """
 
-    def __init__(self, axes: int, drive: Drive, happen: Happen, refuse: Refuse, warn: Warn) -> None:
-        """Compensation that is off, for a machine with so many axes."""
-        self.contour = new_contour(axes)
-        self._counts = self.contour.counts.data
+    def __init__(
+        self,
+        drive: Callable[[Segment], None],
+        happen: Callable[[Event], None],
+        refuse: Refuse,
+        warn: Warn,
+    ) -> None:
+        """Compensation that is off."""
         self._drive = drive
         self._happen = happen
         self._refuse = refuse
         self._warn = warn
-        self._events: list[Event] = []
-        self._rows = Rows(
-            *_room_for_moves(self.contour), np.zeros((_EVENTS_AT_FIRST, 4), np.int64), np.zeros(0)
-        )
-
-    @property
-    def stage(self) -> int:
-        """A ``Stage``."""
-        return self._counts[STAGE]
+        self.stage = OFF
+        self.plane = _NO_PLANE
+        self._signed_offset = 0.0
+        self._square = self._indirect = False
+        self._held: list[Segment] = []
+        """The move that waits for its successor, and moves along the normal that wait for its end."""
+        self._events: list[list[Event]] = []
+        """What happens behind each of them."""
+        self._contour, self._parallel = _NO_CURVE, _NO_CURVE
+        """The held move in the plane, and the path beside it; while it leads out, the contour's last element."""
+        self._start: Point = (0.0, 0.0)
+        """Where the compensated path of the held move begins in the plane [mm]."""
+        self._here: list[float] | None = None
+        """Where the compensated path has come to, shape (k,); None: nothing has been driven."""
+        self._passed = Passed()
 
     @property
     def in_force(self) -> bool:
         """It has begun, and not ended."""
         return self.stage not in (OFF, LEADING_OUT)
 
-    @property
-    def holds_events(self) -> bool:
-        """Events wait for the end of the held move."""
-        return bool(self._events)
+    def begin(
+        self, plane: Directions, signed_offset: float, *, square: bool, indirect: bool
+    ) -> None:
+        """Compensate from the next move on.
 
-    def end(self) -> None:
-        """The next line leads out."""
-        after = leads.end(0, len(self._events), self.contour, self._rows)
-        if after < 0:
-            self._say(after, self.contour.lookahead.segment)
-        self._let_go(after)
-
-    def add(self, move: Segment, position: list[float]) -> None:
-        """The next move; the path has come to this position, shape (k,)."""
-        self.contour.position[:] = position
-        after = self._follow(move)
-        if after == NO_ROOM_TO_WAIT:
-            self.contour = with_more_room(self.contour)
-            moves = _room_for_moves(self.contour)
-            self._rows = Rows(*moves, self._rows.events, self._rows.event_values)
-            after = self._follow(move)
-        if after < 0:
-            self._say(after, move)
-            self.contour.counts[MAY_CUT] = 1
-            after = self._follow(move)
-            self.contour.counts[MAY_CUT] = 0
-        self._let_go(after)
-
-    def _follow(self, move: Segment) -> int:
-        """The number of rows that are let go, or why the move is not followed."""
-        self._rows.row(0).put(move)
-        events = len(self._events)
-        return follow(0, 1, events, events, self.contour, self._rows)
-
-    def _say(self, finding: int, move: Segment) -> None:
-        """Warn of what is driven nevertheless, refuse all else."""
-        code, message = _FINDINGS[finding]
-        radius = abs(self.contour.signed_offset[0])
-        message = message.format(radius=radius, measured=self.contour.measured[0])
-        blamed = self.contour.lookahead.segment if finding in _OF_HELD else move
-        if finding in _DRIVEN:
-            self._warn(blamed, code, message)
-        else:
-            self._refuse(blamed, code, message)
+        Args:
+            plane: Abscissa, ordinate and normal in part coordinates.
+            signed_offset: The tool's radius, positive left of the contour [mm].
+            square: Outside corners between lines are extended as far as 90°.
+            indirect: Leads go around the contour's first and last point.
+        """
+        self.plane, self._signed_offset = plane, signed_offset
+        self._square, self._indirect = square, indirect
+        self.stage, self._here = STARTED, None
+        self._passed.clear()
 
     def event(self, event: Event) -> None:
         """Something that happens where the path has come to."""
-        if self.stage not in (LEADING_IN, FOLLOWING):
+        if self.stage in (LEADING_IN, FOLLOWING):
+            self._events[-1].append(event)
+        else:
             self._happen(event)
+
+    def end(self) -> None:
+        """Let go of what is held, square to itself, and wait for the line that leads out."""
+        before = self._parallel if self.stage is FOLLOWING else self._contour
+        if self.stage is LEADING_IN:
+            self._let_go(before, before, before[2])
+        elif self.stage is FOLLOWING:
+            part = curves.cut(before, self._start, before[2])
+            self._refuse_neck(part, self._contour)
+            self._let_go(before, part, before[2])
+        self.stage = LEADING_OUT if self.stage in (FOLLOWING, LEADING_OUT) else OFF
+
+    def add(self, move: Segment, position: list[float]) -> None:
+        """The next move; the path has come to this position, shape (k,)."""
+        if self.stage is LEADING_OUT:
+            self._lead_out(move, position)
             return
-        self.hold_event(event, 0)
-        number = len(self._events) - 1
-        hold_events(self.contour, self._rows, number, number + 1)
+        plane = self.plane
+        start, end = point_of(plane, vector_of(move.start)), point_of(plane, vector_of(move.end))
+        if move.center is None and distance(start, end) < SAME_POINT:
+            self._go_along_normal(move)
+            return
+        curve = (False, start, end, (0.0, 0.0), 0.0)
+        if move.center is not None:
+            sense = dot(move.normal, plane[2])
+            if not abs(sense) >= IN_PLANE:
+                message = "an arc outside the compensated plane cannot be compensated"
+                self._refuse(move, "compensation-plane", message)
+            curve = (True, start, end, point_of(plane, move.center), move.sweep * sense)
+        if self.stage is STARTED:
+            self._take_lead(move, curve)
+            return
+        if not curves.leaves_room(curve, self._signed_offset):
+            self._refuse_radius(
+                move, "compensation-radius", f"into the arc of radius {curves.radius_of(curve):.4f}"
+            )
+        element = curves.parallel_of(curve, self._signed_offset)
+        if self.stage is LEADING_IN:
+            self._lead_in(move, curve, element)
+        else:
+            self._go_on(move, curve, element)
 
-    def hold_event(self, event: Event, place: int) -> None:
-        """An event waits; its place as ``hold_events`` has it."""
-        number = len(self._events)
-        self._events.append(event)
-        if number == len(self._rows.events):
-            events = np.zeros((2 * number, 4), np.int64)
-            events[:number] = self._rows.events
-            self._rows = self._rows._replace(events=events)
-        self._rows.events[number, 0] = place
+    # --- from move to move
 
-    def _let_go(self, count: int) -> None:
-        """Drive so many rows, with the events between them."""
-        events, rows = self._events, self._rows
-        happening = bool(events) and rows.events[0, 0] >= 0
-        places = rows.events[: len(events), 0].tolist() if happening else []
-        if happening:
-            self._events = []
-        happened = 0
-        for number in range(count + 1):
-            while happened < len(places) and places[happened] <= number:
-                self._happen(events[happened])
-                happened += 1
-            if number < count:
-                self._drive(rows.row(number).segment)
+    def _go_along_normal(self, move: Segment) -> None:
+        """A move that does not go in the plane: at once before the lead-in, else behind the held move."""
+        if self.stage is STARTED:
+            self._here = move.end
+            self._drive(move)
+            return
+        self._held.append(move)
+        self._events.append([])
+        self._passed.clear()
+
+    def _go_on(self, move: Segment, curve: Curve, element: Curve) -> None:
+        """The contour's next element, with its parallel."""
+        held, before, offset = self._contour, self._parallel, self._signed_offset
+        turn = curves.turn_from(held, curve)
+        fits, rolls, at, follows = corner_of(
+            (held, before, self._start), (curve, element), turn, offset, self._square
+        )
+        if not fits:
+            self._refuse_radius(
+                move,
+                "compensation-gouge",
+                "into the inside corner: it would cut into the contour before or after",
+            )
+        part, line = curves.cut(before, self._start, at), self._held[0].line
+        self._refuse_neck(part, held)
+        self._passed.add(part, held, line)
+        sweep = abs(turn) if offset < 0.0 else -abs(turn)
+        corner = (True, before[2], element[1], curve[1], sweep)
+        if rolls:
+            self._refuse_neck(corner, None)
+            self._passed.add(corner, None, line)
+        around = self._held[0]
+        self._let_go(before, part, at)
+        if rolls:
+            self._go_around(around, corner)
+        self._hold(move, curve, follows)
+        self._parallel = element
+
+    def _hold(self, move: Segment, curve: Curve, start: Point) -> None:
+        """Hold a move until its successor is known; its compensated path begins at a point."""
+        self._held, self._events = [move], [[]]
+        self._contour, self._start = curve, start
+
+    def _let_go(self, before: Curve, part: Curve, at: Point) -> None:
+        """Drive the held move up to a point, then what waits for its end.
+
+        Args:
+            before: The path beside the held move.
+            part: What is left of that.
+            at: Where it ends.
+        """
+        plane, here = self.plane, self._here
+        for number, (move, events) in enumerate(zip(self._held, self._events, strict=True)):
+            start, end = move.start if here is None else here, list(move.end)
+            aim(plane, at, end)
+            here = end
+            if number == 0 and before[0]:
+                center = world(plane, before[3], along(vector_of(move.start), plane[2]))
+                self._drive(_driven(move, start, end, center, plane[2], part[4]))
+            elif start != end:
+                self._drive(_driven(move, start, end, move.center, move.normal, move.sweep))
+            for event in events:
+                self._happen(event)
+        self._here = here
+        self._held, self._events = [], []
+
+    def _go_around(self, move: Segment, corner: Curve) -> None:
+        """Go around a corner where the path has come to, as a held move goes."""
+        assert self._here is not None
+        arc = self._level_arc(move, corner, self._here)
+        arc.corner = Corner.EXACT_PATH
+        self._here = arc.end
+        self._drive(arc)
+
+    def _level_arc(self, move: Segment, arc: Curve, start: list[float]) -> Segment:
+        """An arc at one height with all else of a move; further axes stand still."""
+        plane, end = self.plane, list(start)
+        height = along(vector_of(start), plane[2])
+        put_point(plane, arc[2], height, end)
+        made = _driven(move, start, end, world(plane, arc[3], height), plane[2], arc[4])
+        made.display = [a + s - e for a, s, e in zip(end, move.display, move.end, strict=True)]
+        return made
+
+    # --- leads
+
+    def _take_lead(self, move: Segment, curve: Curve) -> None:
+        """Hold the straight move that leads in."""
+        if curve[0]:
+            self._refuse(move, "compensation-start", "compensation must start on a line")
+        if self._here is None:
+            self._here = move.start
+        self._hold(move, curve, curve[1])
+        self.stage = LEADING_IN
+
+    def _lead_in(self, move: Segment, curve: Curve, element: Curve) -> None:
+        """Lead in to the contour's first element, and hold that."""
+        touch, turns, arc, held = element[1], False, curve, self._held[0]
+        if self._indirect:
+            turns, arc = lead_curves.way_around(
+                self._start, element[1], curve[1], self._signed_offset
+            )
+            if turns:
+                touch = arc[1]
+        lead = (False, self._start, touch, (0.0, 0.0), 0.0)
+        self._warn_of_cut(held, "to", lead, curve)
+        self._let_go(lead, lead, touch)
+        if turns:
+            self._go_around(held, arc)
+        self._hold(move, curve, element[1])
+        self._parallel, self.stage = element, FOLLOWING
+
+    def _lead_out(self, move: Segment, stand: list[float]) -> None:
+        """The first line in the plane leads out; until then only the normal and other axes move."""
+        if move.center is not None:
+            self._refuse(move, "compensation-end", "compensation must end on a line")
+        plane, contour = self.plane, self._contour
+        here = point_of(plane, vector_of(stand))
+        start, end = point_of(plane, vector_of(move.start)), point_of(plane, vector_of(move.end))
+        leads, turns, arc = distance(start, end) >= SAME_POINT, False, contour
+        if leads and self._indirect:
+            turns, arc = lead_curves.way_around(end, here, contour[2], -self._signed_offset)
+        if leads:
+            lead = (False, arc[1] if turns else here, end, (0.0, 0.0), 0.0)
+            self._warn_of_cut(move, "from", lead, contour)
+            self.stage = OFF
+        if turns:
+            back = self._level_arc(move, (True, here, arc[1], arc[3], -arc[4]), stand)
+            self._drive(back)
+            stand = back.end
+        there = list(move.end)
+        if not leads:
+            aim(plane, here, there)
+        if stand != there:
+            self._drive(_driven(move, stand, there, None, move.normal, move.sweep))
+
+    # --- what does not fit
+
+    def _refuse_radius(self, move: Segment, code: str, where: str) -> NoReturn:
+        message = f"the tool's radius {abs(self._signed_offset):g} does not fit {where}"
+        self._refuse(move, code, message)
+
+    def _refuse_neck(self, element: Curve, own: Curve | None) -> None:
+        """Refuse an element that crosses one that was passed.
+
+        Args:
+            element: A part of the parallel, or the way around a corner.
+            own: The element of the contour that it belongs to, or None.
+        """
+        line = self._passed.crossed_by(element, own)
+        if line is not None:
+            where = f"between this element and that of line {line}: the path crosses itself"
+            self._refuse_radius(self._held[0], "compensation-gouge", where)
+
+    def _warn_of_cut(self, move: Segment, way: str, lead: Curve, element: Curve) -> None:
+        """Warn of a lead that cuts into an element of the contour."""
+        depth = lead_curves.depth_of(lead, element, abs(self._signed_offset))
+        if depth > 0.0:
+            message = f"on its way {way} the contour the tool cuts {depth:.3f} mm into it"
+            self._warn(move, "compensation-lead", message)
 
 
-def _room_for_moves(contour: Contour) -> Row:
-    """Rows for all that may be let go at once."""
-    return waiting_rows(len(contour.waiting.codes) + MOST_LET_GO, len(contour.here))
+def _driven(
+    move: Segment,
+    start: list[float],
+    end: list[float],
+    center: tuple[float, float, float] | None,
+    normal: tuple[float, float, float],
+    sweep: float,
+) -> Segment:
+    """A move elsewhere, with all else of another."""
+    return Segment(
+        move.motion,
+        move.line,
+        move.block,
+        start,
+        end,
+        move.display,
+        move.feed,
+        move.corner,
+        move.corner_tolerance,
+        move.acceleration,
+        move.deceleration,
+        center,
+        normal,
+        sweep,
+    )
