@@ -1,10 +1,13 @@
 """Attempts to get a green light that is a lie: each ends with an alarm, a failed check or a warning at its line."""
 
+from collections.abc import Mapping
 from pathlib import Path
 from textwrap import dedent
+from types import MappingProxyType
 
 import pytest
 
+from twin.nc.text.diagnostics import ProgramError
 from twin.run.outcome import Outcome
 from twin.run.preparation import prepare
 from twin.run.progress import no_progress
@@ -39,17 +42,15 @@ CUT = "G0 X-30. Y0.\nG0 Z-2.\nG1 X30. F600.\nG0 Z20.\n"
 
 
 def run(
-    folder: Path, program: str, *, strict: bool = False, dialect: str = "fanuc", **parts: str
+    folder: Path,
+    program: str,
+    parts: Mapping[str, str] = MappingProxyType({}),
+    *,
+    strict: bool = False,
 ) -> Outcome:
     """Run a program on a small block."""
-    keys = {
-        "top": "",
-        "stock": "",
-        "tool": "",
-        "more": "",
-        "start": "20.0",
-        "dialect": dialect,
-    } | parts
+    usual = {"top": "", "stock": "", "tool": "", "more": "", "start": "20.0", "dialect": "fanuc"}
+    keys = {**usual, **parts}
     (folder / "p.nc").write_text(dedent(program))
     (folder / "p.toml").write_text(JOB.format(**keys))
     chain = Run(prepare(folder / "p.toml", strict=strict))
@@ -144,5 +145,15 @@ SLIPS: dict[str, tuple[str, dict[str, str], str, int]] = {
 @pytest.mark.parametrize("name", SLIPS)
 def test_slip_is_told_at_its_line(name: str, tmp_path: Path) -> None:
     program, parts, code, line = SLIPS[name]
-    found = codes(run(tmp_path, program, **parts))
+    found = codes(run(tmp_path, program, parts))
     assert found.get(code) == line, found
+
+
+def test_strict_makes_them_failures(tmp_path: Path) -> None:
+    program, parts, code, line = SLIPS["end in the slot"]
+    outcome = run(tmp_path, program, parts, strict=True)
+    assert outcome.verdict.outcome == "fail"
+    assert (code, line) in [(reason.what, reason.line) for reason in outcome.verdict.reasons]
+    program, parts, code, line = SLIPS["no G43"]
+    with pytest.raises(ProgramError, match=code):
+        run(tmp_path, program, parts, strict=True)

@@ -14,22 +14,17 @@ from twin.machine.description.config import Machine
 from twin.machine.model.model import spindle_over_table_mm
 from twin.nc.canonical import FloatArray, Function, Motion, Moves, concatenate
 from twin.nc.dialects.recognition import HEAD_LINES
+from twin.run.assumed_tools import BELOW, tool_lines
 from twin.run.placement import part_zero
 from twin.run.preparation import IGNORED_AT_ZERO, Preparation, anywhere, prepare_job
-from twin.run.tool_comments import ToolComment, numbered_tool, tool_of_comment
 
 MARGIN = 10.0
 """Stock beyond the feed moves, on each side [mm]."""
 _LEAST_HEIGHT = 10.0
 _MOST_CLIPPED = 0.5
 """Share of the stock's area that may be taken from it so that no rapid plunges into it; beyond that there is none."""
-_USUAL_DIAMETER = 10.0
-_USUAL_LENGTH, _USUAL_FLUTE = 60.0, 25.0
-_BELOW = 1e-6
 _RAPID_TOLERANCE_UM = 200.0
 """How exactly rapids are to keep their path: no one measures it, and 0.2 mm hits nothing that is watched."""
-_NEAR_LINES = 3
-"""So far from the call of a tool a comment may stand that describes it."""
 
 _COMMENT = re.compile(r"\(([^()]*)\)|;(.*)")
 _NUMBER = r"\s*[:=-]?\s*([0-9]+(?:\.[0-9]*)?)"
@@ -107,7 +102,7 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
         done += len(chunk.moves)
     inches, lacking = _is_in_inches(preparation), _lacking_axes(preparation)
     comments = list(_comments(preparation))
-    tools, told, diameter = _tool_lines(calls, comments, moves, inches=inches)
+    tools, told, diameter = tool_lines(calls, comments, moves, inches=inches)
     stock, position, said = _stock(moves, comments, diameter / 2.0, inches=inches)
     lines = [
         f'program = "{preparation.job.program.name}"',
@@ -176,11 +171,11 @@ def _stock(
             center = _center_of(size, low, high)
             top = 0.0 if low[2] < 0.0 else float(size[2])
             return _box(size, np.array([*center, top]), "a comment in the program's head")
-    if low[2] >= -_BELOW:
+    if low[2] >= -BELOW:
         drop = moves.end[:, 2] - moves.start[:, 2]
-        flat, plunges = feeds & (np.abs(drop) < _BELOW), (feeds & (drop < -_BELOW)).any()
+        flat, plunges = feeds & (np.abs(drop) < BELOW), (feeds & (drop < -BELOW)).any()
         top = float(moves.end[flat, 2].max()) if plunges and flat.any() else 0.0
-        if top <= _BELOW:
+        if top <= BELOW:
             return _no_stock("no feed goes below Z0")
         bottom = 0.0
     else:
@@ -203,13 +198,13 @@ def _clipped(
     fed: dict[tuple[float, float], float] = {}
     rapid, ends = moves.motion == Motion.RAPID, moves.end[:, :3].round(3)
     starts = moves.start[:, 2]
-    below = ends[:, 2] < top - _BELOW
+    below = ends[:, 2] < top - BELOW
     for row in np.flatnonzero(below):
         x, y, z = ends[row].tolist()
         if not rapid[row]:
             fed[x, y] = min(z, fed.get((x, y), z))
             continue
-        if starts[row] <= z + _BELOW or fed.get((x, y), top) <= z + 1.0:
+        if starts[row] <= z + BELOW or fed.get((x, y), top) <= z + 1.0:
             continue
         if (corner < (x + radius, y + radius)).all() and (far > (x - radius, y - radius)).all():
             width, depth = (far - corner).tolist()
@@ -284,7 +279,7 @@ def _zero_line(
     zero: dict[str, float] = {}
     rotary = machine.axes.rotary()
     turns = len(moves) > 0 and bool((moves.start[:, rotary] != moves.end[:, rotary]).any())
-    if top is not None and not turns and np.abs(top[:2]).max() > _BELOW:
+    if top is not None and not turns and np.abs(top[:2]).max() > BELOW:
         center = machine.part_frame.center
         zero["X"], zero["Y"] = float(center[0] - top[0]), float(center[1] - top[1])
     if _counts_from_machine_zero(preparation):
@@ -307,112 +302,6 @@ def _counts_from_machine_zero(preparation: Preparation) -> bool:
     return any(
         _FROM_MACHINE_ZERO.search(_COMMENT.sub("", line)) for line in preparation.source.lines
     )
-
-
-# --- tools
-
-
-def _tool_lines(
-    calls: list[tuple[int, int, int]],
-    comments: list[tuple[int, str]],
-    moves: Moves,
-    *,
-    inches: bool,
-) -> tuple[list[str], list[str], float]:
-    """Lines of the tools that the program calls, how each came about, and the largest diameter [mm]."""
-    numbers = list(dict.fromkeys(number for number, _, _ in calls if number)) or [1]
-    listed: dict[int, ToolComment] = {}
-    for _, comment in comments:
-        found = numbered_tool(comment)
-        if found is not None and found[0] in numbers:
-            tool = tool_of_comment(found[1], inches=inches)
-            if tool.diameter is not None or tool.kind:
-                listed.setdefault(found[0], tool)
-    lines: list[str] = []
-    told: list[str] = []
-    largest = 0.0
-    for number in numbers:
-        tool = listed.get(number) or _near_comment(number, calls, comments, inches=inches)
-        rows = _rows_of(number, calls, len(moves))
-        more, said, diameter = _tool_table(number, tool, moves, rows)
-        lines += more
-        told.append(said)
-        largest = max(largest, diameter)
-    return lines, told, largest
-
-
-def _near_comment(
-    number: int,
-    calls: list[tuple[int, int, int]],
-    comments: list[tuple[int, str]],
-    *,
-    inches: bool,
-) -> ToolComment | None:
-    """What a comment beside a tool's call tells of it; without a list, and one tool alone, any comment of the head."""
-    lines = [line for each, line, _ in calls if each == number]
-    near = [
-        (abs(line - call), text)
-        for line, text in comments
-        for call in lines
-        if abs(line - call) <= _NEAR_LINES
-    ]
-    if not lines:
-        near = [(line, text) for line, text in comments if line <= HEAD_LINES]
-    for _, text in sorted(near):
-        tool = tool_of_comment(text, inches=inches)
-        if tool.diameter is not None and tool.kind:
-            return tool
-    return None
-
-
-def _rows_of(number: int, calls: list[tuple[int, int, int]], count: int) -> list[int]:
-    """Moves with a tool; all of them where no tool is called."""
-    if not calls:
-        return list(range(count))
-    rows: list[int] = []
-    for place, (each, _, begin) in enumerate(calls):
-        end = calls[place + 1][2] if place + 1 < len(calls) else count
-        if each == number:
-            rows += range(begin, end)
-    return rows
-
-
-def _tool_table(
-    number: int, tool: ToolComment | None, moves: Moves, rows: list[int]
-) -> tuple[list[str], str, float]:
-    """A tool's lines, how it came about, and its diameter [mm]."""
-    feeds = [row for row in rows if moves.motion[row] == Motion.FEED]
-    ways = moves.end[feeds, :2] - moves.start[feeds, :2]
-    drills = bool(feeds) and bool((np.abs(ways) < _BELOW).all())
-    depth = max(0.0, -float(moves.end[feeds, 2].min())) if feeds else 0.0
-    kind = (tool.kind if tool else "") or ("drill" if drills else "flat")
-    diameter = (tool.diameter if tool else None) or _USUAL_DIAMETER
-    flute = max(_USUAL_FLUTE, np.ceil(depth + 5.0))
-    length = max(_USUAL_LENGTH, np.ceil(flute * 1.6 + 20.0))
-    guesses = [] if tool and tool.diameter else ["diameter"]
-    kind_from = "its comment" if tool and tool.kind else "what it does"
-    size_from = "its comment" if tool and tool.diameter else "a guess"
-    lines = [
-        "[[tools]]",
-        f"number = {number}" + (f"  # {_plain(tool.text)}" if tool else ""),
-        f'kind = "{kind}"  # flat, ball, bull, drill, chamfer: from {kind_from}',
-        f"diameter = {round(float(diameter), 4)}  # mm: {size_from}",
-        *([f"corner = {tool.corner}  # mm"] if tool and tool.corner and kind == "bull" else []),
-        f"flute = {flute:.1f}  # mm: a guess",
-        f"length = {length:.1f}  # from the spindle nose to the tip, mm: a guess",
-        "",
-    ]
-    said = f"T{number} {kind} of {diameter:g} mm: " + (
-        f"from its comment ({_plain(tool.text)})"
-        if tool and tool.diameter
-        else f"{' and '.join(guesses)} is a guess"
-    )
-    return lines, said, diameter
-
-
-def _plain(text: str) -> str:
-    """A comment of a program as one of a job file."""
-    return "".join(each for each in text if each.isprintable())[:80]
 
 
 def text_beside(path: Path, assumed: AssumedJob, program: Path) -> str:

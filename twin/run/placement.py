@@ -1,5 +1,7 @@
 """Where program zero lies in the machine, and whether the stock fits there."""
 
+import math
+
 import numpy as np
 
 from twin.cutting.blank_weight import blank_weight
@@ -64,8 +66,19 @@ def with_blank(
             (float(x), float(y), float(top) - size[2] / 2.0),
             round=job.stock.shape in ("cylinder", "tube"),
             weight=None if weight is None else weight.moved((float(x), float(y), float(top))),
+            on_post=job.stock.shape != "box",
         )
     )
+
+
+def bore_of(job: JobFile) -> float | None:
+    """How wide the stock's hole is, in which a fixture may stand [mm]; None: it has none.
+
+    Of a stock from an STL file the box around it is known alone, in which a fixture may stand anywhere.
+    """
+    if job.stock is None:
+        return None
+    return math.inf if job.stock.shape == "stl" else job.stock.bore
 
 
 def start_position(job: JobFile, machine: Machine) -> FloatArray:

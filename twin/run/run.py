@@ -24,6 +24,7 @@ from twin.cutting.program_summary import ProgramSummary
 from twin.errors import ConfigError
 from twin.job.job_file import ToleranceTable
 from twin.machine.description.motion_limits import motion_limits
+from twin.machine.model.clamping import refuse_overlaps
 from twin.machine.model.model import build_spec, spindle_over_table_mm
 from twin.machine.simulation.growth import Growth
 from twin.machine.simulation.simulate import Simulation, simulate
@@ -44,7 +45,7 @@ from twin.run.dry_run import DryRun, interpret_all
 from twin.run.machining import Machining
 from twin.run.notices import Notice, shown
 from twin.run.outcome import Outcome
-from twin.run.placement import part_zero, with_blank
+from twin.run.placement import bore_of, part_zero, with_blank
 from twin.run.preparation import Preparation
 from twin.run.progress import Progress
 from twin.run.scope import nothing_judged, scope_of
@@ -98,6 +99,7 @@ class Run:
         self.part_zero = part_zero(job, machine, over_table)
         self.machine = with_blank(machine, job, self.part_zero, over_table)
         self.spec: mujoco.MjSpec = build_spec(self.machine, job.tools[0])
+        refuse_overlaps(self.machine, self.spec, bore_of(job))
         self.part_frame: PartFrame = machine.part_frame.at(self.part_zero)
         self.clock = StageClock()
         self.trace = Trace(machine.axes, self.part_frame, self.part_zero)

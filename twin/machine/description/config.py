@@ -314,12 +314,14 @@ class Blank(NamedTuple):
         center: Of that box over the middle of the table [mm].
         round: An upright cylinder; else the box itself.
         weight: What it weighs, seen from the middle of the table; None: not known.
+        on_post: A post carries it where it does not lie on the table; else two parallels.
     """
 
     size: tuple[float, float, float]
     center: tuple[float, float, float]
     round: bool
     weight: Weight | None = None
+    on_post: bool = False
 
 
 class Machine:

@@ -10,6 +10,7 @@ from twin.machine.description.measured_mass import set_measured_masses
 from twin.machine.model.drive_actuators import add_drives
 from twin.machine.model.drives import Drive, tune
 from twin.machine.model.tool_shape import (
+    CLAMPED_SIDE,
     COLLISION_GROUP,
     FRAME_SIDE,
     PART_SIDE,
@@ -22,6 +23,7 @@ from twin.machine.model.tool_shape import (
     add_tool,
 )
 from twin.machine.model.transmission import add_inertia
+from twin.machine.model.work_holding import supports
 from twin.nc.canonical import FloatArray
 from twin.units import MM
 
@@ -76,6 +78,7 @@ def _complete(spec: mujoco.MjSpec, machine: Machine, tool: ToolShape | None) -> 
     empty = drives(machine, compiled(_without(spec, VISUAL_GROUP), machine))
     add_drives(spec, machine, empty)
     spec.add_numeric(name=_TUNED_FOR, data=[drive.moved for drive in empty])
+    _hold_against_clamped(spec)
     _add_fixtures(spec, machine)
     if machine.blank is not None:
         _add_blank(spec, machine.blank)
@@ -150,7 +153,7 @@ def _add_fixtures(spec: mujoco.MjSpec, machine: Machine) -> None:
                 pos=list(center),
                 material=material,
                 group=group,
-                contype=PART_SIDE if collides else 0,
+                contype=PART_SIDE | CLAMPED_SIDE if collides else 0,
                 conaffinity=TOOL_SIDE | FRAME_SIDE if collides else 0,
                 mass=0.0,
             )
@@ -180,10 +183,42 @@ def _add_blank(spec: mujoco.MjSpec, blank: Blank) -> None:
         size=[half[0], half[2], 0.0] if blank.round else list(half),
         pos=list(top.pos + np.array(blank.center) * MM),
         group=COLLISION_GROUP,
-        contype=STOCK_SIDE,
+        contype=STOCK_SIDE | CLAMPED_SIDE,
         conaffinity=FRAME_SIDE,
         mass=0.0,
     )
+    _add_work_holding(spec, blank)
+
+
+def _add_work_holding(spec: mujoco.MjSpec, blank: Blank) -> None:
+    """What is drawn under the stock is as solid as a fixture."""
+    top = spec.site(TABLE_TOP)
+    x, y, z = blank.center
+    gap = z - blank.size[2] / 2.0
+    for support in supports(blank.size, gap, box=not blank.on_post):
+        half = [size * MM for size in support.half]
+        top.parent.add_geom(
+            name=support.name,
+            type=mujoco.mjtGeom.mjGEOM_CYLINDER if support.round else mujoco.mjtGeom.mjGEOM_BOX,
+            size=[half[0], half[2], 0.0] if support.round else half,
+            pos=list(top.pos + np.array([x, y + support.aside, gap / 2.0]) * MM),
+            group=COLLISION_GROUP,
+            contype=PART_SIDE | CLAMPED_SIDE,
+            conaffinity=TOOL_SIDE | FRAME_SIDE,
+            mass=0.0,
+        )
+
+
+def _hold_against_clamped(spec: mujoco.MjSpec) -> None:
+    """Let all that does not turn with the table be met by what is clamped on it.
+
+    The table's own faceplate is built so as to pass what carries it; the tool's side meets fixtures as
+    it is, and the stock as it is cut.
+    """
+    for geom in spec.geoms:
+        turns = geom.parent.name == ROTARY_TABLE
+        if geom.group == COLLISION_GROUP and not turns and not geom.contype & TOOL_SIDE:
+            geom.conaffinity |= CLAMPED_SIDE
 
 
 def compiled(spec: mujoco.MjSpec, machine: Machine) -> mujoco.MjModel:

@@ -18,6 +18,8 @@ COLLISION_GROUP = 3
 """Geom group of what may not meet; the physics drops it too, the clearance is watched apart."""
 TOOL_SIDE, PART_SIDE, FRAME_SIDE, STOCK_SIDE = 1, 2, 4, 8
 """Sides of a collision, as bits of ``contype``: head and holder, table and fixture, column, stock."""
+CLAMPED_SIDE = 16
+"""What is clamped on the table and turns with it, against all of the machine that does not."""
 
 _VISUAL = {"contype": 0, "conaffinity": 0, "group": VISUAL_GROUP, "mass": 0.0}
 _COLLISION = {

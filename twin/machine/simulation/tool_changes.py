@@ -67,7 +67,9 @@ class ToolClearances:
 
     def _of(self, tool: ToolShape) -> Clearance:
         """Tools of one shape share their clearance, at whatever speed they turn."""
-        shape = tool_cylinders(tool, self._machine.file.spindle.flange_diameter)
+        flange = self._machine.file.spindle.flange_diameter
+        end = tool.kind, tool.diameter, tool.corner, tool.point_angle, tool.tip, tool.shank
+        shape = (*tool_cylinders(tool, flange), end)
         if shape not in self._built:
             spec = build_spec(self._machine, tool)
             self._built[shape] = Clearance(self._machine, clearance_model(self._machine, spec))

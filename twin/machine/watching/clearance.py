@@ -59,7 +59,7 @@ _FAR = 10.0
 """Distances beyond this are not measured [m]."""
 _BLOCK = 256
 """Samples that are judged at once by the box around them."""
-_ORDER = {side: place for place, side in enumerate((TOOL_SIDE, STOCK_SIDE, PART_SIDE))}
+_ORDER = (TOOL_SIDE, STOCK_SIDE, PART_SIDE)
 """In which order an alarm names two that meet."""
 _NO_PLANE = 1e-6
 """Distance below which two witness points give no direction [mm]."""
@@ -366,7 +366,7 @@ def _share_above(ends: FloatArray) -> float:
 def _pairs(model: mujoco.MjModel) -> list[tuple[int, int]]:
     """Geoms of different bodies that may not meet, by their bits; the tool's side first, frame last."""
     geoms = [index for index in range(model.ngeom) if model.geom_group[index] == COLLISION_GROUP]
-    geoms.sort(key=lambda index: _ORDER.get(int(model.geom_contype[index]), len(_ORDER)))
+    geoms.sort(key=lambda index: _place_in_alarm(int(model.geom_contype[index])))
     return [
         (one, two)
         for one, two in itertools.combinations(geoms, 2)
@@ -376,3 +376,7 @@ def _pairs(model: mujoco.MjModel) -> list[tuple[int, int]]:
             or model.geom_contype[two] & model.geom_conaffinity[one]
         )
     ]
+
+
+def _place_in_alarm(contype: int) -> int:
+    return next((place for place, side in enumerate(_ORDER) if contype & side), len(_ORDER))

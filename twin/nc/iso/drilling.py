@@ -134,6 +134,15 @@ def hole_in_force(control: Control, rule: CycleRule) -> Hole:
     return hole
 
 
+_NEEDED = {
+    "R": "the height where the feed begins, such as R2.",
+    "Z": "the depth of the hole, such as Z-10.",
+    "Q": "the depth of a peck, such as Q2.",
+    "F": "the feed, such as F100.",
+}
+"""What the words of a drilling cycle are, for hints."""
+
+
 def refuse_hole(control: Control, rule: CycleRule, hole: Hole) -> NoReturn:
     """Say what is wrong with the words of a cycle.
 
@@ -149,7 +158,8 @@ def refuse_hole(control: Control, rule: CycleRule, hole: Hole) -> NoReturn:
             for value, address in sorted(addresses.items())
             if (rule.cycle.needed >> value) & 1 and math.isnan(control.cycle_state[value])
         ]
-        control.fail("cycle-word", f"{name} needs {' and '.join(missing)}")
+        hint = "; ".join(f"{each}: {_NEEDED[each]}" for each in missing if each in _NEEDED)
+        control.fail("cycle-word", f"{name} needs {' and '.join(missing)}", hint=hint or None)
     if hole.fault == Fault.PLANE:
         message = f"{name} was called in another plane"
         control.fail("cycle-plane", message, hint="end it by G80 before the plane changes")

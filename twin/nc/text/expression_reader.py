@@ -238,8 +238,16 @@ class _Reading:
     def _expect(self, character: str) -> None:
         self._skip_blanks()
         if self._text[self.at : self.at + 1] != character:
-            self._fail("expression", f"'{character}' is missing here")
+            self._fail("expression", f"'{character}' is missing here", self._hint_of_equal())
         self.at += 1
+
+    def _hint_of_equal(self) -> str | None:
+        """How two values are compared, where a single = stands in the place of an operator."""
+        operators = {name.upper() for name in self._syntax.operators}
+        spelling = next((each for each in ("EQ", "==") if each in operators), None)
+        if spelling is None or self._text[self.at : self.at + 1] != "=":
+            return None
+        return f"equal is written {spelling}"
 
     def _skip_blanks(self) -> None:
         while self._text[self.at : self.at + 1] in (" ", "\t") and self.at < len(self._text):

@@ -1,0 +1,46 @@
+"""What carries the stock where it does not lie on the table: two parallels, or a post under a round blank."""
+
+from typing import NamedTuple
+
+INSET = 0.15
+"""How far they stand back from the blank's sides, as a share of its size."""
+SMALLEST_GAP = 0.1
+"""A blank that is so far above the table at most lies on it [mm]."""
+_WIDTH = 0.1
+"""Half the width of a parallel, as a share of the blank's size along Y."""
+
+
+class Support(NamedTuple):
+    """A parallel or a post.
+
+    Attributes:
+        name: As an alarm calls it.
+        half: Half its size along X, Y, Z [mm]; of a post radius, radius and half its height.
+        aside: Its middle off that of the blank along Y [mm].
+        round: A post.
+    """
+
+    name: str
+    half: tuple[float, float, float]
+    aside: float
+    round: bool
+
+
+def supports(size: tuple[float, float, float], gap: float, *, box: bool) -> tuple[Support, ...]:
+    """What stands between the table and a blank.
+
+    Args:
+        size: Of the box around the blank [mm].
+        gap: Height of its lower face over the table [mm].
+        box: The blank is a box; else it stands on a post.
+    """
+    if gap < SMALLEST_GAP:
+        return ()
+    x, y, z = size[0] * (0.5 - INSET), size[1] * _WIDTH, gap / 2.0
+    if not box:
+        return (Support("post", (x, x, z), 0.0, round=True),)
+    aside = size[1] * (0.5 - INSET - _WIDTH)
+    return tuple(
+        Support(f"parallel {number}", (x, y, z), way * aside, round=False)
+        for number, way in enumerate((-1.0, 1.0), start=1)
+    )
