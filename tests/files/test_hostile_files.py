@@ -4,6 +4,7 @@
 """
 
 import logging
+import sys
 from pathlib import Path
 
 import h5py
@@ -108,3 +109,13 @@ def test_a_motor_without_inertia_behind_a_backlash_is_refused(tmp_path: Path) ->
     machine = read_machine(path, changes)
     with pytest.raises(ConfigError, match="motor_inertia"):
         build_spec(machine)
+
+
+def test_a_solid_in_another_encoding_is_refused_without_a_package_that_guesses_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "charset_normalizer", None)
+    path = tmp_path / "part.stl"
+    path.write_bytes(b"solid \x80\n" + b"\xff" * 200)
+    with pytest.raises(ConfigError, match="not a readable STL file"):
+        read_stl(path)

@@ -34,6 +34,11 @@ def read_stl(path: Path) -> "trimesh.Trimesh":
             mesh = trimesh.load_mesh(file, file_type="stl", process=False)
     except (OSError, ValueError, KeyError, IndexError) as error:
         raise ConfigError(f"{path}: is not a readable STL file: {error}") from error
+    except ImportError as error:
+        # With a package that an installation need not have, trimesh guesses how such a text is encoded.
+        raise ConfigError(
+            f"{path}: is not a readable STL file: neither a binary one nor text in UTF-8"
+        ) from error
     if np.abs(mesh.vertices).max(initial=0.0) > LARGEST_MM or np.isnan(mesh.vertices).any():
         raise ConfigError(f"{path}: a corner lies beyond {LARGEST_MM:g} mm")
     mesh.process()
