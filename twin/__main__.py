@@ -5,7 +5,6 @@ A signal may come while the libraries are still being loaded: even then a senten
 
 import atexit
 import gc
-import logging
 import os
 import resource
 import signal
@@ -105,8 +104,6 @@ def _run(stopped: list[int]) -> None:
     signal.signal(signal.SIGTERM, stop)
     signal.signal(signal.SIGINT, stop)
     gc.set_threshold(COLLECT_AFTER)
-    # It complains where there is no home folder for what it keeps, and does without.
-    logging.getLogger("matplotlib").setLevel(logging.ERROR)
     limit = resource.getrlimit(resource.RLIMIT_AS)[0]
     if 0 <= limit < LEAST_ADDRESS_SPACE:
         print(
@@ -116,9 +113,13 @@ def _run(stopped: list[int]) -> None:
         )
         raise SystemExit(2)
     try:
+        import logging
+
         from twin.command_line.streams import prepare_streams
 
         prepare_streams()
+        # Matplotlib complains where there is no home folder for what it keeps, and does without.
+        logging.getLogger("matplotlib").setLevel(logging.ERROR)
         from twin.cli import main as run
 
         run()

@@ -36,6 +36,8 @@ EXPECTED = {
     "collision_shank": ("collision", 8, "the shank of tool 1 meets the part (6.00 mm deep)"),
     "collision_gantry": ("collision", 4, "the block meets the gantry's beam"),
     "collision_column": ("collision", 4, "the stock meets the column"),
+    "collision_table_motor": ("collision", 4, "the rotary table's motor meets the stop"),
+    "collision_parallel": ("collision", 4, "the cutter meets the parallel 2"),
     "collision_turning_clamp": ("collision", 5, "the cutter meets the clamp"),
     "rapid_into_stock": (
         "rapid-into-stock",

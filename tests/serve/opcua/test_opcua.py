@@ -51,7 +51,13 @@ class Served:
         )
 
     async def value(self, *path: str) -> Any:
-        return await (await self.node(*path)).read_value()
+        """The value of a node, once there is one: what was observed reaches node after node."""
+        node = await self.node(*path)
+        for _ in range(100):
+            with contextlib.suppress(ua.uaerrors.BadWaitingForInitialData):
+                return await node.read_value()
+            await asyncio.sleep(0.05)
+        return await node.read_value()
 
     async def until(self, wanted: Any, *path: str) -> None:
         for _ in range(100):
@@ -114,7 +120,7 @@ async def test_the_specifications_parts_follow_what_the_agent_observed(one: Serv
     })  # fmt: skip
     channel = ("t:Monitoring", "o:Channel1")
     await one.until("4", *channel, "o:Line")
-    assert await one.value("t:Monitoring", "o:Axes", "o:X", "o:ActualPosition") == 12.5
+    await one.until(12.5, "t:Monitoring", "o:Axes", "o:X", "o:ActualPosition")
     assert await one.value(*channel, "t:ChannelState") == 0
     assert await one.value(*channel, "t:FeedOverride") == 100.0
     assert await one.value("t:Monitoring", "o:Spindle", "t:IsRotating") is True

@@ -45,9 +45,13 @@ WARMING: tuple[tuple[Who, dict[str, object]], ...] = (
 RESTARTING: tuple[tuple[Who, dict[str, object]], ...] = (
     ("operator", {"do": "cycle_start"}),
     ("trainer", {"do": "rewind", "seconds": 0.5}),
-    ("trainer", {"do": "unfreeze"}),
+    ("trainer", {"do": "go_on"}),
 )
 """The same, behind a search for a line."""
+
+
+BETWEEN_KEYS, INTO_THE_CUT = 20, 400
+"""Slices of time behind a key: behind a start the tool comes into the material."""
 
 
 class OpenRoom:
@@ -156,5 +160,5 @@ def warm_up(scene: Scene) -> None:
     search: tuple[Who, dict[str, object]] = ("operator", {"do": "search", "line": middle})
     for who, command in (*WARMING, search, *RESTARTING):
         session.submit(command, who)
-        session.advance(20)
+        session.advance(INTO_THE_CUT if command["do"] == "cycle_start" else BETWEEN_KEYS)
         session.snapshot()
