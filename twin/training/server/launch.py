@@ -22,8 +22,6 @@ TURNS_S = 0.0005
 
 
 WARMING: tuple[tuple[Who, dict[str, object]], ...] = (
-    ("operator", {"do": "mode", "mode": "auto"}),
-    ("operator", {"do": "cycle_start"}),
     ("operator", {"do": "override", "dial": "feed", "percent": 50}),
     ("operator", {"do": "feed_hold"}),
     ("operator", {"do": "cycle_start"}),
@@ -51,7 +49,7 @@ RESTARTING: tuple[tuple[Who, dict[str, object]], ...] = (
 
 
 BETWEEN_KEYS, INTO_THE_CUT = 20, 400
-"""Slices of time behind a key: behind a start the tool comes into the material."""
+"""Slices of time behind a key, and behind the first start, by which the tool is in the material."""
 
 
 class OpenRoom:
@@ -158,7 +156,10 @@ def warm_up(scene: Scene) -> None:
     session = Session(scene)
     middle = len(session.room.lines) // 2
     search: tuple[Who, dict[str, object]] = ("operator", {"do": "search", "line": middle})
+    session.submit({"do": "mode", "mode": "auto"})
+    session.submit({"do": "cycle_start"})
+    session.advance(INTO_THE_CUT)
     for who, command in (*WARMING, search, *RESTARTING):
         session.submit(command, who)
-        session.advance(INTO_THE_CUT if command["do"] == "cycle_start" else BETWEEN_KEYS)
+        session.advance(BETWEEN_KEYS)
         session.snapshot()
