@@ -88,7 +88,9 @@ def test_a_key_that_does_not_exist_is_a_wrong_command_line(twin: Twin, vary: str
 @pytest.mark.processes
 def test_a_lost_worker_is_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("ray", reason="the extra 'cluster' is not installed")
-    monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parent))
+    # What workers import of these files lies beside this one and in the folder above.
+    places = Path(__file__).parents[:2]
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join(map(str, places)))
     task = Variant(JOB, (("job.marker", str(tmp_path / "died")),))
     found = run_tasks([task], check_that_loses_its_worker_once, jobs=None, cluster="local")
     assert [outcome.verdict for outcome in found] == ["pass"]

@@ -36,7 +36,7 @@ def init_and_print(
     try:
         assumed = assumed_job(preparation)
     except ProgramError as error:
-        raise read_as(error, preparation) if preparation.dialect_reason else error from None
+        raise read_as(error, preparation) from None
     write_text(path, assumed.text)
     if preparation.dialect_reason:
         typer.echo(reading_line(preparation), err=True)

@@ -81,8 +81,9 @@ def _assumed(
     try:
         made, assumed = with_assumptions(preparation, machine=machine, strict=strict)
     except ProgramError as error:
-        raise read_as(error, preparation) from error
-    typer.echo(reading_line(made), err=True)
+        raise read_as(error, preparation) from None
+    if made.dialect_reason:
+        typer.echo(reading_line(made), err=True)
     for line in assumed.assumptions:
         typer.echo(f"assumed: {line}", err=True)
     if save_job is None:
@@ -94,13 +95,14 @@ def _assumed(
 
 
 def reading_line(preparation: Preparation) -> str:
-    """In which dialect a raw program was read, and why."""
-    reason = preparation.dialect_reason or "as it was asked for"
-    return f"read as {preparation.dialect.name}: {reason}"
+    """In which dialect a raw program was read that nobody named, and why."""
+    return f"read as {preparation.dialect.name}: {preparation.dialect_reason}"
 
 
 def read_as(error: ProgramError, preparation: Preparation) -> ProgramError:
-    """An error of a raw program, with the dialect that it was read in."""
+    """An error of a raw program, with the dialect that it was read in where nobody named one."""
+    if not preparation.dialect_reason:
+        return error
     finding = error.diagnostic
     said = f"{reading_line(preparation)}; another control: --dialect NAME"
     hint = f"{finding.hint}; {said}" if finding.hint else said
