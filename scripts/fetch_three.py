@@ -22,17 +22,19 @@ THREE = ROOT / "twin" / "web" / "assets" / "three"
 AXE = ROOT / ".axe"
 NODE_SETS = ROOT / "twin" / "serve" / "opcua" / "nodesets"
 NODE_SET_FILES = {
-    f"nodesets/{name}": name
-    for name in (
-        "Opc.Ua.Di.NodeSet2.xml",
-        "Opc.Ua.IA.NodeSet2.xml",
-        "Opc.Ua.Machinery.NodeSet2.xml",
-        "opc.ua.isa95-jobcontrol.nodeset2.xml",
-        "Opc.Ua.Machinery.Jobs.Nodeset2.xml",
-        "Opc.Ua.MachineTool.NodeSet2.xml",
+    f"nodesets/{name}": f"{number}_{name}"
+    for number, name in enumerate(
+        (
+            "Opc.Ua.Di.NodeSet2.xml",
+            "Opc.Ua.IA.NodeSet2.xml",
+            "Opc.Ua.Machinery.NodeSet2.xml",
+            "opc.ua.isa95-jobcontrol.nodeset2.xml",
+            "Opc.Ua.Machinery.Jobs.Nodeset2.xml",
+            "Opc.Ua.MachineTool.NodeSet2.xml",
+        )
     )
 }
-"""What the server of ``twin serve --opcua`` imports."""
+"""What the server of ``twin serve --opcua`` imports, numbered: each stands on those before it; OPC 40501-1 comes last."""
 
 THREE_FILES = {
     "LICENSE": "LICENSE",
@@ -55,7 +57,8 @@ def fetch(name: str, files: Mapping[str, str], target: Path) -> None:
     pinned = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     version, sha512 = (pinned["tool"]["npm"][name][key] for key in ("version", "sha512"))
     stamp = target / "VERSION"
-    if stamp.is_file() and stamp.read_text(encoding="utf-8") == version:
+    there = all((target / own).is_file() for own in files.values())
+    if there and stamp.is_file() and stamp.read_text(encoding="utf-8") == version:
         return
     with tempfile.TemporaryDirectory() as place:
         package = _pack(f"{name}@{version}", Path(place))

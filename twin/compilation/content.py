@@ -16,19 +16,15 @@ import numpy as np
 PACKAGE = Path(__file__).resolve().parents[1]
 _DECORATORS = PACKAGE / "compilation" / "kernel.py"
 """How kernels are compiled and kept; what declares one may import it within a function."""
-_COMPILERS = (
-    sys.implementation.cache_tag,
-    numba.__version__,
-    llvmlite.__version__,
-    # Within a minor version NumPy keeps the layout of arrays and the types of results.
-    ".".join(np.__version__.split(".")[:2]),
-)
 REQUIREMENTS = "requirements.txt"
 """What of the compilers compiled kernels need, in a folder of them."""
 
 
 def compilers() -> tuple[str, ...]:
-    """Requirements of pip under which kernels that are compiled here are found again."""
+    """Requirements of pip under which kernels that are compiled here are found again.
+
+    Within a minor version NumPy keeps the layout of arrays and the types of results.
+    """
     minor = ".".join(np.__version__.split(".")[:2])
     return (
         f"numba=={numba.__version__}",
@@ -46,7 +42,7 @@ _IMPORT = re.compile(
 @functools.cache
 def content_key(file: Path) -> str:
     """Hash of a file, of all files of the package that it imports, of what compiles it, and of the compilers' versions."""
-    digest = hashlib.sha256("\n".join(_COMPILERS).encode())
+    digest = hashlib.sha256("\n".join((str(sys.implementation.cache_tag), *compilers())).encode())
     for source in sorted(_closure(file)):
         digest.update(source.relative_to(PACKAGE).as_posix().encode() + b"\0")
         digest.update(_digest(source))

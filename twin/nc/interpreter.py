@@ -1,6 +1,7 @@
 """Runs a program: text in, chunks of canonical moves out."""
 
 from collections.abc import Callable, Iterator
+from typing import NamedTuple
 
 import numpy as np
 
@@ -8,11 +9,25 @@ from twin.nc.canonical import Chunk, FloatArray
 from twin.nc.control.dialect import Dialect
 from twin.nc.control.executor import Executor
 from twin.nc.control.settings import ControlSettings
+from twin.nc.coverage import Coverage
 from twin.nc.line_kernel.choice import usual_kernel
 from twin.nc.line_kernel.plain_state import LineKernel, LineRuns
 from twin.nc.path.move_columns import CHUNK
+from twin.nc.text.blocks import Block
 from twin.nc.text.diagnostics import Diagnostic, ProgramError
 from twin.nc.text.source import Source
+
+
+class LengthCall(NamedTuple):
+    """A tool's length put into force.
+
+    Attributes:
+        number: Whose length.
+        spindle: The tool in the spindle behind that block; None: there is none.
+    """
+
+    number: int
+    spindle: int | None
 
 
 class Interpretation:
@@ -22,6 +37,8 @@ class Interpretation:
         source: The program.
         dialect: The language it is read in.
         settings: What the control was told of the machine and the job.
+        coverage: The lines that were run.
+        length_calls: Calls of tool lengths by the number of a tool, by source line.
     """
 
     def __init__(
@@ -45,6 +62,13 @@ class Interpretation:
         self.settings = settings
         self._kernel = kernel
         self._control = Executor(dialect, settings, source)
+        self.coverage = Coverage(source, dialect)
+        self.length_calls: dict[int, LengthCall] = {}
+
+    @property
+    def programs_in_inches(self) -> bool:
+        """Whether lengths are programmed in inches now."""
+        return self._control.modal.unit != 1.0
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
@@ -73,7 +97,8 @@ class Interpretation:
         try:
             control.prepare()
             while not control.ended:
-                if lines is not None and lines.run():
+                if lines is not None and (run := lines.run()):
+                    self.coverage.note(run.start + 1, run.stop + 1)
                     if len(control.path) >= CHUNK:
                         yield control.path.take()
                     continue
@@ -83,6 +108,7 @@ class Interpretation:
                 refused = control.path.refusal(block.line)
                 control.run(block)
                 refused = None
+                self._note(block)
                 if len(control.path) >= CHUNK:
                     yield control.path.take()
             control.finish()
@@ -90,3 +116,14 @@ class Interpretation:
             yield control.path.take(refused)
             raise
         yield control.path.take()
+
+    def _note(self, block: Block) -> None:
+        """A block was run."""
+        control, tools = self._control, self._control.tools
+        if not control.settings.skips(block):
+            self.coverage.note(block.line, block.line + 1)
+        if tools.length_call is not None:
+            self.length_calls[block.line] = LengthCall(tools.length_call, tools.spindle)
+            tools.length_call = None
+        if control.ended:
+            self.coverage.ends_at = block.line

@@ -13,11 +13,14 @@ from twin.job.job_file import Job, JobFile
 from twin.machine.description.config import Machine
 from twin.machine.model.model import spindle_over_table_mm
 from twin.nc.canonical import FloatArray, Function, Motion, Moves, concatenate
-from twin.nc.dialects.recognition import HEAD_LINES
+from twin.nc.dialects.recognition import HEAD_LINES, comments_of, without_comments
+from twin.nc.text.diagnostics import ProgramError
 from twin.run.assumed_tools import BELOW, tool_lines
 from twin.run.placement import part_zero
 from twin.run.preparation import IGNORED_AT_ZERO, Preparation, anywhere, prepare_job
 
+_MACHINE_ZERO_UNKNOWN = "no-machine-zero"
+"""The finding of a program that counts from machine zero, where no job says where that lies."""
 MARGIN = 10.0
 """Stock beyond the feed moves, on each side [mm]."""
 _LEAST_HEIGHT = 10.0
@@ -26,7 +29,6 @@ _MOST_CLIPPED = 0.5
 _RAPID_TOLERANCE_UM = 200.0
 """How exactly rapids are to keep their path: no one measures it, and 0.2 mm hits nothing that is watched."""
 
-_COMMENT = re.compile(r"\(([^()]*)\)|;(.*)")
 _NUMBER = r"\s*[:=-]?\s*([0-9]+(?:\.[0-9]*)?)"
 _STOCK_WORDS = r"(?:STOCK(?:/BLOCK)?|BLOCK SIZE|BLANK|MATERIAL(?: SIZE)?|WORKPIECE SIZE|ROHTEIL)"
 _STOCKS = (
@@ -88,8 +90,16 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
     Raises:
         ProgramError: The program is wrong.
     """
-    preparation = anywhere(preparation)
-    chunks = list(preparation.interpretation().chunks())
+    interpretation = preparation.interpretation()
+    counts_from_machine_zero = False
+    try:
+        chunks = list(interpretation.chunks())
+    except ProgramError as error:
+        if error.diagnostic.code != _MACHINE_ZERO_UNKNOWN:
+            raise
+        counts_from_machine_zero = True
+        interpretation = anywhere(preparation).interpretation()
+        chunks = list(interpretation.chunks())
     moves = concatenate([chunk.moves for chunk in chunks], preparation.machine.axes)
     calls: list[tuple[int, int, int]] = []
     done = 0
@@ -100,7 +110,7 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
             if isinstance(event, Function) and event.word[:1] == "T" and event.word[1:].isdigit()
         ]
         done += len(chunk.moves)
-    inches, lacking = _is_in_inches(preparation), _lacking_axes(preparation)
+    inches, lacking = interpretation.programs_in_inches, _lacking_axes(preparation)
     comments = list(_comments(preparation))
     tools, told, diameter = tool_lines(calls, comments, moves, inches=inches)
     stock, position, said = _stock(moves, comments, diameter / 2.0, inches=inches)
@@ -108,7 +118,12 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
         f'program = "{preparation.job.program.name}"',
         f'dialect = "{preparation.dialect.name}"',
         f'machine = "{preparation.job.file.machine}"',
-        *_zero_line(preparation, moves, position, "\n".join(stock), tools),
+        *_zero_line(
+            preparation,
+            moves,
+            position,
+            [*stock, *tools] if counts_from_machine_zero else None,
+        ),
         "",
         *stock,
         *tools,
@@ -123,7 +138,8 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
         "",
     ]
     left_out = tuple(f"{word} stays at 0: the machine has no such axis" for word in lacking)
-    return AssumedJob("\n".join(lines), (said, *told, *left_out))
+    rapids = f"rapids may leave their path by {_RAPID_TOLERANCE_UM:g} µm"
+    return AssumedJob("\n".join(lines), (said, *told, rapids, *left_out))
 
 
 def _lacking_axes(preparation: Preparation) -> list[str]:
@@ -132,23 +148,15 @@ def _lacking_axes(preparation: Preparation) -> list[str]:
     if not words:
         return []
     written = re.compile(rf"(?<![A-Z\[#])({words})[ \t]*[-+]?[.0-9]", re.IGNORECASE)
-    lines = (_COMMENT.sub("", line) for line in preparation.source.lines)
+    lines = map(without_comments, preparation.source.lines)
     return sorted({found[1].upper() for line in lines for found in written.finditer(line)})
 
 
 def _comments(preparation: Preparation) -> Iterator[tuple[int, str]]:
     """Every comment with its line, from 1, as long as lists of tools and tool changes may stand there."""
     for number, line in enumerate(preparation.source.lines, 1):
-        for match in _COMMENT.finditer(line):
-            yield number, (match[1] or match[2] or "").strip()
-
-
-def _is_in_inches(preparation: Preparation) -> bool:
-    head = (line for _, line in zip(range(HEAD_LINES), preparation.source.lines, strict=False))
-    words = "\n".join(_COMMENT.sub("", line) for line in head)
-    return preparation.dialect.name in ("fanuc", "haas", "linuxcnc") and bool(
-        re.search(r"\bG20\b|G20(?![0-9.])", words, re.IGNORECASE)
-    )
+        for comment in comments_of(line):
+            yield number, comment
 
 
 # --- stock and zero
@@ -180,21 +188,27 @@ def _stock(
         bottom = 0.0
     else:
         top, bottom = 0.0, float(low[2]) - MARGIN
-    corner, far = _clipped(moves, low[:2] - MARGIN, high[:2] + MARGIN, top, radius)
+    corner, far, plunges = _clipped(moves, low[:2] - MARGIN, high[:2] + MARGIN, top, radius)
     whole = np.prod(high[:2] - low[:2] + 2.0 * MARGIN)
     if (far <= corner).any() or np.prod(far - corner) < (1.0 - _MOST_CLIPPED) * whole:
         return _no_stock("rapids plunge wherever it could lie")
     size = np.array([*(far - corner), max(np.ceil(top - bottom), _LEAST_HEIGHT)])
     size[:2] = np.floor(size[:2] * 10.0) / 10.0
-    return _box(
-        size, np.array([*((corner + far) / 2.0), top]), f"the path and {MARGIN:g} mm around it"
-    )
+    around = f"the path and {MARGIN:g} mm around it"
+    if plunges:
+        several = "lines" if len(plunges) > 1 else "line"
+        around += (
+            f", less where the rapids of {several} {', '.join(map(str, plunges[:5]))}"
+            f"{' ...' if len(plunges) > 5 else ''} go below its top: what they would hit there is not judged"
+        )
+    return _box(size, np.array([*((corner + far) / 2.0), top]), around)
 
 
 def _clipped(
     moves: Moves, corner: FloatArray, far: FloatArray, top: float, radius: float
-) -> tuple[FloatArray, FloatArray]:
-    """The box without what rapids would plunge into; holes that were fed before are none of that."""
+) -> tuple[FloatArray, FloatArray, list[int]]:
+    """The box without what rapids would plunge into, and their lines; holes that were fed before are none of that."""
+    lines: list[int] = []
     fed: dict[tuple[float, float], float] = {}
     rapid, ends = moves.motion == Motion.RAPID, moves.end[:, :3].round(3)
     starts = moves.start[:, 2]
@@ -207,6 +221,7 @@ def _clipped(
         if starts[row] <= z + BELOW or fed.get((x, y), top) <= z + 1.0:
             continue
         if (corner < (x + radius, y + radius)).all() and (far > (x - radius, y - radius)).all():
+            lines.append(int(moves.line[row]))
             width, depth = (far - corner).tolist()
             losses = {
                 (0, "low"): (x + radius - corner[0]) * depth,
@@ -221,7 +236,7 @@ def _clipped(
                 corner[axis] = place + radius + _CLEAR
             else:
                 far[axis] = place - radius - _CLEAR
-    return corner, far
+    return corner, far, list(dict.fromkeys(lines))
 
 
 _CLEAR = 0.5
@@ -271,10 +286,16 @@ def _zero_line(
     preparation: Preparation,
     moves: Moves,
     top: FloatArray | None,
-    stock: str,
-    tools: list[str],
+    decides_height: list[str] | None,
 ) -> list[str]:
-    """Where program zero lies: the stock in the table's middle; its height where the program asks for it."""
+    """Where program zero lies: the stock in the table's middle, and its height.
+
+    Args:
+        preparation: Of the program.
+        moves: What it makes.
+        top: Centre of the stock's top face; None: there is no stock.
+        decides_height: Lines of stock and tools, where the program counts from machine zero; else None.
+    """
     machine = preparation.machine
     zero: dict[str, float] = {}
     rotary = machine.axes.rotary()
@@ -282,8 +303,8 @@ def _zero_line(
     if top is not None and not turns and np.abs(top[:2]).max() > BELOW:
         center = machine.part_frame.center
         zero["X"], zero["Y"] = float(center[0] - top[0]), float(center[1] - top[1])
-    if _counts_from_machine_zero(preparation):
-        text = "\n".join(['program = "x"', stock, *tools])
+    if decides_height is not None:
+        text = "\n".join(['program = "x"', *decides_height])
         zero["Z"] = _height(JobFile.model_validate(tomllib.loads(text)), machine)
     if not zero:
         return []
@@ -293,15 +314,6 @@ def _zero_line(
 
 def _height(file: JobFile, machine: Machine) -> float:
     return float(part_zero(file, machine, spindle_over_table_mm(machine))[machine.axes.index("Z")])
-
-
-_FROM_MACHINE_ZERO = re.compile(r"G0*(?:28|30|53)(?![0-9])", re.IGNORECASE)
-
-
-def _counts_from_machine_zero(preparation: Preparation) -> bool:
-    return any(
-        _FROM_MACHINE_ZERO.search(_COMMENT.sub("", line)) for line in preparation.source.lines
-    )
 
 
 def text_beside(path: Path, assumed: AssumedJob, program: Path) -> str:

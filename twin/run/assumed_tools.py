@@ -194,7 +194,6 @@ def _tool_table(
     diameter = (tool.diameter if tool else None) or _USUAL_DIAMETER
     flute = max(_USUAL_FLUTE, np.ceil(depth + 5.0))
     length = max(_USUAL_LENGTH, np.ceil(flute * 1.6 + 20.0))
-    guesses = [] if tool and tool.diameter else ["diameter"]
     kind_from = "its comment" if tool and tool.kind else "what it does"
     size_from = "its comment" if tool and tool.diameter else "a guess"
     lines = [
@@ -210,7 +209,7 @@ def _tool_table(
     said = f"T{number} {kind} of {diameter:g} mm: " + (
         f"from its comment ({_plain(tool.text)})"
         if tool and tool.diameter
-        else f"{' and '.join(guesses)} is a guess"
+        else "diameter is a guess"
     )
     return lines, said, diameter
 

@@ -12,7 +12,6 @@ from twin.nc.text.diagnostics import Diagnostic
 from twin.run.messages import speed_notice
 from twin.run.notices import shown
 from twin.run.preparation import Preparation
-from twin.run.program_text import ProgramText
 from twin.run.program_watch import ProgramWatch
 from twin.run.stages import StageClock
 
@@ -30,6 +29,7 @@ class DryRun:
         alarm: The soft-limit alarm of the first move that leaves the travel, if any.
         summary: What the program says beside its moves.
         watch: What it tells that no axis feels.
+        lines_never_run: How many lines with motion it never came to.
     """
 
     moves: int
@@ -37,6 +37,7 @@ class DryRun:
     alarm: Alarm | None
     summary: ProgramSummary
     watch: ProgramWatch
+    lines_never_run: int
 
 
 def interpret_all(preparation: Preparation, part_zero: FloatArray, clock: StageClock) -> DryRun:
@@ -54,8 +55,7 @@ def interpret_all(preparation: Preparation, part_zero: FloatArray, clock: StageC
     interpretation = preparation.interpretation()
     moves, alarm = 0, None
     builder = SummaryBuilder(preparation.job.file, preparation.spindle)
-    text = ProgramText(preparation.source.lines, preparation.dialect.name)
-    watch = ProgramWatch(preparation.job.file, preparation.spindle, text)
+    watch = ProgramWatch(preparation.job.file, preparation.spindle)
     limited: dict[int, str] = {}
     chunks: Iterable[Chunk] = clock.watch("interpret", interpretation.chunks())
     for chunk in chunks:
@@ -75,9 +75,14 @@ def interpret_all(preparation: Preparation, part_zero: FloatArray, clock: StageC
                 speed_notice(line, message, preparation.source)
                 for line, message in islice(limited.items(), NOTICES_KEPT)
             ),
-            *shown(watch.notices(), preparation.source, strict=preparation.settings.strict),
+            *shown(
+                watch.notices(interpretation),
+                preparation.source,
+                strict=preparation.settings.strict,
+            ),
         ),
         alarm=alarm,
         summary=builder.summary(),
         watch=watch,
+        lines_never_run=len(interpretation.coverage.never_run()),
     )

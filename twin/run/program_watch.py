@@ -17,11 +17,8 @@ from twin.nc.functions import (
     TOOL_CHANGE,
     SpindleState,
 )
+from twin.nc.interpreter import Interpretation
 from twin.run.notices import Notice
-from twin.run.program_text import ProgramText
-
-_NEAR_LINES = 8
-"""A block without a move belongs to the next move that stands so many lines behind the last, at most."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -68,16 +65,14 @@ class ProgramWatch:
         first_feed: Line of the first move at feed; 0: there is none.
         changed_at: Line of the first tool change; 0: there is none.
         spindle_line: Line of the first function that starts the spindle; 0: there is none.
-        text: The program's lines, and which were run.
     """
 
-    def __init__(self, job: JobFile, spindle: SpindleState, text: ProgramText) -> None:
+    def __init__(self, job: JobFile, spindle: SpindleState) -> None:
         """Begin with the job's first tool in a spindle of which nothing was said.
 
         Args:
             job: Its tools are those that the program may bring.
             spindle: As the machine and the control have it.
-            text: The program's lines.
         """
         self.stops: list[Stop] = []
         self.overspeed: Alarm | None = None
@@ -92,13 +87,10 @@ class ProgramWatch:
         self._line = 0
         self.changed_at = 0
         self._end_line = 0
-        self._change_line = 0
-        self.text = text
         self._started_at, self._started_in_cycle = 0, False
         self._tapped: set[int] = set()
         self._tooth_feeds: dict[int, ToothFeed] = {}
         self._counter: dict[int, Notice] = {}
-        self._lengths: dict[int, Notice] = {}
 
     def add(self, chunk: Chunk) -> None:
         """Take note of moves and functions that follow the last ones."""
@@ -113,7 +105,6 @@ class ProgramWatch:
             self._hear(
                 event, self._moves + event.before, in_cycle=behind == event.line == self._line
             )
-            self.text.visit(np.array([event.line]))
         self._span(chunk, first, len(moves))
         self._moves += len(moves)
 
@@ -124,8 +115,6 @@ class ProgramWatch:
         moves = chunk.moves[first:end]
         self.first_line = self.first_line or int(moves.line[0])
         self.tools_used.add(self._tool.number)
-        self._hold_lengths(moves.line)
-        self.text.visit(moves.line)
         self._line = int(moves.line[-1])
         feeds = np.flatnonzero(moves.motion != Motion.RAPID)
         if not len(feeds):
@@ -157,33 +146,12 @@ class ProgramWatch:
             if known is None or per_tooth[row] > known.value:
                 self._tooth_feeds[int(line[row])] = ToothFeed(float(per_tooth[row]), self._tool)
 
-    def _hold_lengths(self, lines: IntArray) -> None:
-        """Hold the numbers of length calls against the tool in the spindle."""
-        before = np.concatenate([[self._line], lines[:-1]])
-        for line, number in self.text.length_calls.items():
-            if number in (0, self._tool.number) or number not in self._tools:
-                continue
-            passed = (before < line) & (line < lines) & (lines - before <= _NEAR_LINES)
-            # A call that stands before the tool's change was of the tool before it.
-            passed &= (line >= self._change_line) | (lines < self._change_line)
-            met = (lines == line).any() or any(
-                not self.text.branches(int(before[row]), int(lines[row]))
-                for row in np.flatnonzero(passed)
-            )
-            if met:
-                message = (
-                    f"H{number} is the length of tool {number}, and tool {self._tool.number} is "
-                    "in the spindle"
-                )
-                self._lengths.setdefault(line, Notice("length-of-other-tool", line, message))
-
     def _hear(self, event: Function, place: int, *, in_cycle: bool) -> None:
         word, was = event.word, self._state.turns
         if word[:1] == "T" and word[1:].isdigit():
             self._selected = int(word[1:])
         elif word == TOOL_CHANGE:
             self.changed_at = self.changed_at or event.line
-            self._change_line = event.line
             if self._selected != self._tool.number:
                 self.stops.append(Stop(float(place), event.line, "the tool is changed"))
             self._tool = self._tools.get(self._selected, self._tool)
@@ -221,18 +189,26 @@ class ProgramWatch:
         """Line at which the program ended, or of its last move."""
         return self._end_line or self._line
 
-    def notices(self) -> Iterator[Notice]:
-        """What is to be told of the whole program, as soon as it has been read."""
+    def notices(self, interpretation: Interpretation) -> Iterator[Notice]:
+        """What is to be told of the whole program, once it was interpreted to its end."""
         yield from self._counter.values()
-        yield from self._lengths.values()
-        if self.text.knows_lengths and self.changed_at and not self.text.calls_lengths:
+        for line, call in interpretation.length_calls.items():
+            if call.spindle is not None and call.number != call.spindle:
+                message = (
+                    f"the length of tool {call.number} is called, and tool {call.spindle} is in the "
+                    "spindle"
+                )
+                yield Notice("length-of-other-tool", line, message)
+        by_code = interpretation.dialect.length_by_code
+        if by_code and self.changed_at and not interpretation.length_calls:
             yield Notice(
                 "length-never-called",
                 self.changed_at,
                 "a tool comes into the spindle and G43 is never written: a control whose zero "
                 "was taken at the spindle nose would drive the tool into the part",
             )
-        behind = self.text.motion_behind(self._end_line)
+        coverage = interpretation.coverage
+        behind = coverage.motion_behind_end()
         if behind:
             message = f"the program ends here, and lines with motion follow (line {behind})"
-            yield Notice("ends-before-motion", self._end_line, message)
+            yield Notice("ends-before-motion", coverage.ends_at, message)

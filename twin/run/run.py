@@ -198,10 +198,12 @@ class Run:
         blind = () if alarms else tuple(self._unjudged(judged, dry_run, figures))
         notices = [] if alarms else list(self._notices(dry_run, machining, cut))
         strict = self.preparation.settings.strict
-        failing = [Reason(each.code, each.message, each.line, 0.0) for each in notices] * strict
+        failing = [
+            Reason(each.code, each.message, each.line, 0.0) for each in (notices if strict else ())
+        ]
         scope = scope_of(
             job,
-            dry_run.watch,
+            dry_run,
             judged.checks,
             cut,
             forces=self._process is not None,

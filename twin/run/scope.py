@@ -9,6 +9,7 @@ from twin.compare.verdict import Check, Reason
 from twin.cutting.cut import CutResult
 from twin.job.job_file import Job, JobFile, ToleranceTable
 from twin.machine.watching.alarms import Alarm
+from twin.run.dry_run import DryRun
 from twin.run.program_watch import ProgramWatch
 
 DRIVES = "travel, limit switches, following error and force of every axis"
@@ -77,7 +78,7 @@ class Scope:
 
 def scope_of(
     job: Job,
-    watch: ProgramWatch,
+    dry_run: DryRun,
     checks: Sequence[Check],
     cut: CutResult | None,
     *,
@@ -89,14 +90,14 @@ def scope_of(
 
     Args:
         job: What was asked for.
-        watch: What the program said.
+        dry_run: What the program said.
         checks: What was held to tolerances.
         cut: What was cut; None without a stock.
         forces: Whether the force of the cut was simulated.
         unjudged: What was asked for and judged nothing.
         alarms: What stopped the machine.
     """
-    file = job.file
+    file, watch = job.file, dry_run.watch
     watched = [DRIVES, COLLISIONS]
     watched += [STOCK] if file.stock is not None else []
     watched += [FORCES] if forces else []
@@ -119,7 +120,7 @@ def scope_of(
         removed_mm3=None if cut is None else cut.removed_mm3,
         air_share=None if cut is None else cut.air_share,
         tools_unused=tuple(unused) if listed else (),
-        lines_never_run=len(watch.text.never_run()),
+        lines_never_run=dry_run.lines_never_run,
         tolerances_from=job.tolerances_from,
     )
 

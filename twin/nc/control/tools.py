@@ -13,6 +13,7 @@ class Tools:
         any: The tool that every other number means; None: there is none.
         spindle: Number of the tool in the spindle.
         selected: Number of the tool that the next change brings.
+        length_call: Number of the tool whose length the block that runs calls; None: it calls none.
     """
 
     def __init__(self, table: Mapping[int, ToolData], *, any_tool: bool = False) -> None:
@@ -22,6 +23,7 @@ class Tools:
         self.any = table[first] if any_tool and first is not None else None
         self._reference = 0.0 if first is None else table[first].length
         self.spindle = self.selected = first
+        self.length_call: int | None = None
 
     def change(self) -> None:
         """The selected tool goes into the spindle."""

@@ -64,7 +64,7 @@ def reading_of(source: Source) -> Reading:
     first = "\n".join(islice(source.lines, 2000))
     if not first.strip():
         raise EmptyProgramError(f"{source.name}: the program is empty")
-    if not any(_COMMENT.sub("", line).strip() for line in source.lines):
+    if not any(without_comments(line).strip() for line in source.lines):
         raise EmptyProgramError(f"{source.name}: the program is empty: it holds comments alone")
     if is_prose(first):
         raise UsageError(
@@ -75,7 +75,16 @@ def reading_of(source: Source) -> Reading:
 
 def head_of(source: Source) -> str:
     """The comments at a program's beginning, a line each."""
-    found: list[str] = []
-    for line in islice(source.lines, HEAD_LINES):
-        found += [" ".join(filter(None, match.groups())) for match in _COMMENT.finditer(line)]
-    return "\n".join(found)
+    return "\n".join(
+        each for line in islice(source.lines, HEAD_LINES) for each in comments_of(line)
+    )
+
+
+def comments_of(line: str) -> list[str]:
+    """The comments of a line, as most controls and posts write them."""
+    return [" ".join(filter(None, match.groups())).strip() for match in _COMMENT.finditer(line)]
+
+
+def without_comments(line: str) -> str:
+    """A line without what ``comments_of`` gives."""
+    return _COMMENT.sub("", line)

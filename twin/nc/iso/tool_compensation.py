@@ -44,10 +44,9 @@ def _length_by_table(sign: float) -> Action:
 
     def action(control: Control) -> None:
         word = control.take("H")
-        if word is None:
-            tool = control.tools.data(control.tools.spindle)
-        else:
-            tool = control.tools.data(tool_numbered(control, word))
+        number = control.tools.spindle if word is None else tool_numbered(control, word)
+        tool = control.tools.data(number)
+        control.tools.length_call = number
         if tool is None:
             message = "tool length needs a tool, and the job has none"
             control.fail("no-such-tool", message, None, NEEDS_TOOL)

@@ -60,16 +60,20 @@ class LineRuns:
         )
         self._pause = self._wait = 0
 
-    def run(self) -> bool:
-        """Run the lines that come next, as far as they are plain; False where the next block is Python's."""
+    def run(self) -> range:
+        """Run the lines that come next, as far as they are plain.
+
+        Returns:
+            The lines that were run, from 0; none where the next block is Python's.
+        """
         control = self._control
         if self._wait > 0:
             self._wait -= 1
-            return False
+            return range(0)
         room = CHUNK - len(control.path)
         line = control.program_counter.fresh_line
         if line is None or room <= 0 or not may_run_lines(control):
-            return False
+            return range(0)
         page = control.program_counter.lines.page_of(line)
         columns = PageColumns(page.data, page.starts, page.ends, page.lines.start)
         state = self._state(line)
@@ -82,7 +86,7 @@ class LineRuns:
             self._pause = 0
         if came_to > line:
             self._take_back(state, came_to, self._rows.first(made))
-        return came_to > line
+        return range(line, came_to)
 
     def _state(self, line: int) -> PlainState:
         control, modal, frame = self._control, self._control.modal, self._control.frame

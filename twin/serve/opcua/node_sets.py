@@ -10,29 +10,20 @@ FOLDER = Path(__file__).with_name("nodesets")
 DI = "http://opcfoundation.org/UA/DI/"
 MACHINERY = "http://opcfoundation.org/UA/Machinery/"
 MACHINE_TOOL = "http://opcfoundation.org/UA/MachineTool/"
-FILES = (
-    "Opc.Ua.Di.NodeSet2.xml",
-    "Opc.Ua.IA.NodeSet2.xml",
-    "Opc.Ua.Machinery.NodeSet2.xml",
-    "opc.ua.isa95-jobcontrol.nodeset2.xml",
-    "Opc.Ua.Machinery.Jobs.Nodeset2.xml",
-    "Opc.Ua.MachineTool.NodeSet2.xml",
-)
-"""Each stands on those before it; OPC 40501-1 comes last."""
+_VERSION = FOLDER / "VERSION"
+"""Written when all are there."""
 
 
 def require_node_sets() -> None:
-    """Refuse where one is missing.
+    """Refuse where they are missing.
 
     Raises:
-        UsageError: It is.
+        UsageError: They are.
     """
-    for name in FILES:
-        if not (FOLDER / name).is_file():
-            raise UsageError(
-                f"OPC UA's node sets are missing ({FOLDER / name}): run scripts/setup.sh, or python "
-                "scripts/fetch_three.py"
-            )
+    if not _VERSION.is_file():
+        raise UsageError(
+            f"OPC UA's node sets are missing ({FOLDER}): run python scripts/fetch_three.py"
+        )
 
 
 async def import_node_sets(server: Server) -> None:
@@ -45,6 +36,7 @@ async def import_node_sets(server: Server) -> None:
         UsageError: The node sets are not there.
     """
     require_node_sets()
-    for name in FILES:
+    # By their numbers: each stands on those before it.
+    for file in sorted(FOLDER.glob("*.xml")):
         # Some nodes of DI are for design tools only and have no parent: they are left out.
-        await server.import_xml(str(FOLDER / name), strict_mode=False)
+        await server.import_xml(str(file), strict_mode=False)

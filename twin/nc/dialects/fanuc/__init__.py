@@ -156,6 +156,7 @@ FANUC = Dialect(
     pointless=decimal_point.pointless,
     count=as_read,
     feed_rule=feeds.fanuc_rule,
+    length_by_code=True,
 )
 
 HAAS = dataclasses.replace(

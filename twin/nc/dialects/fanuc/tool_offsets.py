@@ -79,6 +79,7 @@ def _apply_length(control: Control, sign: float, word: Word | None) -> None:
     if number == 0:
         set_length(control, 0.0)
         return
+    control.tools.length_call = number
     length = geometry_of(control, number, "length")
     row = memory_of(control).tool_offsets.get(number)
     if length is None:

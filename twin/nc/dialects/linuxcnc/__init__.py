@@ -157,6 +157,7 @@ LINUXCNC = Dialect(
     library=LIBRARY,
     prepare=offsets.begin,
     must_end=True,
+    length_by_code=True,
     finish=_finish,
     acts_on_lines=_acts_on_lines,
 )

@@ -304,7 +304,8 @@ def _length_here(control: Control, height: float, *, from_fixture: bool) -> floa
 
 def tool_length(control: Control) -> None:
     """G43: the length of tool H; without it, and with H0, of the tool in the spindle."""
-    set_length(control, _offset_of(control, _length_number(control, control.take("H"))))
+    number = control.tools.length_call = _length_number(control, control.take("H"))
+    set_length(control, _offset_of(control, number))
 
 
 def _length_number(control: Control, word: Word | None) -> int | None:
