@@ -25,7 +25,7 @@ WALL_ERROR_MM = 2.0 * WALL_MM
 """What the places of two walls that tools have left are off by at most [mm]."""
 _BESIDE = 0.75
 """Every wall has a cell behind it whose middle is as near [cells]."""
-_RAW = 1e-3
+RAW = 1e-3
 """A wall that is where the blank's own side is, to this, is that side [cells]."""
 
 
@@ -169,7 +169,7 @@ def _beside_walls(height_map: HeightMap) -> BoolArray:
 def _raw_sides(height_map: HeightMap) -> BoolArray:
     """Cells whose nearest wall is the blank's own side."""
     inside = height_map.outline.inside(height_map.x, height_map.y[:, None]) / height_map.cell
-    return np.abs(height_map.behind[..., 0] - KNOWN - inside) < _RAW
+    return np.abs(height_map.behind[..., 0] - KNOWN - inside) < RAW
 
 
 def _without(behind: WallDistance, cells: BoolArray) -> WallDistance:

@@ -8,7 +8,7 @@ import numpy as np
 
 from twin.cutting.cut import Cutter
 from twin.cutting.height_map import HeightMap
-from twin.cutting.inspection import STEEPEST, steepness
+from twin.cutting.inspection import RAW, STEEPEST, steepness
 from twin.cutting.kernels.drape import drape, note_sides
 from twin.cutting.kernels.surface_distance import (
     BY_CELLS,
@@ -28,10 +28,6 @@ from twin.units import UM_PER_MM
 
 _CELLS = 256
 """Of the cells that a chunk cut too deep, so many are traced back to their samples."""
-
-
-_RAW = 1e-3
-"""A wall that is where the blank's own side is, to this, is that side [cells]."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -155,7 +151,7 @@ class NominalWatch:
         before = (walls[..., 0] - behind[..., 0]) * cell
         before[(walls[..., 0] <= KNOWN) | (behind[..., 0] <= KNOWN)] = 0.0
         inside = cut.outline.inside(cut.x[columns], cut.y[rows, None]) / cell
-        before[np.abs(behind[..., 0] - KNOWN - inside) < _RAW] = 0.0
+        before[np.abs(behind[..., 0] - KNOWN - inside) < RAW] = 0.0
         wanted = (nominal - heights > self._allowed) | (before > self._allowed)
         found, told_by = np.zeros(heights.shape), np.zeros(heights.shape, np.int64)
         flat = np.maximum(steepness(heights, cell), steepness(nominal, cell)) <= STEEPEST

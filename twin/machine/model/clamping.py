@@ -9,6 +9,7 @@ from twin.errors import ConfigError
 from twin.machine.description.config import Machine
 from twin.machine.model.model import BLANK, ROTARY_TABLE, clearance_model
 from twin.machine.model.tool_shape import COLLISION_GROUP
+from twin.machine.model.work_holding import PARALLELS, POST
 from twin.units import MM
 
 TOUCHING = 0.01
@@ -52,7 +53,7 @@ def refuse_overlaps(machine: Machine, spec: mujoco.MjSpec, bore: float | None = 
             )
 
 
-_CARRIES = ("parallel 1", "parallel 2", "post")
+_CARRIES = (*PARALLELS, POST)
 """What the twin puts under the stock gives way to a fixture there."""
 
 

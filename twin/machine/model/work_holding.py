@@ -6,6 +6,8 @@ INSET = 0.15
 """How far they stand back from the blank's sides, as a share of its size."""
 SMALLEST_GAP = 0.1
 """A blank that is so far above the table at most lies on it [mm]."""
+PARALLELS, POST = ("parallel 1", "parallel 2"), "post"
+"""As an alarm calls them."""
 _WIDTH = 0.1
 """Half the width of a parallel, as a share of the blank's size along Y."""
 
@@ -38,9 +40,9 @@ def supports(size: tuple[float, float, float], gap: float, *, box: bool) -> tupl
         return ()
     x, y, z = size[0] * (0.5 - INSET), size[1] * _WIDTH, gap / 2.0
     if not box:
-        return (Support("post", (x, x, z), 0.0, round=True),)
+        return (Support(POST, (x, x, z), 0.0, round=True),)
     aside = size[1] * (0.5 - INSET - _WIDTH)
     return tuple(
-        Support(f"parallel {number}", (x, y, z), way * aside, round=False)
-        for number, way in enumerate((-1.0, 1.0), start=1)
+        Support(name, (x, y, z), way * aside, round=False)
+        for name, way in zip(PARALLELS, (-1.0, 1.0), strict=True)
     )
