@@ -211,8 +211,10 @@ def backward_pass(limits: FloatArray, entry: FloatArray, known: FloatArray) -> F
             last, out[3, i] = k - 1, k
             if limits[0, last] == 0.0 or best >= highest * (1.0 - VELOCITY_PRECISION):
                 break
-            if k > i + 1 and brake_distance(highest, 0.0, deceleration, jerk) < distance:
-                break
+            if k > i + 1:
+                longest = LONGEST_BRAKE * brake_distance(highest, 0.0, deceleration, jerk)
+                if longest < distance:
+                    break
             distance += limits[0, last]
             deceleration = min(deceleration, limits[3, last])
             jerk = min(jerk, limits[4, last])
