@@ -48,7 +48,7 @@ class Control(ControlWords):
         target, linear = list(self.programmed), self.linear
         unit, relative = self.modal.unit, self.modal.incremental
         for index, word in self.take_axis_words():
-            incremental = relative or word.incremental
+            incremental = word.incremental or (relative and not word.mark)
             here = target[index]
             written = word.value
             assert isinstance(written, float)

@@ -102,6 +102,11 @@ class Dialect(Vocabulary):
     finish: Action | None = None
     acts_on_lines: Callable[[Control], bool] = lambda _control: False
 
+    def code_name(self, number: float) -> str:
+        """How a G code of the table is written."""
+        names = (name for name, code in self.syntax.codes.items() if code == number)
+        return next(names, f"G{number:g}")
+
     def new_modal(self) -> Modal:
         """What is in force of its codes: nothing; groups that have one at the start come first."""
         codes = (*(self.g[number] for number in self.start), *self.g.values())

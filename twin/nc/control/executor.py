@@ -227,7 +227,7 @@ class Executor(Control):
         number = number_of(word)
         code = self.dialect.g.get(number)
         if code is None:
-            known = ", ".join(f"G{number}" for number in sorted(self.dialect.g))
+            known = ", ".join(self.dialect.code_name(number) for number in sorted(self.dialect.g))
             instead = self.dialect.instead.get(number)
             self.fail(
                 "unknown-g",

@@ -45,7 +45,7 @@ FAGOR8070 = Dialect(
         comments=(Comment("(", ")"), Comment(";")),
         expressions=variables.EXPRESSIONS,
         statement=statements.PATTERN,
-        named_labels=True,
+        label=r"\[[ \t]*([A-Z_]\w*)[ \t]*\]",
         incremental_suffix=True,
         aliases={
             **{f"{axis}1": axis for axis in "XYZABCUVW"},
