@@ -12,10 +12,12 @@ from twin.nc.dialects.gost import GOST
 from twin.nc.dialects.linuxcnc import LINUXCNC
 from twin.nc.dialects.mefi import MEFI
 from twin.nc.dialects.outside import dialects_from_outside
+from twin.nc.dialects.sinumerik import SINUMERIK
 from twin.nc.text.source import Source
 
 OWN: Mapping[str, Dialect] = {
-    dialect.name: dialect for dialect in (GOST, CODESYS, FAGOR8070, MEFI, FANUC, HAAS, LINUXCNC)
+    dialect.name: dialect
+    for dialect in (GOST, CODESYS, FAGOR8070, MEFI, FANUC, HAAS, LINUXCNC, SINUMERIK)
 }
 """Those of this package by name."""
 _OUTSIDE, _FAILED = dialects_from_outside(OWN)
