@@ -103,7 +103,8 @@ TEXTS: tuple[Foreign, ...] = (
         "a program for Marlin, a 3D printer's control",
         "post it for one of: twin dialects",
         r"(?m)^\s*;\s*FLAVOR:|^\s*;\s*(?:generated (?:by|with) )?(?:PrusaSlicer|Cura_SteamEngine|Slic3r|Marlin)"
-        r"|^\s*M(?:104|109|140|190|82|83|106|107|204|205|400|420) ?(?:S|T|P|;|$)",
+        r"|^\s*M(?:104|109|140|190|82|83|106|107|204|205|400|420) ?(?:S|T|P|;|$)"
+        r"|^\s*M(?:17|18|84|280|300)\b(?! *[A-RT-Z])",
         2,
         comments=True,
     ),
@@ -112,6 +113,17 @@ TEXTS: tuple[Foreign, ...] = (
         _AS_LINUXCNC,
         r"(?m)^\s*\{\"?(?:sr|qr|xvm|gc|sys)\"?\s*:",
         comments=True,
+    ),
+    Foreign(
+        "a program for Mach3 or Mach4",
+        "write G20 for G70, G21 for G71, leave G50 out, and --dialect linuxcnc reads it",
+        r"(?s)G9[01]\.1.{0,200}?G(?:50|7[01])(?![0-9.])|G(?:50|7[01])(?![0-9.]).{0,200}?G9[01]\.1",
+    ),
+    Foreign(
+        "a program for a lathe",
+        "the machines here are mills",
+        r"(?m)^[^(\n]*G28 *[UW]-?0|G96 *S|G50 *S\d|\bT(\d\d)\1\b",
+        2,
     ),
     Foreign("a list of Grbl's settings", "it holds no moves", r"(?m)^\$\d+ ?= ?[\d.]+", 3),
     Foreign(
