@@ -51,6 +51,7 @@ class Dialect(Vocabulary):
         units: Units of lengths and feeds, for people.
         decisions: Every decision taken for it.
         marks: What tells its programs from others.
+        suffixes: Ends of the names of files that hold its programs alone, lower case.
         start_state: Fields of ``Modal`` that no G code sets.
         before_motion: Done before every motion block, told whether it is rapid.
         read_variable: Value of a variable, given its name and index.
@@ -86,6 +87,7 @@ class Dialect(Vocabulary):
     units: str
     decisions: tuple[Decision, ...]
     marks: tuple[Mark, ...]
+    suffixes: tuple[str, ...] = ()
     start_state: ModalChanges = dataclasses.field(default_factory=ModalChanges)
     before_motion: Callable[[Control, bool], None] | None = None
     read_variable: Callable[[Control, str, float | None], float] | None = None

@@ -274,8 +274,6 @@ class LineReader:
         form = self._grammar.form.match(self._line, at) if self._grammar.form is not None else None
         mark = "" if form is None else form[1].upper()
         read = reader.read_value if form is None else reader.read_operand
-        if not match[1].endswith(self._syntax.computed_behind):
-            self._refuse_glued_value(match)
         try:
             expression, end = read(self._line, at if form is None else form.end())
         except ExpressionError as error:
@@ -286,6 +284,9 @@ class LineReader:
         name = self._grammar.name(match[1])
         if name == "N":
             self._fail("label", "a block number must be a plain number", begin)
+        if not match[1].endswith(sign := self._syntax.computed_behind):
+            message = f"a value that is computed follows {sign} here"
+            self._fail("expression", message, at, hint=f"write {name}{sign}...")
         suffix = self._grammar.suffix.match(self._line, end)
         assert suffix is not None
         self._at = suffix.end()
@@ -314,18 +315,6 @@ class LineReader:
         self._assignments += (assignment_of(tree, value, begin, end - begin),)
         self._at = end
         return True
-
-    def _refuse_glued_value(self, address: re.Match[str]) -> None:
-        """A value that is computed stands right behind its letter, where the dialect wants a sign between.
-
-        Raises:
-            ProgramError: Always, unless what is wrong is another thing.
-        """
-        if _GARBLED.match(self._line, address.end()) is None:
-            return
-        sign, name = self._syntax.computed_behind, address[1].upper()
-        message = f"a value that is computed follows {sign} here"
-        self._fail("expression", message, address.end(), hint=f"write {name}{sign}...")
 
     def _refuse_late_skip(self, address: re.Match[str]) -> None:
         """``N20 /X1``: the mark of block skip stands behind the number.

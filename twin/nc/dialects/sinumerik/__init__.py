@@ -57,7 +57,6 @@ SINUMERIK = Dialect(
             "G5": "G505",
             "M1": "M",
             "S1": "S",
-            **{f"{axis}1": axis for axis in "XYZABC"},
         },
     ),
     groups=(
@@ -161,6 +160,7 @@ SINUMERIK = Dialect(
         "SPOSA": "the same, without waiting for it",
         "LIMS": "largest speed of G96: no change here",
         "FP": "number of the fixed point of G75",
+        **{f"{axis}1": f"axis {axis} of the machine, of G74 and G75" for axis in "XYZABC"},
         "FRC": "refused: feed of a corner",
         "FRCM": "refused: feed of corners",
         "OVR": "refused: feed override",
@@ -172,37 +172,39 @@ SINUMERIK = Dialect(
     decisions=DECISIONS,
     marks=(
         Mark(r"^[ \t]*%_N_|^;[ \t]*\$PATH=", "%_N_NAME_MPF, ;$PATH="),
-        Mark(
-            r"\b(?:CYCLE\d+|POCKET\d|HOLES\d|SLOT\d|LONGHOLE)[ \t]*\(", "CYCLE81(...), POCKET3(...)"
-        ),
-        Mark(r"\b(?:MSG|WORKPIECE|SETAL|EXTCALL)[ \t]*\(", "MSG(...)"),
+        Mark(r"\b(?:CYCLE\d+|POCKET\d|HOLES\d|SLOT\d|LONGHOLE)\b", "CYCLE81(...), POCKET3(...)"),
+        Mark(r"^[^;]*\b(?:MSG|WORKPIECE|SETAL|EXTCALL)[ \t]*(?:;|\(|$)", "MSG(...)"),
         Mark(r"\bMCALL\b", "MCALL"),
         Mark(
-            r"\bA?(?:TRANS|ROT|MIRROR|SCALE)\b[ \t]*(?:[XYZ]|RPL|;|$)", "TRANS, ROT, MIRROR, SCALE"
+            r"\bA?(?:TRANS|ROT|MIRROR|SCALE)\b[ \t]*(?:[XYZ]|RPL|;|$)",
+            "TRANS, ROT, MIRROR, SCALE",
         ),
         Mark(
-            r"\b(?:SUPA|TRAORI|TRAFOOF|COMPCAD|COMPCURV|FFWON|FFWOF|STOPRE|DIAMOF|KONT|CFC|CFTCP)\b",
+            r"^[^;]*\b(?:SUPA|TRAORI|TRAFOOF|COMP(?:CAD|CURV|ON|OF)|FFWON|FFWOF|STOPRE|DIAMOF|KONT|CFC|CFTCP)\b",
             "SUPA, STOPRE, FFWON, COMPCAD",
         ),
         Mark(
-            r"\b(?:CIP|CT)\b(?=.*[XYZ])|\b(?:TURN|CR|AR|AP|RP|RND|RNDM|CHR|CHF|ADIS)[ \t]*=",
+            r"^[^;]*(?:\bCIP\b|\bCT\b(?=.*[XYZ])|\b(?:TURN|CR|AR|AP|RP|RND|RNDM|CHR|CHF|ADIS)[ \t]*=)",
             "CR=, AP=, TURN=, CIP",
         ),
-        Mark(r"\b[XYZABCIJK][ \t]*=[ \t]*(?:IC|AC|DC|ACP|ACN)[ \t]*\(", "X=IC(5), I=AC(5)"),
-        Mark(r"\bT[ \t]*=[ \t]*(?:\"|\d)", 'T="NAME"'),
+        Mark(r"\b[XYZABCIJK][ \t]*=[ \t]*(?:IC|AC|DC|ACP|ACN)\b", "X=IC(5), I=AC(5)"),
+        Mark(r"^[^;]*\bT[ \t]*=[ \t]*(?:\"|\d)", 'T="NAME"'),
         Mark(
-            r"\bGOTO[FBC]\b|\bREPEATB?[ \t]+[A-Z]{2}|^[ \t]*(?:N\d+[ \t]*)?(?:DEF|PROC|EXTERN)[ \t]+[A-Z]",
+            r"^[^;]*\bGOTO[FBC]\b|^[^;]*\bREPEATB?[ \t]+[A-Z]{2}"
+            r"|^[ \t]*(?:N\d+[ \t]*)?(?:DEF|PROC|EXTERN)[ \t]+[A-Z]",
             "GOTOF, REPEAT, DEF, PROC",
         ),
         Mark(r"^[ \t]*(?:N\d+[ \t]*)?R\d+[ \t]*=", "R1= (a parameter)"),
-        Mark(r"\$(?:TC|P|AA|AC|MN|MC|MA|SC|SN|A)_[A-Z]", "$P_UIFR, $AA_IM, $TC_DP"),
+        Mark(r"\$(?:TC|P|AA|AC|MN|MC|MA|SC|SN|A)_[A-Z]\w*(?!\w|\$)", "$P_UIFR, $AA_IM, $TC_DP"),
         Mark(
-            r"\bG0*(?:5(?:0[05-9]|[1-9]\d)|60[123]|64[1-5]|4(?:50|51)|710|700|153|290|29[01])\b(?![.])",
-            "G500, G505, G601, G641, G450, G153",
+            r"\bG(?:50[5-9]|5[1-9]\d|60[123]|64[1-5]|45[01]|7[01]0|153|29[01])(?![.\d])",
+            "G505, G601, G641, G450, G153, G710",
         ),
+        shared_marks.NO_OFFSET,
         shared_marks.SEMICOLON,
         shared_marks.ADDITIONAL_OFFSET,
     ),
+    suffixes=subprograms.SUFFIXES,
     memory=SinumerikMemory,
     before_motion=words.before_motion,
     read_variable=variables.read_variable,

@@ -43,7 +43,6 @@ PASSED_CODES: Mapping[str, str] = {
     "LFOF, SPOF, CUTCONOF": "what it ends is not in force",
     "SBLON, SBLOF": "single block",
     "DISPLOF, DISPLON": "what the screen shows",
-    "GFRAME0": "no table of grinding frames",
 }
 """Names of codes that change nothing of the path, and why."""
 

@@ -14,6 +14,10 @@ def to_reference(number: int) -> Action:
 
     def action(control: Control) -> None:
         control.take("FP")
+        for name in control.settings.axes.names:
+            word = control.take(f"{name}1")
+            if word is not None:
+                control.words[name] = word._replace(address=name)
         words = dict(control.take_axis_words())
         if not words:
             message = f"G{number} needs the axes that it moves"

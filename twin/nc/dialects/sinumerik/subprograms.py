@@ -62,7 +62,8 @@ def _calls(source: Source) -> Iterator[str]:
                 yield match[1].upper()
 
 
-LIBRARY = Library(_calls, MARK, (".spf", ".mpf"), name_of_file)
+SUFFIXES = (".spf", ".mpf", ".arc")
+LIBRARY = Library(_calls, MARK, SUFFIXES[:2], name_of_file)
 
 
 # --- the programs of a text
