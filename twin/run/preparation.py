@@ -58,7 +58,7 @@ class Preparation:
         """The spindle before anybody has said anything of it, with the job's first tool."""
         return SpindleState(
             tool_speed=self.job.file.tools[0].speed,
-            has_word=bool(self.dialect.spindle_letter),
+            has_word=bool(self.dialect.words.spindle),
             fastest=self.machine.file.spindle.max_speed,
         )
 

@@ -356,7 +356,7 @@ class LineReader:
             self._fail("foreign-letter", message, at, hint=hint)
         statement = _STATEMENT.match(self._line, at)
         if statement is not None and self._grammar.statement is not None:
-            known = ", ".join(self._grammar.language.statements)
+            known = ", ".join(self._grammar.language.keywords)
             message = f"'{statement[0]}' is no statement of {self._grammar.language.name}"
             self._fail(
                 "unknown-statement", message, at, width=len(statement[0]), hint=f"known: {known}"

@@ -19,7 +19,7 @@ def set_feed(control: Control, word: Word) -> None:
     feed = control.number(word)
     if feed < 0.0:
         control.fail("feed-range", f"the feed {word.text} is negative", word)
-    control.feed = feed or None
+    control.motion.feed = feed or None
     memory_of(control).converted_feed = None
 
 
@@ -45,7 +45,7 @@ def change_tool(control: Control) -> None:
     if not memory_of(control).prepared:
         control.fail("tool-number", "M6 needs a tool that T has prepared", hint="write T1 M6")
     memory_of(control).functions["spindle"] = 5.0
-    control.spindle_turns = False
+    control.motion.spindle_turns = False
     control.tools.change()
 
 
@@ -117,7 +117,7 @@ def read_input(control: Control) -> None:
 
 
 def _end_early(control: Control) -> None:
-    control.spindle_turns = False
+    control.motion.spindle_turns = False
     memory_of(control).functions["spindle"] = 5.0
 
 
