@@ -279,18 +279,20 @@ class RoomApp:
         """Show a page the machine, no faster than it reads."""
         changes = Changes()
         epoch = version = -1
+        shown: tuple[Look | None, dict[str, Any]] = None, {}
         while True:
             began = asyncio.get_running_loop().time()
             look = self._driver.look
             self._stock.note(self._driver.seen)
             patch, epoch, version = self._stock.patch(epoch, version)
             own = self.seats.words(page) | {"attempt": self.attempt.number}
-            words = changes.since_last(self._words_of(look) | as_texts(own))
-            messages: list[bytes | str] = [state_message(look, cutting=patch is not None)]
-            if words:
-                messages.append(words)
-            if patch is not None:
-                messages.append(patch)
+            messages: list[bytes | str] = []
+            if patch is not None or look is not shown[0] or own != shown[1]:
+                shown = look, own
+                words = changes.since_last(self._words_of(look) | as_texts(own))
+                messages = [state_message(look, cutting=patch is not None)]
+                messages += [words] if words else []
+                messages += [] if patch is None else [patch]
             for message in messages:
                 self.bytes_sent += len(message)
                 send = socket.send_bytes if isinstance(message, bytes) else socket.send_text

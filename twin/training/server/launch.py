@@ -13,7 +13,7 @@ from twin.training.server.attempts import Attempts
 from twin.training.server.driver import Driver
 from twin.training.session.log import Who
 from twin.training.session.session import Session
-from twin.web.doorkeeper import Doorkeeper
+from twin.web.doorkeeper import Doorkeeper, new_tokens
 from twin.web.guard import Guard
 from twin.web.server import LOOPBACK, WebServer, require_three
 
@@ -124,7 +124,7 @@ def open_room(
     driver = Driver(attempt.session, attempt.writer.changed)
     driver.trouble = attempt.writer.trouble
     app = RoomApp(driver, attempts, attempt)
-    doorkeeper = Doorkeeper(ROLES, server.port, encrypted=certificate is not None)
+    doorkeeper = Doorkeeper(new_tokens(ROLES), server.port, encrypted=certificate is not None)
     addresses = {
         role: f"{server.origin}/{role}/#{token}" for role, token in doorkeeper.tokens.items()
     }
