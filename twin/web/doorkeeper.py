@@ -67,7 +67,9 @@ class Doorkeeper:
                 self._wrong.append(time.monotonic())
             return None
         known = self._passes[role]
-        return f"{self._cookie(role)}={known}; Path=/{role};{self._secure} HttpOnly; SameSite=Strict"
+        return (
+            f"{self._cookie(role)}={known}; Path=/{role};{self._secure} HttpOnly; SameSite=Strict"
+        )
 
     def knows(self, role: str, cookies: str) -> bool:
         """Whether a request's cookies show that it comes from a browser with this role."""

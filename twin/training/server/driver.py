@@ -58,6 +58,7 @@ class Driver:
         speed: Machine time per time on the wall.
         lost_s: Time on the wall that the machine did not keep up with so far [s].
         trouble: Says what is wrong outside the machine.
+        noted: Told of the session before each look at it; says what is wrong with what it keeps.
         look: The last look at the machine.
     """
 
@@ -72,6 +73,7 @@ class Driver:
         self.speed = 1.0
         self.lost_s = 0.0
         self.trouble: Callable[[], str] = str
+        self.noted: Callable[[Session], str] = lambda _session: ""
         self._changed = changed
         self._questions: queue.SimpleQueue[tuple[Callable[[Room], Any], Future[Any]]] = (
             queue.SimpleQueue()
@@ -198,7 +200,7 @@ class Driver:
             self.look = Look(
                 dataclasses.replace(self.session.snapshot(), speed=self._kept_up),
                 self.lost_s,
-                self.trouble(),
+                self.noted(self.session) or self.trouble(),
             )
 
     def _do_what_was_asked(self) -> None:

@@ -130,7 +130,7 @@ def open_room(
     }
     server.start(Guard(app.asgi, doorkeeper, local=server.local), promptly=promptly)
     try:
-        with _prompt_threads():
+        with prompt_threads():
             yield OpenRoom(driver, app, addresses, promptly=promptly)
     finally:
         server.stop()
@@ -138,7 +138,7 @@ def open_room(
 
 
 @contextlib.contextmanager
-def _prompt_threads() -> Iterator[None]:
+def prompt_threads() -> Iterator[None]:
     """Let no thread wait long for another, nor all of them for the search through modules' objects."""
     turns_s = sys.getswitchinterval()
     sys.setswitchinterval(TURNS_S)
