@@ -38,10 +38,9 @@ from twin.training.scene.fault_table import FaultTable
 from twin.training.scene.scene_file import Mode, Scene
 from twin.training.session.block_walk import ModalState
 from twin.training.session.faults import inject
-from twin.training.session.inspection import Inspection, inspect_part
+from twin.training.session.inspection import Inspection, Moment, inspect_part, moment_of
 from twin.training.session.judge import Judge
 from twin.training.session.live_cut import LiveCut
-from twin.training.session.moment import Moment, moment_of
 from twin.training.session.observed import Notice, block_number
 from twin.training.session.preview import PathToCome
 from twin.training.session.program_run import Inherited, ProgramRun, RunOptions
