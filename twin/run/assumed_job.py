@@ -97,15 +97,7 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
     """
     interpretation, chunks, counts_from_machine_zero = _interpreted(preparation)
     moves = concatenate([chunk.moves for chunk in chunks], preparation.machine.axes)
-    calls: list[tuple[int, int, int]] = []
-    done = 0
-    for chunk in chunks:
-        calls += [
-            (int(event.word[1:]), event.line, done + event.before)
-            for event in chunk.events
-            if isinstance(event, Function) and event.word[:1] == "T" and event.word[1:].isdigit()
-        ]
-        done += len(chunk.moves)
+    calls = _tool_calls(chunks)
     inches, lacking = interpretation.programs_in_inches, _lacking_axes(preparation)
     comments = list(_comments(preparation))
     tools, told, diameter = tool_lines(calls, comments, moves, inches=inches)
@@ -158,6 +150,23 @@ def _interpreted(preparation: Preparation) -> tuple[Interpretation, list[Chunk],
     placed = list(somewhere.chunks())
     depends = sum(len(chunk.moves) for chunk in placed) != sum(len(each.moves) for each in chunks)
     return (somewhere, placed, True) if depends else (interpretation, chunks, False)
+
+
+def _tool_calls(chunks: list[Chunk]) -> list[tuple[int, int, int]]:
+    """Number, line and next move of every tool that comes: by M6, in a program without it by T alone."""
+    selected: list[tuple[int, int, int]] = []
+    changed: list[tuple[int, int, int]] = []
+    done = 0
+    for chunk in chunks:
+        for event in chunk.events:
+            if not isinstance(event, Function):
+                continue
+            if event.word[:1] == "T" and event.word[1:].isdigit():
+                selected.append((int(event.word[1:]), event.line, done + event.before))
+            elif event.word == TOOL_CHANGE and selected:
+                changed.append((selected[-1][0], event.line, done + event.before))
+        done += len(chunk.moves)
+    return changed or selected
 
 
 def _point_line(reading: AssumedReading) -> list[str]:
