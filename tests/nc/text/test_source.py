@@ -18,4 +18,4 @@ def test_blank_tape_around_a_program_is_left_out(data: bytes) -> None:
 
 def test_blanks_within_a_program_stay() -> None:
     assert "\0" in source_from_bytes(b"G0 X1\n\0\0G0 X2\n", "part.nc").text
-    assert not list(source_from_bytes(b"\0\0\0", "part.nc").lines)
+    assert list(source_from_bytes(b"\0\0\0", "part.nc").lines) == ["\0"]
