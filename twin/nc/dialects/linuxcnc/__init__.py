@@ -74,6 +74,7 @@ LINUXCNC = Dialect(
         expressions=EXPRESSIONS,
         statement=r"O(?=[ \t]*[0-9<#\[])|%",
         assigned="#",
+        fractional_labels=True,
         blanks_in_numbers=True,
         longest_line=_LONGEST_LINE,
     ),
