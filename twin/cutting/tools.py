@@ -101,6 +101,13 @@ class ToolPlan:
         """How much lower a tool's tip is than that of the first, which positions count for [mm]."""
         return tool.length - self.tools[0].length
 
+    def lower(self, move: IntArray) -> FloatArray:
+        """How much lower the tip is than that of the first tool, by the moves of samples, shape (n,) [mm]."""
+        lower = np.zeros(len(move))
+        for run, tool in self.runs(move):
+            lower[run] = self.longer(tool)
+        return lower
+
     def runs(self, move: IntArray) -> list[tuple[slice, ToolTable]]:
         """Split samples where the tool changes.
 
