@@ -255,6 +255,7 @@ def _control_settings(job: Job, machine: Machine, *, strict: bool) -> ControlSet
         rotary_diameter=control.rotary_diameter,
         feed_of_all_axes=control.feed_of_all_axes,
         length_returns=control.length_returns,
+        tool_change_height=_change_height(job, machine),
         block_skip=job.file.block_skip is True,
         block_skip_levels=_block_skip_levels(job.file),
         decimal_point=job.file.decimal_point or control.decimal_point,
@@ -266,6 +267,12 @@ def _control_settings(job: Job, machine: Machine, *, strict: bool) -> ControlSet
 def _block_skip_levels(file: JobFile) -> frozenset[int]:
     """Numbers behind the slash of blocks that are left out."""
     return frozenset() if isinstance(file.block_skip, bool) else frozenset(file.block_skip)
+
+
+def _change_height(job: Job, machine: Machine) -> float | None:
+    """Where Z goes before a tool changes; the job comes before the machine."""
+    own = job.file.tool_change.height
+    return machine.file.tool_change.height if own is None else own
 
 
 IGNORED_AT_ZERO = "ignored at 0"

@@ -126,7 +126,6 @@ TEXTS: tuple[Foreign, ...] = (
         2,
     ),
     Foreign("a list of Grbl's settings", "it holds no moves", r"(?m)^\$\d+ ?= ?[\d.]+", 3),
-    Foreign("a program for Grbl", _AS_LINUXCNC, r"(?m)^\$(?:[HXCGI#$]\s*$|RST=[$#*]|J=)"),
     Foreign(
         "a program for a Brother Speedio",
         "write G100 T as T, G43 H and M6, or post it for fanuc",
@@ -161,7 +160,6 @@ CONTROLS: tuple[tuple[str, str, str], ...] = (
         "a program for a Mitsubishi control",
         f"{_POST}; where it is plain ISO: --dialect fanuc",
     ),
-    (r"\bgrbl", "a program for Grbl", _AS_LINUXCNC),
     (r"\bmach ?[234]\b|mach2/3|mach3mill", "a program for Mach3 or Mach4", _AS_LINUXCNC),
     (r"\bmarlin\b|reprap|smoothie", "a program for Marlin or a control like it", _AS_LINUXCNC),
     (

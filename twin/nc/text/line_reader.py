@@ -314,6 +314,8 @@ class LineReader:
 
     def _label(self, number: str, begin: int) -> None:
         value = float(number)
+        if self._syntax.fractional_labels:
+            value = float(int(value))
         if not is_whole(value, LARGEST_LABEL):
             self._fail("label", f"N{number} is no block number", begin)
         if self._words or self._number != NO_BLOCK_NUMBER:

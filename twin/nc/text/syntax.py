@@ -42,6 +42,7 @@ class Syntax:
         trailing_prose: Words of prose behind a block's words are left out with a warning.
         several_blocks: A further N begins a further block on the same line.
         named_labels: ``[NAME]`` at its begin names a block.
+        fractional_labels: The number of a block may have a fraction, which does not count.
         skip_levels: A digit may stand behind the slash of a block that can be skipped.
         block_end: Character that may end a line and says no more, such as ``;`` for the end of a block.
         inner_comments: Comments in brackets may stand anywhere within a statement.
@@ -63,6 +64,7 @@ class Syntax:
     trailing_prose: bool = False
     several_blocks: bool = False
     named_labels: bool = False
+    fractional_labels: bool = False
     skip_levels: bool = False
     block_end: str = ""
     inner_comments: bool = False

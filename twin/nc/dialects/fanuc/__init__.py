@@ -71,13 +71,18 @@ _FAMILY = (
 """What the controls of the family have in common: alone it tells none of them."""
 
 
+BLOCK_END_ALONE = Comment(";", whole_line=True)
+"""A line that begins with the end of a block is none."""
+PROGRAM_NAME = Comment("O<", ">", whole_line=True)
+"""The name of a program, which the twin calls by its number or its file."""
+
 FANUC = Dialect(
     name="fanuc",
     title="Fanuc 0i-MF, 30i (milling)",
     code_page="cp1252",
     syntax=Syntax(
         address=r",[CR]|[A-Z]|:",
-        comments=(Comment("(", ")"), HEADING),
+        comments=(Comment("(", ")"), HEADING, BLOCK_END_ALONE, PROGRAM_NAME),
         skip_levels=True,
         block_end=";",
         expressions=variables.EXPRESSIONS,
@@ -136,6 +141,7 @@ FANUC = Dialect(
         Mark(r"\bG43\.4\b|\bG68\.2\b", "G43.4, G68.2"),
         shared_marks.CYLINDER,
         shared_marks.POINT_CODES,
+        shared_marks.TURNED_COMPENSATION,
         shared_marks.BACK_BORING_WITH_I,
         shared_marks.CORNER_ARC,
         shared_marks.G31_WITH_Q,
