@@ -207,6 +207,14 @@ def test_a_tool_that_only_drills_is_a_drill(tmp_path: Path) -> None:
     assert "diameter is a guess" in assumed.assumptions[2]
 
 
+def test_a_tool_that_is_called_ahead_does_not_cut_yet(tmp_path: Path) -> None:
+    text = CONTOUR.replace("N30 S5000", "N28 T2\nN30 S5000").replace(
+        "(T2 D=6.8 CR=0. TAPER=118deg - ZMIN=-12. - drill)\n", ""
+    )
+    made, _ = raw(tmp_path, text)
+    assert [(tool.number, tool.kind) for tool in made.job.file.tools] == [(1, "flat"), (2, "drill")]
+
+
 def test_stock_of_the_head_comes_before_the_path(tmp_path: Path) -> None:
     head = "( Material Size)\n( X= 90.0, Y= 70.0, Z= 18.0)\n"
     made, _ = raw(tmp_path, CONTOUR.replace("(T1", f"{head}(T1"))

@@ -166,7 +166,7 @@ def sweep_arc(
 def start_and_end(control: Control, target: list[float]) -> tuple[Point, Point]:
     """Abscissa and ordinate of where the arc begins and ends."""
     plane = control.modal.plane
-    return plane.point(control.programmed), plane.point(target)
+    return plane.point(control.motion.programmed), plane.point(target)
 
 
 def arc_center(control: Control, target: list[float], rule: ArcRule) -> Point:
@@ -221,7 +221,7 @@ def tangent_arc_to(control: Control, target: list[float], name: str) -> None:
     Raises:
         ProgramError: Nothing has moved before, or the arc would be a straight line.
     """
-    direction = control.direction
+    direction = control.motion.direction
     if direction is None:
         control.fail("tangent-arc", f"{name} needs a move before it")
     start, end = start_and_end(control, target)

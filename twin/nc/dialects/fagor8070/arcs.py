@@ -111,7 +111,7 @@ def set_circle_radius(control: Control, word: Word) -> None:
 
 def tangent_arc(control: Control) -> None:
     """G08: the arc that leaves the last move along its direction."""
-    if control.direction is None:
+    if control.motion.direction is None:
         control.fail("tangent-arc", "G08 needs a move before it")
     tangent_arc_to(control, take_goal(control, arc=True).target, "G08")
 
@@ -147,7 +147,7 @@ def _sweep(
     start, end = start_and_end(control, goal.target)
     sweep = sweep_between(start, end, center, clockwise=clockwise)
     if pitch is not None:
-        height = plane.local(goal.target).height - plane.local(control.programmed).height
+        height = plane.local(goal.target).height - plane.local(control.motion.programmed).height
         wanted = _helix_sweep(control, height, pitch, clockwise=clockwise)
         if goal.in_plane:
             turns = max(0, round((abs(wanted) - abs(sweep)) / TURN))
@@ -204,7 +204,7 @@ def _arc_about_own_center(control: Control, *, clockwise: bool) -> None:
         message = f"G31 needs Q and {letters[0]} or {letters[1]}"
         control.fail("temporary-origin", message, control.code_word(31))
     plane = control.modal.plane
-    start = plane.point(control.programmed)
+    start = plane.point(control.motion.programmed)
     center = _given_center(control, centre.words, start)
     if distance(start, center) < SAME_POINT:
         control.fail("arc-center", "the centre lies on the arc's start", centre.words[0])

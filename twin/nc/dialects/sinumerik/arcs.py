@@ -54,7 +54,7 @@ def _line_at_angle(control: Control, angle: Word, *, rapid: bool) -> None:
         message = "ANG= needs one coordinate of the plane, which says where the line ends"
         control.fail("chord-angle", message, angle, "write both coordinates, or one and ANG=")
     first = given[0] == plane.axes[0]
-    start, target = plane.point(control.programmed), take_target(control)
+    start, target = plane.point(control.motion.programmed), take_target(control)
     toward, across = (
         direction(control.number(angle)) if first else direction(control.number(angle))[::-1]
     )
@@ -71,7 +71,7 @@ def _line_at_angle(control: Control, angle: Word, *, rapid: bool) -> None:
 def _arc(control: Control, rule: ArcRule) -> None:
     refuse_uneven_arc(control)
     radius, opening, turns = control.take("CR"), control.take("AR"), _turns(control)
-    start = control.modal.plane.point(control.programmed)
+    start = control.modal.plane.point(control.motion.programmed)
     polar = not POLAR_WORDS.isdisjoint(control.words)
     center, word = _programmed_center(control, start)
     in_plane = polar or _names_plane(control)
@@ -165,7 +165,7 @@ def _tangent(control: Control) -> None:
 
 def _three_points(control: Control) -> None:
     """CIP X Y Z I1= J1= K1=: the arc through a point between, in whatever plane the three lie."""
-    start = control.programmed
+    start = control.motion.programmed
     via = list(start[:3])
     words = [control.take(letter) for letter in ("I1", "J1", "K1")]
     if not any(words):

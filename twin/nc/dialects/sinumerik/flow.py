@@ -55,17 +55,17 @@ def _construct_of(control: Control, statement: Statement) -> Construct:
     if construct is None or construct.end is None:
         message = f"{statement.keyword} has no counterpart"
         hint = "every IF needs its ENDIF, every loop its end, each on a line of its own"
-        control.refuse(statement, "open-structure", message, hint)
+        control.fail("open-structure", message, statement, hint)
     if construct.depth > DEEPEST_CONSTRUCT:
         message = f"more than {DEEPEST_CONSTRUCT} constructs within each other"
-        control.refuse(statement, "structure", message)
+        control.fail("structure", message, statement)
     return construct
 
 
 def value_of(control: Control, statement: Statement) -> float:
     """The value behind a keyword."""
     column = statement.text_column
-    return control.compute(control.expression(statement.text, column), column)
+    return control.compute(control.statements.expression(statement.text, column), column)
 
 
 # --- conditions and loops
@@ -76,7 +76,7 @@ def _if(control: Control, statement: Statement) -> None:
     jump = _JUMP.search(statement.text)
     head = statement.text if jump is None else statement.text[: jump.start()]
     column = statement.text_column
-    holds = control.compute(control.expression(head, column), column) != 0.0
+    holds = control.compute(control.statements.expression(head, column), column) != 0.0
     if jump is not None:
         if holds:
             at = column + jump.start()
@@ -128,7 +128,7 @@ begin_repeat = _nothing
 def _for_parts(control: Control, statement: Statement) -> tuple[Tree, Expression, Expression, int]:
     """The variable of FOR, its first and its last value."""
     text, column = statement.text, statement.text_column
-    target, at = control.read_operand(text, 0, column)
+    target, at = control.statements.operand(text, 0, column)
     rest = text[at:].lstrip()
     to = re.search(r"\bTO\b", text, re.IGNORECASE)
     if (
@@ -137,10 +137,10 @@ def _for_parts(control: Control, statement: Statement) -> tuple[Tree, Expression
         or not isinstance(target.tree, Variable | NumberedVariable)
     ):
         message = "FOR counts a variable from one value to another"
-        control.refuse(statement, "structure", message, "write FOR R1=1 TO 10")
+        control.fail("structure", message, statement, "write FOR R1=1 TO 10")
     begin = len(text) - len(rest) + 1
-    first = control.expression(text[begin : to.start()], column + begin)
-    last = control.expression(text[to.end() :], column + to.end())
+    first = control.statements.expression(text[begin : to.start()], column + begin)
+    last = control.statements.expression(text[to.end() :], column + to.end())
     return target.tree, first, last, column
 
 
@@ -167,7 +167,7 @@ def _for(control: Control, statement: Statement) -> None:
 
 def _end_for(control: Control, statement: Statement) -> None:
     construct = _construct_of(control, statement)
-    begin = control.statement_of(construct.begin)
+    begin = control.statements.of_line(construct.begin)
     tree, _, last, column = _for_parts(control, begin)
     value = control.compute(Expression("", tree), column) + 1.0
     _write(control, tree, value, column)
@@ -189,16 +189,14 @@ def go_to(control: Control, statement: Statement) -> None:
     label = _LABEL.fullmatch(statement.text)
     if label is None:
         message = f"{keyword} needs a label or a block number"
-        control.refuse(
-            statement, "jump-target", message, f"write {keyword} LABEL or {keyword} N100"
-        )
+        control.fail("jump-target", message, statement, f"write {keyword} LABEL or {keyword} N100")
     place = find_label(control, statement, int(label[1]) if label[1] else label[2].upper())
     if place is None:
         return
     here = _structure(control).around(control.block.line - 1)
     if any(construct not in here for construct in _structure(control).around(place.line)):
         message = "a jump must not lead into a structure"
-        control.refuse(statement, "jump-into-structure", message)
+        control.fail("jump-into-structure", message, statement)
     control.jump(place)
 
 
@@ -233,8 +231,8 @@ def _refuse_label(
         way = "behind this block" if keyword == "GOTOF" else "before this block"
         other = "GOTOB" if keyword == "GOTOF" else "GOTOF"
         hint = f"it stands not {way}; {other} or GOTO leads there"
-    control.refuse(
-        statement, "unknown-label", f"{keyword} names {shown}, and no block has it there", hint
+    control.fail(
+        "unknown-label", f"{keyword} names {shown}, and no block has it there", statement, hint
     )
 
 
@@ -243,9 +241,9 @@ def _case(control: Control, statement: Statement) -> None:
     parts = re.split(r"\bOF\b", statement.text, maxsplit=1, flags=re.IGNORECASE)
     if len(parts) != 2:
         hint = "CASE R1 OF 1 GOTOF A 2 GOTOF B DEFAULT GOTOF C"
-        control.refuse(statement, "structure", "CASE needs its OF", hint)
+        control.fail("structure", "CASE needs its OF", statement, hint)
     column = statement.text_column
-    value = control.compute(control.expression(parts[0], column), column)
+    value = control.compute(control.statements.expression(parts[0], column), column)
     at, text = 0, parts[1]
     begin = column + len(parts[0]) + 2
     while text[at:].strip():
@@ -254,7 +252,10 @@ def _case(control: Control, statement: Statement) -> None:
             control.report.fail("structure", "a value and its GOTOF must stand here", begin + at)
         is_default = case[1].upper() == "DEFAULT"
         where = begin + case.start(1)
-        if is_default or control.compute(control.expression(case[1], where), where) == value:
+        if (
+            is_default
+            or control.compute(control.statements.expression(case[1], where), where) == value
+        ):
             jump = Statement(case[2].upper(), case[3], begin + case.start(2), begin + case.start(3))
             go_to(control, jump)
             return

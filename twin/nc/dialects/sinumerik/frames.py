@@ -59,7 +59,7 @@ def numbered_offset(control: Control, word: Word) -> None:
         message = f"{other.text} and G{number} exclude each other (offset)"
         control.fail("conflicting-codes", message, word, "write them in two blocks")
     select_offset(control, f"G{number}", word)
-    control.active.put("offset", float(number))
+    control.modal.active.put("offset", float(number))
 
 
 def select_offset(control: Control, name: str, word: Word | None) -> None:
@@ -106,7 +106,7 @@ def machine_position(code: str) -> Action:
 
     def action(control: Control) -> None:
         memory = memory_of(control)
-        if control.path.compensating:
+        if control.path.compensation.in_force:
             message = "machine coordinates know no radius compensation"
             control.fail("compensation-change", message, hint=f"end it by G40 before {code}")
         memory.part_frame = enter_machine_frame(control, code)
@@ -123,7 +123,7 @@ def leave_machine_position(control: Control) -> None:
         memory.part_frame = memory.carried = None
         if length is not None:
             frame.set_shift("length", length)
-            control.reframed()
+            control.motion.reframed()
         forget_polar(control)
 
 
@@ -138,7 +138,7 @@ def _sets_length(control: Control) -> bool:
 
 
 def _refuse_while_compensating(control: Control) -> None:
-    if control.path.compensating:
+    if control.path.compensation.in_force:
         message = "a frame cannot change while radius compensation is in force"
         control.fail("compensation-change", message, hint="end it by G40 first")
 

@@ -23,7 +23,7 @@ def to_reference(number: int) -> Action:
             message = f"G{number} needs the axes that it moves"
             control.fail("reference-axes", message, hint=f"write G{number} Z1=0")
         with machine_frame(control, f"G{number}"):
-            target = list(control.programmed)
+            target = list(control.motion.programmed)
             for axis in words:
                 target[axis] = 0.0
             control.line_to(target, rapid=True)

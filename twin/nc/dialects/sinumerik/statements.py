@@ -29,7 +29,7 @@ def _refuse(control: Control, statement: Statement) -> None:
     """
     keyword = statement.keyword
     message = f"{keyword} is known to the control and not simulated: {REFUSED_STATEMENTS[keyword]}"
-    control.refuse(statement, "unsupported-statement", message)
+    control.fail("unsupported-statement", message, statement)
 
 
 def _repeat(control: Control, statement: Statement) -> None:
@@ -47,7 +47,7 @@ def _alarm(control: Control, statement: Statement) -> None:
         ProgramError: Always.
     """
     message = f"the program stops itself: SETAL{statement.text.strip()}"
-    control.refuse(statement, "program-error", message, "the program's own checks have failed")
+    control.fail("program-error", message, statement, "the program's own checks have failed")
 
 
 STATEMENTS: dict[str, StatementAction] = {

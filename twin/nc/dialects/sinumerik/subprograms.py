@@ -144,7 +144,7 @@ def heading(control: Control, statement: Statement) -> None:
         return
     if control.program_counter.is_calling:
         message = "the subprogram ends without M17 or RET"
-        control.refuse(statement, "return-outside", message, "write M17 or RET at its end")
+        control.fail("return-outside", message, statement, "write M17 or RET at its end")
     control.program_counter.end()
 
 
@@ -154,7 +154,7 @@ def procedure(control: Control, statement: Statement) -> None:
     own = subprogram_of(control, range(here, here + 1))
     if own.formals:
         message = "the program needs parameters, and nobody calls it"
-        control.refuse(statement, "call-values", message, "run the program that calls it")
+        control.fail("call-values", message, statement, "run the program that calls it")
 
 
 # --- calls
@@ -174,7 +174,7 @@ def call_named(control: Control, statement: Statement, name: str, text: str, col
         if match is None:
             message = f"only P and how often can follow the call of {name}"
             control.report.fail("call-values", message, at, len(rest))
-        times = control.compute(control.expression(match[1], at), at)
+        times = control.compute(control.statements.expression(match[1], at), at)
     _enter(control, statement, subprogram, values, times)
 
 
@@ -187,7 +187,7 @@ def _subprogram(control: Control, statement: Statement, name: str) -> Subprogram
         known = ", ".join(sorted(memory.subprograms)) or "none"
         message = f"there is no subprogram {name}"
         hint = f"it is a file {name}.SPF beside the program, or follows it behind %_N_{name}_SPF; here: {known}"
-        control.refuse(statement, "unknown-subprogram", message, hint)
+        control.fail("unknown-subprogram", message, statement, hint)
     return found
 
 
@@ -238,7 +238,7 @@ def _values(control: Control, text: str, column: int) -> tuple[list[Value], str,
     values = list[Value]()
     if inner.strip():
         for each, begin in split_values(inner):
-            expression = control.expression(each, at + begin) if each.strip() else None
+            expression = control.statements.expression(each, at + begin) if each.strip() else None
             values.append((expression, at + begin))
     return values, text[end:], column + end
 
@@ -253,9 +253,7 @@ def _enter(
     formals, memory = subprogram.formals, memory_of(control)
     if len(values) > len(formals):
         message = f"the subprogram takes {len(formals)} values, not {len(values)}"
-        control.refuse(
-            statement, "call-values", message, "PROC declares them: PROC NAME(REAL DEPTH)"
-        )
+        control.fail("call-values", message, statement, "PROC declares them: PROC NAME(REAL DEPTH)")
     frame, references = CallFrame(depth=control.program_counter.depth + 1), dict[str, str]()
     given = list[tuple[str, float]]()
     for number, formal in enumerate(formals):
@@ -325,7 +323,7 @@ def call(control: Control, statement: Statement) -> None:
     match = _QUOTED_NAME.fullmatch(text)
     if match is None:
         message = f"{statement.keyword} needs a name in quotes"
-        control.refuse(statement, "call-values", message, f'write {statement.keyword} "NAME"')
+        control.fail("call-values", message, statement, f'write {statement.keyword} "NAME"')
     column = statement.text_column + match.start(2)
     call_named(control, statement, match[1].upper(), match[2], column)
 
@@ -339,14 +337,14 @@ def repeat_blocks(control: Control, statement: Statement, text: str | None = Non
     match = _RANGE.fullmatch(text.rstrip())
     if match is None:
         message = f"{statement.keyword} needs the label of what it repeats"
-        control.refuse(statement, "repeat-range", message, f"write {statement.keyword} LABEL P=3")
+        control.fail("repeat-range", message, statement, f"write {statement.keyword} LABEL P=3")
     times = 1.0
     if match[3]:
         count = _TIMES.match(f" {match[3]}")
         at = statement.text_column + match.start(3)
         if count is None:
             control.report.fail("repeat-range", "only P= and how often can follow", at)
-        times = control.compute(control.expression(count[1], at), at)
+        times = control.compute(control.statements.expression(count[1], at), at)
     first = _place(control, statement, match[1])
     last = _place(control, statement, match[2]) if match[2] else None
     here = Location(control.block.line - 1, 0)
@@ -354,8 +352,8 @@ def repeat_blocks(control: Control, statement: Statement, text: str | None = Non
         last = first if statement.keyword == "REPEATB" else _end_label(control, first, here)
     if last < first or first <= here <= last:
         message = "the range or the number of runs is none, or holds its own repetition"
-        control.refuse(statement, "repeat-range", message)
-    control.repeat(first, last, DEEPEST_CALL, statement, times)
+        control.fail("repeat-range", message, statement)
+    control.call(first, DEEPEST_CALL, statement, times=times, last=last)
 
 
 def _end_label(control: Control, first: Location, here: Location) -> Location:
@@ -380,7 +378,7 @@ def _place(control: Control, statement: Statement, text: str) -> Location:
     before = [each for each in places if each.line < control.block.line - 1]
     if not places:
         message = f"{statement.keyword} names {bare}, and no block has it"
-        control.refuse(statement, "unknown-label", message, "a label ends with a colon: LABEL:")
+        control.fail("unknown-label", message, statement, "a label ends with a colon: LABEL:")
     return before[-1] if before else places[0]
 
 
@@ -406,8 +404,8 @@ def call_modally(control: Control, statement: Statement) -> None:
         memory.modal_call = None
         return
     if match is None:
-        control.refuse(
-            statement, "call-values", "MCALL needs a name", "write MCALL CYCLE81(...) or MCALL"
+        control.fail(
+            "call-values", "MCALL needs a name", statement, "write MCALL CYCLE81(...) or MCALL"
         )
     column = statement.text_column + match.start(2)
     memory.modal_call = Statement(match[2].upper(), match[3], column, column + len(match[2]))

@@ -26,7 +26,7 @@ def read(control: Control, name: str) -> float:
     if key == "$PI":
         return math.pi
     if key in ("$P_EP", "$AA_IW", "$AA_IB") and len(indices) == 1:
-        return control.programmed[_axis(control, indices[0])] / control.unit_of(
+        return control.motion.programmed[_axis(control, indices[0])] / control.motion.unit_of(
             _axis(control, indices[0])
         )
     if (
@@ -36,13 +36,13 @@ def read(control: Control, name: str) -> float:
     ):
         axis = _axis(control, indices[0])
         zero = control.settings.machine_zero.get(control.settings.axes.names[axis], 0.0)
-        return (control.part[axis] - zero) / control.unit_of(axis)
+        return (control.motion.part[axis] - zero) / control.motion.unit_of(axis)
     if key == "$P_UIFR" and len(indices) == 3 and indices[2] in ("TR", "FI"):
         number, axis = _number(control, indices[0]), _axis(control, indices[1])
         if indices[2] == "FI":
             return 0.0
         values = _offset_values(control, number)
-        return values.get(control.settings.axes.names[axis], 0.0) / control.unit_of(axis)
+        return values.get(control.settings.axes.names[axis], 0.0) / control.motion.unit_of(axis)
     tool = control.tools.data(control.tools.spindle)
     if key == "$P_TOOLNO":
         return float(control.tools.spindle or 0)
@@ -54,10 +54,10 @@ def read(control: Control, name: str) -> float:
         tool = control.tools.data(_number(control, indices[0]))
         if tool is not None and _number(control, indices[1]) == 1:
             return tool.length if key == _LENGTH else tool.radius
-    if key in ("$P_F", "$AC_F") and control.feed is not None:
-        return control.feed
-    if key in ("$P_S", "$AA_S") and control.spindle is not None:
-        return control.spindle
+    if key in ("$P_F", "$AC_F") and control.motion.feed is not None:
+        return control.motion.feed
+    if key in ("$P_S", "$AA_S") and control.motion.spindle is not None:
+        return control.motion.spindle
     if key in ("$P_SEARCH", "$P_ISTEST", "$P_SIM"):
         return 0.0
     given = control.settings.variables.get(name)
@@ -126,5 +126,5 @@ def _write_offset(control: Control, indices: list[str], value: float) -> None:
     values = memory.offsets.get(name)
     if values is None:
         values = dict(control.settings.offsets.get(name, {}))
-    values[control.settings.axes.names[axis]] = value * control.unit_of(axis)
+    values[control.settings.axes.names[axis]] = value * control.motion.unit_of(axis)
     memory.offsets[name] = values

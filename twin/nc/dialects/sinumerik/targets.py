@@ -26,16 +26,17 @@ def forget_polar(control: Control) -> None:
 
 def frame_changes(control: Control) -> list[float]:
     """A frame is about to change: where the tool stands as programmed, for ``frame_changed``."""
-    return list(control.programmed)
+    return list(control.motion.programmed)
 
 
 def frame_changed(control: Control, before: list[float]) -> None:
     """It has changed: what the next incremental words make up for."""
-    control.reframed()
+    control.motion.reframed()
     memory = memory_of(control)
     carried = memory.carried or [0.0] * len(before)
     moved = [
-        old + was - new for old, was, new in zip(carried, before, control.programmed, strict=True)
+        old + was - new
+        for old, was, new in zip(carried, before, control.motion.programmed, strict=True)
     ]
     memory.carried = moved if any(moved) else None
     forget_polar(control)
@@ -74,13 +75,13 @@ def _by_way(control: Control, index: int, word: Word) -> float:
         ProgramError: The axis does not turn, or the target is no angle of a turn.
     """
     value = control.number(word)
-    if control.linear[index]:
+    if control.motion.linear[index]:
         message = f"{word.mark} finds the way of a rotary axis, and {word.address} is none"
         control.fail("rotary-direction", message, word, f"write {word.address}=AC(...) or IC(...)")
     if not 0.0 <= value < TURN:
         message = f"{word.mark} goes to an angle from 0 to below 360, not to {value:g}"
         control.fail("rotary-direction", message, word)
-    here = control.programmed[index]
+    here = control.motion.programmed[index]
     forwards = (value - here) % TURN
     if word.mark == "ACN":
         return here - (here - value) % TURN
@@ -93,9 +94,9 @@ def shows_within_turn(control: Control) -> None:
     """Behind DC, ACP and ACN a rotary axis shows its angle within a turn."""
     for word in control.block.words:
         if word.mark in _WAYS:
-            programmed, index = list(control.programmed), control.axis_index[word.address]
+            programmed, index = list(control.motion.programmed), control.axis_index[word.address]
             programmed[index] %= TURN
-            control.set_position(programmed, "turns")
+            control.motion.set_position(programmed, "turns")
 
 
 # --- polar coordinates
@@ -115,7 +116,7 @@ def _polar_target(control: Control) -> list[float]:
             )
     radius_word, angle_word = control.take("RP"), control.take("AP")
     target = take_target(control)
-    here = plane.point(control.programmed)
+    here = plane.point(control.motion.programmed)
     old = seen_from(memory.pole, here, memory.polar_radius, memory.polar_angle)
     seen = (radius_word is not None) + 2 * (angle_word is not None)
     words = (control.length(radius_word), 0.0 if angle_word is None else control.number(angle_word))
@@ -140,7 +141,7 @@ def set_pole(number: int, control: Control) -> None:
     The pole is given by axes of the plane, or by AP and RP. A coordinate that is missing is 0.
     """
     memory, plane = memory_of(control), control.modal.plane
-    base = {110: plane.point(control.programmed), 111: (0.0, 0.0), 112: memory.pole}[number]
+    base = {110: plane.point(control.motion.programmed), 111: (0.0, 0.0), 112: memory.pole}[number]
     radius, angle = control.take("RP"), control.take("AP")
     words = dict(control.take_axis_words())
     shift = [

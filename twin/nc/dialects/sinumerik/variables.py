@@ -259,7 +259,7 @@ def _assignments(control: Control, statement: Statement) -> list[Assignment]:
             message = "only further assignments can follow"
             hint = "write the words in a block of their own"
             control.report.fail("assignment", message, column + at, 1, hint)
-        target, end = control.read_operand(line, at, column)
+        target, end = control.statements.operand(line, at, column)
         equals = _EQUALS.match(line, end)
         if equals is None or not isinstance(target.tree, Variable | NumberedVariable):
             message = "an assignment gives a variable a value: R1=5"
@@ -279,12 +279,12 @@ def _value_of(
     if quoted is not None:
         return Assignment(target, begin, (), quoted[0]), quoted.end()
     if many is None:
-        value, end = control.read_expression(line, at, column)
+        value, end = control.statements.longest(line, at, column)
         return Assignment(target, begin, ((value, column + at),)), end
     closing = line.find(")", many.end())
     if closing < 0:
         control.report.fail("expression", "')' is missing here", column + len(line.rstrip()))
-    values = control.expressions(line[many.end() : closing], column + many.end())
+    values = control.statements.expressions(line[many.end() : closing], column + many.end())
     given = tuple((each, column + many.end()) for each in values)
     return Assignment(target, begin, given, repeats=many[1].upper() == "REP"), closing + 1
 
@@ -364,11 +364,11 @@ def define(control: Control, statement: Statement) -> None:
     if kind is None:
         message = "DEF needs a type and names"
         hint = "types: REAL, INT, BOOL, CHAR, STRING[20]; DEF REAL DEPTH=5"
-        control.refuse(statement, "definition", message, hint)
+        control.fail("definition", message, statement, hint)
     variable_type = VariableType(re.split(r"[ \t\[]", kind[1].upper())[0])
     if variable_type is VariableType.AXIS:
         message = "a variable of the type AXIS is not followed"
-        control.refuse(statement, "unsupported-statement", message, "write the axis itself")
+        control.fail("unsupported-statement", message, statement, "write the axis itself")
     text, at, column = statement.text.rstrip(), kind.end(), statement.text_column
     while True:
         name = _DEFINED_NAME.match(text, at)
@@ -402,7 +402,9 @@ def _define(
     if sizes is None:
         control.variables.write(name, 0.0)
         return
-    given = [control.compute(each, column) for each in control.expressions(sizes, column)]
+    given = [
+        control.compute(each, column) for each in control.statements.expressions(sizes, column)
+    ]
     rows, columns = (*(int(each) for each in given), 1)[:2] if given else (0, 0)
     if (
         any(each != int(each) for each in given)

@@ -18,6 +18,7 @@ from twin.nc.dialects.sinumerik.targets import (
 from twin.nc.dialects.sinumerik.variables import text_of
 from twin.nc.iso import base
 from twin.nc.iso.declared import keep_compensated_plane
+from twin.nc.iso.tool_change import go_to_change_height
 from twin.nc.iso.tool_compensation import radius_in_spindle, set_length
 from twin.nc.path.blends import Blend, BlendKind
 from twin.nc.path.paces import counts_blocks
@@ -35,22 +36,24 @@ _LARGEST_H = 99_999.0
 def set_feed(control: Control, word: Word) -> None:
     """F: with G70 and G71 lengths alone change their unit, with G700 and G710 the feed does too (manual)."""
     base.set_feed(control, word)
-    assert control.feed is not None
-    if control.active.get("units") == 70.0 and not counts_blocks(control.modal.feed_mode):
-        control.feed /= control.modal.unit
+    assert control.motion.feed is not None
+    if control.modal.active.get("units") == 70.0 and not counts_blocks(control.modal.feed_mode):
+        control.motion.feed /= control.modal.unit
 
 
 def keep_feed(control: Control) -> None:
     """G70 to G710: the feed that is in force goes on as fast."""
     memory, unit = memory_of(control), control.modal.unit
-    if control.feed is not None and not counts_blocks(control.modal.feed_mode):
-        control.feed *= memory.unit / unit
+    if control.motion.feed is not None and not counts_blocks(control.modal.feed_mode):
+        control.motion.feed *= memory.unit / unit
     memory.unit = unit
 
 
 def feed_of_block(control: Control, word: Word) -> None:
     """FB=: the feed of this block alone."""
-    memory_of(control).modal_feed = control.feed if control.feed is not None else math.nan
+    memory_of(control).modal_feed = (
+        control.motion.feed if control.motion.feed is not None else math.nan
+    )
     set_feed(control, word)
 
 
@@ -62,12 +65,12 @@ def dwell(control: Control) -> None:
     if seconds is not None:
         base.wait(control, control.number(seconds), seconds)
     elif turns is not None:
-        if not control.spindle or not control.spindle_turns:
+        if not control.motion.spindle or not control.motion.spindle_turns:
             message = "G4 S counts revolutions, and the spindle stands"
             control.fail(
                 "dwell", message, turns, "write G4 F and seconds, or start the spindle before"
             )
-        base.wait(control, control.number(turns) * 60.0 / control.spindle, turns)
+        base.wait(control, control.number(turns) * 60.0 / control.motion.spindle, turns)
 
 
 # --- tools
@@ -112,7 +115,8 @@ def _tool_named(control: Control, word: Word) -> int:
 
 def change_tool(control: Control) -> None:
     """M6: the tool goes into the spindle with its offset D1."""
-    base.change_tool(control)
+    go_to_change_height(control)
+    control.tools.change()
     _apply_offset(control, on=True)
 
 
@@ -137,8 +141,6 @@ def compensation(side: float) -> Action:
     """G41, G42: by the radius of the tool in the spindle and OFFN."""
 
     def action(control: Control) -> None:
-        if control.path.compensating and control.path.compensation_has_moved is False:
-            return
         memory = memory_of(control)
         radius = radius_in_spindle(control) if memory.tool_on else 0.0
         compensate(control, side, radius + memory.allowance)
@@ -148,7 +150,7 @@ def compensation(side: float) -> Action:
 
 def set_allowance(control: Control, word: Word) -> None:
     """OFFN=: how far the programmed contour lies from the wall; the next G41 or G42 counts it."""
-    if control.path.compensating:
+    if control.path.compensation.in_force:
         message = "OFFN= cannot change while radius compensation is in force"
         control.fail("compensation-change", message, word, "write it before G41 or G42")
     memory_of(control).allowance = control.length(word)
@@ -175,7 +177,7 @@ def auxiliary(control: Control, word: Word) -> None:
 
 def position_spindle(control: Control, word: Word) -> None:
     """SPOS=: the spindle turns to an angle and stands."""
-    control.spindle_turns = False
+    control.motion.spindle_turns = False
     control.function("SPOS", {"ANGLE": control.number(word)})
 
 
@@ -219,7 +221,7 @@ def modal_rounding(control: Control, word: Word) -> None:
     if radius < 0.0:
         control.fail("blend", f"the radius {word.text} is below 0", word)
     memory_of(control).rounding = radius
-    blend = Blend(BlendKind.FILLET, radius, control.part_plane()) if radius > 0.0 else None
+    blend = Blend(BlendKind.FILLET, radius, control.motion.part_plane) if radius > 0.0 else None
     control.path.blend_always(blend)
     control.path.hold_for_blends()
 
@@ -235,7 +237,7 @@ def after_motion(control: Control) -> None:
     _blend(control)
     memory = memory_of(control)
     if memory.modal_feed is not None:
-        control.feed = None if math.isnan(memory.modal_feed) else memory.modal_feed
+        control.motion.feed = None if math.isnan(memory.modal_feed) else memory.modal_feed
         memory.modal_feed = None
     call_after_motion(control)
 
@@ -250,5 +252,5 @@ def _blend(control: Control) -> None:
     size, kind = control.length(words[0]), _BLENDS[words[0].address]
     if not size > 0.0:
         control.fail("blend", f"the size of the corner {words[0].text} is not above 0", words[0])
-    if not control.path.blend_next(Blend(kind, size, control.part_plane())):
+    if not control.path.blend_next(Blend(kind, size, control.motion.part_plane)):
         control.fail("blend", "there is no move before the corner", words[0])

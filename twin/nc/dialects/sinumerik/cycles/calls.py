@@ -43,7 +43,7 @@ class CycleCall(NamedTuple):
 
     def refuse(self, code: str, message: str, hint: str | None = None) -> NoReturn:
         """Refuse the call."""
-        self.control.refuse(self.statement, code, f"{self.statement.keyword} {message}", hint)
+        self.control.fail(code, f"{self.statement.keyword} {message}", self.statement, hint)
 
     def only(self, name: str, *followed: float) -> float:
         """A value that must be one of those that are followed; 0 where it is left out."""
@@ -75,14 +75,14 @@ def read_call(control: Control, statement: Statement, form: CycleForm) -> CycleC
     given = split_values(inner) if inner.strip() else []
     if len(given) > len(form.parameters):
         message = f"{statement.keyword} takes {len(form.parameters)} values, not {len(given)}"
-        control.refuse(statement, "call-values", message, ", ".join(form.parameters))
+        control.fail("call-values", message, statement, ", ".join(form.parameters))
     for name, (text, begin) in zip(form.parameters, given, strict=False):
         bare = text.strip()
         if bare.startswith('"'):
             texts[name] = bare.strip('"')
         elif bare:
             at = column + begin
-            values[name] = control.compute(control.expression(text, at), at)
+            values[name] = control.compute(control.statements.expression(text, at), at)
     return CycleCall(control, statement, values, texts)
 
 
@@ -92,6 +92,6 @@ def require_no_compensation(call: CycleCall) -> None:
     Raises:
         ProgramError: Compensation is in force.
     """
-    if call.control.path.compensating:
+    if call.control.path.compensation.in_force:
         message = "cannot run while radius compensation is in force"
         call.refuse("compensation-change", message, "end it by G40 first")

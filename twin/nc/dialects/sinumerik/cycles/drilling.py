@@ -74,20 +74,20 @@ def _wait(call: CycleCall, name: str) -> None:
     """Seconds; below 0 revolutions of the spindle (manual)."""
     control, time = call.control, call.get(name)
     if time < 0.0:
-        if not control.spindle:
+        if not control.motion.spindle:
             call.refuse("dwell", f"waits for revolutions ({name} below 0), and no S is programmed")
-        time = -time * 60.0 / control.spindle
+        time = -time * 60.0 / control.motion.spindle
     if time > 0.0:
         control.dwell(time)
 
 
 def _feed(control: Control, height: float, feed: float | None = None) -> None:
     """Go to a height with a feed [mm/min], or the one in force."""
-    kept = control.feed
+    kept = control.motion.feed
     if feed:
-        control.feed = feed
+        control.motion.feed = feed
     go_to_height(control, height, rapid=False)
-    control.feed = kept
+    control.motion.feed = kept
 
 
 def _drill(call: CycleCall) -> None:
@@ -157,7 +157,11 @@ def _deep(call: CycleCall) -> None:
     depth = surface
     for number, peck in enumerate(depths):
         depth = heights.bottom if number == len(depths) - 1 else depth - peck
-        _feed(control, depth, control.feed * factor if control.feed and number == 0 else None)
+        _feed(
+            control,
+            depth,
+            control.motion.feed * factor if control.motion.feed and number == 0 else None,
+        )
         _wait(call, "DTB" if number < len(depths) - 1 or not call.get("_DTD") else "_DTD")
         if number == len(depths) - 1:
             break
@@ -196,21 +200,21 @@ def _turn(control: Control, left: bool) -> None:
 def _tap(call: CycleCall) -> None:
     """CYCLE84: tapping with the spindle's position under control."""
     control, pitch = call.control, _pitch(call)
-    speed = call.get("SST") or (control.spindle or 0.0)
+    speed = call.get("SST") or (control.motion.spindle or 0.0)
     if not speed > 0.0:
         call.refuse("feed-per-revolution", "needs SST, the speed of tapping")
     call.only("_VARI")
-    heights, kept = _approach(call), control.spindle
+    heights, kept = _approach(call), control.motion.spindle
     control.function("SPOS", {"ANGLE": call.get("POSS")})
     out = call.get("SST1") or speed
-    control.spindle = speed
+    control.motion.spindle = speed
     _turn(control, pitch < 0.0)
     _feed(control, heights.bottom, abs(pitch) * speed / control.modal.unit)
     _wait(call, "DTB")
-    control.spindle = out
+    control.motion.spindle = out
     _turn(control, pitch > 0.0)
     _feed(control, heights.safe, abs(pitch) * out / control.modal.unit)
-    control.spindle = kept
+    control.motion.spindle = kept
     _end_spindle(call)
     go_to_height(control, heights.back)
 
@@ -221,8 +225,8 @@ def _end_spindle(call: CycleCall) -> None:
     if turn not in (0.0, 3.0, 4.0, 5.0):
         call.refuse("cycle-word", "takes SDAC 3, 4 or 5")
     if turn == 0.0:
-        turn = 3.0 if control.spindle_turns else 5.0
-    control.spindle_turns = turn != 5.0
+        turn = 3.0 if control.motion.spindle_turns else 5.0
+    control.motion.spindle_turns = turn != 5.0
     if turn == 5.0:
         control.function("M5", {})
     else:
@@ -233,13 +237,13 @@ def _tap_in_chuck(call: CycleCall) -> None:
     """CYCLE840: tapping in a chuck that gives way; the feed follows from pitch and speed, else F counts."""
     control = call.control
     gives_pitch = bool(call.get("MPIT") or call.get("PIT"))
-    if not control.spindle:
+    if not control.motion.spindle:
         call.refuse("feed-per-revolution", "needs the spindle's speed S before")
     if not gives_pitch and call.only("ENC", 1.0, 11.0, 20.0) not in (1.0, 11.0):
         _pitch(call)
     pitch = _pitch(call) if gives_pitch else 0.0
     call.only("SDR", 3.0, 4.0)
-    feed = abs(pitch) * control.spindle / control.modal.unit if pitch else None
+    feed = abs(pitch) * control.motion.spindle / control.modal.unit if pitch else None
     left = pitch < 0.0 or (not pitch and call.get("SDAC") == 4.0)
     heights = _approach(call)
     _turn(control, left)
@@ -269,18 +273,18 @@ def _bore(call: CycleCall) -> None:
     _feed(control, heights.bottom)
     _wait(call, "DTB")
     control.function("SPOS", {"ANGLE": call.get("POSS")})
-    place = list(control.programmed)
-    plane, here = control.modal.plane, control.modal.plane.local(control.programmed)
+    place = list(control.motion.programmed)
+    plane, here = control.modal.plane, control.modal.plane.local(control.motion.programmed)
     lifted = list(place)
     point = (here.abscissa + call.length("RPA"), here.ordinate + call.length("RPO"))
     lifted[:3] = plane.world(*point, here.height + call.length("RPAP"))
     control.line_to(lifted, rapid=True)
     go_to_height(control, heights.back)
-    back = list(control.programmed)
+    back = list(control.motion.programmed)
     plane.aim(back, (here.abscissa, here.ordinate))
     control.line_to(back, rapid=True)
     _turn(control, call.get("SDIR", 3.0) == 4.0)
-    control.spindle_turns = True
+    control.motion.spindle_turns = True
 
 
 def _bore_and_stop(call: CycleCall) -> None:
@@ -296,7 +300,7 @@ def _bore_and_stop(call: CycleCall) -> None:
     control.function("M0", {})
     go_to_height(control, heights.back)
     _turn(control, left)
-    control.spindle_turns = True
+    control.motion.spindle_turns = True
 
 
 DRILLING = {

@@ -27,7 +27,7 @@ def _visit(call: CycleCall, places: list[Point]) -> None:
     if memory.modal_call is None:
         call.refuse("cycle-word", "needs a modal call before it", "write MCALL CYCLE81(...) before")
     for place in places:
-        target = list(control.programmed)
+        target = list(control.motion.programmed)
         control.modal.plane.aim(target, place)
         control.line_to(target, rapid=True)
         depth = control.program_counter.depth
@@ -45,7 +45,7 @@ def _row(call: CycleCall) -> None:
     ]
     first, second = call.length("SPCA"), call.length("SPCO")
     places = [(first + way * cosine, second + way * sine) for way in ways]
-    here = call.control.modal.plane.point(call.control.programmed)
+    here = call.control.modal.plane.point(call.control.motion.programmed)
     if math.dist(here, places[-1]) < math.dist(
         here, places[0]
     ):  # it begins at the nearer end (manual)
