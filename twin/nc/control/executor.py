@@ -24,6 +24,7 @@ from twin.nc.control.state import integer_of, number_of
 from twin.nc.functions import starts_spindle, turns_behind
 from twin.nc.text.blocks import Assignment, Block, Statement, Word
 from twin.nc.text.expressions import Expression, ExpressionError
+from twin.nc.text.slips import near
 from twin.nc.text.source import Source
 
 
@@ -211,7 +212,8 @@ class Executor(Control):
 
     def _add_word(self, word: Word) -> None:
         if word.address in self.words:
-            self.fail("duplicate-word", f"'{word.address}' stands twice in the block", word)
+            message = f"'{word.address}' stands twice in the block"
+            self.fail("duplicate-word", message, word, "leave one out, or write two blocks")
         self.words[word.address] = word
 
     def _takes_m(self, block: Sequence[Word]) -> bool:
@@ -227,13 +229,13 @@ class Executor(Control):
         number = number_of(word)
         code = self.dialect.g.get(number)
         if code is None:
-            known = ", ".join(f"G{number}" for number in sorted(self.dialect.g))
+            known = [f"G{number:g}" for number in sorted(self.dialect.g)]
             instead = self.dialect.instead.get(number)
             self.fail(
                 "unknown-g",
                 f"{word.text} is unknown to {self.dialect.name}",
                 word,
-                hint=f"known: {known}" if instead is None else instead,
+                hint=instead or near(f"G{number:g}", known, self.dialect.name),
             )
         if code.refused:
             self.fail("unsupported-g", f"{word.text} {code.refusal}", word)
@@ -243,14 +245,15 @@ class Executor(Control):
         number = integer_of(number_of(word))
         code = self.dialect.function(number, self.settings.m_functions)
         if code is None:
-            known = ", ".join(f"M{number}" for number in sorted(self.dialect.m))
+            if number < 0:
+                self.fail("unknown-m", f"{word.text}: an M code is a whole number", word)
+            listed = near(f"M{number}", map("M{}".format, self.dialect.m), self.dialect.name)
             self.fail(
                 "unknown-m",
                 f"{word.text} is unknown to {self.dialect.name}",
                 word,
-                hint=f"known: {known}; one of the machine's builder is declared in the job by "
-                f'[m_functions] M{max(number, 0)} = "what it does", in the machine file under '
-                "[control.m_functions]",
+                hint=f'one of the machine\'s builder: [m_functions] M{number} = "what it does" in the job; '
+                + listed,
             )
         return code
 
@@ -350,13 +353,9 @@ class Executor(Control):
         if word.address in self.dialect.word_meanings:
             message = f"nothing in this block uses '{word.text}'"
             self.fail("unused-word", message, word, self._meaning_of(word.address))
-        known = ", ".join(self.dialect.word_meanings)
-        self.fail(
-            "unknown-word",
-            f"'{word.address}' is no word of {self.dialect.name}",
-            word,
-            hint=f"words of {self.dialect.name}: {known}",
-        )
+        name = self.dialect.name
+        hint = f"its words are listed by: twin dialects {name}"
+        self.fail("unknown-word", f"'{word.address}' is no word of {name}", word, hint)
 
     def _meaning_of(self, address: str) -> str:
         return f"{address} in {self.dialect.name}: {self.dialect.word_meanings[address]}"
