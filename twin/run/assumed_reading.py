@@ -80,10 +80,10 @@ def unknown_functions(
     source: Source, dialect: Dialect, declared: frozenset[int]
 ) -> tuple[int, ...]:
     """M codes of a program that neither its dialect nor the machine's builder gives a meaning."""
-    if dialect.any_m:
+    if dialect.codes.any_m:
         return ()
     numbers = {int(found[1]) for line in _blocks(source) for found in _FUNCTION.finditer(line)}
-    return tuple(sorted(numbers - set(dialect.m) - declared))
+    return tuple(sorted(numbers - set(dialect.codes.m) - declared))
 
 
 def _blocks(source: Source) -> Iterator[str]:

@@ -327,7 +327,7 @@ class LineReader:
         self._fail(error.code, str(error), column, hint=hint)
 
     def _slip_at(self, column: int) -> str | None:
-        return slip_at(self._line, column, self._grammar.language.statements)
+        return slip_at(self._line, column, self._grammar.language.keywords)
 
     def _label(self, number: str, begin: int) -> None:
         value = float(number)
@@ -378,7 +378,7 @@ class LineReader:
         if statement is not None and self._grammar.statement is not None:
             language = self._grammar.language
             message = f"'{statement[0]}' is no statement of {language.name}"
-            hint = self._slip_at(at) or near(statement[0], language.statements, language.name)
+            hint = self._slip_at(at) or near(statement[0], language.keywords, language.name)
             self._fail("unknown-statement", message, at, width=len(statement[0]), hint=hint)
         if address is not None:
             self._refuse_code()

@@ -31,7 +31,7 @@ def circular_pocket(control: Control, *, clockwise: bool) -> None:
     depth, count = control.take("Z"), control.take("L")
     if first is None:
         control.fail("cycle-word", "a circular pocket needs I, the radius of its circle")
-    if control.path.compensating:
+    if control.path.compensation.in_force:
         message = (
             "a circular pocket takes the radius of D itself, and radius compensation is in force"
         )
@@ -61,7 +61,7 @@ def circular_pocket(control: Control, *, clockwise: bool) -> None:
         control.fail("repeat-count", "a pocket is milled once at least", count)
     for number in range(often):
         if depth is not None and (number == 0 or control.modal.incremental):
-            there = list(control.programmed)
+            there = list(control.motion.programmed)
             height = control.length(depth)
             there[2] = height + (there[2] if control.modal.incremental else 0.0)
             control.line_to(there, rapid=False)
@@ -69,7 +69,7 @@ def circular_pocket(control: Control, *, clockwise: bool) -> None:
 
 
 def _circles(control: Control, radii: list[float], *, clockwise: bool) -> None:
-    x, y = control.programmed[:2]
+    x, y = control.motion.programmed[:2]
     half = -180.0 if clockwise else 180.0
     at = 0.0
     for radius in radii:
@@ -83,7 +83,7 @@ def _arc(
     control: Control, x: float, y: float, center: tuple[float, float], sweep: float | None
 ) -> None:
     """To a place by an arc in the plane X Y, or straight."""
-    there = list(control.programmed)
+    there = list(control.motion.programmed)
     there[0], there[1] = x, y
     if sweep is None:
         control.line_to(there, rapid=False)

@@ -244,7 +244,7 @@ def acts_on_lines(control: Control) -> bool:
     memory = memory_of(control)
     if memory.length_cancelled or memory.overrules_cycles:
         return True
-    if memory.feed_lost and control.feed is None:
+    if memory.feed_lost and control.motion.feed is None:
         return True
     remembered = (memory.scale, memory.modal_call, memory.cylinder)
     return memory.polar or any(each is not None for each in remembered)

@@ -47,7 +47,7 @@ def read(control: Control, number: int) -> float:
         number -= _SAME_AS
     group = memory_of(control).variant.modal_groups.get(number - 4000)
     if group is not None:
-        return control.active.get(group, 0.0)
+        return control.modal.active.get(group, 0.0)
     if number in _TIMERS:
         return _time(control, number)
     if number in _FIXED:
@@ -65,7 +65,7 @@ def read(control: Control, number: int) -> float:
         _refuse(number)
     name, axis = found
     value = offsets.read_offset(control, name, axis, f"#{number}")
-    return value / control.unit_of(control.axis_index[axis])
+    return value / control.motion.unit_of(control.axis_index[axis])
 
 
 def write(control: Control, number: int, value: float) -> None:
@@ -98,7 +98,7 @@ def write(control: Control, number: int, value: float) -> None:
     if found is None:
         _refuse(number)
     name, axis = found
-    value *= control.unit_of(control.axis_index[axis])
+    value *= control.motion.unit_of(control.axis_index[axis])
     offsets.write_offset(control, name, axis, value, f"#{number}")
     offsets.put_into_force(control)
 
@@ -157,30 +157,30 @@ def _position(control: Control, number: int) -> float:
     index = _axis(control, place, number)
     length = control.frame.shifts[SHIFTS.index("length")][index]
     if table == 0:
-        value = control.programmed[index]
+        value = control.motion.programmed[index]
     elif table == 1:
         name = control.settings.axes.names[index]
-        value = control.part[index] - machine_zero(control, f"#{number}").get(name, 0.0)
+        value = control.motion.part[index] - machine_zero(control, f"#{number}").get(name, 0.0)
     elif table == 2:
-        value = control.programmed[index] + length
+        value = control.motion.programmed[index] + length
     elif table == 3:  # no probe has touched: where G31 would have ended
-        value = control.programmed[index]
+        value = control.motion.programmed[index]
     elif table == 4:
         value = length
     else:
         _refuse(number)
-    return value / control.unit_of(index)
+    return value / control.motion.unit_of(index)
 
 
 def _modal_word(control: Control, number: int) -> float:
     memory, heading = memory_of(control), lines_around(control).start
     values = {
         4107: memory.radius_number or 0,
-        4109: control.feed or 0.0,
+        4109: control.motion.feed or 0.0,
         4111: memory.length_number or 0,
         4114: max(control.block.number, 0),
         4115: next((each for each, line in memory.programs.items() if line - 1 == heading), 0),
-        4119: control.spindle or 0.0,
+        4119: control.motion.spindle or 0.0,
         4120: control.tools.selected or 0,
         4130: memory.extended_number,
     }
