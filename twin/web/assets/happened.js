@@ -13,7 +13,7 @@ export class Happened {
     this.ring = new THREE.Mesh(new THREE.RingGeometry(0.86, 1, 48), new THREE.MeshBasicMaterial({ color: RED, side: THREE.DoubleSide, depthTest: false, transparent: true, toneMapped: false }));
     this.ring.frustumCulled = this.ring.visible = false;
     this.ring.renderOrder = 2;
-    this.red = new THREE.MeshBasicMaterial({ color: RED, transparent: true, opacity: 0.72, toneMapped: false });
+    this.red = new THREE.MeshBasicMaterial({ color: RED, transparent: true, opacity: 0.72, toneMapped: false, polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -8 });
     this.plane = new THREE.Plane();
     this.stub = new THREE.Mesh(new THREE.CylinderGeometry(1, 1, 1, 24), new THREE.MeshLambertMaterial({ color: 0x8d8778 }));
     this.stub.visible = false;
