@@ -118,7 +118,7 @@ class Control(ControlWords):
             feed = _limited(feed, self.axis_limits, share)
             acceleration = _limited(acceleration, self.axis_accelerations, share)
             deceleration = _limited(deceleration, self.axis_decelerations, share)
-        self._last = Segment(  # by place: names would cost a block twice what it takes to make one
+        move = Segment(  # by place: names would cost a block twice what it takes to make one
             RAPID if rapid else FEED,
             self.block.line,
             self.block.number,
@@ -135,9 +135,10 @@ class Control(ControlWords):
             sweep,
         )
         if spline is None:
-            self.path.add(self._last)
+            self.path.add(move)
         else:
-            self.path.add_point(self._last, flat=spline[0])
+            self.path.add_point(move, flat=spline[0])
+        self._last = move
         self.programmed = target
         self.part = end
 

@@ -23,6 +23,8 @@ class Path:
     Attributes:
         position: Where the emitted path has come to, shape (k,) [mm or deg].
         defer: Takes an event that happens behind moves which a dialect holds back; False: it holds none.
+        leads: Makes the moves that lead to the next one, told it; None: nothing does. The next move begins
+            where they end on the contour, not where the path has come to.
     """
 
     def __init__(self, axes: Axes, start: list[float], refuse: Refuse, warn: Warn) -> None:
@@ -36,6 +38,7 @@ class Path:
         self._synchronous: SynchronousAxes | None = None
         self.position = start
         self.defer: Callable[[Event], bool] = holds_none
+        self.leads: Callable[[Segment], None] | None = None
 
     def __len__(self) -> int:
         return self._columns.count
@@ -60,6 +63,9 @@ class Path:
 
     def add(self, move: Segment) -> None:
         """The next programmed move."""
+        if self.leads is not None:
+            leads, self.leads = self.leads, None
+            leads(move)
         if self._spline is not None:
             self._end_spline(move)
         self._before = move
@@ -69,7 +75,8 @@ class Path:
     def passes_on(self) -> bool:
         """No stage holds or changes moves: what is added is emitted as it is."""
         stages = (self._spline, self._rounding, self._loops, self._synchronous)
-        return self._compensation.stage is OFF and all(stage is None for stage in stages)
+        free = self._compensation.stage is OFF and self.leads is None
+        return free and all(stage is None for stage in stages)
 
     def add_rows(
         self, codes: IntArray, values: FloatArray, positions: FloatArray
@@ -164,11 +171,19 @@ class Path:
         return self._compensation.stage
 
     def compensate(
-        self, plane: Plane, signed_offset: float, *, square: bool, indirect: bool
+        self,
+        plane: Plane,
+        signed_offset: float,
+        *,
+        square: bool,
+        indirect: bool,
+        led: bool = False,
     ) -> None:
         """Compensate from the next move on; arguments as for ``Compensation.begin``."""
         self.flush()
-        self._compensation.begin(plane.directions, signed_offset, square=square, indirect=indirect)
+        self._compensation.begin(
+            plane.directions, signed_offset, square=square, indirect=indirect, led=led
+        )
 
     @property
     def compensating(self) -> bool:
@@ -188,11 +203,11 @@ class Path:
         """Compensation, which has not moved yet, acts in another plane."""
         self._compensation.plane = plane.directions
 
-    def end_compensation(self) -> None:
-        """The next line leads out."""
+    def end_compensation(self, *, led: bool = False) -> None:
+        """The next line leads out, unless that is ``led`` otherwise."""
         if self._compensation.in_force:
             self.flush()
-            self._compensation.end()
+            self._compensation.end(led=led)
 
     # --- loops
 
