@@ -162,7 +162,7 @@ def plain_rules(control: Executor) -> PlainRules:
     dialect, settings = control.dialect, control.settings
     kinds = {number: _kind_of_code(code) for number, code in dialect.g.items()}
     plain = {int(number): kind for number, kind in kinds.items() if kind != NO_MOTION}
-    by_number = np.full(max(plain) + 1, NO_MOTION)
+    by_number = np.full(max(plain, default=0) + 1, NO_MOTION)
     by_number[list(plain)] = list(plain.values())
     rules = [getattr(dialect.g[number].sets.get("interpolation"), "rule", None) for number in plain]
     arc = next((rule for rule in rules if isinstance(rule, ArcRule)), _NO_ARC)
