@@ -40,6 +40,8 @@ PIECES = {
     "|$IF P1==2|$ELSE|$ENDIF|$WHILE P1<5|$ENDWHILE|$FOR P2=1,3,1|$ENDFOR|$GOTO N1|#RPT[N1,N2,2]"
     "|%L SUB|M17|LL SUB|#PCALL SUB A1|#MCALL SUB|#MDOFF|G73 Q30|G72 S2|G11|G10|G14 X-1|G20 X1 Z2"
     "|;|$SWITCH P1|$CASE 2|$ENDSWITCH|$BREAK|#TIME [1]|G04 1|SIN[30]|G06|G136|G36 I2|G39 I1|G138|G139|G264|G82 Z1 I-5 B2|G87 J9 K7 I-3 B2|G88 J8 I-3 B1|G158 X3|G159=2",
+    "grbl": "$H|$X|$J=X1|G10 L2 P2 X5|G10 L20 P1 X0|G28|G28.1|G30|G43.1 Z5|G49|G53|G61|G91.1|G92.1|G93|G20|G21"
+    "|G38.2|G59|P3|L2|G80|;|(a|T300",
     "linuxcnc": "#1=5|#<a>=[#1+2]|X#1|X[#1*2]|o1 if [#1 GT 2]|o1 else|o1 endif|o2 while [#1 LT 5]"
     "|o2 endwhile|o3 sub|o3 endsub|o3 call [1]|o4 repeat [2]|o4 endrepeat|o2 break|G5 X5 Y5 I1 J1 P1 Q1"
     "|G5.2 P1|G5.3|G10 L2 P1 X5 R30|G10 L20 P2 X3|G28|G33 K1|G38.3|G41|G42.1 D3|G43 H1|G43.1 Z5|G49"
@@ -93,7 +95,7 @@ JUNK = [
 
 
 def _texts(dialect: Dialect) -> list[bytes]:
-    paths = [*(ROOT / "programs" / dialect.name).glob("*.nc")]
+    paths = [*(ROOT / "programs" / dialect.name).glob("*.[nh]*")]
     paths += (ROOT / "tests" / "golden" / dialect.name).glob("*/*.nc")
     return [path.read_bytes() for path in sorted(paths)]
 

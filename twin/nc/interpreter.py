@@ -17,6 +17,10 @@ from twin.nc.text.blocks import Block
 from twin.nc.text.diagnostics import Diagnostic, ProgramError
 from twin.nc.text.source import Source
 
+_NO_COMPENSATION = 40
+_COMPENSATION = (41, 42)
+"""Whole parts of the codes of radius compensation, in every dialect."""
+
 
 class LengthCall(NamedTuple):
     """A tool's length put into force.
@@ -39,6 +43,7 @@ class Interpretation:
         settings: What the control was told of the machine and the job.
         coverage: The lines that were run.
         length_calls: Calls of tool lengths by the number of a tool, by source line.
+        compensated: Source lines that were run under radius compensation: their moves are the tool centre's.
     """
 
     def __init__(
@@ -64,6 +69,7 @@ class Interpretation:
         self._control = Executor(dialect, settings, source)
         self.coverage = Coverage(source, dialect)
         self.length_calls: dict[int, LengthCall] = {}
+        self.compensated: set[int] = set()
 
     @property
     def programs_in_inches(self) -> bool:
@@ -122,6 +128,8 @@ class Interpretation:
         control, tools = self._control, self._control.tools
         if not control.settings.skips(block):
             self.coverage.note(block.line, block.line + 1)
+        if int(control.active.get("compensation", _NO_COMPENSATION)) in _COMPENSATION:
+            self.compensated.add(block.line)
         if tools.length_call is not None:
             self.length_calls[block.line] = LengthCall(tools.length_call, tools.spindle)
             tools.length_call = None

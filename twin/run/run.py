@@ -153,7 +153,8 @@ class Run:
                     machining.loads.add(samples)
                     with self.clock.stage("compare"):
                         contour_um = comparison.add(samples)
-                        self.trace.add(samples, contour_um)
+                        lower = dry_run.summary.tools.lower(samples.setpoint.move)
+                        self.trace.add(samples, contour_um, lower)
                     if writer is not None:
                         with self.clock.stage("record"):
                             writer.append(samples, contour_um)
@@ -185,7 +186,7 @@ class Run:
         comparison: Comparison,
     ) -> Outcome:
         """Judge what was run, and say what was looked at."""
-        figures = comparison.result()
+        figures = _as_shown(comparison.result(), dry_run.summary)
         job, duration_s = (
             self.preparation.job,
             min(self._planned_s or reached.last_motion_s, reached.time_s),
@@ -368,6 +369,18 @@ _LOADS = {
     "chip_mm": ("chip thickness", "mm"),
 }
 """What a tolerance on a load is called, and its unit."""
+
+
+def _as_shown(figures: Figures, summary: ProgramSummary) -> Figures:
+    """Figures whose positions are those of the control's screen."""
+    screen = summary.shown
+    if screen is None:
+        return figures
+    worst = tuple(
+        dataclasses.replace(place, position=place.position + screen.at(place.move))
+        for place in figures.worst
+    )
+    return dataclasses.replace(figures, worst=worst)
 
 
 def _refuse_unjudged_loads(tolerance: ToleranceTable) -> None:

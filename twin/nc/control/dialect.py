@@ -66,6 +66,7 @@ class Dialect(Vocabulary):
         after_motion: Done when a block has moved.
         must_end: A program without an end code is wrong.
         finish: Done when the program ends without an end code.
+        tables: Further tables of its page: what is named, and what it is, by title.
         length_by_code: Nothing but a code puts a tool's length into force; else the tool change may.
         acts_on_lines: Something that only this dialect remembers acts on plain lines, so that the kernel
             cannot run them.
@@ -98,6 +99,7 @@ class Dialect(Vocabulary):
     prepare: Action | None = None
     after_motion: Action | None = None
     must_end: bool = False
+    tables: Mapping[str, Mapping[str, str]] = dataclasses.field(default_factory=dict)
     length_by_code: bool = False
     finish: Action | None = None
     acts_on_lines: Callable[[Control], bool] = lambda _control: False

@@ -9,6 +9,7 @@ from twin.nc.dialects.codesys import CODESYS
 from twin.nc.dialects.fagor8070 import FAGOR8070
 from twin.nc.dialects.fanuc import FANUC, HAAS
 from twin.nc.dialects.gost import GOST
+from twin.nc.dialects.grbl import GRBL
 from twin.nc.dialects.heidenhain import HEIDENHAIN
 from twin.nc.dialects.linuxcnc import LINUXCNC
 from twin.nc.dialects.mefi import MEFI
@@ -17,7 +18,7 @@ from twin.nc.text.source import Source
 
 OWN: Mapping[str, Dialect] = {
     dialect.name: dialect
-    for dialect in (GOST, CODESYS, FAGOR8070, MEFI, FANUC, HAAS, LINUXCNC, HEIDENHAIN)
+    for dialect in (GOST, CODESYS, FAGOR8070, MEFI, FANUC, HAAS, LINUXCNC, GRBL, HEIDENHAIN)
 }
 """Those of this package by name."""
 _OUTSIDE, _FAILED = dialects_from_outside(OWN)

@@ -15,6 +15,7 @@ from twin.nc.iso.circular import BOUNDS, both_senses, iso_arc
 from twin.nc.iso.declared import instead, modal, motion_code, plane_code
 from twin.nc.iso.fixed_cycles import CYCLES
 from twin.nc.iso.offsets import OFFSETS, PRESET
+from twin.nc.iso.tool_change import change_tool_at
 from twin.nc.iso.tool_compensation import COMPENSATION, LENGTH
 from twin.nc.path.paces import FeedMode, feed_per_minute, needs_own_feed
 from twin.nc.path.splines import MOST_CHORDS
@@ -101,11 +102,6 @@ def next_tool(control: Control, word: Word) -> None:
         control.fail("tool-number", f"{word.text} is no tool number", word)
     control.tools.selected = int(number)
     control.function(f"T{int(number)}", {})
-
-
-def change_tool(control: Control) -> None:
-    """M6: the selected tool goes into the spindle."""
-    control.tools.change()
 
 
 def dwell(letters: str, message: str, hint: str) -> Action:
@@ -217,7 +213,7 @@ M_CODES = {
     3: MCode(meaning="spindle clockwise", group="spindle"),
     4: MCode(meaning="spindle counter-clockwise", group="spindle"),
     5: MCode(meaning="spindle stop", group="spindle", late=True),
-    6: MCode(meaning="tool change", action=change_tool),
+    6: MCode(meaning="tool change", action=change_tool_at(None)),
     7: MCode(meaning="mist on"),
     8: MCode(meaning="coolant on", group="coolant"),
     9: MCode(meaning="coolant off", group="coolant", late=True),

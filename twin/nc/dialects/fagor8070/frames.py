@@ -12,6 +12,7 @@ from twin.nc.geometry.planes import OWN_PLANE, Plane, Vector, cross
 from twin.nc.iso import base
 from twin.nc.iso.declared import refuse_compensated_plane
 from twin.nc.iso.offsets import programmed_shift
+from twin.nc.iso.tool_change import go_to_change_height
 from twin.nc.iso.tool_compensation import radius_in_spindle, set_length
 from twin.nc.text.blocks import Word
 
@@ -88,7 +89,8 @@ def next_tool(control: Control, word: Word) -> None:
 def change_tool(control: Control) -> None:
     """M06: the tool goes into the spindle with its offset D1; T0 has none."""
     refuse_change(control)
-    base.change_tool(control)
+    go_to_change_height(control)
+    control.tools.change()
     _apply_offset(control, on=True)
 
 

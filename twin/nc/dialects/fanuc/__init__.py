@@ -136,6 +136,7 @@ FANUC = Dialect(
         Mark(r"\bG43\.4\b|\bG68\.2\b", "G43.4, G68.2"),
         shared_marks.CYLINDER,
         shared_marks.POINT_CODES,
+        shared_marks.TURNED_COMPENSATION,
         shared_marks.BACK_BORING_WITH_I,
         shared_marks.CORNER_ARC,
         shared_marks.G31_WITH_Q,

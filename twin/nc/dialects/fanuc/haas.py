@@ -14,6 +14,7 @@ from twin.nc.dialects.fanuc.memory import HAAS
 from twin.nc.dialects.fanuc.tool_offsets import radius_in_force
 from twin.nc.geometry.planes import XY
 from twin.nc.iso.declared import flow_function, instead, modal, refused
+from twin.nc.iso.tool_change import change_tool_at
 
 _LACKING = (5, 5.1, 7.1, 8, 15, 16, 27, 30, 50.1, 51.1, 54.1, 62, 63, 87, 92.1)
 """Codes that the control lacks."""
@@ -151,8 +152,12 @@ INSTEAD: Mapping[float, str] = {
     50.1: "a mirror ends by G100",
 }
 
+_CHANGE_HEIGHT = 0.0
+"""M6 takes Z to machine zero before the tool changes [mm]."""
+
 HAAS_M_CODES: Mapping[int, MCode] = {
     **M_CODES,
+    6: dataclasses.replace(M_CODES[6], action=change_tool_at(_CHANGE_HEIGHT), ground="manual"),
     97: flow_function("run blocks of this program as a subprogram: P L", programs.call_block),
     **{
         number: MCode(meaning=meaning, ground="manual")
@@ -210,6 +215,14 @@ DECISIONS: tuple[Decision, ...] = (
         "G0 G17 G21 G40 G49 G50 G54 G64 G67 G69 G80 G90 G94 G97 G98 G100.",
         "Setting 9, inches or millimetres, is the machine's: here it is millimetres.",
         example="start_state",
+    ),
+    Decision(
+        "Where does a tool change?",
+        "M6 takes Z to machine zero first, or to tool_change.height of the job or the machine file; where nobody "
+        "says where the part stands, it changes where it is.",
+        "The manual lets M6 go to the position of the tool change by itself; without a part zero nobody knows how "
+        "far that is.",
+        example="tool_change_height",
     ),
     Decision(
         "How does G12 or G13 mill its pocket?",

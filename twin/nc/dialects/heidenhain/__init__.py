@@ -6,6 +6,7 @@ from twin.nc.dialects.heidenhain import corners, feeds, flow, parameters, paths,
 from twin.nc.dialects.heidenhain.decisions import DECISIONS
 from twin.nc.dialects.heidenhain.functions import FUNCTIONS, take_shortest_way
 from twin.nc.dialects.heidenhain.memory import KlartextMemory, acts_on_lines, memory_of
+from twin.nc.dialects.heidenhain.page import TABLES
 from twin.nc.dialects.heidenhain.statements import STATEMENTS, other_statement
 from twin.nc.dialects.heidenhain.syntax import SYNTAX
 from twin.nc.iso import shared_marks
@@ -103,6 +104,7 @@ HEIDENHAIN = Dialect(
         Mark(r"\bF[ \t]*MAX\b", "FMAX"),
         shared_marks.SEMICOLON,
     ),
+    tables=TABLES,
     memory=KlartextMemory,
     before_motion=take_shortest_way,
     read_variable=parameters.read_variable,

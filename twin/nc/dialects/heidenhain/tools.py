@@ -10,7 +10,8 @@ from twin.nc.dialects.heidenhain.feeds import set_feed
 from twin.nc.dialects.heidenhain.memory import Deltas, memory_of
 from twin.nc.dialects.heidenhain.values import computed_words, named_word, text_of, word_of
 from twin.nc.functions import BLANK
-from twin.nc.iso.base import change_tool, next_tool
+from twin.nc.iso.base import next_tool
+from twin.nc.iso.tool_change import change_tool_at
 from twin.nc.iso.tool_compensation import set_length
 from twin.nc.text.blocks import Statement, Word
 
@@ -19,6 +20,7 @@ _HEAD = re.compile(
     re.IGNORECASE,
 )
 """What stands behind TOOL CALL and TOOL DEF: name or number, and the axis of the tool."""
+_CHANGE = change_tool_at(None)
 _CORNER = re.compile(
     r"[ \t]*(?:0\.([12])[ \t]*([XYZ](?=[ \t]))?|(CYLINDER)[ \t]+([XYZ])(?=[ \t])|(ROTATION|FILE))",
     re.IGNORECASE,
@@ -86,7 +88,7 @@ def _change(control: Control, number: Word) -> None:
     if index != 0 and (control.tools.any is None or defined is None):
         tool_numbered(control, number)
     next_tool(control, number)
-    change_tool(control)
+    _CHANGE(control)
     control.function("M6", {})
     control.spindle_turns = False
 

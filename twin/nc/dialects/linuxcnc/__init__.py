@@ -135,7 +135,7 @@ LINUXCNC = Dialect(
         ),
         Mark(r"#<\w+>", "#<name> (a named parameter)"),
         Mark(
-            r"\bG(?:28\.1|33\.1|38\.[2-5]|43\.2|61\.1|90\.1|92\.[23]|59\.[123]|5\.[23])(?!\d)",
+            r"\bG(?:33\.1|43\.2|61\.1|90\.1|92\.[23]|59\.[123]|5\.[23])(?!\d)",
             "G61.1, G90.1, G43.2, G59.3 and others with a point",
         ),
         Mark(r"\bG0*64[ \t]*P0*\.\d", "G64 P0.01 (a tolerance)"),
@@ -144,6 +144,8 @@ LINUXCNC = Dialect(
         shared_marks.ARC_WITH_T,
         shared_marks.SEMICOLON,
         shared_marks.POINT_CODES,
+        shared_marks.TURNED_COMPENSATION,
+        shared_marks.STORED_POSITION_OR_PROBE,
         shared_marks.BACK_BORING_WITH_I,
         shared_marks.NUMBERED_PARAMETER_3000,
     ),
