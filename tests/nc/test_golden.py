@@ -82,7 +82,7 @@ def test_every_golden_file_has_its_program() -> None:
 
 @pytest.mark.parametrize("name", DIALECTS)
 def test_every_followed_code_has_its_golden_file(name: str) -> None:
-    followed = {number for number, code in DIALECTS[name].g.items() if not code.refused}
+    followed = {number for number, code in DIALECTS[name].codes.g.items() if not code.refused}
     paths = {float(path.stem[1:]): path for path in (GOLDEN / name / "codes").glob("G*.nc")}
     assert followed == set(paths)
     for number, path in paths.items():

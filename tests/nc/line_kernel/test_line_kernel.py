@@ -37,7 +37,7 @@ CHANGES = {
     "haas": "G20|G21|G91|G90|G68 X0 Y0 R30.|G69|G93|G94|G187 P1|G19|G17|G54|G92 X1.",
 }
 """What changes the meaning of plain lines."""
-WITH_CODES = [name for name, dialect in DIALECTS.items() if dialect.g]
+WITH_CODES = [name for name, dialect in DIALECTS.items() if dialect.codes.g]
 """Dialects whose motion is G codes, which the kernel knows."""
 ALL = "M3 S1000|M5|S500|T1|M6|M8|G4 P1|N7|G1|G0|F300.|(comment)|/X5.|M30"
 

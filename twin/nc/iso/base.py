@@ -45,7 +45,7 @@ def draw_curve(
     """Move on so many chords of a curve of the working plane, by u from 0 to 1; all else goes linearly."""
     if count > MOST_CHORDS:
         control.fail("curve-size", f"the curve would need {count} chords")
-    plane, before = control.modal.plane, list(control.programmed)
+    plane, before = control.modal.plane, list(control.motion.programmed)
     for number in range(1, count):
         u = number / count
         point = [a + u * (b - a) for a, b in zip(before, goal, strict=True)]
@@ -80,15 +80,16 @@ def set_feed(control: Control, word: Word) -> None:
     feed = control.number(word)
     if not feed > 0.0:
         control.fail("feed-range", f"the feed {word.text} is not positive", word)
-    control.feed = feed
+    control.motion.feed = feed
 
 
 def spindle_speed(control: Control, word: Word) -> None:
     """S: the spindle's speed [1/min]; reported where no spindle start carries it."""
     speed = control.number(word)
     if not speed >= 0.0:
-        control.fail("spindle-range", f"the speed {word.text} is negative", word)
-    control.spindle = speed
+        message = f"the speed {word.text} is negative"
+        control.fail("spindle-range", message, word, "M4 turns it the other way")
+    control.motion.spindle = speed
     others = control.block.words
     functions = (other.value for other in others if other.address == "M")
     if not any(isinstance(number, float) and starts_spindle(number) for number in functions):
@@ -276,8 +277,8 @@ def jog_block(dialect: Dialect, axis: str, distance: float, feed: float) -> str:
         distance: How far, and which way [mm or deg].
         feed: [mm/min or deg/min]
     """
-    mode = dialect.start_state.get("feed_mode", FeedMode.PER_MINUTE)
-    end = "\nM2" if dialect.must_end else ""
+    mode = dialect.codes.start_state.get("feed_mode", FeedMode.PER_MINUTE)
+    end = "\nM2" if dialect.rules.must_end else ""
     of_one = feed_per_minute(1.0, mode, distance, True, 1.0, 0.0, (feed, feed))
     return f"N1 G91 G1 {axis}{_written(distance)} F{_written(feed / of_one)}{end}"
 

@@ -158,22 +158,22 @@ def require_room(
 def mill(control: Control, pocket: Pocket, passes: Passes) -> None:
     """Mill a pocket, or around a stud."""
     axis = control.modal.plane.axes[2]
-    feed = control.feed
-    _rise(control, max(control.programmed[axis], passes.reference))
+    feed = control.motion.feed
+    _rise(control, max(control.motion.programmed[axis], passes.reference))
     _go(control, passes.entry, rapid=True)
     _rise(control, passes.reference)
     for number, level in enumerate(passes.levels):
         if number > 0:
             _go(control, passes.entry, rapid=False)
-        control.feed = feed if passes.plunge is None else passes.plunge
+        control.motion.feed = feed if passes.plunge is None else passes.plunge
         _plunge(control, passes, level)
-        control.feed = feed
+        control.motion.feed = feed
         for inset in passes.insets:
             _ring(control, pocket, inset)
-    control.feed = passes.finish_feed or feed
+    control.motion.feed = passes.finish_feed or feed
     for inset in passes.finish:
         _ring(control, pocket, inset)
-    control.feed = feed
+    control.motion.feed = feed
     _rise(control, passes.back)
     _go(control, passes.entry, rapid=True)
 
@@ -181,12 +181,12 @@ def mill(control: Control, pocket: Pocket, passes: Passes) -> None:
 def _plunge(control: Control, passes: Passes, level: float) -> None:
     """Go down to a level, straight or on a helix about the entry."""
     axis = control.modal.plane.axes[2]
-    fall = control.programmed[axis] - level
+    fall = control.motion.programmed[axis] - level
     if passes.helix <= 0.0 or fall <= 0.0:
         _rise(control, level, rapid=False)
         return
     _go(control, (passes.entry[0] + passes.helix, passes.entry[1]), rapid=False)
-    target = list(control.programmed)
+    target = list(control.motion.programmed)
     target[axis] = level
     control.arc_to(target, passes.entry, 360.0 * math.ceil(fall / passes.pitch))
     control.arc_to(list(target), passes.entry, 360.0)
@@ -200,7 +200,7 @@ def _ring(control: Control, pocket: Pocket, inset: float) -> None:
         begin = turned((pocket.center[0] + length, pocket.center[1]), pocket.center, pocket.angle)
         _go(control, begin, rapid=False)
         if length > 0.0:
-            control.arc_to(list(control.programmed), pocket.center, sign * 360.0)
+            control.arc_to(list(control.motion.programmed), pocket.center, sign * 360.0)
         return
     _rectangle(control, pocket, length, pocket.width - inset, pocket.corner.at(inset))
 
@@ -246,18 +246,18 @@ def _rectangle(
 
 
 def _arc(control: Control, end: Point, center: Point, sweep: float) -> None:
-    plane, target = control.modal.plane, list(control.programmed)
+    plane, target = control.modal.plane, list(control.motion.programmed)
     plane.aim(target, end)
     control.arc_to(target, center, sweep)
 
 
 def _go(control: Control, point: Point, *, rapid: bool) -> None:
-    plane, target = control.modal.plane, list(control.programmed)
+    plane, target = control.modal.plane, list(control.motion.programmed)
     plane.aim(target, point)
     control.line_to(target, rapid=rapid)
 
 
 def _rise(control: Control, height: float, *, rapid: bool = True) -> None:
-    target = list(control.programmed)
+    target = list(control.motion.programmed)
     target[control.modal.plane.axes[2]] = height
     control.line_to(target, rapid=rapid)

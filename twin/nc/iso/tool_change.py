@@ -38,7 +38,7 @@ def go_to_change_height(control: Control, usual: float | None = None) -> None:
     if height is None or (given is None and zero is None):
         return
     with machine_frame(control, "the height of the tool change"):
-        if control.programmed[_Z] < height:
-            there = list(control.programmed)
+        if control.motion.programmed[_Z] < height:
+            there = list(control.motion.programmed)
             there[_Z] = height
             control.line_to(there, rapid=True)

@@ -704,7 +704,11 @@ class Room:
 def _offsets(scene: Scene) -> dict[str, dict[str, float]]:
     """The work offsets that the control's table has, with the values of the job."""
     job, dialect = scene.preparation.job.file, scene.preparation.dialect
-    names = [f"G{number:g}" for number in sorted(dialect.g) if dialect.g[number].group == "offset"]
+    names = [
+        f"G{number:g}"
+        for number in sorted(dialect.codes.g)
+        if dialect.codes.g[number].group == "offset"
+    ]
     wanted = [name for name in names if name in WORK_OFFSETS]
     return {name: dict(job.offsets.get(name, {})) for name in wanted} | dict(job.offsets)
 

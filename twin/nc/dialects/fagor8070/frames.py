@@ -19,7 +19,7 @@ from twin.nc.text.blocks import Word
 
 def choose_plane(control: Control) -> None:
     """G17, G18, G19; one that compensation is in force in stays as it is."""
-    if not control.path.compensates_in(control.part_plane()):
+    if not control.path.compensation.acts_in(control.motion.part_plane):
         change_plane(control)
 
 
@@ -121,19 +121,19 @@ def turn_in_commanded_direction(control: Control, _rapid: bool) -> None:
         return
     for index, name in enumerate(control.settings.axes.names):
         word = control.words.get(name)
-        if word is None or control.linear[index] or word.incremental:
+        if word is None or control.motion.linear[index] or word.incremental:
             continue
         value = control.number(word)
         if abs(value) >= 360.0:
             control.fail("module-range", "the target of a module axis is below one turn", word)
-        target, here = abs(value), control.programmed[index] % 360.0
+        target, here = abs(value), control.motion.programmed[index] % 360.0
         backwards = value < 0.0 or str(value).startswith("-")
         start = here
         if backwards and here < target:
             start = here + 360.0
         elif not backwards and here > target:
             start = here - 360.0
-        programmed = list(control.programmed)
+        programmed = list(control.motion.programmed)
         programmed[index] = start
-        control.set_position(programmed, "turns")
+        control.motion.set_position(programmed, "turns")
         control.words[name] = word._replace(value=target)

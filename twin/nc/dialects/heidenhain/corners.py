@@ -22,14 +22,14 @@ def round_corner(control: Control, statement: Statement) -> None:
     words = computed_words(control, statement, 0)
     radius = words.pop("R", None)
     if radius is None:
-        control.refuse(statement, "blend", "RND needs its radius R", "RND R5")
+        control.fail("blend", "RND needs its radius R", statement, "RND R5")
     _blend(control, statement, BlendKind.FILLET, control.length(radius), words)
 
 
 def cut_corner(control: Control, statement: Statement) -> None:
     """CHF 10 F100: a line between the points that lie so far from the corner."""
     if not statement.text.strip():
-        control.refuse(statement, "blend", "CHF needs its length", "CHF 10")
+        control.fail("blend", "CHF needs its length", statement, "CHF 10")
     value, end = value_at(control, statement)
     words = computed_words(control, statement, end)
     _blend(control, statement, BlendKind.CHAMFER, value * control.modal.unit, words)
@@ -46,7 +46,7 @@ def _blend(
         word = next(iter(words.values()))
         control.fail("unused-word", f"nothing in {statement.keyword} uses '{word.text}'", word)
     if size <= 0.0 or pace <= 0.0:
-        control.refuse(statement, "blend", f"{statement.keyword} needs a size and a feed above 0")
-    if not control.path.blend_next(Blend(kind, size, control.part_plane(), feed=pace)):
+        control.fail("blend", f"{statement.keyword} needs a size and a feed above 0", statement)
+    if not control.path.blend_next(Blend(kind, size, control.motion.part_plane, feed=pace)):
         message = f"{statement.keyword} stands between two moves, and none is before it"
-        control.refuse(statement, "blend", message)
+        control.fail("blend", message, statement)

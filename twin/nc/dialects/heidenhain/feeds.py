@@ -13,9 +13,9 @@ def set_feed(control: Control, word: Word) -> None:
     turning = memory_of(control).per_revolution
     control.modal.feed_mode = FeedMode.PER_REVOLUTION if turning else FeedMode.PER_MINUTE
     base.set_feed(control, word)
-    assert control.feed is not None
+    assert control.motion.feed is not None
     if control.modal.unit != 1.0 and not turning:
-        control.feed *= INCH_FEEDS
+        control.motion.feed *= INCH_FEEDS
 
 
 def set_feed_per_turn(control: Control, word: Word) -> None:
@@ -34,7 +34,7 @@ def feed_of_tool(control: Control, word: Word) -> None:
     if feed is None:
         hint = "write TOOL CALL 1 Z S3000 F500"
         control.fail("no-feed", "F AUTO needs the F of TOOL CALL, and it had none", word, hint)
-    control.feed = feed
+    control.motion.feed = feed
 
 
 def go_rapidly(control: Control, _word: Word) -> None:

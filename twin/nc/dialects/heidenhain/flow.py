@@ -66,13 +66,13 @@ def begin_program(control: Control, statement: Statement) -> None:
     match = _HEADING.fullmatch(statement.text)
     if match is None:
         hint = "write BEGIN PGM PART MM"
-        control.refuse(
-            statement, "unreadable-statement", "BEGIN PGM needs a name and MM or INCH", hint
+        control.fail(
+            "unreadable-statement", "BEGIN PGM needs a name and MM or INCH", statement, hint
         )
     unit = 1.0 if match[2].upper() == "MM" else 25.4
-    if control.has_moved and unit != control.modal.unit:
+    if control.motion.last is not None and unit != control.modal.unit:
         message = "the unit of a program that is called differs from that of the one that calls it"
-        control.refuse(statement, "unreadable-statement", message)
+        control.fail("unreadable-statement", message, statement)
     control.modal.unit = unit
 
 
@@ -80,12 +80,12 @@ def end_program(control: Control, statement: Statement) -> None:
     """END PGM: back to the program that has called this one, else the end."""
     control.path.flush()
     if control.path.leads is not None:
-        control.refuse(statement, "contour-lead", "the program ends behind APPR, without a contour")
+        control.fail("contour-lead", "the program ends behind APPR, without a contour", statement)
     if _first_line(control, control.block.line) > 1:
         control.go_back(statement)
     elif control.program_counter.is_calling:
         message = "the program ends within a subprogram, which has no LBL 0"
-        control.refuse(statement, "program-end", message, "end it by LBL 0")
+        control.fail("program-end", message, statement, "end it by LBL 0")
     else:
         control.ended = True
 
@@ -112,7 +112,9 @@ def refuse_end_of_called(control: Control) -> None:
 def stop(control: Control, statement: Statement) -> None:
     """STOP: the operator starts the program again."""
     rest = statement.text.strip()
-    for block in control.blocks_within(statement.text, statement.text_column):
+    for block in control.statements.blocks(
+        statement.text, statement.text_column, control.block.line
+    ):
         control.run(block)
         rest = ""
     if rest:
@@ -133,7 +135,7 @@ def label(control: Control, statement: Statement) -> None:
     """LBL 0 ends a subprogram; others are places."""
     text = statement.text.strip()
     if re.fullmatch(_NAME, text, re.IGNORECASE) is None:
-        control.refuse(statement, "label", "LBL needs a number or a name", 'LBL 1 or LBL "EDGE"')
+        control.fail("label", "LBL needs a number or a name", statement, 'LBL 1 or LBL "EDGE"')
     if text == "0" and control.program_counter.is_calling:
         control.go_back(statement)
 
@@ -169,7 +171,7 @@ def call_label(control: Control, statement: Statement) -> None:
     """CALL LBL 1: a subprogram; with REP the part from the label to here runs so often again."""
     match = _CALL.match(statement.text)
     if match is None or statement.text[match.end() :].strip():
-        control.refuse(statement, "label", "CALL LBL needs a label", "CALL LBL 1 REP 3")
+        control.fail("label", "CALL LBL needs a label", statement, "CALL LBL 1 REP 3")
     column = statement.text_column + match.start(1)
     if match[1] == "0":
         message = "LBL 0 ends subprograms and cannot be called"
@@ -183,7 +185,7 @@ def call_label(control: Control, statement: Statement) -> None:
         times, _ = value_at(control, statement, match.start(2))
         if times != int(times) or not 0 <= times <= MOST_REPEATS:
             message = f"REP counts repeats, 0 to {MOST_REPEATS}, not {times:g}"
-            control.refuse(statement, "repeat-count", message)
+            control.fail("repeat-count", message, statement)
         repeats[here] = int(times)
     if repeats[here] > 0:
         repeats[here] -= 1
@@ -202,7 +204,7 @@ def call_program(control: Control, statement: Statement) -> None:
             return
     message = f"there is no program {name or written}"
     hint = f"put {name.lower()}.h into the folder of this program"
-    control.refuse(statement, "unknown-subprogram", message, hint)
+    control.fail("unknown-subprogram", message, statement, hint)
 
 
 # --- jumps
@@ -213,14 +215,14 @@ def jump_if(control: Control, statement: Statement) -> None:
     match = _CONDITION.fullmatch(statement.text)
     if match is None or (match["word"] is None) is (statement.keyword != "IF"):
         hint = "FN 9: IF +Q1 EQU +Q2 GOTO LBL 1"
-        control.refuse(
-            statement, "unreadable-statement", "the condition of the jump cannot be read", hint
+        control.fail(
+            "unreadable-statement", "the condition of the jump cannot be read", statement, hint
         )
     how = statement.keyword
     if how != "IF" and match["how"] is not None:
         wanted = ("EQU", "NE", "GT", "LT")[int(re.sub("[^0-9]", "", how)) - 9]
         if match["how"].upper() != wanted:
-            control.refuse(statement, "unreadable-statement", f"{how} compares by {wanted}")
+            control.fail("unreadable-statement", f"{how} compares by {wanted}", statement)
     if _holds(control, statement, match):
         column = statement.text_column + match.start("label")
         control.jump(Location(_line_of(control, match["label"], column), 0))

@@ -40,7 +40,7 @@ def _starts(function: str) -> Action:
 
     def action(control: Control) -> None:
         turn_spindle(control, function)
-        control.spindle_turns = True
+        control.motion.spindle_turns = True
         control.function("M8", {})
 
     return action
@@ -59,9 +59,9 @@ def _reduce_rotary(control: Control) -> None:
     """M94: what the screen shows of rotary axes is brought below a turn before the block moves."""
     programmed = [
         value if linear else value % 360.0
-        for value, linear in zip(control.programmed, control.linear, strict=True)
+        for value, linear in zip(control.motion.programmed, control.motion.linear, strict=True)
     ]
-    control.set_position(programmed, "turns")
+    control.motion.set_position(programmed, "turns")
 
 
 def _go_shortest(shortest: bool) -> Action:
@@ -77,14 +77,14 @@ def take_shortest_way(control: Control, _rapid: bool) -> None:
     """With M126 the start of each rotary axis is relabelled by whole turns, so that its way is the shorter one."""
     if not memory_of(control).shortest:
         return
-    programmed = list(control.programmed)
-    for index, linear in enumerate(control.linear):
+    programmed = list(control.motion.programmed)
+    for index, linear in enumerate(control.motion.linear):
         word = control.words.get(control.settings.axes.names[index])
         if word is not None and not linear and not word.incremental:
             turns = round((control.number(word) - programmed[index]) / 360.0)
             programmed[index] += 360.0 * turns
-    if programmed != control.programmed:
-        control.set_position(programmed, "turns")
+    if programmed != control.motion.programmed:
+        control.motion.set_position(programmed, "turns")
 
 
 def _feed_per_turn(turning: bool) -> Action:
@@ -106,18 +106,18 @@ def _retract(control: Control) -> None:
     if most is None and word is None:
         hint = "write M140 MB 50 or M140 MB MAX"
         control.fail("missing-words", "M140 needs its way MB", hint=hint)
-    if control.path.compensating or control.path.leads is not None:
+    if control.path.compensation.in_force or control.path.leads is not None:
         message = "the tool does not retract while radius compensation is in force"
         control.fail("compensation-change", message, hint="end it by R0 before")
     if most is None:
-        target = list(control.programmed)
+        target = list(control.motion.programmed)
         target[_HEIGHT] += control.length(word)
         control.line_to(target, rapid=not own)
         return
     with machine_frame(control, "M140 MB MAX"):
-        target = list(control.programmed)
+        target = list(control.motion.programmed)
         target[_HEIGHT] = 0.0
-        if target[_HEIGHT] > control.programmed[_HEIGHT]:
+        if target[_HEIGHT] > control.motion.programmed[_HEIGHT]:
             control.line_to(target, rapid=not own)
 
 

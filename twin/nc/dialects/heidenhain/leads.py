@@ -71,7 +71,7 @@ def lead_keyword(kind: str) -> StatementAction:
     polar, shape = shape.startswith("P"), shape.removeprefix("P")
 
     def action(control: Control, statement: Statement) -> None:
-        memory, before = memory_of(control), control.feed
+        memory, before = memory_of(control), control.motion.feed
         perform = _approach if way == "APPR" else _depart
 
         def move(control: Control) -> None:
@@ -106,14 +106,12 @@ def _lead(control: Control, statement: Statement, kind: str, before: float | Non
     size = control.length(word)
     if size == 0.0 or (size < 0.0 and kind == "LCT"):
         message = f"{statement.keyword} needs {address}" + (" above 0" if kind == "LCT" else "")
-        control.refuse(statement, "contour-lead", message, f"{statement.keyword} .. {address}10")
+        control.fail("contour-lead", message, statement, f"{statement.keyword} .. {address}10")
     turn = 0.0 if angle is None else control.number(angle)
     if kind == "CT" and not 0.0 < turn <= 360.0:
-        control.refuse(
-            statement, "contour-lead", "the angle CCA of the arc is above 0 and up to 360"
-        )
+        control.fail("contour-lead", "the angle CCA of the arc is above 0 and up to 360", statement)
     memory = memory_of(control)
-    return Lead(kind, size, turn, (before, control.feed), memory.was_rapid)
+    return Lead(kind, size, turn, (before, control.motion.feed), memory.was_rapid)
 
 
 def _take_target(control: Control, polar: bool) -> list[float]:
@@ -132,18 +130,18 @@ def _approach(
     """The next move begins at the block's point; before it the tool comes there."""
     lead, memory, block = _lead(control, statement, kind, before), memory_of(control), control.block
     side = memory.side
-    start = list(control.programmed)
+    start = list(control.motion.programmed)
     radius = compensation_radius(control) if side else 0.0
-    if control.path.compensating or control.path.leads is not None:
+    if control.path.compensation.in_force or control.path.leads is not None:
         message = f"{statement.keyword} begins a contour, and one has begun already"
-        control.refuse(statement, "contour-lead", message, "end it by DEP or R0 before")
+        control.fail("contour-lead", message, statement, "end it by DEP or R0 before")
     contour = _take_target(control, polar)
 
     def come(move: Segment) -> None:
         _come(control, block, start, contour, lead, move, side, radius)
 
     control.path.leads = come
-    control.programmed, control.part = contour, control.frame.to_part(contour)
+    control.motion.programmed, control.motion.part = contour, control.frame.to_part(contour)
 
 
 def _come(
@@ -157,7 +155,7 @@ def _come(
     radius: float,
 ) -> None:
     """Make the approach, now that the first move of the contour is known."""
-    plane, feed, here = control.modal.plane, control.feed, control.block
+    plane, feed, here = control.modal.plane, control.motion.feed, control.block
     ahead = plane.point(control.frame.unturn(direction_of(move, at_end=False)))
     if ahead == (0.0, 0.0):
         control.fail("contour-lead", "the contour must begin with a move in the working plane")
@@ -167,19 +165,19 @@ def _come(
     control.report.line = block.line
     arc_center, begin = _auxiliary(control, touch, lead, side, plane.point(start), arrives=True)
     rapid = lead.rapid and lead.kind != "LCT"
-    control.feed = lead.feeds[0] if lead.kind != "LCT" else lead.feeds[1]
+    control.motion.feed = lead.feeds[0] if lead.kind != "LCT" else lead.feeds[1]
     target = list(start)
     plane.aim(target, begin)
     control.line_to(target, rapid=rapid)
     target = list(contour)
     plane.aim(target, begin)
     control.line_to(target, rapid=rapid)
-    control.feed = lead.feeds[1]
+    control.motion.feed = lead.feeds[1]
     _go(control, touch.point, arc_center, _clockwise(lead, side), whole=lead.kind == "CT")
     if side:
         compensate(control, side, radius, led=True)
-    control.feed, control.block, control.report.line = feed, here, here.line
-    control.programmed, control.part = contour, control.frame.to_part(contour)
+    control.motion.feed, control.block, control.report.line = feed, here, here.line
+    control.motion.programmed, control.motion.part = contour, control.frame.to_part(contour)
 
 
 def _touch(point: Point, ahead: Point, side: float, radius: float) -> Touch:
@@ -232,7 +230,7 @@ def _go(
     control: Control, point: Point, center: Point | None, clockwise: bool, *, whole: bool = False
 ) -> None:
     """Go to a point of the plane, straight or about a centre; ``whole``: all around to where it stands."""
-    plane, target = control.modal.plane, list(control.programmed)
+    plane, target = control.modal.plane, list(control.motion.programmed)
     start = plane.point(target)
     plane.aim(target, point)
     if center is None:
@@ -243,7 +241,7 @@ def _go(
 
 
 def _stand(control: Control, programmed: list[float]) -> None:
-    control.programmed, control.part = programmed, control.frame.to_part(programmed)
+    control.motion.programmed, control.motion.part = programmed, control.frame.to_part(programmed)
 
 
 # --- from the contour
@@ -255,24 +253,24 @@ def _depart(
     """The contour ends where the tool stands; it leaves, and compensation has ended."""
     memory, plane = memory_of(control), control.modal.plane
     lead, side = _lead(control, statement, kind, before), memory.side
-    behind = control.direction
+    behind = control.motion.direction
     ahead = (0.0, 0.0) if behind is None else plane.point(behind)
     if ahead == (0.0, 0.0) or control.path.leads is not None:
         message = f"{statement.keyword} leaves a contour, and no move in the plane has ended it"
-        control.refuse(statement, "contour-lead", message)
-    end = list(control.programmed)
+        control.fail("contour-lead", message, statement)
+    end = list(control.motion.programmed)
     target = _take_target(control, polar)
     control.path.end_compensation(led=True)
     memory.side = 0.0
-    control.part = list(control.path.position) if side else control.part
-    control.reframed()
+    control.motion.part = list(control.path.position) if side else control.motion.part
+    control.motion.reframed()
     radius = compensation_radius(control) / memory.scale if side else 0.0
     touch = _touch(plane.point(end), ahead, side, radius)
-    touch = dataclasses.replace(touch, point=plane.point(control.programmed))
+    touch = dataclasses.replace(touch, point=plane.point(control.motion.programmed))
     center, auxiliary = _auxiliary(control, touch, lead, side, plane.point(target), arrives=False)
     _go(control, auxiliary, center, _clockwise(lead, side), whole=kind == "CT")
     if kind == "LCT":
         _go(control, plane.point(target), None, clockwise=False)
-    there = list(control.programmed)
+    there = list(control.motion.programmed)
     there[2:] = target[2:] if plane.axes[2] == 2 else there[2:]
     control.line_to(there, rapid=False)

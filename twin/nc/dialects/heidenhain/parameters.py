@@ -52,7 +52,9 @@ def assign(control: Control, statement: Statement) -> None:
     """``Q1 = Q2 * SIN Q3``."""
     lines = (line for _, line in continued(control, while_=None))
     text = " ".join((statement.text.replace("=", " ", 1).rstrip("~ \t"), *lines))
-    value = control.compute(control.expression(text, statement.text_column), statement.text_column)
+    value = control.compute(
+        control.statements.expression(text, statement.text_column), statement.text_column
+    )
     control.variables.write(statement.keyword, value)
 
 
@@ -66,7 +68,7 @@ def assign_text(control: Control, statement: Statement) -> None:
     if match is None:
         hint = 'QS1 = "text" || QS2'
         message = "texts are joined by || and no more"
-        control.refuse(statement, "unreadable-statement", message, hint)
+        control.fail("unreadable-statement", message, statement, hint)
     pieces = (text_of(control, each) for each in _PIECE.findall(match[1]))
     memory_of(control).texts[statement.keyword] = "".join(pieces)
 
@@ -81,7 +83,7 @@ def function(control: Control, statement: Statement) -> None:
     if number == 14:
         match = _ERROR.match(statement.text)
         told = statement.text.strip() if match is None else f"error {match[1].strip()}"
-        control.refuse(statement, "program-alarm", f"the program stops itself: {told}")
+        control.fail("program-alarm", f"the program stops itself: {told}", statement)
     if number == 18:
         _read_system(control, statement)
         return
@@ -89,9 +91,11 @@ def function(control: Control, statement: Statement) -> None:
     if number not in COMPUTING or match is None:
         reason = _REFUSED.get(number, "is no function here")
         hint = "FN 0: Q1 = +5 gives a value, FN 9: IF +Q1 EQU +Q2 GOTO LBL 1 jumps"
-        control.refuse(statement, "unsupported-statement", f"FN {number} {reason}", hint)
+        control.fail("unsupported-statement", f"FN {number} {reason}", statement, hint)
     column = statement.text_column + match.end()
-    value = control.compute(control.expression(statement.text[match.end() :], column), column)
+    value = control.compute(
+        control.statements.expression(statement.text[match.end() :], column), column
+    )
     control.variables.write(match[1].upper(), value)
 
 
@@ -113,12 +117,12 @@ def _read_system(control: Control, statement: Statement) -> None:
     elif asked[0] == 50 and asked[1] in (1, 2):
         data = control.tools.data(int(index) or tool)
         value = None if data is None else (data.length, data.radius)[asked[1] - 1]
-    elif asked == (270, 1) and 0 <= axis < len(control.programmed):
-        value = control.programmed[axis] / control.unit_of(axis)
+    elif asked == (270, 1) and 0 <= axis < len(control.motion.programmed):
+        value = control.motion.programmed[axis] / control.motion.unit_of(axis)
     if value is None or match is None:
         message = f"{statement.keyword.rstrip(':').strip()} reads data of the control that the twin does not keep"
         hint = "known: ID20 NR1, ID50 NR1 and NR2, ID270 NR1; else give Q its value by FN 0"
-        control.refuse(statement, "unsupported-statement", message, hint)
+        control.fail("unsupported-statement", message, statement, hint)
     control.variables.write(match["name"].upper(), value)
 
 
@@ -147,7 +151,7 @@ def _own(control: Control, name: str) -> float | None:
         return tool.length
     known = {
         "Q109": 2.0,
-        "Q110": SPINDLE_TURNS if control.spindle_turns else SPINDLE_STANDS,
+        "Q110": SPINDLE_TURNS if control.motion.spindle_turns else SPINDLE_STANDS,
         "Q113": 0.0 if control.modal.unit == 1.0 else 1.0,
         **dict.fromkeys(("Q120", "Q121", "Q122"), 0.0),
     }

@@ -51,8 +51,8 @@ def path_function(interpolation: Interpolation, after: After) -> StatementAction
         written = {word.address for word in control.block.words}
         if interpolation is not LINE and MOTION_WORDS.isdisjoint(written):
             message = f"{statement.keyword} needs the words of its move"
-            control.refuse(statement, "missing-words", message)
-        modal.interpolation, start = interpolation, list(control.programmed)
+            control.fail("missing-words", message, statement)
+        modal.interpolation, start = interpolation, list(control.motion.programmed)
         control.run(control.block._replace(statement=None))
         modal.interpolation = LINE
         memory.rapid, memory.machine = False, ""
@@ -98,7 +98,7 @@ def polar_target(control: Control, pole: Point) -> list[float]:
     plane = control.modal.plane
     radius_word, angle_word = control.take("PR"), control.take("PA")
     target = control.target()
-    here = plane.point(control.programmed)
+    here = plane.point(control.motion.programmed)
     seen = (radius_word is not None) + 2 * (angle_word is not None)
     words = (control.length(radius_word), 0.0 if angle_word is None else control.number(angle_word))
     relative = tuple(word is not None and word.incremental for word in (radius_word, angle_word))
@@ -133,7 +133,7 @@ def set_pole(control: Control) -> None:
     """
     memory, given = memory_of(control), control.take_axis_words()
     if not given:
-        memory.pole = dict(enumerate(control.programmed[:3]))
+        memory.pole = dict(enumerate(control.motion.programmed[:3]))
         memory.circle_plane = None
         return
     columns = {index for index, _ in given}
@@ -141,7 +141,7 @@ def set_pole(control: Control) -> None:
         control.fail("pole", "CC names two of the axes X, Y and Z", given[-1][1])
     for index, word in given:
         value = control.axis_value(index, word)
-        memory.pole[index] = value + (control.programmed[index] if word.incremental else 0.0)
+        memory.pole[index] = value + (control.motion.programmed[index] if word.incremental else 0.0)
     if len(columns) == 2:
         planes = (plane for plane in PLANE_ORDER if columns == set(plane.axes[:2]))
         memory.circle_plane = next(planes)
@@ -214,7 +214,7 @@ def _arc_by_radius(control: Control) -> None:
 
 def _tangent_arc_to(control: Control, target: list[float]) -> None:
     """An arc that goes on where the last move was going; a line where that leads to its end."""
-    along = control.direction
+    along = control.motion.direction
     start, end = start_and_end(control, target)
     ahead = (0.0, 0.0) if along is None else control.modal.plane.point(along)
     if ahead == (0.0, 0.0) or control.path.leads is not None:
@@ -252,7 +252,7 @@ def _polar_arc(control: Control) -> None:
     with circle_plane(control) as pole:
         clockwise, target = take_sense(control), control.target()
         plane = control.modal.plane
-        start, value = plane.point(control.programmed), control.number(word)
+        start, value = plane.point(control.motion.programmed), control.number(word)
         if distance(start, pole) < SAME_POINT:
             control.fail("arc-center", "the arc begins in its pole", word)
         sweep = value

@@ -78,7 +78,7 @@ def plane(control: Control, statement: Statement) -> None:
         ProgramError: It is tilted.
     """
     if _LEVEL.match(statement.text) is None:
-        control.refuse(statement, "tilted-plane", TILTED, NOT_TILTED)
+        control.fail("tilted-plane", TILTED, statement, NOT_TILTED)
 
 
 def function(control: Control, statement: Statement) -> None:
@@ -91,7 +91,7 @@ def function(control: Control, statement: Statement) -> None:
         name = " ".join(statement.text.split()[:2])
         message = f"FUNCTION {name} is not followed"
         hint = "FUNCTION RESET TCPM and FUNCTION MODE MILL are"
-        control.refuse(statement, "unsupported-statement", message, hint)
+        control.fail("unsupported-statement", message, statement, hint)
 
 
 def transform(control: Control, statement: Statement) -> None:
@@ -99,7 +99,7 @@ def transform(control: Control, statement: Statement) -> None:
     match = _DATUM.fullmatch(statement.text)
     if match is None:
         message = "TRANS is followed with DATUM AXIS and DATUM RESET alone"
-        control.refuse(statement, "unsupported-statement", message, "TRANS DATUM AXIS X+10 Y+20")
+        control.fail("unsupported-statement", message, statement, "TRANS DATUM AXIS X+10 Y+20")
     if match[2]:
         step = Step(7, 1, match[2], statement.text_column + match.start(2))
         shift_datum(control, step)
@@ -173,4 +173,4 @@ def other_statement(control: Control, statement: Statement) -> None:
                 "what is: twin dialects heidenhain",
             )
         )
-        control.refuse(statement, "unsupported-statement", f"{keyword}: {reason}", hint)
+        control.fail("unsupported-statement", f"{keyword}: {reason}", statement, hint)

@@ -3,9 +3,8 @@
 import re
 
 from twin.nc.control.compensation import NEEDS_TOOL, tool_numbered
-from twin.nc.control.control import Control
+from twin.nc.control.control import Control, integer_of
 from twin.nc.control.settings import ToolData
-from twin.nc.control.state import integer_of
 from twin.nc.dialects.heidenhain.feeds import set_feed
 from twin.nc.dialects.heidenhain.memory import Deltas, memory_of
 from twin.nc.dialects.heidenhain.values import computed_words, named_word, text_of, word_of
@@ -33,7 +32,7 @@ def call_tool(control: Control, statement: Statement) -> None:
     assert match is not None
     if match["axis"] and match["axis"].upper() != "Z":
         message = f"the tool lies along Z on this machine, not along {match['axis'].upper()}"
-        control.refuse(statement, "unsupported-word", message, "TOOL CALL 1 Z S3000")
+        control.fail("unsupported-word", message, statement, "TOOL CALL 1 Z S3000")
     words = computed_words(control, statement, match.end())
     number = _number_of(control, statement, match)
     speed, feed = words.pop("S", None), words.pop("F", None)
@@ -43,19 +42,19 @@ def call_tool(control: Control, statement: Statement) -> None:
         control.fail("unused-word", f"nothing in TOOL CALL uses '{word.text}'", word)
     if lengths["DR2"] != 0.0:
         message = "DR2 changes the corner of the tool, which the twin does not follow"
-        control.refuse(statement, "unsupported-word", message)
+        control.fail("unsupported-word", message, statement)
     if number is not None:
         _change(control, number)
     if number is not None or lengths["DL"] or lengths["DR"]:
         memory_of(control).deltas = Deltas(lengths["DR"], lengths["DL"])
         _put_length(control)
     if speed is not None:
-        control.spindle = control.number(speed)
-        control.function("S", {"S": control.spindle})
+        control.motion.spindle = control.number(speed)
+        control.function("S", {"S": control.motion.spindle})
     memory_of(control).tool_feed = None
     if feed is not None:
         set_feed(control, feed)
-        memory_of(control).tool_feed = control.feed
+        memory_of(control).tool_feed = control.motion.feed
 
 
 def _number_of(control: Control, statement: Statement, match: re.Match[str]) -> Word | None:
@@ -90,7 +89,7 @@ def _change(control: Control, number: Word) -> None:
     next_tool(control, number)
     _CHANGE(control)
     control.function("M6", {})
-    control.spindle_turns = False
+    control.motion.spindle_turns = False
 
 
 def _put_length(control: Control) -> None:
@@ -107,7 +106,7 @@ def define_tool(control: Control, statement: Statement) -> None:
     assert match is not None
     number = _number_of(control, statement, match)
     if number is None:
-        control.refuse(statement, "tool-number", "TOOL DEF needs a tool", "TOOL DEF 1 L+0 R+5")
+        control.fail("tool-number", "TOOL DEF needs a tool", statement, "TOOL DEF 1 L+0 R+5")
     words = computed_words(control, statement, match.end())
     length, radius = words.pop("L", None), words.pop("R", None)
     if words:
@@ -146,7 +145,7 @@ def blank(control: Control, statement: Statement) -> None:
     match = _CORNER.match(statement.text)
     if match is None:
         hint = "BLK FORM 0.1 Z X+0 Y+0 Z-40, then BLK FORM 0.2 X+100 Y+100 Z+0"
-        control.refuse(statement, "unreadable-statement", "BLK FORM is 0.1, 0.2 or CYLINDER", hint)
+        control.fail("unreadable-statement", "BLK FORM is 0.1, 0.2 or CYLINDER", statement, hint)
     if match[5]:
         message = f"BLK FORM {match[5].upper()} gives the twin no stock: the job does"
         control.report.notice("BLK FORM", message, statement.column, len(statement.keyword))
@@ -159,15 +158,15 @@ def blank(control: Control, statement: Statement) -> None:
     for index, name in enumerate("XYZ"):
         word = words.pop(name, None)
         if word is None:
-            control.refuse(
-                statement, "unreadable-statement", "BLK FORM 0.1 and 0.2 each need X, Y and Z"
+            control.fail(
+                "unreadable-statement", "BLK FORM 0.1 and 0.2 each need X, Y and Z", statement
             )
         base = memory.blank[index] if memory.blank is not None and word.incremental else 0.0
         corner.append(control.length(word) + base)
     if match[1] == "1":
         memory.blank = corner
     elif memory.blank is None:
-        control.refuse(statement, "unreadable-statement", "BLK FORM 0.1 must stand before 0.2")
+        control.fail("unreadable-statement", "BLK FORM 0.1 must stand before 0.2", statement)
     else:
         sides = zip("XYZ", memory.blank, corner, strict=True)
         values = {
@@ -185,8 +184,8 @@ def _cylinder(control: Control, statement: Statement, words: dict[str, Word]) ->
     words.pop("RI", None)
     if (radius is None) == (diameter is None) or length is None:
         message = "BLK FORM CYLINDER needs R or D, and L"
-        control.refuse(
-            statement, "unreadable-statement", message, "BLK FORM CYLINDER Z R50 L40 DIST+0"
+        control.fail(
+            "unreadable-statement", message, statement, "BLK FORM CYLINDER Z R50 L40 DIST+0"
         )
     across = 2.0 * control.length(radius) + control.length(diameter)
     control.function(BLANK, {"D": across, "L": control.length(length), "Z2": control.length(top)})

@@ -16,7 +16,7 @@ def computed_words(control: Control, statement: Statement, at: int) -> dict[str,
     """
     found: dict[str, Word] = {}
     column = statement.text_column + at
-    for block in control.blocks_within(statement.text[at:], column):
+    for block in control.statements.blocks(statement.text[at:], column, control.block.line):
         for word in block.words:
             if word.address in found:
                 control.fail("duplicate-word", f"'{word.address}' stands twice here", word)
@@ -29,7 +29,7 @@ def computed_words(control: Control, statement: Statement, at: int) -> dict[str,
 def _computed(control: Control, word: Word) -> Word:
     value = word.value
     if isinstance(value, Expression):
-        return word._replace(value=control.evaluate(value, word))
+        return word._replace(value=control.compute(value, word))
     return word
 
 
@@ -44,7 +44,7 @@ def refuse_rest(control: Control, column: int, text: str) -> NoReturn:
 
 def value_at(control: Control, statement: Statement, at: int = 0) -> tuple[float, int]:
     """The number or Q parameter at a place of a statement's text, computed, and the place behind it."""
-    value, end = control.read_operand(statement.text, at, statement.text_column)
+    value, end = control.statements.operand(statement.text, at, statement.text_column)
     return control.compute(value, statement.text_column + at), end
 
 

@@ -35,7 +35,7 @@ _DEFAULT_PLUNGE = 0.5
 def call_pocket(control: Control, words: str, lengths: str) -> None:
     """Take the words of a pocket where it is called; ``lengths`` are those that count lengths."""
     axis = control.modal.plane.axes[2]
-    control.cycle_values = values = {"start": control.programmed[axis]}
+    control.cycle_values = values = {"start": control.motion.programmed[axis]}
     for address in words:
         if (word := control.take(address)) is not None:
             in_mm = address in lengths
@@ -43,7 +43,7 @@ def call_pocket(control: Control, words: str, lengths: str) -> None:
     incremental = control.modal.incremental
     reference = control.take(control.settings.axes.names[axis])
     if reference is not None:
-        base = control.programmed[axis] if incremental or reference.incremental else 0.0
+        base = control.motion.programmed[axis] if incremental or reference.incremental else 0.0
         values["Z"] = control.length(reference) + base
     values.setdefault("Z", values["start"])
     depth = control.take("I")
@@ -108,7 +108,7 @@ def _passes(control: Control, name: str, pocket: Pocket, radius: float) -> Passe
         control.fail("cycle-size", message)
     step = min(width, DIAGONAL * radius)
     require_room(control, name, pocket, stock, (surface - bottom) / depth, step, radius)
-    feed, back = control.feed, control.cycle_values["start"]
+    feed, back = control.motion.feed, control.cycle_values["start"]
     plunge = values.get("V") or (None if feed is None else feed * _DEFAULT_PLUNGE)
     return Passes(
         values["Z"],

@@ -20,7 +20,7 @@ def call_cycle(control: Control) -> None:
         ProgramError: None is defined, or compensation is in force.
     """
     memory, parameters = memory_of(control), defined(control)
-    if control.path.compensating or control.path.leads is not None:
+    if control.path.compensation.in_force or control.path.leads is not None:
         message = "a cycle is not called while radius compensation is in force"
         control.fail("compensation-change", message, hint="end it by R0 before")
     assert memory.cycle is not None
@@ -40,7 +40,7 @@ def call_last(control: Control) -> None:
 
 def after_block(control: Control, start: list[float]) -> None:
     """A block of a path has run that began at a position: M89 calls the cycle where it has moved."""
-    if memory_of(control).calls_always and control.programmed[:2] != start[:2]:
+    if memory_of(control).calls_always and control.motion.programmed[:2] != start[:2]:
         call_cycle(control)
 
 
@@ -69,7 +69,7 @@ def call_at(control: Control, statement: Statement) -> None:
     control.run(control.block._replace(statement=None))
     modal.interpolation, memory.rapid = LINE, False
     if not control.axis_letters & {word.address for word in control.block.words}:
-        control.refuse(statement, "missing-words", "CYCL CALL POS needs the place of its cycle")
+        control.fail("missing-words", "CYCL CALL POS needs the place of its cycle", statement)
 
 
 def call_pattern(control: Control, statement: Statement) -> None:
@@ -79,11 +79,11 @@ def call_pattern(control: Control, statement: Statement) -> None:
     memory.rapid = False
     if not memory.pattern:
         hint = "write PATTERN DEF POS1 (X+10 Y+20 Z+0) before"
-        control.refuse(statement, "cycle-call", "no pattern is defined", hint)
+        control.fail("cycle-call", "no pattern is defined", statement, hint)
     parameters = defined(control)
     second = max(parameters.length(SECOND_CLEARANCE), parameters.length(CLEARANCE))
     for x, y, z in memory.pattern:
-        target = [x, y, *control.programmed[2:]]
+        target = [x, y, *control.motion.programmed[2:]]
         go_over(control, target, parameters.length(SURFACE) + second + z, rapid=True)
         run_raised(control, z)
 
@@ -103,9 +103,9 @@ def defined(control: Control) -> Parameters:
 
 def go_over(control: Control, target: list[float], height: float, *, rapid: bool) -> None:
     """Go over a place, never below a height; where the tool stands higher it stays so high."""
-    go_to_height(control, max(control.programmed[HEIGHT], height))
+    go_to_height(control, max(control.motion.programmed[HEIGHT], height))
     there = list(target)
-    there[HEIGHT] = control.programmed[HEIGHT]
+    there[HEIGHT] = control.motion.programmed[HEIGHT]
     control.line_to(there, rapid=rapid)
 
 

@@ -262,10 +262,10 @@ def define(control: Control, statement: Statement) -> None:
     """CYCL DEF: a step of a cycle in steps, or a cycle with its parameters."""
     match = _NUMBER.match(statement.text)
     if match is None:
-        control.refuse(
-            statement,
+        control.fail(
             "unreadable-statement",
             "CYCL DEF needs the number of a cycle",
+            statement,
             "CYCL DEF 200 DRILLING ~",
         )
     number, text = int(match[1]), statement.text[match.end() :]
@@ -296,7 +296,7 @@ def _define_with_parameters(
     needed = known if definition is None else definition.needed
     missing = [f"Q{each} ({MEANINGS[each]})" for each in needed if each not in given.values]
     if missing:
-        control.refuse(statement, "cycle-word", f"{name} needs {', '.join(missing)}")
+        control.fail("cycle-word", f"{name} needs {', '.join(missing)}", statement)
     if definition is None:
         word = Word("Q339=", given.number(339), statement.text_column, at)
         frames.select_preset(control, given.number(339), word)
@@ -306,7 +306,7 @@ def _define_with_parameters(
             message = (
                 f"{name} is followed with Q{parameter}={value:g} alone ({MEANINGS[parameter]})"
             )
-            control.refuse(statement, "cycle-word", message)
+            control.fail("cycle-word", message, statement)
     if definition.acts:
         definition.perform(control, given)
         return

@@ -85,10 +85,10 @@ def _drill(control: Control, hole: Hole, feed: float | None) -> None:
     if feed is None or feed <= 0.0:
         message = "a hole is drilled with a feed above 0"
         control.fail("feed-range", message, hint="Q206=+150")
-    kept, mode = control.feed, control.modal.feed_mode
-    control.feed = feed
+    kept, mode = control.motion.feed, control.modal.feed_mode
+    control.motion.feed = feed
     drill(control, hole, None)
-    control.feed, control.modal.feed_mode = kept, mode
+    control.motion.feed, control.modal.feed_mode = kept, mode
 
 
 def drilling(control: Control, given: Parameters) -> None:
@@ -135,11 +135,16 @@ def universal_pecking(control: Control, given: Parameters) -> None:
 
 def _break_chips(control: Control, given: Parameters, hole: Hole, breaking: float) -> None:
     """Deep drilling whose pecks are made of shorter ones."""
-    lift, feed, depth, peck = given.length(256) or ADVANCE, control.feed, hole.surface, hole.peck
+    lift, feed, depth, peck = (
+        given.length(256) or ADVANCE,
+        control.motion.feed,
+        hole.surface,
+        hole.peck,
+    )
     if (hole.surface - hole.bottom) / breaking > MOST_PECKS:
         message = f"the hole would need more than {MOST_PECKS} chips"
         control.fail("cycle-depth", message, hint="write a larger Q257")
-    control.feed = given.feed(206)
+    control.motion.feed = given.feed(206)
     go_to_height(control, hole.reference)
     while depth > hole.bottom:
         if depth < hole.surface:
@@ -154,7 +159,7 @@ def _break_chips(control: Control, given: Parameters, hole: Hole, breaking: floa
             control.dwell(hole.dwell)
         go_to_height(control, hole.back if depth == hole.bottom else hole.reference)
         peck = max(peck - hole.reduction, hole.least)
-    control.feed = feed
+    control.motion.feed = feed
 
 
 def boring(control: Control, given: Parameters) -> None:
@@ -164,22 +169,22 @@ def boring(control: Control, given: Parameters) -> None:
     if way is None:
         control.fail("cycle-word", f"Q214 is 0 to 4, not {given.number(214):g}")
     _, reference, bottom, back = heights(control, given)
-    feed, place = control.feed, list(control.programmed)
+    feed, place = control.motion.feed, list(control.motion.programmed)
     go_to_height(control, reference)
-    control.feed = given.feed(206)
+    control.motion.feed = given.feed(206)
     go_to_height(control, bottom, rapid=False)
     if (seconds := _seconds(control, given, 211)) > 0.0:
         control.dwell(seconds)
     control.function("M5", {})
-    leave = list(control.programmed)
+    leave = list(control.motion.programmed)
     leave[0], leave[1] = leave[0] + ADVANCE * way[0], leave[1] + ADVANCE * way[1]
     control.line_to(leave, rapid=False)
-    control.feed = given.feed(208) or given.feed(206)
+    control.motion.feed = given.feed(208) or given.feed(206)
     go_to_height(control, reference, rapid=given.feed(208) is None)
     go_to_height(control, back)
     turn_spindle(control, "M3")
-    control.line_to([*place[:2], *control.programmed[2:]], rapid=True)
-    control.feed = feed
+    control.line_to([*place[:2], *control.motion.programmed[2:]], rapid=True)
+    control.motion.feed = feed
 
 
 def tapping(control: Control, given: Parameters) -> None:
@@ -212,7 +217,7 @@ def _tap(control: Control, given: Parameters, hole: Hole) -> None:
     Raises:
         ProgramError: There is no speed, or no pitch.
     """
-    pitch, speed = given.length(239), control.spindle
+    pitch, speed = given.length(239), control.motion.spindle
     if pitch == 0.0:
         control.fail("cycle-word", f"{given.name} needs the pitch Q239", hint="Q239=+1.5")
     if speed is None or speed <= 0.0:
@@ -241,24 +246,26 @@ def centring(control: Control, given: Parameters) -> None:
 def single_lip_drilling(control: Control, given: Parameters) -> None:
     """241: slowly to the deepened start Q379, with Q253; there the speed Q428, and drilled; back with Q208."""
     surface, reference, bottom, back = heights(control, given)
-    feed, start = control.feed, surface - given.length(379)
+    feed, start = control.motion.feed, surface - given.length(379)
     if 0.0 < given.length(202) < surface - bottom:
         message = "the twin drills a hole of cycle 241 at once"
         control.fail("cycle-word", message, hint="write Q202 as large as the hole is deep")
     go_to_height(control, reference)
-    before = control.spindle
-    control.spindle = given.number(427) or before
+    before = control.motion.spindle
+    control.motion.spindle = given.number(427) or before
     turn_spindle(control, {4: "M4"}.get(int(given.number(426)), "M3"))
-    control.feed = given.feed(253)
-    go_to_height(control, start, rapid=control.feed is None)
-    control.spindle = given.number(428) or before
-    control.function("S", {"S": control.spindle or 0.0})
-    control.feed = given.feed(206)
+    control.motion.feed = given.feed(253)
+    go_to_height(control, start, rapid=control.motion.feed is None)
+    control.motion.spindle = given.number(428) or before
+    control.function("S", {"S": control.motion.spindle or 0.0})
+    control.motion.feed = given.feed(206)
     go_to_height(control, bottom, rapid=False)
     if (seconds := _seconds(control, given, 211)) > 0.0:
         control.dwell(seconds)
-    control.feed = given.feed(208) or (given.feed(206) if given.feed(208) is not None else None)
-    go_to_height(control, reference, rapid=control.feed is None)
+    control.motion.feed = given.feed(208) or (
+        given.feed(206) if given.feed(208) is not None else None
+    )
+    go_to_height(control, reference, rapid=control.motion.feed is None)
     go_to_height(control, back)
-    control.spindle, control.feed = before, feed
+    control.motion.spindle, control.motion.feed = before, feed
     turn_spindle(control, "M3")

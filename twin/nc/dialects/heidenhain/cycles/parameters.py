@@ -85,5 +85,5 @@ def _value(control: Control, match: re.Match[str], text: str, column: int) -> fl
             else "PREDEF needs GLOBAL DEF, which the twin does not follow"
         )
         control.report.fail("cycle-word", message, at, len(match[0]), f"write Q{match[1]}=2")
-    value, _ = control.read_operand(text, match.start(2), column)
+    value, _ = control.statements.operand(text, match.start(2), column)
     return control.compute(value, column + match.start(2))

@@ -75,7 +75,7 @@ def _machine(control: Control, given: Parameters, places: list[Point]) -> None:
         high = second or number == 0
         above = parameters.length(SECOND_CLEARANCE) if high else 0.0
         height = surface + max(above, parameters.length(CLEARANCE))
-        go_over(control, [x, y, *control.programmed[2:]], height, rapid=True)
+        go_over(control, [x, y, *control.motion.programmed[2:]], height, rapid=True)
         run_raised(control, 0.0, second=second or number == len(places) - 1)
 
 
@@ -111,15 +111,13 @@ def define_pattern(control: Control, statement: Statement) -> None:
             memory.pattern += _places(control, match[1].upper(), words, statement)
     control.report.line = line
     if not 0 < len(memory.pattern) <= MOST_PLACES:
-        control.refuse(
-            statement, "unreadable-statement", f"a pattern has 1 to {MOST_PLACES} places"
-        )
+        control.fail("unreadable-statement", f"a pattern has 1 to {MOST_PLACES} places", statement)
 
 
 def _words(control: Control, text: str, column: int) -> dict[str, float]:
     words: dict[str, float] = {}
     for match in _WORD.finditer(text):
-        value, _ = control.read_operand(text, match.start(2), column)
+        value, _ = control.statements.operand(text, match.start(2), column)
         words[match[1].upper()] = control.compute(value, column + match.start(2))
     if _WORD.sub("", text).strip() or "X" not in words or "Y" not in words:
         message = f"({text}) is no place of a pattern"
@@ -134,7 +132,7 @@ def _places(
     start, needed = (words["X"], words["Y"]), _NEEDED[kind]
     missing = [each for each in needed if each not in words]
     if missing:
-        control.refuse(statement, "unreadable-statement", f"{kind} needs {' and '.join(missing)}")
+        control.fail("unreadable-statement", f"{kind} needs {' and '.join(missing)}", statement)
     number = _count(control, words.get("NUM", 1.0), "NUM")
     columns = _count(control, words.get("NUMX", 1.0), "NUMX")
     lines = _count(control, words.get("NUMY", 1.0), "NUMY")

@@ -39,7 +39,7 @@ def _middle(control: Control, given: Parameters, halves: Point, ways: dict[int, 
     way = ways.get(int(given.number(367)))
     if way is None:
         control.fail("cycle-word", f"Q367 is 0 to 4, not {given.number(367):g}")
-    here = control.modal.plane.point(control.programmed)
+    here = control.modal.plane.point(control.motion.programmed)
     there = (here[0] + way[0] * halves[0], here[1] + way[1] * halves[1])
     return turned(there, here, given.number(224) + given.number(374))
 
@@ -89,12 +89,12 @@ def _mill_pocket(control: Control, given: Parameters, pocket: Pocket, radius: fl
 
 
 def _with_feed(control: Control, given: Parameters, pocket: Pocket, passes: Passes) -> None:
-    feed = control.feed
-    control.feed = given.feed(207)
-    if control.feed is None or control.feed <= 0.0:
+    feed = control.motion.feed
+    control.motion.feed = given.feed(207)
+    if control.motion.feed is None or control.motion.feed <= 0.0:
         control.fail("feed-range", f"{given.name} mills with a feed above 0", hint="Q207=+500")
     mill(control, pocket, passes)
-    control.feed = feed
+    control.motion.feed = feed
 
 
 def _climbs(given: Parameters) -> bool:
@@ -117,7 +117,10 @@ def rectangular_pocket(control: Control, given: Parameters) -> None:
 
 def circular_pocket(control: Control, given: Parameters) -> None:
     """252: of the diameter Q223."""
-    radius, here = compensation_radius(control), control.modal.plane.point(control.programmed)
+    radius, here = (
+        compensation_radius(control),
+        control.modal.plane.point(control.motion.programmed),
+    )
     wide = given.length(223) / 2.0 - radius
     _mill_pocket(
         control, given, Pocket(here, wide, None, 0.0, not _climbs(given), Corner()), radius
@@ -158,7 +161,10 @@ def rectangular_stud(control: Control, given: Parameters) -> None:
 
 def circular_stud(control: Control, given: Parameters) -> None:
     """257: from the diameter Q222 to Q223, begun at the angle Q376."""
-    radius, here = compensation_radius(control), control.modal.plane.point(control.programmed)
+    radius, here = (
+        compensation_radius(control),
+        control.modal.plane.point(control.motion.programmed),
+    )
     finished = given.length(223) / 2.0
     angle = max(given.number(376), 0.0)
     around = Pocket(here, finished + radius, None, angle, _climbs(given), Corner())

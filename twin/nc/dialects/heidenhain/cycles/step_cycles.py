@@ -45,7 +45,7 @@ def take(control: Control, step: Step) -> None:
     if not found:
         step.fail(control, "cycle-word", f"{step.cycle}.{step.step} needs its value")
     for parameter, match in zip(parameters, found, strict=False):
-        value, _ = control.read_operand(step.text, match.start(), step.column)
+        value, _ = control.statements.operand(step.text, match.start(), step.column)
         memory.steps[parameter] = control.compute(value, step.column + match.start())
     if "DR-" in step.text.upper():
         memory.steps[_CLIMB] = -1.0
@@ -61,7 +61,7 @@ def _define(control: Control, cycle: int) -> None:
         values[_DIAMETER] *= 2.0
 
     def perform(control: Control, given: Parameters) -> None:
-        surface = control.programmed[2] / given.unit - given.number(_CLEARANCE)
+        surface = control.motion.programmed[2] / given.unit - given.number(_CLEARANCE)
         newer(control, given.replaced({_SURFACE: surface}))
 
     memory.cycle, memory.calls_always = perform, False

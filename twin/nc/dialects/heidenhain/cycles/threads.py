@@ -17,13 +17,13 @@ _MOST_TURNS = 10_000.0
 
 
 def _go(control: Control, point: Point, *, rapid: bool = False) -> None:
-    plane, target = control.modal.plane, list(control.programmed)
+    plane, target = control.modal.plane, list(control.motion.programmed)
     plane.aim(target, point)
     control.line_to(target, rapid=rapid)
 
 
 def _turn(control: Control, center: Point, end: Point, sweep: float, height: float) -> None:
-    plane, target = control.modal.plane, list(control.programmed)
+    plane, target = control.modal.plane, list(control.motion.programmed)
     plane.aim(target, end)
     target[2] = height
     control.arc_to(target, center, sweep)
@@ -36,11 +36,11 @@ def bore_milling(control: Control, given: Parameters) -> None:
     if radius <= 0.0 or pitch == 0.0 or (reference - bottom) / pitch > _MOST_TURNS:
         message = "208 needs a hole Q335 that is wider than the tool, and a pitch Q334 above 0"
         control.fail("cycle-size", message)
-    center = control.modal.plane.point(control.programmed)
+    center = control.modal.plane.point(control.motion.programmed)
     begin = (center[0] + radius, center[1])
-    feed, sense = control.feed, 1.0 if given.number(351, 1.0) >= 0.0 else -1.0
+    feed, sense = control.motion.feed, 1.0 if given.number(351, 1.0) >= 0.0 else -1.0
     go_to_height(control, reference)
-    control.feed = given.feed(206)
+    control.motion.feed = given.feed(206)
     _go(control, begin)
     turns = (reference - bottom) / pitch
     angle = math.radians(sense * 360.0 * turns)
@@ -48,7 +48,7 @@ def bore_milling(control: Control, given: Parameters) -> None:
     _turn(control, center, end, sense * 360.0 * turns, bottom)
     _turn(control, center, end, sense * 360.0, bottom)
     _go(control, center)
-    control.feed = feed
+    control.motion.feed = feed
     go_to_height(control, back)
 
 
@@ -87,8 +87,8 @@ def _mill_thread(control: Control, given: Parameters, radius: float, *, inside: 
     rise = abs(pitch) if (sense > 0.0) is (pitch > 0.0) else -abs(pitch)
     turns = (surface - bottom) / abs(pitch) if several == 1 else 1.0
     steps = 1 if several in (0, 1) else math.ceil((surface - bottom) / (abs(pitch) * several))
-    center = control.modal.plane.point(control.programmed)
-    feed, pre, mills = control.feed, given.feed(253), given.feed(207)
+    center = control.modal.plane.point(control.motion.programmed)
+    feed, pre, mills = control.motion.feed, given.feed(253), given.feed(207)
     for step in range(steps):
         low = bottom + step * several * abs(pitch) if several > 1 else bottom
         start = low if rise > 0.0 else low + turns * abs(pitch)
@@ -96,16 +96,16 @@ def _mill_thread(control: Control, given: Parameters, radius: float, *, inside: 
         outside = radius + abs(given.length(357)) + compensation_radius(control)
         begin = center if inside else (center[0] + outside, center[1])
         go_to_height(control, reference)
-        control.feed = pre
+        control.motion.feed = pre
         _go(control, begin, rapid=pre is None)
         go_to_height(control, start - rise / 2.0 if inside else start, rapid=pre is None)
-        control.feed = mills
+        control.motion.feed = mills
         _lead(control, center, begin, radius, sense, start, arrives=True)
         angle = math.radians(sense * 360.0 * turns)
         there = (center[0] + radius * math.cos(angle), center[1] + radius * math.sin(angle))
         _turn(control, center, there, sense * 360.0 * turns, end)
         _lead(control, center, begin, radius, sense, end, arrives=False)
-    control.feed = feed
+    control.motion.feed = feed
     go_to_height(control, reference)
     _go(control, center, rapid=True)
     go_to_height(control, back)
@@ -122,7 +122,7 @@ def _lead(
     arrives: bool,
 ) -> None:
     """Half a turn from a place beside the helix onto it, or back."""
-    here = control.modal.plane.point(control.programmed)
+    here = control.modal.plane.point(control.motion.programmed)
     end = (center[0] + radius, center[1]) if arrives else begin
     middle = ((here[0] + end[0]) / 2.0, (here[1] + end[1]) / 2.0)
     inside = begin == center

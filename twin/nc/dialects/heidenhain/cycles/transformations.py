@@ -8,7 +8,7 @@ import re
 from typing import NamedTuple
 
 from twin.nc.canonical import Corner
-from twin.nc.control.control import Control
+from twin.nc.control.control import Control, refuse_axis
 from twin.nc.dialects.heidenhain.memory import memory_of
 from twin.nc.geometry.matrices import (
     IDENTITY,
@@ -67,7 +67,7 @@ def _last_value(control: Control, step: Step) -> tuple[float, bool]:
         step.fail(control, "cycle-word", f"{step.cycle}.{step.step} needs its value")
         raise AssertionError
     text, column = step.text.strip(), step.column + len(step.text) - len(step.text.lstrip())
-    value, _ = control.read_operand(text, match.start(2), column)
+    value, _ = control.statements.operand(text, match.start(2), column)
     return control.compute(value, column + match.start(2)), match[1].upper() == "I"
 
 
@@ -84,15 +84,15 @@ def shift_datum(control: Control, step: Step) -> None:
         step.fail(control, "cycle-word", "7 needs an axis and its shift", "CYCL DEF 7.1 X+60")
     for match in given:
         name, at = match[2].upper(), step.column + match.start()
-        value, _ = control.read_operand(step.text, match.start(3), step.column)
+        value, _ = control.statements.operand(step.text, match.start(3), step.column)
         number = control.compute(value, step.column + match.start(3))
         index = control.axis_index.get(name)
         if index is None:
             if number != 0.0:
-                control.refuse_axis(Word(name, number, at, len(match[0])))
+                refuse_axis(control, Word(name, number, at, len(match[0])))
             continue
         there = memory.shift.get(index, 0.0) if match[1] else 0.0
-        memory.shift[index] = there + number * control.unit_of(index)
+        memory.shift[index] = there + number * control.motion.unit_of(index)
     _enter(control, "shift", any(memory.shift.values()))
 
 
@@ -134,7 +134,7 @@ def _enter(control: Control, kind: str, active: bool) -> None:
     Raises:
         ProgramError: Compensation is in force.
     """
-    if control.path.compensating or control.path.leads is not None:
+    if control.path.compensation.in_force or control.path.leads is not None:
         message = "coordinates do not change while radius compensation is in force"
         control.fail("compensation-change", message, hint="end it by R0 before")
     order = memory_of(control).order
@@ -159,7 +159,7 @@ def apply_transformations(control: Control) -> None:
             matrix = product(matrix, _matrix_of(control, kind))
     control.frame.set_shift("increment", [*total, *shift[3:]])
     control.frame.set_matrix(matrix)
-    control.reframed()
+    control.motion.reframed()
 
 
 def _matrix_of(control: Control, kind: str) -> Matrix:
@@ -195,7 +195,7 @@ def tilt_plane(control: Control, step: Step) -> None:
         ProgramError: An angle is not 0.
     """
     for match in _AXIS.finditer(step.text if step.step > 0 else ""):
-        value, _ = control.read_operand(step.text, match.start(3), step.column)
+        value, _ = control.statements.operand(step.text, match.start(3), step.column)
         if control.compute(value, step.column) != 0.0:
             step.fail(control, "tilted-plane", TILTED, NOT_TILTED)
 

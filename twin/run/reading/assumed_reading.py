@@ -10,7 +10,7 @@ from twin.nc.control.dialect import Dialect
 from twin.nc.control.settings import ToolData
 from twin.nc.dialects.recognition import comments_of, without_comments
 from twin.nc.text.source import Source
-from twin.run.assumed_tools import USUAL_LENGTH, listed_tools
+from twin.run.reading.assumed_tools import USUAL_LENGTH, listed_tools
 
 _MOST_LINES = 200_000
 """So many lines are looked at."""
@@ -80,10 +80,10 @@ def unknown_functions(
     source: Source, dialect: Dialect, declared: frozenset[int]
 ) -> tuple[int, ...]:
     """M codes of a program that neither its dialect nor the machine's builder gives a meaning."""
-    if dialect.any_m:
+    if dialect.codes.any_m:
         return ()
     numbers = {int(found[1]) for line in _blocks(source) for found in _FUNCTION.finditer(line)}
-    return tuple(sorted(numbers - set(dialect.m) - declared))
+    return tuple(sorted(numbers - set(dialect.codes.m) - declared))
 
 
 def _blocks(source: Source) -> Iterator[str]:
