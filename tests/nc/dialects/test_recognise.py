@@ -43,6 +43,10 @@ OWN = {
         "ROT", "G0 SUPA Z0", "COMPCAD", "G2 X5 Y0 CR=5", "CIP X5 I1=2", "X=IC(5)", 'T="MILL"', "GOTOF END", "DEF REAL DEPTH",
         "R1=5", "R1=$P_UIFR[1,X,TR]", "G505", "G641 ADIS=1", "G500\nSUPA", "MCALL ; over", "G110 X5\nMCALL",
     ],
+    "heidenhain": [
+        "BEGIN PGM A MM", "BLK FORM 0.1 Z X+0 Y+0 Z-9", "4 CYCL DEF 7.0 DATUM SHIFT", "LBL 1", "12 FN 0: Q1 = +5", "APPR LT X+0 Y+0 LEN5 RL",
+        "7 L X+10 Y+5 R0 FMAX M3", "L Z+50 FMAX ; text", "CALL LBL 5 REP 2",
+    ],
     "grbl": ["$H", "$X", "$J=G91 X5 F100", "$X\nG43.1 Z5", "$H\nG28.1", "$H\nG1 X5 ; comment"],
     "mefi": ['G00 X1 "pohyb', "N5 X0 G73 L5 Q2", "G09 G02 X0 I100\nG73 Q2", "N5 X0 G73 Q2 L5"],
 }  # fmt: skip
@@ -83,7 +87,10 @@ SHARED = (
     (":1000", ("fanuc", "haas")),
     ("G09 G02 X0 I100", ("fanuc", "haas", "mefi")),
     ("G2 I50 J0 T180", ("codesys", "fanuc", "haas", "linuxcnc")),
-    ("G1 X5 ; comment", ("fagor8070", "fanuc", "grbl", "haas", "linuxcnc", "sinumerik")),
+    (
+        "G1 X5 ; comment",
+        ("fagor8070", "fanuc", "grbl", "haas", "linuxcnc", "heidenhain", "sinumerik"),
+    ),
 )
 """Words that several controls know."""
 UNTOLD = (
@@ -147,8 +154,10 @@ def test_words_of_two_dialects_ask() -> None:
 
 
 def test_an_unknown_dialect_names_the_known() -> None:
-    with pytest.raises(UsageError, match="gost, codesys, fagor8070, mefi, fanuc, haas, linuxcnc"):
-        dialect_named("heidenhain")
+    with pytest.raises(
+        UsageError, match="gost, codesys, fagor8070, mefi, fanuc, haas, linuxcnc, grbl, heidenhain"
+    ):
+        dialect_named("dialog11")
 
 
 WRITTEN_FOR_ANOTHER = {"haas/unknown-g.nc"}

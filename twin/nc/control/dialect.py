@@ -1,7 +1,7 @@
 """What a dialect is made of: its syntax, its codes, its words, its rules, and the decisions behind them."""
 
 import dataclasses
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
 
 from twin.nc.control.codes import Codes, Words
@@ -43,6 +43,7 @@ class Dialect:
         decisions: Every decision taken for it.
         marks: What tells its programs from others.
         suffixes: Ends of the names of files that hold its programs alone, lower case.
+        tables: Further tables of its page: what is named, and what it is, by title.
         library: Adds files that the program calls, looked for in the folder of the program and read as the
             dialect is.
     """
@@ -58,6 +59,7 @@ class Dialect:
     decisions: tuple[Decision, ...]
     marks: tuple[Mark, ...]
     suffixes: tuple[str, ...] = ()
+    tables: Mapping[str, Mapping[str, str]] = dataclasses.field(default_factory=dict)
     library: Callable[[Source, Path, Language], Source] | None = None
 
     @property
