@@ -11,6 +11,9 @@ from twin.check.runner import check_program
 from twin.check.task import CheckSettings
 from twin.commands.pictures import ALARMS_OF_CONTACT
 from twin.files.shipped import resource_root
+from twin.run.preparation import prepare
+from twin.run.progress import no_progress
+from twin.run.run import Run
 
 pytestmark = pytest.mark.seconds("each program is run up to its alarm, and that is drawn")
 
@@ -57,6 +60,7 @@ EXPECTED = {
 FIRST_LINE_AFTER = {"collision_change_in_part": 7}
 """The move before which a tool change is an alarm."""
 NO_ALARM = "near_miss"
+TOLD_EVERY_DAY = {"soft_limit", "collision_holder", "tool_broken", "gouge"}
 
 
 def test_every_program_has_its_expectation():
@@ -109,7 +113,25 @@ def test_a_tool_that_leaves_the_part_without_a_move_has_stood_in_it(tmp_path: Pa
 
 
 @pytest.mark.parametrize("name", sorted(EXPECTED))
-def test_the_alarm_is_raised_at_its_line_and_the_recording_up_to_it_is_kept(
+def test_the_alarm_is_raised_at_its_line(name: str):
+    code, line, message = EXPECTED[name]
+    run = Run(prepare(FOLDER / f"{name}.toml"))
+    outcome = run.execute(run.dry_run(), None, no_progress)
+    assert outcome.verdict.outcome == "alarm"
+    assert [reason.what for reason in outcome.verdict.reasons] == [code], "nothing else is wrong"
+    (alarm,) = outcome.alarms
+    assert (alarm.code, alarm.line) == (code, line)
+    assert alarm.message.startswith(message)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=() if name in TOLD_EVERY_DAY else pytest.mark.thorough)
+        for name in sorted(EXPECTED)
+    ],
+)
+def test_the_alarm_is_told_and_drawn_and_the_recording_up_to_it_is_kept(
     twin: Twin, tmp_path: Path, name: str
 ):
     code, line, message = EXPECTED[name]

@@ -11,6 +11,7 @@ from twin.errors import ExitCode, RenderError, UsageError
 from twin.files.atomic import write_text
 from twin.nc.text.diagnostics import ProgramError
 from twin.run.assumed_job import text_beside, with_assumptions
+from twin.run.compilation_ahead import start_compiling
 from twin.run.dry_run import DryRun
 from twin.run.messages import alarm_diagnostic, near_miss_diagnostic, reason_text
 from twin.run.outcome import Outcome
@@ -45,7 +46,7 @@ def run_and_print(
     Raises:
         TwinError: Something is wrong before the run could end; see each error's exit code.
     """
-    announce_compilation()
+    announce_compilation(meanwhile=lambda: start_compiling(path, dialect, machine))
     folder = out or Path("out") / program_stem(path)
     with without_verdict(folder):
         preparation = prepare(path, dialect=dialect, machine=machine, strict=strict)
