@@ -4,6 +4,7 @@ Posts write ``(T1 D=10. CR=0. - ZMIN=-5. - flat end mill)`` and its relatives.
 """
 
 import re
+from collections.abc import Collection, Iterable
 from typing import NamedTuple
 
 import numpy as np
@@ -110,7 +111,7 @@ def _value(text: str) -> float:
 
 
 _USUAL_DIAMETER = 10.0
-_USUAL_LENGTH, _USUAL_FLUTE = 60.0, 25.0
+USUAL_LENGTH, _USUAL_FLUTE = 60.0, 25.0
 _NEAR_LINES = 3
 """So far from the call of a tool a comment may stand that describes it."""
 BELOW = 1e-6
@@ -126,13 +127,7 @@ def tool_lines(
 ) -> tuple[list[str], list[str], float]:
     """Lines of the tools that the program calls, how each came about, and the largest diameter [mm]."""
     numbers = list(dict.fromkeys(number for number, _, _ in calls if number)) or [1]
-    listed: dict[int, ToolComment] = {}
-    for _, comment in comments:
-        found = numbered_tool(comment)
-        if found is not None and found[0] in numbers:
-            tool = tool_of_comment(found[1], inches=inches)
-            if tool.diameter is not None or tool.kind:
-                listed.setdefault(found[0], tool)
+    listed = listed_tools((comment for _, comment in comments), numbers, inches=inches)
     lines: list[str] = []
     told: list[str] = []
     largest = 0.0
@@ -144,6 +139,20 @@ def tool_lines(
         told.append(said)
         largest = max(largest, diameter)
     return lines, told, largest
+
+
+def listed_tools(
+    comments: Iterable[str], numbers: Collection[int], *, inches: bool
+) -> dict[int, ToolComment]:
+    """What comments that begin with a tool's number tell of the tools, by number."""
+    listed: dict[int, ToolComment] = {}
+    for comment in comments:
+        found = numbered_tool(comment)
+        if found is not None and found[0] in numbers:
+            tool = tool_of_comment(found[1], inches=inches)
+            if tool.diameter is not None or tool.kind:
+                listed.setdefault(found[0], tool)
+    return listed
 
 
 def _near_comment(
@@ -193,7 +202,7 @@ def _tool_table(
     kind = (tool.kind if tool else "") or ("drill" if drills else "flat")
     diameter = (tool.diameter if tool else None) or _USUAL_DIAMETER
     flute = max(_USUAL_FLUTE, np.ceil(depth + 5.0))
-    length = max(_USUAL_LENGTH, np.ceil(flute * 1.6 + 20.0))
+    length = max(USUAL_LENGTH, np.ceil(flute * 1.6 + 20.0))
     kind_from = "its comment" if tool and tool.kind else "what it does"
     size_from = "its comment" if tool and tool.diameter else "a guess"
     lines = [

@@ -314,6 +314,8 @@ class LineReader:
 
     def _label(self, number: str, begin: int) -> None:
         value = float(number)
+        if self._syntax.fractional_labels:
+            value = float(int(value))
         if not is_whole(value, LARGEST_LABEL):
             self._fail("label", f"N{number} is no block number", begin)
         if self._words or self._number != NO_BLOCK_NUMBER:
@@ -356,7 +358,7 @@ class LineReader:
             self._fail("foreign-letter", message, at, hint=hint)
         statement = _STATEMENT.match(self._line, at)
         if statement is not None and self._grammar.statement is not None:
-            known = ", ".join(self._grammar.language.statements)
+            known = ", ".join(self._grammar.language.keywords)
             message = f"'{statement[0]}' is no statement of {self._grammar.language.name}"
             self._fail(
                 "unknown-statement", message, at, width=len(statement[0]), hint=f"known: {known}"

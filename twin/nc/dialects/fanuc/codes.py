@@ -30,8 +30,8 @@ def _lose_feed(control: Control) -> None:
     if mode is not memory.feed_mode:
         memory.feed_mode = mode
         if not any(word.address == "F" for word in control.block.words):
-            memory.feed_lost = control.feed is not None or memory.feed_lost
-            control.feed = None
+            memory.feed_lost = control.motion.feed is not None or memory.feed_lost
+            control.motion.feed = None
 
 
 def passed_over(meaning: str, letters: str, *, modes: tuple[float, ...] = ()) -> GCode:
