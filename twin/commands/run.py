@@ -5,13 +5,13 @@ from pathlib import Path
 
 import typer
 
+from twin.commands.compilation import start_compiling
 from twin.commands.pictures import ALARMS_OF_CONTACT, draw_contact, film_run
 from twin.compilation.announcement import announce_compilation
 from twin.errors import ExitCode, RenderError, UsageError
 from twin.files.atomic import write_text
 from twin.nc.text.diagnostics import ProgramError
 from twin.run.assumed_job import text_beside, with_assumptions
-from twin.run.compilation_ahead import start_compiling
 from twin.run.dry_run import DryRun
 from twin.run.messages import alarm_diagnostic, near_miss_diagnostic, reason_text
 from twin.run.outcome import Outcome
