@@ -27,11 +27,15 @@ EXPECTED = {
     "collision_faceplate": ("collision", 5, "the cutter meets the faceplate"),
     "collision_vise": ("collision", 6, "the holder's nut meets the fixed jaw"),
     "collision_second_tool": ("collision", 9, "the holder's nut meets the "),
-    "collision_tool_change": ("collision", 6, "the cutter meets the fixed jaw (20.00 mm deep)"),
+    "collision_tool_change": (
+        "collision",
+        6,
+        "a tool of 140 mm comes into the spindle: the cutter meets the fixed jaw (20.00 mm deep)",
+    ),
     "collision_change_in_part": (
         "collision",
         5,
-        "tool 2 comes into the spindle 20.00 mm deep in the part",
+        "tool 2, 130 mm long, comes into the spindle 20.00 mm deep in the part",
     ),
     "collision_drill": ("collision", 4, "the cutter meets the faceplate"),
     "collision_flank": ("collision", 5, "the cutter meets the jaw"),

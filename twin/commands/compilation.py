@@ -29,7 +29,7 @@ from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray, Motion
 from twin.processor import available_cores
 from twin.run.assumed_job import with_assumptions
-from twin.run.interpreted import InterpretedProgram
+from twin.run.interpreted import InterpretedProgram, interpreted
 from twin.run.preparation import prepare
 from twin.run.progress import no_progress
 from twin.run.run import Run
@@ -143,8 +143,10 @@ def _plan(job: Path) -> None:
     from twin.motion.report.summary import summarize
 
     made = prepare(job)
-    chunks = made.interpretation().chunks()
-    summarize(chunks, motion_limits(made.machine), start=made.start, axes=made.machine.axes)
+    program = interpreted(made)
+    summarize(
+        program.chunks(), motion_limits(made.machine), start=program.start, axes=made.machine.axes
+    )
 
 
 def _circle() -> None:
@@ -233,7 +235,7 @@ class LaterStages(Run):
             position[:, :3] = self._into_the_blank()
             period = self.preparation.machine.file.servo_period_s
             yield Setpoints(
-                time=ticks * period,
+                time=ticks * np.float64(period),
                 line=moves.line[move],
                 move=before + move,
                 fraction=ticks % (SETPOINTS // 2) / (SETPOINTS // 2),
