@@ -79,6 +79,7 @@ class LineReader:
         """
         has_statements = self._grammar.statement is not None
         end = len(self._line)
+        self._begin()
         while self._at < end:
             if has_statements and not self._words and self._statement():
                 continue
@@ -89,9 +90,13 @@ class LineReader:
         self._close()
         return self._done
 
+    def _begin(self) -> None:
+        """Read what can only begin a line, where a language has such a thing."""
+
     def _plain_words(self) -> bool:
         """Read words with plain numbers; True behind an N where a statement may follow."""
         grammar, at, add = self._grammar, self._at, self._words.append
+        relative = self._syntax.relative
         for blanks, written, address, number, suffix in grammar.words.findall(self._line, at):
             if not written:
                 break
@@ -106,6 +111,8 @@ class LineReader:
                         return True
                     add = self._words.append
                     continue
+                if address in relative:
+                    address, suffix = relative[address], address
             value = float(number)
             if width > _SHORT and not -LARGEST_NUMBER <= value <= LARGEST_NUMBER:
                 self._fail("number-range", f"the value is not within ±{LARGEST_NUMBER:g}", begin)
@@ -260,7 +267,9 @@ class LineReader:
         suffix = self._grammar.suffix.match(self._line, end)
         assert suffix is not None
         self._at = suffix.end()
-        self._words.append(Word(name, expression, begin, self._at - begin, bool(suffix[1])))
+        incremental = bool(suffix[1]) or name in self._syntax.relative
+        name = self._syntax.relative.get(name, name)
+        self._words.append(Word(name, expression, begin, self._at - begin, incremental))
         return True
 
     def _assignment(self) -> bool:
