@@ -96,7 +96,7 @@ def _tool_named(control: Control, word: Word) -> int:
     named = {tool.name.upper(): number for number, tool in tools.table.items() if tool.name}
     if name in named:
         return named[name]
-    if name.isdigit() and (int(name) in tools.table or not tools.table):
+    if name.isdigit():
         return int(name)
     if name not in known:
         order = list(tools.table) or list(range(1, len(known) + 2))
@@ -198,6 +198,10 @@ def corner_distance(control: Control, word: Word) -> None:
 
 def rapid_corner_distance(_control: Control, _word: Word) -> None:
     """ADISPOS=: the same of rapids, which end as the machine's rapids do here."""
+
+
+def compressor_tolerance(_control: Control, _word: Word) -> None:
+    """CTOL=, OTOL=: how far compressor and rounding may leave the path, which the machine file says here."""
 
 
 def speed_limit(control: Control, word: Word) -> None:

@@ -54,6 +54,8 @@ def heights_of(
         ProgramError: They do not lie one below the other.
     """
     require_no_compensation(call)
+    if call.get("_AXN") not in (0.0, call.control.modal.plane.axes[2] + 1.0):
+        call.refuse("unsupported-word", "drills along the axis across the plane alone (_AXN)")
     call.need(back, surface)
     if depth not in call.values and relative not in call.values:
         below = f", or {relative}, the depth" if relative else ""
@@ -102,11 +104,11 @@ def _drill(call: CycleCall) -> None:
     go_to_height(call.control, heights.back)
 
 
-def pecks(total: float, first: float, degression: float) -> list[float]:
+def pecks(total: float, first: float, degression: float, least: float = 0.0) -> list[float]:
     """Depths of the pecks of deep drilling, one after the other [mm].
 
-    Each is less deep than the one before by the degression, but not less than it; below 0 that is a factor. As the
-    manual has it, the last two are equally deep where less than two of the degression would be left.
+    Each is less deep than the one before by the degression, but not less than it, nor than the least; below 0 that is
+    a factor. As the manual has it, the last two are equally deep where less than two of the degression would be left.
     """
     depths, rest, peck = list[float](), total, first
     while rest > 1e-9:
@@ -126,6 +128,7 @@ def pecks(total: float, first: float, degression: float) -> list[float]:
             peck = max(peck - degression, min(degression, peck))
         elif degression < 0.0:
             peck = peck * -degression
+        peck = max(peck, least)
     return depths
 
 
@@ -142,12 +145,9 @@ def _deep(call: CycleCall) -> None:
     if degression < -1.0:
         call.refuse("cycle-depth", "takes DAM from -1, a factor, upwards, an amount")
     degression = degression * control.modal.unit if degression > 0.0 else degression
-    least = abs(call.length("_MDEP"))
-    depths = pecks(total, min(first, total), degression)
-    if len(depths) > _MOST_PECKS or (least and min(depths[:-1], default=least) < least):
-        call.refuse(
-            "cycle-depth", f"would need more than {_MOST_PECKS} pecks, or less deep ones than _MDEP"
-        )
+    depths = pecks(total, min(first, total), degression, abs(call.length("_MDEP")))
+    if len(depths) > _MOST_PECKS:
+        call.refuse("cycle-depth", f"would need more than {_MOST_PECKS} pecks")
     clears = call.only("VARI", 1.0) == 1.0
     lift = abs(call.length("_VRT")) or _CHIP_BREAK
     gap = abs(call.length("_DIS1")) or max(
