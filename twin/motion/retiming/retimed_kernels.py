@@ -11,6 +11,9 @@ from twin.motion.retiming.spline_kernels import spline_at
 from twin.motion.retiming.table_kernels import RunNodes, derivatives_at
 from twin.nc.canonical import FloatArray, IntArray
 
+PEAK = 1.00001
+"""How much higher than that of the cubic a value between two instants may be."""
+
 
 @array_arithmetic_kernel
 def retimed_phases(
@@ -142,5 +145,5 @@ def _highest(v0: float, a0: float, v1: float, a1: float, step: float) -> float:
         s = rise / (rise + fall)
         r = 1.0 - s
         ends = v0 * r * r * (1.0 + 2.0 * s) + v1 * s * s * (1.0 + 2.0 * r)
-        highest = max(highest, sign * ends + (rise * r + fall * s) * r * s * step)
+        highest = max(highest, PEAK * (sign * ends + (rise * r + fall * s) * r * s * step))
     return highest
