@@ -1,6 +1,11 @@
 """Which line of a program a difference of blocks follows from."""
 
-from twin.compare.changed_lines import changed_lines, changed_offsets, told_by_line, without_comments
+from twin.compare.changed_lines import (
+    changed_lines,
+    changed_offsets,
+    told_by_line,
+    without_comments,
+)
 from twin.compare.verdict import Reason
 
 PROGRAM = ["O1", "G0 Z5", "G83 X0 Z-10 Q2", "X10", "X20 (the last)", "G80", "M30"]

@@ -22,7 +22,12 @@ from twin.compare.baseline_text import (
     write,
 )
 from twin.compare.block_difference import block_differences, same_end
-from twin.compare.changed_lines import changed_lines, changed_offsets, told_by_line, without_comments
+from twin.compare.changed_lines import (
+    changed_lines,
+    changed_offsets,
+    told_by_line,
+    without_comments,
+)
 from twin.compare.verdict import Reason
 from twin.errors import UsageError
 from twin.files.atomic import complete_or_absent
@@ -111,7 +116,9 @@ def compare_baseline(
                 found = _program_reasons(pairs, head.axes, limits)
                 told = list(told_by_line(found, changed))
                 known = {reason.line for reason in told}
-                told += [each for each in _offset_reasons(head.source, source) if each.line not in known]
+                told += [
+                    each for each in _offset_reasons(head.source, source) if each.line not in known
+                ]
                 reasons += _first_of(iter(told))
     except (ValueError, IndexError, TypeError) as error:
         message = f"{path}: is not a baseline of this twin: {error}; --update-baseline stores one"
