@@ -25,6 +25,7 @@ from twin.motion.planner import plan as plan_chunks
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Moves, concatenate
 from twin.recording.reader import open_recording
+from twin.run.interpreted import InterpretedProgram, interpreted
 from twin.run.outcome import Outcome
 from twin.run.preparation import prepare
 from twin.run.progress import no_progress
@@ -113,18 +114,19 @@ def plan(
         >>> setpoints.time[-1]  # the cycle time [s]
         2.31
     """
-    return join(list(setpoints(Run(prepare(Path(program), dialect=dialect, machine=machine)))))
+    run = Run(prepare(Path(program), dialect=dialect, machine=machine))
+    return join(list(setpoints(run, interpreted(run.preparation))))
 
 
-def setpoints(run: Run) -> Iterator[Setpoints]:
-    """The setpoints of a run that is prepared already, in chunks."""
-    preparation = run.preparation
+def setpoints(run: Run, program: InterpretedProgram) -> Iterator[Setpoints]:
+    """The setpoints of a run's program, in chunks."""
+    machine = run.machine
     return plan_chunks(
-        preparation.timed_chunks(),
-        motion_limits(preparation.machine),
-        period_s=preparation.machine.file.servo_period_s,
+        program.timed_chunks(),
+        motion_limits(machine),
+        period_s=machine.file.servo_period_s,
         part_zero=run.part_zero,
-        start=preparation.start + run.part_zero,
+        start=program.start + run.part_zero,
     )
 
 

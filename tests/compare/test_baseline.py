@@ -69,6 +69,15 @@ def test_the_file_is_text_with_a_line_an_entry_and_no_word_twice(stored: Path):
     ]
 
 
+def test_positions_are_told_as_the_control_shows_them(stored: Path):
+    """A tool 35 mm longer than the first: what the program calls Z-5 is Z30 for the axes."""
+    higher = [50.0, -30.0, 30.0, 90.0]
+    moves = changed("end", 2, higher)
+    moves.display[2] = [50.0, -30.0, -5.0, 90.0]
+    (found,) = reasons(stored, moves)
+    assert found.message == "ends at Z-5, baseline Z-40"
+
+
 def test_lines_that_move_in_the_program_change_nothing(stored: Path, tmp_path: Path):
     moved = dataclasses.replace(MOVES, line=MOVES.line + 7, block=MOVES.block + 70)
     assert reasons(stored, moved) == []
@@ -79,7 +88,8 @@ def test_lines_that_move_in_the_program_change_nothing(stored: Path, tmp_path: P
 def changed(column: str, row: int, value: object) -> Moves:
     values = getattr(MOVES, column).copy()
     values[row] = value
-    return dataclasses.replace(MOVES, **{column: values})
+    display = values.copy() if column == "end" else MOVES.display
+    return dataclasses.replace(MOVES, **{column: values, "display": display})
 
 
 @pytest.mark.parametrize(
@@ -126,7 +136,7 @@ def test_a_lost_block_in_the_middle_is_one_difference_and_not_all_that_follow(tm
 def test_all_blocks_that_differ_are_listed_with_an_end(stored: Path, tmp_path: Path):
     ends = MOVES.end.copy()
     ends[0, 0], ends[2, 1] = 50.5, -31.0
-    found = reasons(stored, dataclasses.replace(MOVES, end=ends))
+    found = reasons(stored, dataclasses.replace(MOVES, end=ends, display=ends))
     assert [(reason.line, reason.message) for reason in found] == [
         (1, "ends at X50.5, baseline X50"),
         (3, "ends at Y-31, baseline Y-30"),

@@ -7,8 +7,8 @@ import pytest
 from twin.errors import ConfigError, EmptyProgramError, UsageError
 from twin.nc.text.diagnostics import ProgramError
 from twin.run.assumed_job import AssumedJob, text_beside, with_assumptions
-from twin.run.assumed_tools import numbered_tool, tool_of_comment
 from twin.run.preparation import Preparation, prepare
+from twin.run.reading.assumed_tools import numbered_tool, tool_of_comment
 
 CONTOUR = """%
 O01001 (PLATE)
@@ -43,7 +43,7 @@ N115 M30
 def raw(tmp_path: Path, text: str) -> tuple[Preparation, AssumedJob]:
     path = tmp_path / "part.nc"
     path.write_text(text)
-    return with_assumptions(prepare(path), machine=None, strict=False)
+    return with_assumptions(prepare(path, assuming=True), machine=None, strict=False)
 
 
 def test_dialects_that_make_the_same_are_told_and_one_is_taken(tmp_path: Path) -> None:
@@ -54,12 +54,98 @@ def test_dialects_that_make_the_same_are_told_and_one_is_taken(tmp_path: Path) -
 
 def test_dialects_that_would_move_differently_ask(tmp_path: Path) -> None:
     path = tmp_path / "part.nc"
-    path.write_text("O1\nG21 G90 G17 G80\nG0 X10. Y0. Z2.\nG1 Z0. F300.\nG3 Z-5. I-5.\nM30\n")
+    path.write_text("O1\nG21 G90 G17 G80\nG0 X10. Y0. Z2.\nG1 Z0. F300.\nG3 Z-40. I-5.\nM30\n")
     with pytest.raises(UsageError) as raised:
         prepare(path)
     message = str(raised.value)
-    assert "in line 5 fanuc feeds 303" in message
+    assert (
+        "in line 5 fanuc feeds 485" in message
+    )  # 300 of the circle's 31.4 mm, 50.9 mm along the helix
     assert "type --dialect fanuc, --dialect haas or --dialect linuxcnc" in message
+
+
+def test_feeds_that_hardly_differ_are_told_and_ask_nobody(tmp_path: Path) -> None:
+    path = tmp_path / "part.nc"
+    path.write_text("O1\nG21 G90 G17 G80\nG0 X10. Y0. Z2.\nG1 Z0. F300.\nG3 Z-5. I-5.\nM30\n")
+    made = prepare(path)
+    assert made.dialect.name == "fanuc"
+    assert "in line 5 fanuc feeds 303" in made.dialect_reason
+    assert "--dialect haas or --dialect linuxcnc" in made.dialect_reason
+
+
+def test_a_control_that_would_hardly_feed_was_not_meant(tmp_path: Path) -> None:
+    """A Haas counts F300 without a point as 0.3 mm/min; a whole number with a point shows that none is spared."""
+    path = tmp_path / "part.nc"
+    path.write_text("O1\nG21 G90 G54\nG43 H1 Z20.\nG1 Z-5. F300\nG1 X20.5 F600\nM30\n")
+    made = prepare(path, assuming=True)
+    assert made.dialect.name == "fanuc"
+    assert "haas would feed 0.6 mm/min at most" in made.dialect_reason
+    assert made.reading.keys == {}
+
+
+@pytest.mark.parametrize(
+    ("numbers", "calculator"),
+    [
+        ("X20 Y-12.5", True),  # whole numbers without a point, fractions with one
+        ("X20. Y-12.5", False),
+        ("X20 Y-12.", False),  # a point was forgotten: that is for the control to say
+        ("X20 Y30", True),  # else the whole part would be 0.03 mm large
+        ("X20000 Y30000", False),
+        ("X0 Y0", False),
+    ],
+)
+def test_numbers_without_a_point_count_whole_units_where_the_program_shows_it(
+    numbers: str, calculator: bool, tmp_path: Path
+) -> None:
+    path = tmp_path / "part.nc"
+    path.write_text(f"O1\nG21 G90 G54\nG43 H1 Z0\nG1 {numbers} F100\nM30\n")
+    made = prepare(path, assuming=True, dialect="fanuc")
+    assert (made.settings.decimal_point == "calculator") == calculator
+    assert bool(made.reading.told) == calculator
+    assert prepare(path, dialect="fanuc").settings.decimal_point is None
+
+
+def test_codes_of_the_builder_and_a_single_work_offset_are_assumed_and_kept(tmp_path: Path) -> None:
+    text = CONTOUR.replace("N35 G54", "N35 G57 M155").replace("N110", "N108 M256\nN110")
+    path = tmp_path / "part.nc"
+    path.write_text(text)
+    with pytest.raises(ProgramError):
+        list(prepare(path, dialect="fanuc").interpretation().chunks())
+    made, assumed = with_assumptions(prepare(path, assuming=True), machine=None, strict=False)
+    assert made.job.file.offsets == {"G57": {}}
+    assert list(made.job.file.m_functions) == ["M155", "M256"]
+    assert "M155, M256 do nothing: fanuc has no such code" in assumed.assumptions
+    assert any("G57 lies at program zero" in line for line in assumed.assumptions)
+    kept = tmp_path / "kept.toml"
+    kept.write_text(text_beside(kept, assumed, path))
+    again = prepare(kept)
+    assert again.settings.m_functions[155].meaning == "not known here: taken to do nothing"
+    assert again.job.file.offsets == {"G57": {}}
+
+
+def test_a_dialect_that_lacks_codes_gives_way_to_one_that_has_them(tmp_path: Path) -> None:
+    path = tmp_path / "part.nc"
+    path.write_text("O1\nG21 G90\nG43 H1 Z20.\nM88\nG1 X20. F300.\nM89\nM30\n")
+    made = prepare(path)
+    assert made.dialect.name == "haas"
+    assert "fanuc lacks some of its M codes" in made.dialect_reason
+
+
+def test_a_rare_control_is_not_taken_because_the_common_ones_refuse(tmp_path: Path) -> None:
+    path = tmp_path / "part.nc"
+    path.write_text("N1 G1 X20. F300\nN2 M3 S500 Q5\nN3 M2\n")
+    with pytest.raises(ProgramError) as raised:
+        prepare(path)
+    assert "read as" in str(raised.value)
+
+
+def test_the_radius_of_a_listed_tool_is_that_of_the_compensation(tmp_path: Path) -> None:
+    text = (
+        "O1\n(T1 D=6. CR=0. - ZMIN=-4. - flat end mill)\nG21 G90 G17\nT1 M6\nG43 H1 Z5.\nG0 X-20. Y0.\n"
+        "G41 D1 G1 X-10. Y-10. F300.\nG3 X0. Y0. J10. I0.\nG1 Y40.\nG40 X20.\nM30\n"
+    )
+    made, _ = raw(tmp_path, text)
+    assert made.job.file.tools[0].diameter == 6.0
 
 
 @pytest.mark.parametrize(
@@ -119,6 +205,14 @@ def test_a_tool_that_only_drills_is_a_drill(tmp_path: Path) -> None:
     made, assumed = raw(tmp_path, text)
     assert made.job.file.tools[1].kind == "drill"
     assert "diameter is a guess" in assumed.assumptions[2]
+
+
+def test_a_tool_that_is_called_ahead_does_not_cut_yet(tmp_path: Path) -> None:
+    text = CONTOUR.replace("N30 S5000", "N28 T2\nN30 S5000").replace(
+        "(T2 D=6.8 CR=0. TAPER=118deg - ZMIN=-12. - drill)\n", ""
+    )
+    made, _ = raw(tmp_path, text)
+    assert [(tool.number, tool.kind) for tool in made.job.file.tools] == [(1, "flat"), (2, "drill")]
 
 
 def test_stock_of_the_head_comes_before_the_path(tmp_path: Path) -> None:

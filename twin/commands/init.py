@@ -32,7 +32,7 @@ def init_and_print(
         raise UsageError(f"{program}: give the NC program; its job file is what is written")
     if path.exists() and not force:
         raise UsageError(f"{path}: exists already; --force replaces it")
-    preparation = prepare(program, dialect=dialect, machine=machine)
+    preparation = prepare(program, dialect=dialect, machine=machine, assuming=True)
     try:
         assumed = assumed_job(preparation)
     except ProgramError as error:

@@ -21,7 +21,9 @@ def print_interpretation(
     """
     if form not in FORMATS:
         raise UsageError(f"no format '{form}': known formats are {', '.join(FORMATS)}")
-    preparation = prepare(program, dialect=dialect, machine=machine, strict=strict)
+    preparation = prepare(program, dialect=dialect, machine=machine, strict=strict, assuming=True)
+    for line in preparation.reading.told:
+        sys.stderr.write(f"assumed: {line}\n")
     interpretation = preparation.interpretation()
     try:
         for line in FORMATS[form](interpretation):

@@ -48,7 +48,7 @@ def run_and_print(
     announce_compilation()
     folder = out or Path("out") / program_stem(path)
     with without_verdict(folder):
-        preparation = prepare(path, dialect=dialect, machine=machine, strict=strict)
+        preparation = prepare(path, dialect=dialect, machine=machine, strict=strict, assuming=True)
         if preparation.job.path is None:
             preparation = _assumed(preparation, machine, strict=strict, save_job=save_job)
         elif save_job is not None:

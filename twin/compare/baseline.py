@@ -4,6 +4,7 @@ A later run is held to it: every block that differs is named with its program li
 key of the job, and every figure of the run and of its cut.
 """
 
+import dataclasses
 import itertools
 from collections import deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -285,8 +286,12 @@ def _instead(before: Entry | None, now: Entry | None, names: tuple[str, ...]) ->
         return f"lost here: {_told(before, names)}"
     if before is None:
         return f"new, and not in the baseline: {_told(now, names)}"
-    return f"{_told(now, names)}, baseline {_told(before, names)}"
+    stored = dataclasses.replace(before, shown=now.shown) if before.is_path else before
+    return f"{_told(now, names)}, baseline {_told(stored, names)}"
 
 
 def _told(entry: Entry | None, names: tuple[str, ...]) -> str:
-    return "its end" if entry is None else text(entry, names, entry.start, entry.feed)
+    if entry is None:
+        return "its end"
+    shown = entry.as_shown
+    return text(shown, names, shown.start, shown.feed)

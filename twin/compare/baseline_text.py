@@ -26,6 +26,7 @@ import dataclasses
 import itertools
 import json
 import math
+import operator
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple, TextIO
 
@@ -83,6 +84,8 @@ class Entry:
         value: Sweep of an arc [deg], or length of a dwell [s].
         corner: How the end of a move is passed, such as ``exact-path`` or ``continuous 0.05``.
         acceleration: Programmed acceleration and deceleration, or ``machine`` for its own.
+        shown: What the control's screen adds to the positions of a move, such as a tool length; a stored
+            baseline does not know it [mm or deg].
     """
 
     kind: str
@@ -95,6 +98,18 @@ class Entry:
     value: float = 0.0
     corner: str = ""
     acceleration: str = ""
+    shown: tuple[float, ...] = ()
+
+    @property
+    def as_shown(self) -> "Entry":
+        """A move in the coordinates that the control shows."""
+        if not self.shown:
+            return self
+        start, end = (
+            tuple(map(operator.add, place, self.shown)) for place in (self.start, self.end)
+        )
+        center = tuple(map(operator.add, self.center, self.shown)) if self.center else ()
+        return dataclasses.replace(self, start=start, end=end, center=center)
 
     @property
     def is_path(self) -> bool:
@@ -156,6 +171,7 @@ def _move(moves: Moves, row: int) -> Entry:
         value=float(moves.sweep[row]),
         corner=_corner(moves, row),
         acceleration=_acceleration(moves, row),
+        shown=tuple((moves.display[row] - moves.end[row]).tolist()),
     )
 
 

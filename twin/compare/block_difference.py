@@ -1,6 +1,7 @@
 """How one block differs from the stored one, in words."""
 
 import math
+import operator
 
 from twin.compare.baseline_text import Entry, number
 from twin.job.job_file import BaselineTable
@@ -39,7 +40,7 @@ def block_differences(
     *,
     begins_apart: bool,
 ) -> list[Finding]:
-    """All that differs between two blocks of one kind.
+    """All that differs between two blocks of one kind, in the coordinates that the control shows.
 
     Args:
         before: The stored block.
@@ -54,9 +55,10 @@ def block_differences(
     if not begins_apart:
         places.insert(0, ("starts", now.start, before.start))
     for what, one, other in places:
+        added = now.shown or (0.0,) * len(names)
         apart = [
-            (name, here, there)
-            for name, here, there in zip(names, one, other, strict=False)
+            (name, here + more, there + more)
+            for name, here, there, more in zip(names, one, other, added, strict=False)
             if abs(here - there) > tolerance
         ]
         if apart:
@@ -90,7 +92,10 @@ def _arc_differences(
         return [f"arc in the plane {_plane(now)}, baseline {_plane(before)}"]
     found = []
     if math.dist(now.center, before.center) > tolerance and not begins_apart:
-        here, there = (" ".join(map(number, arc.center)) for arc in (now, before))
+        added = now.shown or (0.0, 0.0, 0.0)
+        here, there = (
+            " ".join(map(number, map(operator.add, arc.center, added))) for arc in (now, before)
+        )
         found.append(f"arc about ({here}), baseline ({there})")
     if abs(now.value * math.copysign(1.0, same_side) - before.value) > _SWEEP_DEG:
         found.append(f"arc {_turn(now)}, baseline {_turn(before)}")

@@ -206,7 +206,9 @@ class Comparison:
                 when = float(known.when[row])
                 sample = int(np.searchsorted(setpoint.time, when))
                 position = setpoint.position[sample] - self._part_zero
-                self._worst[line] = WorstPlace(line, when, error, position)
+                self._worst[line] = WorstPlace(
+                    line, when, error, position, int(setpoint.move[sample])
+                )
         kept = sorted(self._worst.values(), key=lambda w: (-w.error_um, w.line))[:WORST_PLACES]
         self._worst = {place.line: place for place in kept}
 

@@ -59,13 +59,16 @@ class WorstPlace:
         line: Source line of the block.
         time_s: When [s].
         error_um: Contour error [µm].
-        position: Commanded part coordinates of all axes, shape (k,) [mm or deg].
+        position: Commanded, shape (k,) [mm or deg]: the part's coordinates, those of the control's screen once
+            what it adds is known.
+        move: Number of the move.
     """
 
     line: int
     time_s: float
     error_um: float
     position: FloatArray
+    move: int = -1
 
 
 @dataclasses.dataclass(frozen=True, slots=True)

@@ -40,13 +40,15 @@ class Trace:
         self._open_count = 0
         self._last = self._kept[:0]
 
-    def add(self, samples: Samples, error_um: FloatArray) -> None:
+    def add(self, samples: Samples, error_um: FloatArray, lower: FloatArray | float = 0.0) -> None:
         """Take in the next chunk.
 
         Args:
             samples: n samples.
             error_um: Their contour errors, shape (n,) [µm].
+            lower: How much lower than the first tool's the tip is, shape (n,) [mm].
         """
+        lower = np.broadcast_to(lower, len(samples))
         count = len(samples)
         if not count:
             return
@@ -54,18 +56,20 @@ class Trace:
             self._merge()
         head = min((self._group - self._open_count) % self._group, count)
         if head:
-            self._put_into_open(self._of(samples, error_um, _greatest_of(error_um[:head])), head)
+            self._put_into_open(
+                self._of(samples, error_um, lower, _greatest_of(error_um[:head])), head
+            )
         tail = head + (count - head) // self._group * self._group
         worst = head + _worst_rows(error_um[head:tail], self._group)
-        whole = self._of(samples, error_um, worst)
+        whole = self._of(samples, error_um, lower, worst)
         if self._open_count == self._group:
             whole = np.concatenate([self._open, whole])
             self._open, self._open_count = self._open[:0], 0
         self._kept = np.concatenate([self._kept, whole])
         if tail < count:
             row = tail + _greatest_of(error_um[tail:])
-            self._put_into_open(self._of(samples, error_um, row), count - tail)
-        self._last = self._of(samples, error_um, np.array([count - 1]))
+            self._put_into_open(self._of(samples, error_um, lower, row), count - tail)
+        self._last = self._of(samples, error_um, lower, np.array([count - 1]))
 
     def _put_into_open(self, row: FloatArray, count: int) -> None:
         """Let the worst row of some samples compete for the group that is not full yet."""
@@ -83,15 +87,19 @@ class Trace:
         self._kept = self._kept[_worst_rows(self._kept[:, _ERROR_COLUMN], 2)]
         self._group *= 2
 
-    def _of(self, samples: Samples, error_um: FloatArray, rows: IntArray) -> FloatArray:
+    def _of(
+        self, samples: Samples, error_um: FloatArray, lower: FloatArray, rows: IntArray
+    ) -> FloatArray:
         """What is kept of some samples."""
         asked, joints = samples.setpoint, samples.joint_position[rows]
+        tip = self._frame.position(samples[rows].real(self._frame)) - self._origin
+        tip[:, 2] -= lower[rows]
         return np.column_stack(
             [
                 asked.time[rows],
                 asked.line[rows].astype(np.float64),
                 error_um[rows],
-                self._frame.position(samples[rows].real(self._frame)) - self._origin,
+                tip,
                 joints - self._part_zero,
                 asked.position[rows] - joints,
                 asked.velocity[rows],

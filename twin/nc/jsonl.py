@@ -2,8 +2,10 @@
 
 import itertools
 import json
-from collections.abc import Generator, Iterator
+from collections.abc import Container, Generator, Iterator
 from typing import Any
+
+import numpy as np
 
 from twin.nc.canonical import (
     FEED_UNIT_NAMES,
@@ -52,7 +54,7 @@ def json_lines(interpretation: Interpretation) -> Iterator[str]:
     count, length, turn, told = 0, 0.0, 0.0, 0
     try:
         for chunk in interpretation.chunks():
-            yield from _chunk_lines(chunk)
+            yield from _chunk_lines(chunk, interpretation.compensated)
             count += len(chunk.moves)
             turning = chunk.moves.feed_unit == FeedUnit.DEG_PER_MIN
             length += float(chunk.moves.length[~turning].sum())
@@ -80,8 +82,8 @@ def _new_warnings(interpretation: Interpretation, told: int) -> Generator[str, N
     return len(warnings)
 
 
-def _chunk_lines(chunk: Chunk) -> Iterator[str]:
-    moves, row = _move_lines(chunk.moves), 0
+def _chunk_lines(chunk: Chunk, compensated: Container[int]) -> Iterator[str]:
+    moves, row = _move_lines(chunk.moves, compensated), 0
     for event in chunk.events:
         yield from itertools.islice(moves, event.before - row)
         row = event.before
@@ -107,8 +109,14 @@ def _json(record: Record) -> str:
     return json.dumps(record, ensure_ascii=False, allow_nan=False)
 
 
-def _move_lines(moves: Moves) -> Iterator[str]:
-    """The records of moves as JSON, written column by column."""
+def _move_lines(moves: Moves, compensated: Container[int]) -> Iterator[str]:
+    """The records of moves as JSON, written column by column.
+
+    What the control's screen shows at the end, ``display``, is there where it differs from ``end``: the
+    program's coordinates under a work offset, a tool length or a relabelled axis.
+    """
+    others = (np.abs(moves.display - moves.end).max(axis=1, initial=0.0) > _SAME).tolist()
+    shown = moves.display.tolist()
     places = "{" + ", ".join(f"{json.dumps(name)}: %r" for name in moves.axes.names) + "}"
     motions = [f'{{"type": "move", "motion": "{each.name.lower()}", "shape": ' for each in Motion]
     rows = zip(
@@ -127,13 +135,18 @@ def _move_lines(moves: Moves) -> Iterator[str]:
         label = "null" if block == NO_BLOCK_NUMBER else f'"N{block}"'
         pace = "null" if feed != feed else repr(feed)
         arc = f', "arc": {json.dumps(_arc(moves, row))}' if shape == Shape.ARC else ""
+        further = f', "display": {places % tuple(shown[row])}' if others[row] else ""
+        if line in compensated:
+            further += ', "tool_center": true'
         yield (
             f'{motions[motion]}{_SHAPES[shape]}, "line": {line}, "block": {label}, '
             f'"start": {places % start}, "end": {places % end}, "length": {length!r}, '
-            f'"feed": {pace}, "feed_unit": {_FEED_UNITS[unit]}{arc}}}'
+            f'"feed": {pace}, "feed_unit": {_FEED_UNITS[unit]}{arc}{further}}}'
         )
 
 
+_SAME = 1e-9
+"""Positions that differ by no more are the same [mm or deg]."""
 _SHAPES = [json.dumps(shape.name.lower()) for shape in Shape]
 _FEED_UNITS = [json.dumps(FEED_UNIT_NAMES[unit]) for unit in FeedUnit]
 
@@ -170,7 +183,9 @@ def _move_text(record: Record) -> str:
         pace.append(f"F{feed:.10g} {record['feed_unit']}")
     arc = record.get("arc")
     bend = "" if arc is None else f"  R{arc['radius']:.10g} sweep {arc['sweep']:.10g}"
-    return f"{line}  {record['shape']:4s}  {_named(record['end'])}  {' '.join(pace)}{bend}"
+    center = "  tool centre" if "tool_center" in record else ""
+    shown = _named(record.get("display", record["end"]))
+    return f"{line}  {record['shape']:4s}  {shown}  {' '.join(pace)}{bend}{center}"
 
 
 def _function_text(record: Record) -> str:

@@ -12,12 +12,15 @@ import numpy as np
 from twin.job.job_file import Job, JobFile
 from twin.machine.description.config import Machine
 from twin.machine.model.model import spindle_over_table_mm
-from twin.nc.canonical import FloatArray, Function, Motion, Moves, concatenate
+from twin.nc.canonical import Chunk, FloatArray, Function, Motion, Moves, concatenate
 from twin.nc.dialects.recognition import HEAD_LINES, comments_of, without_comments
+from twin.nc.functions import TOOL_CHANGE
+from twin.nc.interpreter import Interpretation
 from twin.nc.text.diagnostics import ProgramError
-from twin.run.assumed_tools import BELOW, tool_lines
 from twin.run.placement import part_zero
 from twin.run.preparation import IGNORED_AT_ZERO, Preparation, anywhere, prepare_job
+from twin.run.reading.assumed_reading import AssumedReading
+from twin.run.reading.assumed_tools import BELOW, tool_lines
 
 _MACHINE_ZERO_UNKNOWN = "no-machine-zero"
 """The finding of a program that counts from machine zero, where no job says where that lies."""
@@ -81,7 +84,9 @@ def with_assumptions(
     file = JobFile.model_validate({**assumed.tables, **given, "dialect": preparation.dialect.name})
     job = Job(preparation.job.folder, file)
     made = prepare_job(job, machine=machine, strict=strict)
-    return dataclasses.replace(made, dialect_reason=preparation.dialect_reason), assumed
+    return dataclasses.replace(
+        made, dialect_reason=preparation.dialect_reason, reading=preparation.reading
+    ), assumed
 
 
 def assumed_job(preparation: Preparation) -> AssumedJob:
@@ -90,26 +95,9 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
     Raises:
         ProgramError: The program is wrong.
     """
-    interpretation = preparation.interpretation()
-    counts_from_machine_zero = False
-    try:
-        chunks = list(interpretation.chunks())
-    except ProgramError as error:
-        if error.diagnostic.code != _MACHINE_ZERO_UNKNOWN:
-            raise
-        counts_from_machine_zero = True
-        interpretation = anywhere(preparation).interpretation()
-        chunks = list(interpretation.chunks())
+    interpretation, chunks, counts_from_machine_zero = _interpreted(preparation)
     moves = concatenate([chunk.moves for chunk in chunks], preparation.machine.axes)
-    calls: list[tuple[int, int, int]] = []
-    done = 0
-    for chunk in chunks:
-        calls += [
-            (int(event.word[1:]), event.line, done + event.before)
-            for event in chunk.events
-            if isinstance(event, Function) and event.word[:1] == "T" and event.word[1:].isdigit()
-        ]
-        done += len(chunk.moves)
+    calls = _tool_calls(chunks)
     inches, lacking = interpretation.programs_in_inches, _lacking_axes(preparation)
     comments = list(_comments(preparation))
     tools, told, diameter = tool_lines(calls, comments, moves, inches=inches)
@@ -124,9 +112,11 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
             position,
             [*stock, *tools] if counts_from_machine_zero else None,
         ),
+        *_point_line(preparation.reading),
         "",
         *stock,
         *tools,
+        *_reading_lines(preparation.reading),
         *(
             ["[axes]", *(f'{word} = "{IGNORED_AT_ZERO}"' for word in lacking), ""]
             if lacking
@@ -139,7 +129,61 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
     ]
     left_out = tuple(f"{word} stays at 0: the machine has no such axis" for word in lacking)
     rapids = f"rapids may leave their path by {_RAPID_TOLERANCE_UM:g} µm"
-    return AssumedJob("\n".join(lines), (said, *told, rapids, *left_out))
+    return AssumedJob("\n".join(lines), (*preparation.reading.told, said, *told, rapids, *left_out))
+
+
+def _interpreted(preparation: Preparation) -> tuple[Interpretation, list[Chunk], bool]:
+    """What the program comes to, and whether it depends on where machine zero lies."""
+    interpretation = preparation.interpretation()
+    try:
+        chunks = list(interpretation.chunks())
+    except ProgramError as error:
+        if error.diagnostic.code != _MACHINE_ZERO_UNKNOWN:
+            raise
+        chunks = []
+    words = {
+        event.word for chunk in chunks for event in chunk.events if isinstance(event, Function)
+    }
+    if chunks and TOOL_CHANGE not in words:
+        return interpretation, chunks, False
+    somewhere = anywhere(preparation).interpretation()
+    placed = list(somewhere.chunks())
+    depends = sum(len(chunk.moves) for chunk in placed) != sum(len(each.moves) for each in chunks)
+    return (somewhere, placed, True) if depends else (interpretation, chunks, False)
+
+
+def _tool_calls(chunks: list[Chunk]) -> list[tuple[int, int, int]]:
+    """Number, line and next move of every tool that comes: by M6, in a program without it by T alone."""
+    selected: list[tuple[int, int, int]] = []
+    changed: list[tuple[int, int, int]] = []
+    done = 0
+    for chunk in chunks:
+        for event in chunk.events:
+            if not isinstance(event, Function):
+                continue
+            if event.word[:1] == "T" and event.word[1:].isdigit():
+                selected.append((int(event.word[1:]), event.line, done + event.before))
+            elif event.word == TOOL_CHANGE and selected:
+                changed.append((selected[-1][0], event.line, done + event.before))
+        done += len(chunk.moves)
+    return changed or selected
+
+
+def _point_line(reading: AssumedReading) -> list[str]:
+    """What a number without a point counts, where that was assumed."""
+    point = reading.keys.get("decimal_point")
+    return [] if point is None else [f'decimal_point = "{point}"  # increments: X10 is 0.010 mm']
+
+
+def _reading_lines(reading: AssumedReading) -> list[str]:
+    """Tables of the work offsets and M codes that were assumed."""
+    lines: list[str] = []
+    offsets, functions = reading.keys.get("offsets"), reading.keys.get("m_functions")
+    if isinstance(offsets, dict):
+        lines += [line for name in offsets for line in (f"[offsets.{name}]", "")]
+    if isinstance(functions, dict):
+        lines += ["[m_functions]", *(f'{code} = "{does}"' for code, does in functions.items()), ""]
+    return lines
 
 
 def _lacking_axes(preparation: Preparation) -> list[str]:

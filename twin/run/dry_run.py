@@ -9,6 +9,7 @@ from twin.machine.watching.alarms import Alarm
 from twin.machine.watching.travel import soft_limit_alarm
 from twin.nc.canonical import Chunk, FloatArray, Function
 from twin.nc.text.diagnostics import Diagnostic
+from twin.run.interpreted import InterpretedProgram
 from twin.run.messages import speed_notice
 from twin.run.notices import shown
 from twin.run.preparation import Preparation
@@ -24,7 +25,7 @@ class DryRun:
     """What a program does, as far as that is known without moving anything.
 
     Attributes:
-        moves: How many moves the program makes.
+        program: Its moves and events.
         warnings: What the interpreter and the spindle had to say.
         alarm: The soft-limit alarm of the first move that leaves the travel, if any.
         summary: What the program says beside its moves.
@@ -32,12 +33,17 @@ class DryRun:
         lines_never_run: How many lines with motion it never came to.
     """
 
-    moves: int
+    program: InterpretedProgram
     warnings: tuple[Diagnostic, ...]
     alarm: Alarm | None
     summary: ProgramSummary
     watch: ProgramWatch
     lines_never_run: int
+
+    @property
+    def moves(self) -> int:
+        """How many moves the program makes."""
+        return self.program.moves
 
 
 def interpret_all(preparation: Preparation, part_zero: FloatArray, clock: StageClock) -> DryRun:
@@ -53,13 +59,13 @@ def interpret_all(preparation: Preparation, part_zero: FloatArray, clock: StageC
         ConfigError: It brings a tool that the job does not list.
     """
     interpretation = preparation.interpretation()
-    moves, alarm = 0, None
+    program, alarm = InterpretedProgram(preparation), None
     builder = SummaryBuilder(preparation.job.file, preparation.spindle)
     watch = ProgramWatch(preparation.job.file, preparation.spindle)
     limited: dict[int, str] = {}
     chunks: Iterable[Chunk] = clock.watch("interpret", interpretation.chunks())
     for chunk in chunks:
-        moves += len(chunk.moves)
+        program.add(chunk)
         builder.add(chunk)
         watch.add(chunk)
         for event in chunk.events:
@@ -68,7 +74,7 @@ def interpret_all(preparation: Preparation, part_zero: FloatArray, clock: StageC
         if alarm is None:
             alarm = soft_limit_alarm(preparation.machine, chunk.moves, part_zero)
     return DryRun(
-        moves=moves,
+        program=program,
         warnings=(
             *interpretation.diagnostics,
             *(

@@ -1,9 +1,9 @@
 """From a job to everything that a run needs: the program, its dialect, the machine, the places."""
 
 import dataclasses
-import functools
-from collections.abc import Iterator, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 
 import pydantic
 
@@ -12,16 +12,22 @@ from twin.files.overrides import Change
 from twin.files.shipped import machine_file, shipped_program
 from twin.job.job_file import Job, JobFile, read_job
 from twin.machine.description.config import Machine, read_machine
-from twin.nc.canonical import Chunk, FloatArray
 from twin.nc.control.settings import ControlSettings, MachineFunction, ToolData
 from twin.nc.dialects import Dialect, dialect_named
+from twin.nc.dialects.foreign import require_program
 from twin.nc.functions import SpindleState
 from twin.nc.interpreter import Interpretation
 from twin.nc.text.source import Source, read_source, source_from_text
 from twin.recording.reader import RecordingHeader
-from twin.run.dialect_choice import chosen_dialect
 from twin.run.placement import start_position
-from twin.run.waits import with_waits
+from twin.run.reading.assumed_reading import (
+    NOTHING_ASSUMED,
+    UNKNOWN_FUNCTION,
+    AssumedReading,
+    assumed_reading,
+    unknown_functions,
+)
+from twin.run.reading.dialect_choice import chosen_dialect
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -35,6 +41,7 @@ class Preparation:
         dialect: The language that the program is written in.
         settings: What the interpreter is told about machine and job.
         dialect_reason: What told the dialect of a program whose job names none; empty: the job does.
+        reading: What was assumed of how a raw program is read.
     """
 
     job: Job
@@ -43,34 +50,20 @@ class Preparation:
     dialect: Dialect
     settings: ControlSettings
     dialect_reason: str = ""
+    reading: AssumedReading = NOTHING_ASSUMED
 
     def interpretation(self) -> Interpretation:
         """A fresh pass over the program."""
         return Interpretation(self.source, self.dialect, self.settings)
-
-    def timed_chunks(self) -> Iterator[Chunk]:
-        """A fresh pass over the program, with the time of tool changes and spindle as dwells."""
-        chunks = self.interpretation().chunks()
-        return with_waits(chunks, self.machine.file.spindle, self.job.file, self.spindle)
 
     @property
     def spindle(self) -> SpindleState:
         """The spindle before anybody has said anything of it, with the job's first tool."""
         return SpindleState(
             tool_speed=self.job.file.tools[0].speed,
-            has_word=bool(self.dialect.spindle_letter),
+            has_word=bool(self.dialect.words.spindle),
             fastest=self.machine.file.spindle.max_speed,
         )
-
-    @functools.cached_property
-    def start(self) -> FloatArray:
-        """Where the axes stand at the program's start, program coordinates, shape (k,).
-
-        The job says it, or the program itself before its first move (G92 of ``codesys``).
-        """
-        chunks = (chunk.moves for chunk in self.interpretation().chunks())
-        begin = next((moves.start[0] for moves in chunks if len(moves)), None)
-        return start_position(self.job.file, self.machine) if begin is None else begin
 
 
 def prepare(
@@ -80,6 +73,7 @@ def prepare(
     machine: str | None = None,
     strict: bool = False,
     changes: Sequence[Change] = (),
+    assuming: bool = False,
 ) -> Preparation:
     """Read a job, or a program with its job beside it, and all that it names.
 
@@ -89,6 +83,7 @@ def prepare(
         machine: Overrides the job's machine; a path is relative to the working folder.
         strict: Warnings of the interpreter are errors.
         changes: Values of the job (``job.``) and the machine file (``machine.``) to change.
+        assuming: How a program without a job is read may be assumed; the caller says what was.
 
     Raises:
         UsageError: A file is missing or wrong, or the dialect cannot be told.
@@ -100,9 +95,47 @@ def prepare(
         if shipped is None:
             raise UsageError(f"{path}: no such file")
         path = shipped
-    return prepare_job(
-        read_job(path, changes), dialect=dialect, machine=machine, strict=strict, changes=changes
+    job, reading = read_job(path, changes), None
+    if assuming and job.path is None:
+        require_program(job.program)
+        reading = assumed_reading(read_source(job.program))
+        job = _with_keys(job, reading.keys)
+    made = prepare_job(
+        job,
+        dialect=dialect,
+        machine=machine,
+        strict=strict,
+        changes=changes,
+        tools=reading.tools if reading else {},
     )
+    return made if reading is None else _with_functions(made, reading)
+
+
+def _with_keys(job: Job, keys: Mapping[str, object]) -> Job:
+    """A job with what was assumed, where it says nothing else."""
+    given = job.file.model_dump(exclude_unset=True)
+    file = JobFile.model_validate({**keys, **given})
+    return Job(job.folder, file, job.path, job.tolerances_from)
+
+
+def _with_functions(made: Preparation, reading: AssumedReading) -> Preparation:
+    """A raw program whose M codes that nobody knows do nothing."""
+    unknown = unknown_functions(made.source, made.dialect, frozenset(made.settings.m_functions))
+    if not unknown:
+        return dataclasses.replace(made, reading=reading)
+    names = [f"M{number}" for number in unknown]
+    declared = dict.fromkeys(names, UNKNOWN_FUNCTION)
+    several = "do" if len(names) > 1 else "does"
+    told = f"{', '.join(names)} {several} nothing: {made.dialect.name} has no such code"
+    reading = AssumedReading({**reading.keys, "m_functions": declared}, (*reading.told, told))
+    given = made.job.file.model_dump(exclude_unset=True).get("m_functions", {})
+    file = made.job.file.model_dump(exclude_unset=True) | {"m_functions": {**declared, **given}}
+    job = Job(made.job.folder, JobFile.model_validate(file), None, made.job.tolerances_from)
+    functions_of_settings = dict.fromkeys(unknown, MachineFunction(UNKNOWN_FUNCTION))
+    settings = dataclasses.replace(
+        made.settings, m_functions={**made.settings.m_functions, **functions_of_settings}
+    )
+    return dataclasses.replace(made, job=job, settings=settings, reading=reading)
 
 
 def prepare_job(
@@ -112,8 +145,18 @@ def prepare_job(
     machine: str | None = None,
     strict: bool = False,
     changes: Sequence[Change] = (),
+    tools: Mapping[int, ToolData] = MappingProxyType({}),
 ) -> Preparation:
-    """Read all that a job names; arguments and errors as for ``prepare``."""
+    """Read all that a job names.
+
+    Args:
+        job: The job; other arguments and errors as for ``prepare``.
+        dialect: As there.
+        machine: As there.
+        strict: As there.
+        changes: As there.
+        tools: What comments tell of the tools of a job that names none.
+    """
     if machine is None:
         found = machine_file(job.file.machine, beside=job.folder)
     else:
@@ -122,6 +165,8 @@ def prepare_job(
     name = dialect or job.file.dialect
     named = None if name is None else dialect_named(name)
     settings = _control_settings(job, twin_machine, strict=strict)
+    if settings.any_tool and tools:
+        settings = dataclasses.replace(settings, tools=tools)
     source, reason = read_source(job.program, named), ""
     if named is None:
         choice = chosen_dialect(job.program, settings, source)
@@ -210,6 +255,7 @@ def _control_settings(job: Job, machine: Machine, *, strict: bool) -> ControlSet
         rotary_diameter=control.rotary_diameter,
         feed_of_all_axes=control.feed_of_all_axes,
         length_returns=control.length_returns,
+        tool_change_height=_change_height(job, machine),
         block_skip=job.file.block_skip is True,
         block_skip_levels=_block_skip_levels(job.file),
         decimal_point=job.file.decimal_point or control.decimal_point,
@@ -221,6 +267,12 @@ def _control_settings(job: Job, machine: Machine, *, strict: bool) -> ControlSet
 def _block_skip_levels(file: JobFile) -> frozenset[int]:
     """Numbers behind the slash of blocks that are left out."""
     return frozenset() if isinstance(file.block_skip, bool) else frozenset(file.block_skip)
+
+
+def _change_height(job: Job, machine: Machine) -> float | None:
+    """Where Z goes before a tool changes; the job comes before the machine."""
+    own = job.file.tool_change.height
+    return machine.file.tool_change.height if own is None else own
 
 
 IGNORED_AT_ZERO = "ignored at 0"

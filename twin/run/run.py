@@ -42,6 +42,7 @@ from twin.run.cut_notices import (
     unjudged_limit_notices,
 )
 from twin.run.dry_run import DryRun, interpret_all
+from twin.run.interpreted import InterpretedProgram
 from twin.run.machining import Machining
 from twin.run.notices import Notice, shown
 from twin.run.outcome import Outcome
@@ -134,15 +135,15 @@ class Run:
         """
         comparison, machining = self._comparison(), self._machining(dry_run)
         self._process = None
-        reached = _Reached(self.part_zero, self.preparation.start)
+        reached = _Reached(self.part_zero, dry_run.program.start)
         alarm, near_miss = dry_run.alarm or self._overspeed(dry_run), None
         if alarm is None:
             with self._recording(out) as writer:
                 if motion is None:
-                    setpoints = self._setpoints(comparison)
+                    setpoints = self._setpoints(dry_run.program, comparison)
                     motion = self._simulation(setpoints, dry_run.summary)
                 else:
-                    self._expect_all(comparison)
+                    _expect_all(dry_run.program, comparison)
                 if self._process is None or not speeds_are_known(dry_run.summary):
                     _refuse_unjudged_loads(self.preparation.job.file.tolerance)
                 growth = Growth(self.machine, ProgramOperation(dry_run.summary).speed)
@@ -153,7 +154,8 @@ class Run:
                     machining.loads.add(samples)
                     with self.clock.stage("compare"):
                         contour_um = comparison.add(samples)
-                        self.trace.add(samples, contour_um)
+                        lower = dry_run.summary.tools.lower(samples.setpoint.move)
+                        self.trace.add(samples, contour_um, lower)
                     if writer is not None:
                         with self.clock.stage("record"):
                             writer.append(samples, contour_um)
@@ -185,7 +187,7 @@ class Run:
         comparison: Comparison,
     ) -> Outcome:
         """Judge what was run, and say what was looked at."""
-        figures = comparison.result()
+        figures = _as_shown(comparison.result(), dry_run.summary)
         job, duration_s = (
             self.preparation.job,
             min(self._planned_s or reached.last_motion_s, reached.time_s),
@@ -267,11 +269,6 @@ class Run:
         found = () if self._process is None else self._process.breaks
         return tuple(each.alarm for each in found if each.time_s <= until_s)
 
-    def _expect_all(self, comparison: Comparison) -> None:
-        """Let those who judge the motion hear of the whole program at once."""
-        for chunk in self.clock.watch("interpret", self.preparation.interpretation().chunks()):
-            comparison.expect(chunk.moves)
-
     def _nominal_checks(
         self, gouge: NominalGouge | None, inspection: Inspection | None
     ) -> Iterator[Check]:
@@ -290,23 +287,25 @@ class Run:
             bound = f" (walls are known to {inspection.bound_mm * UM_PER_MM:.0f} µm)"
             yield Check("standing_um", figure, left, nominal.standing_um, "µm", 0, 0.0, bound)
 
-    def _setpoints(self, comparison: Comparison) -> Iterator[Setpoints]:
+    def _setpoints(
+        self, program: InterpretedProgram, comparison: Comparison
+    ) -> Iterator[Setpoints]:
         """The planned motion; those who judge it hear of every move before it is simulated."""
         machine = self.preparation.machine
         period = machine.file.servo_period_s
 
         def moves() -> Iterator[Chunk]:
-            for chunk in self.preparation.timed_chunks():
+            for chunk in program.timed_chunks():
                 comparison.expect(chunk.moves)
                 yield chunk
 
         def planned() -> Iterator[Setpoints]:
             for chunk in plan(
-                self.clock.watch("interpret", moves()),
+                moves(),
                 motion_limits(machine),
                 period_s=period,
                 part_zero=self.part_zero,
-                start=self.preparation.start + self.part_zero,
+                start=program.start + self.part_zero,
             ):
                 self._planned_s = float(chunk.time[-1])
                 yield chunk
@@ -373,6 +372,18 @@ _LOADS = {
 """What a tolerance on a load is called, and its unit."""
 
 
+def _as_shown(figures: Figures, summary: ProgramSummary) -> Figures:
+    """Figures whose positions are those of the control's screen."""
+    screen = summary.shown
+    if screen is None:
+        return figures
+    worst = tuple(
+        dataclasses.replace(place, position=place.position + screen.at(place.move))
+        for place in figures.worst
+    )
+    return dataclasses.replace(figures, worst=worst)
+
+
 def _refuse_unjudged_loads(tolerance: ToleranceTable) -> None:
     """A tolerance on what nobody simulates would pass unseen.
 
@@ -392,6 +403,12 @@ def _load_checks(tolerance: ToleranceTable, loads: LoadLog) -> Iterator[Check]:
         limit, most = getattr(tolerance, key), loads.greatest.get(key)
         if limit is not None and most is not None:
             yield Check(key, figure, most.value, limit, unit, most.line, most.time_s)
+
+
+def _expect_all(program: InterpretedProgram, comparison: Comparison) -> None:
+    """Let those who judge the motion hear of the whole program at once."""
+    for chunk in program.chunks():
+        comparison.expect(chunk.moves)
 
 
 def _text_to_keep(source: Source) -> str:

@@ -203,10 +203,23 @@ A_STOP_WOULD_BE_SHORTER = (
     ),
     np.array([30.0, 1.5, 190.0, 0.0]),
 )
+A_BRAKE_IS_LONGER_THAN_A_STOP = (
+    np.array(
+        [
+            [3.66, 2.148, 0.5, 1.875],
+            [22.609, 99.0, 91.66, 68.0],
+            [361.8, 3306.0, 1490.0, 779.8],
+            [290.9, 4219.0, 3148.0, 411.8],
+            [91312.0, 2606.6, 2000.0, 22000.0],
+        ]
+    ),
+    np.array([85.8, 85.7, 12.54, 6.7, 0.0]),
+)
 
 
 @FEWER
 @example(A_STOP_WOULD_BE_SHORTER)
+@example(A_BRAKE_IS_LONGER_THAN_A_STOP)
 @given(segments())
 def test_reach_is_safe_and_nearly_the_most_that_is(case: tuple[FloatArray, FloatArray]) -> None:
     limits, entry = case

@@ -24,12 +24,12 @@ OWN = {
     ],
     "linuxcnc": [
         "o100 sub", "o<hole> call [1]", "#<depth>=5", "G61.1", "G43.2 H5", "G59.3", "G64 P0.01",
-        "G0 @5 ^30", "O100\nG1 X1 ; comment\n#<a>=1", "G43.1 Z5\nG61.1", "#3000=1\nG61.1",
-        "G87 X1 R2 Z1 I1 J1 K1\nG61.1", "G2 I5 J0 T1\nG61.1",
+        "G0 @5 ^30", "O100\nG1 X1 ; comment\n#<a>=1", "G43.1 Z5\nG61.1", "#3000=1\nG61.1", "G41.1\nG61.1", "G43.1 Z1\nG61.1",
+        "G87 X1 R2 Z1 I1 J1 K1\nG61.1", "G28.1\nG61.1", "G2 I5 J0 T1\nG61.1",
     ],
     "fanuc": [
         "G54.1 P2", "G5.1 Q1", "G5 P10000", "G51.1 X0", "M98 P00022000", "G7.1 C20.",
-        "G43.4 H1", "IF[#1EQ1]GOTO5\nG5.1 Q1", "WHILE[#1LT5]DO1\nG5.1 Q1", "G65 P100\nG41.1",
+        "G43.4 H1", "IF[#1EQ1]GOTO5\nG5.1 Q1", "WHILE[#1LT5]DO1\nG5.1 Q1", "G65 P100\nG41.1", "G65 P1\nG43.1",
         "#3000=1\nG5.1 Q1", "X10.,R5.\nG5.1 Q1", "O1\nG107 C20.\nG5.1 Q1", "G65 P1\nG39 I5",
         "G65 P1\nG31 X5 Q1", "G65 P1\nG87 I1", "G110\nG54.1 P1", ":1000\nG54.1 P1",
     ],
@@ -38,6 +38,7 @@ OWN = {
         "G154 P1\nG110", "G36 I1.\nX5.,C1.", "G102 X1\nG65 P1", "G136\nG65 P1", "G107 C5.\nG83 I1.",
         "IF[#1EQ1]GOTO5\nG187 P1", "WHILE[#1LT5]DO1\nG187", "#3000=1\nG187", ":1\nG187",
     ],
+    "grbl": ["$H", "$X", "$J=G91 X5 F100", "$X\nG43.1 Z5", "$H\nG28.1", "$H\nG1 X5 ; comment"],
     "mefi": ['G00 X1 "pohyb', "N5 X0 G73 L5 Q2", "G09 G02 X0 I100\nG73 Q2", "N5 X0 G73 Q2 L5"],
 }  # fmt: skip
 
@@ -65,7 +66,8 @@ SHARED = (
     ("G187 P1", ("fagor8070", "haas")),
     ("G107 C20.", ("fanuc", "haas")),
     ("G41.1", ("fanuc", "linuxcnc")),
-    ("G43.1 Z5", ("fanuc", "linuxcnc")),
+    ("G43.1 Z5", ("fanuc", "grbl", "linuxcnc")),
+    ("G28.1", ("grbl", "linuxcnc")),
     ("G31 X5 Q1", ("fagor8070", "fanuc")),
     ("G36 I5", ("fagor8070", "haas")),
     ("G39 I2", ("fagor8070", "fanuc")),
@@ -76,7 +78,7 @@ SHARED = (
     (":1000", ("fanuc", "haas")),
     ("G09 G02 X0 I100", ("fanuc", "haas", "mefi")),
     ("G2 I50 J0 T180", ("codesys", "fanuc", "haas", "linuxcnc")),
-    ("G1 X5 ; comment", ("fagor8070", "fanuc", "haas", "linuxcnc")),
+    ("G1 X5 ; comment", ("fagor8070", "fanuc", "grbl", "haas", "linuxcnc")),
 )
 """Words that several controls know."""
 UNTOLD = (

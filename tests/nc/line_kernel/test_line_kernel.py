@@ -31,6 +31,7 @@ CHANGES = {
     "mefi": "G70|G71|G91|G90|G19|G17|Z1.05 G10|G09|G98|G54|G92 X1 Y2|G42|G40",
     "codesys": "G91|G90|G98|G99|G18|G17|G51 D1|G50|PC360|G43 K5|FF5|E5|FX3|EF3|G41 D2|G40|G61|G60",
     "fagor8070": "G70|G71|G91|G90|G261|G262|G264|G265|G73 Q30|G73|G11|G10|R9 Q30|G20 X1 Z2|G17|G93|G94|G53|G54",
+    "grbl": "G20|G21|G91|G90|G18|G17|G93|G94|F200|G80|G92 X1|G92.1|G43.1 Z2|G49|G10 L2 P2 X1|G55|G28 Z0|C5",
     "linuxcnc": "G20|G21|G91|G90|G90.1|G91.1|G64 P0.1|G61|G93|G94|G41 D1|G40|G10 L2 P1 R30|G43 H1|G49",
     "fanuc": "G20|G21|G91|G90|G68 X0 Y0 R30.|G69|G51.1 X0|G50.1 X0|G16|G15|G93|G94|G95|G43 H1|G49|G18|G17",
     "haas": "G20|G21|G91|G90|G68 X0 Y0 R30.|G69|G93|G94|G187 P1|G19|G17|G54|G92 X1.",
@@ -140,6 +141,7 @@ def test_golden_programs_mean_the_same_in_the_kernel(dialect: str) -> None:
 
 LONG = {
     "linuxcnc": "G1 X{x:.3f} Y{y:.3f}",
+    "grbl": "X{x:.3f}Y{y:.3f}",
     "fanuc": "G1 X{x:.3f} Y{y:.3f}",
     "haas": "N10 X{x:.3f} Y{y:.3f} (c)",
     "gost": "G1 X{x:.3f} Y{y:.3f}",

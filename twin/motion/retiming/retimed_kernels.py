@@ -11,8 +11,12 @@ from twin.motion.retiming.spline_kernels import spline_at
 from twin.motion.retiming.table_kernels import RunNodes, derivatives_at
 from twin.nc.canonical import FloatArray, IntArray
 
-PEAK = 1.00001
-"""How much higher than that of the cubic a value between two instants may be."""
+MISSED = 0.02
+"""Share of the rise between two instants that a cubic through their values and rates may miss.
+
+An oscillation of angular frequency w is missed by (w h)²/12 of its rise over a step h at most. A step turns by
+3 degrees at most, and the rate changes along it too.
+"""
 
 
 @array_arithmetic_kernel
@@ -40,7 +44,9 @@ def retimed_phases(
         way, gain = nodes.distance[i], a1 - a0
         # With both halves as long, way = (v0 + v1) t / 2 - (a1 - a0) t² / 12.
         mean = 0.5 * (v0 + v1)
-        t = 2.0 * way / (mean + math.sqrt(max(0.0, mean * mean - gain * way / 3.0)))
+        square = mean * mean - gain * way / 3.0
+        # Where no time serves both its ends, the phases are not a number, as uses_of_limits finds.
+        t = 2.0 * way / (mean + math.sqrt(square)) if square >= 0.0 else math.nan
         both = 2.0 * gain / t
         first = 4.0 * (v1 - v0 - a0 * t) / (t * t) - 0.5 * both
         half = 0.5 * t
@@ -145,5 +151,6 @@ def _highest(v0: float, a0: float, v1: float, a1: float, step: float) -> float:
         s = rise / (rise + fall)
         r = 1.0 - s
         ends = v0 * r * r * (1.0 + 2.0 * s) + v1 * s * s * (1.0 + 2.0 * r)
-        highest = max(highest, PEAK * (sign * ends + (rise * r + fall * s) * r * s * step))
+        between = sign * ends + (rise * r + fall * s) * r * s * step
+        highest += (1.0 + MISSED) * max(0.0, between - highest)
     return highest

@@ -94,6 +94,10 @@ class ControlSettings:
     length_returns: Literal["by code", "next block"] = "by code"
     """``fanuc``: when a tool length counts again that G28, G30 or G53 has cancelled (parameter 5001 #6)."""
 
+    tool_change_height: float | None = None
+    """Z that the control rises to by itself before a tool changes, machine coordinates [mm]; None: as the control
+    does when it comes from its maker."""
+
     strict: bool = False
     """Turn warnings into errors."""
 

@@ -9,13 +9,15 @@ from twin.nc.dialects.codesys import CODESYS
 from twin.nc.dialects.fagor8070 import FAGOR8070
 from twin.nc.dialects.fanuc import FANUC, HAAS
 from twin.nc.dialects.gost import GOST
+from twin.nc.dialects.grbl import GRBL
 from twin.nc.dialects.linuxcnc import LINUXCNC
 from twin.nc.dialects.mefi import MEFI
 from twin.nc.dialects.outside import dialects_from_outside
 from twin.nc.text.source import Source
 
 OWN: Mapping[str, Dialect] = {
-    dialect.name: dialect for dialect in (GOST, CODESYS, FAGOR8070, MEFI, FANUC, HAAS, LINUXCNC)
+    dialect.name: dialect
+    for dialect in (GOST, CODESYS, FAGOR8070, MEFI, FANUC, HAAS, LINUXCNC, GRBL)
 }
 """Those of this package by name."""
 _OUTSIDE, _FAILED = dialects_from_outside(OWN)

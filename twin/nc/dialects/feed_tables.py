@@ -93,6 +93,11 @@ _TABLES: Mapping[str, tuple[FeedRow, ...]] = {
         "decision: all three are main axes",
     ),
     "codesys": _path_counts("", "decision: additional axes go with the path"),
+    "grbl": tuple(
+        row
+        for row in _path_counts(_MINUTES, "Grbl's documentation of G93 and G94")
+        if "rotary" not in row.kind
+    ),
     "gost": _path_counts("", "decision: ISO practice"),
     "mefi": _path_counts("", "decision: ISO practice; the page shows no feed"),
 }

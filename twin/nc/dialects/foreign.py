@@ -103,7 +103,8 @@ TEXTS: tuple[Foreign, ...] = (
         "a program for Marlin, a 3D printer's control",
         "post it for one of: twin dialects",
         r"(?m)^\s*;\s*FLAVOR:|^\s*;\s*(?:generated (?:by|with) )?(?:PrusaSlicer|Cura_SteamEngine|Slic3r|Marlin)"
-        r"|^\s*M(?:104|109|140|190|82|83|106|107|204|205|400|420) ?(?:S|T|P|;|$)",
+        r"|^\s*M(?:104|109|140|190|82|83|106|107|204|205|400|420) ?(?:S|T|P|;|$)"
+        r"|^\s*M(?:17|18|84|280|300)\b(?! *[A-RT-Z])",
         2,
         comments=True,
     ),
@@ -113,8 +114,18 @@ TEXTS: tuple[Foreign, ...] = (
         r"(?m)^\s*\{\"?(?:sr|qr|xvm|gc|sys)\"?\s*:",
         comments=True,
     ),
+    Foreign(
+        "a program for Mach3 or Mach4",
+        "write G20 for G70, G21 for G71, leave G50 out, and --dialect linuxcnc reads it",
+        r"(?s)G9[01]\.1.{0,200}?G(?:50|7[01])(?![0-9.])|G(?:50|7[01])(?![0-9.]).{0,200}?G9[01]\.1",
+    ),
+    Foreign(
+        "a program for a lathe",
+        "the machines here are mills",
+        r"(?m)^[^(\n]*G28 *[UW]-?0|G96 *S|G50 *S\d|\bT(\d\d)\1\b",
+        2,
+    ),
     Foreign("a list of Grbl's settings", "it holds no moves", r"(?m)^\$\d+ ?= ?[\d.]+", 3),
-    Foreign("a program for Grbl", _AS_LINUXCNC, r"(?m)^\$(?:[HXCGI#$]\s*$|RST=[$#*]|J=)"),
     Foreign(
         "a program for a Brother Speedio",
         "write G100 T as T, G43 H and M6, or post it for fanuc",
@@ -149,7 +160,6 @@ CONTROLS: tuple[tuple[str, str, str], ...] = (
         "a program for a Mitsubishi control",
         f"{_POST}; where it is plain ISO: --dialect fanuc",
     ),
-    (r"\bgrbl", "a program for Grbl", _AS_LINUXCNC),
     (r"\bmach ?[234]\b|mach2/3|mach3mill", "a program for Mach3 or Mach4", _AS_LINUXCNC),
     (r"\bmarlin\b|reprap|smoothie", "a program for Marlin or a control like it", _AS_LINUXCNC),
     (

@@ -32,9 +32,9 @@ def overview() -> str:
 
 def describe(dialect: Dialect) -> str:
     """The page of one dialect, as Markdown."""
-    supported = {n: code for n, code in dialect.g.items() if not code.refused}
-    refused = {n: code for n, code in dialect.g.items() if code.refused}
-    start = ", ".join(f"G{number}" for number in sorted(dialect.start))
+    supported = {n: code for n, code in dialect.codes.g.items() if not code.refused}
+    refused = {n: code for n, code in dialect.codes.g.items() if code.refused}
+    start = ", ".join(f"G{number}" for number in sorted(dialect.codes.start))
     sections = [
         f"# {dialect.title} (`{dialect.name}`)",
         "Made from the declaration in this folder by `python -m twin.nc.dialects.pages`.",
@@ -100,9 +100,9 @@ def _g_table(codes: dict[float, GCode]) -> str:
 def _m_table(dialect: Dialect) -> str:
     rows = [
         (f"M{number}", code.meaning, "after the motion" if code.late else "before the motion")
-        for number, code in sorted(dialect.m.items())
+        for number, code in sorted(dialect.codes.m.items())
     ]
-    if dialect.any_m:
+    if dialect.codes.any_m:
         rows.append(("any other", "a function of the machine", "before the motion"))
     return _table(("code", "meaning", "when"), rows)
 
@@ -110,7 +110,7 @@ def _m_table(dialect: Dialect) -> str:
 def _word_table(dialect: Dialect) -> str:
     """Words by their meanings, those of the same meaning in one row."""
     rows: dict[str, list[str]] = {}
-    for word, meaning in sorted(dialect.word_meanings.items()):
+    for word, meaning in sorted(dialect.words.meanings.items()):
         rows.setdefault(meaning, []).append(word)
     return _table(("word", "meaning"), [(" ".join(words), text) for text, words in rows.items()])
 
@@ -119,7 +119,7 @@ def _feed_sections(dialect: Dialect) -> list[str]:
     """What F counts in every kind of move; the column of inverse time where the control has it."""
     if dialect.name not in OWN:
         return []
-    rows, timed = feed_rows(dialect.name), 93 in dialect.g
+    rows, timed = feed_rows(dialect.name), 93 in dialect.codes.g
     head = ("move", "F as a rate", *(("F of G93",) if timed else ()), "known from")
     cells = [(r.kind, r.rate, *((r.inverse,) if timed else ()), r.ground) for r in rows]
     return [
@@ -135,7 +135,7 @@ def _expression_sections(dialect: Dialect) -> list[str]:
         return []
     operators = " ".join(f"`{name}`" for name in syntax.operators)
     functions = ", ".join(f"`{name}`" for name in sorted(syntax.functions))
-    keywords = ", ".join(f"`{name}`" for name in sorted(dialect.statements))
+    keywords = ", ".join(f"`{name}`" for name in sorted(dialect.codes.statements))
     opening, closing = syntax.brackets
     return [
         "## Computed values and program flow",

@@ -166,7 +166,7 @@ def sweep_arc(
 def start_and_end(control: Control, target: list[float]) -> tuple[Point, Point]:
     """Abscissa and ordinate of where the arc begins and ends."""
     plane = control.modal.plane
-    return plane.point(control.programmed), plane.point(target)
+    return plane.point(control.motion.programmed), plane.point(target)
 
 
 def arc_center(control: Control, target: list[float], rule: ArcRule) -> Point:

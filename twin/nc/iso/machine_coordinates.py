@@ -37,7 +37,7 @@ def enter_machine_frame(control: Control, code: str) -> PartFrame:
     frame.set_shifts([[0.0] * len(names) for _ in SHIFTS])
     frame.set_shift("offset", [zero.get(name, 0.0) for name in names])
     frame.set_matrix(IDENTITY)
-    control.reframed()
+    control.motion.reframed()
     return kept
 
 
@@ -45,7 +45,7 @@ def leave_machine_frame(control: Control, kept: PartFrame) -> None:
     """Let programmed coordinates be what they were."""
     control.frame.set_shifts(kept.shifts)
     control.frame.set_matrix(kept.matrix)
-    control.reframed()
+    control.motion.reframed()
 
 
 @contextmanager
@@ -55,7 +55,7 @@ def machine_frame(control: Control, code: str) -> Iterator[None]:
     Raises:
         ProgramError: Nobody said where machine zero is, or compensation is in force.
     """
-    if control.path.compensating:
+    if control.path.compensation.in_force:
         message = "machine coordinates know no radius compensation"
         control.fail("compensation-change", message, hint=f"end it by G40 before {code}")
     kept = enter_machine_frame(control, code)

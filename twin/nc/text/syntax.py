@@ -1,7 +1,8 @@
 """How a dialect writes its blocks, and by what its programs are known."""
 
 import dataclasses
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
+from typing import Protocol
 
 from twin.nc.text.expressions import ExpressionSyntax
 
@@ -42,6 +43,7 @@ class Syntax:
         trailing_prose: Words of prose behind a block's words are left out with a warning.
         several_blocks: A further N begins a further block on the same line.
         named_labels: ``[NAME]`` at its begin names a block.
+        fractional_labels: The number of a block may have a fraction, which does not count.
         skip_levels: A digit may stand behind the slash of a block that can be skipped.
         block_end: Character that may end a line and says no more, such as ``;`` for the end of a block.
         inner_comments: Comments in brackets may stand anywhere within a statement.
@@ -63,6 +65,7 @@ class Syntax:
     trailing_prose: bool = False
     several_blocks: bool = False
     named_labels: bool = False
+    fractional_labels: bool = False
     skip_levels: bool = False
     block_end: str = ""
     inner_comments: bool = False
@@ -75,25 +78,32 @@ class Syntax:
     excused: Callable[[str, str], str | None] = lambda _line, _previous: None
 
 
-@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
-class Language:
-    """What reading a program needs to know of a dialect.
+class Language(Protocol):
+    """What reading a program needs to know of a dialect."""
 
-    Attributes:
-        name: As given on the command line.
-        code_page: Legacy code page of its programs, such as ``cp1251``.
-        syntax: How blocks are written.
-        statements: Keywords of statements, and what they do.
-    """
+    @property
+    def name(self) -> str:
+        """As given on the command line."""
+        ...
 
-    name: str
-    code_page: str
-    syntax: Syntax
-    statements: Mapping[str, object] = dataclasses.field(default_factory=dict)
+    @property
+    def code_page(self) -> str:
+        """Legacy code page of its programs, such as ``cp1252``."""
+        ...
 
-    def refusal(self, _code: float) -> str | None:
+    @property
+    def syntax(self) -> Syntax:
+        """How blocks are written."""
+        ...
+
+    @property
+    def keywords(self) -> Collection[str]:
+        """What statements begin with."""
+        ...
+
+    def refusal(self, code: float, /) -> str | None:
         """Why a G code that the control knows is refused, given its number; None: it is not."""
-        return None
+        ...
 
 
 @dataclasses.dataclass(frozen=True, slots=True)

@@ -4,20 +4,19 @@ import { View } from "../view/view.js";
 import { PATCH, readState, STATE } from "../view/wire.js";
 import { Connection } from "./connection.js";
 import { Desk } from "./desk.js";
-import { act_on, make, Words } from "./parts.js";
+import { act_on, LANGUAGE_NAMES, make, Words } from "./parts.js";
 import { Preview } from "./preview.js";
 import { Score } from "./score.js";
 import { Screen } from "./screen.js";
 import { Sheets } from "./sheets.js";
 
 const VIEWS = ["front", "top", "tool", "part", "fit"];
-const LANGUAGE_NAMES = { en: "English", ru: "Русский", it: "Italiano", cs: "Čeština" };
 
 // The entry takes the token out of the address; a browser that is known already comes here with it.
 if (location.hash) history.replaceState(null, "", location.pathname + location.search);
 
 const scene = await (await fetch("scene.json")).json();
-const now = { role: location.pathname.split("/")[1] };
+const now = {};
 let words, told = null, tool = null, follow = "start", queued = false;
 const changed = new Set();
 

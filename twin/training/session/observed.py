@@ -5,6 +5,7 @@ from typing import Protocol
 
 from twin.machine.simulation.live import LiveMachine
 from twin.nc.canonical import NO_BLOCK_NUMBER
+from twin.nc.functions import SpindleState
 from twin.nc.text.diagnostics import Diagnostic, ProgramError
 from twin.nc.text.lexer import Lexer
 from twin.nc.text.reporter import Reporter
@@ -76,6 +77,7 @@ class Observed(Protocol):
     running: str
     alarm: Notice | None
     samples: Samples
+    spindle: SpindleState
     faults: list[FaultTable]
 
     @property

@@ -161,8 +161,9 @@ class ProgramRun:
         """
         self._machine = machine
         self._limits = motion_limits(machine)
-        self._control = Executor(dialect, settings, source)
-        self._control.prepare()
+        self._executor = Executor(dialect, settings, source)
+        self._control = self._executor.control
+        self._executor.prepare()
         self._options = options
         self._searched = options.search
         self._found: Block | None = None
@@ -436,7 +437,7 @@ class ProgramRun:
                 if block is None and not control.ended:
                     block = control.program_counter.next()
                 if block is None:
-                    control.finish()
+                    self._executor.finish()
                     self.ending = "end"
                     self._require_found()
                     break
@@ -445,7 +446,7 @@ class ProgramRun:
                     break
                 mark = self._count + len(control.path)
                 refused = control.path.refusal(block.line)
-                control.run(block)
+                self._executor.run(block)
                 refused = None
                 if self._searched:
                     self._collect(control.path.take())
@@ -493,11 +494,13 @@ class ProgramRun:
 
     def _note(self, block: Block, mark: int) -> None:
         control = self._control
-        active = control.active.numbers()
+        active = control.modal.active.numbers()
         if active != self._active:
             self._active, self._codes = active, tuple(f"G{number:g}" for number in active)
         factor = FEED_FACTORS.get(control.modal.feed_mode)
-        state = ModalState(block.line, self._codes, control.feed, control.tools.spindle, factor)
+        state = ModalState(
+            block.line, self._codes, control.motion.feed, control.tools.spindle, factor
+        )
         self._walk.note(mark, state)
 
     def _look_for_stop(self, block: Block) -> None:
@@ -539,16 +542,16 @@ class ProgramRun:
 
     def left(self) -> Inherited:
         """What an MDI block leaves in force for the next one."""
-        control = self._control
+        control, motion = self._control, self._control.motion
         shifts = [list(shift) for shift in control.frame.shifts]
-        return Inherited(control.modal.fork(), shifts, control.feed, control.spindle)
+        return Inherited(control.modal.fork(), shifts, motion.feed, motion.spindle)
 
     def _inherit(self, before: Inherited) -> None:
-        control = self._control
+        control, motion = self._control, self._control.motion
         control.modal.restore(before.modal)
         control.frame.set_shifts([list(shift) for shift in before.shifts])
-        control.programmed = control.frame.to_programmed(control.part)
-        control.feed, control.spindle = before.feed, before.spindle
+        motion.reframed()
+        motion.feed, motion.spindle = before.feed, before.spindle
 
     def _collect(self, skipped: Chunk) -> None:
         """Of what a search passes over, keep the last commands of spindle and coolant, and the highest Z."""
@@ -566,7 +569,7 @@ class ProgramRun:
         self.ending_line, self.optional = block.line, False
         control.path.take()
         needed = control.tools.spindle
-        if control.active.get("compensation", NO_COMPENSATION) != NO_COMPENSATION:
+        if control.modal.active.get("compensation", NO_COMPENSATION) != NO_COMPENSATION:
             self.ending = "program"
             self.message = "a search cannot begin within a compensated contour"
         elif needed != self.tool:

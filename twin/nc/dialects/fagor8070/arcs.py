@@ -114,7 +114,7 @@ def tangent_arc(control: Control) -> None:
     Raises:
         ProgramError: Nothing has moved before, or the arc would be a straight line.
     """
-    direction_before = control.direction
+    direction_before = control.motion.direction
     if direction_before is None:
         control.fail("tangent-arc", "G08 needs a move before it")
     goal = take_goal(control, arc=True)
@@ -161,7 +161,7 @@ def _sweep(
     start, end = start_and_end(control, goal.target)
     sweep = sweep_between(start, end, center, clockwise=clockwise)
     if pitch is not None:
-        height = plane.local(goal.target).height - plane.local(control.programmed).height
+        height = plane.local(goal.target).height - plane.local(control.motion.programmed).height
         wanted = _helix_sweep(control, height, pitch, clockwise=clockwise)
         if goal.in_plane:
             turns = max(0, round((abs(wanted) - abs(sweep)) / TURN))
@@ -218,7 +218,7 @@ def _arc_about_own_center(control: Control, *, clockwise: bool) -> None:
         message = f"G31 needs Q and {letters[0]} or {letters[1]}"
         control.fail("temporary-origin", message, control.code_word(31))
     plane = control.modal.plane
-    start = plane.point(control.programmed)
+    start = plane.point(control.motion.programmed)
     center = _given_center(control, centre.words, start)
     if distance(start, center) < SAME_POINT:
         control.fail("arc-center", "the centre lies on the arc's start", centre.words[0])

@@ -18,15 +18,19 @@ from twin.nc.geometry.arcs import SAME_POINT, Point, distance
 from twin.nc.geometry.corners import corner_of
 from twin.nc.geometry.curves import Curve
 from twin.nc.geometry.matrices import dot
-from twin.nc.geometry.planes import Directions, aim, along, point_of, put_point, vector_of, world
+from twin.nc.geometry.planes import (
+    Directions,
+    Plane,
+    aim,
+    along,
+    point_of,
+    put_point,
+    vector_of,
+    world,
+)
 from twin.nc.path.compensation.gouge import Passed
 from twin.nc.path.move_columns import Segment
-from twin.nc.path.segments import IN_PLANE
-
-Refuse = Callable[[Segment, str, str], NoReturn]
-"""Told the segment, the code and the message; raises."""
-Warn = Callable[[Segment, str, str], None]
-"""Told of the segment, the code and the message of a warning."""
+from twin.nc.path.segments import IN_PLANE, MoveReport
 
 _NO_CURVE: Curve = (False, (0.0, 0.0), (0.0, 0.0), (0.0, 0.0), 0.0)
 _NO_PLANE: Directions = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
@@ -57,14 +61,12 @@ class Compensation:
         self,
         drive: Callable[[Segment], None],
         happen: Callable[[Event], None],
-        refuse: Refuse,
-        warn: Warn,
+        report: MoveReport,
     ) -> None:
         """Compensation that is off."""
         self._drive = drive
         self._happen = happen
-        self._refuse = refuse
-        self._warn = warn
+        self._report = report
         self.stage = OFF
         self.plane = _NO_PLANE
         self._signed_offset = 0.0
@@ -85,6 +87,15 @@ class Compensation:
     def in_force(self) -> bool:
         """It has begun, and not ended."""
         return self.stage not in (OFF, LEADING_OUT)
+
+    @property
+    def has_moved(self) -> bool:
+        """It is in force, and a move of its contour has come."""
+        return self.in_force and self.stage is not STARTED
+
+    def acts_in(self, plane: Plane) -> bool:
+        """Whether it is in force in a plane of the part."""
+        return self.in_force and self.plane == plane.directions
 
     def begin(
         self, plane: Directions, signed_offset: float, *, square: bool, indirect: bool
@@ -135,7 +146,7 @@ class Compensation:
             sense = dot(move.normal, plane[2])
             if not abs(sense) >= IN_PLANE:
                 message = "an arc outside the compensated plane cannot be compensated"
-                self._refuse(move, "compensation-plane", message)
+                self._report.refuse(move, "compensation-plane", message)
             curve = (True, start, end, point_of(plane, move.center), move.sweep * sense)
         if self.stage is STARTED:
             self._take_lead(move, curve)
@@ -240,7 +251,7 @@ class Compensation:
     def _take_lead(self, move: Segment, curve: Curve) -> None:
         """Hold the straight move that leads in."""
         if curve[0]:
-            self._refuse(move, "compensation-start", "compensation must start on a line")
+            self._report.refuse(move, "compensation-start", "compensation must start on a line")
         if self._here is None:
             self._here = move.start
         self._hold(move, curve, curve[1])
@@ -266,7 +277,7 @@ class Compensation:
     def _lead_out(self, move: Segment, stand: list[float]) -> None:
         """The first line in the plane leads out; until then only the normal and other axes move."""
         if move.center is not None:
-            self._refuse(move, "compensation-end", "compensation must end on a line")
+            self._report.refuse(move, "compensation-end", "compensation must end on a line")
         plane, contour = self.plane, self._contour
         here = point_of(plane, vector_of(stand))
         start, end = point_of(plane, vector_of(move.start)), point_of(plane, vector_of(move.end))
@@ -291,7 +302,7 @@ class Compensation:
 
     def _refuse_radius(self, move: Segment, code: str, where: str) -> NoReturn:
         message = f"the tool's radius {abs(self._signed_offset):g} does not fit {where}"
-        self._refuse(move, code, message)
+        self._report.refuse(move, code, message)
 
     def _refuse_neck(self, element: Curve, own: Curve | None) -> None:
         """Refuse an element that crosses one that was passed.
@@ -310,7 +321,7 @@ class Compensation:
         depth = lead_curves.depth_of(lead, element, abs(self._signed_offset))
         if depth > 0.0:
             message = f"on its way {way} the contour the tool cuts {depth:.3f} mm into it"
-            self._warn(move, "compensation-lead", message)
+            self._report.warn(move, "compensation-lead", message)
 
 
 def _driven(

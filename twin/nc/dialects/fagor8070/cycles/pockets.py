@@ -115,7 +115,7 @@ class Passes:
 def call_pocket(control: Control, words: str, lengths: str) -> None:
     """Take the words of a pocket where it is called; ``lengths`` are those that count lengths."""
     axis = control.modal.plane.axes[2]
-    control.cycle_values = values = {"start": control.programmed[axis]}
+    control.cycle_values = values = {"start": control.motion.programmed[axis]}
     for address in words:
         if (word := control.take(address)) is not None:
             in_mm = address in lengths
@@ -123,7 +123,7 @@ def call_pocket(control: Control, words: str, lengths: str) -> None:
     incremental = control.modal.incremental
     reference = control.take(control.settings.axes.names[axis])
     if reference is not None:
-        base = control.programmed[axis] if incremental or reference.incremental else 0.0
+        base = control.motion.programmed[axis] if incremental or reference.incremental else 0.0
         values["Z"] = control.length(reference) + base
     values.setdefault("Z", values["start"])
     depth = control.take("I")
@@ -208,8 +208,8 @@ def _passes(control: Control, name: str, radius: float) -> Passes:
 
 def _mill(control: Control, pocket: Pocket, passes: Passes) -> None:
     axis = control.modal.plane.axes[2]
-    start_height = max(control.programmed[axis], passes.reference)
-    feed = control.feed
+    start_height = max(control.motion.programmed[axis], passes.reference)
+    feed = control.motion.feed
     _rise(control, start_height)
     _go(control, pocket.center, rapid=True)
     _rise(control, passes.reference)
@@ -219,17 +219,17 @@ def _mill(control: Control, pocket: Pocket, passes: Passes) -> None:
         if passes.bottom < height < passes.bottom + 1e-6:
             height = passes.bottom
         if feed is not None or passes.plunge is not None:
-            control.feed = passes.plunge or (feed or 0.0) * _DEFAULT_PLUNGE
+            control.motion.feed = passes.plunge or (feed or 0.0) * _DEFAULT_PLUNGE
         _rise(control, height, rapid=False)
-        control.feed = feed
+        control.motion.feed = feed
         for inset in _insets(pocket, passes.step, passes.stock):
             _ring(control, pocket, inset)
         if height > passes.bottom:
             _go(control, pocket.center, rapid=False)
     if passes.stock > 0.0:
-        control.feed = passes.finish or feed
+        control.motion.feed = passes.finish or feed
         _ring(control, pocket, 0.0)
-        control.feed = feed
+        control.motion.feed = feed
     back = control.cycle_values["start"]
     reference_only = control.modal.return_to_reference
     _rise(control, passes.reference if reference_only else max(back, passes.reference))
@@ -257,7 +257,7 @@ def _ring(control: Control, pocket: Pocket, inset: float) -> None:
         begin = turned((pocket.center[0] + length, pocket.center[1]), pocket.center, pocket.angle)
         _go(control, begin, rapid=False)
         if length > 0.0:
-            control.arc_to(list(control.programmed), pocket.center, sign * 360.0)
+            control.arc_to(list(control.motion.programmed), pocket.center, sign * 360.0)
         return
     _rectangle(control, pocket, length, pocket.width - inset, pocket.corner.at(inset))
 
@@ -303,18 +303,18 @@ def _rectangle(
 
 
 def _arc(control: Control, end: Point, center: Point, sweep: float) -> None:
-    plane, target = control.modal.plane, list(control.programmed)
+    plane, target = control.modal.plane, list(control.motion.programmed)
     plane.aim(target, end)
     control.arc_to(target, center, sweep)
 
 
 def _go(control: Control, point: Point, *, rapid: bool) -> None:
-    plane, target = control.modal.plane, list(control.programmed)
+    plane, target = control.modal.plane, list(control.motion.programmed)
     plane.aim(target, point)
     control.line_to(target, rapid=rapid)
 
 
 def _rise(control: Control, height: float, *, rapid: bool = True) -> None:
-    target = list(control.programmed)
+    target = list(control.motion.programmed)
     target[control.modal.plane.axes[2]] = height
     control.line_to(target, rapid=rapid)

@@ -1,0 +1,2 @@
+G0 X10 Y5
+X0 (G0 stays)
