@@ -7,8 +7,8 @@ import pytest
 
 from twin.nc.canonical import concatenate
 from twin.nc.interpreter import Interpretation
-from twin.run import interpreted as room
-from twin.run.interpreted import interpreted
+from twin.run import dry_run as room
+from twin.run.dry_run import interpreted
 from twin.run.preparation import Preparation, prepare
 from twin.run.progress import no_progress
 from twin.run.run import Run
