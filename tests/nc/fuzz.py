@@ -51,6 +51,16 @@ PIECES = {
     "|IF [#1 NE #0] THEN #2=1|WHILE [#1 LT 9] DO1|END1|DO2|END2|GOTO 5|N5|G65 P2 A1. I2. I3.|G66 P2|G67|#500=1"
     "|X#5001|#5221=3|#11001=5|G68 X0 Y0 R30.|G69|G51 P2.|G50|G51.1 X0|G50.1|G16|G15|G28 Z0|G53 Z1.|G52 X1.|G92 X0"
     "|G54.1 P1|G10 L2 P1 X1.|G43 H1|G49|G73 Z-2. R1. Q.5|K3|H1|D1|G20|G21|G93|/2|ATAN[1]/[2]|ROUND[1.5]|,R1.|,C1.|G107 C5.",
+    "heidenhain": "L X+10 R0 FMAX|L IX+5 F200|CC X+5 Y+5|CC|C X+10 Y+10 DR+|C DR-|CR X+9 Y+9 R+20 DR-|CT X+20 Y+5|LP PR+10 PA+30"
+    "|CP IPA+90 DR+|CP IPA+720 IZ-3 DR+|CTP PR+5 PA+10|RND R2|CHF 1|APPR LT X+0 Y+0 LEN5 RL F90|APPR LCT X+0 Y+0 R3 RR|APPR CT X+1 Y+1 CCA90 R2 RL"
+    "|DEP LN LEN4|DEP LCT X-9 Y-9 R2|DEP CT CCA90 R2|L X+30 RL|L Y+30 R0|TOOL CALL 1 Z S1000 F200 DR+0.1|TOOL DEF 2 L+0 R+3|BLK FORM 0.1 Z X+0 Y+0 Z-9"
+    "|BLK FORM 0.2 X+9 Y+9 Z+0|LBL 1|LBL 0|LBL \"A\"|CALL LBL 1|CALL LBL 1 REP 2|CALL LBL \"A\"|FN 0: Q1 = +5|FN 4: Q2 = +Q1 DIV +2|FN 9: IF +Q1 EQU +5 GOTO LBL 1"
+    "|Q3 = SIN Q1 * ( 2 + Q2 )|L X+Q1 FQ1|QS1 = \"A\" \\|\\| QS2|IF Q1 IS DEFINED GOTO LBL \"A\"|CYCL CALL|CYCL CALL PAT|CYCL CALL POS X+1 Y+1 Z+1|L M99|L M89"
+    "|CYCL DEF 200 ~\n Q200=2 ~\n Q201=-5 ~\n Q206=90 ~\n Q202=2 ~\n Q203=0|CYCL DEF 207\nQ200=1\nQ201=-4\nQ239=1\nQ203=0|CYCL DEF 7.1 X+3|CYCL DEF 10.1 IROT+20"
+    "|CYCL DEF 252 ~\nQ223=20 ~\nQ201=-2 ~\nQ202=1 ~\nQ203=0 ~\nQ200=2 ~\nQ206=9 ~\nQ207=90 ~\nQ366=1|CYCL DEF 208\nQ200=1\nQ201=-3\nQ206=9\nQ334=1\nQ203=0\nQ335=9"
+    "|CYCL DEF 8.1 X|CYCL DEF 8.1|CYCL DEF 11.1 SCL 0.5|CYCL DEF 9.1 T1|CYCL DEF 32.1 T0.1|CYCL DEF 262 ~\nQ335=9 ~\nQ239=1 ~\nQ201=-3 ~\nQ200=1 ~\nQ203=0 ~\nQ207=9"
+    "|CYCL DEF 220\nQ216=0\nQ217=0\nQ244=9\nQ245=0\nQ246=360\nQ247=0\nQ241=3|PATTERN DEF POS1 (X+1 Y+2 Z+0)|PATTERN DEF CIRC1 (X+1 Y+2 D+9 START+0 NUM3 Z+0)"
+    "|L Z-5 FMAX M91|M140 MB MAX|M140 MB 5|M126|L C+400|M94|M136|STOP|END PGM A MM|PLANE RESET|12|~|; text ~|* - a|L M3 M8|L F AUTO|L FU0.1|TRANS DATUM AXIS X+1",
     "mefi": 'G10 Z1|G09|G98|G73 L1 Q2|G73 L2|L1|Q3|"text|I100',
 }  # fmt: skip
 PIECES["haas"] = (
@@ -85,7 +95,7 @@ JUNK = [
 
 
 def _texts(dialect: Dialect) -> list[bytes]:
-    paths = [*(ROOT / "programs" / dialect.name).glob("*.nc")]
+    paths = [*(ROOT / "programs" / dialect.name).glob("*.[nh]*")]
     paths += (ROOT / "tests" / "golden" / dialect.name).glob("*/*.nc")
     return [path.read_bytes() for path in sorted(paths)]
 

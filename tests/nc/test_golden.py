@@ -17,7 +17,9 @@ from twin.nc.interpreter import Interpretation
 from twin.nc.text.source import read_source
 
 GOLDEN = ROOT / "tests" / "golden"
-PROGRAMS = sorted((ROOT / "programs").glob("*/*.nc"))
+PROGRAMS = sorted(
+    path for suffix in ("nc", "h") for path in (ROOT / "programs").glob(f"*/*.{suffix}")
+)
 RULES = sorted(GOLDEN.glob("*/*/*.nc"))
 
 

@@ -7,8 +7,8 @@ import pytest
 from twin.errors import ConfigError, EmptyProgramError, UsageError
 from twin.nc.text.diagnostics import ProgramError
 from twin.run.assumed_job import AssumedJob, text_beside, with_assumptions
-from twin.run.assumed_tools import numbered_tool, tool_of_comment
 from twin.run.preparation import Preparation, prepare
+from twin.run.reading.assumed_tools import numbered_tool, tool_of_comment
 
 CONTOUR = """%
 O01001 (PLATE)

@@ -17,10 +17,10 @@ from twin.nc.dialects.recognition import HEAD_LINES, comments_of, without_commen
 from twin.nc.functions import TOOL_CHANGE
 from twin.nc.interpreter import Interpretation
 from twin.nc.text.diagnostics import ProgramError
-from twin.run.assumed_reading import AssumedReading
-from twin.run.assumed_tools import BELOW, tool_lines
 from twin.run.placement import part_zero
 from twin.run.preparation import IGNORED_AT_ZERO, Preparation, anywhere, prepare_job
+from twin.run.reading.assumed_reading import AssumedReading
+from twin.run.reading.assumed_tools import BELOW, tool_lines
 
 _MACHINE_ZERO_UNKNOWN = "no-machine-zero"
 """The finding of a program that counts from machine zero, where no job says where that lies."""

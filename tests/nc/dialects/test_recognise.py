@@ -38,6 +38,10 @@ OWN = {
         "G154 P1\nG110", "G36 I1.\nX5.,C1.", "G102 X1\nG65 P1", "G136\nG65 P1", "G107 C5.\nG83 I1.",
         "IF[#1EQ1]GOTO5\nG187 P1", "WHILE[#1LT5]DO1\nG187", "#3000=1\nG187", ":1\nG187",
     ],
+    "heidenhain": [
+        "BEGIN PGM A MM", "BLK FORM 0.1 Z X+0 Y+0 Z-9", "4 CYCL DEF 7.0 DATUM SHIFT", "LBL 1", "12 FN 0: Q1 = +5", "APPR LT X+0 Y+0 LEN5 RL",
+        "7 L X+10 Y+5 R0 FMAX M3", "L Z+50 FMAX ; text", "CALL LBL 5 REP 2",
+    ],
     "grbl": ["$H", "$X", "$J=G91 X5 F100", "$X\nG43.1 Z5", "$H\nG28.1", "$H\nG1 X5 ; comment"],
     "mefi": ['G00 X1 "pohyb', "N5 X0 G73 L5 Q2", "G09 G02 X0 I100\nG73 Q2", "N5 X0 G73 Q2 L5"],
 }  # fmt: skip
@@ -78,7 +82,7 @@ SHARED = (
     (":1000", ("fanuc", "haas")),
     ("G09 G02 X0 I100", ("fanuc", "haas", "mefi")),
     ("G2 I50 J0 T180", ("codesys", "fanuc", "haas", "linuxcnc")),
-    ("G1 X5 ; comment", ("fagor8070", "fanuc", "grbl", "haas", "linuxcnc")),
+    ("G1 X5 ; comment", ("fagor8070", "fanuc", "grbl", "haas", "linuxcnc", "heidenhain")),
 )
 """Words that several controls know."""
 UNTOLD = (
@@ -142,8 +146,10 @@ def test_words_of_two_dialects_ask() -> None:
 
 
 def test_an_unknown_dialect_names_the_known() -> None:
-    with pytest.raises(UsageError, match="gost, codesys, fagor8070, mefi, fanuc, haas, linuxcnc"):
-        dialect_named("heidenhain")
+    with pytest.raises(
+        UsageError, match="gost, codesys, fagor8070, mefi, fanuc, haas, linuxcnc, grbl, heidenhain"
+    ):
+        dialect_named("dialog11")
 
 
 WRITTEN_FOR_ANOTHER = {"haas/unknown-g.nc"}

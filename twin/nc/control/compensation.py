@@ -28,8 +28,8 @@ def tool_numbered(control: Control, word: Word) -> int:
     return number
 
 
-def compensate(control: Control, side: float, radius: float) -> None:
-    """Start compensation on one side with a radius [mm].
+def compensate(control: Control, side: float, radius: float, *, led: bool = False) -> None:
+    """Start compensation on one side with a radius [mm]; ``led`` as ``Compensation.begin`` has it.
 
     Raises:
         ProgramError: It is in force already, or the radius is no radius.
@@ -53,4 +53,5 @@ def compensate(control: Control, side: float, radius: float) -> None:
         side * radius * handedness(control.frame.matrix),
         square=modal.square_corners,
         indirect=modal.indirect_leads,
+        led=led,
     )

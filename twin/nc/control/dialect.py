@@ -1,7 +1,7 @@
 """What a dialect is made of: its syntax, its codes, its words, its rules, and the decisions behind them."""
 
 import dataclasses
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
 
 from twin.nc.control.codes import Codes, Words
@@ -42,6 +42,7 @@ class Dialect:
         units: Units of lengths and feeds, for people.
         decisions: Every decision taken for it.
         marks: What tells its programs from others.
+        tables: Further tables of its page: what is named, and what it is, by title.
         library: Adds files that the program calls, looked for in the folder of the program and read as the
             dialect is.
     """
@@ -56,6 +57,7 @@ class Dialect:
     units: str
     decisions: tuple[Decision, ...]
     marks: tuple[Mark, ...]
+    tables: Mapping[str, Mapping[str, str]] = dataclasses.field(default_factory=dict)
     library: Callable[[Source, Path, Language], Source] | None = None
 
     @property

@@ -289,9 +289,8 @@ class ProgramCounter:
         code, message = "unknown-label", f"{word} names {name}, and no block has it"
         if count > 1:
             code, message = "ambiguous-label", f"{word} names {name}, and {count} blocks have it"
-        self._report.fail(
-            code, message, *fail_at, hint=f"blocks here: {shown}{more}" if known else None
-        )
+        hint = f"blocks here: {shown}{more}" if known else f"write {name} before its block"
+        self._report.fail(code, message, *fail_at, hint=hint)
 
 
 _SHOWN_LABELS = 12

@@ -40,18 +40,23 @@ def describe(dialect: Dialect) -> str:
         "Made from the declaration in this folder by `python -m twin.nc.dialects.pages`.",
         f"Units: {dialect.units}.",
         f"Comments: {_comments(dialect)}. Files are read as UTF-8, else as {dialect.code_page}.",
-        f"In force when a program starts: {start}.",
-        "## G codes",
-        _g_table(supported),
+        *(
+            (f"In force when a program starts: {start}.", "## G codes", _g_table(supported))
+            if supported
+            else ()
+        ),
         "## M codes",
         _m_table(dialect),
         "## Words",
         _word_table(dialect),
         *_expression_sections(dialect),
         *_feed_sections(dialect),
-        "## Refused",
-        _REFUSED,
-        _refused_table(refused),
+        *(
+            section
+            for title, rows in dialect.tables.items()
+            for section in (f"## {title}", _table(("word", "meaning"), rows.items()))
+        ),
+        *(("## Refused", _REFUSED, _refused_table(refused)) if supported else ()),
         "## Decisions where the documents are silent",
         f"Each is shown by a program of `tests/golden/{dialect.name}/decisions`.",
         _decisions(dialect),

@@ -20,6 +20,7 @@ _NAMES: Mapping[str, str] = {
     "fagor8070": r"\bfagor\b",
     "codesys": r"\bcodesys\b|softmotion",
     "mefi": r"\bmefi\b",
+    "heidenhain": r"heidenhain|\b(?:i?tnc ?[3-7]\d\d)\b",
     "grbl": r"\bgrbl",
 }
 """What comments call the controls, and posts for them."""

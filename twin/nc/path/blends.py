@@ -41,12 +41,14 @@ class Blend:
         size: Radius of a fillet; distance from the corner of the others [mm].
         plane: In which it lies, part coordinates.
         halves: At most half of each move is given up, so that the size adapts to short moves.
+        feed: Of the blend [mm/min]; NaN: that of the first move.
     """
 
     kind: BlendKind
     size: float
     plane: Plane
     halves: bool = False
+    feed: float = math.nan
 
 
 class NoBlendError(Exception):
@@ -81,13 +83,14 @@ def blend_corner(
     begin, end = curves.point_at(before, left), curves.point_at(behind, right)
     head = part_of(first, before, plane, 0.0, left)
     tail = part_of(second, behind, plane, right, 1.0)
+    paced = head if math.isnan(blend.feed) else dataclasses.replace(head, feed=blend.feed)
     if blend.kind is BlendKind.CHAMFER:
-        return head, [line_between(first, head.end, tail.start)], tail
+        return head, [line_between(paced, head.end, tail.start)], tail
     if blend.kind is BlendKind.SPLINE:
         return head, _spline(head, tail, curves.length_of(before) * (1.0 - left)), tail
     if blend.kind is BlendKind.FILLET:
         sweep = sweep_between(begin, end, center, clockwise=turn < 0.0)
-        return head, _arcs(head, tail, plane, [curves.arc(begin, end, center, sweep)]), tail
+        return head, _arcs(paced, tail, plane, [curves.arc(begin, end, center, sweep)]), tail
     leaving, arriving = curves.tangent_at(before, left), curves.tangent_at(behind, right)
     return head, _arcs(head, tail, plane, _biarc(begin, end, leaving, arriving)), tail
 

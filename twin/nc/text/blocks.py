@@ -18,7 +18,7 @@ class Word(NamedTuple):
 
     Attributes:
         address: Upper case, such as ``X`` or ``FF``.
-        value: A number, or an expression where the program computes it.
+        value: A number, or an expression where the program computes it; NaN where it has none, as ``FMAX``.
         column: First character in the line, from 0.
         width: Characters from the address to the end of the value.
         incremental: The word alone is incremental (``X20I``).
@@ -35,6 +35,8 @@ class Word(NamedTuple):
     @property
     def text(self) -> str:
         """The word as a programmer would write it."""
+        if self.value != self.value:
+            return self.address
         value = f"{self.value:.10g}" if isinstance(self.value, float) else "..."
         return f"{self.address}{value}"
 

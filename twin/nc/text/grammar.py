@@ -31,6 +31,7 @@ class Grammar:
         address: An address alone.
         suffix: The incremental suffix alone.
         statement: The keyword of a statement, or None where the dialect has none.
+        flag: A word without a value, or None likewise.
         reader: Reads computed values, or None.
         unfinished: The end of a text that a bracket must follow as a value, or None.
     """
@@ -54,6 +55,7 @@ class Grammar:
         self.comment_openings = {comment.opening[0] for comment in syntax.comments}
         self.address = _compiled(rf"{BLANKS}({syntax.address}){BLANKS_BETWEEN}")
         self.suffix = _compiled(suffix)
+        self.flag = _compiled(rf"{BLANKS}({syntax.flag})") if syntax.flag is not None else None
         self.statement = (
             _compiled(rf"{BLANKS}({syntax.statement})") if syntax.statement is not None else None
         )

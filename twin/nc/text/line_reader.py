@@ -18,6 +18,7 @@ from twin.nc.text.expressions import (
 from twin.nc.text.grammar import Grammar
 from twin.nc.text.plain_word import BLANKS
 from twin.nc.text.reporter import Reporter
+from twin.nc.text.slips import near, slip_at
 
 LARGEST_LABEL = 4_294_967_295
 """Largest N number (32 bits, as the Fagor manual states)."""
@@ -43,8 +44,12 @@ _LETTERS = frozenset(string.ascii_uppercase) - {"N"}
 """Addresses of words as they are."""
 _SHORT = len(f"{LARGEST_NUMBER:.0f}")
 """Characters of words whose number is below the largest one."""
-_LOOKALIKES = str.maketrans("АВСЕНІКМОРТХУЗ", "ABCEHIKMOPTXY3")
-"""Cyrillic letters that look like Latin ones: a keyboard left in the wrong layout."""
+_LOOKALIKES = str.maketrans("АВСЕНІКМОРТХУЗΑΒΕΖΗΙΚΜΝΟΡΤΥΧ", "ABCEHIKMOPTXY3ABEZHIKMNOPTYX")
+"""Cyrillic and Greek letters that look like Latin ones: a keyboard left in the wrong layout."""
+
+
+_LONE_LETTER = re.compile(r"(?<![A-Za-z#\[])[A-Za-z]$")
+"""The address of a word without a value."""
 
 
 class LineReader:
@@ -74,6 +79,7 @@ class LineReader:
         """
         has_statements = self._grammar.statement is not None
         end = len(self._line)
+        self._begin()
         while self._at < end:
             if has_statements and not self._words and self._statement():
                 continue
@@ -84,9 +90,13 @@ class LineReader:
         self._close()
         return self._done
 
+    def _begin(self) -> None:
+        """Read what can only begin a line, where a language has such a thing."""
+
     def _plain_words(self) -> bool:
         """Read words with plain numbers; True behind an N where a statement may follow."""
         grammar, at, add = self._grammar, self._at, self._words.append
+        relative = self._syntax.relative
         for blanks, written, address, number, suffix in grammar.words.findall(self._line, at):
             if not written:
                 break
@@ -101,6 +111,8 @@ class LineReader:
                         return True
                     add = self._words.append
                     continue
+                if address in relative:
+                    address, suffix = relative[address], address
             value = float(number)
             if width > _SHORT and not -LARGEST_NUMBER <= value <= LARGEST_NUMBER:
                 self._fail("number-range", f"the value is not within ±{LARGEST_NUMBER:g}", begin)
@@ -255,7 +267,9 @@ class LineReader:
         suffix = self._grammar.suffix.match(self._line, end)
         assert suffix is not None
         self._at = suffix.end()
-        self._words.append(Word(name, expression, begin, self._at - begin, bool(suffix[1])))
+        incremental = bool(suffix[1]) or name in self._syntax.relative
+        name = self._syntax.relative.get(name, name)
+        self._words.append(Word(name, expression, begin, self._at - begin, incremental))
         return True
 
     def _assignment(self) -> bool:
@@ -307,10 +321,22 @@ class LineReader:
         name = _NAME.match(self._line, begin)
         if name is not None and error.code == "unknown-function":
             message = f"'{name[0]}' is no word of {self._grammar.language.name}"
-            hint = f"a value is a number, a variable or a function; {self._comments()}"
+            usual = f"a value is a number, a variable or a function; {self._comments()}"
+            hint = self._slip_at(begin) or usual
             self._fail("unknown-word", message, begin, width=len(name[0]), hint=hint)
         column = begin if error.column is None else min(error.column, len(self._line) - 1)
-        self._fail(error.code, str(error), column, hint=error.hint)
+        lone = _LONE_LETTER.search(self._line[: error.column].rstrip(" \t="))
+        if error.column is not None and lone is not None:
+            hint = self._slip_at(lone.start()) or "write a number after it"
+            self._fail("missing-value", f"'{lone[0]}' has no value", lone.start(), hint=hint)
+        slip = None
+        if error.code in ("expression", "unknown-function"):
+            slip = self._slip_at(column) or self._slip_at(begin)
+        hint = (slip or error.hint) if error.code == "unknown-function" else (error.hint or slip)
+        self._fail(error.code, str(error), column, hint=hint)
+
+    def _slip_at(self, column: int) -> str | None:
+        return slip_at(self._line, column, self._grammar.language.keywords)
 
     def _label(self, number: str, begin: int) -> None:
         value = float(number)
@@ -352,17 +378,17 @@ class LineReader:
         character = self._line[at]
         latin = character.upper().translate(_LOOKALIKES)
         address = self._grammar.address.match(self._line, at)
-        if "\u0400" <= character <= "\u04ff":
-            message = f"'{character}' is a Cyrillic letter"
+        if "\u0370" <= character <= "\u04ff":
+            alphabet = "Cyrillic" if character >= "\u0400" else "Greek"
+            message = f"'{character}' is a {alphabet} letter"
             hint = f"write the Latin {latin}" if latin != character.upper() else self._comments()
             self._fail("foreign-letter", message, at, hint=hint)
         statement = _STATEMENT.match(self._line, at)
         if statement is not None and self._grammar.statement is not None:
-            known = ", ".join(self._grammar.language.keywords)
-            message = f"'{statement[0]}' is no statement of {self._grammar.language.name}"
-            self._fail(
-                "unknown-statement", message, at, width=len(statement[0]), hint=f"known: {known}"
-            )
+            language = self._grammar.language
+            message = f"'{statement[0]}' is no statement of {language.name}"
+            hint = self._slip_at(at) or near(statement[0], language.keywords, language.name)
+            self._fail("unknown-statement", message, at, width=len(statement[0]), hint=hint)
         if address is not None:
             self._refuse_code()
             self._refuse_missing_value(address)
@@ -372,21 +398,26 @@ class LineReader:
             hint = "write a blank" if character.isspace() else None
             self._fail("unreadable", message, at, hint=hint)
         message = f"'{character}' begins no word of {self._grammar.language.name}"
-        self._fail("unreadable", message, at, hint=self._hint_for(character))
+        self._fail("unreadable", message, at, hint=self._hint_for(at))
 
     def _refuse_missing_value(self, address: re.Match[str]) -> NoReturn:
         name, end = address[1], address.end()
         garbled = _GARBLED.match(self._line, end)
         if garbled is not None:
             message = f"'{garbled[0]}' is no number"
-            self._fail("missing-value", message, end, width=len(garbled[0]))
+            hint = self._slip_at(end)
+            self._fail("missing-value", message, end, width=len(garbled[0]), hint=hint)
         slip = "O" in (name.upper(), self._line[end : end + 1].upper())
         hint = "the letter O is no 0" if slip else "write a number after it"
         self._fail("missing-value", f"'{name}' has no value", address.start(1), hint=hint)
 
-    def _hint_for(self, character: str) -> str | None:
+    def _hint_for(self, at: int) -> str | None:
+        character = self._line[at]
         if character == ",":
             return "decimals begin with a point"
+        slip = self._slip_at(at)
+        if slip is not None:
+            return slip
         return self._comments() if character in ";$\"('/" else None
 
     def _comments(self) -> str:

@@ -53,6 +53,12 @@ class Syntax:
             is none.
         open_assignments: What is assigned needs no brackets around its operators.
         blanks_in_numbers: Blanks between the characters of a number do not count.
+        decimal_comma: A comma between digits is a decimal point.
+        worded: Keywords of statements behind which the block's words stand; a block may also have a bare number
+            before it, and none of both.
+        flag: Regular expression of words that have no value, such as ``FMAX``; None: there are none.
+        continued: Character at the end of a line whose block goes on in the next one; empty: none does.
+        relative: Addresses of words that are incremental, such as ``IX``, and those that they stand for.
         longest_line: Characters that a line may have.
         excused: Why a line that cannot be read may be left out, given it and the line before:
             code of the warning, or None.
@@ -74,6 +80,11 @@ class Syntax:
     assigned: str = ""
     open_assignments: bool = False
     blanks_in_numbers: bool = False
+    decimal_comma: bool = False
+    worded: frozenset[str] = frozenset()
+    flag: str | None = None
+    continued: str = ""
+    relative: Mapping[str, str] = dataclasses.field(default_factory=dict)
     longest_line: int = LONGEST_LINE
     excused: Callable[[str, str], str | None] = lambda _line, _previous: None
 
@@ -113,7 +124,9 @@ class Mark:
     Attributes:
         pattern: Regular expression, searched line by line without regard to case.
         shown: How a person would say it.
+        decides: Where it stands, nothing that other dialects know counts.
     """
 
     pattern: str
     shown: str
+    decides: bool = False

@@ -16,7 +16,7 @@ from twin.nc.dialects.recognition import reading_of
 from twin.nc.interpreter import Interpretation
 from twin.nc.text.diagnostics import Diagnostic, ProgramError
 from twin.nc.text.source import Source, read_source
-from twin.run.assumed_reading import UNKNOWN_FUNCTION, unknown_functions
+from twin.run.reading.assumed_reading import UNKNOWN_FUNCTION, unknown_functions
 
 _PREFERENCE = ("fanuc", "haas", "linuxcnc")
 """Which of several dialects that make the same of a program is taken: what most posts write for comes first."""

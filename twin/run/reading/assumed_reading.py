@@ -10,7 +10,7 @@ from twin.nc.control.dialect import Dialect
 from twin.nc.control.settings import ToolData
 from twin.nc.dialects.recognition import comments_of, without_comments
 from twin.nc.text.source import Source
-from twin.run.assumed_tools import USUAL_LENGTH, listed_tools
+from twin.run.reading.assumed_tools import USUAL_LENGTH, listed_tools
 
 _MOST_LINES = 200_000
 """So many lines are looked at."""
