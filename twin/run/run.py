@@ -41,8 +41,7 @@ from twin.run.cut_notices import (
     tooth_feed_notices,
     unjudged_limit_notices,
 )
-from twin.run.dry_run import DryRun, interpret_all
-from twin.run.interpreted import InterpretedProgram
+from twin.run.dry_run import DryRun, InterpretedProgram, interpret_all
 from twin.run.machining import Machining
 from twin.run.notices import Notice, shown
 from twin.run.outcome import Outcome
