@@ -76,7 +76,7 @@ def test_feeds_that_hardly_differ_are_told_and_ask_nobody(tmp_path: Path) -> Non
 def test_pecks_that_withdraw_differently_ask_nobody(tmp_path: Path) -> None:
     """A Fanuc withdraws by 0.5 mm, LinuxCNC by 0.254 mm: parameters; a hole that is deeper for one of them asks."""
     path = tmp_path / "part.nc"
-    text = "O1\nG21 G90 G54\nG43 H1 Z20.\nG98 G83 X1. Y1. Z-9. R2. Q3. F90.\nG80\nM30\n"
+    text = "O1\nG21 G90 G54\nG0 Z20.\nG98 G83 X1. Y1. Z-9. R2. Q3. F90.\nG80\nM30\n"
     path.write_text(text)
     made = prepare(path)
     assert made.dialect.name == "fanuc"
