@@ -165,7 +165,7 @@ class Motion:
             feed = _limited(feed, self.axis_limits, share)
             acceleration = _limited(acceleration, self.axis_accelerations, share)
             deceleration = _limited(deceleration, self.axis_decelerations, share)
-        self.last = Segment(  # by place: names would cost a block twice what it takes to make one
+        move = Segment(  # by place: names would cost a block twice what it takes to make one
             RAPID if rapid else FEED,
             block.line,
             block.number,
@@ -182,9 +182,10 @@ class Motion:
             sweep,
         )
         if spline is None:
-            self.path.add(self.last)
+            self.path.add(move)
         else:
-            self.path.add_point(self.last, flat=spline[0])
+            self.path.add_point(move, flat=spline[0])
+        self.last = move
         self.programmed = target
         self.part = end
 
