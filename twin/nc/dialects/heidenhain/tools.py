@@ -19,7 +19,8 @@ _HEAD = re.compile(
     re.IGNORECASE,
 )
 """What stands behind TOOL CALL and TOOL DEF: name or number, and the axis of the tool."""
-_CHANGE = change_tool_at(None)
+_CHANGE = change_tool_at(0.0)
+"""Decision: the macro that the machine's builder has put behind TOOL CALL lifts the tool to machine zero."""
 _CORNER = re.compile(
     r"[ \t]*(?:0\.([12])[ \t]*([XYZ](?=[ \t]))?|(CYLINDER)[ \t]+([XYZ])(?=[ \t])|(ROTATION|FILE))",
     re.IGNORECASE,
@@ -86,8 +87,13 @@ def _change(control: Control, number: Word) -> None:
     defined = memory_of(control).defined.get(index)
     if index != 0 and (control.tools.any is None or defined is None):
         tool_numbered(control, number)
-    next_tool(control, number)
-    _CHANGE(control)
+    if defined is None:
+        next_tool(control, number)
+    else:
+        control.tools.selected = index
+        control.function(f"T{index}", {"R": defined.radius})
+    if index != control.tools.spindle:
+        _CHANGE(control)
     control.function("M6", {})
     control.motion.spindle_turns = False
 
