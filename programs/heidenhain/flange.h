@@ -1,5 +1,5 @@
 0  BEGIN PGM FLANGE MM
-1  ; A flange: pocket, slot, studs' ring of holes, threads and a row of pins
+1  ; A flange: a pocket, two slots, a ring of holes and their threads
 2  BLK FORM CYLINDER Z R60 L25 DIST+0
 3  * - circular pocket and two slots, end mill of 10 mm
 4  TOOL CALL 1 Z S5000 F800

@@ -340,7 +340,9 @@ def test_klartext_declares_its_stock_and_its_tools(tmp_path: Path) -> None:
 
 def test_klartext_declares_a_cylinder(tmp_path: Path) -> None:
     blank = "BLK FORM CYLINDER Z R40 L25 DIST+2\n"
-    _, made = raw(tmp_path, KLARTEXT.split("BLK")[0] + blank + KLARTEXT.split("Z+1\n")[1])
+    _, made = raw(
+        tmp_path, KLARTEXT.split("BLK", maxsplit=1)[0] + blank + KLARTEXT.split("Z+1\n")[1]
+    )
     stock = made.tables["stock"]
     assert stock == {
         "shape": "cylinder",

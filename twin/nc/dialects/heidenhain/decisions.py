@@ -88,9 +88,9 @@ DECISIONS = (
         example="straight_between_places",
     ),
     Decision(
-        "What is a tool that is called by its name?",
-        "One whose name is a number is that tool; others are refused.",
-        "The job knows its tools by numbers.",
+        "What is a tool that is called by a name which the job does not give?",
+        "The job's tools in the order in which the program first calls names, with a warning.",
+        "A name alone tells no diameter; the job's order is the only one there is.",
         example="name_of_a_tool",
     ),
     Decision(
