@@ -73,6 +73,19 @@ def test_feeds_that_hardly_differ_are_told_and_ask_nobody(tmp_path: Path) -> Non
     assert "--dialect haas or --dialect linuxcnc" in made.dialect_reason
 
 
+def test_pecks_that_withdraw_differently_ask_nobody(tmp_path: Path) -> None:
+    """A Fanuc withdraws by 0.5 mm, LinuxCNC by 0.254 mm: parameters; a hole that is deeper for one of them asks."""
+    path = tmp_path / "part.nc"
+    text = "O1\nG21 G90 G54\nG0 Z20.\nG98 G83 X1. Y1. Z-9. R2. Q3. F90.\nG80\nM30\n"
+    path.write_text(text)
+    made = prepare(path)
+    assert made.dialect.name == "fanuc"
+    assert (
+        "in line 4 they withdraw pecks differently, fanuc to Z-0.5 and linuxcnc"
+        in made.dialect_reason
+    )
+
+
 def test_a_control_that_would_hardly_feed_was_not_meant(tmp_path: Path) -> None:
     """A Haas counts F300 without a point as 0.3 mm/min; a whole number with a point shows that none is spared."""
     path = tmp_path / "part.nc"

@@ -1,5 +1,7 @@
 """How a control begins radius compensation, and the tools that its words name."""
 
+import math
+
 from twin.nc.control.control import Control, integer_of
 from twin.nc.geometry.matrices import handedness
 from twin.nc.path.compensation.stage import LEADING_OUT, OFF
@@ -58,6 +60,27 @@ def tool_named(control: Control, name: str, word: Word) -> int:
     return known[name]
 
 
+def side_in_force(control: Control) -> float:
+    """The side of the compensation that is in force, as ``compensate`` takes it."""
+    turned = handedness(control.motion.frame.matrix)
+    return math.copysign(1.0, control.path.compensation.signed_offset * turned)
+
+
+def change_radius(control: Control, radius: float, word: Word) -> None:
+    """Another radius of the compensation that is in force, on the same side [mm].
+
+    Raises:
+        ProgramError: There is none.
+    """
+    if not radius > 0.0:
+        message = f"compensation that is in force cannot take the radius {radius:g}"
+        control.fail("compensation-change", message, word, "end it by G40")
+    control.path.flush()
+    control.path.compensation.change(
+        side_in_force(control) * radius * handedness(control.motion.frame.matrix)
+    )
+
+
 def compensate(control: Control, side: float, radius: float, *, led: bool = False) -> None:
     """Start compensation on one side with a radius [mm]; ``led`` as ``Compensation.begin`` has it.
 
@@ -80,7 +103,7 @@ def compensate(control: Control, side: float, radius: float, *, led: bool = Fals
     modal = control.modal
     path.compensate(
         control.motion.part_plane,
-        side * radius * handedness(control.frame.matrix),
+        side * radius * handedness(control.motion.frame.matrix),
         square=modal.square_corners,
         indirect=modal.indirect_leads,
         led=led,
