@@ -5,6 +5,7 @@ import { PATCH, readState, STATE } from "../view/wire.js";
 import { Connection } from "./connection.js";
 import { Desk } from "./desk.js";
 import { Editor } from "./editor.js";
+import { Help } from "./help.js";
 import { Looking } from "./looking.js";
 import { act_on, LANGUAGE_NAMES, make, Words } from "./parts.js";
 import { Preview } from "./preview.js";
@@ -37,7 +38,7 @@ const line = new Connection(hear, (down) => {
   }
 });
 const preview = new Preview(view), trouble = new Trouble(view), looking = new Looking(view, trouble);
-const score = new Score(scene, line), editor = new Editor(line);
+const score = new Score(scene, line), editor = new Editor(line), help = new Help(scene);
 const desk = new Desk(scene, line), screen = new Screen(scene, line), sheets = new Sheets(scene, line, looking, desk, screen, score, editor);
 let attempt = null;
 screen.on_choice = () => { if (now.mode !== undefined && words) sheets.show(now, words); };
@@ -85,6 +86,7 @@ function show_soon() {
       score.show(now, words);
       preview.show(now, changed);
       trouble.show(now);
+      help.show(now, words);
       editor.show(now, words, changed);
       show_hand_over();
       changed.clear();

@@ -132,6 +132,7 @@ class RoomApp:
                 "next": next_scene(scene.name),
                 "title": file.title,
                 "story": file.story,
+                "guide": file.guide,
                 "tasks": [
                     {
                         "text": task.text,
