@@ -42,7 +42,7 @@ from twin.training.server.frames import (
     state_message,
 )
 from twin.training.server.program_check import ProgramCheck
-from twin.training.server.scene_maker import make_scene
+from twin.training.server.scene_maker import scene_of, write_scene
 from twin.training.server.seats import Page, Seats
 from twin.training.session.commands import LONGEST_TEXT
 from twin.training.session.preview import Preview
@@ -305,9 +305,10 @@ class RoomApp:
             return
         title, story = (str(given.get(key, ""))[:LONGEST_TEXT] for key in ("title", "story"))
         try:
-            path = await asyncio.wrap_future(
-                self._driver.inquire(lambda room: make_scene(room, language, title, story, folder))
+            scene = await asyncio.wrap_future(
+                self._driver.inquire(lambda room: scene_of(room, language, title, story))
             )
+            path = await anyio.to_thread.run_sync(write_scene, scene, folder)
         except TwinError as error:
             made = {"refused": _in_all(str(error))}
         else:

@@ -1,10 +1,11 @@
 """Makes a scene of a room as it stands: program, position, tables, faults, and the part as it was cut."""
 
+import contextlib
 import json
 import re
 import unicodedata
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -24,8 +25,20 @@ _FINISHED, _NO_ALARM = 6, 4
 _LONGEST_NAME = 40
 
 
-def make_scene(room: Room, language: Language, title: str, story: str, folder: Path) -> Path:
-    """Write a scene and its program.
+class SceneText(NamedTuple):
+    """A scene that is not written yet.
+
+    Attributes:
+        content: Of its file, but for the program's name.
+        program: The NC program.
+    """
+
+    content: dict[str, Any]
+    program: str
+
+
+def scene_of(room: Room, language: Language, title: str, story: str) -> SceneText:
+    """A room as it stands, as a scene.
 
     Its tasks are to finish the program, and the part where one was cut, and to do it without an alarm; more can
     be written into the file.
@@ -35,10 +48,6 @@ def make_scene(room: Room, language: Language, title: str, story: str, folder: P
         language: Of title and story.
         title: What the scene is called.
         story: What the operator is told first.
-        folder: Where it is written, under a name after the title that nothing has there.
-
-    Returns:
-        The scene's file.
 
     Raises:
         UsageError: The room cannot be written down as a scene.
@@ -46,18 +55,16 @@ def make_scene(room: Room, language: Language, title: str, story: str, folder: P
     tables, file = room.tables, room.scene.file
     if not title.strip():
         raise UsageError("a scene needs a title")
-    if tables.spindle != next(iter(tables.tools)):
-        raise UsageError(
-            f"put tool {next(iter(tables.tools))} into the spindle: scenes begin with it"
-        )
-    name = _free_name(folder, title)
+    first = next(iter(tables.tools))
+    if tables.spindle != first:
+        raise UsageError(f"put tool {first} into the spindle: scenes begin with it")
     words = vocabulary(language).labels
-    scene: dict[str, Any] = {
+    content: dict[str, Any] = {
         "schema": 1,
         "language": language,
         "title": {language: title.strip()},
         "story": {language: story.strip() or title.strip()},
-        "job": file.job.model_dump(mode="json", exclude_unset=True) | {"program": f"{name}.nc"},
+        "job": file.job.model_dump(mode="json", exclude_unset=True),
         "start": _start(room),
         "faults": [fault.model_dump(mode="json", exclude_unset=True) for fault in room.faults],
         "tasks": [
@@ -66,16 +73,32 @@ def make_scene(room: Room, language: Language, title: str, story: str, folder: P
         ],
     }
     if room.work is not None and room.work.removed > 0.0:
-        scene["part"] = _part(room.work)
+        content["part"] = _part(room.work)
+    return SceneText(content, "\n".join(room.lines) + "\n")
+
+
+def write_scene(scene: SceneText, folder: Path) -> Path:
+    """Write a scene and its program, under a name after its title that nothing has there.
+
+    Returns:
+        The scene's file.
+
+    Raises:
+        UsageError: It cannot be written, or is none that stands alone; nothing is left of it.
+    """
+    (title,) = scene.content["title"].values()
+    name = _free_name(folder, title)
     path, program = folder / f"{name}.toml", folder / f"{name}.nc"
+    content = scene.content | {"job": scene.content["job"] | {"program": program.name}}
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        write_text(program, "\n".join(room.lines) + "\n")
-        write_text(path, "".join(f"{key} = {_toml(value)}\n" for key, value in scene.items()))
+        write_text(program, scene.program)
+        write_text(path, "".join(f"{key} = {_toml(value)}\n" for key, value in content.items()))
         read_scene(path)
     except (OSError, TwinError) as error:
-        path.unlink(missing_ok=True)
-        program.unlink(missing_ok=True)
+        for written in (path, program):
+            with contextlib.suppress(OSError):
+                written.unlink()
         raise UsageError(f"this room is no scene that stands alone: {error}") from error
     return path
 
