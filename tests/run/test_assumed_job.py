@@ -260,6 +260,9 @@ def test_the_job_can_be_kept_in_another_folder(tmp_path: Path) -> None:
         ("T2 90 DEG CHAMFER MILL 12 mm", (2, "chamfer", 12.0, None)),
         ("6.8 DRILL", (None, "drill", 6.8, None)),
         ("TC: 5mm Endmill", (None, "flat", 5.0, None)),
+        ("FREZA D5", (None, "", 5.0, None)),
+        ("T02 ID=002  DIA-0.5000  TOOL END MILL", (2, "flat", 0.5, None)),
+        ("FACE MILL H1 D2", (None, "flat", None, None)),
     ],
 )
 def test_comments_tell_tools(comment: str, tool: tuple[object, ...]) -> None:
@@ -267,6 +270,11 @@ def test_comments_tell_tools(comment: str, tool: tuple[object, ...]) -> None:
     number, text = (None, comment) if listed is None else listed
     found = tool_of_comment(text, inches=False)
     assert (number, found.kind, found.diameter, found.corner) == tool
+
+
+def test_a_comment_beside_its_call_tells_the_diameter_alone(tmp_path: Path) -> None:
+    made, _ = raw(tmp_path, CONTOUR.replace("(T1 D=10.", "(").replace("T1 M6", "T1 M6 (D26)"))
+    assert made.job.file.tools[0].diameter == 26.0
 
 
 def test_numbers_without_a_unit_are_inches_where_the_program_is() -> None:

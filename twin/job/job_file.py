@@ -107,6 +107,8 @@ class ToolTable(Table):
 
     number: Annotated[int, Field(ge=0)]
     """By which the program calls it."""
+    name: str = ""
+    """By which a program may call it instead, such as ``T="MILL_10"``."""
     kind: Literal["flat", "ball", "bull", "drill", "chamfer"] = "flat"
     """Shape of its end: flat, round, flat with a round corner, or a point."""
     diameter: Positive = 10.0

@@ -238,7 +238,7 @@ def _control_settings(job: Job, machine: Machine, *, strict: bool) -> ControlSet
         default_rotary_feed=job.file.default_rotary_feed or control.default_rotary_feed,
         start=machine.axes.named(start),
         tools={
-            tool.number: ToolData(radius=tool.diameter / 2.0, length=tool.length)
+            tool.number: ToolData(tool.diameter / 2.0, tool.length, tool.name)
             for tool in job.file.tools
         },
         any_tool="tools" not in job.file.model_fields_set,

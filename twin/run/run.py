@@ -41,8 +41,7 @@ from twin.run.cut_notices import (
     tooth_feed_notices,
     unjudged_limit_notices,
 )
-from twin.run.dry_run import DryRun, interpret_all
-from twin.run.interpreted import InterpretedProgram
+from twin.run.dry_run import DryRun, InterpretedProgram, interpret_all
 from twin.run.machining import Machining
 from twin.run.notices import Notice, shown
 from twin.run.outcome import Outcome
@@ -51,6 +50,7 @@ from twin.run.preparation import Preparation
 from twin.run.progress import Progress
 from twin.run.scope import nothing_judged, scope_of
 from twin.run.stages import StageClock
+from twin.run.tool_use import ToolTimes
 from twin.toolpath.part_frame import PartFrame
 from twin.units import UM_PER_MM
 from twin.version import __version__
@@ -137,6 +137,7 @@ class Run:
         self._process = None
         reached = _Reached(self.part_zero, dry_run.program.start)
         alarm, near_miss = dry_run.alarm or self._overspeed(dry_run), None
+        times = ToolTimes(dry_run.summary.tools, self.machine.file.servo_period_s)
         if alarm is None:
             with self._recording(out) as writer:
                 if motion is None:
@@ -156,6 +157,7 @@ class Run:
                         contour_um = comparison.add(samples)
                         lower = dry_run.summary.tools.lower(samples.setpoint.move)
                         self.trace.add(samples, contour_um, lower)
+                        times.add(samples)
                     if writer is not None:
                         with self.clock.stage("record"):
                             writer.append(samples, contour_um)
@@ -174,7 +176,12 @@ class Run:
             inspection = machining.inspect() if len(reached) else None
         alarms = (*self._breaks(reached.time_s), *(() if alarm is None else (alarm,)))
         outcome = self._outcome(dry_run, machining, reached, cut, inspection, alarms, comparison)
-        return dataclasses.replace(outcome, near_miss=near_miss)
+        return dataclasses.replace(
+            outcome,
+            near_miss=near_miss,
+            tools=times.result(cut),
+            part=machining.picture() if out is not None and len(reached) else b"",
+        )
 
     def _outcome(
         self,

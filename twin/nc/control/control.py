@@ -262,7 +262,7 @@ class Control:
         target, linear = list(self.motion.programmed), self.motion.linear
         unit, relative = self.modal.unit, self.modal.incremental
         for index, word in self.take_axis_words():
-            incremental = relative or word.incremental
+            incremental = word.incremental or (relative and not word.mark)
             here = target[index]
             written = word.value
             assert isinstance(written, float)

@@ -13,7 +13,7 @@ from twin.nc.text.lexer import Lexer
 from twin.nc.text.reporter import Reporter
 from twin.nc.text.source import Source
 
-_LABEL = re.compile(r"N[ \t]*[0-9]|\[", re.IGNORECASE)
+_LABEL = re.compile(r"N[ \t]*[0-9]|[\[:]", re.IGNORECASE)
 Key = TypeVar("Key")
 Found = TypeVar("Found")
 Parsed = TypeVar("Parsed")

@@ -102,7 +102,7 @@ class WordSorter:
         number, codes = number_of(word), self._dialect.codes
         code = codes.g.get(number)
         if code is None:
-            known = [f"G{each:g}" for each in sorted(codes.g)]
+            known = [self._dialect.code_name(each) for each in sorted(codes.g)]
             self._control.fail(
                 "unknown-g",
                 f"{word.text} is unknown to {self._dialect.name}",

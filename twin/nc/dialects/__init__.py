@@ -14,11 +14,23 @@ from twin.nc.dialects.heidenhain import HEIDENHAIN
 from twin.nc.dialects.linuxcnc import LINUXCNC
 from twin.nc.dialects.mefi import MEFI
 from twin.nc.dialects.outside import dialects_from_outside
+from twin.nc.dialects.sinumerik import SINUMERIK
 from twin.nc.text.source import Source
 
 OWN: Mapping[str, Dialect] = {
     dialect.name: dialect
-    for dialect in (GOST, CODESYS, FAGOR8070, MEFI, FANUC, HAAS, LINUXCNC, GRBL, HEIDENHAIN)
+    for dialect in (
+        GOST,
+        CODESYS,
+        FAGOR8070,
+        MEFI,
+        FANUC,
+        HAAS,
+        LINUXCNC,
+        GRBL,
+        HEIDENHAIN,
+        SINUMERIK,
+    )
 }
 """Those of this package by name."""
 _OUTSIDE, _FAILED = dialects_from_outside(OWN)

@@ -80,14 +80,6 @@ TEXTS: tuple[Foreign, ...] = (
         r"(?m)^\s*%\S+[ \t]+G7[01][ \t]*\*",
         comments=True,
     ),
-    Foreign("a Sinumerik program", _POST, r"(?m)^\s*%_N_|^;\$PATH=", comments=True),
-    Foreign(
-        "a Sinumerik program",
-        _POST,
-        r"(?m)^[^#$\n]*\b(?:(?:CYCLE\d+|POCKET\d|HOLES\d|SLOT\d|WORKPIECE|MSG)(?![A-Z])|MCALL\b(?! *\d)"
-        r"|A?(?:TRANS|ROT) [XYZ]|SUPA\b|CIP [XYZ]|TURN ?=|TRAORI|COMPCAD|COMPCURV|FFWON|GOTO[FB] "
-        r"|CR ?=|T ?= ?\"|DEF (?:REAL|INT)\b|REPEATB? [A-Z])",
-    ),
     Foreign(
         "a Mazatrol program",
         _POST,
@@ -147,7 +139,6 @@ TEXTS: tuple[Foreign, ...] = (
 """Texts of other controls and other kinds, in the order in which they are looked for."""
 
 CONTROLS: tuple[tuple[str, str, str], ...] = (
-    (r"sinumerik|siemens|(?<!\d)8[124]0 ?d(?:sl)?\b|828d", "a Sinumerik program", _POST),
     (
         r"mazak|mazatrol",
         "a program for a Mazak (EIA)",

@@ -28,6 +28,7 @@ class BlendKind(enum.Enum):
 
     FILLET = "arc of a radius, tangent to both moves"
     CHAMFER = "line between two points at a distance from the corner"
+    CHAMFER_LENGTH = "line of a length, as far from the corner on both moves"
     ARC = "arc between two points at a distance from the corner"
     SPLINE = "spline between two points at a distance from the corner"
 
@@ -38,7 +39,7 @@ class Blend:
 
     Attributes:
         kind: Its shape.
-        size: Radius of a fillet; distance from the corner of the others [mm].
+        size: Radius of a fillet; length of a ``CHAMFER_LENGTH``; distance from the corner of the others [mm].
         plane: In which it lies, part coordinates.
         halves: At most half of each move is given up, so that the size adapts to short moves.
         feed: Of the blend [mm/min]; NaN: that of the first move.
@@ -75,6 +76,11 @@ def blend_corner(
         return first, [], second
     if abs(turn) > 180.0 - _STRAIGHT_ON:
         raise NoBlendError("the path turns back on itself")
+    if blend.kind is BlendKind.CHAMFER_LENGTH:
+        if before[0] or behind[0]:
+            raise NoBlendError("a chamfer of a length lies between two lines")
+        legs = blend.size / (2.0 * math.cos(math.radians(turn) / 2.0))
+        blend = dataclasses.replace(blend, kind=BlendKind.CHAMFER, size=legs)
     if blend.kind is BlendKind.FILLET:
         left, right, center = _fillet(before, behind, turn, blend.size)
     else:

@@ -26,12 +26,12 @@ LARGEST_LABEL = 4_294_967_295
 _STATEMENT = re.compile(r"[#$][A-Z]\w*", re.IGNORECASE)
 _GARBLED = re.compile(r"[-+.0-9]{1,20}")
 """What looks like a number and was not read as one."""
-_SKIP_LEVEL = re.compile(r"[1-9](?=[ \t]*[A-Z#/])", re.IGNORECASE)
+_SKIP_LEVEL = re.compile(r"[0-9](?=[ \t]*[A-Z#/:])", re.IGNORECASE)
 _LATE_SKIP = re.compile(r"(N[ \t]*[0-9]+)[ \t]*/", re.IGNORECASE)
 _NEXT_LABEL = re.compile(r"(?<=[ \t])N[ \t]*[0-9]", re.IGNORECASE)
-_NAMED_LABEL = re.compile(r"\[[ \t]*([A-Z_]\w*)[ \t]*\]", re.IGNORECASE)
 _BLANKS = re.compile(BLANKS)
 _EQUALS = re.compile(rf"{BLANKS}=")
+_QUOTED = re.compile(rf"{BLANKS}(\"[^\"]*\")")
 _PROSE = re.compile(r"[^\W\d_]{2,}(?:[ \t,;:'-]+[^\W\d_]+)+[ \t]*[.!?:]?[ \t]*(?=$|N[ \t]*[0-9])")
 """At least two words of letters alone, up to the end of the line or the next block."""
 _NO_NUMBER = re.compile(r"\b[A-Z](?:nan|inf|infinity|null|none|undefined)\b", re.IGNORECASE)
@@ -117,7 +117,7 @@ class LineReader:
             if width > _SHORT and not -LARGEST_NUMBER <= value <= LARGEST_NUMBER:
                 self._fail("number-range", f"the value is not within ±{LARGEST_NUMBER:g}", begin)
             # As Word(...), in a third of the time.
-            add(_tuple(Word, (address, value, begin, width, suffix != "", "." not in number)))
+            add(_tuple(Word, (address, value, begin, width, suffix != "", "." not in number, "")))
         self._at = at
         return False
 
@@ -135,6 +135,8 @@ class LineReader:
         if self._line[self._at] in self._grammar.comment_openings and self._comment():
             return True
         if self._block_skip() or self._named_label() or self._label_colon() or self._assignment():
+            return True
+        if self._named_code() or self._quoted_word():
             return True
         if not self._computed_word():
             self._refuse(self._at)
@@ -183,27 +185,54 @@ class LineReader:
             return False
         self._skippable = True
         self._at += 1
-        level = _SKIP_LEVEL.match(self._line, self._at) if self._syntax.skip_levels else None
-        if level is not None:
+        levels = self._syntax.skip_levels
+        level = _SKIP_LEVEL.match(self._line, self._at)
+        if level is not None and int(level[0]) in levels:
             self._skip_level, self._at = int(level[0]), level.end()
+        elif levels:
+            self._skip_level = levels[0]
         return True
 
     def _label_colon(self) -> bool:
         """``N20:``, which some write where the number is the target of a jump."""
         number = self._number != NO_BLOCK_NUMBER and not self._words
-        if not self._syntax.named_labels or not number or self._line[self._at] != ":":
+        if self._grammar.label is None or not number or self._line[self._at] != ":":
             return False
         self._at += 1
         return True
 
     def _named_label(self) -> bool:
-        if not self._syntax.named_labels or self._words or self._name:
+        pattern = self._grammar.label
+        if pattern is None or self._words or self._name:
             return False
-        match = _NAMED_LABEL.match(self._line, self._at)
+        match = pattern.match(self._line, self._at)
         if match is None:
             return False
         self._name = match[1].upper()
         self._at = match.end()
+        return True
+
+    def _named_code(self) -> bool:
+        """A code that has a name in the place of a number."""
+        pattern = self._grammar.code
+        match = pattern.match(self._line, self._at) if pattern is not None else None
+        if match is None:
+            return False
+        name = match[1].upper()
+        word = Word("G", self._syntax.codes[name], self._at, len(name), mark=name)
+        self._words.append(word)
+        self._at = match.end()
+        return True
+
+    def _quoted_word(self) -> bool:
+        """A word whose value is a text in quotes."""
+        match = self._grammar.address.match(self._line, self._at) if self._syntax.texts else None
+        text = _QUOTED.match(self._line, match.end()) if match is not None else None
+        if match is None or text is None or self._grammar.name(match[1]) not in self._syntax.texts:
+            return False
+        begin, self._at = match.start(1), text.end()
+        name = self._grammar.name(match[1])
+        self._words.append(Word(name, 0.0, begin, self._at - begin, mark=text[1]))
         return True
 
     def _statement(self) -> bool:
@@ -252,10 +281,13 @@ class LineReader:
         match = self._grammar.address.match(self._line, self._at)
         if reader is None or match is None:
             return False
-        begin = match.start(1)
+        begin, at = match.start(1), match.end()
         self._refuse_late_skip(match)
+        form = self._grammar.form.match(self._line, at) if self._grammar.form is not None else None
+        mark = "" if form is None else form[1].upper()
+        read = reader.read_value if form is None else reader.read_operand
         try:
-            expression, end = reader.read_value(self._line, match.end())
+            expression, end = read(self._line, at if form is None else form.end())
         except ExpressionError as error:
             if self._prose():
                 return True
@@ -264,12 +296,19 @@ class LineReader:
         name = self._grammar.name(match[1])
         if name == "N":
             self._fail("label", "a block number must be a plain number", begin)
+        if not match[1].endswith(sign := self._syntax.computed_behind):
+            message = f"a value that is computed follows {sign} here"
+            self._fail("expression", message, at, hint=f"write {name}{sign}...")
         suffix = self._grammar.suffix.match(self._line, end)
         assert suffix is not None
         self._at = suffix.end()
-        incremental = bool(suffix[1]) or name in self._syntax.relative
-        name = self._syntax.relative.get(name, name)
-        self._words.append(Word(name, expression, begin, self._at - begin, incremental))
+        relative, form_relative = (
+            self._syntax.relative,
+            form is not None and self._syntax.forms[mark],
+        )
+        incremental = bool(suffix[1]) or name in relative or form_relative
+        name, width = relative.get(name, name), self._at - begin
+        self._words.append(Word(name, expression, begin, width, incremental, mark=mark))
         return True
 
     def _assignment(self) -> bool:

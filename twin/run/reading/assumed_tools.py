@@ -40,6 +40,7 @@ _DIAMETERS = (
     rf"({_NUMBER})\s*(MM|IN(?:CH)?\b|\")",
     rf"(?<![A-Z0-9./])({_NUMBER})()(?=\s*(?:\w+\s+){{0,2}}(?:END ?MILL|MILL|DRILL|BALL|BULL|TAP|CUTTER|REAMER|CHAMFER|FLAT|SPOT|DIA))",
     rf"^\s*({_NUMBER})()\s*$",
+    rf"^(?!.*\bH\s*[0-9]).*\bD\s*({_NUMBER})()(?![0-9.])",
 )
 _FRACTION = re.compile(r"(?<![0-9.])([0-9]+)/([0-9]+)(?![0-9])")
 _THREAD = re.compile(r"\bM([0-9]+(?:\.[0-9]+)?)(?:\s*[Xx][0-9.]+)?\s*(?:TAP|GEWINDE)")
@@ -172,9 +173,10 @@ def _near_comment(
     ]
     if not lines:
         near = [(line, text) for line, text in comments if line <= HEAD_LINES]
-    for _, text in sorted(near):
+    for distance, text in sorted(near):
         tool = tool_of_comment(text, inches=inches)
-        if tool.diameter is not None and tool.kind:
+        beside = not distance and lines
+        if (tool.diameter is not None and (tool.kind or beside)) or (tool.kind and beside):
             return tool
     return None
 

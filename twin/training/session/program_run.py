@@ -496,7 +496,7 @@ class ProgramRun:
         control = self._control
         active = control.modal.active.numbers()
         if active != self._active:
-            self._active, self._codes = active, tuple(f"G{number:g}" for number in active)
+            self._active, self._codes = active, tuple(map(self._executor.dialect.code_name, active))
         factor = FEED_FACTORS.get(control.modal.feed_mode)
         state = ModalState(
             block.line, self._codes, control.motion.feed, control.tools.spindle, factor
