@@ -4,7 +4,7 @@ from pathlib import Path
 
 import typer
 
-from twin.commands.run import read_as, reading_line
+from twin.commands.raw_program import read_as, tell_reading
 from twin.errors import ExitCode, UsageError
 from twin.files.atomic import write_text
 from twin.nc.text.diagnostics import ProgramError
@@ -38,9 +38,6 @@ def init_and_print(
     except ProgramError as error:
         raise read_as(error, preparation) from None
     write_text(path, assumed.text)
-    if preparation.dialect_reason:
-        typer.echo(reading_line(preparation), err=True)
-    for line in assumed.assumptions:
-        typer.echo(f"assumed: {line}", err=True)
+    tell_reading(preparation, assumed.assumptions)
     typer.echo(f"{path}: check the stock and the tools, then: twin run {path}")
     return ExitCode.OK

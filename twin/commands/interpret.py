@@ -3,8 +3,10 @@
 import sys
 from pathlib import Path
 
+from twin.commands.raw_program import read_as, tell_reading
 from twin.errors import UsageError
 from twin.nc.jsonl import json_lines, text_lines
+from twin.nc.text.diagnostics import ProgramError
 from twin.run.preparation import prepare
 
 FORMATS = {"text": text_lines, "jsonl": json_lines}
@@ -22,12 +24,13 @@ def print_interpretation(
     if form not in FORMATS:
         raise UsageError(f"no format '{form}': known formats are {', '.join(FORMATS)}")
     preparation = prepare(program, dialect=dialect, machine=machine, strict=strict, assuming=True)
-    for line in preparation.reading.told:
-        sys.stderr.write(f"assumed: {line}\n")
+    tell_reading(preparation, preparation.reading.told)
     interpretation = preparation.interpretation()
     try:
         for line in FORMATS[form](interpretation):
             sys.stdout.write(f"{line}\n")
+    except ProgramError as error:
+        raise read_as(error, preparation) from None
     finally:
         sys.stdout.flush()
         for warning in interpretation.diagnostics:
