@@ -3,11 +3,11 @@
 import sys
 from pathlib import Path
 
-from twin.commands.raw_program import read_as, tell_reading
 from twin.errors import UsageError
 from twin.nc.jsonl import json_lines, text_lines
 from twin.nc.text.diagnostics import ProgramError
 from twin.run.preparation import prepare
+from twin.run.raw_program import read_as, told_of_reading
 
 FORMATS = {"text": text_lines, "jsonl": json_lines}
 
@@ -24,7 +24,8 @@ def print_interpretation(
     if form not in FORMATS:
         raise UsageError(f"no format '{form}': known formats are {', '.join(FORMATS)}")
     preparation = prepare(program, dialect=dialect, machine=machine, strict=strict, assuming=True)
-    tell_reading(preparation, preparation.reading.told)
+    for told in told_of_reading(preparation, preparation.reading.told):
+        sys.stderr.write(f"{told}\n")
     interpretation = preparation.interpretation()
     try:
         for line in FORMATS[form](interpretation):

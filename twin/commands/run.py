@@ -6,7 +6,6 @@ import typer
 
 from twin.commands.compilation import start_compiling
 from twin.commands.pictures import ALARMS_OF_CONTACT, draw_contact, film_run
-from twin.commands.raw_program import read_as, tell_reading
 from twin.compilation.announcement import announce_compilation
 from twin.errors import ExitCode, RenderError, UsageError
 from twin.files.atomic import write_text
@@ -17,6 +16,7 @@ from twin.run.messages import alarm_diagnostic, near_miss_diagnostic, reason_tex
 from twin.run.outcome import Outcome
 from twin.run.preparation import Preparation, prepare
 from twin.run.progress import shown_progress
+from twin.run.raw_program import read_as, told_of_reading
 from twin.run.results import RESULT_FILES, write_results
 from twin.run.run import Run
 from twin.run.run_folder import program_stem, run_folder, without_verdict
@@ -83,7 +83,8 @@ def _assumed(
         made, assumed = with_assumptions(preparation, machine=machine, strict=strict)
     except ProgramError as error:
         raise read_as(error, preparation) from None
-    tell_reading(made, assumed.assumptions)
+    for line in told_of_reading(made, assumed.assumptions):
+        typer.echo(line, err=True)
     if save_job is None:
         typer.echo("to keep and correct this: --save-job FILE", err=True)
     else:

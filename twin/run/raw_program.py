@@ -1,20 +1,17 @@
 """What people are told of how a raw program is read, by every command that takes one."""
 
 import dataclasses
-from collections.abc import Iterable
-
-import typer
+from collections.abc import Iterable, Iterator
 
 from twin.nc.text.diagnostics import ProgramError
 from twin.run.preparation import Preparation
 
 
-def tell_reading(preparation: Preparation, assumptions: Iterable[str]) -> None:
-    """Say on stderr which dialect was taken and why, where nobody named one, and what was assumed."""
+def told_of_reading(preparation: Preparation, assumptions: Iterable[str]) -> Iterator[str]:
+    """Which dialect was taken and why, where nobody named one, and what was assumed, a line each."""
     if preparation.dialect_reason:
-        typer.echo(_reading_line(preparation), err=True)
-    for line in assumptions:
-        typer.echo(f"assumed: {line}", err=True)
+        yield _reading_line(preparation)
+    yield from (f"assumed: {line}" for line in assumptions)
 
 
 def read_as(error: ProgramError, preparation: Preparation) -> ProgramError:
