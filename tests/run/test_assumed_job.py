@@ -325,3 +325,41 @@ def test_stock_that_is_cut_back_from_rapids_says_so_with_their_lines(tmp_path: P
     assert any("of line 13 go below its top" in line for line in assumed.assumptions)
     _, assumed = raw(tmp_path, CONTOUR.replace("N50 Z-4.", "N50 G1 Z-4. F300."))
     assert not any("not judged" in line for line in assumed.assumptions)
+
+
+KLARTEXT = """BEGIN PGM PLATE MM
+BLK FORM 0.1 Z X-5 Y+0 Z-20
+BLK FORM 0.2 X+95 Y+60 Z+1
+TOOL DEF 4 L+0 R+3
+TOOL CALL 4 Z S3000 F500
+L X-20 Y+10 Z+5 R0 FMAX M3
+L Z-2 F200
+L X+40
+L Z+50 FMAX
+END PGM PLATE MM
+"""
+
+
+def test_klartext_declares_its_stock_and_its_tools(tmp_path: Path) -> None:
+    _, made = raw(tmp_path, KLARTEXT)
+    assert made.tables["stock"] == {
+        "shape": "box",
+        "size": [100, 60, 21],
+        "position": [45.0, 30.0, 1.0],
+    }
+    (tool,) = made.tables["tools"]  # pyright: ignore[reportGeneralTypeIssues]
+    assert (tool["number"], tool["diameter"]) == (4, 6.0)
+
+
+def test_klartext_declares_a_cylinder(tmp_path: Path) -> None:
+    blank = "BLK FORM CYLINDER Z R40 L25 DIST+2\n"
+    _, made = raw(
+        tmp_path, KLARTEXT.split("BLK", maxsplit=1)[0] + blank + KLARTEXT.split("Z+1\n")[1]
+    )
+    stock = made.tables["stock"]
+    assert stock == {
+        "shape": "cylinder",
+        "diameter": 80,
+        "height": 25,
+        "position": [0.0, 0.0, 2.0],
+    }

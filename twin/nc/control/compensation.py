@@ -30,6 +30,36 @@ def tool_numbered(control: Control, word: Word) -> int:
     return number
 
 
+def tool_named(control: Control, name: str, word: Word) -> int:
+    """The number of the tool that a word calls by name, whose case does not count.
+
+    Decision: where no tool of the job has a name they are called in the job's order.
+
+    Raises:
+        ProgramError: The job has no such tool.
+    """
+    tools, name = control.tools, name.upper()
+    named = {tool.name.upper(): number for number, tool in tools.table.items() if tool.name}
+    if name in named:
+        return named[name]
+    if name.isdigit() and (int(name) in tools.table or not tools.table):
+        return int(name)
+    known = tools.names
+    if name not in known:
+        order = list(tools.table)
+        if tools.any is not None or not order:
+            order = list(range(1, len(known) + 2))
+        if named or len(known) >= len(order):
+            message = f'the job has no tool named "{name}"'
+            hint = f'give one of its [[tools]] name = "{name}"; named there: {", ".join(named) or "none"}'
+            control.fail("no-such-tool", message, word, hint)
+        known[name] = order[len(known)]
+        message = f'the job names no tools: "{name}" is taken for tool {known[name]}, by the order of the calls'
+        hint = f'name = "{name}" in the [[tools]] of the job says it'
+        control.warn("tool-name", message, word, hint)
+    return known[name]
+
+
 def side_in_force(control: Control) -> float:
     """The side of the compensation that is in force, as ``compensate`` takes it."""
     turned = handedness(control.motion.frame.matrix)
