@@ -86,6 +86,12 @@ def test_pecks_that_withdraw_differently_ask_nobody(tmp_path: Path) -> None:
     )
 
 
+def test_where_a_control_goes_by_itself_for_another_tool_asks_nobody(tmp_path: Path) -> None:
+    path = tmp_path / "part.nc"
+    path.write_text(CONTOUR.replace("N70 G53 G0 Z0.\n", "").replace("N65 G0 Z15.\n", ""))
+    assert prepare(path).dialect_reason == "fanuc, haas and linuxcnc make the same moves of it"
+
+
 def test_a_control_that_would_hardly_feed_was_not_meant(tmp_path: Path) -> None:
     """A Haas counts F300 without a point as 0.3 mm/min; a whole number with a point shows that none is spared."""
     path = tmp_path / "part.nc"
