@@ -7,6 +7,8 @@ from twin.errors import UsageError
 PACKAGES = {
     "calibrate": ("scipy", "threadpoolctl"),
     "cluster": ("ray",),
+    "gym": ("gymnasium",),
+    "notebook": ("pandas",),
     "opcua": ("asyncua", "starlette", "uvicorn"),
     "serve": ("starlette", "uvicorn"),
     "train": ("starlette", "uvicorn", "websockets"),

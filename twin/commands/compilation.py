@@ -29,7 +29,7 @@ from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray, Motion
 from twin.processor import available_cores
 from twin.run.assumed_job import with_assumptions
-from twin.run.interpreted import InterpretedProgram, interpreted
+from twin.run.dry_run import InterpretedProgram, interpreted
 from twin.run.preparation import prepare
 from twin.run.progress import no_progress
 from twin.run.run import Run

@@ -11,7 +11,7 @@ from twin.nc.dialects.codesys.subprograms import LIBRARY
 from twin.nc.interpreter import Interpretation
 from twin.nc.text.diagnostics import ProgramError
 from twin.nc.text.source import read_source
-from twin.run.interpreted import InterpretedProgram
+from twin.run.dry_run import InterpretedProgram
 from twin.run.preparation import prepare
 
 COUNTED = """
