@@ -35,6 +35,7 @@ EXAMPLES = {
         "twin serve part.toml",
         "twin serve part.toml --port 5001 --speed 10",
         "twin serve --scene fagor_first_steps",
+        "twin serve part.toml --grbl 2323",
     ),
     "machine list": ("twin machine list", "twin machine list --format json"),
     "machine show": ("twin machine show mill4 --feed 3000", "twin machine show ./my_machine.toml"),

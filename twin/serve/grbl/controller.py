@@ -82,6 +82,10 @@ class GrblController:
         self._look(room)
         if not self._halted:
             self._run_lines(room)
+        if self._run is not None and room.run is self._run and not room.held:
+            # Not with the next slice of time: senders wait for each answer.
+            self._run.take_streamed()
+            self._look(room)
         return self._take_output()
 
     def _take_output(self) -> bytes:

@@ -95,16 +95,22 @@ class GrblLine:
     async def serve_terminal(self, master: int) -> None:
         """Let a sender talk over a pseudo-terminal until this is cancelled."""
         os.set_blocking(master, False)
+        coming = asyncio.Event()
+        asyncio.get_running_loop().add_reader(master, coming.set)
         unsent = await self.greeting()
-        while True:
-            with contextlib.suppress(BlockingIOError):
-                unsent = unsent[os.write(master, unsent) :] if unsent else unsent
-            data = b""
-            with contextlib.suppress(BlockingIOError):
-                data = os.read(master, _AT_ONCE)
-            unsent = (unsent + await self.work(data))[-_MOST_UNSENT:]
-            if not data:
-                await asyncio.sleep(LOOK_S)
+        try:
+            while True:
+                with contextlib.suppress(BlockingIOError):
+                    unsent = unsent[os.write(master, unsent) :] if unsent else unsent
+                with contextlib.suppress(TimeoutError):
+                    await asyncio.wait_for(coming.wait(), LOOK_S)
+                coming.clear()
+                data = b""
+                with contextlib.suppress(BlockingIOError):
+                    data = os.read(master, _AT_ONCE)
+                unsent = (unsent + await self.work(data))[-_MOST_UNSENT:]
+        finally:
+            asyncio.get_running_loop().remove_reader(master)
 
 
 @contextlib.contextmanager

@@ -471,6 +471,11 @@ class ProgramRun:
         """Moves that are interpreted and not yet driven."""
         return self._count + len(self._control.path) - self._move
 
+    def take_streamed(self) -> None:
+        """Interpret what a stream has for the run, before the next slice of time comes to it."""
+        if self.ending is None:
+            self._interpret(BLOCKS_IN_MOTION)
+
     def _end_stream(self) -> None:
         """What has been streamed is a whole: what comes now begins another part."""
         self._control.path.finish()
