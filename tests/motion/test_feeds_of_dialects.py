@@ -11,6 +11,7 @@ from twin.columns import join
 from twin.motion.phase_planner import plan_phases
 from twin.motion.planner import plan
 from twin.motion.setpoints.setpoints import Setpoints
+from twin.run.dry_run import interpreted
 from twin.run.preparation import Preparation, prepare
 
 NIMBLE = mill(
@@ -27,9 +28,8 @@ def prepared(folder: Path, text: str, dialect: str) -> Preparation:
 
 
 def seconds(folder: Path, text: str, dialect: str) -> float:
-    preparation = prepared(folder, text, dialect)
-    chunks = preparation.interpretation().chunks()
-    return list(plan_phases(chunks, NIMBLE, start=preparation.start))[-1].end_time
+    program = interpreted(prepared(folder, text, dialect))
+    return list(plan_phases(program.chunks(), NIMBLE, start=program.start))[-1].end_time
 
 
 @pytest.mark.parametrize(
@@ -74,6 +74,7 @@ def test_codesys_speeds_up_by_one_word_and_brakes_by_the_other(
 
 
 def _setpoints(preparation: Preparation) -> Setpoints:
-    chunks = preparation.interpretation().chunks()
-    zero = np.zeros(4)
-    return join(list(plan(chunks, NIMBLE, period_s=0.001, part_zero=zero, start=preparation.start)))
+    program, zero = interpreted(preparation), np.zeros(4)
+    return join(
+        list(plan(program.chunks(), NIMBLE, period_s=0.001, part_zero=zero, start=program.start))
+    )

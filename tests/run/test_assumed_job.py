@@ -7,8 +7,8 @@ import pytest
 from twin.errors import ConfigError, EmptyProgramError, UsageError
 from twin.nc.text.diagnostics import ProgramError
 from twin.run.assumed_job import AssumedJob, text_beside, with_assumptions
-from twin.run.assumed_tools import numbered_tool, tool_of_comment
 from twin.run.preparation import Preparation, prepare
+from twin.run.reading.assumed_tools import numbered_tool, tool_of_comment
 
 CONTOUR = """%
 O01001 (PLATE)
@@ -207,6 +207,14 @@ def test_a_tool_that_only_drills_is_a_drill(tmp_path: Path) -> None:
     assert "diameter is a guess" in assumed.assumptions[2]
 
 
+def test_a_tool_that_is_called_ahead_does_not_cut_yet(tmp_path: Path) -> None:
+    text = CONTOUR.replace("N30 S5000", "N28 T2\nN30 S5000").replace(
+        "(T2 D=6.8 CR=0. TAPER=118deg - ZMIN=-12. - drill)\n", ""
+    )
+    made, _ = raw(tmp_path, text)
+    assert [(tool.number, tool.kind) for tool in made.job.file.tools] == [(1, "flat"), (2, "drill")]
+
+
 def test_stock_of_the_head_comes_before_the_path(tmp_path: Path) -> None:
     head = "( Material Size)\n( X= 90.0, Y= 70.0, Z= 18.0)\n"
     made, _ = raw(tmp_path, CONTOUR.replace("(T1", f"{head}(T1"))
@@ -252,6 +260,9 @@ def test_the_job_can_be_kept_in_another_folder(tmp_path: Path) -> None:
         ("T2 90 DEG CHAMFER MILL 12 mm", (2, "chamfer", 12.0, None)),
         ("6.8 DRILL", (None, "drill", 6.8, None)),
         ("TC: 5mm Endmill", (None, "flat", 5.0, None)),
+        ("FREZA D5", (None, "", 5.0, None)),
+        ("T02 ID=002  DIA-0.5000  TOOL END MILL", (2, "flat", 0.5, None)),
+        ("FACE MILL H1 D2", (None, "flat", None, None)),
     ],
 )
 def test_comments_tell_tools(comment: str, tool: tuple[object, ...]) -> None:
@@ -259,6 +270,11 @@ def test_comments_tell_tools(comment: str, tool: tuple[object, ...]) -> None:
     number, text = (None, comment) if listed is None else listed
     found = tool_of_comment(text, inches=False)
     assert (number, found.kind, found.diameter, found.corner) == tool
+
+
+def test_a_comment_beside_its_call_tells_the_diameter_alone(tmp_path: Path) -> None:
+    made, _ = raw(tmp_path, CONTOUR.replace("(T1 D=10.", "(").replace("T1 M6", "T1 M6 (D26)"))
+    assert made.job.file.tools[0].diameter == 26.0
 
 
 def test_numbers_without_a_unit_are_inches_where_the_program_is() -> None:

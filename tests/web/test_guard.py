@@ -10,7 +10,7 @@ from starlette.responses import PlainTextResponse
 
 from twin.errors import UsageError
 from twin.web import doorkeeper
-from twin.web.doorkeeper import Doorkeeper
+from twin.web.doorkeeper import Doorkeeper, new_tokens
 from twin.web.guard import Guard
 from twin.web.server import WebServer
 
@@ -30,7 +30,7 @@ class Answer(NamedTuple):
 class House:
     def __init__(self) -> None:
         self.server = WebServer()
-        self.doorkeeper = Doorkeeper(("operator", "watcher"), self.server.port)
+        self.doorkeeper = Doorkeeper(new_tokens(("operator", "watcher")), self.server.port)
         self.server.start(Guard(inside, self.doorkeeper, local=True))
         self.own = f"http://127.0.0.1:{self.server.port}"
 
@@ -64,7 +64,7 @@ def test_a_token_of_128_bits_is_made_anew_for_each_role_and_session(house):
     tokens = list(house.doorkeeper.tokens.values())
     assert len(set(tokens)) == 2
     assert all(re.fullmatch(r"[\w-]{22}", token) for token in tokens)
-    again = Doorkeeper(("operator", "watcher"), house.server.port)
+    again = Doorkeeper(new_tokens(("operator", "watcher")), house.server.port)
     assert not set(tokens) & set(again.tokens.values())
 
 
@@ -148,7 +148,7 @@ def test_a_taken_port_is_refused(house):
 
 @pytest.mark.parametrize("encrypted", [False, True])
 def test_a_cookie_is_secure_where_the_line_is(encrypted):
-    doorkeeper = Doorkeeper(("operator",), 1, encrypted=encrypted)
+    doorkeeper = Doorkeeper(new_tokens(("operator",)), 1, encrypted=encrypted)
     cookie = doorkeeper.admit("operator", doorkeeper.tokens["operator"])
     assert cookie is not None
     # Safari drops a Secure cookie that came over http, also from this computer.

@@ -20,6 +20,7 @@ from twin.files.toml_lines import place_of_key
 from twin.job.job_file import Job
 from twin.job.layers import layers_of
 from twin.machine.watching.alarms import Alarm
+from twin.nc.canonical import Chunk
 from twin.nc.text.diagnostics import Diagnostic, ProgramError
 from twin.recording.reader import LONGEST_TEXT
 from twin.run.messages import alarm_diagnostic, reason_text
@@ -80,7 +81,8 @@ def _run(variant: Variant, settings: CheckSettings) -> CheckOutcome:
     except (ProgramError, ConfigError) as error:
         if preparation.job.file.expect is not None:
             return _not_run(path, error)  # without moves there is nothing to store or to hold
-        differing = _baseline_reasons(preparation, None, settings)
+        moves = preparation.interpretation().chunks()
+        differing = _baseline_reasons(preparation, moves, None, settings)
         return _not_run(path, error, _findings(preparation, differing))
     if settings.reports is not None:
         from twin.compare.report.report import write_report
@@ -92,7 +94,7 @@ def _run(variant: Variant, settings: CheckSettings) -> CheckOutcome:
     alarmed = outcome.verdict.outcome == "alarm"
     ended = not alarmed or preparation.job.file.expect is not None
     figures = _figures(outcome) if ended else None
-    differing = _baseline_reasons(preparation, figures, settings)
+    differing = _baseline_reasons(preparation, dry_run.program.chunks(), figures, settings)
     if any(found.code == "empty-program" for found in dry_run.warnings):
         raise EmptyProgramError(f"{path}: the program is empty: no line holds a block")
     failed = bool(differing) and not alarmed
@@ -114,7 +116,10 @@ def _run(variant: Variant, settings: CheckSettings) -> CheckOutcome:
 
 
 def _baseline_reasons(
-    preparation: Preparation, figures: RunFigures | None, settings: CheckSettings
+    preparation: Preparation,
+    chunks: Iterable[Chunk],
+    figures: RunFigures | None,
+    settings: CheckSettings,
 ) -> list[Reason]:
     """Hold the run to its baseline, or store it.
 
@@ -123,8 +128,7 @@ def _baseline_reasons(
     if settings.baseline is None:
         return []
     file = file_of(settings.baseline, preparation.job, ".baseline")
-    axes, chunks = preparation.machine.axes, preparation.interpretation().chunks()
-    keys = _settings(preparation)
+    axes, keys = preparation.machine.axes, _settings(preparation)
     if not settings.update_baseline:
         limits = preparation.job.file.baseline
         return compare_baseline(file, figures, axes, chunks, limits, keys, _source(preparation))

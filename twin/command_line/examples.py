@@ -26,7 +26,11 @@ EXAMPLES = {
     "compare": ("twin compare out/part/recording.h5 log.csv --tolerance 0.05",),
     "calibrate": ("twin calibrate log.csv --base mill4 --out mine.toml",),
     "export": ("twin export out/part/recording.h5 --every 10",),
-    "train": ("twin train --list", "twin train mefi_helix_hold"),
+    "train": (
+        "twin train --list",
+        "twin train mefi_helix_hold",
+        "twin train --class roster.csv",
+    ),
     "linuxcnc": ("twin link linuxcnc --machine mill4 --out out/helix --headless mefi/helix",),
     "dialects": ("twin dialects", "twin dialects fagor8070"),
     "explain": ("twin explain arc-radius",),

@@ -23,6 +23,17 @@ def train(
             "--course", help="List the score sheets of a folder; writes course.html there."
         ),
     ] = None,
+    roster: Annotated[
+        Path | None,
+        typer.Option(
+            "--class",
+            metavar="ROSTER.csv",
+            help="A room for each pupil of a list (columns name, scene), and a page for the teacher.",
+        ),
+    ] = None,
+    seats: Annotated[
+        int | None, typer.Option("--seats", help="A class of so many pupils without names.")
+    ] = None,
     language: Annotated[
         str | None,
         typer.Option(
@@ -39,7 +50,11 @@ def train(
     certificate: Annotated[Path | None, typer.Option("--certificate", help="For https.")] = None,
     key: Annotated[Path | None, typer.Option("--key", help="Of the certificate.")] = None,
     out: Annotated[
-        Path | None, typer.Option("--out", help="Logs and score sheets; default out/training.")
+        Path | None,
+        typer.Option(
+            "--out",
+            help="Logs and score sheets; default out/training, of a class out/class/ROSTER.",
+        ),
     ] = None,
 ) -> None:
     """Run a machine, and wreck it, in a browser: the training room."""
@@ -53,10 +68,11 @@ def train(
         return
     if rehearse:
         raise typer.Exit(room.rehearse_and_print(scene))
-    code = room.train(
-        scene, language=language, host=host, port=port, certificate=certificate, key=key, out=out
-    )
-    raise typer.Exit(code)
+    place = room.Place(language=language, host=host, port=port, certificate=certificate, key=key)
+    if roster is not None or seats is not None:
+        room.teach(scene, roster, seats, place, out)
+        return
+    raise typer.Exit(room.train(scene, place, out))
 
 
 def view(

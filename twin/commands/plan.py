@@ -9,13 +9,14 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
-from twin import api
+from twin.api import setpoints
 from twin.commands.console import table_console
 from twin.compilation.announcement import announce_compilation
 from twin.errors import UsageError
 from twin.machine.description.motion_limits import motion_limits
 from twin.motion.report.drawing import draw_plan
 from twin.motion.report.summary import Summary, summarize
+from twin.run.dry_run import interpreted
 from twin.run.preparation import prepare
 from twin.run.run import Run
 
@@ -50,18 +51,18 @@ def plan_and_print(
         raise UsageError(f"--format {form}: use text or json")
     announce_compilation()
     preparation = prepare(path, dialect=dialect, machine=machine, strict=strict)
-    twin_machine = preparation.machine
+    twin_machine, program = preparation.machine, interpreted(preparation)
     summary = summarize(
-        preparation.timed_chunks(),
+        program.timed_chunks(),
         motion_limits(twin_machine),
-        start=preparation.start,
+        start=program.start,
         axes=twin_machine.axes,
     )
     folder = out or Path("out") / preparation.job.program.stem
     folder.mkdir(parents=True, exist_ok=True)
     picture = folder / "plan.png"
     samples = math.ceil(summary.total / twin_machine.file.servo_period_s)
-    draw_plan(api.setpoints(Run(preparation)), twin_machine.axes, samples, picture)
+    draw_plan(setpoints(Run(preparation), program), twin_machine.axes, samples, picture)
     if form == "json":
         typer.echo(json.dumps(_as_json(summary, picture), indent=2))
     else:

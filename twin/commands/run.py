@@ -5,6 +5,7 @@ from pathlib import Path
 
 import typer
 
+from twin.commands.compilation import start_compiling
 from twin.commands.pictures import ALARMS_OF_CONTACT, draw_contact, film_run
 from twin.compilation.announcement import announce_compilation
 from twin.errors import ExitCode, RenderError, UsageError
@@ -45,7 +46,7 @@ def run_and_print(
     Raises:
         TwinError: Something is wrong before the run could end; see each error's exit code.
     """
-    announce_compilation()
+    announce_compilation(meanwhile=lambda: start_compiling(path, dialect, machine))
     folder = out or Path("out") / program_stem(path)
     with without_verdict(folder):
         preparation = prepare(path, dialect=dialect, machine=machine, strict=strict, assuming=True)

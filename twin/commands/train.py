@@ -1,6 +1,8 @@
 """``twin train``: the training room."""
 
 import contextlib
+import dataclasses
+import threading
 from pathlib import Path
 
 import typer
@@ -82,16 +84,26 @@ def language_named(name: str | None) -> Language | None:
     raise UsageError(f"no language '{name}': the panel speaks {', '.join(LANGUAGES)}")
 
 
-def train(
-    name: str,
-    *,
-    language: str | None,
-    host: str | None,
-    port: int,
-    certificate: Path | None,
-    key: Path | None,
-    out: Path | None,
-) -> ExitCode:
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class Place:
+    """Where pages are served, and in which language.
+
+    Attributes:
+        language: By its name; None: the scene's.
+        host: Where the server listens; None: on this computer alone.
+        port: Its port; 0: the first free one.
+        certificate: For https.
+        key: Of the certificate.
+    """
+
+    language: str | None
+    host: str | None
+    port: int
+    certificate: Path | None
+    key: Path | None
+
+
+def train(name: str, place: Place, out: Path | None) -> ExitCode:
     """Open a scene and play it until it is closed.
 
     Returns:
@@ -112,11 +124,11 @@ def train(
         room = stack.enter_context(
             open_room(
                 scene,
-                language=language_named(language),
-                host=host or LOOPBACK,
-                port=port,
-                certificate=certificate,
-                key=key,
+                language=language_named(place.language),
+                host=place.host or LOOPBACK,
+                port=place.port,
+                certificate=place.certificate,
+                key=place.key,
                 out=out or Path("out") / "training",
                 promptly=True,
             )
@@ -131,3 +143,53 @@ def train(
         judge = room.session.room.judge
     typer.echo(f"{scene.name}: {judge.score} of {scene.points} points; sheet in {room.folder}")
     return ExitCode.FAILED if judge.over and judge.score < scene.points else ExitCode.OK
+
+
+def teach(
+    scene: str, roster: Path | None, seats: int | None, place: Place, out: Path | None
+) -> None:
+    """Open a class and keep it open until Ctrl+C.
+
+    Args:
+        scene: What pupils begin with.
+        roster: Who they are; None: they are only counted.
+        seats: How many they are.
+        place: Where.
+        out: The class's folder; None: one that is called as the roster.
+
+    Raises:
+        TwinError: The roster, the scene, or how the class shall be opened, is wrong.
+    """
+    from twin.compilation.announcement import announce_compilation
+
+    require_extra("train", "the training room")
+    from twin.training.classroom.launch import open_class
+    from twin.training.classroom.roster import counted_seats, read_roster
+    from twin.web.server import LOOPBACK
+
+    if (roster is None) == (seats is None):
+        raise UsageError("give --class ROSTER.csv, or --seats with how many there are")
+    pupils = counted_seats(seats or 0) if roster is None else read_roster(roster)
+    name = "seats" if roster is None else roster.stem
+    folder = out or Path("out") / "class" / name
+    announce_compilation()
+    over = threading.Event()
+    with contextlib.ExitStack() as stack:
+        opened = stack.enter_context(
+            open_class(
+                pupils, scene, folder, language=language_named(place.language),
+                host=place.host or LOOPBACK, port=place.port, certificate=place.certificate,
+                key=place.key,
+            )
+        )  # fmt: skip
+        interrupted = stack.enter_context(let_interruption_stop(over.set))
+        width = max(len(name) for name, _ in opened.pupils)
+        for name, address in opened.pupils:
+            typer.echo(f"{name:{width}}  {address}")
+        typer.echo(f"the teacher's page: {opened.teacher}")
+        typer.echo(f"marks are kept in {folder}; Ctrl+C ends the class, and not the links")
+        while not over.wait(0.2):
+            pass
+        if interrupted:
+            typer.echo("")  # the terminal has shown its ^C
+    typer.echo(f"marks in {folder / 'class.sqlite'}")

@@ -97,6 +97,12 @@ class ToolPlan:
         """The tool in the spindle during a move."""
         return self.tools[bisect.bisect_right(self.first_move, max(move, 0)) - 1]
 
+    def before(self, tool: ToolTable) -> ToolTable | None:
+        """The tool that was in the spindle before another came first; None: that one is the first."""
+        numbers = [each.number for each in self.tools]
+        place = numbers.index(tool.number) if tool.number in numbers else 0
+        return self.tools[place - 1] if place else None
+
     def longer(self, tool: ToolTable) -> float:
         """How much lower a tool's tip is than that of the first, which positions count for [mm]."""
         return tool.length - self.tools[0].length

@@ -16,6 +16,7 @@ from twin.files.toml import Data, Table, checked, load_toml
 from twin.job.fixture import FixtureTable
 from twin.job.layers import laid_over, layer_of, layers_of
 from twin.job.machine_functions import MachineFunctions
+from twin.job.tool_change import ToolChangeTable
 
 Positive = Annotated[float, Field(gt=0)]
 
@@ -106,6 +107,8 @@ class ToolTable(Table):
 
     number: Annotated[int, Field(ge=0)]
     """By which the program calls it."""
+    name: str = ""
+    """By which a program may call it instead, such as ``T="MILL_10"``."""
     kind: Literal["flat", "ball", "bull", "drill", "chamfer"] = "flat"
     """Shape of its end: flat, round, flat with a round corner, or a point."""
     diameter: Positive = 10.0
@@ -321,6 +324,8 @@ class JobFile(Table):
     nominal: NominalTable | None = None
     tools: tuple[ToolTable, ...] = (ToolTable(number=1),)
     """The first is in the spindle at the start."""
+    tool_change: ToolChangeTable = ToolChangeTable()
+    """Where Z goes by itself before a tool changes; it comes before the machine's."""
     fixtures: tuple[FixtureTable, ...] = ()
     """What holds the part, beside what the machine file puts on its table."""
     cutting_load: bool = False

@@ -24,10 +24,9 @@ from twin.link.place import Places
 from twin.link.rehearsal import rehearse
 from twin.machine.simulation.live import LiveMachine
 from twin.machine.watching.alarms import Alarm, AlarmCode
-from twin.nc.canonical import concatenate
-from twin.run.dry_run import DryRun
+from twin.nc.canonical import Axes, concatenate
+from twin.run.dry_run import DryRun, InterpretedProgram
 from twin.run.outcome import Outcome
-from twin.run.preparation import Preparation
 from twin.run.progress import Progress
 from twin.run.run import Run
 
@@ -85,10 +84,10 @@ def run_on_twin(
         require_plain(own)
         own.mkdir(exist_ok=True)
         install(own, module_folder(start))
-        tool, position = preparation.job.file.tools[0], preparation.start + run.part_zero
+        tool, position = preparation.job.file.tools[0], dry_run.program.start + run.part_zero
         rehearse(run, dry_run, tool, position)
         live = LiveMachine(run.machine, tool, position)
-        places = _write_program(preparation, own / PROGRAM_NAME, wish.own_program)
+        places = _write_program(dry_run.program, axes, own / PROGRAM_NAME, wish.own_program)
         session = wish.display is not None
         with LockstepMotion(live, places, run.part_zero, session=session) as motion:
             settings = Settings(
@@ -120,17 +119,18 @@ def run_on_twin(
         return outcome, figures
 
 
-def _write_program(preparation: Preparation, path: Path, own_program: Path | None) -> Places:
+def _write_program(
+    program: InterpretedProgram, axes: Axes, path: Path, own_program: Path | None
+) -> Places:
     """Write what LinuxCNC reads, and tell where its lines lie in the prepared program."""
-    axes = preparation.machine.axes
-    chunks = list(preparation.interpretation().chunks())
+    chunks = list(program.chunks())
     moves = concatenate([chunk.moves for chunk in chunks], axes)
     if own_program is not None:
         write_text(path, own_program.read_text(encoding="utf-8", errors="replace"))
         return Places(moves, moves.block)
-    program = linuxcnc_program(chunks, axes)
-    write_text(path, program.text)
-    return Places(moves, program.line_of_move)
+    written = linuxcnc_program(chunks, axes)
+    write_text(path, written.text)
+    return Places(moves, written.line_of_move)
 
 
 def _operator_command(folder: Path, joints: int) -> str:

@@ -58,9 +58,9 @@ class Coverage:
             blocks = lexer.blocks(self._source.lines[line - 1], line)
         except ProgramError:
             return False  # what cannot be read tells of no motion
-        codes = self._dialect.g
+        codes = self._dialect.codes.g
         return any(
-            any(word.address in self._dialect.axis_letters for word in block.words)
+            any(word.address in self._dialect.words.axes for word in block.words)
             and not any(
                 word.address == "G"
                 and isinstance(word.value, float)

@@ -66,7 +66,8 @@ class Interpretation:
         self.dialect = dialect
         self.settings = settings
         self._kernel = kernel
-        self._control = Executor(dialect, settings, source)
+        self._executor = Executor(dialect, settings, source)
+        self._control = self._executor.control
         self.coverage = Coverage(source, dialect)
         self.length_calls: dict[int, LengthCall] = {}
         self.compensated: set[int] = set()
@@ -89,7 +90,7 @@ class Interpretation:
     @property
     def display(self) -> FloatArray:
         """What the control's screen shows, shape (k,) [mm or deg]."""
-        return np.array(self._control.programmed)
+        return np.array(self._control.motion.programmed)
 
     def chunks(self) -> Iterator[Chunk]:
         """Run the program once; a few thousand moves at a time.
@@ -99,9 +100,9 @@ class Interpretation:
         """
         control, refused = self._control, None
         kernel = self._kernel(len(self.source.lines))
-        lines = None if kernel is None else LineRuns(control, kernel)
+        lines = None if kernel is None else LineRuns(self._executor, kernel)
         try:
-            control.prepare()
+            self._executor.prepare()
             while not control.ended:
                 if lines is not None and (run := lines.run()):
                     self.coverage.note(run.start + 1, run.stop + 1)
@@ -112,12 +113,12 @@ class Interpretation:
                 if block is None:
                     break
                 refused = control.path.refusal(block.line)
-                control.run(block)
+                self._executor.run(block)
                 refused = None
                 self._note(block)
                 if len(control.path) >= CHUNK:
                     yield control.path.take()
-            control.finish()
+            self._executor.finish()
         except ProgramError:
             yield control.path.take(refused)
             raise
@@ -128,7 +129,7 @@ class Interpretation:
         control, tools = self._control, self._control.tools
         if not control.settings.skips(block):
             self.coverage.note(block.line, block.line + 1)
-        if int(control.active.get("compensation", _NO_COMPENSATION)) in _COMPENSATION:
+        if int(control.modal.active.get("compensation", _NO_COMPENSATION)) in _COMPENSATION:
             self.compensated.add(block.line)
         if tools.length_call is not None:
             self.length_calls[block.line] = LengthCall(tools.length_call, tools.spindle)

@@ -12,13 +12,15 @@ import numpy as np
 from twin.job.job_file import Job, JobFile
 from twin.machine.description.config import Machine
 from twin.machine.model.model import spindle_over_table_mm
-from twin.nc.canonical import FloatArray, Function, Motion, Moves, concatenate
+from twin.nc.canonical import Chunk, FloatArray, Function, Motion, Moves, concatenate
 from twin.nc.dialects.recognition import HEAD_LINES, comments_of, without_comments
+from twin.nc.functions import TOOL_CHANGE
+from twin.nc.interpreter import Interpretation
 from twin.nc.text.diagnostics import ProgramError
-from twin.run.assumed_reading import AssumedReading
-from twin.run.assumed_tools import BELOW, tool_lines
 from twin.run.placement import part_zero
 from twin.run.preparation import IGNORED_AT_ZERO, Preparation, anywhere, prepare_job
+from twin.run.reading.assumed_reading import AssumedReading
+from twin.run.reading.assumed_tools import BELOW, tool_lines
 
 _MACHINE_ZERO_UNKNOWN = "no-machine-zero"
 """The finding of a program that counts from machine zero, where no job says where that lies."""
@@ -93,26 +95,9 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
     Raises:
         ProgramError: The program is wrong.
     """
-    interpretation = preparation.interpretation()
-    counts_from_machine_zero = False
-    try:
-        chunks = list(interpretation.chunks())
-    except ProgramError as error:
-        if error.diagnostic.code != _MACHINE_ZERO_UNKNOWN:
-            raise
-        counts_from_machine_zero = True
-        interpretation = anywhere(preparation).interpretation()
-        chunks = list(interpretation.chunks())
+    interpretation, chunks, counts_from_machine_zero = _interpreted(preparation)
     moves = concatenate([chunk.moves for chunk in chunks], preparation.machine.axes)
-    calls: list[tuple[int, int, int]] = []
-    done = 0
-    for chunk in chunks:
-        calls += [
-            (int(event.word[1:]), event.line, done + event.before)
-            for event in chunk.events
-            if isinstance(event, Function) and event.word[:1] == "T" and event.word[1:].isdigit()
-        ]
-        done += len(chunk.moves)
+    calls = _tool_calls(chunks)
     inches, lacking = interpretation.programs_in_inches, _lacking_axes(preparation)
     comments = list(_comments(preparation))
     tools, told, diameter = tool_lines(calls, comments, moves, inches=inches)
@@ -145,6 +130,43 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
     left_out = tuple(f"{word} stays at 0: the machine has no such axis" for word in lacking)
     rapids = f"rapids may leave their path by {_RAPID_TOLERANCE_UM:g} µm"
     return AssumedJob("\n".join(lines), (*preparation.reading.told, said, *told, rapids, *left_out))
+
+
+def _interpreted(preparation: Preparation) -> tuple[Interpretation, list[Chunk], bool]:
+    """What the program comes to, and whether it depends on where machine zero lies."""
+    interpretation = preparation.interpretation()
+    try:
+        chunks = list(interpretation.chunks())
+    except ProgramError as error:
+        if error.diagnostic.code != _MACHINE_ZERO_UNKNOWN:
+            raise
+        chunks = []
+    words = {
+        event.word for chunk in chunks for event in chunk.events if isinstance(event, Function)
+    }
+    if chunks and TOOL_CHANGE not in words:
+        return interpretation, chunks, False
+    somewhere = anywhere(preparation).interpretation()
+    placed = list(somewhere.chunks())
+    depends = sum(len(chunk.moves) for chunk in placed) != sum(len(each.moves) for each in chunks)
+    return (somewhere, placed, True) if depends else (interpretation, chunks, False)
+
+
+def _tool_calls(chunks: list[Chunk]) -> list[tuple[int, int, int]]:
+    """Number, line and next move of every tool that comes: by M6, in a program without it by T alone."""
+    selected: list[tuple[int, int, int]] = []
+    changed: list[tuple[int, int, int]] = []
+    done = 0
+    for chunk in chunks:
+        for event in chunk.events:
+            if not isinstance(event, Function):
+                continue
+            if event.word[:1] == "T" and event.word[1:].isdigit():
+                selected.append((int(event.word[1:]), event.line, done + event.before))
+            elif event.word == TOOL_CHANGE and selected:
+                changed.append((selected[-1][0], event.line, done + event.before))
+        done += len(chunk.moves)
+    return changed or selected
 
 
 def _point_line(reading: AssumedReading) -> list[str]:

@@ -1,8 +1,12 @@
-"""The dry run: the whole program interpreted once, before anything moves."""
+"""The dry run: the whole program interpreted once, before anything moves, and read by all who follow it."""
 
 import dataclasses
-from collections.abc import Iterable
+import pickle
+import tempfile
+import weakref
+from collections.abc import Iterable, Iterator
 from itertools import islice
+from typing import IO
 
 from twin.cutting.program_summary import ProgramSummary, SummaryBuilder
 from twin.machine.watching.alarms import Alarm
@@ -11,12 +15,83 @@ from twin.nc.canonical import Chunk, FloatArray, Function
 from twin.nc.text.diagnostics import Diagnostic
 from twin.run.messages import speed_notice
 from twin.run.notices import shown
+from twin.run.placement import start_position
 from twin.run.preparation import Preparation
 from twin.run.program_watch import ProgramWatch
 from twin.run.stages import StageClock
+from twin.run.waits import with_waits
+
+MOVES_IN_MEMORY = 200_000
+"""Of a longer program the further moves lie in a file, at some 200 bytes each: memory stays bounded."""
 
 NOTICES_KEPT = 100
 """Lines whose speed of the spindle was limited that are told."""
+
+
+class InterpretedProgram:
+    """The moves and events that a program makes.
+
+    Attributes:
+        moves: How many moves there are.
+        start: Where the axes are at the program's start, program coordinates, shape (k,) [mm or deg]. The
+            job says it, or the program itself before its first move (G92 of ``codesys``).
+    """
+
+    def __init__(self, preparation: Preparation, chunks: Iterable[Chunk] = ()) -> None:
+        """Take what an interpreter makes.
+
+        Args:
+            preparation: The job made concrete.
+            chunks: The whole program, or its begin.
+
+        Raises:
+            ProgramError: The program is wrong.
+        """
+        self._preparation = preparation
+        self._kept: list[Chunk] = []
+        self._file: IO[bytes] | None = None
+        self._places: list[int] = []
+        self.moves = 0
+        self.start: FloatArray = start_position(preparation.job.file, preparation.machine)
+        for chunk in chunks:
+            self.add(chunk)
+
+    def add(self, chunk: Chunk) -> None:
+        """Keep the moves and events that follow the last ones."""
+        if self.moves == 0 and len(chunk.moves):
+            self.start = chunk.moves.start[0]
+        self.moves += len(chunk.moves)
+        if self.moves <= MOVES_IN_MEMORY:
+            self._kept.append(chunk)
+            return
+        if self._file is None:
+            self._file = tempfile.TemporaryFile(prefix="twin-moves-")  # noqa: SIM115 - closed with this object
+            weakref.finalize(self, self._file.close)
+        self._places.append(self._file.tell())
+        pickle.dump(chunk, self._file, protocol=pickle.HIGHEST_PROTOCOL)
+
+    def chunks(self) -> Iterator[Chunk]:
+        """All of it in the program's order, a few thousand moves at a time."""
+        yield from self._kept
+        for place in self._places:
+            assert self._file is not None
+            self._file.seek(place)
+            chunk: Chunk = pickle.load(self._file)  # noqa: S301 - written by this process, a file without a name
+            yield chunk
+
+    def timed_chunks(self) -> Iterator[Chunk]:
+        """The same with the time of tool changes and of the spindle as dwells."""
+        made = self._preparation
+        return with_waits(self.chunks(), made.machine.file.spindle, made.job.file, made.spindle)
+
+
+def interpreted(preparation: Preparation) -> InterpretedProgram:
+    """A program interpreted to its end.
+
+    Raises:
+        ProgramError: The program is wrong.
+    """
+    return InterpretedProgram(preparation, preparation.interpretation().chunks())
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -24,7 +99,7 @@ class DryRun:
     """What a program does, as far as that is known without moving anything.
 
     Attributes:
-        moves: How many moves the program makes.
+        program: Its moves and events.
         warnings: What the interpreter and the spindle had to say.
         alarm: The soft-limit alarm of the first move that leaves the travel, if any.
         summary: What the program says beside its moves.
@@ -32,12 +107,17 @@ class DryRun:
         lines_never_run: How many lines with motion it never came to.
     """
 
-    moves: int
+    program: InterpretedProgram
     warnings: tuple[Diagnostic, ...]
     alarm: Alarm | None
     summary: ProgramSummary
     watch: ProgramWatch
     lines_never_run: int
+
+    @property
+    def moves(self) -> int:
+        """How many moves the program makes."""
+        return self.program.moves
 
 
 def interpret_all(preparation: Preparation, part_zero: FloatArray, clock: StageClock) -> DryRun:
@@ -53,13 +133,13 @@ def interpret_all(preparation: Preparation, part_zero: FloatArray, clock: StageC
         ConfigError: It brings a tool that the job does not list.
     """
     interpretation = preparation.interpretation()
-    moves, alarm = 0, None
+    program, alarm = InterpretedProgram(preparation), None
     builder = SummaryBuilder(preparation.job.file, preparation.spindle)
     watch = ProgramWatch(preparation.job.file, preparation.spindle)
     limited: dict[int, str] = {}
     chunks: Iterable[Chunk] = clock.watch("interpret", interpretation.chunks())
     for chunk in chunks:
-        moves += len(chunk.moves)
+        program.add(chunk)
         builder.add(chunk)
         watch.add(chunk)
         for event in chunk.events:
@@ -68,7 +148,7 @@ def interpret_all(preparation: Preparation, part_zero: FloatArray, clock: StageC
         if alarm is None:
             alarm = soft_limit_alarm(preparation.machine, chunk.moves, part_zero)
     return DryRun(
-        moves=moves,
+        program=program,
         warnings=(
             *interpretation.diagnostics,
             *(

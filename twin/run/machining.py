@@ -11,11 +11,13 @@ from twin.cutting.forces.load_log import LoadLog
 from twin.cutting.inspection import Inspection, inspect
 from twin.cutting.nominal import NominalGouge, NominalWatch
 from twin.cutting.part import write_stl
+from twin.cutting.part_picture import part_picture
 from twin.cutting.program_summary import ProgramSummary
 from twin.cutting.spindle import standing
 from twin.job.job_file import JobFile, ToolTable
 from twin.machine.description.config import Machine
 from twin.machine.model.head_shape import head_shape
+from twin.machine.simulation.tool_changes import REMEDY
 from twin.machine.watching.alarms import Alarm
 from twin.nc.canonical import FloatArray
 from twin.recording.form import Samples
@@ -134,7 +136,11 @@ class Machining:
         cutter = self._cutter
         if cutter is None or cutter.halted is None:
             return None
-        return stock_alarm(cutter.halted, cutter.tool)
+        return stock_alarm(cutter.halted, cutter.tool, cutter.plan.before(cutter.tool))
+
+    def picture(self) -> bytes:
+        """The part from above by now, PNG; empty without a stock."""
+        return b"" if self._cutter is None else part_picture(self._cutter.map)
 
     def finish(self, out: Path | None) -> CutResult | None:
         """What the cut came to; the part is written as ``part.stl`` into a folder, if one is given.
@@ -158,12 +164,13 @@ def gouge_alarm(gouge: NominalGouge, tool: ToolTable) -> Alarm:
     return Alarm("gouge", gouge.line, gouge.time_s, "", message)
 
 
-def stock_alarm(event: CutEvent, tool: ToolTable) -> Alarm:
+def stock_alarm(event: CutEvent, tool: ToolTable, before: ToolTable | None = None) -> Alarm:
     """The alarm of what met the stock: a rapid, a feed with the spindle off, shank, holder, head.
 
     Args:
         event: What the cutter noted.
         tool: What was in the spindle.
+        before: The tool before it.
     """
     depth = f"{event.depth_mm:.2f} mm deep"
     if event.what == "rapid":
@@ -173,7 +180,10 @@ def stock_alarm(event: CutEvent, tool: ToolTable) -> Alarm:
         message = f"tool {tool.number} feeds {depth} into the stock with the spindle off"
         return Alarm("spindle-off", event.line, event.time_s, "", message)
     if event.what == "arrival":
-        message = f"tool {tool.number} comes into the spindle {depth} in the part"
+        message = f"tool {tool.number}, {tool.length:g} mm long, comes into the spindle {depth} in the part"
+        if before is not None:
+            message += f" where tool {before.number} of {before.length:g} mm was"
+        message += f": {REMEDY}"
     elif event.what == "flute":
         message = f"the shank of tool {tool.number} meets the part above its flutes ({depth})"
     elif event.what in ("shank", "holder"):

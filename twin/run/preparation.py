@@ -1,8 +1,7 @@
 """From a job to everything that a run needs: the program, its dialect, the machine, the places."""
 
 import dataclasses
-import functools
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 
@@ -13,7 +12,6 @@ from twin.files.overrides import Change
 from twin.files.shipped import machine_file, shipped_program
 from twin.job.job_file import Job, JobFile, read_job
 from twin.machine.description.config import Machine, read_machine
-from twin.nc.canonical import Chunk, FloatArray
 from twin.nc.control.settings import ControlSettings, MachineFunction, ToolData
 from twin.nc.dialects import Dialect, dialect_named
 from twin.nc.dialects.foreign import require_program
@@ -21,16 +19,15 @@ from twin.nc.functions import SpindleState
 from twin.nc.interpreter import Interpretation
 from twin.nc.text.source import Source, read_source, source_from_text
 from twin.recording.reader import RecordingHeader
-from twin.run.assumed_reading import (
+from twin.run.placement import start_position
+from twin.run.reading.assumed_reading import (
     NOTHING_ASSUMED,
     UNKNOWN_FUNCTION,
     AssumedReading,
     assumed_reading,
     unknown_functions,
 )
-from twin.run.dialect_choice import chosen_dialect
-from twin.run.placement import start_position
-from twin.run.waits import with_waits
+from twin.run.reading.dialect_choice import chosen_dialect
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -59,29 +56,14 @@ class Preparation:
         """A fresh pass over the program."""
         return Interpretation(self.source, self.dialect, self.settings)
 
-    def timed_chunks(self) -> Iterator[Chunk]:
-        """A fresh pass over the program, with the time of tool changes and spindle as dwells."""
-        chunks = self.interpretation().chunks()
-        return with_waits(chunks, self.machine.file.spindle, self.job.file, self.spindle)
-
     @property
     def spindle(self) -> SpindleState:
         """The spindle before anybody has said anything of it, with the job's first tool."""
         return SpindleState(
             tool_speed=self.job.file.tools[0].speed,
-            has_word=bool(self.dialect.spindle_letter),
+            has_word=bool(self.dialect.words.spindle),
             fastest=self.machine.file.spindle.max_speed,
         )
-
-    @functools.cached_property
-    def start(self) -> FloatArray:
-        """Where the axes stand at the program's start, program coordinates, shape (k,).
-
-        The job says it, or the program itself before its first move (G92 of ``codesys``).
-        """
-        chunks = (chunk.moves for chunk in self.interpretation().chunks())
-        begin = next((moves.start[0] for moves in chunks if len(moves)), None)
-        return start_position(self.job.file, self.machine) if begin is None else begin
 
 
 def prepare(
@@ -256,7 +238,7 @@ def _control_settings(job: Job, machine: Machine, *, strict: bool) -> ControlSet
         default_rotary_feed=job.file.default_rotary_feed or control.default_rotary_feed,
         start=machine.axes.named(start),
         tools={
-            tool.number: ToolData(radius=tool.diameter / 2.0, length=tool.length)
+            tool.number: ToolData(tool.diameter / 2.0, tool.length, tool.name)
             for tool in job.file.tools
         },
         any_tool="tools" not in job.file.model_fields_set,
@@ -273,6 +255,7 @@ def _control_settings(job: Job, machine: Machine, *, strict: bool) -> ControlSet
         rotary_diameter=control.rotary_diameter,
         feed_of_all_axes=control.feed_of_all_axes,
         length_returns=control.length_returns,
+        tool_change_height=_change_height(job, machine),
         block_skip=job.file.block_skip is True,
         block_skip_levels=_block_skip_levels(job.file),
         decimal_point=job.file.decimal_point or control.decimal_point,
@@ -284,6 +267,12 @@ def _control_settings(job: Job, machine: Machine, *, strict: bool) -> ControlSet
 def _block_skip_levels(file: JobFile) -> frozenset[int]:
     """Numbers behind the slash of blocks that are left out."""
     return frozenset() if isinstance(file.block_skip, bool) else frozenset(file.block_skip)
+
+
+def _change_height(job: Job, machine: Machine) -> float | None:
+    """Where Z goes before a tool changes; the job comes before the machine."""
+    own = job.file.tool_change.height
+    return machine.file.tool_change.height if own is None else own
 
 
 IGNORED_AT_ZERO = "ignored at 0"

@@ -199,7 +199,7 @@ class ProgramWatch:
                     "spindle"
                 )
                 yield Notice("length-of-other-tool", line, message)
-        by_code = interpretation.dialect.length_by_code
+        by_code = interpretation.dialect.rules.length_by_code
         if by_code and self.changed_at and not interpretation.length_calls:
             yield Notice(
                 "length-never-called",

@@ -41,7 +41,7 @@ from twin.run.cut_notices import (
     tooth_feed_notices,
     unjudged_limit_notices,
 )
-from twin.run.dry_run import DryRun, interpret_all
+from twin.run.dry_run import DryRun, InterpretedProgram, interpret_all
 from twin.run.machining import Machining
 from twin.run.notices import Notice, shown
 from twin.run.outcome import Outcome
@@ -50,6 +50,7 @@ from twin.run.preparation import Preparation
 from twin.run.progress import Progress
 from twin.run.scope import nothing_judged, scope_of
 from twin.run.stages import StageClock
+from twin.run.tool_use import ToolTimes
 from twin.toolpath.part_frame import PartFrame
 from twin.units import UM_PER_MM
 from twin.version import __version__
@@ -134,15 +135,16 @@ class Run:
         """
         comparison, machining = self._comparison(), self._machining(dry_run)
         self._process = None
-        reached = _Reached(self.part_zero, self.preparation.start)
+        reached = _Reached(self.part_zero, dry_run.program.start)
         alarm, near_miss = dry_run.alarm or self._overspeed(dry_run), None
+        times = ToolTimes(dry_run.summary.tools, self.machine.file.servo_period_s)
         if alarm is None:
             with self._recording(out) as writer:
                 if motion is None:
-                    setpoints = self._setpoints(comparison)
+                    setpoints = self._setpoints(dry_run.program, comparison)
                     motion = self._simulation(setpoints, dry_run.summary)
                 else:
-                    self._expect_all(comparison)
+                    _expect_all(dry_run.program, comparison)
                 if self._process is None or not speeds_are_known(dry_run.summary):
                     _refuse_unjudged_loads(self.preparation.job.file.tolerance)
                 growth = Growth(self.machine, ProgramOperation(dry_run.summary).speed)
@@ -155,6 +157,7 @@ class Run:
                         contour_um = comparison.add(samples)
                         lower = dry_run.summary.tools.lower(samples.setpoint.move)
                         self.trace.add(samples, contour_um, lower)
+                        times.add(samples)
                     if writer is not None:
                         with self.clock.stage("record"):
                             writer.append(samples, contour_um)
@@ -173,7 +176,12 @@ class Run:
             inspection = machining.inspect() if len(reached) else None
         alarms = (*self._breaks(reached.time_s), *(() if alarm is None else (alarm,)))
         outcome = self._outcome(dry_run, machining, reached, cut, inspection, alarms, comparison)
-        return dataclasses.replace(outcome, near_miss=near_miss)
+        return dataclasses.replace(
+            outcome,
+            near_miss=near_miss,
+            tools=times.result(cut),
+            part=machining.picture() if out is not None and len(reached) else b"",
+        )
 
     def _outcome(
         self,
@@ -265,11 +273,6 @@ class Run:
         found = () if self._process is None else self._process.breaks
         return tuple(each.alarm for each in found if each.time_s <= until_s)
 
-    def _expect_all(self, comparison: Comparison) -> None:
-        """Let those who judge the motion hear of the whole program at once."""
-        for chunk in self.clock.watch("interpret", self.preparation.interpretation().chunks()):
-            comparison.expect(chunk.moves)
-
     def _nominal_checks(
         self, gouge: NominalGouge | None, inspection: Inspection | None
     ) -> Iterator[Check]:
@@ -288,23 +291,25 @@ class Run:
             bound = f" (walls are known to {inspection.bound_mm * UM_PER_MM:.0f} µm)"
             yield Check("standing_um", figure, left, nominal.standing_um, "µm", 0, 0.0, bound)
 
-    def _setpoints(self, comparison: Comparison) -> Iterator[Setpoints]:
+    def _setpoints(
+        self, program: InterpretedProgram, comparison: Comparison
+    ) -> Iterator[Setpoints]:
         """The planned motion; those who judge it hear of every move before it is simulated."""
         machine = self.preparation.machine
         period = machine.file.servo_period_s
 
         def moves() -> Iterator[Chunk]:
-            for chunk in self.preparation.timed_chunks():
+            for chunk in program.timed_chunks():
                 comparison.expect(chunk.moves)
                 yield chunk
 
         def planned() -> Iterator[Setpoints]:
             for chunk in plan(
-                self.clock.watch("interpret", moves()),
+                moves(),
                 motion_limits(machine),
                 period_s=period,
                 part_zero=self.part_zero,
-                start=self.preparation.start + self.part_zero,
+                start=program.start + self.part_zero,
             ):
                 self._planned_s = float(chunk.time[-1])
                 yield chunk
@@ -402,6 +407,12 @@ def _load_checks(tolerance: ToleranceTable, loads: LoadLog) -> Iterator[Check]:
         limit, most = getattr(tolerance, key), loads.greatest.get(key)
         if limit is not None and most is not None:
             yield Check(key, figure, most.value, limit, unit, most.line, most.time_s)
+
+
+def _expect_all(program: InterpretedProgram, comparison: Comparison) -> None:
+    """Let those who judge the motion hear of the whole program at once."""
+    for chunk in program.chunks():
+        comparison.expect(chunk.moves)
 
 
 def _text_to_keep(source: Source) -> str:

@@ -13,7 +13,7 @@ from starlette.routing import Mount, Route
 from starlette.staticfiles import StaticFiles
 
 from twin.view.recorded_run import RecordedRun
-from twin.web.doorkeeper import Doorkeeper
+from twin.web.doorkeeper import Doorkeeper, new_tokens
 from twin.web.guard import ASSETS, Guard
 from twin.web.server import WebServer, require_three
 
@@ -81,7 +81,7 @@ def open_view(run: RecordedRun, port: int = 0) -> Iterator[str]:
     """
     require_three()
     server = WebServer(port=port)
-    doorkeeper = Doorkeeper((ROLE,), server.port)
+    doorkeeper = Doorkeeper(new_tokens((ROLE,)), server.port)
     server.start(Guard(view_app(run), doorkeeper, local=server.local))
     try:
         yield f"{server.origin}/{ROLE}/#{doorkeeper.tokens[ROLE]}"

@@ -79,48 +79,23 @@ class BoundedProtocol(H11Protocol):
             self.transport.abort()
 
 
-class WebServer:
-    """Serves an application while it is open.
-
-    Attributes:
-        host: Where it listens.
-        port: The port.
-    """
+class SocketServer:
+    """Serves an application on a socket while it is open."""
 
     def __init__(
-        self,
-        host: str = LOOPBACK,
-        port: int = 0,
-        certificate: Path | None = None,
-        key: Path | None = None,
+        self, listener: socket.socket, certificate: Path | None = None, key: Path | None = None
     ) -> None:
-        """Bind the port.
+        """Take a socket.
 
         Args:
-            host: Address to listen on.
-            port: Port; 0: the first free one from ``FIRST_PORT``.
+            listener: Listens already; it is closed with the server.
             certificate: For https, with its key.
             key: None: it stands in the certificate's file.
-
-        Raises:
-            UsageError: The host is open to others and there is no certificate, the certificate
-                cannot be used, or no port is free.
         """
-        self.host = host.strip("[]")
-        self.local = self.host in LOCAL_NAMES
-        _require_certificate(host, certificate, key, local=self.local)
         self._certificate, self._key = certificate, key
-        self._socket = _bound(self.host, port)
-        self.port = int(self._socket.getsockname()[1])
+        self._socket = listener
         self._server: uvicorn.Server | None = None
         self._thread: threading.Thread | None = None
-
-    @property
-    def origin(self) -> str:
-        """Scheme, host and port of its addresses."""
-        scheme = "http" if self._certificate is None else "https"
-        name = f"[{self.host}]" if ":" in self.host else self.host
-        return f"{scheme}://{name}:{self.port}"
 
     def start(self, app: ASGIApp, *, promptly: bool = False) -> None:
         """Serve an application until ``stop``.
@@ -168,6 +143,47 @@ class WebServer:
             self._server.should_exit = True
             self._thread.join(timeout=5.0)
         self._socket.close()
+
+
+class WebServer(SocketServer):
+    """Serves an application at a port while it is open.
+
+    Attributes:
+        host: Where it listens.
+        port: The port.
+    """
+
+    def __init__(
+        self,
+        host: str = LOOPBACK,
+        port: int = 0,
+        certificate: Path | None = None,
+        key: Path | None = None,
+    ) -> None:
+        """Bind the port.
+
+        Args:
+            host: Address to listen on.
+            port: Port; 0: the first free one from ``FIRST_PORT``.
+            certificate: For https, with its key.
+            key: None: it stands in the certificate's file.
+
+        Raises:
+            UsageError: The host is open to others and there is no certificate, the certificate
+                cannot be used, or no port is free.
+        """
+        self.host = host.strip("[]")
+        self.local = self.host in LOCAL_NAMES
+        _require_certificate(host, certificate, key, local=self.local)
+        super().__init__(_bound(self.host, port), certificate, key)
+        self.port = int(self._socket.getsockname()[1])
+
+    @property
+    def origin(self) -> str:
+        """Scheme, host and port of its addresses."""
+        scheme = "http" if self._certificate is None else "https"
+        name = f"[{self.host}]" if ":" in self.host else self.host
+        return f"{scheme}://{name}:{self.port}"
 
 
 def _ignore_lost_lines(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:

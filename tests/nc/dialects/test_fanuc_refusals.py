@@ -51,7 +51,7 @@ def test_a_block_that_ends_a_cycle_counts_its_own_k() -> None:
     ],
 )
 def test_it_is_refused(dialect: str, text: str, code: str) -> None:
-    end = "\nM2" if dialect_named(dialect).must_end else ""
+    end = "\nM2" if dialect_named(dialect).rules.must_end else ""
     outcome = run(text + end, dialect, WITH_TABLES)
     assert outcome.error is not None
     assert outcome.error.code == code

@@ -36,7 +36,7 @@ def test_every_cell_of_the_table_has_its_program(name: str) -> None:
     rows = feed_rows(name)
     kinds = [kind for kind in KINDS if name != "grbl" or "rotary" not in kind]
     assert [row.kind for row in rows] == kinds
-    feeds = [f"G{number:g}" for number in (93, 94, 95) if number in OWN[name].g] or ["F"]
+    feeds = [f"G{number:g}" for number in (93, 94, 95) if number in OWN[name].codes.g] or ["F"]
     shown = {path.stem for path in PROGRAMS if path.parts[-3] == name}
     assert shown == {
         f"{mode}_{file}" for mode, file in product(feeds, map(KINDS.__getitem__, kinds))

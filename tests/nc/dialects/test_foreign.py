@@ -38,18 +38,7 @@ FOREIGN: dict[str, list[bytes]] = {
     "XML": [b'<?xml version="1.0"?><job/>'],
     "APT": [b"PARTNO PLATE\nGOTO / 1.0, 2.0, 3.0\nFEDRAT / 100\n"],
     "HP-GL": [b"IN;SP1;PU0,0;PD100,100;PU;"],
-    "Heidenhain": [
-        b"0 BEGIN PGM PLATE MM\n1 BLK FORM 0.1 Z X+0 Y+0 Z-20\n2 TOOL CALL 1 Z S3000\n3 L X+10 Y+10 R0 FMAX M3\n",
-        b"BEGIN PGM 100 MM\nTOOL CALL 5 Z S1000\nCC X+0 Y+0\nC X+10 Y+0 DR+\n",
-    ],
-    "Sinumerik": [
-        b"%_N_PLATE_MPF\n;$PATH=/_N_WKS_DIR\nG0 X0\n",
-        b'N10 G17 G54\nN20 T="MILL_10" D1\nN30 M6\nN40 G0 X0 Y0\nN50 G2 X10 Y0 CR=5\n',
-        b"G0 X0\nCYCLE81(10,0,2,-15)\nM30\n",
-        b"MCALL CYCLE83(5,0,1,-20)\nG0 SUPA Z0 D0\n",
-        b"DEF REAL DEPTH\nTRANS X10 Y10\nG1 X=R1 F100\n",
-        b"G0 X0\nCIP X10 Y0 I1=5 J1=5\n",
-    ],
+    "Heidenhain": [b"%PLATE G71 *\nN10 G30 G17 X+0 Y+0 Z-40 *\nN20 T1 G17 S3000 *\n"],
     "Mazatrol": [b"UNo. MAT INITIAL-Z ATC MODE\n0 CBN STL 50\nUNo. UNIT TOOL\n"],
     "Okuma": [
         b"$PLATE.MIN%\nG15 H1\nG0 X0 Y0\n",
@@ -85,8 +74,6 @@ HEADS: dict[str, list[bytes]] = {
     ],
     "Mazak": [b"(MAZAK VCN-410A)\nG0 X1.\n"],
     "Mitsubishi": [b"(POST: MITSUBISHI M70)\nG0 X1.\n"],
-    "Siemens|Sinumerik": [b"; SIEMENS 840D\nG0 X10\nG1 X20 F100\n"],
-    "Heidenhain": [b"; iTNC 530 DIN/ISO\nG0 X10\nG1 X20 F100\n"],
     "Hurco": [b"(HURCO WINMAX)\nG0 X1.\n"],
     "Centroid": [b"; CENTROID Acorn post\nG0 X1.\n"],
     "prose": [b"Dear colleague, please mill this part tomorrow and tell me when it is ready.\n"],

@@ -13,8 +13,8 @@ def test_the_page_is_that_of_the_declaration(name: str) -> None:
 @pytest.mark.parametrize("name", DIALECTS)
 def test_every_code_and_decision_is_described(name: str) -> None:
     dialect, text = DIALECTS[name], describe(DIALECTS[name])
-    for number in dialect.g:
-        assert f"\n| G{number} " in text
+    for number in dialect.codes.g:
+        assert f"\n| {dialect.code_name(number)} " in text
     for decision in dialect.decisions:
         assert decision.answer in text
 
@@ -22,15 +22,15 @@ def test_every_code_and_decision_is_described(name: str) -> None:
 @pytest.mark.parametrize("name", DIALECTS)
 def test_every_word_that_acts_has_a_meaning(name: str) -> None:
     dialect = DIALECTS[name]
-    assert dialect.axis_letters | dialect.motion_words | set(dialect.words) <= set(
-        dialect.word_meanings
+    assert dialect.words.axes | dialect.words.motion | set(dialect.words.actions) <= set(
+        dialect.words.meanings
     )
 
 
 @pytest.mark.parametrize("name", DIALECTS)
 def test_codes_in_force_at_the_start_belong_to_different_groups(name: str) -> None:
     dialect = DIALECTS[name]
-    groups = [dialect.g[number].group for number in dialect.start]
+    groups = [dialect.codes.g[number].group for number in dialect.codes.start]
     assert len(set(groups)) == len(groups)
 
 

@@ -502,7 +502,7 @@ PROBES = {
         -3.0,
     ),
     "haas bolt holes without a cycle": Probe("haas", "G70 I5. L3\nM30", refused="cycle-word"),
-    "haas L repeats a motion": Probe("haas", HAAS_THREAD, {"X": 0, "Y": 0, "Z": 0.4}, 10, -5.0),
+    "haas L repeats a motion": Probe("haas", HAAS_THREAD, {"X": 0, "Y": 0, "Z": 200.4}, 10, 195.0),
     "haas macro": Probe("haas", HAAS_MACRO, {"X": -85, "Y": 0, "Z": 210}, 7, 10.0),
     "haas all axes home": Probe(
         "haas", "G0 X1. Y2. Z3. C4.\nG28\nM30", {"X": 0, "Y": 0, "Z": 200, "C": 0}

@@ -70,17 +70,18 @@ def told(chunk: Chunk) -> tuple[Any, ...]:
     return (*(each.tobytes() for each in rows), repr(tuple(chunk.events)))
 
 
-def step(control: Executor) -> tuple[Any, ...] | None:
+def step(executor: Executor) -> tuple[Any, ...] | None:
     """What a block makes; None at the program's end."""
+    control = executor.control
     if control.ended:
         return None
     try:
         block = control.program_counter.next()
         if block is None:
-            control.finish()
+            executor.finish()
             control.ended = True
         else:
-            control.run(block)
+            executor.run(block)
     except ProgramError as error:
         control.ended = True
         return told(control.path.take()), str(error)
@@ -93,9 +94,9 @@ BLOCKS = 400
 
 def fresh(path: Path) -> Executor:
     dialect = dialect_named(path.parent.parent.name)
-    control = Executor(dialect, WITH_TABLES, read_source(path, dialect))
-    control.prepare()
-    return control
+    executor = Executor(dialect, WITH_TABLES, read_source(path, dialect))
+    executor.prepare()
+    return executor
 
 
 @pytest.mark.parametrize("name", DIALECTS)

@@ -13,6 +13,7 @@ from twin.files.overrides import Change, changed
 from twin.files.toml import Data, Table, checked, read_toml
 from twin.job.fixture import FixtureTable
 from twin.job.machine_functions import MachineFunctions
+from twin.job.tool_change import ToolChangeTable
 from twin.job.weight import Weight
 from twin.machine.description.geometry import GeometryTable
 from twin.machine.description.variant import on_base
@@ -262,6 +263,7 @@ class MachineFile(Table):
     path: PathTable
     table: TableTable | None = None
     spindle: SpindleTable = SpindleTable()
+    tool_change: ToolChangeTable = ToolChangeTable()
     fixtures: tuple[FixtureTable, ...] = ()
     collision: CollisionTable = CollisionTable()
     geometry: GeometryTable = GeometryTable()

@@ -9,6 +9,11 @@ from twin.machine.watching.alarms import Alarm, NearMiss
 from twin.machine.watching.clearance import Clearance
 from twin.recording.reader import Samples
 
+REMEDY = (
+    "go up before M6, or write [tool_change] height = 0 into the job where M6 goes there by itself"
+)
+"""What helps against a tool that comes where there is no room for it."""
+
 
 class ToolClearances:
     """Watches a run with tool changes; each tool's clearance is built when it first comes."""
@@ -54,7 +59,8 @@ class ToolClearances:
                 continue
             alarm = self._with(change.tool).look(self._last)
             if alarm is not None:
-                return dataclasses.replace(alarm, line=change.line)
+                message = f"a tool of {change.tool.length:g} mm comes into the spindle: {alarm.message}; {REMEDY}"
+                return dataclasses.replace(alarm, line=change.line, message=message)
         return None
 
     def _with(self, tool: ToolShape) -> Clearance:

@@ -324,7 +324,7 @@ class Clearance:
     def _alarm(self, way: "_Way", row: int, depth: float, pair: int) -> Alarm:
         one, two = self._names(pair)
         message = f"the {one} meets the {two} ({depth:.2f} mm deep)"
-        return Alarm("collision", *way.moment(row), "", message)
+        return Alarm("collision", *way.moment(row), "", message, (one, two))
 
 
 class _Way(NamedTuple):

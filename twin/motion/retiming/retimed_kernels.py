@@ -44,7 +44,9 @@ def retimed_phases(
         way, gain = nodes.distance[i], a1 - a0
         # With both halves as long, way = (v0 + v1) t / 2 - (a1 - a0) t² / 12.
         mean = 0.5 * (v0 + v1)
-        t = 2.0 * way / (mean + math.sqrt(max(0.0, mean * mean - gain * way / 3.0)))
+        square = mean * mean - gain * way / 3.0
+        # Where no time serves both its ends, the phases are not a number, as uses_of_limits finds.
+        t = 2.0 * way / (mean + math.sqrt(square)) if square >= 0.0 else math.nan
         both = 2.0 * gain / t
         first = 4.0 * (v1 - v0 - a0 * t) / (t * t) - 0.5 * both
         half = 0.5 * t

@@ -1,4 +1,4 @@
-"""G and M codes: what a dialect declares of each, and how axis words become a move."""
+"""What a dialect declares of its G and M codes, its statements and its words."""
 
 import dataclasses
 from collections.abc import Callable, Mapping
@@ -6,9 +6,8 @@ from typing import Literal
 
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import MotionMode
-from twin.nc.control.modal import ModalChanges
+from twin.nc.control.modal import ActiveCodes, Modal, ModalChanges
 from twin.nc.control.settings import MachineFunction
-from twin.nc.control.state import ControlLanguage
 from twin.nc.text.blocks import Statement, Word
 
 Action = Callable[[Control], None]
@@ -101,38 +100,33 @@ class MCode:
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
-class Vocabulary(ControlLanguage):
-    """What the words of a dialect do.
+class Codes:
+    """The codes and statements of a dialect.
 
     Attributes:
         groups: Modal groups in the order in which they take effect.
         g: G codes by number, such as 54 or 54.1.
         m: M codes by number.
+        start: G codes in force when a program starts.
+        start_state: Fields of ``Modal`` that no G code sets.
+        instead: What to write in place of G codes that other controls have, by number.
         any_m: M codes outside the table are functions too.
         last_of_group_counts: Of several G codes of a modal group in a block the last one counts; else they
             are refused.
-        words: Addresses with a modal meaning, and what they do.
-        words_first: F, S, T and early M functions take effect before what G codes do besides the
-            modal state that they set.
+        statements: What statements do, by their keywords.
         other_statement: What statements do that begin with a name.
-        function_letters: Addresses that belong to an M function of their block.
     """
 
     groups: tuple[str, ...]
     g: Mapping[float, GCode]
     m: Mapping[int, MCode]
+    start: tuple[float, ...]
+    start_state: ModalChanges = dataclasses.field(default_factory=ModalChanges)
+    instead: Mapping[float, str] = dataclasses.field(default_factory=dict)
     any_m: bool = False
     last_of_group_counts: bool = False
-    words: Mapping[str, WordAction]
-    words_first: bool = False
     statements: Mapping[str, StatementAction] = dataclasses.field(default_factory=dict)
     other_statement: StatementAction | None = None
-    function_letters: str = ""
-
-    def refusal(self, code: float) -> str | None:
-        """Why a G code that the control knows is refused, given its number; None: it is not."""
-        declared = self.g.get(code)
-        return None if declared is None or not declared.refused else declared.refusal
 
     def function(self, number: int, declared: Mapping[int, MachineFunction]) -> MCode | None:
         """The M code with a number; None where it has no meaning.
@@ -147,3 +141,44 @@ class Vocabulary(ControlLanguage):
         if code is None and self.any_m and number >= 0:
             return MCode(meaning="machine function")
         return code
+
+    def new_modal(self) -> Modal:
+        """What is in force of them: nothing; groups that have one at the start come first."""
+        codes = (*(self.g[number] for number in self.start), *self.g.values())
+        return Modal(ActiveCodes(code.group for code in codes if code.group))
+
+
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class Words:
+    """The words of a dialect, by their addresses.
+
+    Attributes:
+        actions: Addresses with a modal meaning, and what they do.
+        before_codes: F, S, T and early M functions take effect before what G codes do besides the
+            modal state that they set.
+        axes: Addresses that name axes.
+        motion: Addresses that make a block move, the axes among them.
+        of_functions: Addresses that belong to an M function of their block.
+        of_declared: Addresses that belong to an M function that the job or the machine declares.
+        references: Addresses whose value names a variable and is not computed.
+        repeat: Address that says how often its block runs, or empty.
+        signed: Addresses that are two words, one above and one below 0.
+        series: Addresses that may stand several times in a block with a switch point, in order.
+        feed: Address that sets the feed and does no more; empty: there is none.
+        spindle: Address that sets the spindle's speed; empty: there is none, the drive is set.
+        meanings: What the addresses mean, for people.
+    """
+
+    actions: Mapping[str, WordAction]
+    before_codes: bool = False
+    axes: frozenset[str] = frozenset("XYZABCUVW")
+    motion: frozenset[str] = frozenset("XYZABCUVWIJKR")
+    of_functions: str = ""
+    of_declared: str = ""
+    references: str = ""
+    repeat: str = ""
+    signed: tuple[str, ...] = ()
+    series: str = ""
+    feed: str = "F"
+    spindle: str = "S"
+    meanings: Mapping[str, str]

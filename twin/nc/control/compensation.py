@@ -1,7 +1,6 @@
 """How a control begins radius compensation, and the tools that its words name."""
 
-from twin.nc.control.control import Control
-from twin.nc.control.state import integer_of
+from twin.nc.control.control import Control, integer_of
 from twin.nc.geometry.matrices import handedness
 from twin.nc.path.compensation.stage import LEADING_OUT, OFF
 from twin.nc.text.blocks import Word
@@ -29,14 +28,14 @@ def tool_numbered(control: Control, word: Word) -> int:
     return number
 
 
-def compensate(control: Control, side: float, radius: float) -> None:
-    """Start compensation on one side with a radius [mm].
+def compensate(control: Control, side: float, radius: float, *, led: bool = False) -> None:
+    """Start compensation on one side with a radius [mm]; ``led`` as ``Compensation.begin`` has it.
 
     Raises:
         ProgramError: It is in force already, or the radius is no radius.
     """
     path = control.path
-    stage = path.compensation_stage
+    stage = path.compensation.stage
     if not radius >= 0.0:
         control.fail("compensation-radius", f"a tool cannot have the radius {radius:g}")
     if stage is LEADING_OUT:
@@ -50,8 +49,9 @@ def compensate(control: Control, side: float, radius: float) -> None:
         return
     modal = control.modal
     path.compensate(
-        control.part_plane(),
+        control.motion.part_plane,
         side * radius * handedness(control.frame.matrix),
         square=modal.square_corners,
         indirect=modal.indirect_leads,
+        led=led,
     )

@@ -1,193 +1,206 @@
-"""What a control offers to the codes and words of a dialect: words, targets, lines, arcs, feeds."""
+"""A control as the actions of codes and words see it: the words of its block, its moves, its calls."""
 
-import abc
+import dataclasses
+import functools
 import math
-from collections.abc import Iterable, Mapping
-from typing import Any
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import NoReturn, Protocol
 
 from twin.nc.canonical import Dwell, Function
-from twin.nc.control.program_counter import Call
-from twin.nc.control.words import ControlWords
+from twin.nc.control.modal import Modal
+from twin.nc.control.motion import Motion
+from twin.nc.control.program_counter import Call, ProgramCounter
+from twin.nc.control.settings import ControlSettings
+from twin.nc.control.statements import StatementReader
+from twin.nc.control.tools import Tools
+from twin.nc.control.variables import Variables
 from twin.nc.geometry.arcs import Point
-from twin.nc.geometry.frame import arc_about, moved_shift
-from twin.nc.geometry.planes import Plane, Vector
-from twin.nc.path.move_columns import FEED, NAN, RAPID, Segment
-from twin.nc.path.moves import (
-    LARGEST_COORDINATE,
-    RAPIDS_END,
-    SMALLEST_MOVE,
-    arc_length,
-    arc_radius,
-    axis_target,
-    line_length,
-    only_turns,
-)
-from twin.nc.path.paces import (
-    PACED,
-    PATH_COUNTS,
-    STANDING,
-    WITHOUT_SPEED,
-    Displacement,
-    feed_per_minute,
-    finding_of_feed,
-    pace_by_rule,
-    rapid_feed,
-)
-from twin.nc.path.segments import direction_of
-from twin.nc.text.blocks import Block, Location, Statement, Word
+from twin.nc.path.drilling_cycle import START, no_values
+from twin.nc.path.moves import LARGEST_COORDINATE, axis_target
+from twin.nc.path.paces import PATH_COUNTS, STANDING, WITHOUT_SPEED, FeedRule
+from twin.nc.text.blocks import Assignment, Block, Location, Statement, Word
+from twin.nc.text.expressions import Expression, ExpressionError
+from twin.nc.text.lexer import Lexer
+from twin.nc.text.reporter import Reporter
+from twin.nc.text.source import Source
+from twin.nc.text.syntax import Language
 
 MOST_CALLS = 64
 """Parts of a program within each other: more than any control allows."""
 
 
-class Control(ControlWords):
-    """One control, as the actions of codes see it; positions are programmed ones."""
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class Rules:
+    """What a dialect does besides its codes and words.
 
-    def target(self) -> list[float]:
-        """Take the axis words; the programmed position that they ask for, shape (k,)."""
-        target, linear = list(self.programmed), self.linear
-        unit, relative = self.modal.unit, self.modal.incremental
-        for index, word in self.take_axis_words():
-            incremental = relative or word.incremental
-            here = target[index]
-            written = word.value
-            assert isinstance(written, float)
-            value = axis_target(written, unit, linear[index], incremental, here)
-            if not -LARGEST_COORDINATE <= value <= LARGEST_COORDINATE:
-                self.fail("number-range", f"{word.text} is farther than any machine reaches", word)
-            target[index] = value
-        return target
+    Attributes:
+        memory: Makes the object that holds what only this dialect remembers.
+        prepare: Done before the first block.
+        before_motion: Done before every motion block, told whether it is rapid.
+        after_motion: Done when a block has moved.
+        finish: Done when the program ends without an end code.
+        must_end: A program without an end code is wrong.
+        read_variable: Value of a variable, given its name and index.
+        write_variable: Gives a variable a value, told its name, its index and the assignment; None:
+            variables are written as they are named.
+        is_local: Whether calls with variables of their own have a variable of this name anew.
+        given_variable: The value of a variable among those of the job, or None.
+        place_switches: Reports the block's switch points, told the length of its move.
+        pointless: Addresses whose numbers without a decimal point ``count`` must look at.
+        count: Gives words without a decimal point their value in the units of the others.
+        feed_rule: Which part of a move F counts, by the parameters of the control.
+        length_by_code: Nothing but a code puts a tool's length into force; else the tool change may.
+        acts_on_lines: Something that only this dialect remembers acts on plain lines, so that the kernel
+            cannot run them.
+    """
 
-    def line_to(self, target: list[float], *, rapid: bool) -> None:
-        """Move straight to a programmed position; nothing when it stands there already."""
-        self._add(target, rapid=rapid)
+    memory: Callable[[], object] = object
+    prepare: Callable[["Control"], None] | None = None
+    before_motion: Callable[["Control", bool], None] | None = None
+    after_motion: Callable[["Control"], None] | None = None
+    finish: Callable[["Control"], None] | None = None
+    must_end: bool = False
+    read_variable: Callable[["Control", str, float | None], float] | None = None
+    write_variable: Callable[["Control", str, float | None, float, Assignment], None] | None = None
+    is_local: Callable[[str], bool] = lambda _name: False
+    given_variable: Callable[[Mapping[str, float], str], float | None] = lambda given, name: (
+        given.get(name)
+    )
+    place_switches: Callable[["Control", float], None] | None = None
+    pointless: Callable[[ControlSettings], frozenset[str]] = lambda _settings: frozenset()
+    count: Callable[["Control", Block], Block] = lambda _control, block: block
+    feed_rule: Callable[[ControlSettings], FeedRule] = lambda _settings: PATH_COUNTS
+    length_by_code: bool = False
+    acts_on_lines: Callable[["Control"], bool] = lambda _control: False
 
-    def spline_to(self, target: list[float], *, flat: bool) -> None:
-        """Move on a spline through a programmed position; ``flat``: its height goes linearly.
 
-        The same position twice ends the spline and begins another.
-        """
-        if target == self.programmed:
-            self.path.end_spline()
-        self._add(target, rapid=False, spline=(flat,))
-
-    def arc_to(self, target: list[float], center: Point, sweep: float) -> None:
-        """Move on an arc about the plane's normal.
-
-        Args:
-            target: Programmed position of its end, shape (k,).
-            center: Abscissa and ordinate of its programmed centre [mm].
-            sweep: Signed angle with all turns [deg].
-        """
-        arc = self.frame.arc(arc_about(self.modal.plane.directions, self.programmed, center, sweep))
-        self._add(target, rapid=False, center=arc.center, normal=arc.normal, sweep=arc.sweep)
-
-    def _add(
-        self,
-        target: list[float],
-        *,
-        rapid: bool,
-        center: Vector | None = None,
-        normal: Vector = (NAN, NAN, NAN),
-        sweep: float = 0.0,
-        spline: tuple[bool] | None = None,
-    ) -> None:
-        end = self.frame.to_part(target)
-        if center is None:
-            length = line_length(self.part, end)
-        else:
-            length = arc_length(self.part, end, center, normal, sweep)
-        if length < SMALLEST_MOVE:
-            self.programmed = target
-            return
-        modal, is_arc = self.modal, center is not None
-        if self.series:
-            self.place_switches(length)
-        if rapid:
-            feed = rapid_feed(self.rapid_feed, NAN if self.feed is None else self.feed)
-        else:
-            feed = self._feed_per_minute(end, is_arc, length)
-            if self.feed_rule is not PATH_COUNTS:
-                feed = self._pace_by_rule(feed, end, length, center, sweep)
-        acceleration, deceleration = self.acceleration, self.deceleration
-        if rapid:
-            acceleration = _either(self.rapid_acceleration, acceleration)
-            deceleration = _either(self.rapid_deceleration, deceleration)
-        if self.axis_limits or self.axis_accelerations or self.axis_decelerations:
-            share = self._axis_shares(end, length, is_arc)
-            feed = _limited(feed, self.axis_limits, share)
-            acceleration = _limited(acceleration, self.axis_accelerations, share)
-            deceleration = _limited(deceleration, self.axis_decelerations, share)
-        self._last = Segment(  # by place: names would cost a block twice what it takes to make one
-            RAPID if rapid else FEED,
-            self.block.line,
-            self.block.number,
-            self.part,
-            end,
-            target,
-            feed,
-            RAPIDS_END if rapid else modal.corner,
-            modal.corner_tolerance,
-            acceleration,
-            deceleration,
-            center,
-            normal,
-            sweep,
-        )
-        if spline is None:
-            self.path.add(self._last)
-        else:
-            self.path.add_point(self._last, flat=spline[0])
-        self.programmed = target
-        self.part = end
-
-    def take_rows(self, rows: Iterable[Any], programmed: list[float], part: list[float]) -> None:
-        """Moves that were made elsewhere lead to these positions, shape (k,).
-
-        Args:
-            rows: As ``Path.add_rows`` takes them.
-            programmed: Programmed position [mm or deg].
-            part: Part position [mm or deg].
-        """
-        last = self.path.add_rows(*rows)
-        self.programmed, self.part = programmed, part
-        if last is not None:
-            self._last = last
+class HasGroup(Protocol):
+    """A code of a block, as far as its modal group."""
 
     @property
-    def direction(self) -> Vector | None:
-        """Where the last move was going when it ended, programmed coordinates; None before one."""
-        move = self._last
-        return None if move is None else self.frame.unturn(direction_of(move, at_end=True))
+    def group(self) -> str:
+        """Its modal group; empty: it is not modal."""
+        ...
 
-    def _axis_shares(self, end: list[float], length: float, is_arc: bool) -> list[float]:
-        """How much of the path's speed each axis takes at most."""
-        shares = [abs(new - old) / length for new, old in zip(end, self.part, strict=True)]
-        return [1.0, 1.0, 1.0, *shares[3:]] if is_arc else shares
+    @property
+    def yields(self) -> bool:
+        """Another code of its group in the block takes its place."""
+        ...
 
-    def _feed_per_minute(self, end: list[float], is_arc: bool, length: float) -> float:
-        modal, settings = self.modal, self.settings
-        feed = NAN if self.feed is None else self.feed
-        speed = NAN if self.spindle is None else self.spindle
-        finding = finding_of_feed(feed, modal.feed_mode, speed, float(self.spindle_turns))
-        if finding != PACED:
-            self._blame_feed(finding)
-        turning = not is_arc and only_turns(self.part, end, self.linear)
-        otherwise = (settings.default_feed, settings.default_rotary_feed)
-        return feed_per_minute(feed, modal.feed_mode, length, turning, modal.unit, speed, otherwise)
 
-    def _pace_by_rule(
-        self, pace: float, end: list[float], length: float, center: Vector | None, sweep: float
-    ) -> float:
-        """The pace of a move whose F counts another length than that of its path [mm/min or deg/min]."""
-        ways = (new - old for new, old in zip(end, self.part, strict=True))
-        turned = math.hypot(*(way for way, line in zip(ways, self.linear, strict=True) if not line))
-        turning = center is None and only_turns(self.part, end, self.linear)
-        move = Displacement(length, turned, turning)
-        if center is not None:
-            radius = arc_radius(self.part, center)
-            move = move._replace(radius=radius, around=radius * math.radians(abs(sweep)))
-        return pace_by_rule(self.feed_rule, pace, move, self.modal.feed_mode, self.modal.unit)
+class Control:
+    """One control while it runs one program.
+
+    Attributes:
+        settings: What it was told of the machine and the job.
+        report: Where its diagnostics go.
+        modal: What stays in force.
+        memory: What only this dialect remembers.
+        motion: Where it stands and how fast it goes.
+        frame: From programmed to part coordinates.
+        path: Where moves and events go.
+        tools: The tools in use.
+        variables: What the program computes with.
+        program_counter: Which block comes next.
+        statements: Reads what statements hold.
+        axis_letters: Addresses that name axes.
+        axis_index: Columns of the axes by name.
+        cycle_values: What the words of a milling cycle were last, by address.
+        cycle_state: What a drilling cycle remembers, as ``drilling_cycle`` counts it.
+        block: The block that is being run.
+        words: Its words that nothing has taken yet.
+        codes: Its G codes.
+        series: Its words for switch points, in order.
+        run: Runs one block, also one that stands within a statement.
+        ended: An end code was run.
+    """
+
+    def __init__(
+        self,
+        language: Language,
+        rules: Rules,
+        axis_letters: frozenset[str],
+        modal: Modal,
+        settings: ControlSettings,
+        source: Source,
+        run: Callable[[Block], None],
+    ) -> None:
+        """Stand before the first block; arguments as the attributes."""
+        self.settings = settings
+        self.report = Reporter(source, strict=settings.strict)
+        self.modal = modal
+        self.memory = rules.memory()
+        self._rules = rules
+        feed_rule = rules.feed_rule(settings)
+        self.motion = Motion(settings, modal, self.report, self._blame_feed, feed_rule)
+        if rules.place_switches is not None:
+            self.motion.before_move = functools.partial(rules.place_switches, self)
+        self.frame = self.motion.frame
+        self.path = self.motion.path
+        self.tools = Tools(settings.tools, any_tool=settings.any_tool)
+        syntax = language.syntax
+        self.variables = Variables(
+            rules.is_local,
+            lambda name: rules.given_variable(settings.variables, name),
+            vacant=syntax.expressions is not None and syntax.expressions.vacant,
+        )
+        lexer = Lexer(language, self.report)
+        self.program_counter = ProgramCounter(source, lexer, settings.step_limit, self.report)
+        self.statements = StatementReader(source.lines, lexer, self.report)
+        self.axis_letters = axis_letters
+        self.axis_index = {name: index for index, name in enumerate(settings.axes.names)}
+        columns = {**self.axis_index}
+        columns |= {
+            word: self.axis_index[axis]
+            for word, axis in settings.axis_words.items()
+            if axis is not None
+        }
+        self._columns = {word: columns[word] for word in columns if word in axis_letters}
+        self._axes_that_lack = axis_letters - self._columns.keys()
+        self.cycle_values: dict[str, float] = {}
+        self.cycle_state = no_values()
+        self.block = Block(0, 0)
+        self.words: dict[str, Word] = {}
+        self.codes: Sequence[tuple[Word, HasGroup]] = ()
+        self.series: list[Word] = []
+        self.run = run
+        self.ended = False
+
+    # --- what is wrong
+
+    def fail(
+        self,
+        code: str,
+        message: str,
+        word: Word | Statement | None = None,
+        hint: str | None = None,
+    ) -> NoReturn:
+        """Refuse the block; the caret stands under a word, a statement's keyword or the last code.
+
+        Raises:
+            ProgramError: Always.
+        """
+        self.report.fail(code, message, *self.span_of(word), hint)
+
+    def warn(
+        self, code: str, message: str, word: Word | None = None, hint: str | None = None
+    ) -> None:
+        """Warn; with ``strict``, refuse."""
+        self.report.warn(code, message, *self.span_of(word), hint)
+
+    def span_of(self, word: Word | Statement | None) -> tuple[int, int]:
+        """Column and width of a word or a statement's keyword; of None of the block's last code or first word."""
+        if isinstance(word, Statement):
+            return word.column, len(word.keyword)
+        if word is None and self.codes:
+            word = self.codes[-1][0]
+        if word is None and self.block.words:
+            word = self.block.words[0]
+        return (0, 1) if word is None else (word.column, word.width)
+
+    def code_word(self, number: float) -> Word | None:
+        """Where the block writes a G code, for diagnostics."""
+        return next((word for word, _ in self.codes if number_of(word) == number), None)
 
     def _blame_feed(self, finding: int) -> None:
         """Say what is wrong with the pace of a move.
@@ -207,6 +220,82 @@ class Control(ControlWords):
             hint="write F in the first block that needs it",
         )
 
+    # --- the words of the block
+
+    def take(self, address: str) -> Word | None:
+        """Take a word from the block; None where it has none."""
+        return self.words.pop(address, None)
+
+    def number(self, word: Word | None) -> float:
+        """The value of a word that has been computed; 0 where there is none."""
+        return 0.0 if word is None else number_of(word)
+
+    def value(self, word: Word) -> float:
+        """The value of a word, which may have to be computed."""
+        value = word.value
+        return self.compute(value, word) if isinstance(value, Expression) else value
+
+    def length(self, word: Word | None) -> float:
+        """The value of a word that counts a length [mm]; 0 where there is none."""
+        return 0.0 if word is None else number_of(word) * self.modal.unit
+
+    def axis_value(self, index: int, word: Word) -> float:
+        """Value of an axis word [mm or deg]."""
+        return number_of(word) * self.motion.unit_of(index)
+
+    def take_axis_words(self) -> list[tuple[int, Word]]:
+        """Take the words that name axes; pairs of column and word.
+
+        Raises:
+            ProgramError: The machine lacks an axis.
+        """
+        words, columns = self.words, self._columns
+        if not self._axes_that_lack.isdisjoint(words):
+            for name in [each for each in words if each in self._axes_that_lack]:
+                word = words.pop(name)
+                if name not in self.settings.axis_words or number_of(word) != 0.0:
+                    refuse_axis(self, word)
+        return [(columns[each], words.pop(each)) for each in list(words) if each in columns]
+
+    def target(self) -> list[float]:
+        """Take the axis words; the programmed position that they ask for, shape (k,)."""
+        target, linear = list(self.motion.programmed), self.motion.linear
+        unit, relative = self.modal.unit, self.modal.incremental
+        for index, word in self.take_axis_words():
+            incremental = word.incremental or (relative and not word.mark)
+            here = target[index]
+            written = word.value
+            assert isinstance(written, float)
+            value = axis_target(written, unit, linear[index], incremental, here)
+            if not -LARGEST_COORDINATE <= value <= LARGEST_COORDINATE:
+                self.fail("number-range", f"{word.text} is farther than any machine reaches", word)
+            target[index] = value
+        return target
+
+    def compute(self, expression: Expression, at: Word | int) -> float:
+        """Compute an expression; errors point at a word, or at the column where the expression stands."""
+        try:
+            return expression.compute(self)
+        except ExpressionError as error:
+            span = (at, len(expression.text)) if isinstance(at, int) else self.span_of(at)
+            self.report.fail(error.code, str(error), *span, error.hint)
+
+    def read_variable(self, name: str, index: float | None) -> float:
+        """Value of a variable of the program, for expressions."""
+        if self._rules.read_variable is None:
+            raise ExpressionError("unknown-variable", f"there is no variable {name}")
+        return self._rules.read_variable(self, name, index)
+
+    # --- moves and events
+
+    def line_to(self, target: list[float], *, rapid: bool) -> None:
+        """Move straight to a programmed position; nothing when it stands there already."""
+        self.motion.line_to(target, self.block, rapid=rapid)
+
+    def arc_to(self, target: list[float], center: Point, sweep: float) -> None:
+        """Move on an arc about the plane's normal; arguments as for ``Motion.arc_to``."""
+        self.motion.arc_to(target, self.block, center, sweep)
+
     def dwell(self, seconds: float) -> None:
         """Wait."""
         self.path.event(Dwell(0, self.block.line, seconds))
@@ -215,14 +304,17 @@ class Control(ControlWords):
         """Report a function at this place of the path."""
         self.path.event(Function(0, self.block.line, word, dict(arguments), at))
 
-    # --- flow
+    def forget_cycle(self) -> None:
+        """No cycle is in force any more, and its words hold no longer."""
+        if self.cycle_values or self.cycle_state[START] == self.cycle_state[START]:
+            self.cycle_values = {}
+            self.cycle_state = no_values()
+
+    # --- jumps and calls
 
     def jump(self, location: Location) -> None:
         """Let the program go on at a location."""
         self.program_counter.go(location)
-        self._end_forgotten_cycle()
-
-    def _end_forgotten_cycle(self) -> None:
         if self.modal.cycle is None:
             self.forget_cycle()
 
@@ -235,8 +327,9 @@ class Control(ControlWords):
         *,
         restores: bool = False,
         times: float = 1.0,
+        last: Location | None = None,
     ) -> None:
-        """Run the part that begins at a location and ends by a word.
+        """Run the part that begins at a location and ends by a word, or behind a location.
 
         Args:
             first: Where it begins.
@@ -245,11 +338,19 @@ class Control(ControlWords):
             values: Of its own variables by name; None: it has the caller's.
             restores: Its end puts back into force what is in force now.
             times: How often it runs.
+            last: Its last block; None: a word ends it.
 
         Raises:
             ProgramError: Too many parts call each other, or the number of runs is none.
         """
-        call = self._begin_call(first, deepest, blamed, times)
+        counter = self.program_counter
+        if counter.depth >= min(deepest, MOST_CALLS):
+            self.fail("call-depth", f"more than {deepest} calls within calls", blamed)
+        if not times >= 1.0 or times != math.floor(times):
+            self.fail("repeat-range", "the range or the number of runs is none", blamed)
+        call = Call(counter.location, first, int(times) - 1, last)
+        counter.calls.append(call)
+        self.jump(first)
         if restores:
             call.restores = self.modal.fork()
         if values is not None:
@@ -257,25 +358,6 @@ class Control(ControlWords):
             self.variables.enter()
             for name, value in values:
                 self.variables.write(name, value)
-
-    def repeat(
-        self, first: Location, last: Location, deepest: int, blamed: Statement, times: float
-    ) -> None:
-        """Run a range of blocks so often; as ``call``."""
-        self._begin_call(first, deepest, blamed, times).last = last
-
-    def _begin_call(
-        self, first: Location, deepest: int, blamed: Word | Statement, times: float
-    ) -> Call:
-        counter = self.program_counter
-        if counter.depth >= min(deepest, MOST_CALLS):
-            self.fail("call-depth", f"more than {deepest} calls within calls", blamed)
-        if not times >= 1.0 or times != math.floor(times):
-            self.fail("repeat-range", "the range or the number of runs is none", blamed)
-        call = Call(counter.location, first, int(times) - 1)
-        counter.calls.append(call)
-        self.jump(first)
-        return call
 
     def require_caller(self, blamed: Word | Statement | None = None) -> None:
         """A part must be being run that a word ends.
@@ -299,50 +381,32 @@ class Control(ControlWords):
                 self.variables.leave()
             if ended.restores is not None:
                 self.modal.restore(ended.restores)
-        self._end_forgotten_cycle()
-
-    # --- coordinates
-
-    def part_plane(self) -> Plane:
-        """The working plane as the part sees it."""
-        return self.frame.plane(self.modal.plane)
-
-    @property
-    def has_moved(self) -> bool:
-        """The path has begun."""
-        return self._last is not None
-
-    def stand_at(self, programmed: list[float]) -> None:
-        """Let the path, which has not begun, begin at a programmed position."""
-        self.programmed = programmed
-        self.part = self.path.position = self.frame.to_part(programmed)
-
-    def set_position(self, programmed: list[float], shift: str) -> None:
-        """Give the place where it stands other programmed coordinates; nothing moves."""
-        here = self.frame.to_part(programmed)
-        values = self.frame.shift(shift)
-        self.frame.set_shift(shift, list(map(moved_shift, values, self.part, here)))
-        self.programmed = programmed
-
-    def reframed(self) -> None:
-        """The frame has changed: see where it stands now."""
-        self.programmed = self.frame.to_programmed(self.part)
-
-    @abc.abstractmethod
-    def run(self, block: Block) -> None:
-        """Run one block, also one that stands within a statement."""
-
-    @abc.abstractmethod
-    def place_switches(self, length: float) -> None:
-        """Report the block's switch points, told the length of its move."""
+        if self.modal.cycle is None:
+            self.forget_cycle()
 
 
-def _limited(value: float, limits: Mapping[int, float], shares: list[float]) -> float:
-    """A value along the path so that no axis exceeds its own limit; NaN is no limit."""
-    bounds = [limit / shares[index] for index, limit in limits.items() if shares[index] > 0.0]
-    return min([value, *bounds]) if value == value else min(bounds, default=value)
+def number_of(word: Word) -> float:
+    """The value of a word that has been computed."""
+    assert isinstance(word.value, float)
+    return word.value
 
 
-def _either(value: float, default: float) -> float:
-    """A value, or where it is NaN another one."""
-    return default if math.isnan(value) else value
+def integer_of(value: float) -> int:
+    """A code's number; -1 where it is no whole one."""
+    return int(value) if value == int(value) else -1
+
+
+def refuse_axis(control: Control, word: Word) -> NoReturn:
+    """The machine lacks the axis that a word names.
+
+    Raises:
+        ProgramError: Always.
+    """
+    axes = control.settings.axes
+    rotary = next(
+        (name for name, line in zip(axes.names, control.motion.linear, strict=True) if not line), ""
+    )
+    stands = f'; {word.address} = "{rotary}" where it stands for {rotary}' if rotary else ""
+    listed, ignored = ", ".join(axes.names), f'{word.address} = "ignored at 0"'
+    hint = f"axes: {listed}; in the job: [axes] {ignored}{stands}"
+    control.fail("no-such-axis", f"this machine has no axis {word.address}", word, hint)

@@ -10,11 +10,10 @@ from twin.nc.control.modal import Modal
 from twin.nc.text.blocks import Block, Location, Statement
 from twin.nc.text.diagnostics import ProgramError
 from twin.nc.text.lexer import Lexer
-from twin.nc.text.lines import Lines
 from twin.nc.text.reporter import Reporter
 from twin.nc.text.source import Source
 
-_LABEL = re.compile(r"N[ \t]*[0-9]|\[", re.IGNORECASE)
+_LABEL = re.compile(r"N[ \t]*[0-9]|[\[:]", re.IGNORECASE)
 Key = TypeVar("Key")
 Found = TypeVar("Found")
 Parsed = TypeVar("Parsed")
@@ -52,14 +51,16 @@ class ProgramCounter:
     """The program counter.
 
     Attributes:
+        lines: The program's text.
+        lexer: Reads the program's lines.
         calls: The parts that are being run for a caller, the innermost last.
     """
 
     def __init__(self, source: Source, lexer: Lexer, step_limit: int, report: Reporter) -> None:
         """Stand before the program, of which so many blocks may be run again."""
-        self._lines = source.lines
+        self.lines = source.lines
         self._line_count = len(source.lines)
-        self._lexer = lexer
+        self.lexer = lexer
         self._report = report
         self._step_limit = step_limit
         self._line = self._part = 0
@@ -72,16 +73,6 @@ class ProgramCounter:
         self._told_to_end = False
         self._here: tuple[Block, ...] = ()
         self._here_line = -1
-
-    @property
-    def lines(self) -> Lines:
-        """The program's text."""
-        return self._lines
-
-    @property
-    def lexer(self) -> Lexer:
-        """Reads the program's lines."""
-        return self._lexer
 
     @property
     def begun(self) -> bool:
@@ -161,7 +152,7 @@ class ProgramCounter:
 
     def _run_out(self) -> None:
         """The last line has been passed; what is to be said of that stands at the last text."""
-        written = (line for line in range(len(self._lines), 0, -1) if self._lines[line - 1].strip())
+        written = (line for line in range(len(self.lines), 0, -1) if self.lines[line - 1].strip())
         self._report.line = next(written, 0)
 
     def go(self, location: Location) -> None:
@@ -188,7 +179,7 @@ class ProgramCounter:
     def end(self) -> None:
         """Go on behind the last line, which ends the program here."""
         self._told_to_end = True
-        self.go(Location(len(self._lines), 0))
+        self.go(Location(len(self.lines), 0))
 
     def seek(self, wanted: Callable[[Block], bool]) -> bool:
         """Go on at the next block that is wanted; stay where it is when there is none."""
@@ -204,7 +195,7 @@ class ProgramCounter:
 
     def _ahead(self) -> Iterator[Block]:
         line, part = self.location
-        for number in range(line, len(self._lines)):
+        for number in range(line, len(self.lines)):
             for block in self._readable_blocks(number):
                 if number > line or block.part >= part:
                     yield block
@@ -247,7 +238,7 @@ class ProgramCounter:
         """Where every N number and every name of a block stands."""
         if self._labels is None:
             self._labels = FoundInText()
-            for line, text in enumerate(self._lines):
+            for line, text in enumerate(self.lines):
                 if _LABEL.search(text) is not None:
                     for block in self._readable_blocks(line):
                         label = block.name or block.number
@@ -268,8 +259,8 @@ class ProgramCounter:
             return self._here
         blocks = self._cache.get(line)
         if blocks is None:
-            text = self._lines.page_of(line).line(line)
-            blocks = self._lexer.blocks(text, line + 1, self._line_before)
+            text = self.lines.page_of(line).line(line)
+            blocks = self.lexer.blocks(text, line + 1, self._line_before)
             if line <= self._furthest.line and len(self._cache) < _CACHED_LINES:
                 self._cache[line] = blocks
         self._here, self._here_line = blocks, line
@@ -277,7 +268,7 @@ class ProgramCounter:
 
     def _line_before(self, number: int) -> str:
         """The text before the line with a number, from 1."""
-        return self._lines[number - 2] if number > 1 else ""
+        return self.lines[number - 2] if number > 1 else ""
 
     def _count_again(self, line: int) -> None:
         """A block of a line runs that has run before, or that one behind it has."""
@@ -298,9 +289,8 @@ class ProgramCounter:
         code, message = "unknown-label", f"{word} names {name}, and no block has it"
         if count > 1:
             code, message = "ambiguous-label", f"{word} names {name}, and {count} blocks have it"
-        self._report.fail(
-            code, message, *fail_at, hint=f"blocks here: {shown}{more}" if known else None
-        )
+        hint = f"blocks here: {shown}{more}" if known else f"write {name} before its block"
+        self._report.fail(code, message, *fail_at, hint=hint)
 
 
 _SHOWN_LABELS = 12

@@ -15,10 +15,12 @@ class ToolData:
     Attributes:
         radius: Of its cutting edge [mm].
         length: From the spindle nose to its tip [mm].
+        name: By which a program may call it; empty: by its number alone.
     """
 
     radius: float
     length: float
+    name: str = ""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -93,6 +95,10 @@ class ControlSettings:
 
     length_returns: Literal["by code", "next block"] = "by code"
     """``fanuc``: when a tool length counts again that G28, G30 or G53 has cancelled (parameter 5001 #6)."""
+
+    tool_change_height: float | None = None
+    """Z that the control rises to by itself before a tool changes, machine coordinates [mm]; None: as the control
+    does when it comes from its maker."""
 
     strict: bool = False
     """Turn warnings into errors."""

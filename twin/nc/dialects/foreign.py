@@ -75,18 +75,10 @@ TEXTS: tuple[Foreign, ...] = (
     Foreign("an APT or CL file (ISO 4343)", _POST, r"(?m)^\s*(?:GOTO\s*/|FEDRAT\s*/|PARTNO\b)", 2),
     Foreign("an HP-GL plot", _MODEL, r"(?:\bP[UD](?:-?\d+,-?\d+)?;){2}", comments=True),
     Foreign(
-        "a Heidenhain program",
-        _POST,
-        r"(?m)^\s*\d*\s*(?:BEGIN PGM|END PGM|TOOL CALL|CYCL DEF|BLK FORM|L +[XYZ][+-]|CC +X)",
-        2,
-    ),
-    Foreign("a Sinumerik program", _POST, r"(?m)^\s*%_N_|^;\$PATH=", comments=True),
-    Foreign(
-        "a Sinumerik program",
-        _POST,
-        r"(?m)^[^#$\n]*\b(?:(?:CYCLE\d+|POCKET\d|HOLES\d|SLOT\d|WORKPIECE|MSG)(?![A-Z])|MCALL\b(?! *\d)"
-        r"|A?(?:TRANS|ROT) [XYZ]|SUPA\b|CIP [XYZ]|TURN ?=|TRAORI|COMPCAD|COMPCURV|FFWON|GOTO[FB] "
-        r"|CR ?=|T ?= ?\"|DEF (?:REAL|INT)\b|REPEATB? [A-Z])",
+        "a Heidenhain program in DIN/ISO",
+        "post it as Klartext (.h), which --dialect heidenhain reads",
+        r"(?m)^\s*%\S+[ \t]+G7[01][ \t]*\*",
+        comments=True,
     ),
     Foreign(
         "a Mazatrol program",
@@ -147,8 +139,6 @@ TEXTS: tuple[Foreign, ...] = (
 """Texts of other controls and other kinds, in the order in which they are looked for."""
 
 CONTROLS: tuple[tuple[str, str, str], ...] = (
-    (r"sinumerik|siemens|(?<!\d)8[124]0 ?d(?:sl)?\b|828d", "a Sinumerik program", _POST),
-    (r"heidenhain|\b(?:i?tnc ?[4-7]\d\d)\b", "a Heidenhain program", _POST),
     (
         r"mazak|mazatrol",
         "a program for a Mazak (EIA)",

@@ -7,7 +7,8 @@ import math
 import re
 
 from twin.nc.canonical import Corner
-from twin.nc.control.control import Control
+from twin.nc.control.codes import Codes, Words
+from twin.nc.control.control import Control, Rules
 from twin.nc.control.dialect import Decision, Dialect
 from twin.nc.iso import base, fixed_cycles, shared_decisions, shared_marks
 from twin.nc.iso.declared import instead, modal
@@ -82,13 +83,13 @@ def recalculate_start(control: Control, rapid: bool) -> None:
     periods = _periods(control)
     if not periods or (rapid and not control.settings.recalculate_on_rapid):
         return
-    programmed = list(control.programmed)
+    programmed = list(control.motion.programmed)
     for index, period in periods.items():
         old = round(programmed[index], RESOLUTION)
         if abs(old) >= period:
             programmed[index] = math.fmod(old, period)
-    if programmed != control.programmed:
-        control.set_position(programmed, "turns")
+    if programmed != control.motion.programmed:
+        control.motion.set_position(programmed, "turns")
 
 
 _CYRILLIC_WORD = re.compile("[А-Яа-яЁё]{2}")
@@ -165,24 +166,36 @@ GOST = Dialect(
     title="Russian control with G102 (ISO 6983-1, GOST 20999-83)",
     code_page="cp1251",
     syntax=Syntax(comments=(Comment("$"), Comment("(", ")"), HEADING), excused=excuse),
-    groups=base.GROUPS,
-    g={
-        **base.CODES,
-        **fixed_cycles.RETURN,
-        9: modal(
-            "exact stop in this block", once=True, ground="decision", corner=Corner.EXACT_STOP
-        ),
-        61: modal("exact stop mode", "corner", ground="decision", corner=Corner.EXACT_STOP),
-        64: modal("exact path mode", "corner", ground="decision", corner=Corner.EXACT_PATH),
-        102: instead(
-            "recalculation of a periodic axis: C360 on, C0 off", switch_recalculation, ground="seed"
-        ),
-    },
-    instead=base.INSTEAD,
-    start=(*base.START, 64, 98),
-    m=base.M_CODES,
-    words=base.WORDS,
-    word_meanings=base.WORD_MEANINGS,
+    codes=Codes(
+        groups=base.GROUPS,
+        g={
+            **base.CODES,
+            **fixed_cycles.RETURN,
+            9: modal(
+                "exact stop in this block", once=True, ground="decision", corner=Corner.EXACT_STOP
+            ),
+            61: modal("exact stop mode", "corner", ground="decision", corner=Corner.EXACT_STOP),
+            64: modal("exact path mode", "corner", ground="decision", corner=Corner.EXACT_PATH),
+            102: instead(
+                "recalculation of a periodic axis: C360 on, C0 off",
+                switch_recalculation,
+                ground="seed",
+            ),
+        },
+        instead=base.INSTEAD,
+        start=(*base.START, 64, 98),
+        m=base.M_CODES,
+    ),
+    words=Words(
+        actions=base.WORDS,
+        meanings=base.WORD_MEANINGS,
+    ),
+    rules=Rules(
+        memory=dict,
+        before_motion=recalculate_start,
+        prepare=warn_of_foreign_commands,
+        acts_on_lines=lambda control: bool(_periods(control)),
+    ),
     units="mm, degrees; F in mm/min, for rotary axes alone in deg/min",
     decisions=DECISIONS,
     marks=(
@@ -190,8 +203,4 @@ GOST = Dialect(
         shared_marks.G102,
         Mark(r"^[^$;\"]*(?:\$\w+\$[^$;\"]*)*\$(?=\s|$|[А-Яа-я])", "$ before a comment"),
     ),
-    memory=dict,
-    before_motion=recalculate_start,
-    prepare=warn_of_foreign_commands,
-    acts_on_lines=lambda control: bool(_periods(control)),
 )

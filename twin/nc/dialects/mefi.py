@@ -5,8 +5,8 @@ Its own page (seed) says all about G09, G10, G73 and G98; the rest is the base o
 
 import dataclasses
 
-from twin.nc.control.codes import GCode
-from twin.nc.control.control import Control
+from twin.nc.control.codes import Codes, GCode, Words
+from twin.nc.control.control import Control, Rules
 from twin.nc.control.dialect import Decision, Dialect
 from twin.nc.control.interpolation import ArcRule
 from twin.nc.geometry.arcs import sweep_between
@@ -175,37 +175,45 @@ MEFI = Dialect(
     title="MEFI CNC8x6",
     code_page="cp1250",
     syntax=Syntax(comments=(Comment('"'), HEADING), excused=base.excuse_ellipsis),
-    groups=(*base.GROUPS, "helix"),
-    g={
-        **base.CODES,
-        2: motion_code("arc clockwise", CLOCKWISE, "seed"),
-        3: motion_code("arc counter-clockwise", COUNTER_CLOCKWISE, "decision"),
-        9: modal("helix on", "helix", switch_on, ground="seed"),
-        10: instead("lead of the dragged axis", store_leads, ground="seed"),
-        73: GCode(meaning="jump with repeat: L, Q", after=jump_with_repeat, ground="seed"),
-        98: GCode(meaning="helix off", group="helix", action=switch_off, alone=True, ground="seed"),
-    },
-    instead={
-        **base.INSTEAD,
-        99: "cycles return to the height of their call; G98 ends a helix here",
-    },
-    start=base.START,
-    m=base.M_CODES,
-    words=base.WORDS,
-    word_meanings={
-        **base.WORD_MEANINGS,
-        "R": "radius of an arc below 180 degrees; reference plane of a cycle",
-        "L": "block to jump to (G73)",
-        "Q": "number of jumps (G73); depth of one peck (G83)",
-    },
+    codes=Codes(
+        groups=(*base.GROUPS, "helix"),
+        g={
+            **base.CODES,
+            2: motion_code("arc clockwise", CLOCKWISE, "seed"),
+            3: motion_code("arc counter-clockwise", COUNTER_CLOCKWISE, "decision"),
+            9: modal("helix on", "helix", switch_on, ground="seed"),
+            10: instead("lead of the dragged axis", store_leads, ground="seed"),
+            73: GCode(meaning="jump with repeat: L, Q", after=jump_with_repeat, ground="seed"),
+            98: GCode(
+                meaning="helix off", group="helix", action=switch_off, alone=True, ground="seed"
+            ),
+        },
+        instead={
+            **base.INSTEAD,
+            99: "cycles return to the height of their call; G98 ends a helix here",
+        },
+        start=base.START,
+        m=base.M_CODES,
+    ),
+    words=Words(
+        actions=base.WORDS,
+        meanings={
+            **base.WORD_MEANINGS,
+            "R": "radius of an arc below 180 degrees; reference plane of a cycle",
+            "L": "block to jump to (G73)",
+            "Q": "number of jumps (G73); depth of one peck (G83)",
+        },
+    ),
+    rules=Rules(
+        memory=Dragging,
+        acts_on_lines=lambda control: _dragging(control).on,
+    ),
     units="mm, degrees; F in mm/min, for rotary axes alone in deg/min",
     decisions=DECISIONS,
     marks=(
-        Mark(r'^[^;$#]*"', 'a comment after "'),
+        Mark(r'^[^;$#="]*"', 'a comment after "'),
         Mark(r"\bG73\b.*\bL[ \t]*\d|\bL[ \t]*\d+.*\bG73\b", "G73 with L"),
         shared_marks.EXACT_STOP_ARC,
         shared_marks.G73_WITH_Q,
     ),
-    memory=Dragging,
-    acts_on_lines=lambda control: _dragging(control).on,
 )

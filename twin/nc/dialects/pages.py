@@ -32,26 +32,35 @@ def overview() -> str:
 
 def describe(dialect: Dialect) -> str:
     """The page of one dialect, as Markdown."""
-    supported = {n: code for n, code in dialect.g.items() if not code.refused}
-    refused = {n: code for n, code in dialect.g.items() if code.refused}
-    start = ", ".join(f"G{number}" for number in sorted(dialect.start))
+    supported = {n: code for n, code in dialect.codes.g.items() if not code.refused}
+    refused = {n: code for n, code in dialect.codes.g.items() if code.refused}
+    start = ", ".join(map(dialect.code_name, sorted(dialect.codes.start)))
     sections = [
         f"# {dialect.title} (`{dialect.name}`)",
         "Made from the declaration in this folder by `python -m twin.nc.dialects.pages`.",
         f"Units: {dialect.units}.",
         f"Comments: {_comments(dialect)}. Files are read as UTF-8, else as {dialect.code_page}.",
-        f"In force when a program starts: {start}.",
-        "## G codes",
-        _g_table(supported),
+        *(
+            (
+                f"In force when a program starts: {start}.",
+                "## G codes",
+                _g_table(dialect, supported),
+            )
+            if supported
+            else ()
+        ),
         "## M codes",
         _m_table(dialect),
         "## Words",
         _word_table(dialect),
         *_expression_sections(dialect),
         *_feed_sections(dialect),
-        "## Refused",
-        _REFUSED,
-        _refused_table(refused),
+        *(
+            section
+            for title, rows in dialect.tables.items()
+            for section in (f"## {title}", _table(("word", "meaning"), rows.items()))
+        ),
+        *(("## Refused", _REFUSED, _refused_table(dialect, refused)) if supported else ()),
         "## Decisions where the documents are silent",
         f"Each is shown by a program of `tests/golden/{dialect.name}/decisions`.",
         _decisions(dialect),
@@ -84,10 +93,10 @@ def _comments(dialect: Dialect) -> str:
     )
 
 
-def _g_table(codes: dict[float, GCode]) -> str:
+def _g_table(dialect: Dialect, codes: dict[float, GCode]) -> str:
     rows = [
         (
-            f"G{number}",
+            dialect.code_name(number),
             code.meaning,
             code.group or ("this block" if code.once else ""),
             _GROUND[code.ground],
@@ -100,9 +109,9 @@ def _g_table(codes: dict[float, GCode]) -> str:
 def _m_table(dialect: Dialect) -> str:
     rows = [
         (f"M{number}", code.meaning, "after the motion" if code.late else "before the motion")
-        for number, code in sorted(dialect.m.items())
+        for number, code in sorted(dialect.codes.m.items())
     ]
-    if dialect.any_m:
+    if dialect.codes.any_m:
         rows.append(("any other", "a function of the machine", "before the motion"))
     return _table(("code", "meaning", "when"), rows)
 
@@ -110,7 +119,7 @@ def _m_table(dialect: Dialect) -> str:
 def _word_table(dialect: Dialect) -> str:
     """Words by their meanings, those of the same meaning in one row."""
     rows: dict[str, list[str]] = {}
-    for word, meaning in sorted(dialect.word_meanings.items()):
+    for word, meaning in sorted(dialect.words.meanings.items()):
         rows.setdefault(meaning, []).append(word)
     return _table(("word", "meaning"), [(" ".join(words), text) for text, words in rows.items()])
 
@@ -119,7 +128,7 @@ def _feed_sections(dialect: Dialect) -> list[str]:
     """What F counts in every kind of move; the column of inverse time where the control has it."""
     if dialect.name not in OWN:
         return []
-    rows, timed = feed_rows(dialect.name), 93 in dialect.g
+    rows, timed = feed_rows(dialect.name), 93 in dialect.codes.g
     head = ("move", "F as a rate", *(("F of G93",) if timed else ()), "known from")
     cells = [(r.kind, r.rate, *((r.inverse,) if timed else ()), r.ground) for r in rows]
     return [
@@ -135,7 +144,7 @@ def _expression_sections(dialect: Dialect) -> list[str]:
         return []
     operators = " ".join(f"`{name}`" for name in syntax.operators)
     functions = ", ".join(f"`{name}`" for name in sorted(syntax.functions))
-    keywords = ", ".join(f"`{name}`" for name in sorted(dialect.statements))
+    keywords = ", ".join(f"`{name}`" for name in sorted(dialect.codes.statements))
     opening, closing = syntax.brackets
     return [
         "## Computed values and program flow",
@@ -145,10 +154,13 @@ def _expression_sections(dialect: Dialect) -> list[str]:
     ]
 
 
-def _refused_table(codes: dict[float, GCode]) -> str:
+def _refused_table(dialect: Dialect, codes: dict[float, GCode]) -> str:
     if not codes:
         return "None."
-    rows = [(f"G{number}", code.meaning, code.refused) for number, code in sorted(codes.items())]
+    rows = [
+        (dialect.code_name(number), code.meaning, code.refused)
+        for number, code in sorted(codes.items())
+    ]
     return _table(("code", "meaning", "why"), rows)
 
 

@@ -15,6 +15,7 @@ from twin.nc.iso.circular import BOUNDS, both_senses, iso_arc
 from twin.nc.iso.declared import instead, modal, motion_code, plane_code
 from twin.nc.iso.fixed_cycles import CYCLES
 from twin.nc.iso.offsets import OFFSETS, PRESET
+from twin.nc.iso.tool_change import change_tool_at
 from twin.nc.iso.tool_compensation import COMPENSATION, LENGTH
 from twin.nc.path.paces import FeedMode, feed_per_minute, needs_own_feed
 from twin.nc.path.splines import MOST_CHORDS
@@ -44,7 +45,7 @@ def draw_curve(
     """Move on so many chords of a curve of the working plane, by u from 0 to 1; all else goes linearly."""
     if count > MOST_CHORDS:
         control.fail("curve-size", f"the curve would need {count} chords")
-    plane, before = control.modal.plane, list(control.programmed)
+    plane, before = control.modal.plane, list(control.motion.programmed)
     for number in range(1, count):
         u = number / count
         point = [a + u * (b - a) for a, b in zip(before, goal, strict=True)]
@@ -79,15 +80,16 @@ def set_feed(control: Control, word: Word) -> None:
     feed = control.number(word)
     if not feed > 0.0:
         control.fail("feed-range", f"the feed {word.text} is not positive", word)
-    control.feed = feed
+    control.motion.feed = feed
 
 
 def spindle_speed(control: Control, word: Word) -> None:
     """S: the spindle's speed [1/min]; reported where no spindle start carries it."""
     speed = control.number(word)
     if not speed >= 0.0:
-        control.fail("spindle-range", f"the speed {word.text} is negative", word)
-    control.spindle = speed
+        message = f"the speed {word.text} is negative"
+        control.fail("spindle-range", message, word, "M4 turns it the other way")
+    control.motion.spindle = speed
     others = control.block.words
     functions = (other.value for other in others if other.address == "M")
     if not any(isinstance(number, float) and starts_spindle(number) for number in functions):
@@ -101,11 +103,6 @@ def next_tool(control: Control, word: Word) -> None:
         control.fail("tool-number", f"{word.text} is no tool number", word)
     control.tools.selected = int(number)
     control.function(f"T{int(number)}", {})
-
-
-def change_tool(control: Control) -> None:
-    """M6: the selected tool goes into the spindle."""
-    control.tools.change()
 
 
 def dwell(letters: str, message: str, hint: str) -> Action:
@@ -217,7 +214,7 @@ M_CODES = {
     3: MCode(meaning="spindle clockwise", group="spindle"),
     4: MCode(meaning="spindle counter-clockwise", group="spindle"),
     5: MCode(meaning="spindle stop", group="spindle", late=True),
-    6: MCode(meaning="tool change", action=change_tool),
+    6: MCode(meaning="tool change", action=change_tool_at(None)),
     7: MCode(meaning="mist on"),
     8: MCode(meaning="coolant on", group="coolant"),
     9: MCode(meaning="coolant off", group="coolant", late=True),
@@ -280,8 +277,8 @@ def jog_block(dialect: Dialect, axis: str, distance: float, feed: float) -> str:
         distance: How far, and which way [mm or deg].
         feed: [mm/min or deg/min]
     """
-    mode = dialect.start_state.get("feed_mode", FeedMode.PER_MINUTE)
-    end = "\nM2" if dialect.must_end else ""
+    mode = dialect.codes.start_state.get("feed_mode", FeedMode.PER_MINUTE)
+    end = "\nM2" if dialect.rules.must_end else ""
     of_one = feed_per_minute(1.0, mode, distance, True, 1.0, 0.0, (feed, feed))
     return f"N1 G91 G1 {axis}{_written(distance)} F{_written(feed / of_one)}{end}"
 

@@ -166,7 +166,7 @@ def sweep_arc(
 def start_and_end(control: Control, target: list[float]) -> tuple[Point, Point]:
     """Abscissa and ordinate of where the arc begins and ends."""
     plane = control.modal.plane
-    return plane.point(control.programmed), plane.point(target)
+    return plane.point(control.motion.programmed), plane.point(target)
 
 
 def arc_center(control: Control, target: list[float], rule: ArcRule) -> Point:
@@ -213,6 +213,28 @@ def iso_arc(control: Control, rule: ArcRule) -> None:
     """G2, G3 by ISO 6983-1."""
     target = control.target()
     sweep_arc(control, target, arc_center(control, target, rule), clockwise=rule.clockwise)
+
+
+def tangent_arc_to(control: Control, target: list[float], name: str) -> None:
+    """Move to the target on the arc that leaves the last move along its direction.
+
+    Raises:
+        ProgramError: Nothing has moved before, or the arc would be a straight line.
+    """
+    direction = control.motion.direction
+    if direction is None:
+        control.fail("tangent-arc", f"{name} needs a move before it")
+    start, end = start_and_end(control, target)
+    tangent = control.modal.plane.local(direction)
+    if math.hypot(tangent[0], tangent[1]) < arcs.SAME_POINT:
+        message = f"the move before {name} has no direction in the plane"
+        control.fail("tangent-arc", message)
+    center = arcs.center_tangent(start, end, tangent[:2])
+    if center is None:
+        message = "the end lies straight ahead or at the start: no arc leads there"
+        control.fail("tangent-arc", message)
+    side = tangent[0] * (center[1] - start[1]) - tangent[1] * (center[0] - start[0])
+    sweep_arc(control, target, center, clockwise=side < 0.0)
 
 
 def both_senses(

@@ -54,7 +54,9 @@ def keep_compensated_plane(control: Control) -> None:
     Raises:
         ProgramError: Compensation is in force in another one.
     """
-    if not control.path.compensates_in(control.part_plane()):  # else it is in force already
+    if not control.path.compensation.acts_in(
+        control.motion.part_plane
+    ):  # else it is in force already
         refuse_compensated_plane(control)
 
 
@@ -64,7 +66,7 @@ def refuse_compensated_plane(control: Control) -> None:
     Raises:
         ProgramError: Compensation is in force.
     """
-    if control.path.compensating:
+    if control.path.compensation.in_force:
         message = "the plane cannot change while compensation is in force"
         control.fail("compensation-plane", message, hint="end it by G40 first")
 

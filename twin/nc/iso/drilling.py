@@ -104,7 +104,7 @@ def take_words(control: Control, rule: CycleRule, *, calls: bool = False) -> Non
                 given[value] = control.number(word)
                 relative[value] = incremental or word.incremental
     from_where = relative[REFERENCE], relative[BOTTOM]
-    block = CycleBlock(calls, axis, control.programmed[axis], modal.unit, from_where)
+    block = CycleBlock(calls, axis, control.motion.programmed[axis], modal.unit, from_where)
     read_words(rule.cycle, control.cycle_state, given, block)
 
 
@@ -134,7 +134,7 @@ def hole_in_force(control: Control, rule: CycleRule) -> Hole:
     return hole
 
 
-_NEEDED = {
+NEEDED_WORDS = {
     "R": "the height where the feed begins, such as R2.",
     "Z": "the depth of the hole, such as Z-10.",
     "Q": "the depth of a peck, such as Q2.",
@@ -158,7 +158,9 @@ def refuse_hole(control: Control, rule: CycleRule, hole: Hole) -> NoReturn:
             for value, address in sorted(addresses.items())
             if (rule.cycle.needed >> value) & 1 and math.isnan(control.cycle_state[value])
         ]
-        hint = "; ".join(f"{each}: {_NEEDED[each]}" for each in missing if each in _NEEDED)
+        hint = "; ".join(
+            f"{each}: {NEEDED_WORDS[each]}" for each in missing if each in NEEDED_WORDS
+        )
         control.fail("cycle-word", f"{name} needs {' and '.join(missing)}", hint=hint or None)
     if hole.fault == Fault.PLANE:
         message = f"{name} was called in another plane"
@@ -196,14 +198,16 @@ def refuse_hole(control: Control, rule: CycleRule, hole: Hole) -> NoReturn:
 
 def go_to_height(control: Control, height: float, *, rapid: bool = True) -> None:
     """Go straight to a height of the axis across the plane, programmed coordinates [mm]."""
-    there = list(control.programmed)
+    there = list(control.motion.programmed)
     there[control.modal.plane.axes[2]] = height
     control.line_to(there, rapid=rapid)
 
 
 def turn_spindle(control: Control, function: str) -> None:
     """Report that M3 or M4 turns the spindle, with the speed in force."""
-    control.function(function, {} if control.spindle is None else {"S": control.spindle})
+    control.function(
+        function, {} if control.motion.spindle is None else {"S": control.motion.spindle}
+    )
 
 
 def drill(control: Control, hole: Hole, target: list[float] | None) -> None:
@@ -218,17 +222,17 @@ def drill(control: Control, hole: Hole, target: list[float] | None) -> None:
     axis = control.modal.plane.axes[2]
     room = most_acts(hole.stops)
     acts, amounts = [0.0] * room, [0.0] * room
-    goal = list(control.programmed)
+    goal = list(control.motion.programmed)
     over = goal if target is None else target
     for number in range(write_acts(hole, goal[axis], acts, amounts)):
         act, amount = int(acts[number]), amounts[number]
         speed = next_place(act, amount, hole, over, goal, axis)
         if speed != NO_MOVE:
-            feed = control.feed
+            feed = control.motion.feed
             if feed is not None and speed > 0.0:
-                control.feed = feed * speed
+                control.motion.feed = feed * speed
             control.line_to(list(goal), rapid=speed == 0.0)
-            control.feed = feed
+            control.motion.feed = feed
         else:
             _report(control, Act(act), amount)
 

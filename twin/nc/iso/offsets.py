@@ -66,7 +66,7 @@ def shift_by(control: Control, values: Mapping[str, float], *, ends_preset: bool
     control.frame.set_shift("offset", [values.get(name, 0.0) for name in names])
     if ends_preset:
         control.frame.set_shift("preset", [0.0] * len(names))
-    control.reframed()
+    control.motion.reframed()
 
 
 def programmed_shift(control: Control, name: str) -> None:
@@ -75,7 +75,7 @@ def programmed_shift(control: Control, name: str) -> None:
     axes = range(len(control.settings.axes))
     values = [control.axis_value(axis, words[axis]) if axis in words else 0.0 for axis in axes]
     control.frame.set_shift(name, values)
-    control.reframed()
+    control.motion.reframed()
 
 
 def preset(control: Control) -> None:
@@ -88,10 +88,10 @@ def preset(control: Control) -> None:
 
 def set_position(control: Control, words: Iterable[tuple[int, Word]], shift: str) -> None:
     """Words of axes give the place where the machine stands other coordinates, by a shift."""
-    programmed = list(control.programmed)
+    programmed = list(control.motion.programmed)
     for index, word in words:
         programmed[index] = control.axis_value(index, word)
-    control.set_position(programmed, shift)
+    control.motion.set_position(programmed, shift)
 
 
 def _work_offset(number: int) -> GCode:

@@ -59,7 +59,7 @@ def set_length(control: Control, longer: float) -> None:
     """Move Z by what the tool is longer than the first [mm]."""
     axes = range(len(control.settings.axes))
     control.frame.set_shift("length", [longer if axis == 2 else 0.0 for axis in axes])
-    control.reframed()
+    control.motion.reframed()
 
 
 COMPENSATION = {

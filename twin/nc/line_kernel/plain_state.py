@@ -48,12 +48,13 @@ _LONGEST_PAUSE = 256
 class LineRuns:
     """Runs of plain lines of one program."""
 
-    def __init__(self, control: Executor, kernel: LineKernel) -> None:
+    def __init__(self, executor: Executor, kernel: LineKernel) -> None:
         """Run them for a control, by this kernel."""
-        axes = len(control.settings.axes)
-        self._control = control
+        self._executor = executor
+        self._control = executor.control
         self._kernel = kernel
-        self._rules = plain_rules(control)
+        self._rules = plain_rules(executor)
+        axes = len(self._control.settings.axes)
         self._values = np.zeros(AXIS + axes)
         self._rows = MoveRows(
             np.zeros((CHUNK, 5), np.int64), np.zeros((CHUNK, 11)), np.zeros((CHUNK, 3, axes))
@@ -72,7 +73,7 @@ class LineRuns:
             return range(0)
         room = CHUNK - len(control.path)
         line = control.program_counter.fresh_line
-        if line is None or room <= 0 or not may_run_lines(control):
+        if line is None or room <= 0 or not may_run_lines(self._executor):
             return range(0)
         page = control.program_counter.lines.page_of(line)
         columns = PageColumns(page.data, page.starts, page.ends, page.lines.start)
@@ -89,12 +90,13 @@ class LineRuns:
         return range(line, came_to)
 
     def _state(self, line: int) -> PlainState:
-        control, modal, frame = self._control, self._control.modal, self._control.frame
+        control, motion = self._control, self._control.motion
+        modal, frame = control.modal, control.frame
         return PlainState(
             line=np.array([line, 0]),
             kind=np.array([kind_of(modal.interpolation)]),
-            feed=np.array([math.nan if control.feed is None else control.feed]),
-            position=np.array([control.programmed, control.part]),
+            feed=np.array([math.nan if motion.feed is None else motion.feed]),
+            position=np.array([motion.programmed, motion.part]),
             values=self._values,
             total=np.array(frame.total),
             matrix=frame.matrix,
@@ -106,23 +108,23 @@ class LineRuns:
             center_absolute=modal.center_absolute,
             feed_mode=int(modal.feed_mode),
             feed_may_lack=control.report.has_said("no-feed"),
-            spindle=math.nan if control.spindle is None else control.spindle,
-            spindle_turns=float(control.spindle_turns),
-            rapid_feed=control.rapid_feed,
+            spindle=math.nan if motion.spindle is None else motion.spindle,
+            spindle_turns=float(motion.spindle_turns),
+            rapid_feed=motion.rapid_feed,
             corner=int(modal.corner),
-            limits=(modal.corner_tolerance, control.acceleration, control.deceleration),
+            limits=(modal.corner_tolerance, motion.acceleration, motion.deceleration),
         )
 
     def _take_back(self, state: PlainState, line: int, rows: MoveRows) -> None:
         """The control stands where the run has come to."""
-        control, modal, feed = self._control, self._control.modal, float(state.feed[0])
+        control, motion, feed = self._control, self._control.motion, float(state.feed[0])
         kind = int(state.kind[0])
-        if kind != kind_of(modal.interpolation):
+        if kind != kind_of(control.modal.interpolation):
             number = self._numbers[kind]
-            control.put_into_force(number, control.dialect.g[number])
-        control.feed = None if math.isnan(feed) else feed
+            self._executor.put_into_force(number, self._executor.dialect.codes.g[number])
+        motion.feed = None if math.isnan(feed) else feed
         programmed, part = state.position.tolist()
-        control.take_rows(rows, programmed, part)
+        motion.take_rows(rows, programmed, part)
         control.program_counter.pass_lines(line, int(state.line[1]))
 
     @property
@@ -131,18 +133,19 @@ class LineRuns:
         return {int(kind): number for number, kind in enumerate(self._rules.kinds) if kind >= 0}
 
 
-def may_run_lines(control: Executor) -> bool:
+def may_run_lines(executor: Executor) -> bool:
     """Whether plain lines mean no more than the kernel knows, with all that is in force."""
+    control, motion = executor.control, executor.control.motion
     modal = control.modal
     return (
         modal.cycle is None
         and modal.correct_center
         and modal.plane in PLANE_ORDER
-        and math.isnan(control.rapid_acceleration)
-        and math.isnan(control.rapid_deceleration)
-        and not (control.axis_limits or control.axis_accelerations or control.axis_decelerations)
+        and math.isnan(motion.rapid_acceleration)
+        and math.isnan(motion.rapid_deceleration)
+        and not (motion.axis_limits or motion.axis_accelerations or motion.axis_decelerations)
         and control.path.passes_on
-        and not control.dialect.acts_on_lines(control)
+        and not executor.dialect.rules.acts_on_lines(control)
     )
 
 
@@ -157,24 +160,27 @@ def kind_of(mode: MotionMode | None) -> int:
     return CLOCKWISE if mode.rule.clockwise else COUNTER_CLOCKWISE
 
 
-def plain_rules(control: Executor) -> PlainRules:
+def plain_rules(executor: Executor) -> PlainRules:
     """What the dialect of a control says of plain lines."""
-    dialect, settings = control.dialect, control.settings
-    kinds = {number: _kind_of_code(code) for number, code in dialect.g.items()}
+    dialect, motion = executor.dialect, executor.control.motion
+    settings = executor.control.settings
+    kinds = {number: _kind_of_code(code) for number, code in dialect.codes.g.items()}
     plain = {int(number): kind for number, kind in kinds.items() if kind != NO_MOTION}
-    by_number = np.full(max(plain) + 1, NO_MOTION)
+    by_number = np.full(max(plain, default=0) + 1, NO_MOTION)
     by_number[list(plain)] = list(plain.values())
-    rules = [getattr(dialect.g[number].sets.get("interpolation"), "rule", None) for number in plain]
+    rules = [
+        getattr(dialect.codes.g[number].sets.get("interpolation"), "rule", None) for number in plain
+    ]
     arc = next((rule for rule in rules if isinstance(rule, ArcRule)), _NO_ARC)
     return PlainRules(
-        form=line_format(control),
+        form=line_format(executor),
         kinds=by_number,
         bounds=arc.bounds,
         signed_radius=arc.signed_radius,
         fits_radius=arc.fits_radius,
-        linear=np.array(control.linear),
-        rotary=sum(1 << (AXIS + axis) for axis, linear in enumerate(control.linear) if not linear),
-        path_counts=control.feed_rule is PATH_COUNTS,
+        linear=np.array(motion.linear),
+        rotary=sum(1 << (AXIS + axis) for axis, linear in enumerate(motion.linear) if not linear),
+        path_counts=motion.feed_rule is PATH_COUNTS,
         default_feed=settings.default_feed,
         default_rotary_feed=settings.default_rotary_feed,
     )
@@ -188,19 +194,24 @@ def _kind_of_code(code: GCode) -> int:
     return kind_of(code.sets.get("interpolation"))
 
 
-def line_format(control: Executor) -> LineFormat:
+def line_format(executor: Executor) -> LineFormat:
     """How plain lines are written: letters that a dialect uses otherwise as well have no role."""
-    dialect = control.dialect
+    dialect, control = executor.dialect, executor.control
     letters = {"R": RADIUS, **{letter: CENTER + index for index, letter in enumerate("IJK")}}
     letters |= {
         name: AXIS + index
         for name, index in control.axis_index.items()
-        if name in dialect.axis_letters
+        if name in dialect.words.axes
     }
-    taken = {*dialect.words, *dialect.references, *dialect.signed, *dialect.series}
-    roles = {each: role for each, role in letters.items() if each in dialect.motion_words - taken}
-    roles |= {**dict.fromkeys(dialect.feed_letter, FEED), "N": NUMBER, "G": CODE}
-    pointed = dialect.pointless(control.settings)
+    taken = {
+        *dialect.words.actions,
+        *dialect.words.references,
+        *dialect.words.signed,
+        *dialect.words.series,
+    }
+    roles = {each: role for each, role in letters.items() if each in dialect.words.motion - taken}
+    roles |= {**dict.fromkeys(dialect.words.feed, FEED), "N": NUMBER, "G": CODE}
+    pointed = dialect.rules.pointless(control.settings)
     return LineFormat(
         np.array([roles.get(letter, OTHER) for letter in string.ascii_uppercase]),
         np.array([letter in pointed for letter in string.ascii_uppercase]),

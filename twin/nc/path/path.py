@@ -9,12 +9,14 @@ from collections.abc import Callable
 from twin.nc.canonical import Axes, Chunk, Event, FloatArray, IntArray, Motion
 from twin.nc.geometry.planes import Plane
 from twin.nc.path.blends import Blend
-from twin.nc.path.compensation.stage import OFF, STARTED, Compensation, Refuse, Stage, Warn
+from twin.nc.path.compensation.stage import OFF, Compensation
 from twin.nc.path.loops import Loops
 from twin.nc.path.move_columns import MoveColumns, Refused, Segment, segment_of
 from twin.nc.path.rounding import Rounding
+from twin.nc.path.segments import MoveReport
 from twin.nc.path.splines import Spline
 from twin.nc.path.synchronous_axes import MOST_MOVES, SynchronousAxes
+from twin.nc.text.reporter import Reporter
 
 
 class Path:
@@ -22,20 +24,24 @@ class Path:
 
     Attributes:
         position: Where the emitted path has come to, shape (k,) [mm or deg].
+        compensation: Radius compensation of what it takes.
         defer: Takes an event that happens behind moves which a dialect holds back; False: it holds none.
+        leads: Makes the moves that lead to the next one, told it; None: nothing does. The next move begins
+            where they end on the contour, not where the path has come to.
     """
 
-    def __init__(self, axes: Axes, start: list[float], refuse: Refuse, warn: Warn) -> None:
+    def __init__(self, axes: Axes, start: list[float], report: Reporter) -> None:
         self._columns = MoveColumns(axes)
-        self._refuse = refuse
+        self._report = MoveReport(report)
         self._before: Segment | None = None
         self._spline: Spline | None = None
         self._rounding: Rounding | None = None
-        self._compensation = Compensation(self._emit, self._record, refuse, warn)
+        self.compensation = Compensation(self._emit, self._record, self._report)
         self._loops: Loops | None = None
         self._synchronous: SynchronousAxes | None = None
         self.position = start
         self.defer: Callable[[Event], bool] = holds_none
+        self.leads: Callable[[Segment], None] | None = None
 
     def __len__(self) -> int:
         return self._columns.count
@@ -60,6 +66,9 @@ class Path:
 
     def add(self, move: Segment) -> None:
         """The next programmed move."""
+        if self.leads is not None:
+            leads, self.leads = self.leads, None
+            leads(move)
         if self._spline is not None:
             self._end_spline(move)
         self._before = move
@@ -69,7 +78,8 @@ class Path:
     def passes_on(self) -> bool:
         """No stage holds or changes moves: what is added is emitted as it is."""
         stages = (self._spline, self._rounding, self._loops, self._synchronous)
-        return self._compensation.stage is OFF and all(stage is None for stage in stages)
+        free = self.compensation.stage is OFF and self.leads is None
+        return free and all(stage is None for stage in stages)
 
     def add_rows(
         self, codes: IntArray, values: FloatArray, positions: FloatArray
@@ -102,7 +112,7 @@ class Path:
         self._end_spline(None)
         self._before = None
         if self._rounding is None:
-            self._compensation.event(event)
+            self.compensation.event(event)
         else:
             self._rounding.event(event)
 
@@ -123,7 +133,7 @@ class Path:
     def hold_for_blends(self) -> None:
         """From now on moves are held until their successor is known."""
         if self._rounding is None:
-            self._rounding = Rounding(self._compensate, self._compensation.event, self._refuse)
+            self._rounding = Rounding(self._compensate, self.compensation.event, self._report)
 
     def blend_next(self, blend: Blend) -> bool:
         """Blend the corner between the last move and the next; False where there is no last."""
@@ -153,46 +163,31 @@ class Path:
     # --- compensation
 
     def _compensate(self, move: Segment) -> None:
-        if self._compensation.stage is OFF:
+        if self.compensation.stage is OFF:
             self._emit(move)
         else:
-            self._compensation.add(move, self.position)
-
-    @property
-    def compensation_stage(self) -> Stage:
-        """How far compensation has come."""
-        return self._compensation.stage
+            self.compensation.add(move, self.position)
 
     def compensate(
-        self, plane: Plane, signed_offset: float, *, square: bool, indirect: bool
+        self,
+        plane: Plane,
+        signed_offset: float,
+        *,
+        square: bool,
+        indirect: bool,
+        led: bool = False,
     ) -> None:
         """Compensate from the next move on; arguments as for ``Compensation.begin``."""
         self.flush()
-        self._compensation.begin(plane.directions, signed_offset, square=square, indirect=indirect)
+        self.compensation.begin(
+            plane.directions, signed_offset, square=square, indirect=indirect, led=led
+        )
 
-    @property
-    def compensating(self) -> bool:
-        """Compensation is in force."""
-        return self._compensation.in_force
-
-    @property
-    def compensation_has_moved(self) -> bool:
-        """Compensation is in force and a move of its contour has come."""
-        return self.compensating and self._compensation.stage is not STARTED
-
-    def compensates_in(self, plane: Plane) -> bool:
-        """Whether compensation is in force in a plane of the part."""
-        return self.compensating and self._compensation.plane == plane.directions
-
-    def compensate_in(self, plane: Plane) -> None:
-        """Compensation, which has not moved yet, acts in another plane."""
-        self._compensation.plane = plane.directions
-
-    def end_compensation(self) -> None:
-        """The next line leads out."""
-        if self._compensation.in_force:
+    def end_compensation(self, *, led: bool = False) -> None:
+        """The next line leads out, unless that is ``led`` otherwise."""
+        if self.compensation.in_force:
             self.flush()
-            self._compensation.end()
+            self.compensation.end(led=led)
 
     # --- loops
 
@@ -205,7 +200,7 @@ class Path:
         """Loops of the path in a plane are cut out from now on."""
         if self._loops is None:
             self.flush()
-            self._loops = Loops(plane, self._out, self._report)
+            self._loops = Loops(plane, self._out, self._note)
 
     def keep_loops(self) -> None:
         """Loops stay."""
@@ -245,15 +240,15 @@ class Path:
             self._columns.add(move)
         elif not self._synchronous.add(move):
             message = f"an axis cannot go evenly over more than {MOST_MOVES} moves"
-            self._refuse(move, "even-axis", message)
+            self._report.refuse(move, "even-axis", message)
 
     def _record(self, event: Event) -> None:
         if self._loops is None:
-            self._report(event)
+            self._note(event)
         else:
             self._loops.event(event)
 
-    def _report(self, event: Event) -> None:
+    def _note(self, event: Event) -> None:
         if self._synchronous is None:
             self._columns.add_event(event)
         else:

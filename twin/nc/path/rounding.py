@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 from twin.nc.canonical import Event, Motion
 from twin.nc.path.blends import Blend, NoBlendError, blend_corner
-from twin.nc.path.compensation.stage import Refuse
 from twin.nc.path.move_columns import Segment
+from twin.nc.path.segments import MoveReport
 
 
 class Rounding:
@@ -17,11 +17,11 @@ class Rounding:
     """
 
     def __init__(
-        self, emit: Callable[[Segment], None], happen: Callable[[Event], None], refuse: Refuse
+        self, emit: Callable[[Segment], None], happen: Callable[[Event], None], report: MoveReport
     ) -> None:
         self._emit = emit
         self._happen = happen
-        self._refuse = refuse
+        self._report = report
         self._held: Segment | None = None
         self._blend: Blend | None = None
         self._waiting: list[Event] = []
@@ -46,13 +46,13 @@ class Rounding:
         blend = self.once or (self._blend if self.always is not None else None)
         feeds = held.motion is Motion.FEED and move.motion is Motion.FEED
         if self.once is not None and not feeds:
-            self._refuse(move, "blend", "a rapid move cannot be blended")
+            self._report.refuse(move, "blend", "a rapid move cannot be blended")
         if blend is not None and feeds and blend.size > 0.0:
             try:
                 held, between, self._held = blend_corner(held, move, blend)
             except NoBlendError as error:
                 if self.once is not None:
-                    self._refuse(move, "blend", f"the corner cannot be blended: {error}")
+                    self._report.refuse(move, "blend", f"the corner cannot be blended: {error}")
                 between = []
             self._emit(held)
             for each in between:

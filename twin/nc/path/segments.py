@@ -2,6 +2,8 @@
 
 import dataclasses
 import math
+import re
+from typing import NoReturn
 
 from twin.nc.geometry import curves
 from twin.nc.geometry.arcs import SAME_POINT, Point, distance
@@ -9,9 +11,39 @@ from twin.nc.geometry.curves import Curve
 from twin.nc.geometry.matrices import dot
 from twin.nc.geometry.planes import Plane, Vector, cross
 from twin.nc.path.move_columns import Segment
+from twin.nc.text.reporter import Reporter
 
 IN_PLANE = 1.0 - 1e-9
 """Cosine between an arc's normal and a plane's from which the arc lies in the plane."""
+
+
+class MoveReport:
+    """Diagnostics of moves: they point at the number of the block that asked for the move."""
+
+    def __init__(self, report: Reporter) -> None:
+        self._report = report
+
+    def refuse(self, move: Segment, code: str, message: str) -> NoReturn:
+        """Refuse a move.
+
+        Raises:
+            ProgramError: Always.
+        """
+        self._report.line = move.line
+        self._report.fail(code, message, *self._span_of(move))
+
+    def warn(self, move: Segment, code: str, message: str) -> None:
+        """Warn of a move."""
+        line, self._report.line = self._report.line, move.line
+        self._report.warn(code, message, *self._span_of(move))
+        self._report.line = line
+
+    def _span_of(self, move: Segment) -> tuple[int, int]:
+        """Column and width of its block's number; without one of the line's first word."""
+        text = self._report.text_of(move.line)
+        number = rf"(?:N|^)[ \t/]*0*{move.block}(?![0-9])" if move.block >= 0 else r"\S+"
+        match = re.search(number, text, re.IGNORECASE)
+        return (0, 1) if match is None else (match.start(), len(match[0]))
 
 
 def direction_of(move: Segment, *, at_end: bool) -> Vector:

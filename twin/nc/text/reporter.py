@@ -35,6 +35,11 @@ class Reporter:
         """Files behind the program: number of the first line of each, from 1, and name."""
         return self._source.parts
 
+    def text_of(self, line: int) -> str:
+        """The text of a line, from 1; empty where there is none."""
+        lines = self._source.lines
+        return lines[line - 1] if 0 < line <= len(lines) else ""
+
     def fail(
         self, code: str, message: str, column: int = 0, width: int = 1, hint: str | None = None
     ) -> NoReturn:
@@ -108,8 +113,6 @@ class Reporter:
         width: int,
         hint: str | None,
     ) -> Diagnostic:
-        lines = self._source.lines
-        text = lines[self.line - 1] if 0 < self.line <= len(lines) else ""
         file, line = self._source.place(max(1, self.line))
         return Diagnostic(
             severity=severity,
@@ -119,7 +122,7 @@ class Reporter:
             line=line,
             column=column + 1,
             width=width,
-            source=text,
+            source=self.text_of(self.line),
             hint=None if hint is None else _shortened(hint),
         )
 

@@ -94,6 +94,20 @@ def _source_of(pieces: Iterable[bytes], name: str, dialect: Language | None) -> 
             digest.update(piece)
             yield piece
 
+    def tape() -> Iterator[bytes]:
+        """Without the blank tape before and behind the program, which a DNC link sends as NUL; blank alone it stays."""
+        begun, blanks, any_piece = False, b"", False
+        for piece in seen():
+            any_piece = any_piece or bool(piece)
+            whole = (blanks + piece) if begun else piece.lstrip(b"\0")
+            text = whole.rstrip(b"\0")
+            blanks = whole[len(text) :]
+            begun = begun or bool(text)
+            if text:
+                yield text
+        if not begun and any_piece:
+            yield b"\0"
+
     encodings = ("utf-8",) if dialect is None else ("utf-8", dialect.code_page)
-    lines = Lines(seen(), encodings)
+    lines = Lines(tape(), encodings)
     return Source(name, lines, digest.hexdigest())

@@ -9,7 +9,7 @@ import time
 from twin.errors import TwinError
 from twin.machine.watching.alarms import AlarmStandsError
 from twin.nc.control.executor import Executor
-from twin.nc.dialects.grbl.memory import GrblMemory
+from twin.nc.dialects.grbl.memory import GrblMemory, memory_of
 from twin.nc.text.diagnostics import ProgramError
 from twin.nc.text.source import source_from_text
 from twin.serve.grbl import realtime
@@ -130,11 +130,12 @@ class GrblController:
     @property
     def _parser(self) -> ParserState:
         """What is in force behind the last block."""
-        control = self._stream.control if self._stream is not None else self._checking
-        if control is not None:
-            memory = control.memory
-            assert isinstance(memory, GrblMemory)
-            return ParserState(control.modal, control.feed or 0.0, control.spindle or 0.0, memory)
+        executor = self._stream.executor if self._stream is not None else self._checking
+        if executor is not None:
+            control, motion = executor.control, executor.control.motion
+            return ParserState(
+                control.modal, motion.feed or 0.0, motion.spindle or 0.0, memory_of(control)
+            )
         assert self._left is not None
         memory = self._left.memory
         assert isinstance(memory, GrblMemory)
@@ -143,15 +144,14 @@ class GrblController:
         )
 
     def _new_control(self, room: Room) -> Executor:
-        control = Executor(room.scene.preparation.dialect, room.settings_here(), NO_PROGRAM)
-        control.prepare()
-        return control
+        executor = Executor(room.scene.preparation.dialect, room.settings_here(), NO_PROGRAM)
+        executor.prepare()
+        return executor
 
     def _reset_state(self, room: Room, memory: GrblMemory | None) -> None:
         """What is in force behind a reset: coordinate systems and stored positions stay, G92 and G43.1 go."""
-        control = self._new_control(room)
-        fresh = control.memory
-        assert isinstance(fresh, GrblMemory)
+        control = self._new_control(room).control
+        fresh = memory_of(control)
         if memory is not None:
             fresh.systems, fresh.homes = memory.systems, memory.homes
         shifts = [list(shift) for shift in control.frame.shifts]
@@ -312,27 +312,27 @@ class GrblController:
             self._answer(Error.NOT_IDLE)
             return
         assert self._left is not None
-        control = self._new_control(room)
+        executor = self._new_control(room)
         memory = self._left.memory
         assert isinstance(memory, GrblMemory)
-        control.memory = memory.fork()
-        control.modal.restore(self._left.modal)
-        self._checking = control
+        executor.control.memory = memory.fork()
+        executor.control.modal.restore(self._left.modal)
+        self._checking = executor
         self._check_stream = GrblStream(self.serial, room.machine.machine, jogging=False)
         self._tell("Enabled")
         self._answer(None)
 
-    def _check_line(self, control: Executor) -> None:
+    def _check_line(self, executor: Executor) -> None:
         """Interpret the next line, and drive nothing."""
         stream = self._check_stream
-        block = stream.next(control, 0)
+        block = stream.next(executor, 0)
         if block is not None:
             try:
-                control.run(block)
+                executor.run(block)
             except ProgramError as error:
-                stream.refuse(control, error.diagnostic)
+                stream.refuse(executor, error.diagnostic)
             else:
-                stream.accept(control)
-            control.path.take()
+                stream.accept(executor)
+            executor.control.path.take()
         self._out += stream.answers
         stream.answers.clear()

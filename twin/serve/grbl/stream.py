@@ -5,6 +5,7 @@ from collections.abc import Container
 from typing import NamedTuple
 
 from twin.machine.description.config import Machine
+from twin.nc.control.control import Control
 from twin.nc.control.executor import Executor
 from twin.nc.control.modal import Modal
 from twin.nc.dialects.grbl.memory import GrblMemory, memory_of
@@ -46,7 +47,7 @@ class GrblStream:
         serial: Where lines wait.
         answers: What is to be sent.
         jogging: Whether it is jogs that are run, and no G code.
-        control: What ran the last block; None before the first.
+        executor: What ran the last block; None before the first.
         heard: When the last byte came, by ``time.monotonic`` [s].
     """
 
@@ -54,7 +55,7 @@ class GrblStream:
         self.serial = serial
         self.answers: list[str] = []
         self.jogging = jogging
-        self.control: Executor | None = None
+        self.executor: Executor | None = None
         self.heard = time.monotonic()
         self._machine = machine
         self._before: _Before | None = None
@@ -72,10 +73,10 @@ class GrblStream:
         text = cleaned(line)
         return text.startswith(_JOG) if self.jogging else not text.startswith("$")
 
-    def next(self, control: Executor, moves_ahead: int) -> Block | None:
+    def next(self, executor: Executor, moves_ahead: int) -> Block | None:
         """The next block; the one before it has been run, and is answered."""
-        self.control = control
-        self.accept(control)
+        self.executor, control = executor, executor.control
+        self.accept(executor)
         while (
             not control.ended
             and moves_ahead < MOST_AHEAD
@@ -89,30 +90,30 @@ class GrblStream:
                 return block
         return None
 
-    def refuse(self, control: Executor, finding: Diagnostic) -> None:
+    def refuse(self, executor: Executor, finding: Diagnostic) -> None:
         """A block is wrong: put back what was in force before it."""
         assert self._before is not None
-        _restore(control, self._before)
+        _restore(executor.control, self._before)
         self._before = None
         self.answers.append(f"error:{error_of(finding):d}")
 
-    def accept(self, control: Executor) -> None:
+    def accept(self, executor: Executor) -> None:
         """The last block has been run: answer it."""
-        before, self._before = self._before, None
+        control, before, self._before = executor.control, self._before, None
         if before is None:
             return
         if self.jogging:
             # A jog changes nothing but the place (Grbl 1.1, "Jogging").
             control.modal.restore(before.modal)
-            control.feed = before.feed
+            control.motion.feed = before.feed
         if control.ended:
             self.answers.append("[MSG:Pgm End]")
             for number in _AFTER_PROGRAM:
-                control.put_into_force(number, control.dialect.g[number])
+                executor.put_into_force(number, executor.dialect.codes.g[number])
             memory_of(control).system = 1
         self.answers.append("ok")
 
-    def _read(self, control: Executor, line: bytes, damaged: bool) -> Block | None:
+    def _read(self, control: Control, line: bytes, damaged: bool) -> Block | None:
         """A line as a block; None: it is answered already."""
         text = cleaned(line)
         if damaged or len(text) > LONGEST_LINE:
@@ -128,7 +129,7 @@ class GrblStream:
             self.answers.append(f"error:{error_of(error.diagnostic):d}")
         return None
 
-    def _block(self, control: Executor, text: str) -> Block | None:
+    def _block(self, control: Control, text: str) -> Block | None:
         jog = text.startswith(_JOG)
         # A jog is a straight move, whatever motion is in force.
         written = f"G1{text.removeprefix(_JOG)}" if jog else text
@@ -141,7 +142,7 @@ class GrblStream:
             return None
         return blocks[0]
 
-    def _wrong_jog(self, control: Executor, words: tuple[Word, ...]) -> Error | None:
+    def _wrong_jog(self, control: Control, words: tuple[Word, ...]) -> Error | None:
         values = {word.address: word.value for word in words if word.address != "G"}
         codes = {word.value for word in words if word.address == "G"}
         axes = {
@@ -161,13 +162,13 @@ class GrblStream:
         return None
 
 
-def _jog_target(control: Executor, axes: dict[str, float], codes: Container[object]) -> list[float]:
+def _jog_target(control: Control, axes: dict[str, float], codes: Container[object]) -> list[float]:
     """Where a jog leads, machine coordinates, shape (k,) [mm or deg]."""
     modal, names = control.modal, control.settings.axes.names
     unit = 25.4 if 20.0 in codes else 1.0 if 21.0 in codes else modal.unit
     incremental = 91.0 in codes or (modal.incremental and 90.0 not in codes)
     zero = control.settings.machine_zero or {}
-    goal = list(control.programmed)
+    goal = list(control.motion.programmed)
     for index, name in enumerate(names):
         if name in axes and 53.0 not in codes:
             goal[index] = axes[name] * unit + (goal[index] if incremental else 0.0)
@@ -179,23 +180,24 @@ def _jog_target(control: Executor, axes: dict[str, float], codes: Container[obje
     return machine
 
 
-def _state_of(control: Executor) -> _Before:
+def _state_of(control: Control) -> _Before:
     return _Before(
         control.modal.fork(),
-        control.feed,
-        control.spindle,
-        control.spindle_turns,
+        control.motion.feed,
+        control.motion.spindle,
+        control.motion.spindle_turns,
         memory_of(control).fork(),
-        list(control.programmed),
-        list(control.part),
+        list(control.motion.programmed),
+        list(control.motion.part),
         [list(shift) for shift in control.frame.shifts],
     )
 
 
-def _restore(control: Executor, before: _Before) -> None:
+def _restore(control: Control, before: _Before) -> None:
+    motion = control.motion
     control.modal.restore(before.modal)
-    control.feed, control.spindle = before.feed, before.spindle
-    control.spindle_turns = before.spindle_turns
+    motion.feed, motion.spindle = before.feed, before.spindle
+    motion.spindle_turns = before.spindle_turns
     control.memory = before.memory
     control.frame.set_shifts(before.shifts)
-    control.programmed, control.part = before.programmed, before.part
+    motion.programmed, motion.part = before.programmed, before.part

@@ -15,13 +15,21 @@ export class Connection {
     address.protocol = address.protocol.replace("http", "ws");
     this.socket = new WebSocket(address);
     this.socket.binaryType = "arraybuffer";
-    this.socket.onopen = () => this.lost(false);
+    let came = false;
+    this.socket.onopen = () => { came = true; this.lost(false); };
     this.socket.onmessage = ({ data }) => this.hear(data);
     this.socket.onclose = () => {
       this.let_go();
       this.lost(true);
+      if (!came) this.ask_whether_known();
       setTimeout(() => this.open(), AGAIN_MS);
     };
+  }
+
+  /** A server that was started anew may not know this browser any more: the entry says what to do then. */
+  async ask_whether_known() {
+    const answer = await fetch("scene.json", { method: "HEAD" }).catch(() => null);
+    if (answer?.status === 401) location.reload();
   }
 
   say(what) {

@@ -1,5 +1,7 @@
 // Small parts: elements, keys that act when they are pressed, the words of a language.
 
+export const LANGUAGE_NAMES = { en: "English", ru: "Русский", it: "Italiano", cs: "Čeština" };
+
 /** Make an element; attributes that begin with "on" are listeners. */
 export function make(tag, attributes = {}, ...children) {
   const element = document.createElement(tag);

@@ -4,6 +4,8 @@ import asyncio
 import contextlib
 import functools
 import json
+import secrets
+import threading
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +13,7 @@ import anyio.to_thread
 from starlette.applications import Starlette
 from starlette.requests import Request
 from starlette.responses import FileResponse, HTMLResponse, JSONResponse, Response
-from starlette.routing import Mount, Route, WebSocketRoute
+from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
@@ -45,6 +47,8 @@ from twin.web.guard import ASSETS
 
 ROLES = ("operator", "trainer", "watcher")
 PAGE = Path(__file__).resolve().parent.parent / "page"
+STATIC = (("/view", ASSETS), ("/page", PAGE))
+"""What a room's pages load that is the same in every room."""
 
 PICTURES_PER_S = 30.0
 """How often a page is told of the machine, at most."""
@@ -52,6 +56,18 @@ LONGEST_SEND_S = 10.0
 """Time for a page to read what it was sent."""
 _EXAMPLE = (10.0, 600.0)
 """Way [mm] and feed [mm/min] of the block that the empty MDI line shows."""
+
+
+async def _panel(_request: Request) -> Response:
+    return FileResponse(PAGE / "panel.html")
+
+
+def static_routes() -> list[BaseRoute]:
+    """The panel and what it loads, the same for every room."""
+    mounts = (
+        Mount(path, StaticFiles(directory=folder, follow_symlink=False)) for path, folder in STATIC
+    )
+    return [Route("/", _panel), *mounts]
 
 
 class RoomApp:
@@ -81,11 +97,13 @@ class RoomApp:
         self.messages = 0
         self._stock = StockFeed()
         self._spoken: tuple[Look | None, dict[str, str]] = None, {}
+        # A page that was open before a restart must see that its attempt is another one.
+        self._opening = secrets.token_hex(4)
         self._one_path = asyncio.Lock()
+        self._one_change = threading.Lock()
         self._last_path: tuple[Any, bytes] = None, b""
         self._drawn = functools.cache(self._draw)
         inner = [
-            Route("/", self._page),
             Route("/scene.json", self._scene),
             Route("/words/{language}.json", self._words),
             Route("/machine.json", self._machine),
@@ -93,13 +111,9 @@ class RoomApp:
             Route("/path.bin", self._path),
             Route("/sheet.html", self._sheet),
             WebSocketRoute("/stream", self._stream),
-            Mount("/view", StaticFiles(directory=ASSETS, follow_symlink=False)),
-            Mount("/page", StaticFiles(directory=PAGE, follow_symlink=False)),
+            *static_routes(),
         ]
         self.asgi = Starlette(routes=[Mount(f"/{role}", routes=inner) for role in ROLES])
-
-    async def _page(self, _request: Request) -> Response:
-        return FileResponse(PAGE / "panel.html")
 
     async def _scene(self, _request: Request) -> Response:
         scene = self._driver.session.scene
@@ -161,24 +175,33 @@ class RoomApp:
         acts = page.role == "trainer" or (over and self.seats.may(page, None))
         known = name in ("", next_scene(self.attempt.scene.name))
         if acts and known and (self._changing is None or self._changing.done()):
-            self._changing = asyncio.create_task(self._change(name))
+            self._changing = asyncio.create_task(anyio.to_thread.run_sync(self.begin, name))
 
-    async def _change(self, name: str) -> None:
-        before = self.attempt
-        after = await anyio.to_thread.run_sync(self._attempts.after, before, name)
-        unwritten = ""
-        try:
-            await anyio.to_thread.run_sync(before.writer.close)
-        except OSError as error:
-            unwritten = f"{before.writer.folder}: {error.strerror or error}"
-        await asyncio.wrap_future(
+    def begin(self, name: str) -> None:
+        """Begin another attempt, from any thread but the machine's; it is there when this returns.
+
+        Args:
+            name: Of a shipped scene, or its file; empty: the same scene again.
+
+        Raises:
+            TwinError: There is no such scene, or something is wrong with it.
+        """
+        with self._one_change:
+            before = self.attempt
+            after = self._attempts.after(before, name)
+            if before.session.signature:
+                after.session.submit({"do": "sign", "name": before.session.signature})
+            unwritten = ""
+            try:
+                before.writer.close()
+            except OSError as error:
+                unwritten = f"{before.writer.folder}: {error.strerror or error}"
             self._driver.change(
                 after.session, after.writer.changed, lambda: unwritten or after.writer.trouble()
-            )
-        )
-        self._drawn.cache_clear()
-        self._last_path = None, b""
-        self.attempt = after
+            ).result()
+            self._drawn.cache_clear()
+            self._last_path = None, b""
+            self.attempt = after
 
     async def _machine(self, request: Request) -> Response:
         drawn = await self._drawing(request)
@@ -279,18 +302,20 @@ class RoomApp:
         """Show a page the machine, no faster than it reads."""
         changes = Changes()
         epoch = version = -1
+        shown: tuple[Look | None, dict[str, Any]] = None, {}
         while True:
             began = asyncio.get_running_loop().time()
             look = self._driver.look
             self._stock.note(self._driver.seen)
             patch, epoch, version = self._stock.patch(epoch, version)
-            own = self.seats.words(page) | {"attempt": self.attempt.number}
-            words = changes.since_last(self._words_of(look) | as_texts(own))
-            messages: list[bytes | str] = [state_message(look, cutting=patch is not None)]
-            if words:
-                messages.append(words)
-            if patch is not None:
-                messages.append(patch)
+            own = self.seats.words(page) | {"attempt": f"{self._opening} {self.attempt.number}"}
+            messages: list[bytes | str] = []
+            if patch is not None or look is not shown[0] or own != shown[1]:
+                shown = look, own
+                words = changes.since_last(self._words_of(look) | as_texts(own))
+                messages = [state_message(look, cutting=patch is not None)]
+                messages += [words] if words else []
+                messages += [] if patch is None else [patch]
             for message in messages:
                 self.bytes_sent += len(message)
                 send = socket.send_bytes if isinstance(message, bytes) else socket.send_text

@@ -31,6 +31,8 @@ HELD_S = 0.1
 """A key counts as let go when its page has not said for so long that it is held [s]."""
 SHOWN_EVERY_S = 0.03
 """Between two looks at the machine for the pages [s]."""
+RESTING_S, SHOWN_AT_REST_S = 0.1, 0.25
+"""Between two turns, and two looks for the pages, while the machine rests [s]; what is asked ends the wait."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -56,6 +58,7 @@ class Driver:
         speed: Machine time per time on the wall.
         lost_s: Time on the wall that the machine did not keep up with so far [s].
         trouble: Says what is wrong outside the machine.
+        noted: Told of the session before each look at it; says what is wrong with what it keeps.
         look: The last look at the machine.
     """
 
@@ -70,6 +73,7 @@ class Driver:
         self.speed = 1.0
         self.lost_s = 0.0
         self.trouble: Callable[[], str] = str
+        self.noted: Callable[[Session], str] = lambda _session: ""
         self._changed = changed
         self._questions: queue.SimpleQueue[tuple[Callable[[Room], Any], Future[Any]]] = (
             queue.SimpleQueue()
@@ -163,14 +167,24 @@ class Driver:
                 precedes = False
                 give_way()
             due = self.session.room.slice_s - self._owed_s - (time.perf_counter() - now)
-            self._wake.wait(max(due / self.speed, SHORTEST_REST_S))
+            self._wake.wait(RESTING_S if self._rests else max(due / self.speed, SHORTEST_REST_S))
             self._wake.clear()
         if precedes:
             give_way()
 
+    @property
+    def _rests(self) -> bool:
+        """Whether nothing that is shown changes but the clock."""
+        session = self.session
+        return session.replay is None and (session.frozen or session.room.rest.lasts)
+
     def _step(self, passed: float) -> None:
         """One turn; whatever goes wrong in it becomes an alarm."""
         try:
+            if self._rests:
+                # What has passed was rest; what is asked begins now.
+                self._go_on(passed)
+                passed = 0.0
             self._do_what_was_asked()
             self._answer()
             self._let_go_of_lost_keys()
@@ -180,12 +194,13 @@ class Driver:
         except Exception as error:  # noqa: BLE001 (a class loses its room by whatever ends this thread)
             where = traceback.extract_tb(error.__traceback__)[-1]
             self.session.room.fail(f"{type(error).__name__}: {error} ({where.name})")
-        if time.perf_counter() - self._shown >= SHOWN_EVERY_S:
+        every_s = SHOWN_AT_REST_S if self._rests else SHOWN_EVERY_S
+        if time.perf_counter() - self._shown >= every_s:
             self._shown = time.perf_counter()
             self.look = Look(
                 dataclasses.replace(self.session.snapshot(), speed=self._kept_up),
                 self.lost_s,
-                self.trouble(),
+                self.noted(self.session) or self.trouble(),
             )
 
     def _do_what_was_asked(self) -> None:
@@ -243,7 +258,9 @@ class Driver:
         share = kept / self._owed_s if self._owed_s > 0.0 else 1.0
         self._kept_up += 0.02 * (self.speed * share - self._kept_up)
         gone, most = 0, int(min(kept, self.speed * CAUGHT_UP_AT_ONCE_S) / slice_s)
-        while gone < most and (gone == 0 or (self._asked.empty() and self._questions.empty())):
+        while gone < most and (
+            gone == 0 or self._rests or (self._asked.empty() and self._questions.empty())
+        ):
             session.advance()
             gone += 1
         self._owed_s = kept - gone * slice_s

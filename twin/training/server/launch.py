@@ -13,7 +13,7 @@ from twin.training.server.attempts import Attempts
 from twin.training.server.driver import Driver
 from twin.training.session.log import Who
 from twin.training.session.session import Session
-from twin.web.doorkeeper import Doorkeeper
+from twin.web.doorkeeper import Doorkeeper, new_tokens
 from twin.web.guard import Guard
 from twin.web.server import LOOPBACK, WebServer, require_three
 
@@ -124,13 +124,13 @@ def open_room(
     driver = Driver(attempt.session, attempt.writer.changed)
     driver.trouble = attempt.writer.trouble
     app = RoomApp(driver, attempts, attempt)
-    doorkeeper = Doorkeeper(ROLES, server.port, encrypted=certificate is not None)
+    doorkeeper = Doorkeeper(new_tokens(ROLES), server.port, encrypted=certificate is not None)
     addresses = {
         role: f"{server.origin}/{role}/#{token}" for role, token in doorkeeper.tokens.items()
     }
     server.start(Guard(app.asgi, doorkeeper, local=server.local), promptly=promptly)
     try:
-        with _prompt_threads():
+        with prompt_threads():
             yield OpenRoom(driver, app, addresses, promptly=promptly)
     finally:
         server.stop()
@@ -138,7 +138,7 @@ def open_room(
 
 
 @contextlib.contextmanager
-def _prompt_threads() -> Iterator[None]:
+def prompt_threads() -> Iterator[None]:
     """Let no thread wait long for another, nor all of them for the search through modules' objects."""
     turns_s = sys.getswitchinterval()
     sys.setswitchinterval(TURNS_S)

@@ -85,6 +85,10 @@ class Seats:
         self._holder = number
         self._asking = [one for one in self._asking if one != number]
 
+    def count(self, role: str) -> int:
+        """How many pages of a role are open."""
+        return sum(page.role == role for page in tuple(self._pages.values()))
+
     def words(self, page: Page) -> dict[str, Any]:
         """What a page shows of it."""
         roles = [one.role for one in self._pages.values()]

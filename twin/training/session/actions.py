@@ -33,6 +33,7 @@ def carry_out(room: Room, command: c.Command) -> None:
         TwinError: The machine refuses; the message says why. Nothing has changed then.
     """
     _ACTIONS[type(command)](room, command)
+    room.rest.wake()
     if not isinstance(command, _NO_TOUCH):
         room.judge.note_touch(room)
 

@@ -27,14 +27,15 @@ def approach(control: Control, stand: FloatArray, line: int, clearance: float) -
         line: Source line of the block.
         clearance: Height at which the tool travels, at least, part coordinates [mm].
     """
-    goal = np.array(control.part)
-    label = np.array(control.programmed) - goal
+    motion = control.motion
+    goal = np.array(motion.part)
+    label = np.array(motion.programmed) - goal
     above_stand, above_goal = stand.copy(), goal.copy()
     travels = bool(np.abs(np.delete(goal - stand, Z)).max() >= SHORTEST)
     height = max(goal[Z], stand[Z], clearance if travels else -np.inf)
     above_stand[Z] = above_goal[Z] = height
     factor = FEED_FACTORS.get(control.modal.feed_mode)
-    feed = control.feed * factor if control.feed and factor else control.settings.default_feed
+    feed = motion.feed * factor if motion.feed and factor else control.settings.default_feed
     columns = MoveColumns(control.settings.axes)
     for start, end in itertools.pairwise((stand, above_stand, above_goal, goal)):
         if np.abs(end - start).max() < SHORTEST:

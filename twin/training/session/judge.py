@@ -53,6 +53,11 @@ class Judge:
         )
         return max(0, points - self.hints * self._file.hint_cost)
 
+    @property
+    def touched(self) -> bool:
+        """Whether the operator has done anything yet that begins the scene's time, or asked for a hint."""
+        return self._touched_s is not None or self.hints > 0 or bool(self.evidence.answers)
+
     def note_touch(self, room: Observed) -> None:
         """The operator has touched the panel: from the first time on, time counts."""
         if self._touched_s is None:

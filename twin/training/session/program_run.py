@@ -98,11 +98,11 @@ class BlockStream(Protocol):
         """Whether no block has come for a while."""
         ...
 
-    def next(self, control: Executor, moves_ahead: int) -> Block | None:
+    def next(self, executor: Executor, moves_ahead: int) -> Block | None:
         """The next block, told how many moves lie ahead of the axes; None: none has come, or none is wanted."""
         ...
 
-    def refuse(self, control: Executor, finding: Diagnostic) -> None:
+    def refuse(self, executor: Executor, finding: Diagnostic) -> None:
         """The last block is wrong: it is to leave no trace."""
         ...
 
@@ -192,8 +192,9 @@ class ProgramRun:
         """
         self._machine = machine
         self._limits = motion_limits(machine)
-        self._control = Executor(dialect, settings, source)
-        self._control.prepare()
+        self._executor = Executor(dialect, settings, source)
+        self._control = self._executor.control
+        self._executor.prepare()
         self._options = options
         self._searched = options.search
         self._found: Block | None = None
@@ -491,7 +492,7 @@ class ProgramRun:
                 most -= 1
                 block, self._found = self._found, None
                 if stream is not None:
-                    block = stream.next(control, self.moves_ahead)
+                    block = stream.next(self._executor, self.moves_ahead)
                 elif block is None and not control.ended:
                     block = control.program_counter.next()
                 if block is None and stream is not None:
@@ -499,7 +500,7 @@ class ProgramRun:
                         self._end_stream()
                     break
                 if block is None:
-                    control.finish()
+                    self._executor.finish()
                     self.ending = "end"
                     self._require_found()
                     break
@@ -508,7 +509,7 @@ class ProgramRun:
                     break
                 mark = self._count + len(control.path)
                 refused = control.path.refusal(block.line)
-                control.run(block)
+                self._executor.run(block)
                 refused = None
                 if self._searched:
                     self._collect(control.path.take())
@@ -520,7 +521,7 @@ class ProgramRun:
             if stream is None:
                 self._end_by(error.diagnostic)
             else:
-                stream.refuse(control, error.diagnostic)
+                stream.refuse(self._executor, error.diagnostic)
         if self._arrival is not None:
             chunk, self._arrival = self._arrival, None
             self._finish_chunk(chunk)
@@ -563,11 +564,13 @@ class ProgramRun:
 
     def _note(self, block: Block, mark: int) -> None:
         control = self._control
-        active = control.active.numbers()
+        active = control.modal.active.numbers()
         if active != self._active:
-            self._active, self._codes = active, tuple(f"G{number:g}" for number in active)
+            self._active, self._codes = active, tuple(map(self._executor.dialect.code_name, active))
         factor = FEED_FACTORS.get(control.modal.feed_mode)
-        state = ModalState(block.line, self._codes, control.feed, control.tools.spindle, factor)
+        state = ModalState(
+            block.line, self._codes, control.motion.feed, control.tools.spindle, factor
+        )
         self._walk.note(mark, state)
 
     def _look_for_stop(self, block: Block) -> None:
@@ -609,19 +612,19 @@ class ProgramRun:
 
     def left(self) -> Inherited:
         """What an MDI block leaves in force for the next one."""
-        control = self._control
+        control, motion = self._control, self._control.motion
         shifts = [list(shift) for shift in control.frame.shifts]
         memory = None if self._options.stream is None else control.memory
-        return Inherited(control.modal.fork(), shifts, control.feed, control.spindle, memory)
+        return Inherited(control.modal.fork(), shifts, motion.feed, motion.spindle, memory)
 
     def _inherit(self, before: Inherited) -> None:
-        control = self._control
+        control, motion = self._control, self._control.motion
         if before.memory is not None:
             control.memory = before.memory
         control.modal.restore(before.modal)
         control.frame.set_shifts([list(shift) for shift in before.shifts])
-        control.programmed = control.frame.to_programmed(control.part)
-        control.feed, control.spindle = before.feed, before.spindle
+        motion.reframed()
+        motion.feed, motion.spindle = before.feed, before.spindle
 
     def _collect(self, skipped: Chunk) -> None:
         """Of what a search passes over, keep the last commands of spindle and coolant, and the highest Z."""
@@ -639,7 +642,7 @@ class ProgramRun:
         self.ending_line, self.optional = block.line, False
         control.path.take()
         needed = control.tools.spindle
-        if control.active.get("compensation", NO_COMPENSATION) != NO_COMPENSATION:
+        if control.modal.active.get("compensation", NO_COMPENSATION) != NO_COMPENSATION:
             self.ending = "program"
             self.message = "a search cannot begin within a compensated contour"
         elif needed != self.tool:

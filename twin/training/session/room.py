@@ -38,13 +38,13 @@ from twin.training.scene.fault_table import FaultTable
 from twin.training.scene.scene_file import Mode, Scene
 from twin.training.session.block_walk import ModalState
 from twin.training.session.faults import inject
-from twin.training.session.inspection import Inspection, inspect_part
+from twin.training.session.inspection import Inspection, Moment, inspect_part, moment_of
 from twin.training.session.judge import Judge
 from twin.training.session.live_cut import LiveCut
-from twin.training.session.moment import Moment, moment_of
 from twin.training.session.observed import Notice, block_number
 from twin.training.session.preview import PathToCome
 from twin.training.session.program_run import Inherited, ProgramRun, RunOptions
+from twin.training.session.rest import Rest
 from twin.training.session.tables import Tables
 from twin.training.session.workpiece import Workpiece
 
@@ -122,6 +122,7 @@ class Room:
         cut: The force of the cut.
         judge: Looks after the tasks.
         tick: Servo periods since the beginning.
+        rest: Whether the machine rests, and need not be computed.
         mode: Where the mode switch stands.
         feed_override: Feed override dial [%].
         rapid_override: Rapid override dial [%].
@@ -205,6 +206,7 @@ class Room:
         self.modal: ModalState | None = None
         self.inherited: Inherited | None = None
         self.tick = 0
+        self.rest = Rest()
         self.samples = self.machine.hold(1)
         self.label = np.zeros(len(stand))
         self.faults: list[FaultTable] = []
@@ -261,9 +263,16 @@ class Room:
     def advance(self, slices: int = 1) -> None:
         """Let the machine go on by slices."""
         for _ in range(slices):
-            self._slice(SLICE)
+            self.tick += SLICE
+            if self.run is not None or not self.rest.lasts:
+                self._move(SLICE)
+            self.rest.look(self, self.slice_s)
+            self.judge.look(self)
+            if self.judge.over and self.handed_in is None:
+                last = self._moment(Notice("", "", time_s=self.time_s))
+                self.handed_in = inspect_part(self, last)
 
-    def _slice(self, count: int) -> None:
+    def _move(self, count: int) -> None:
         self.cut.turn(self.spindle, self.spindle_override / 100.0)
         parts: list[Samples] = []
         if self.machine.alarm is None:
@@ -276,15 +285,11 @@ class Room:
             parts.append(rest(missing))
         for part in parts:
             self._see(part)
-        self.tick += count
         self._pass_functions()
         self._relabel()
         self._latch(self.machine.alarm)
         self._note_breaks()
         self._end_of_part()
-        self.judge.look(self)
-        if self.judge.over and self.handed_in is None:
-            self.handed_in = inspect_part(self, self._moment(Notice("", "", time_s=self.time_s)))
 
     def _setpoints(self, count: int) -> Setpoints:
         if self.run is None or self.waiting:
@@ -355,7 +360,9 @@ class Room:
     def _latch(self, alarm: Alarm | None) -> None:
         # An axis that is jogged off its switch may meet the next alarm while the first one stands.
         if alarm is not None and (self.alarm is None or self.run is not None):
-            self.raise_alarm(Notice(alarm.code, alarm.message, alarm.axis, alarm.line))
+            self.raise_alarm(
+                Notice(alarm.code, alarm.message, alarm.axis, alarm.line, between=alarm.between)
+            )
 
     def raise_alarm(self, notice: Notice) -> None:
         """The control stops everything and says why; the first alarm counts."""
@@ -368,8 +375,10 @@ class Room:
     def _noted(self, notice: Notice) -> Notice:
         """Enter what went wrong into the history, for the sheet and the judge too."""
         notice = self._placed(notice)
+        moment = self._moment(notice)
+        notice = dataclasses.replace(notice, place=tuple(moment.tip.tolist()))
         self.alarms.append(notice)
-        self.moments.append(self._moment(notice))
+        self.moments.append(moment)
         self.judge.note_alarm(notice.code)
         return notice
 
@@ -700,7 +709,11 @@ class Room:
 def _offsets(scene: Scene) -> dict[str, dict[str, float]]:
     """The work offsets that the control's table has, with the values of the job."""
     job, dialect = scene.preparation.job.file, scene.preparation.dialect
-    names = [f"G{number:g}" for number in sorted(dialect.g) if dialect.g[number].group == "offset"]
+    names = [
+        f"G{number:g}"
+        for number in sorted(dialect.codes.g)
+        if dialect.codes.g[number].group == "offset"
+    ]
     wanted = [name for name in names if name in WORK_OFFSETS]
     return {name: dict(job.offsets.get(name, {})) for name in wanted} | dict(job.offsets)
 

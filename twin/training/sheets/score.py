@@ -15,8 +15,7 @@ from twin.files.atomic import write_text
 from twin.training.scene.phrases import finding_in, translated
 from twin.training.scene.scene_file import Scene
 from twin.training.scene.vocabulary import Words, in_language
-from twin.training.session.inspection import Inspection
-from twin.training.session.moment import Moment
+from twin.training.session.inspection import Inspection, Moment
 from twin.training.session.session import Session
 from twin.version import __version__
 

@@ -4,7 +4,7 @@ import math
 
 from twin.nc.control.codes import Action
 from twin.nc.control.compensation import compensate
-from twin.nc.control.control import Control
+from twin.nc.control.control import Control, refuse_axis
 from twin.nc.control.interpolation import LineRule
 from twin.nc.dialects.codesys.program import variables
 from twin.nc.geometry.planes import XY, plane_with_normal
@@ -26,7 +26,7 @@ def free_plane(control: Control) -> None:
     """
     if not any(letter in control.words for letter in "IJK"):
         return
-    i, j, k = (control.take_number(letter) for letter in "IJK")
+    i, j, k = (control.number(control.take(letter)) for letter in "IJK")
     if not (i or j or k):
         control.fail("plane-normal", "G16 needs the plane's normal", control.code_word(16))
     control.modal.plane = plane_with_normal((i, j, k))
@@ -39,10 +39,10 @@ def plane_changed(control: Control) -> None:
     Raises:
         ProgramError: It has moved in another one.
     """
-    if control.path.compensation_has_moved:
+    if control.path.compensation.has_moved:
         refuse_compensated_plane(control)
-    if control.path.compensating:
-        control.path.compensate_in(control.part_plane())
+    if control.path.compensation.in_force:
+        control.path.compensation.plane = control.motion.part_plane.directions
 
 
 def compensation_by_radius(side: float) -> Action:
@@ -97,7 +97,7 @@ def _smooth(control: Control, word: Word | None) -> None:
     assert memory.smoothed_by is not None
     if memory.smoothing < 0.0:
         control.fail("blend", "the distance of smoothing cannot be negative", word)
-    plane = control.part_plane()
+    plane = control.motion.part_plane
     control.path.blend_always(Blend(memory.smoothed_by, memory.smoothing, plane, halves=True))
 
 
@@ -111,7 +111,7 @@ def cut_loops(control: Control) -> None:
     """G61: loops are cut out, in 2D mode only (manual)."""
     if control.modal.plane is not XY:
         control.fail("loops", "loops are cut out in the plane X Y only", hint="write G15 before")
-    control.path.cut_loops(control.part_plane())
+    control.path.cut_loops(control.motion.part_plane)
 
 
 def keep_loops(control: Control) -> None:
@@ -148,7 +148,7 @@ def axis_named(control: Control, letter: str, word: Word) -> int:
     """Column of the axis with a letter; a word asks for it."""
     index = control.axis_index.get(letter)
     if index is None:
-        control.refuse_axis(word._replace(address=letter))
+        refuse_axis(control, word._replace(address=letter))
     return index
 
 
@@ -159,7 +159,7 @@ def length_vector(control: Control) -> None:
     (page of the preprocessor), also where it names another axis.
     """
     vector = [control.length(control.take(letter)) for letter in "IJK"]
-    if control.path.compensating:
+    if control.path.compensation.in_force:
         message = "the tool's length cannot change while radius compensation is in force"
         control.fail("compensation-change", message, hint="end it by G40 first")
     memory, old = variables(control), control.frame.shift("length")
@@ -191,7 +191,7 @@ def lead_into_length(control: Control) -> None:
 def _keep_ramp(control: Control) -> None:
     """The frame has changed: a length that no move has led into yet still lies before the control."""
     for axis, pending in enumerate(variables(control).length_ramp):
-        control.programmed[axis] += pending
+        control.motion.programmed[axis] += pending
 
 
 def reset_shift(control: Control) -> None:
@@ -212,7 +212,7 @@ def shift_relatively(control: Control) -> None:
     for index, word in control.take_axis_words():
         shift[index] += control.axis_value(index, word)
     control.frame.set_shift("offset", shift)
-    control.reframed()
+    control.motion.reframed()
     _keep_ramp(control)
 
 
@@ -238,9 +238,9 @@ def set_position(control: Control) -> None:
     following = control.program_counter.following()
     if following is not None and any(w.address == "G" and w.value == 92.0 for w in following.words):
         return
-    if control.has_moved:
-        programmed, control.rapid_feed = control.rapid_feed, math.nan
+    if control.motion.last is not None:
+        programmed, control.motion.rapid_feed = control.motion.rapid_feed, math.nan
         control.line_to(target, rapid=True)
-        control.rapid_feed = programmed
+        control.motion.rapid_feed = programmed
     else:
-        control.stand_at(target)
+        control.motion.begin_at(target)

@@ -87,7 +87,7 @@ def _opening_arc(control: Control, opening: Word, *, clockwise: bool) -> None:
         message = "the opening angle decides where the arc ends; the target in the plane is ignored"
         control.warn("arc-opening-wins", message, opening)
     target = control.target()
-    start = plane.point(control.programmed)
+    start = plane.point(control.motion.programmed)
     if distance(start, center) < SAME_POINT:
         control.fail("arc-center", "the centre lies on the arc's start", word)
     sweep = -angle if clockwise else angle
@@ -105,7 +105,7 @@ def _programmed_center(control: Control) -> tuple[Point | None, Word | None]:
     if not words.words:
         return None, None
     plane = control.modal.plane
-    start = control.programmed
+    start = control.motion.programmed
     if control.modal.center_absolute:
         given = {word.address for word in words.words}
         x, y, z = (

@@ -22,14 +22,14 @@ _SAME_DISTANCE = 1e-6
 def flat_spline(control: Control) -> None:
     """G5: the next point of a spline in X Y; Z goes linearly."""
     _refuse_switches(control)
-    control.spline_to(control.target(), flat=True)
+    control.motion.spline_to(control.target(), control.block, flat=True)
 
 
 def spatial_spline(control: Control) -> None:
     """G10: the next point of a spline in space."""
     _refuse_switches(control)
     _refuse_loops(control, "a spline in space")
-    control.spline_to(control.target(), flat=False)
+    control.motion.spline_to(control.target(), control.block, flat=False)
 
 
 def parabola(control: Control) -> None:
@@ -60,7 +60,7 @@ def ellipse(control: Control, *, clockwise: bool) -> None:
     """
     _refuse_other_planes(control)
     _refuse_loops(control, "an ellipse")
-    axis_angle, ratio = control.take_number("K"), control.take("R")
+    axis_angle, ratio = control.number(control.take("K")), control.take("R")
     if ratio is not None and not 0.0 < control.number(ratio) <= 1.0:
         control.fail("ellipse-ratio", "R of an ellipse lies above 0 and up to 1", ratio)
     target = control.target()
@@ -140,7 +140,7 @@ def _in_plane_point(control: Control) -> Point:
     i, j = (control.length(words[letter]) for letter in "IJ")
     if control.modal.center_absolute:
         return (i, j)
-    start = control.modal.plane.local(control.programmed)
+    start = control.modal.plane.local(control.motion.programmed)
     return (start.abscissa + i, start.ordinate + j)
 
 

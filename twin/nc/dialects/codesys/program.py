@@ -164,7 +164,7 @@ def let(control: Control, statement: Statement) -> None:
     rest, column = statement.text[match.end() :], statement.text_column + match.end()
     value = 0.0
     if match[2]:
-        value = control.compute(control.expression(rest, column), column)
+        value = control.compute(control.statements.expression(rest, column), column)
     elif rest.strip():
         control.report.fail("declaration", "this cannot follow a declaration", column)
     control.variables.write(match[1].upper(), value)
@@ -174,7 +174,7 @@ def assign(control: Control, statement: Statement) -> None:
     """``#x := value``."""
     name = statement.keyword.strip()
     text, column = statement.text.lstrip()[2:], statement.text_column + 2
-    value = control.compute(control.expression(text, column), column)
+    value = control.compute(control.statements.expression(text, column), column)
     _require_declared(control, name, statement)
     control.variables.write(name, value)
 
@@ -212,7 +212,7 @@ def add_to_variable(control: Control) -> None:
     """G37: D is added to variable O, or to the internal one."""
     name, word = _reference(control, control.take("O")), _value_word(control)
     total = Computed("+", arithmetic.add, (Variable(name), Number(control.number(word))))
-    control.variables.write(name, control.evaluate(Expression(name, total), word))
+    control.variables.write(name, control.compute(Expression(name, total), word))
 
 
 def _value_word(control: Control) -> Word:

@@ -97,7 +97,7 @@ def _call(control: Control, statement: Statement) -> None:
     if text[-1:] not in ("}", ")"):
         control.report.fail("expression", "the bracket is not closed", statement.text_column)
     column = statement.text_column + statement.text.index(text[0]) + 1
-    values = control.expressions(text[1:-1], column)
+    values = control.statements.expressions(text[1:-1], column)
     if len(values) != len(subprogram.formals):
         message = f"{name} takes {len(subprogram.formals)} values, not {len(values)}"
         control.report.fail("call-values", message, statement.column, len(name))

@@ -18,9 +18,9 @@ def set_acceleration(control: Control, word: Word) -> None:
     """E: above 0 the path's acceleration, below 0 its deceleration [units/s²]."""
     value = control.number(word)
     if value > 0.0:
-        control.acceleration = value
+        control.motion.acceleration = value
     elif value < 0.0:
-        control.deceleration = -value
+        control.motion.deceleration = -value
     else:
         control.fail("acceleration-range", "an acceleration of 0 never moves", word)
 
@@ -30,21 +30,21 @@ def set_rapid_feed(control: Control, word: Word) -> None:
     value = control.number(word)
     if value < 0.0:
         control.fail("feed-range", f"the feed {word.text} is negative", word)
-    control.rapid_feed = value
+    control.motion.rapid_feed = value
 
 
 def set_rapid_acceleration(control: Control, word: Word) -> None:
     """EF: above 0 the acceleration of G0, below 0 its deceleration; 0 gives both back to E."""
     value = control.number(word)
     if value >= 0.0:
-        control.rapid_acceleration = value or math.nan
+        control.motion.rapid_acceleration = value or math.nan
     if value <= 0.0:
-        control.rapid_deceleration = -value or math.nan
+        control.motion.rapid_deceleration = -value or math.nan
 
 
 def prepare(control: Control) -> None:
     """The program begins: G0 follows F."""
-    control.rapid_feed = 0.0
+    control.motion.rapid_feed = 0.0
 
 
 def before_motion(control: Control, _rapid: bool) -> None:
@@ -82,9 +82,9 @@ def axis_velocity(letter: str) -> WordAction:
 
     def action(control: Control, word: Word) -> None:
         index, value = axis_named(control, letter, word), abs(control.number(word))
-        control.axis_limits[index] = value * 60.0
+        control.motion.axis_limits[index] = value * 60.0
         if value == 0.0:
-            del control.axis_limits[index]
+            del control.motion.axis_limits[index]
 
     return action
 
@@ -98,16 +98,16 @@ def axis_acceleration(letter: str) -> WordAction:
 
     def action(control: Control, word: Word) -> None:
         index, value = axis_named(control, letter, word), control.number(word)
-        both = control.axis_accelerations, control.axis_decelerations
+        both = control.motion.axis_accelerations, control.motion.axis_decelerations
         if value == 0.0:
             for table in both:
                 table.pop(index, None)
         elif value < 0.0:
-            control.axis_decelerations[index] = -value
+            control.motion.axis_decelerations[index] = -value
         else:
-            control.axis_accelerations[index] = value
+            control.motion.axis_accelerations[index] = value
             if f"{word.address}-" not in {each.address for each in control.words.values()}:
-                control.axis_decelerations[index] = value
+                control.motion.axis_decelerations[index] = value
 
     return action
 
@@ -127,12 +127,12 @@ def take_shortest_way(control: Control) -> None:
         word = control.words.get(control.settings.axes.names[index])
         if word is None or period == 0.0:
             continue
-        target, here = control.axis_value(index, word), control.programmed[index]
+        target, here = control.axis_value(index, word), control.motion.programmed[index]
         turns = round((target - here) / period)
         if turns:
-            programmed = list(control.programmed)
+            programmed = list(control.motion.programmed)
             programmed[index] += turns * period
-            control.set_position(programmed, "turns")
+            control.motion.set_position(programmed, "turns")
 
 
 def place_switches(control: Control, length: float) -> None:
@@ -142,6 +142,8 @@ def place_switches(control: Control, length: float) -> None:
         ProgramError: Too many, none of O and L, or a place outside the element.
     """
     words, control.series = control.series, []
+    if not words:
+        return
     switches = [at for at, word in enumerate(words) if word.address == "H"]
     if len(switches) > SWITCHES:
         control.fail("switch-point", f"an element has {SWITCHES} switch points at most", words[-1])

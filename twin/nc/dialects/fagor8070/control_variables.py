@@ -50,7 +50,7 @@ def read_live(control: Control, name: str) -> float | None:
     offset, axis = cell
     values = memory_of(control).offsets.get(offset, control.settings.offsets.get(offset, {}))
     zero = machine_zero(control, "V.A.ORGT").get(axis, 0.0)
-    return (values.get(axis, 0.0) - zero) / control.unit_of(control.axis_index[axis])
+    return (values.get(axis, 0.0) - zero) / control.motion.unit_of(control.axis_index[axis])
 
 
 def write_live(control: Control, name: str, value: float) -> bool:
@@ -67,7 +67,7 @@ def write_live(control: Control, name: str, value: float) -> bool:
     zero = machine_zero(control, "V.A.ORGT").get(axis, 0.0)
     given = dict(control.settings.offsets.get(offset, {}))
     values = memory_of(control).offsets.setdefault(offset, given)
-    values[axis] = zero + value * control.unit_of(control.axis_index[axis])
+    values[axis] = zero + value * control.motion.unit_of(control.axis_index[axis])
     return True
 
 

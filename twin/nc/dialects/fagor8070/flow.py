@@ -31,7 +31,7 @@ def construct_of(control: Control, statement: Statement) -> Construct:
     if construct is None or construct.end is None:
         message = f"{statement.keyword} has no counterpart"
         hint = "every $IF needs its $ENDIF, every loop its end"
-        control.refuse(statement, "open-structure", message, hint)
+        control.fail("open-structure", message, statement, hint)
     return construct
 
 
@@ -40,7 +40,7 @@ def _jump_behind_condition(
 ) -> Statement:
     """The jump of ``$IF condition $GOTO``, given the texts before and behind its dollar."""
     if target[:4].upper() != "GOTO":
-        control.refuse(statement, "structure", "only $GOTO can follow a condition")
+        control.fail("structure", "only $GOTO can follow a condition", statement)
     column = statement.text_column + len(head) + 5
     return Statement(statement.keyword, target[4:], statement.column, column)
 
@@ -53,7 +53,7 @@ def _enclosing(control: Control, statement: Statement, without: tuple[str, ...])
         if construct.keyword not in without
     ]
     if not around:
-        control.refuse(statement, "structure", f"{statement.keyword} stands outside a loop")
+        control.fail("structure", f"{statement.keyword} stands outside a loop", statement)
     return around[-1]
 
 
@@ -65,14 +65,14 @@ def destination(control: Control, statement: Statement) -> Location:
     """
     match = _PLACE.fullmatch(statement.text)
     if match is None:
-        control.refuse(statement, "jump-target", "$GOTO needs N10 or [NAME]")
+        control.fail("jump-target", "$GOTO needs N10 or [NAME]", statement)
     label = int(match[1]) if match[1] else match[2].upper()
     span = statement.text_column, len(statement.text)
     place = control.program_counter.find_label(label, span, "$GOTO", lines_around(control))
     structure = _structure(control)
     here = structure.around(control.block.line - 1)
     if any(construct not in here for construct in structure.around(place.line)):
-        control.refuse(statement, "jump-into-structure", "a jump must not lead into a structure")
+        control.fail("jump-into-structure", "a jump must not lead into a structure", statement)
     return place
 
 
@@ -83,7 +83,7 @@ def _if(control: Control, statement: Statement) -> None:
     """$IF: run the first branch whose condition holds; or jump, with $GOTO on the same line."""
     head, goto, target = statement.text.partition("$")
     column = statement.text_column
-    holds = control.compute(control.expression(head, column), column) != 0.0
+    holds = control.compute(control.statements.expression(head, column), column) != 0.0
     if goto:
         jump = _jump_behind_condition(control, statement, head, target)
         if holds:
@@ -94,7 +94,7 @@ def _if(control: Control, statement: Statement) -> None:
         control.jump(Location(control.block.line, 0))
         return
     for branch in construct.branches:
-        if branch.keyword == "$ELSE" or value_of(control, control.statement_of(branch.line)):
+        if branch.keyword == "$ELSE" or value_of(control, control.statements.of_line(branch.line)):
             control.jump(Location(branch.line + 1, 0))
             return
     control.jump(construct.behind)
@@ -141,7 +141,7 @@ def _for(control: Control, statement: Statement) -> None:
 def _end_for(control: Control, statement: Statement) -> None:
     """$ENDFOR: step on, and run the body again until the last value is passed."""
     construct = construct_of(control, statement)
-    values = _for_values(control, control.statement_of(construct.begin), statement)
+    values = _for_values(control, control.statements.of_line(construct.begin), statement)
     name, _, last, step = values
     value = control.compute(Expression("", Variable(name)), 0) + step
     control.variables.write(name, value)
@@ -160,13 +160,13 @@ def _for_values(
     variable = control.program_counter.lexer.expressions.variable.match(statement.text.lstrip(), 0)
     name, equals, values = statement.text.partition("=")
     if variable is None or not equals:
-        control.refuse(statement, "structure", "$FOR needs its parameter", "$FOR P1=0,10,1")
+        control.fail("structure", "$FOR needs its parameter", statement, "$FOR P1=0,10,1")
     column = statement.text_column + len(name) + 1
     first, last, step = (
-        control.compute(each, column) for each in control.expressions(values, column, 3)
+        control.compute(each, column) for each in control.statements.expressions(values, column, 3)
     )
     if step == 0.0:
-        control.refuse(blamed, "structure", "a step of 0 never ends")
+        control.fail("structure", "a step of 0 never ends", blamed)
     return variable[0].upper(), first, last, step
 
 
@@ -176,7 +176,7 @@ def _switch(control: Control, statement: Statement) -> None:
     value = value_of(control, statement)
     for branch in construct.branches:
         is_default = branch.keyword == "$DEFAULT"
-        if is_default or value_of(control, control.statement_of(branch.line)) == value:
+        if is_default or value_of(control, control.statements.of_line(branch.line)) == value:
             control.jump(Location(branch.line + 1, 0))
             return
     control.jump(construct.behind)
@@ -184,7 +184,7 @@ def _switch(control: Control, statement: Statement) -> None:
 
 def _case(control: Control, statement: Statement) -> None:
     """$CASE or $DEFAULT reached from the case before, which is not documented."""
-    control.refuse(statement, "missing-break", "the case before has no $BREAK")
+    control.fail("missing-break", "the case before has no $BREAK", statement)
 
 
 def _break(control: Control, statement: Statement) -> None:
@@ -207,7 +207,7 @@ def _go_to(control: Control, statement: Statement) -> None:
 def value_of(control: Control, statement: Statement) -> float:
     """The value behind a keyword."""
     column = statement.text_column
-    return control.compute(control.expression(statement.text, column), column)
+    return control.compute(control.statements.expression(statement.text, column), column)
 
 
 STATEMENTS: dict[str, StatementAction] = {

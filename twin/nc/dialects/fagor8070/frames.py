@@ -12,13 +12,14 @@ from twin.nc.geometry.planes import OWN_PLANE, Plane, Vector, cross
 from twin.nc.iso import base
 from twin.nc.iso.declared import refuse_compensated_plane
 from twin.nc.iso.offsets import programmed_shift
+from twin.nc.iso.tool_change import go_to_change_height
 from twin.nc.iso.tool_compensation import radius_in_spindle, set_length
 from twin.nc.text.blocks import Word
 
 
 def choose_plane(control: Control) -> None:
     """G17, G18, G19; one that compensation is in force in stays as it is."""
-    if not control.path.compensates_in(control.part_plane()):
+    if not control.path.compensation.acts_in(control.motion.part_plane):
         change_plane(control)
 
 
@@ -88,7 +89,8 @@ def next_tool(control: Control, word: Word) -> None:
 def change_tool(control: Control) -> None:
     """M06: the tool goes into the spindle with its offset D1; T0 has none."""
     refuse_change(control)
-    base.change_tool(control)
+    go_to_change_height(control)
+    control.tools.change()
     _apply_offset(control, on=True)
 
 
@@ -119,19 +121,19 @@ def turn_in_commanded_direction(control: Control, _rapid: bool) -> None:
         return
     for index, name in enumerate(control.settings.axes.names):
         word = control.words.get(name)
-        if word is None or control.linear[index] or word.incremental:
+        if word is None or control.motion.linear[index] or word.incremental:
             continue
         value = control.number(word)
         if abs(value) >= 360.0:
             control.fail("module-range", "the target of a module axis is below one turn", word)
-        target, here = abs(value), control.programmed[index] % 360.0
+        target, here = abs(value), control.motion.programmed[index] % 360.0
         backwards = value < 0.0 or str(value).startswith("-")
         start = here
         if backwards and here < target:
             start = here + 360.0
         elif not backwards and here > target:
             start = here - 360.0
-        programmed = list(control.programmed)
+        programmed = list(control.motion.programmed)
         programmed[index] = start
-        control.set_position(programmed, "turns")
+        control.motion.set_position(programmed, "turns")
         control.words[name] = word._replace(value=target)

@@ -37,10 +37,13 @@ def machine_coordinates(control: Control, statement: Statement) -> None:
 
 
 def _move_once(control: Control, statement: Statement) -> None:
-    block, blocks = control.block, control.blocks_within(statement.text, statement.text_column)
+    block, blocks = (
+        control.block,
+        control.statements.blocks(statement.text, statement.text_column, control.block.line),
+    )
     if len(blocks) != 1 or blocks[0].statement is not None:
         hint = "write #MCS G0 Z0, or #MCS ON and #MCS OFF in blocks of their own"
-        control.refuse(statement, "machine-coordinates", "#MCS needs the words of a move", hint)
+        control.fail("machine-coordinates", "#MCS needs the words of a move", statement, hint)
     lasting = memory_of(control).part_frame is not None
     if not lasting:
         _enter(control, statement)
@@ -53,10 +56,10 @@ def _enter(control: Control, statement: Statement) -> None:
     memory = memory_of(control)
     if memory.part_frame is not None:
         return
-    if control.path.compensating:
+    if control.path.compensation.in_force:
         message = "machine coordinates know no radius compensation"
         hint = "end it by G40 before #MCS"
-        control.refuse(statement, "compensation-change", message, hint)
+        control.fail("compensation-change", message, statement, hint)
     memory.part_frame = enter_machine_frame(control, "#MCS")
     forget_polar(control)
 

@@ -42,7 +42,7 @@ def set_polar_origin(control: Control) -> None:
         control.fail("polar-origin", "G30 needs both I and J, or neither", abscissa or ordinate)
     origin = (control.length(abscissa), control.length(ordinate))
     if abscissa is None:
-        origin = control.modal.plane.point(control.programmed)
+        origin = control.modal.plane.point(control.motion.programmed)
     memory_of(control).polar_origin = origin
     forget_polar(control)
 
@@ -65,14 +65,14 @@ def temporary_polar_origin(control: Control) -> None:
     Raises:
         ProgramError: The block draws no arc (E1604).
     """
-    if control.active.get("motion") not in (2, 3):
+    if control.modal.active.get("motion") not in (2, 3):
         control.fail("temporary-origin", "G31 needs an arc, G02 or G03", control.code_word(31))
     memory_of(control).temporary = True
 
 
 def current_polar(control: Control) -> tuple[float, float]:
     """R and Q of where the tool stands: as last programmed, else measured [mm, deg]."""
-    here, memory = control.modal.plane.point(control.programmed), memory_of(control)
+    here, memory = control.modal.plane.point(control.motion.programmed), memory_of(control)
     return seen_from(memory.polar_origin, here, memory.polar_radius, memory.polar_angle)
 
 
@@ -96,7 +96,7 @@ def take_goal(control: Control, *, arc: bool) -> Goal:
 
 def _polar_target(control: Control, *, arc: bool) -> list[float]:
     plane = control.modal.plane
-    if control.active.get("offset") == 53:
+    if control.modal.active.get("offset") == 53:
         message = "polar coordinates are not allowed while G53 is in force (E1530)"
         control.fail("polar-origin", message, control.words.get("R") or control.words.get("Q"))
     if memory_of(control).part_frame is not None:
@@ -112,7 +112,7 @@ def _polar_target(control: Control, *, arc: bool) -> list[float]:
         message = f"the polar radius {radius:g} must be positive" + ("" if arc else " or 0")
         control.fail("polar-radius", message, radius_word)
     origin = memory_of(control).polar_origin
-    plane.aim(target, point_at(origin, plane.point(control.programmed), radius, angle))
+    plane.aim(target, point_at(origin, plane.point(control.motion.programmed), radius, angle))
     memory_of(control).polar_radius, memory_of(control).polar_angle = radius, angle
     return target
 
@@ -129,7 +129,7 @@ def _along_angle(control: Control, target: list[float], word: Word, *, from_absc
     along, across = (cosine, sine) if from_abscissa else (sine, cosine)
     if abs(along) < 1e-9:
         control.fail("chord-angle", "in this direction the coordinate is never reached", word)
-    start, end = plane.local(control.programmed), plane.local(target)
+    start, end = plane.local(control.motion.programmed), plane.local(target)
     if from_abscissa:
         other = start.ordinate + (end.abscissa - start.abscissa) * across / along
         plane.aim(target, (end.abscissa, other))

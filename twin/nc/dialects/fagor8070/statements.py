@@ -32,7 +32,7 @@ def skip_comment(control: Control, statement: Statement) -> None:
         if re.match(r"[ \t]*#COMMENT[ \t]+END\b", lines[line], re.IGNORECASE):
             control.program_counter.go(Location(line + 1, 0))
             return
-    control.refuse(statement, "open-comment", "#COMMENT END is missing")
+    control.fail("open-comment", "#COMMENT END is missing", statement)
 
 
 def _scale(control: Control, statement: Statement) -> None:
@@ -52,7 +52,7 @@ def round_parameters(control: Control, statement: Statement) -> None:
     if kind not in _ROUNDED or len(values) < 2 or values[1] <= 0.0:
         kinds = " and ".join(map(str, _ROUNDED))
         message = f"only the kinds {kinds} of #ROUNDPAR are simulated, with a distance above 0"
-        control.refuse(statement, "unsupported-statement", message, "write #ROUNDPAR[1,0.05]")
+        control.fail("unsupported-statement", message, statement, "write #ROUNDPAR[1,0.05]")
     control.modal.corner_tolerance = values[1] * control.modal.unit
 
 
@@ -64,9 +64,9 @@ def _bracketed(
     begin = len(text) - len(text.lstrip())
     if not (text[begin : begin + 1] == "[" and text.endswith("]")):
         message = f"{statement.keyword} needs its values in square brackets"
-        control.refuse(statement, "expression", message)
+        control.fail("expression", message, statement)
     column = statement.text_column + begin + 1
-    found = control.expressions(text[begin + 1 : -1], column, count)
+    found = control.statements.expressions(text[begin + 1 : -1], column, count)
     return [(each, column) for each in found]
 
 
@@ -83,7 +83,7 @@ def error(control: Control, statement: Statement) -> None:
         ProgramError: Always.
     """
     message = f"the program stops itself: {_quoted(statement)}"
-    control.refuse(statement, "program-error", message, "the program's own checks have failed")
+    control.fail("program-error", message, statement, "the program's own checks have failed")
 
 
 def _quoted(statement: Statement) -> str:
@@ -110,7 +110,7 @@ def refuse_known(control: Control, statement: Statement) -> NoReturn:
     keyword = _words(statement)
     reason = {**ENDED_ONLY, **REFUSED}[keyword]
     message = f"{keyword} is known to the control and not simulated: {reason}"
-    control.refuse(statement, "unsupported-statement", message)
+    control.fail("unsupported-statement", message, statement)
 
 
 def _words(statement: Statement) -> str:
@@ -130,8 +130,8 @@ STATEMENTS: dict[str, StatementAction] = {
     **subroutines.STATEMENTS,
     "#TIME": _dwell,
     "#COMMENT BEGIN": skip_comment,
-    "#COMMENT END": lambda control, statement: control.refuse(
-        statement, "open-comment", "#COMMENT BEGIN is missing"
+    "#COMMENT END": lambda control, statement: control.fail(
+        "open-comment", "#COMMENT BEGIN is missing", statement
     ),
     "#MCS": machine_coordinates,
     "#SCALE": _scale,

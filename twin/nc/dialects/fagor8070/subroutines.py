@@ -29,7 +29,7 @@ def _repeat(control: Control, statement: Statement) -> None:
     """#RPT[N10,N20,3]: run the blocks from one label to another, 3 times."""
     match, counter = _RANGE.fullmatch(statement.text), control.program_counter
     if match is None:
-        control.refuse(statement, "repeat-range", "the labels are missing", "#RPT[N10,N20,3]")
+        control.fail("repeat-range", "the labels are missing", statement, "#RPT[N10,N20,3]")
     first, last = (
         counter.find_label(
             _range_label(match[group]), _span(statement), "#RPT", lines_around(control)
@@ -39,16 +39,16 @@ def _repeat(control: Control, statement: Statement) -> None:
     blocks = counter.lexer.blocks(counter.lines[last.line], last.line + 1)
     if len(blocks) != 1 or blocks[0].words or blocks[0].statement is not None:
         message = "the last label must stand alone in its block"
-        control.refuse(statement, "repeat-range", message, "give it a block of its own behind")
+        control.fail("repeat-range", message, statement, "give it a block of its own behind")
     if last < first:
-        control.refuse(statement, "repeat-range", _NO_RANGE)
+        control.fail("repeat-range", _NO_RANGE, statement)
     if first <= Location(control.block.line - 1, 0) <= last:
-        control.refuse(statement, "repeat-range", "the range must not hold its own #RPT")
+        control.fail("repeat-range", "the range must not hold its own #RPT", statement)
     times = 1.0
     if match[3] is not None:
         column = statement.text_column + match.start(3)
-        times = control.compute(control.expression(match[3], column), column)
-    control.repeat(first, last, DEEPEST_CALL, statement, times)
+        times = control.compute(control.statements.expression(match[3], column), column)
+    control.call(first, DEEPEST_CALL, statement, times=times, last=last)
 
 
 def _range_label(text: str) -> int | str:
@@ -100,11 +100,11 @@ def heading(control: Control, statement: Statement) -> None:
     if here != memory.main:
         message = "a heading can stand only before the program or a local subroutine"
         hint = "end the program by M30 and a subroutine by M17 before the next begins"
-        control.refuse(statement, "heading", message, hint)
+        control.fail("heading", message, statement, hint)
     if _TITLE.fullmatch(statement.text) is None:
         message = "nothing but a comment may follow the program's name"
         hint = "the 8070's heading is %NAME; what follows a comma is the CNC 8055's"
-        control.refuse(statement, "heading", message, hint)
+        control.fail("heading", message, statement, hint)
 
 
 def _call(control: Control, statement: Statement) -> None:
@@ -158,7 +158,7 @@ def _name_of(control: Control, statement: Statement, *, alone: bool = False) -> 
     match = (_NAME.fullmatch if alone else _NAME.match)(statement.text)
     if match is None:
         message = "the call needs a name" + (" and no more" if alone else "")
-        control.refuse(statement, "call-values", message)
+        control.fail("call-values", message, statement)
     return match[1].upper()
 
 
@@ -193,10 +193,10 @@ def _line_of(
         known = f"subroutines here: {', '.join(sorted(table)) or 'none'}"
         if table is memory.subroutines:
             message = f"there is no local subroutine {name}"
-            control.refuse(statement, "unknown-subprogram", message, known)
+            control.fail("unknown-subprogram", message, statement, known)
         message = f"there is no subroutine {name}"
         hint = f"a global one is a file {name} or {name}.nc beside the program; {known}"
-        control.refuse(statement, "unknown-subprogram", message, hint)
+        control.fail("unknown-subprogram", message, statement, hint)
     return line
 
 

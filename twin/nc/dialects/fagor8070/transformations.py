@@ -81,7 +81,7 @@ def rotate(control: Control) -> None:
 def _update(control: Control, blamed: Statement | None = None) -> None:
     """Scale, then mirror, then rotation about its centre in the working plane hold from here on."""
     refuse_change(control)
-    if control.path.compensating:
+    if control.path.compensation.in_force:
         message = "mirror, scale and rotation cannot change while compensation is in force"
         control.fail("compensation-change", message, blamed, "end it by G40 first")
     memory, axes = memory_of(control), control.modal.plane.directions
@@ -90,5 +90,5 @@ def _update(control: Control, blamed: Statement | None = None) -> None:
     control.frame.set_matrix(matrix)
     others = [0.0] * (len(control.settings.axes) - 3)
     control.frame.set_shift("rotation", [*shift, *others])
-    control.reframed()
+    control.motion.reframed()
     forget_polar(control)

@@ -130,11 +130,11 @@ def assignments(control: Control, statement: Statement) -> tuple[list[Assignment
     while True:
         index, index_at = None, at
         if name == "P":
-            index, at = control.read_operand(text, at, begin)
+            index, at = control.statements.operand(text, at, begin)
         match = _SET.match(text, at)
         if match is None:
-            control.refuse(statement, "assignment", "'=' is missing behind the name")
-        value, end = control.read_expression(text, match.end(), begin)
+            control.fail("assignment", "'=' is missing behind the name", statement)
+        value, end = control.statements.longest(text, match.end(), begin)
         name = name.replace(" ", "").replace("\t", "").upper()
         value = _joined(name, index, match[1], value)
         found.append(Assignment(name, index, begin + index_at, value, begin + match.end()))
@@ -157,7 +157,7 @@ def assignments(control: Control, statement: Statement) -> tuple[list[Assignment
 
 def _rest(control: Control, column: int, text: str) -> Block:
     """The block whose words stand behind assignments."""
-    (block,) = control.blocks_within(text, column)
+    (block,) = control.statements.blocks(text, column, control.block.line)
     return block._replace(number=control.block.number)
 
 
@@ -198,8 +198,8 @@ def _write_live(control: Control, statement: Statement, assignment: Assignment) 
     try:
         written = write_live(control, name, value)
     except ExpressionError as error:
-        control.refuse(statement, error.code, str(error), error.hint)
+        control.fail(error.code, str(error), statement, error.hint)
     if not written:
         message = f"{name} belongs to the control, and the twin does not simulate it"
         hint = "programs write V.P and V.S variables and the offsets V.A.ORGT[1].X"
-        control.refuse(statement, "control-variable", message, hint)
+        control.fail("control-variable", message, statement, hint)

@@ -2,7 +2,8 @@
 
 import dataclasses
 
-from twin.nc.control.control import Control
+from twin.nc.control.codes import Codes, Words
+from twin.nc.control.control import Control, Rules
 from twin.nc.control.dialect import Dialect
 from twin.nc.dialects.fanuc import (
     codes,
@@ -45,7 +46,7 @@ def before_motion(control: Control, rapid: bool) -> None:
     reference_points.warn_of_cancelled_length(control)
     if not rapid:
         base.require_feed_of_block(control)
-        if memory_of(control).feed_lost and control.feed is None:
+        if memory_of(control).feed_lost and control.motion.feed is None:
             message = "F was written for another feed mode, and its number would mean another unit"
             control.fail("no-feed", message, hint="write F behind G93, G94 or G95")
 
@@ -71,14 +72,19 @@ _FAMILY = (
 """What the controls of the family have in common: alone it tells none of them."""
 
 
+BLOCK_END_ALONE = Comment(";", whole_line=True)
+"""A line that begins with the end of a block is none."""
+PROGRAM_NAME = Comment("O<", ">", whole_line=True)
+"""The name of a program, which the twin calls by its number or its file."""
+
 FANUC = Dialect(
     name="fanuc",
     title="Fanuc 0i-MF, 30i (milling)",
     code_page="cp1252",
     syntax=Syntax(
         address=r",[CR]|[A-Z]|:",
-        comments=(Comment("(", ")"), HEADING),
-        skip_levels=True,
+        comments=(Comment("(", ")"), HEADING, BLOCK_END_ALONE, PROGRAM_NAME),
+        skip_levels=range(1, 10),
         block_end=";",
         expressions=variables.EXPRESSIONS,
         statement=flow.PATTERN,
@@ -86,44 +92,65 @@ FANUC = Dialect(
         open_assignments=True,
         inner_comments=True,
     ),
-    groups=codes.GROUPS,
-    g=codes.codes(FANUC_VARIANT),
-    instead=codes.INSTEAD,
-    start=codes.START,
-    m=codes.M_CODES,
-    words={
-        "O": programs.heading,
-        ":": programs.heading,
-        "F": base.set_feed,
-        "S": base.spindle_speed,
-        "T": base.next_tool,
-        "H": tool_offsets.set_length_number,
-        "D": tool_offsets.set_radius_number,
-    },
-    words_first=True,
-    last_of_group_counts=True,
-    word_meanings={
-        "O": "number of the program",
-        ":": "number of the program, as a tape of the ISO code has it",
-        "N": "block number",
-        "G": "preparatory code",
-        **dict.fromkeys("XYZABCUVW", "axis"),
-        "I": "centre along X, from the start of the arc; scale of X",
-        "J": "centre along Y; scale of Y",
-        "K": "centre along Z; scale of Z; holes that a cycle's block drills",
-        ",R": "radius that rounds the corner at the block's end",
-        ",C": "chamfer of the corner at the block's end",
-        "R": "radius of the arc, negative: the larger of the two; plane where a cycle's feed begins; angle of G68",
-        "P": "milliseconds of a dwell; program or block; work offset of G54.1; scale of G51",
-        "Q": "depth of a peck; shift of G76 and G87",
-        "L": "how often a subprogram runs (a cycle: K); kind of data of G10",
-        "D": "row of the tool radius",
-        "H": "row of the tool length",
-        "F": "feed",
-        "S": "spindle speed",
-        "T": "tool",
-        "M": "machine function",
-    },
+    codes=Codes(
+        groups=codes.GROUPS,
+        g=codes.codes(FANUC_VARIANT),
+        instead=codes.INSTEAD,
+        start=codes.START,
+        m=codes.M_CODES,
+        last_of_group_counts=True,
+        start_state={"square_corners": True},
+        statements={**flow.STATEMENTS, **macro_calls.CALLS_BY_CODE},
+    ),
+    words=Words(
+        actions={
+            "O": programs.heading,
+            ":": programs.heading,
+            "F": base.set_feed,
+            "S": base.spindle_speed,
+            "T": base.next_tool,
+            "H": tool_offsets.set_length_number,
+            "D": tool_offsets.set_radius_number,
+        },
+        before_codes=True,
+        meanings={
+            "O": "number of the program",
+            ":": "number of the program, as a tape of the ISO code has it",
+            "N": "block number",
+            "G": "preparatory code",
+            **dict.fromkeys("XYZABCUVW", "axis"),
+            "I": "centre along X, from the start of the arc; scale of X",
+            "J": "centre along Y; scale of Y",
+            "K": "centre along Z; scale of Z; holes that a cycle's block drills",
+            ",R": "radius that rounds the corner at the block's end",
+            ",C": "chamfer of the corner at the block's end",
+            "R": "radius of the arc, negative: the larger of the two; plane where a cycle's feed begins; angle of G68",
+            "P": "milliseconds of a dwell; program or block; work offset of G54.1; scale of G51",
+            "Q": "depth of a peck; shift of G76 and G87",
+            "L": "how often a subprogram runs (a cycle: K); kind of data of G10",
+            "D": "row of the tool radius",
+            "H": "row of the tool length",
+            "F": "feed",
+            "S": "spindle speed",
+            "T": "tool",
+            "M": "machine function",
+        },
+    ),
+    rules=Rules(
+        memory=FanucMemory,
+        prepare=prepare,
+        read_variable=variables.read_variable,
+        write_variable=variables.write_variable,
+        is_local=variables.is_local,
+        before_motion=before_motion,
+        after_motion=after_motion,
+        finish=programs.finish,
+        acts_on_lines=acts_on_lines,
+        pointless=decimal_point.pointless,
+        count=as_read,
+        feed_rule=feeds.fanuc_rule,
+        length_by_code=True,
+    ),
     units='mm, inches (G20), degrees; numbers without a point count 0.001 mm, 0.0001 inch or 0.001 degree, unless decimal_point = "calculator"; F in mm/min',
     decisions=DECISIONS,
     marks=(
@@ -142,43 +169,39 @@ FANUC = Dialect(
         shared_marks.G31_WITH_Q,
         shared_marks.ADDITIONAL_OFFSET,
     ),
-    start_state={"square_corners": True},
-    memory=FanucMemory,
-    prepare=prepare,
-    read_variable=variables.read_variable,
-    write_variable=variables.write_variable,
-    is_local=variables.is_local,
-    before_motion=before_motion,
-    after_motion=after_motion,
-    statements={**flow.STATEMENTS, **macro_calls.CALLS_BY_CODE},
-    finish=programs.finish,
     library=programs.LIBRARY,
-    acts_on_lines=acts_on_lines,
-    pointless=decimal_point.pointless,
-    count=as_read,
-    feed_rule=feeds.fanuc_rule,
-    length_by_code=True,
 )
 
 HAAS = dataclasses.replace(
     FANUC,
     name="haas",
     title="Haas (mills)",
-    last_of_group_counts=False,
-    g=haas.haas_codes(),
-    instead={**codes.INSTEAD, **haas.INSTEAD},
-    start=haas.START,
-    m=haas.HAAS_M_CODES,
-    word_meanings={
-        **FANUC.word_meanings,
-        "I": "centre along X, from the start of the arc; first radius of G12 and G13; first peck (G73, G83)",
-        "J": "centre along Y; less depth of each peck (G73, G83); how fast a tap comes back (G74, G84)",
-        "K": "centre along Z; last radius of G12 and G13; least peck (G73, G83)",
-        "L": "how often a subprogram runs; holes that a cycle's block drills; kind of data of G10",
-        "P": "dwell, seconds with a point, else milliseconds; program or block; work offset of G154",
-        "Q": "depth of a peck; how much each circle of G12 and G13 is larger",
-        "E": "deviation at corners (G187)",
-    },
+    codes=dataclasses.replace(
+        FANUC.codes,
+        last_of_group_counts=False,
+        g=haas.haas_codes(),
+        instead={**codes.INSTEAD, **haas.INSTEAD},
+        start=haas.START,
+        m=haas.HAAS_M_CODES,
+    ),
+    words=dataclasses.replace(
+        FANUC.words,
+        meanings={
+            **FANUC.words.meanings,
+            "I": "centre along X, from the start of the arc; first radius of G12 and G13; first peck (G73, G83)",
+            "J": "centre along Y; less depth of each peck (G73, G83); how fast a tap comes back (G74, G84)",
+            "K": "centre along Z; last radius of G12 and G13; least peck (G73, G83)",
+            "L": "how often a subprogram runs; holes that a cycle's block drills; kind of data of G10",
+            "P": "dwell, seconds with a point, else milliseconds; program or block; work offset of G154",
+            "Q": "depth of a peck; how much each circle of G12 and G13 is larger",
+            "E": "deviation at corners (G187)",
+        },
+    ),
+    rules=dataclasses.replace(
+        FANUC.rules,
+        memory=lambda: FanucMemory(HAAS_VARIANT),
+        feed_rule=feeds.haas_rule,
+    ),
     units=FANUC.units.replace("F in mm/min", "F in mm/min, without a point 0.001 mm/min"),
     decisions=haas.DECISIONS,
     marks=(
@@ -195,7 +218,5 @@ HAAS = dataclasses.replace(
         shared_marks.G136,
         shared_marks.CYLINDER,
     ),
-    memory=lambda: FanucMemory(HAAS_VARIANT),
-    feed_rule=feeds.haas_rule,
 )
 """The Haas mills."""

@@ -34,6 +34,6 @@ def blend_after_motion(control: Control) -> None:
     scale = memory_of(control).scale
     if scale is not None:
         size *= abs(scale[0][control.modal.plane.axes[0]])
-    blend = Blend(_KINDS[word.address], size, control.part_plane())
+    blend = Blend(_KINDS[word.address], size, control.motion.part_plane)
     if not control.path.blend_next(blend):
         control.fail("blend", "there is no move before the corner", word)

@@ -21,10 +21,10 @@ CHORD_ERROR = 0.001
 def begin_or_end(control: Control) -> None:
     """G107 C30., G107 C0."""
     words, memory = control.take_axis_words(), memory_of(control)
-    if control.path.compensating:
+    if control.path.compensation.in_force:
         message = "the cylinder cannot change while compensation is in force"
         control.fail("compensation-change", message, hint="end it by G40 first")
-    if len(words) != 1 or control.linear[words[0][0]]:
+    if len(words) != 1 or control.motion.linear[words[0][0]]:
         code = control.codes[-1][0]
         message = f"{code.text} needs its rotary axis with the radius"
         control.fail("cylinder", message, code, "G107 C30.")
@@ -41,10 +41,10 @@ def line_to(control: Control, goal: list[float]) -> None:
     if memory.cylinder is None:
         control.line_to(goal, rapid=False)
         return
-    kept = control.feed_rule
-    control.feed_rule = FeedRule(math.radians(memory.cylinder[1]), surface=True)
+    kept = control.motion.feed_rule
+    control.motion.feed_rule = FeedRule(math.radians(memory.cylinder[1]), surface=True)
     control.line_to(goal, rapid=False)
-    control.feed_rule = kept
+    control.motion.feed_rule = kept
 
 
 def arc_to(control: Control, goal: list[float], *, clockwise: bool) -> bool:
@@ -56,7 +56,7 @@ def arc_to(control: Control, goal: list[float], *, clockwise: bool) -> bool:
     memory, plane = memory_of(control), control.modal.plane
     if (
         memory.cylinder is None
-        or goal[memory.cylinder[0]] == control.programmed[memory.cylinder[0]]
+        or goal[memory.cylinder[0]] == control.motion.programmed[memory.cylinder[0]]
     ):
         return False
     axis, radius = memory.cylinder
@@ -67,7 +67,7 @@ def arc_to(control: Control, goal: list[float], *, clockwise: bool) -> bool:
         message = "what F of G93 counts in an arc on a cylinder is not known"
         control.fail("cylinder", message, word, "write G94 and F along the surface")
     abscissa, ordinate, _ = plane.axes
-    named = [each for each in (abscissa, ordinate) if goal[each] != control.programmed[each]]
+    named = [each for each in (abscissa, ordinate) if goal[each] != control.motion.programmed[each]]
     if len(named) > 1:
         message = "an arc on a cylinder has one linear axis beside the rotary one"
         control.fail("cylinder", message, word)
@@ -78,14 +78,14 @@ def arc_to(control: Control, goal: list[float], *, clockwise: bool) -> bool:
         around = position[axis] * per_degree
         return (position[along], around) if along == abscissa else (around, position[along])
 
-    start, end = seen(control.programmed), seen(goal)
+    start, end = seen(control.motion.programmed), seen(goal)
     center = center_of_radius(control, start, end, control.length(word), word, clockwise=clockwise)
     sweep = sweep_between(start, end, center, clockwise=clockwise)
     size = math.dist(start, center)
     step = 2.0 * math.acos(1.0 - min(CHORD_ERROR / size, 1.0))
     count = max(1, math.ceil(math.radians(abs(sweep)) / step))
     begin = math.atan2(start[1] - center[1], start[0] - center[0])
-    origin = list(control.programmed)
+    origin = list(control.motion.programmed)
     for number in range(1, count + 1):
         share = number / count
         angle = begin + math.radians(sweep) * share

@@ -106,6 +106,19 @@ DECISIONS: tuple[Decision, ...] = (
         example="length_behind_g28",
     ),
     Decision(
+        "What do timers, date and probe show?",
+        "#3001 and #3002 hold what the program writes and go on by a millisecond each time that they are read; #3011 "
+        "and #3012 are always 1 January 2000, noon; #5061 is where the last block ended.",
+        "A program is read before any time passes, must come to the same every day, and has nothing to touch.",
+        example="timers",
+    ),
+    Decision(
+        "What is a line that begins with ; or with O<NAME>?",
+        "The first is no block; the name is passed over: programs are called by their numbers or their files.",
+        "; ends a block on the screen, and many files hold it before prose.",
+        example="lines_of_screens",
+    ),
+    Decision(
         "How far do G73 and G83 withdraw?",
         "G73 by 0.5 mm; G83 to R, and back with rapid to 0.5 mm above where it was.",
         "Parameters 5114 and 5115 decide.",

@@ -59,16 +59,16 @@ def _loop(control: Control, statement: Statement) -> Construct:
     if loop is None or loop.end is None:
         message = f"{statement.keyword} has no counterpart"
         hint = "DO1 ends at END1 of its program, and loops do not cross"
-        control.refuse(statement, "open-structure", message, hint)
+        control.fail("open-structure", message, statement, hint)
     if not 1 <= int(loop.name) <= DEEPEST_LOOP or loop.depth > DEEPEST_LOOP:
         message = f"loops are numbered 1 to {DEEPEST_LOOP}, and no more lie within each other"
-        control.refuse(statement, "structure", message)
+        control.fail("structure", message, statement)
     return loop
 
 
 def _operand(control: Control, statement: Statement, at: int) -> tuple[Expression, int]:
     """The operand at a place of a statement's text, and where it ends."""
-    return control.read_operand(statement.text, at, statement.text_column)
+    return control.statements.operand(statement.text, at, statement.text_column)
 
 
 def _while(control: Control, statement: Statement) -> None:
@@ -78,7 +78,7 @@ def _while(control: Control, statement: Statement) -> None:
     if _DO.match(statement.text, at) is None:
         message = f"{statement.keyword} needs DO and its number behind the condition, and no more"
         hint = "WHILE [#1 LT 5] DO1; what the loop does stands in lines of its own"
-        control.refuse(statement, "structure", message, hint)
+        control.fail("structure", message, statement, hint)
     if not control.compute(condition, statement.text_column):
         control.jump(loop.behind)
 
@@ -98,7 +98,7 @@ def _end(control: Control, statement: Statement) -> None:
 
 def _whole(control: Control, statement: Statement) -> None:
     if _COUNT.match(statement.text) is None:
-        control.refuse(statement, "structure", f"only a number follows {statement.keyword}")
+        control.fail("structure", f"only a number follows {statement.keyword}", statement)
 
 
 def _if(control: Control, statement: Statement) -> None:
@@ -107,7 +107,7 @@ def _if(control: Control, statement: Statement) -> None:
     match = _BEHIND_CONDITION.match(statement.text, at)
     if match is None:
         hint = "IF [#1 EQ 5] GOTO 10, or IF [#1 EQ 5] THEN #2=1"
-        control.refuse(statement, "structure", "GOTO or THEN must follow the condition", hint)
+        control.fail("structure", "GOTO or THEN must follow the condition", statement, hint)
     holds = control.compute(condition, statement.text_column) != 0.0
     if match[1].upper() == "GOTO":
         target = _target(control, statement, match.end())
@@ -128,10 +128,12 @@ def _block_behind_then(control: Control, statement: Statement, at: int) -> Block
     """What a Haas runs where the condition holds, if words belong to it (manual); else None."""
     if not memory_of(control).variant.then_takes_words:
         return None
-    blocks = control.blocks_within(statement.text[at:], statement.text_column + at)
+    blocks = control.statements.blocks(
+        statement.text[at:], statement.text_column + at, control.block.line
+    )
     if len(blocks) != 1 or blocks[0].statement is not None:
         hint = "THEN #2=1, or THEN G1 X10."
-        control.refuse(statement, "structure", "assignments and words follow THEN", hint)
+        control.fail("structure", "assignments and words follow THEN", statement, hint)
     return blocks[0]._replace(number=control.block.number) if blocks[0].words else None
 
 
@@ -144,10 +146,10 @@ def _assignment(control: Control, statement: Statement, at: int) -> Assignment:
         target, end = _operand(control, statement, at)
     equals = _EQUALS.match(text, end)
     if equals is None or not isinstance(target.tree, Variable | NumberedVariable):
-        control.refuse(statement, "structure", "one assignment follows THEN", "THEN #2=1")
-    value, end = control.read_expression(text, equals.end(), statement.text_column)
+        control.fail("structure", "one assignment follows THEN", statement, "THEN #2=1")
+    value, end = control.statements.longest(text, equals.end(), statement.text_column)
     if text[end:].strip():
-        control.refuse(statement, "structure", "one assignment follows THEN, and no more")
+        control.fail("structure", "one assignment follows THEN, and no more", statement)
     column = statement.text_column + at
     return assignment_of(target.tree, value, column, end - at)
 
@@ -168,7 +170,7 @@ def _go_to(control: Control, statement: Statement) -> None:
 def _target(control: Control, statement: Statement, at: int) -> Expression:
     target, end = _operand(control, statement, at)
     if statement.text[end:].strip():
-        control.refuse(statement, "jump-target", "GOTO needs one number and no more", "GOTO 10")
+        control.fail("jump-target", "GOTO needs one number and no more", statement, "GOTO 10")
     return target
 
 
@@ -184,7 +186,7 @@ def destination(control: Control, statement: Statement, number: float) -> Locati
         ProgramError: Nowhere, or into a loop.
     """
     if not number >= 0.0 or number != int(number):
-        control.refuse(statement, "jump-target", f"there is no block N{number:g}")
+        control.fail("jump-target", f"there is no block N{number:g}", statement)
     counter, around, here = control.program_counter, lines_around(control), control.block.line - 1
     places = [place for place in counter.labels().get(int(number), []) if place.line in around]
     if places:
@@ -196,7 +198,7 @@ def destination(control: Control, statement: Statement, number: float) -> Locati
         end = -1 if loop.end is None else loop.end
         if loop.begin < place.line <= end and not loop.begin <= here <= end:
             message = f"N{int(number)} lies in a loop, and a jump must not lead into one"
-            control.refuse(statement, "jump-into-structure", message)
+            control.fail("jump-into-structure", message, statement)
     return place
 
 

@@ -14,6 +14,7 @@ from twin.nc.dialects.fanuc.memory import HAAS
 from twin.nc.dialects.fanuc.tool_offsets import radius_in_force
 from twin.nc.geometry.planes import XY
 from twin.nc.iso.declared import flow_function, instead, modal, refused
+from twin.nc.iso.tool_change import change_tool_at
 
 _LACKING = (5, 5.1, 7.1, 8, 15, 16, 27, 30, 50.1, 51.1, 54.1, 62, 63, 87, 92.1)
 """Codes that the control lacks."""
@@ -30,7 +31,7 @@ def circular_pocket(control: Control, *, clockwise: bool) -> None:
     depth, count = control.take("Z"), control.take("L")
     if first is None:
         control.fail("cycle-word", "a circular pocket needs I, the radius of its circle")
-    if control.path.compensating:
+    if control.path.compensation.in_force:
         message = (
             "a circular pocket takes the radius of D itself, and radius compensation is in force"
         )
@@ -60,7 +61,7 @@ def circular_pocket(control: Control, *, clockwise: bool) -> None:
         control.fail("repeat-count", "a pocket is milled once at least", count)
     for number in range(often):
         if depth is not None and (number == 0 or control.modal.incremental):
-            there = list(control.programmed)
+            there = list(control.motion.programmed)
             height = control.length(depth)
             there[2] = height + (there[2] if control.modal.incremental else 0.0)
             control.line_to(there, rapid=False)
@@ -68,7 +69,7 @@ def circular_pocket(control: Control, *, clockwise: bool) -> None:
 
 
 def _circles(control: Control, radii: list[float], *, clockwise: bool) -> None:
-    x, y = control.programmed[:2]
+    x, y = control.motion.programmed[:2]
     half = -180.0 if clockwise else 180.0
     at = 0.0
     for radius in radii:
@@ -82,7 +83,7 @@ def _arc(
     control: Control, x: float, y: float, center: tuple[float, float], sweep: float | None
 ) -> None:
     """To a place by an arc in the plane X Y, or straight."""
-    there = list(control.programmed)
+    there = list(control.motion.programmed)
     there[0], there[1] = x, y
     if sweep is None:
         control.line_to(there, rapid=False)
@@ -151,9 +152,30 @@ INSTEAD: Mapping[float, str] = {
     50.1: "a mirror ends by G100",
 }
 
+_CHANGE_HEIGHT = 0.0
+"""M6 takes Z to machine zero before the tool changes [mm]."""
+
+
+def _with_words(meaning: str, letters: str) -> MCode:
+    """A function of the machine with words of its own, which change nothing of the path."""
+
+    def action(control: Control) -> None:
+        for letter in letters:
+            control.take(letter)
+
+    return MCode(meaning=f"{meaning}: {' '.join(letters)}", action=action, ground="manual")
+
+
 HAAS_M_CODES: Mapping[int, MCode] = {
     **M_CODES,
+    6: dataclasses.replace(M_CODES[6], action=change_tool_at(_CHANGE_HEIGHT), ground="manual"),
     97: flow_function("run blocks of this program as a subprogram: P L", programs.call_block),
+    59: _with_words("output relay on", "P"),
+    69: _with_words("output relay off", "P"),
+    70: _with_words("vice clamped", "P"),
+    71: _with_words("vice unclamped", "P"),
+    138: _with_words("spindle speed swings by E every P", "EP"),
+    **{number: _with_words("oil pulses", "P") for number in (161, 162, 163)},
     **{
         number: MCode(meaning=meaning, ground="manual")
         for number, meaning in {
@@ -161,16 +183,41 @@ HAAS_M_CODES: Mapping[int, MCode] = {
             11: "brake of the fourth axis off",
             12: "brake of the fifth axis on",
             13: "brake of the fifth axis off",
+            **{
+                number: f"relay {number} on, and waiting for its answer" for number in range(21, 29)
+            },
             31: "chip conveyor forward",
             33: "chip conveyor stop",
             34: "coolant nozzle up",
             35: "coolant nozzle down",
+            36: "pallet: waiting for its part",
             41: "low gear",
             42: "high gear",
+            **{number: f"relay {number - 30} on" for number in range(51, 57)},
+            **{number: f"relay {number - 40} off" for number in range(61, 67)},
+            73: "air blast through the spindle on",
+            74: "air blast through the spindle off",
+            76: "screen off",
+            77: "screen on",
+            80: "door open",
+            81: "door closed",
             83: "air on",
             84: "air off",
             88: "coolant through the spindle on",
             89: "coolant through the spindle off",
+            90: "input of a fixture's clamp watched",
+            91: "input of a fixture's clamp passed over",
+            95: "sleep",
+            104: "arm of the probe out",
+            105: "arm of the probe in",
+            130: "picture or film on the screen",
+            131: "picture or film off the screen",
+            139: "spindle speed swings no more",
+            158: "mist extractor on",
+            159: "mist extractor off",
+            160: "oil pulses off",
+            180: "side door open",
+            181: "side door closed",
         }.items()
     },
 }
@@ -189,6 +236,8 @@ _SHARED_EXAMPLES = {
     "kept_variables",
     "stops_by_variable",
     "angles",
+    "timers",
+    "lines_of_screens",
 }
 DECISIONS: tuple[Decision, ...] = (
     Decision(
@@ -210,6 +259,14 @@ DECISIONS: tuple[Decision, ...] = (
         "G0 G17 G21 G40 G49 G50 G54 G64 G67 G69 G80 G90 G94 G97 G98 G100.",
         "Setting 9, inches or millimetres, is the machine's: here it is millimetres.",
         example="start_state",
+    ),
+    Decision(
+        "Where does a tool change?",
+        "M6 takes Z to machine zero first, or to tool_change.height of the job or the machine file; where nobody "
+        "says where the part stands, it changes where it is.",
+        "The manual lets M6 go to the position of the tool change by itself; without a part zero nobody knows how "
+        "far that is.",
+        example="tool_change_height",
     ),
     Decision(
         "How does G12 or G13 mill its pocket?",

@@ -23,11 +23,11 @@ _MOST_GROUPS = 10
 
 def _words(control: Control, statement: Statement) -> tuple[Word, ...]:
     """The words behind G65 or G66."""
-    blocks = control.blocks_within(statement.text, statement.text_column)
+    blocks = control.statements.blocks(statement.text, statement.text_column, control.block.line)
     if not blocks:
-        control.refuse(statement, "call-values", f"{statement.keyword} needs P", "G65 P1000 A1.")
+        control.fail("call-values", f"{statement.keyword} needs P", statement, "G65 P1000 A1.")
     if len(blocks) != 1 or blocks[0].statement is not None or blocks[0].assignments:
-        control.refuse(statement, "call-values", f"{statement.keyword} takes words only")
+        control.fail("call-values", f"{statement.keyword} takes words only", statement)
     return blocks[0].words
 
 
@@ -65,7 +65,7 @@ def _call(control: Control, statement: Statement) -> None:
     """G65 P L: run a program with variables of its own."""
     words = _words(control, statement)
     if _one(control, words, "P") is None:
-        control.refuse(statement, "call-values", "G65 needs P", "G65 P1000 A1.")
+        control.fail("call-values", "G65 needs P", statement, "G65 P1000 A1.")
     _run(control, _modal_call(control, words), statement)
 
 
@@ -88,7 +88,7 @@ def _modal_call(control: Control, words: tuple[Word, ...]) -> ModalCall:
 
 def _computed(control: Control, word: Word) -> Word:
     if isinstance(word.value, Expression):
-        return word._replace(value=control.evaluate(word.value, word))
+        return word._replace(value=control.compute(word.value, word))
     return word
 
 
@@ -102,10 +102,10 @@ def call_modally(control: Control, statement: Statement) -> None:
     memory = memory_of(control)
     if memory.modal_call is not None:
         message = "a modal call is in force already, and one within another is not simulated"
-        control.refuse(statement, "call-values", message, "end it by G67 first")
+        control.fail("call-values", message, statement, "end it by G67 first")
     memory.modal_call = _modal_call(control, _words(control, statement))
     memory.modal_depth = control.program_counter.depth
-    control.active.put("modal call", 66.0)
+    control.modal.active.put("modal call", 66.0)
 
 
 def end_modal_call(control: Control) -> None:

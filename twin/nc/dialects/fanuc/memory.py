@@ -200,6 +200,7 @@ class FanucMemory:
         modal_call: G66 in force.
         modal_depth: Programs that were being run for callers when it was called.
         extended_number: P of the last G54.1.
+        clocks: What the timers #3001 [ms] and #3002 [h] show.
     """
 
     variant: Variant = FANUC
@@ -229,6 +230,7 @@ class FanucMemory:
     modal_call: ModalCall | None = None
     modal_depth: int = 0
     extended_number: int = 0
+    clocks: dict[int, float] = dataclasses.field(default_factory=dict)
 
 
 def memory_of(control: Control) -> FanucMemory:
@@ -242,7 +244,7 @@ def acts_on_lines(control: Control) -> bool:
     memory = memory_of(control)
     if memory.length_cancelled or memory.overrules_cycles:
         return True
-    if memory.feed_lost and control.feed is None:
+    if memory.feed_lost and control.motion.feed is None:
         return True
     remembered = (memory.scale, memory.modal_call, memory.cylinder)
     return memory.polar or any(each is not None for each in remembered)

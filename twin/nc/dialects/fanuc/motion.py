@@ -35,7 +35,7 @@ def target(control: Control) -> list[float]:
     if radius is None and angle is None:
         return goal
     memory, incremental = memory_of(control), control.modal.incremental
-    here = (control.programmed[abscissa], control.programmed[ordinate])
+    here = (control.motion.programmed[abscissa], control.motion.programmed[ordinate])
     if radius is not None:
         memory.polar_center = here if incremental else (0.0, 0.0)
         memory.polar_radius = control.axis_value(abscissa, radius)

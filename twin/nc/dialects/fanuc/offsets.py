@@ -105,7 +105,7 @@ def local_offset(control: Control) -> None:
     for index, word in words:
         shift[index] = control.axis_value(index, word)
     control.frame.set_shift("increment", shift)
-    control.reframed()
+    control.motion.reframed()
 
 
 def preset(control: Control) -> None:
@@ -118,12 +118,12 @@ def preset(control: Control) -> None:
     if not words:
         control.fail("preset", "G92 needs the coordinates that this place shall have")
     local = control.frame.shift("increment")
-    programmed = list(control.programmed)
+    programmed = list(control.motion.programmed)
     for index, word in words:
         local[index] = 0.0
         programmed[index] = control.axis_value(index, word)
     control.frame.set_shift("increment", local)
-    control.set_position(programmed, "preset")
+    control.motion.set_position(programmed, "preset")
 
 
 def end_preset(control: Control) -> None:
@@ -136,4 +136,4 @@ def end_preset(control: Control) -> None:
         for index, _ in words:
             shift[index] = 0.0
         control.frame.set_shift(name, shift)
-    control.reframed()
+    control.motion.reframed()

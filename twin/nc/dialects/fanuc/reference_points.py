@@ -40,9 +40,9 @@ def go_home(control: Control, code: str = "G28") -> None:
     with machine_frame(control, code):
         pass  # the reference point must be known before anything moves
     control.line_to(control.target(), rapid=True)
-    memory_of(control).intermediate = {index: control.part[index] for index in axes}
+    memory_of(control).intermediate = {index: control.motion.part[index] for index in axes}
     with machine_frame(control, code):
-        there = list(control.programmed)
+        there = list(control.motion.programmed)
         for index in axes:
             there[index] = 0.0
         control.line_to(there, rapid=True)
@@ -54,7 +54,7 @@ def _cancel_length(control: Control, code: str) -> None:
     """The tool length counts no more, where the control's parameters say so."""
     if control.settings.length_returns == "next block":
         return
-    if control.active.get("length", NO_LENGTH) != NO_LENGTH:
+    if control.modal.active.get("length", NO_LENGTH) != NO_LENGTH:
         memory_of(control).length_cancelled = code
         set_length(control, 0.0)
 
@@ -84,7 +84,7 @@ def leave_reference(control: Control) -> None:
     if not between:
         message = "G29 goes by the point of the last G28, and there was none"
         control.fail("reference-point", message, control.code_word(29))
-    part = list(control.part)
+    part = list(control.motion.part)
     for index, value in between.items():
         part[index] = value
     control.line_to(control.frame.to_programmed(part), rapid=True)
@@ -102,7 +102,7 @@ def check_reference(control: Control) -> None:
         control.fail("reference-point", "G27 needs the axes that shall stand there")
     control.line_to(control.target(), rapid=True)
     with machine_frame(control, "G27"):
-        away = {index: control.programmed[index] for index in axes}
+        away = {index: control.motion.programmed[index] for index in axes}
     for index, distance in away.items():
         if abs(distance) > _SAME_PLACE:
             name = control.settings.axes.names[index]
@@ -126,7 +126,10 @@ def machine_move(control: Control) -> None:
         control.fail("reference-point", message, word, "write G90 G53")
     if not control.words.keys() & control.axis_letters:
         control.fail("reference-point", "G53 needs the axes that shall move", word, "G53 Z0")
-    motion, by_motion = control.active.get("motion"), memory_of(control).variant.machine_by_motion
+    motion, by_motion = (
+        control.modal.active.get("motion"),
+        memory_of(control).variant.machine_by_motion,
+    )
     if motion not in (0, 1) and by_motion:
         control.fail("no-motion-code", "G53 moves by G0 or G1", word)
     moves_z = "Z" in control.words

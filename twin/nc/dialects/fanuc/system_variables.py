@@ -17,8 +17,21 @@ from twin.nc.text.expressions import ExpressionError
 
 _AXES = 20
 """Variables from one table of axes to the next."""
+_INSTEAD = {4014: "the work offset of a Haas is #4012; "}
 _MESSAGE = re.compile(r"\(([^()]*)\)")
 _PASSED_OVER = {3003: "single block", 3004: "feed hold and override", 3005: "settings"}
+_TIMERS = {3001: 1.0, 3002: 1.0 / 3_600_000.0}
+"""Timers that programs set and read, milliseconds and hours, and how far each goes on when it is read."""
+_FIXED = {
+    3011: (20_000_101.0, "the date"),
+    3012: (120_000.0, "the time of day"),
+    3030: (0.0, "the switch of the single block"),
+    3032: (0.0, "the switch of the block skip"),
+    3033: (0.0, "the switch of the optional stop"),
+    3901: (0.0, "the number of parts that were made"),
+    3902: (0.0, "the number of parts that are wanted"),
+}
+"""A program must come to the same today and tomorrow."""
 _LATEST_BLOCK = range(4201, 4400)
 _SAME_AS = 200
 """#4201 says of the block that is run what #4001 says of the one before."""
@@ -34,7 +47,11 @@ def read(control: Control, number: int) -> float:
         number -= _SAME_AS
     group = memory_of(control).variant.modal_groups.get(number - 4000)
     if group is not None:
-        return control.active.get(group, 0.0)
+        return control.modal.active.get(group, 0.0)
+    if number in _TIMERS:
+        return _time(control, number)
+    if number in _FIXED:
+        return _fixed(control, number)
     if 4100 <= number <= 4130:
         return _modal_word(control, number)
     if 5001 <= number <= 5100:
@@ -48,7 +65,7 @@ def read(control: Control, number: int) -> float:
         _refuse(number)
     name, axis = found
     value = offsets.read_offset(control, name, axis, f"#{number}")
-    return value / control.unit_of(control.axis_index[axis])
+    return value / control.motion.unit_of(control.axis_index[axis])
 
 
 def write(control: Control, number: int, value: float) -> None:
@@ -62,6 +79,9 @@ def write(control: Control, number: int, value: float) -> None:
         _alarm(control, value)
     if number == 3006:
         control.function("M0", {})
+        return
+    if number in _TIMERS:
+        memory_of(control).clocks[number] = value
         return
     if number in _PASSED_OVER:
         control.report.notice(
@@ -78,9 +98,24 @@ def write(control: Control, number: int, value: float) -> None:
     if found is None:
         _refuse(number)
     name, axis = found
-    value *= control.unit_of(control.axis_index[axis])
+    value *= control.motion.unit_of(control.axis_index[axis])
     offsets.write_offset(control, name, axis, value, f"#{number}")
     offsets.put_into_force(control)
+
+
+def _time(control: Control, number: int) -> float:
+    """A timer: it goes on by one each time that it is read, so that a program which waits for it ends."""
+    clocks = memory_of(control).clocks
+    shown = clocks.get(number, 0.0)
+    clocks[number] = shown + _TIMERS[number]
+    return shown
+
+
+def _fixed(control: Control, number: int) -> float:
+    """What depends on day and hour, or on what the machine has made before."""
+    value, meaning = _FIXED[number]
+    control.report.notice(f"#{number}", f"#{number}, {meaning}, is always {value:.0f} here")
+    return value
 
 
 def _refuse(number: int) -> NoReturn:
@@ -91,7 +126,7 @@ def _refuse(number: int) -> NoReturn:
         hint = "#1 to #33 belong to the call, #100 to #199 and #500 to #999 to all programs"
         raise ExpressionError("unknown-variable", message, None, hint)
     message = f"#{number} belongs to the control, and the twin does not simulate it"
-    hint = f'the job can give its value: [variables] "#{number}" = 0.0'
+    hint = _INSTEAD.get(number, "") + f'the job can give its value: [variables] "#{number}" = 0.0'
     raise ExpressionError("control-variable", message, None, hint)
 
 
@@ -116,34 +151,36 @@ def _position(control: Control, number: int) -> float:
     """Where an axis stands.
 
     #5001: where the last block ended; #5021: the same in machine coordinates; #5041: with the tool's
-    length; #5081: the tool's length.
+    length; #5061: where a probe would have touched; #5081: the tool's length.
     """
     table, place = divmod(number - 5001, _AXES)
     index = _axis(control, place, number)
     length = control.frame.shifts[SHIFTS.index("length")][index]
     if table == 0:
-        value = control.programmed[index]
+        value = control.motion.programmed[index]
     elif table == 1:
         name = control.settings.axes.names[index]
-        value = control.part[index] - machine_zero(control, f"#{number}").get(name, 0.0)
+        value = control.motion.part[index] - machine_zero(control, f"#{number}").get(name, 0.0)
     elif table == 2:
-        value = control.programmed[index] + length
+        value = control.motion.programmed[index] + length
+    elif table == 3:  # no probe has touched: where G31 would have ended
+        value = control.motion.programmed[index]
     elif table == 4:
         value = length
     else:
         _refuse(number)
-    return value / control.unit_of(index)
+    return value / control.motion.unit_of(index)
 
 
 def _modal_word(control: Control, number: int) -> float:
     memory, heading = memory_of(control), lines_around(control).start
     values = {
         4107: memory.radius_number or 0,
-        4109: control.feed or 0.0,
+        4109: control.motion.feed or 0.0,
         4111: memory.length_number or 0,
         4114: max(control.block.number, 0),
         4115: next((each for each, line in memory.programs.items() if line - 1 == heading), 0),
-        4119: control.spindle or 0.0,
+        4119: control.motion.spindle or 0.0,
         4120: control.tools.selected or 0,
         4130: memory.extended_number,
     }

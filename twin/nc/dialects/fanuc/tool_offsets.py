@@ -28,7 +28,7 @@ def set_length_number(control: Control, word: Word) -> None:
     """H: the row of the tool length; alone it changes the length in force."""
     memory_of(control).length_number = whole(control, word, "tool-offset", "offset number")
     if not any(code in (43.0, 44.0, 49.0) for code in _codes(control)):
-        sign = {43: 1.0, 44: -1.0}.get(int(control.active.get("length", 49)))
+        sign = {43: 1.0, 44: -1.0}.get(int(control.modal.active.get("length", 49)))
         if sign is not None:
             _apply_length(control, sign, word)
 
@@ -42,7 +42,7 @@ def set_radius_number(control: Control, word: Word) -> None:
     number = whole(control, word, "tool-offset", "offset number")
     memory = memory_of(control)
     starts = any(code in (41.0, 42.0) for code in _codes(control))
-    if control.path.compensating and not starts and number != memory.radius_number:
+    if control.path.compensation.in_force and not starts and number != memory.radius_number:
         message = "the radius cannot change while compensation is in force"
         control.fail("compensation-change", message, word, "end it by G40 first")
     memory.radius_number = number
@@ -56,10 +56,10 @@ def length_code(number: int, sign: float) -> Action:
     """G43, G44: the row H moves Z, also the Z of its own block in G91 (manual)."""
 
     def action(control: Control) -> None:
-        before = control.programmed[2]
+        before = control.motion.programmed[2]
         _apply_length(control, sign, control.code_word(number))
         if control.modal.incremental and "Z" in control.words:
-            control.programmed[2] = before
+            control.motion.programmed[2] = before
 
     return action
 

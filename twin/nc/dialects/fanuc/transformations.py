@@ -47,7 +47,7 @@ def scale(control: Control) -> None:
 
     A factor without a point counts thousandths; a negative one mirrors.
     """
-    center = list(control.programmed[:3])
+    center = list(control.motion.programmed[:3])
     for index, word in control.take_axis_words():
         if index < 3:
             center[index] = control.axis_value(index, word)
@@ -93,7 +93,7 @@ def rotate(control: Control) -> None:
         span = angle.column, angle.width
         control.report.warn_once("rotation-absolute", message, *span, memory.variant.adds_rotation)
     turned, turned_shift = _transformation(control)
-    x, y, z = control.programmed[:3]
+    x, y, z = control.motion.programmed[:3]
     place = applied(turned, (x, y, z))
     center = [at + by for at, by in zip(place, turned_shift, strict=True)]
     matrix, shift = _before_rotation(control)
@@ -163,11 +163,11 @@ def _transformation(control: Control) -> tuple[Matrix, Vector]:
 
 
 def _update(control: Control) -> None:
-    if control.path.compensating:
+    if control.path.compensation.in_force:
         message = "mirror, scale and rotation cannot change while compensation is in force"
         control.fail("compensation-change", message, hint="end it by G40 first")
     matrix, shift = _transformation(control)
     control.frame.set_matrix(matrix)
     others = [0.0] * (len(control.settings.axes) - 3)
     control.frame.set_shift("rotation", [*shift, *others])
-    control.reframed()
+    control.motion.reframed()

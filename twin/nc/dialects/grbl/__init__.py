@@ -1,8 +1,8 @@
 """Grbl 1.1: a declared subset of RS274/NGC for three axes, without cycles, macros and tool changes."""
 
 from twin.nc.canonical import Corner
-from twin.nc.control.codes import Action, GCode, MCode
-from twin.nc.control.control import Control
+from twin.nc.control.codes import Action, Codes, GCode, MCode, Words
+from twin.nc.control.control import Control, Rules
 from twin.nc.control.dialect import Dialect
 from twin.nc.control.interpolation import ArcRule
 from twin.nc.dialects.grbl import coordinates
@@ -31,8 +31,8 @@ def _units(unit: float) -> Action:
     """G20, G21: a feed that was programmed before stays what it is."""
 
     def action(control: Control) -> None:
-        if control.feed is not None:
-            control.feed *= control.modal.unit / unit
+        if control.motion.feed is not None:
+            control.motion.feed *= control.modal.unit / unit
         control.modal.unit = unit
 
     return action
@@ -41,7 +41,7 @@ def _units(unit: float) -> Action:
 def _forget_feed(control: Control) -> None:
     """G93 and G94: behind the other one a feed counts no more."""
     if not any(word.address == "F" for word in control.block.words):
-        control.feed = None
+        control.motion.feed = None
 
 
 def _set_feed(control: Control, word: Word) -> None:
@@ -49,7 +49,7 @@ def _set_feed(control: Control, word: Word) -> None:
     feed = control.number(word)
     if feed < 0.0:
         control.fail("feed-range", f"the feed {word.text} is negative", word)
-    control.feed = feed or None
+    control.motion.feed = feed or None
 
 
 def _note_tool(control: Control, word: Word) -> None:
@@ -174,60 +174,66 @@ GRBL = Dialect(
         statement=r"\$",
         blanks_in_numbers=True,
     ),
-    groups=GROUPS,
-    g=CODES,
-    instead={
-        41: "Grbl has no radius compensation: let the post compensate",
-        42: "Grbl has no radius compensation: let the post compensate",
-        43: "the length of a tool is G43.1 Z",
-        64: "Grbl passes corners by its junction deviation",
-        81: "Grbl has no canned cycles: let the post write the moves",
-        83: "Grbl has no canned cycles: let the post write the moves",
-        95: "F is a feed per minute (G94) or an inverse time (G93)",
-    },
-    start=START,
-    m=M_CODES,
-    words={
-        "F": _set_feed,
-        "S": base.spindle_speed,
-        "T": _note_tool,
-        **dict.fromkeys("ABCUVW", coordinates.refuse_axis),
-    },
-    motion_words=frozenset("XYZIJKR"),
-    words_first=True,
-    statements={"$": coordinates.run_command},
-    word_meanings={
-        "N": "line number",
-        "G": "preparatory code",
-        "X": "X axis",
-        "Y": "Y axis",
-        "Z": "Z axis",
-        **dict.fromkeys("ABCUVW", "axis that Grbl does not have"),
-        "I": "centre along X, from the start of the arc",
-        "J": "centre along Y",
-        "K": "centre along Z",
-        "R": "radius of the arc, negative: the larger of the two",
-        "P": "seconds of a dwell; number of a coordinate system (G10)",
-        "L": "kind of G10",
-        "F": "feed",
-        "S": "spindle speed",
-        "T": "tool, which nothing changes",
-        "M": "machine function",
-    },
+    codes=Codes(
+        groups=GROUPS,
+        g=CODES,
+        instead={
+            41: "Grbl has no radius compensation: let the post compensate",
+            42: "Grbl has no radius compensation: let the post compensate",
+            43: "the length of a tool is G43.1 Z",
+            64: "Grbl passes corners by its junction deviation",
+            81: "Grbl has no canned cycles: let the post write the moves",
+            83: "Grbl has no canned cycles: let the post write the moves",
+            95: "F is a feed per minute (G94) or an inverse time (G93)",
+        },
+        start=START,
+        m=M_CODES,
+        statements={"$": coordinates.run_command},
+        start_state={"corner": Corner.CONTINUOUS, "corner_tolerance": JUNCTION_DEVIATION},
+    ),
+    words=Words(
+        actions={
+            "F": _set_feed,
+            "S": base.spindle_speed,
+            "T": _note_tool,
+            **dict.fromkeys("ABCUVW", coordinates.refuse_axis),
+        },
+        motion=frozenset("XYZIJKR"),
+        before_codes=True,
+        meanings={
+            "N": "line number",
+            "G": "preparatory code",
+            "X": "X axis",
+            "Y": "Y axis",
+            "Z": "Z axis",
+            **dict.fromkeys("ABCUVW", "axis that Grbl does not have"),
+            "I": "centre along X, from the start of the arc",
+            "J": "centre along Y",
+            "K": "centre along Z",
+            "R": "radius of the arc, negative: the larger of the two",
+            "P": "seconds of a dwell; number of a coordinate system (G10)",
+            "L": "kind of G10",
+            "F": "feed",
+            "S": "spindle speed",
+            "T": "tool, which nothing changes",
+            "M": "machine function",
+        },
+    ),
+    rules=Rules(
+        memory=GrblMemory,
+        before_motion=coordinates.check_feed,
+        prepare=coordinates.begin,
+        length_by_code=True,
+    ),
     units="mm or inches (G20); F per minute",
     decisions=DECISIONS,
     marks=(
         Mark(
-            r"^[ \t]*\$(?:[HXCGI#$]|RST=[$#*]|J=.*)[ \t]*$",
+            r"^[ \t]*\$(?:[HXCGI#$]|RST=[$#*]|J=.*)[ \t]*(?:[;(].*)?$",
             "$H, $X, $J= (a command in a line of its own)",
         ),
         shared_marks.POINT_CODES,
         shared_marks.SEMICOLON,
         shared_marks.STORED_POSITION_OR_PROBE,
     ),
-    start_state={"corner": Corner.CONTINUOUS, "corner_tolerance": JUNCTION_DEVIATION},
-    memory=GrblMemory,
-    before_motion=coordinates.check_feed,
-    prepare=coordinates.begin,
-    length_by_code=True,
 )

@@ -6,8 +6,7 @@ A programmed position is shifted by G92, by G43.1 along Z, and to the zero of th
 from collections.abc import Mapping
 
 from twin.nc.control.codes import Action
-from twin.nc.control.control import Control
-from twin.nc.control.state import integer_of
+from twin.nc.control.control import Control, integer_of
 from twin.nc.dialects.grbl.memory import SYSTEMS, memory_of
 from twin.nc.iso.base import require_feed_of_block
 from twin.nc.iso.offsets import machine_zero
@@ -35,7 +34,7 @@ def reframe(control: Control) -> None:
     control.frame.set_shift("offset", list(memory.systems[memory.system]))
     control.frame.set_shift("preset", list(memory.preset))
     control.frame.set_shift("length", lengths)
-    control.reframed()
+    control.motion.reframed()
 
 
 def select_system(number: int) -> Action:
@@ -77,7 +76,7 @@ def write_system(control: Control) -> None:
         value = control.axis_value(index, word)
         if here:
             length = memory.length if index == _Z else 0.0
-            zero[index] = control.part[index] - memory.preset[index] - length - value
+            zero[index] = control.motion.part[index] - memory.preset[index] - length - value
         else:
             zero[index] = value + machine.get(names[index], 0.0)
     reframe(control)
@@ -89,7 +88,7 @@ def preset(control: Control) -> None:
     if not words:
         control.fail("preset", "G92 needs the coordinates that this place shall have")
     for index, word in words:
-        memory.preset[index] += control.programmed[index] - control.axis_value(index, word)
+        memory.preset[index] += control.motion.programmed[index] - control.axis_value(index, word)
     reframe(control)
 
 
@@ -118,7 +117,7 @@ def end_tool_length(control: Control) -> None:
 
 def in_machine_coordinates(control: Control) -> None:
     """G53: G0 or G1 to a position in machine coordinates, whatever G90 and G91 say."""
-    if control.active.get("motion") not in (0.0, 1.0):
+    if control.modal.active.get("motion") not in (0.0, 1.0):
         control.fail("machine-coordinates", "G53 moves with G0 or G1 only", hint="write G53 G0 Z0")
     mode = control.modal.interpolation
     assert mode is not None
@@ -127,7 +126,7 @@ def in_machine_coordinates(control: Control) -> None:
         message = "G53 needs words of axes"
         control.fail("machine-coordinates", message, hint="write G53 G0 Z0")
     check_feed(control, mode.rapid)
-    zero, goal = machine_zero(control, "G53"), list(control.part)
+    zero, goal = machine_zero(control, "G53"), list(control.motion.part)
     for index, word in words:
         goal[index] = control.axis_value(index, word) + zero.get(word.address, 0.0)
     control.line_to(control.frame.to_programmed(goal), rapid=mode.rapid)
@@ -142,7 +141,7 @@ def check_feed(control: Control, rapid: bool) -> None:
     if rapid:
         return
     require_feed_of_block(control)
-    if not control.feed:
+    if not control.motion.feed:
         message = "no feed is programmed, and the control moves nowhere without one"
         control.fail("no-feed", message, hint="write F in this block or before")
 
@@ -164,7 +163,7 @@ def go_home(place: int) -> Action:
 def _go_to_stored(
     control: Control, stored: list[float], zero: Mapping[str, float], axes: list[int]
 ) -> None:
-    goal, names = list(control.part), control.settings.axes.names
+    goal, names = list(control.motion.part), control.settings.axes.names
     for axis in axes or range(len(goal)):
         goal[axis] = stored[axis] + zero.get(names[axis], 0.0)
     control.line_to(control.frame.to_programmed(goal), rapid=True)
@@ -176,7 +175,8 @@ def store_home(place: int) -> Action:
     def action(control: Control) -> None:
         zero, names = machine_zero(control, ("G28.1", "G30.1")[place]), control.settings.axes.names
         memory_of(control).homes[place] = [
-            value - zero.get(name, 0.0) for name, value in zip(names, control.part, strict=True)
+            value - zero.get(name, 0.0)
+            for name, value in zip(names, control.motion.part, strict=True)
         ]
 
     return action
@@ -196,7 +196,7 @@ def run_command(control: Control, statement: Statement) -> None:
         control.fail("unknown-word", message, statement, "a program may hold $H and $X")
     zero, names = machine_zero(control, "$H"), control.settings.axes.names
     for letters in ("Z", "XY"):
-        goal = list(control.part)
+        goal = list(control.motion.part)
         for axis, name in enumerate(names):
             if name in letters:
                 goal[axis] = zero.get(name, 0.0)

@@ -1,7 +1,8 @@
 """LinuxCNC 2.9, milling: RS274/NGC."""
 
 from twin.nc.canonical import Corner
-from twin.nc.control.control import Control
+from twin.nc.control.codes import Codes, Words
+from twin.nc.control.control import Control, Rules
 from twin.nc.control.dialect import Dialect
 from twin.nc.dialects.linuxcnc import flow, functions, motion, offsets, parameters
 from twin.nc.dialects.linuxcnc.codes import CODES, GROUPS, START
@@ -21,7 +22,7 @@ _WITH_PITCH = (33, 33.1)
 
 
 def _before_motion(control: Control, rapid: bool) -> None:
-    memory, number = memory_of(control), control.active.get("motion")
+    memory, number = memory_of(control), control.modal.active.get("motion")
     if number not in _WITH_PITCH:
         motion.check_feed(control, rapid)
     if number != 5:
@@ -40,7 +41,7 @@ def _acts_on_lines(control: Control) -> bool:
     memory, modal = memory_of(control), control.modal
     cycle_elsewhere = False
     if modal.cycle is not None:
-        height = control.programmed[modal.plane.axes[2]]
+        height = control.motion.programmed[modal.plane.axes[2]]
         level = not modal.return_to_reference and height != control.cycle_state[CALL_HEIGHT]
         cycle_elsewhere = modal.incremental or level
     return (
@@ -73,58 +74,77 @@ LINUXCNC = Dialect(
         expressions=EXPRESSIONS,
         statement=r"O(?=[ \t]*[0-9<#\[])|%",
         assigned="#",
+        fractional_labels=True,
         blanks_in_numbers=True,
         longest_line=_LONGEST_LINE,
     ),
-    groups=GROUPS,
-    g=CODES,
-    instead={
-        15: "polar coordinates are @ and ^",
-        16: "polar coordinates are @ and ^",
-        50: "write G92.1, or scale by parameters",
-        51: "scale by parameters",
-        68: "rotate by G10 L2 P0 R and the angle",
-        69: "end a rotation by G10 L2 P0 R0",
-        65: "call by o<name> call [1] [2]",
-        31: "probe by G38.3",
-        12: "mill a circle by G2 or G3",
-        13: "mill a circle by G2 or G3",
-    },
-    start=START,
-    m=functions.M_CODES,
-    declared_letters="PQ",
-    motion_words=frozenset("XYZABCUVWIJKR@^"),
-    words={
-        "F": functions.set_feed,
-        "$": functions.choose_spindle,
-        "S": base.spindle_speed,
-        "T": functions.select_tool,
-    },
-    words_first=True,
-    statements={"O": flow.run_o_word, "%": flow.percent},
-    word_meanings={
-        "N": "line number",
-        "G": "preparatory code",
-        **dict.fromkeys("XYZABCUVW", "axis"),
-        "@": "polar radius",
-        "^": "polar angle",
-        "I": "centre along X, or to a control point; beside the hole (G87)",
-        "J": "centre along Y, or to a control point; beside the hole (G87)",
-        "K": "centre along Z; way of each turn (G33); top of the counterbore (G87)",
-        "R": "radius of the arc; R plane of a cycle; rotation (G10 L2); tool radius (G10 L1)",
-        "P": "seconds; turns of an arc; number of a system, tool or program; corner tolerance",
-        "Q": "depth of a peck; tool of M61; seconds of M66; tolerance of straight lines (G64)",
-        "L": "kind of G10 and M66; repeats of a cycle; calls of M98; order of a NURBS",
-        "D": "tool whose radius compensates; its diameter (G41.1)",
-        "E": "analog input or output",
-        "H": "tool whose length counts",
-        "F": "feed",
-        "S": "spindle speed",
-        "T": "tool",
-        "$": "spindle",
-        "M": "machine function",
-        "O": "label of a condition, a loop or a subroutine",
-    },
+    codes=Codes(
+        groups=GROUPS,
+        g=CODES,
+        instead={
+            15: "polar coordinates are @ and ^",
+            16: "polar coordinates are @ and ^",
+            50: "write G92.1, or scale by parameters",
+            51: "scale by parameters",
+            68: "rotate by G10 L2 P0 R and the angle",
+            69: "end a rotation by G10 L2 P0 R0",
+            65: "call by o<name> call [1] [2]",
+            31: "probe by G38.3",
+            12: "mill a circle by G2 or G3",
+            13: "mill a circle by G2 or G3",
+        },
+        start=START,
+        m=functions.M_CODES,
+        statements={"O": flow.run_o_word, "%": flow.percent},
+        start_state={"corner": Corner.CONTINUOUS},
+    ),
+    words=Words(
+        of_declared="PQ",
+        motion=frozenset("XYZABCUVWIJKR@^"),
+        actions={
+            "F": functions.set_feed,
+            "$": functions.choose_spindle,
+            "S": base.spindle_speed,
+            "T": functions.select_tool,
+        },
+        before_codes=True,
+        meanings={
+            "N": "line number",
+            "G": "preparatory code",
+            **dict.fromkeys("XYZABCUVW", "axis"),
+            "@": "polar radius",
+            "^": "polar angle",
+            "I": "centre along X, or to a control point; beside the hole (G87)",
+            "J": "centre along Y, or to a control point; beside the hole (G87)",
+            "K": "centre along Z; way of each turn (G33); top of the counterbore (G87)",
+            "R": "radius of the arc; R plane of a cycle; rotation (G10 L2); tool radius (G10 L1)",
+            "P": "seconds; turns of an arc; number of a system, tool or program; corner tolerance",
+            "Q": "depth of a peck; tool of M61; seconds of M66; tolerance of straight lines (G64)",
+            "L": "kind of G10 and M66; repeats of a cycle; calls of M98; order of a NURBS",
+            "D": "tool whose radius compensates; its diameter (G41.1)",
+            "E": "analog input or output",
+            "H": "tool whose length counts",
+            "F": "feed",
+            "S": "spindle speed",
+            "T": "tool",
+            "$": "spindle",
+            "M": "machine function",
+            "O": "label of a condition, a loop or a subroutine",
+        },
+    ),
+    rules=Rules(
+        memory=LinuxcncMemory,
+        before_motion=_before_motion,
+        read_variable=parameters.read_variable,
+        write_variable=parameters.write_variable,
+        is_local=parameters.is_local,
+        given_variable=parameters.given_variable,
+        prepare=offsets.begin,
+        must_end=True,
+        length_by_code=True,
+        finish=_finish,
+        acts_on_lines=_acts_on_lines,
+    ),
     units="mm or inches (G20), degrees; F in mm/min, for rotary axes alone in deg/min",
     decisions=DECISIONS,
     marks=(
@@ -149,17 +169,5 @@ LINUXCNC = Dialect(
         shared_marks.BACK_BORING_WITH_I,
         shared_marks.NUMBERED_PARAMETER_3000,
     ),
-    start_state={"corner": Corner.CONTINUOUS},
-    memory=LinuxcncMemory,
-    before_motion=_before_motion,
-    read_variable=parameters.read_variable,
-    write_variable=parameters.write_variable,
-    is_local=parameters.is_local,
-    given_variable=parameters.given_variable,
     library=LIBRARY,
-    prepare=offsets.begin,
-    must_end=True,
-    length_by_code=True,
-    finish=_finish,
-    acts_on_lines=_acts_on_lines,
 )

@@ -28,9 +28,9 @@ def _units(unit: float) -> Action:
         if control.modal.unit != unit:
             offsets.refuse_in_compensation(control)
         memory = memory_of(control)
-        if control.feed is not None and control.modal.unit != unit:
-            memory.converted_feed = memory.converted_feed or control.feed
-            control.feed *= control.modal.unit / unit
+        if control.motion.feed is not None and control.modal.unit != unit:
+            memory.converted_feed = memory.converted_feed or control.motion.feed
+            control.motion.feed *= control.modal.unit / unit
         control.modal.unit = unit
 
     return action
@@ -39,7 +39,7 @@ def _units(unit: float) -> Action:
 def forget_feed(control: Control) -> None:
     """G93 to G95: a feed of another block counts no more."""
     if not any(word.address == "F" for word in control.block.words):
-        control.feed = memory_of(control).converted_feed = None
+        control.motion.feed = memory_of(control).converted_feed = None
 
 
 def change_plane(control: Control) -> None:

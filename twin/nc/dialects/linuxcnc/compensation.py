@@ -81,19 +81,19 @@ class Compensation:
     def line(self, goal: list[float], *, rapid: bool) -> None:
         """A straight move to a programmed position."""
         plane = self._control.modal.plane
-        start, end = plane.point(self._control.programmed), plane.point(goal)
+        start, end = plane.point(self._control.motion.programmed), plane.point(goal)
         if not self.entered:
             self._enter_by_line(start, end, goal, rapid=rapid)
         elif start == end:
             self._hold_line(goal, self._here, (0.0, 0.0), rapid=rapid)
         else:
             self._line_behind(start, end, goal, rapid=rapid)
-        self._control.programmed = goal
+        self._control.motion.programmed = goal
 
     def arc(self, goal: list[float], center: Point, turns: int) -> None:
         """An arc to a programmed position; ``turns`` below 0: clockwise."""
         plane = self._control.modal.plane
-        start, end = plane.point(self._control.programmed), plane.point(goal)
+        start, end = plane.point(self._control.motion.programmed), plane.point(goal)
         radius = distance(center, end)
         inside = self._is_inside(turns)
         if inside and radius <= self.radius:
@@ -105,7 +105,7 @@ class Compensation:
         else:
             self._enter_by_arc((start, end, beside), goal, center, turns)
         self._here = beside
-        self._control.programmed = goal
+        self._control.motion.programmed = goal
 
     def take_event(self, event: Event) -> bool:
         """Keep what happens behind a move that waits; False where none does."""
@@ -211,7 +211,7 @@ class Compensation:
     def _turn_around(self, point: Point, middle: Point, *, rapid: bool) -> None:
         """Turn around a convex corner of the contour."""
         control = self._control
-        goal = self._place(control.programmed, middle)
+        goal = self._place(control.motion.programmed, middle)
         if rapid:
             self._hold_line(goal, middle, (0.0, 0.0), rapid=True)
         else:
@@ -276,7 +276,7 @@ class Compensation:
 
     def _hold_line(self, goal: list[float], end: Point, direction: Point, *, rapid: bool) -> None:
         control = self._control
-        held = Held(goal, end, rapid, direction, None, 0, 0.0, control.block, control.feed)
+        held = Held(goal, end, rapid, direction, None, 0, 0.0, control.block, control.motion.feed)
         self._queue.append(held)
         self._here = end
 
@@ -284,7 +284,9 @@ class Compensation:
         self, goal: list[float], end: Point, center: Point, turns: int, sweep: float
     ) -> None:
         control = self._control
-        held = Held(goal, end, False, (0.0, 0.0), center, turns, sweep, control.block, control.feed)
+        held = Held(
+            goal, end, False, (0.0, 0.0), center, turns, sweep, control.block, control.motion.feed
+        )
         self._queue.append(held)
         self._here = end
 
@@ -322,14 +324,14 @@ class Compensation:
         queue, self._queue = self._queue, []
         self._endpoint = None
         control = self._control
-        block, feed, programmed = control.block, control.feed, control.programmed
+        block, feed, programmed = control.block, control.motion.feed, control.motion.programmed
         for each in queue:
             if isinstance(each, Held):
-                control.block, control.feed = each.block, each.feed
+                control.block, control.motion.feed = each.block, each.feed
                 self._make(each)
             else:
                 control.path.event(each)
-        control.block, control.feed, control.programmed = block, feed, programmed
+        control.block, control.motion.feed, control.motion.programmed = block, feed, programmed
 
     def _make(self, held: Held) -> None:
         control = self._control
@@ -337,8 +339,8 @@ class Compensation:
         if held.center is None:
             control.line_to(goal, rapid=held.rapid)
             return
-        control.programmed = control.frame.to_programmed(control.part)
-        here = control.modal.plane.local(control.programmed)
+        control.motion.programmed = control.frame.to_programmed(control.motion.part)
+        here = control.modal.plane.local(control.motion.programmed)
         clockwise = held.turns < 0
         sweep = sweep_between(here[:2], held.end, held.center, clockwise=clockwise)
         sweep += 360.0 * (held.turns + 1 if clockwise else held.turns - 1)

@@ -34,7 +34,11 @@ def _begin(control: Control, code: str) -> list[float]:
 
 def _bezier(control: Control, goal: list[float], inner: Sequence[Point]) -> None:
     """Draw a Bézier curve from here to the goal, given its control points between."""
-    points = [(control.programmed[0], control.programmed[1]), *inner, (goal[0], goal[1])]
+    points = [
+        (control.motion.programmed[0], control.motion.programmed[1]),
+        *inner,
+        (goal[0], goal[1]),
+    ]
     degree = len(points) - 1
     bend = max(
         math.hypot(a[0] - 2.0 * b[0] + c[0], a[1] - 2.0 * b[1] + c[1])
@@ -57,7 +61,7 @@ def _bezier(control: Control, goal: list[float], inner: Sequence[Point]) -> None
 def cubic(control: Control) -> None:
     """G5 X Y I J P Q: I J from the start, P Q from the end; without I J on from the spline before."""
     memory, words = memory_of(control), {each: control.take(each) for each in "IJPQ"}
-    x, y = control.programmed[:2]
+    x, y = control.motion.programmed[:2]
     require_axes(control)
     goal = _begin(control, "G5")
     if words["P"] is None or words["Q"] is None:
@@ -78,7 +82,7 @@ def cubic(control: Control) -> None:
 def quadratic(control: Control) -> None:
     """G5.1 X Y I J: I J from the start to the control point."""
     words = {each: control.take(each) for each in "IJ"}
-    x, y = control.programmed[:2]
+    x, y = control.motion.programmed[:2]
     require_axes(control)
     goal = _begin(control, "G5.1")
     if words["I"] is None or words["J"] is None:
@@ -111,7 +115,7 @@ def add_control_point(control: Control) -> None:
     if order is not None:
         memory.spline_order = max(int(control.number(order)), DEFAULT_ORDER)
     if not memory.control_points:
-        x, y = control.programmed[:2]
+        x, y = control.motion.programmed[:2]
         memory.control_points = [(x, y, 1.0 if is_point else value)]
     if is_point:
         memory.control_points.append((goal[0], goal[1], value))
@@ -129,7 +133,7 @@ def end_nurbs(control: Control) -> None:
         message = f"a NURBS of order {order} needs {order} control points, and has {len(points)}"
         control.fail("code-words", message)
     memory.control_points, memory.spline_order = [], DEFAULT_ORDER
-    goal = list(control.programmed)
+    goal = list(control.motion.programmed)
     goal[0], goal[1] = points[-1][:2]
     knots = _knots(len(points), order)
     count = CHORDS_OF_A_PART * len(points)
@@ -140,7 +144,7 @@ def end_nurbs(control: Control) -> None:
 def _end_motion(control: Control) -> None:
     """Behind G5 and G5.1 axis words need a code again (``rs274``)."""
     control.modal.interpolation = None
-    control.active.put("motion", 80.0)
+    control.modal.active.put("motion", 80.0)
 
 
 def _knots(points: int, order: int) -> list[float]:

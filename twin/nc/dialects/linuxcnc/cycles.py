@@ -15,6 +15,7 @@ from twin.nc.dialects.linuxcnc.memory import memory_of
 from twin.nc.dialects.linuxcnc.motion import check_feed, target
 from twin.nc.dialects.linuxcnc.offsets import refuse_in_compensation
 from twin.nc.iso.drilling import (
+    NEEDED_WORDS,
     drill,
     go_to_height,
     refuse_hole,
@@ -113,7 +114,7 @@ def _tap(inwards: int, outwards: int) -> Work:
 
     def work(control: Control, hole: Drilling) -> None:
         turns = memory_of(control).functions.get("spindle") == inwards
-        if not control.spindle_turns or not turns:
+        if not control.motion.spindle_turns or not turns:
             code = "G84" if inwards == 3 else "G74"
             message = f"{code} needs the spindle turning by M{inwards}"
             control.fail("spindle-needed", message)
@@ -128,7 +129,7 @@ def _tap(inwards: int, outwards: int) -> Work:
 
 def _start_again(control: Control, code: str) -> Callable[[], None]:
     """Check that the spindle turns; what turns it again."""
-    if not control.spindle_turns:
+    if not control.motion.spindle_turns:
         control.fail("spindle-needed", f"{code} needs the spindle turning", hint="write M3 before")
     sense = memory_of(control).functions.get("spindle", 3.0)
     return lambda: turn_spindle(control, f"M{int(sense)}")
@@ -146,7 +147,7 @@ def _bore(control: Control, hole: Drilling) -> None:
 def _bore_back(control: Control, hole: Drilling) -> None:
     start = _start_again(control, "G87")
     first, second, _ = control.modal.plane.axes
-    over = list(control.programmed)
+    over = list(control.motion.programmed)
     beside = list(over)
     beside[first] += hole.back_boring[0]
     beside[second] += hole.back_boring[1]
@@ -166,7 +167,7 @@ def _bore_back(control: Control, hole: Drilling) -> None:
 
 def _across(control: Control, over: list[float]) -> None:
     goal, axis = list(over), control.modal.plane.axes[2]
-    goal[axis] = control.programmed[axis]
+    goal[axis] = control.motion.programmed[axis]
     control.line_to(goal, rapid=True)
 
 
@@ -189,7 +190,10 @@ def _take_words(control: Control, kind: Kind) -> None:
         needed = ("R", control.settings.axes.names[axis], *kind.needed)
         missing = [letter for letter in needed if letter not in control.words]
         if missing:
-            control.fail("cycle-word", f"G{kind.number} needs {' and '.join(missing)}")
+            hint = "; ".join(
+                f"{each}: {NEEDED_WORDS[each]}" for each in missing if each in NEEDED_WORDS
+            )
+            control.fail("cycle-word", f"G{kind.number} needs {' and '.join(missing)}", hint=hint)
         memory.back_boring = (0.0, 0.0, 0.0)
     dwell = control.words.get("P") if "P" in kind.words else None
     if dwell is not None and control.number(dwell) < 0.0:
@@ -226,7 +230,7 @@ def _perform(kind: Kind) -> Callable[[Control], None]:
 def _refuse_rotary(control: Control) -> None:
     for letter, word in control.words.items():
         axis = control.axis_index.get(letter)
-        if axis is not None and not control.linear[axis]:
+        if axis is not None and not control.motion.linear[axis]:
             message = "a canned cycle drills where the rotary axes stand"
             control.fail("code-words", message, word, "turn them in a block of their own")
 
@@ -247,13 +251,13 @@ def _drill_holes(control: Control, kind: Kind, repeats: int) -> None:
     clear = reference if control.modal.return_to_reference else start
     i, j, k = memory.back_boring
     hole = Drilling(reference, bottom, clear, state, (i, j, k + bottom if incremental else k))
-    current = max(control.programmed[axis], reference)
+    current = max(control.motion.programmed[axis], reference)
     if not control.modal.return_to_reference:
         current = start
     for number in range(repeats):
         if number and (incremental or not words):
             control.words.update(words)
-        over = target(control) if number == 0 or incremental else list(control.programmed)
+        over = target(control) if number == 0 or incremental else list(control.motion.programmed)
         over[axis] = current if number == 0 else clear
         control.line_to(over, rapid=True)
         go_to_height(control, reference)

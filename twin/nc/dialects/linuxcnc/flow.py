@@ -4,8 +4,7 @@ from collections.abc import Callable
 from typing import NoReturn
 
 from twin.nc.control.constructs import Construct
-from twin.nc.control.control import Control
-from twin.nc.control.state import integer_of
+from twin.nc.control.control import Control, integer_of
 from twin.nc.dialects.linuxcnc.memory import memory_of
 from twin.nc.dialects.linuxcnc.parameters import LOCAL_PARAMETERS
 from twin.nc.dialects.linuxcnc.saved_state import restore_at_return
@@ -47,7 +46,7 @@ def values_of(control: Control, word: OWord, statement: Statement) -> list[tuple
             continue
         if text[at] != "[":
             refuse(control, statement, "o-word", "values stand in square brackets here")
-        value, end = control.read_operand(text, at, word.column)
+        value, end = control.statements.operand(text, at, word.column)
         found.append((value, word.column + at))
         at = end
     return found
@@ -90,7 +89,7 @@ def _read_line(control: Control, line: int) -> None:
 
 def _line_of(control: Control, line: int) -> tuple[Statement, OWord]:
     """The O-word of another line, from 0; errors are that line's from now on."""
-    statement = control.statement_of(line)
+    statement = control.statements.of_line(line)
     word = o_word(statement)
     assert word is not None
     return statement, word
@@ -233,7 +232,7 @@ def _called_line(control: Control, statement: Statement, word: OWord) -> int:
     name, here = word.label, control.block.line - 1
     if name[0] in "#[":
         column = statement.text_column + len(statement.text) - len(statement.text.lstrip())
-        name = str(integer_of(control.compute(control.expression(name, column), column)))
+        name = str(integer_of(control.compute(control.statements.expression(name, column), column)))
     line = _subroutine_line(control, name, here=here)
     if line is None:
         known = ", ".join(f"o{each}" for each in memory_of(control).subroutines) or "none"

@@ -8,6 +8,7 @@ from twin.nc.dialects.linuxcnc.flow import call_program, return_from_program
 from twin.nc.dialects.linuxcnc.memory import memory_of
 from twin.nc.dialects.linuxcnc.offsets import refuse_in_compensation
 from twin.nc.iso.declared import flow_function
+from twin.nc.iso.tool_change import go_to_change_height
 from twin.nc.text.blocks import Word
 
 TIMES_OUT = (0.0, 1.0, 2.0, 3.0, 4.0)
@@ -18,8 +19,9 @@ def set_feed(control: Control, word: Word) -> None:
     """F: the feed; F0 is none."""
     feed = control.number(word)
     if feed < 0.0:
-        control.fail("feed-range", f"the feed {word.text} is negative", word)
-    control.feed = feed or None
+        message = f"the feed {word.text} is negative"
+        control.fail("feed-range", message, word, "the way says the direction, F how fast")
+    control.motion.feed = feed or None
     memory_of(control).converted_feed = None
 
 
@@ -44,8 +46,9 @@ def change_tool(control: Control) -> None:
     refuse_in_compensation(control, "the tool cannot change")
     if not memory_of(control).prepared:
         control.fail("tool-number", "M6 needs a tool that T has prepared", hint="write T1 M6")
+    go_to_change_height(control)
     memory_of(control).functions["spindle"] = 5.0
-    control.spindle_turns = False
+    control.motion.spindle_turns = False
     control.tools.change()
 
 
@@ -117,7 +120,7 @@ def read_input(control: Control) -> None:
 
 
 def _end_early(control: Control) -> None:
-    control.spindle_turns = False
+    control.motion.spindle_turns = False
     memory_of(control).functions["spindle"] = 5.0
 
 

@@ -116,4 +116,4 @@ def memory_of(control: Control) -> LinuxcncMemory:
 
 def written_feed(control: Control) -> float | None:
     """F as it was written: a change of the unit leaves its number as it is (``rs274``)."""
-    return memory_of(control).converted_feed or control.feed
+    return memory_of(control).converted_feed or control.motion.feed

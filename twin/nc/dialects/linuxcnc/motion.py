@@ -24,7 +24,7 @@ def check_feed(control: Control, rapid: bool) -> None:
     if rapid:
         return
     base.require_feed_of_block(control)
-    if not control.feed:
+    if not control.motion.feed:
         message = "no feed is programmed, and the control moves nowhere without one"
         hint = "write F in this block or before"
         control.fail("no-feed", message, hint=hint)
@@ -112,7 +112,7 @@ def in_machine_coordinates(control: Control) -> None:
         return
     assert mode is not None
     check_feed(control, mode.rapid)
-    zero, goal = machine_zero(control, "G53"), list(control.part)
+    zero, goal = machine_zero(control, "G53"), list(control.motion.part)
     for index, word in words:
         goal[index] = control.axis_value(index, word) + zero.get(word.address, 0.0)
     control.line_to(control.frame.to_programmed(goal), rapid=mode.rapid)
@@ -137,7 +137,7 @@ def go_home(place: int) -> Action:
         home = control.frame.to_programmed(
             [at + zero.get(name, 0.0) for at, name in zip(stored, names, strict=True)]
         )
-        goal = list(control.programmed)
+        goal = list(control.motion.programmed)
         for axis in axes or range(len(goal)):
             goal[axis] = home[axis]
         control.line_to(goal, rapid=True)
@@ -152,7 +152,8 @@ def store_home(place: int) -> Action:
         zero = machine_zero(control, ("G28.1", "G30.1")[place])
         names = control.settings.axes.names
         memory_of(control).homes[place] = [
-            value - zero.get(name, 0.0) for name, value in zip(names, control.part, strict=True)
+            value - zero.get(name, 0.0)
+            for name, value in zip(names, control.motion.part, strict=True)
         ]
 
     return action
@@ -166,20 +167,20 @@ def _pitch_feed(control: Control, code: str) -> float:
     pitch = control.take("K")
     if pitch is None:
         control.fail("code-words", f"{code} needs K, the way of each turn")
-    if not control.spindle_turns:
+    if not control.motion.spindle_turns:
         message = f"{code} follows a spindle that turns"
         control.fail("spindle-needed", message, hint="write S and M3 before")
-    if not control.spindle:
+    if not control.motion.spindle:
         message = f"{code} follows the spindle, which stands at S0"
         control.fail("spindle-needed", message, hint="write S above 0 before")
-    return abs(control.length(pitch)) * control.spindle
+    return abs(control.length(pitch)) * control.motion.spindle
 
 
 def _line_with_feed(control: Control, goal: list[float], feed: float) -> None:
-    modal, before = control.modal, (control.modal.feed_mode, control.feed)
-    modal.feed_mode, control.feed = FeedMode.PER_MINUTE, feed / modal.unit
+    modal, before = control.modal, (control.modal.feed_mode, control.motion.feed)
+    modal.feed_mode, control.motion.feed = FeedMode.PER_MINUTE, feed / modal.unit
     control.line_to(goal, rapid=False)
-    modal.feed_mode, control.feed = before
+    modal.feed_mode, control.motion.feed = before
 
 
 def thread(control: Control) -> None:
@@ -194,10 +195,10 @@ def tap(control: Control) -> None:
     """G33.1: the same and back again, with the spindle reversed."""
     refuse_in_compensation(control)
     require_axes(control)
-    feed, start = _pitch_feed(control, "G33.1"), list(control.programmed)
+    feed, start = _pitch_feed(control, "G33.1"), list(control.motion.programmed)
     _line_with_feed(control, target(control), feed)
     forward = memory_of(control).functions.get("spindle", 3.0) == 3.0
-    speed = {"S": control.spindle or 0.0}
+    speed = {"S": control.motion.spindle or 0.0}
     control.function("M4" if forward else "M3", speed)
     _line_with_feed(control, start, feed)
     control.function("M3" if forward else "M4", speed)
@@ -218,7 +219,7 @@ def probe(control: Control) -> None:
     control.function("G38", {})
     control.line_to(goal, rapid=False)
     memory_of(control).probe = [
-        value / control.unit_of(axis) for axis, value in enumerate(control.programmed)
+        value / control.motion.unit_of(axis) for axis, value in enumerate(control.motion.programmed)
     ]
 
 

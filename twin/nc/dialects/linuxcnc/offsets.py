@@ -6,9 +6,8 @@ system's zero; a tool offset shifts it further.
 
 from twin.nc.control.codes import Action
 from twin.nc.control.compensation import tool_numbered
-from twin.nc.control.control import Control
+from twin.nc.control.control import Control, integer_of
 from twin.nc.control.settings import ToolData
-from twin.nc.control.state import integer_of
 from twin.nc.dialects.linuxcnc.memory import SYSTEMS, CoordinateSystem, LinuxcncMemory, memory_of
 from twin.nc.geometry.matrices import IDENTITY, Matrix, applied, rotated, transposed
 from twin.nc.geometry.planes import XY
@@ -54,7 +53,7 @@ def reframe(control: Control) -> None:
     control.frame.set_shift("offset", list(system.origin))
     control.frame.set_shift("preset", _applied(matrix, _preset_of(memory)))
     control.frame.set_shift("length", tool_shift(control))
-    control.reframed()
+    control.motion.reframed()
 
 
 def _preset_of(memory: LinuxcncMemory) -> list[float]:
@@ -135,7 +134,7 @@ def preset(control: Control) -> None:
     memory, words = memory_of(control), _needed_axes(control, "G92")
     before = _preset_of(memory)
     for index, word in words:
-        before[index] += control.programmed[index] - control.axis_value(index, word)
+        before[index] += control.motion.programmed[index] - control.axis_value(index, word)
     _set_preset(control, before)
 
 
@@ -246,7 +245,7 @@ def _set_origin_here(
     """Move a system so that the place where the machine stands has new coordinates in it."""
     preset, matrix = _preset_of(memory_of(control)), turned(system)
     length = control.frame.shift("length")
-    place = [value - shift for value, shift in zip(control.part, length, strict=True)]
+    place = [value - shift for value, shift in zip(control.motion.part, length, strict=True)]
     way = [a - b for a, b in zip(place, system.origin, strict=True)]
     there = _applied(transposed(matrix), way)
     for index, word in axes:
@@ -295,7 +294,11 @@ def _length_here(control: Control, height: float, *, from_fixture: bool) -> floa
     origin = known_system(control, number).origin[2]
     preset = 0.0 if from_fixture else _preset_of(memory)[2]
     reference = -control.tools.longer(ToolData(0.0, 0.0))
-    spindle = control.part[2] + reference if memory.tool_offset is not None else control.part[2]
+    spindle = (
+        control.motion.part[2] + reference
+        if memory.tool_offset is not None
+        else control.motion.part[2]
+    )
     return spindle - origin - preset - height
 
 

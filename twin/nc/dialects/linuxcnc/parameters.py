@@ -140,7 +140,9 @@ def _read_live(control: Control, number: int) -> float | None:
             message = f"#{number} cannot be read while radius compensation is in force"
             raise ExpressionError("compensation-change", message, None, "end it by G40 first")
         axis = _axis(control, number - 5420)
-        return 0.0 if axis is None else control.programmed[axis] / control.unit_of(axis)
+        return (
+            0.0 if axis is None else control.motion.programmed[axis] / control.motion.unit_of(axis)
+        )
     return None
 
 
@@ -207,7 +209,7 @@ def _write_system(control: Control, at: int, value: float) -> bool:
 
 def _code(group: str, default: float = 0.0) -> Callable[[Control], float]:
     """The code in force of a group, ten times its number as LinuxCNC counts."""
-    return lambda control: round(10.0 * control.active.get(group, default))
+    return lambda control: round(10.0 * control.modal.active.get(group, default))
 
 
 def _switched(name: str) -> Callable[[Control], float]:
@@ -220,9 +222,11 @@ def _position(letter: str, *, of_machine: bool) -> Callable[[Control], float]:
         if axis is None:
             return 0.0
         place = (
-            control.part[axis] - _zero(control, axis) if of_machine else control.programmed[axis]
+            control.motion.part[axis] - _zero(control, axis)
+            if of_machine
+            else control.motion.programmed[axis]
         )
-        return place / control.unit_of(axis)
+        return place / control.motion.unit_of(axis)
 
     return value
 
@@ -250,9 +254,9 @@ _NAMED: dict[str, Callable[[Control], float]] = {
     "ijk_absolute_mode": lambda control: float(control.modal.center_absolute),
     "lathe_diameter_mode": lambda _control: 0.0,
     "lathe_radius_mode": lambda _control: 1.0,
-    "spindle_on": lambda control: float(control.spindle_turns),
+    "spindle_on": lambda control: float(control.motion.spindle_turns),
     "spindle_cw": lambda control: float(
-        control.spindle_turns and memory_of(control).functions.get("spindle") == 3.0
+        control.motion.spindle_turns and memory_of(control).functions.get("spindle") == 3.0
     ),
     "mist": _switched("mist"),
     "flood": _switched("flood"),
@@ -261,7 +265,7 @@ _NAMED: dict[str, Callable[[Control], float]] = {
     "adaptive_feed": lambda _control: 0.0,
     "feed_hold": lambda _control: 1.0,
     "feed": lambda control: written_feed(control) or 0.0,
-    "rpm": lambda control: control.spindle or 0.0,
+    "rpm": lambda control: control.motion.spindle or 0.0,
     **{letter.lower(): _position(letter, of_machine=False) for letter in _AXES},
     **{f"abs_{letter.lower()}": _position(letter, of_machine=True) for letter in _AXES},
     "current_tool": lambda control: float(control.tools.spindle or 0),

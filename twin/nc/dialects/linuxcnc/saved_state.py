@@ -16,7 +16,7 @@ def save(*, until_return: bool) -> Action:
     """M70, and M73, which the end of the subroutine puts back."""
 
     def action(control: Control) -> None:
-        state = SavedState(control.modal.fork(), written_feed(control), control.spindle)
+        state = SavedState(control.modal.fork(), written_feed(control), control.motion.spindle)
         memory_of(control).saved[control.program_counter.depth] = (state, until_return)
 
     return action
@@ -51,7 +51,7 @@ def restore_at_return(control: Control) -> None:
 
 
 def _put_back(control: Control, state: SavedState) -> None:
-    active, given = control.active, state.modal.active
+    active, given = control.modal.active, state.modal.active
     if given.get(_COMPENSATION) != active.get(_COMPENSATION):
         message = "what was put aside would change the radius compensation"
         hint = "write G40, G41 or G42 itself before"
@@ -64,10 +64,10 @@ def _put_back(control: Control, state: SavedState) -> None:
     for group in _KEPT_GROUPS:
         modal.active.put(group, active.get(group))
     now.restore(modal)
-    control.spindle = state.spindle
+    control.motion.spindle = state.spindle
     if state.feed != written_feed(control):  # else nothing is written anew (``rs274``)
-        control.feed, memory_of(control).converted_feed = state.feed, None
-    system = f"G{control.active.get('offset', 54):g}"
+        control.motion.feed, memory_of(control).converted_feed = state.feed, None
+    system = f"G{control.modal.active.get('offset', 54):g}"
     memory_of(control).system = SYSTEMS.index(system) + 1
     if not compensated:  # else the programmed position is that of the contour, not of the tool
         reframe(control)

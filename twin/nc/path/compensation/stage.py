@@ -18,15 +18,19 @@ from twin.nc.geometry.arcs import SAME_POINT, Point, distance
 from twin.nc.geometry.corners import corner_of
 from twin.nc.geometry.curves import Curve
 from twin.nc.geometry.matrices import dot
-from twin.nc.geometry.planes import Directions, aim, along, point_of, put_point, vector_of, world
+from twin.nc.geometry.planes import (
+    Directions,
+    Plane,
+    aim,
+    along,
+    point_of,
+    put_point,
+    vector_of,
+    world,
+)
 from twin.nc.path.compensation.gouge import Passed
 from twin.nc.path.move_columns import Segment
-from twin.nc.path.segments import IN_PLANE
-
-Refuse = Callable[[Segment, str, str], NoReturn]
-"""Told the segment, the code and the message; raises."""
-Warn = Callable[[Segment, str, str], None]
-"""Told of the segment, the code and the message of a warning."""
+from twin.nc.path.segments import IN_PLANE, MoveReport
 
 _NO_CURVE: Curve = (False, (0.0, 0.0), (0.0, 0.0), (0.0, 0.0), 0.0)
 _NO_PLANE: Directions = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
@@ -57,18 +61,16 @@ class Compensation:
         self,
         drive: Callable[[Segment], None],
         happen: Callable[[Event], None],
-        refuse: Refuse,
-        warn: Warn,
+        report: MoveReport,
     ) -> None:
         """Compensation that is off."""
         self._drive = drive
         self._happen = happen
-        self._refuse = refuse
-        self._warn = warn
+        self._report = report
         self.stage = OFF
         self.plane = _NO_PLANE
         self._signed_offset = 0.0
-        self._square = self._indirect = False
+        self._square = self._indirect = self._led = False
         self._held: list[Segment] = []
         """The move that waits for its successor, and moves along the normal that wait for its end."""
         self._events: list[list[Event]] = []
@@ -86,8 +88,23 @@ class Compensation:
         """It has begun, and not ended."""
         return self.stage not in (OFF, LEADING_OUT)
 
+    @property
+    def has_moved(self) -> bool:
+        """It is in force, and a move of its contour has come."""
+        return self.in_force and self.stage is not STARTED
+
+    def acts_in(self, plane: Plane) -> bool:
+        """Whether it is in force in a plane of the part."""
+        return self.in_force and self.plane == plane.directions
+
     def begin(
-        self, plane: Directions, signed_offset: float, *, square: bool, indirect: bool
+        self,
+        plane: Directions,
+        signed_offset: float,
+        *,
+        square: bool,
+        indirect: bool,
+        led: bool = False,
     ) -> None:
         """Compensate from the next move on.
 
@@ -96,9 +113,10 @@ class Compensation:
             signed_offset: The tool's radius, positive left of the contour [mm].
             square: Outside corners between lines are extended as far as 90°.
             indirect: Leads go around the contour's first and last point.
+            led: The path has come to the compensated beginning of the contour already.
         """
         self.plane, self._signed_offset = plane, signed_offset
-        self._square, self._indirect = square, indirect
+        self._square, self._indirect, self._led = square, indirect, led
         self.stage, self._here = STARTED, None
         self._passed.clear()
 
@@ -109,8 +127,8 @@ class Compensation:
         else:
             self._happen(event)
 
-    def end(self) -> None:
-        """Let go of what is held, square to itself, and wait for the line that leads out."""
+    def end(self, *, led: bool = False) -> None:
+        """Let go of what is held, square to itself, and wait for the line that leads out, if nothing else does."""
         before = self._parallel if self.stage is FOLLOWING else self._contour
         if self.stage is LEADING_IN:
             self._let_go(before, before, before[2])
@@ -118,7 +136,8 @@ class Compensation:
             part = curves.cut(before, self._start, before[2])
             self._refuse_neck(part, self._contour)
             self._let_go(before, part, before[2])
-        self.stage = LEADING_OUT if self.stage in (FOLLOWING, LEADING_OUT) else OFF
+        leads_out = self.stage in (FOLLOWING, LEADING_OUT) and not led
+        self.stage = LEADING_OUT if leads_out else OFF
 
     def add(self, move: Segment, position: list[float]) -> None:
         """The next move; the path has come to this position, shape (k,)."""
@@ -135,9 +154,9 @@ class Compensation:
             sense = dot(move.normal, plane[2])
             if not abs(sense) >= IN_PLANE:
                 message = "an arc outside the compensated plane cannot be compensated"
-                self._refuse(move, "compensation-plane", message)
+                self._report.refuse(move, "compensation-plane", message)
             curve = (True, start, end, point_of(plane, move.center), move.sweep * sense)
-        if self.stage is STARTED:
+        if self.stage is STARTED and not self._led:
             self._take_lead(move, curve)
             return
         if not curves.leaves_room(curve, self._signed_offset):
@@ -145,7 +164,11 @@ class Compensation:
                 move, "compensation-radius", f"into the arc of radius {curves.radius_of(curve):.4f}"
             )
         element = curves.parallel_of(curve, self._signed_offset)
-        if self.stage is LEADING_IN:
+        if self.stage is STARTED:
+            self._here = position
+            self._hold(move, curve, element[1])
+            self._parallel, self.stage = element, FOLLOWING
+        elif self.stage is LEADING_IN:
             self._lead_in(move, curve, element)
         else:
             self._go_on(move, curve, element)
@@ -154,6 +177,9 @@ class Compensation:
 
     def _go_along_normal(self, move: Segment) -> None:
         """A move that does not go in the plane: at once before the lead-in, else behind the held move."""
+        if self.stage is STARTED and self._led:
+            message = "the contour must begin behind its approach with a move in the plane"
+            self._report.refuse(move, "compensation-start", message)
         if self.stage is STARTED:
             self._here = move.end
             self._drive(move)
@@ -240,7 +266,7 @@ class Compensation:
     def _take_lead(self, move: Segment, curve: Curve) -> None:
         """Hold the straight move that leads in."""
         if curve[0]:
-            self._refuse(move, "compensation-start", "compensation must start on a line")
+            self._report.refuse(move, "compensation-start", "compensation must start on a line")
         if self._here is None:
             self._here = move.start
         self._hold(move, curve, curve[1])
@@ -266,7 +292,7 @@ class Compensation:
     def _lead_out(self, move: Segment, stand: list[float]) -> None:
         """The first line in the plane leads out; until then only the normal and other axes move."""
         if move.center is not None:
-            self._refuse(move, "compensation-end", "compensation must end on a line")
+            self._report.refuse(move, "compensation-end", "compensation must end on a line")
         plane, contour = self.plane, self._contour
         here = point_of(plane, vector_of(stand))
         start, end = point_of(plane, vector_of(move.start)), point_of(plane, vector_of(move.end))
@@ -291,7 +317,7 @@ class Compensation:
 
     def _refuse_radius(self, move: Segment, code: str, where: str) -> NoReturn:
         message = f"the tool's radius {abs(self._signed_offset):g} does not fit {where}"
-        self._refuse(move, code, message)
+        self._report.refuse(move, code, message)
 
     def _refuse_neck(self, element: Curve, own: Curve | None) -> None:
         """Refuse an element that crosses one that was passed.
@@ -310,7 +336,7 @@ class Compensation:
         depth = lead_curves.depth_of(lead, element, abs(self._signed_offset))
         if depth > 0.0:
             message = f"on its way {way} the contour the tool cuts {depth:.3f} mm into it"
-            self._warn(move, "compensation-lead", message)
+            self._report.warn(move, "compensation-lead", message)
 
 
 def _driven(

@@ -56,7 +56,7 @@ def _drill(control: Control, code: int) -> None:
 
 def _coordinate(control: Control, index: int) -> float:
     """Of the centre [mm]."""
-    here = control.programmed[index]
+    here = control.motion.programmed[index]
     word = control.take("XY"[index])
     if word is None:
         return here
@@ -67,7 +67,7 @@ def _words_to(control: Control, place: tuple[float, float], blamed: Word) -> dic
     """The words that lead to a place, as the block could have written them."""
     words: dict[str, Word] = {}
     for index, (address, value) in enumerate(zip("XY", place, strict=True)):
-        begin = control.programmed[index] if control.modal.incremental else 0.0
+        begin = control.motion.programmed[index] if control.modal.incremental else 0.0
         count = (value - begin) / control.modal.unit
         words[address] = Word(address, count, blamed.column, blamed.width)
     return words

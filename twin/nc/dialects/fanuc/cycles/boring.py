@@ -60,7 +60,7 @@ def _bore(control: Control, rule: CycleRule, hole: list[float], *, back: bool) -
     if back and control.modal.return_to_reference:
         message = "G87 returns to the height of its call: its plane R lies under the part"
         control.fail("cycle-depth", message, hint="write G98")
-    over = values[START] if back else max(control.programmed[axis], reference)
+    over = values[START] if back else max(control.motion.programmed[axis], reference)
     go_to_height(control, over)
     hole[axis] = over
     control.line_to(hole, rapid=True)
@@ -86,6 +86,6 @@ def _orient(control: Control, shift: float) -> None:
 
 
 def _shift(control: Control, way: float) -> None:
-    there = list(control.programmed)
+    there = list(control.motion.programmed)
     there[control.modal.plane.axes[0]] += way
     control.line_to(there, rapid=True)

@@ -1,0 +1,8 @@
+%
+O<PLATE-1> (BY ITS NAME)
+; made by hand
+G21 G90 G54;
+;
+G1 X10. F100.;
+M30;
+%

@@ -1,0 +1,279 @@
+"""The motion of a control: where it stands, how fast it goes, and what becomes of programmed targets."""
+
+import math
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
+
+from twin.nc.control.modal import Modal
+from twin.nc.control.settings import ControlSettings
+from twin.nc.geometry.arcs import Point
+from twin.nc.geometry.frame import Frame, arc_about, moved_shift
+from twin.nc.geometry.planes import Plane, Vector
+from twin.nc.path.move_columns import FEED, NAN, RAPID, Segment
+from twin.nc.path.moves import (
+    RAPIDS_END,
+    SMALLEST_MOVE,
+    arc_length,
+    arc_radius,
+    line_length,
+    only_turns,
+)
+from twin.nc.path.paces import (
+    PACED,
+    PATH_COUNTS,
+    Displacement,
+    FeedRule,
+    feed_per_minute,
+    finding_of_feed,
+    pace_by_rule,
+    rapid_feed,
+)
+from twin.nc.path.path import Path
+from twin.nc.path.segments import direction_of
+from twin.nc.text.blocks import Block
+from twin.nc.text.reporter import Reporter
+
+NO_NORMAL = (NAN, NAN, NAN)
+"""That of a line."""
+
+
+class Motion:
+    """Where a control stands and how fast it goes.
+
+    Attributes:
+        modal: What stays in force.
+        path: Where its moves go.
+        linear: Whether each axis is a linear one.
+        frame: From programmed to part coordinates.
+        programmed: Where it stands, as its screen shows it, shape (k,) [mm or deg].
+        part: Where it stands in part coordinates, shape (k,) [mm or deg].
+        last: The last move, as it was programmed; None before one.
+        feed: F as programmed, or None.
+        feed_rule: Which part of a move F counts.
+        spindle: S as programmed, or None [1/min].
+        spindle_turns: M3 or M4 of the program is in force; what a cycle does at a hole ends with the hole.
+        acceleration: [mm/s²]; NaN: the machine's.
+        deceleration: [mm/s²]; NaN: the machine's.
+        rapid_feed: Feed per second of rapids [mm/s]; 0: they follow F; NaN: they have the machine's pace.
+        rapid_acceleration: Acceleration of rapids where the program sets their own [mm/s²]; NaN:
+            that of the path.
+        rapid_deceleration: Deceleration of rapids, likewise [mm/s²].
+        axis_limits: Largest velocity of single axes, by column [mm/min or deg/min].
+        axis_accelerations: Their largest acceleration [mm/s² or deg/s²].
+        axis_decelerations: Their largest deceleration [mm/s² or deg/s²].
+        before_move: Told the length of each move of the block before it goes to the path; None: nobody is.
+    """
+
+    def __init__(
+        self,
+        settings: ControlSettings,
+        modal: Modal,
+        report: Reporter,
+        blame_feed: Callable[[int], None],
+        feed_rule: FeedRule,
+    ) -> None:
+        """Stand where the program begins.
+
+        Args:
+            settings: What the control was told of the machine.
+            modal: What stays in force.
+            report: Where diagnostics of moves go.
+            blame_feed: Told what ``finding_of_feed`` found wrong with the block that runs.
+            feed_rule: Which part of a move F counts.
+        """
+        self.modal = modal
+        self._blame_feed = blame_feed
+        self._default_feeds = (settings.default_feed, settings.default_rotary_feed)
+        self.linear = tuple(kind == "linear" for kind in settings.axes.kinds)
+        self.programmed = [settings.start.get(name, 0.0) for name in settings.axes.names]
+        self.part = list(self.programmed)
+        self.frame = Frame(len(self.part))
+        self.path = Path(settings.axes, self.part, report)
+        self.last: Segment | None = None
+        self.feed: float | None = None
+        self.feed_rule = feed_rule
+        self.spindle: float | None = None
+        self.spindle_turns = False
+        self.acceleration = self.deceleration = self.rapid_feed = NAN
+        self.rapid_acceleration = self.rapid_deceleration = NAN
+        self.axis_limits: dict[int, float] = {}
+        self.axis_accelerations: dict[int, float] = {}
+        self.axis_decelerations: dict[int, float] = {}
+        self.before_move: Callable[[float], None] | None = None
+
+    # --- moves
+
+    def line_to(self, target: list[float], block: Block, *, rapid: bool) -> None:
+        """Move straight to a programmed position for a block; nothing when it stands there already."""
+        self._add(target, block, rapid=rapid)
+
+    def spline_to(self, target: list[float], block: Block, *, flat: bool) -> None:
+        """Move on a spline through a programmed position; ``flat``: its height goes linearly.
+
+        The same position twice ends the spline and begins another.
+        """
+        if target == self.programmed:
+            self.path.end_spline()
+        self._add(target, block, rapid=False, spline=(flat,))
+
+    def arc_to(self, target: list[float], block: Block, center: Point, sweep: float) -> None:
+        """Move on an arc about the plane's normal.
+
+        Args:
+            target: Programmed position of its end, shape (k,).
+            block: That asks for it.
+            center: Abscissa and ordinate of its programmed centre [mm].
+            sweep: Signed angle with all turns [deg].
+        """
+        arc = self.frame.arc(arc_about(self.modal.plane.directions, self.programmed, center, sweep))
+        self._add(target, block, rapid=False, center=arc.center, normal=arc.normal, sweep=arc.sweep)
+
+    def _add(
+        self,
+        target: list[float],
+        block: Block,
+        *,
+        rapid: bool,
+        center: Vector | None = None,
+        normal: Vector = NO_NORMAL,
+        sweep: float = 0.0,
+        spline: tuple[bool] | None = None,
+    ) -> None:
+        end = self.frame.to_part(target)
+        if center is None:
+            length = line_length(self.part, end)
+        else:
+            length = arc_length(self.part, end, center, normal, sweep)
+        if length < SMALLEST_MOVE:
+            self.programmed = target
+            return
+        if self.before_move is not None:
+            self.before_move(length)
+        modal, is_arc = self.modal, center is not None
+        if rapid:
+            feed = rapid_feed(self.rapid_feed, NAN if self.feed is None else self.feed)
+        else:
+            feed = self._feed_per_minute(end, length, is_arc)
+            if self.feed_rule is not PATH_COUNTS:
+                feed = self._pace_by_rule(feed, end, length, center, sweep)
+        acceleration, deceleration = self.acceleration, self.deceleration
+        if rapid:
+            acceleration = _either(self.rapid_acceleration, acceleration)
+            deceleration = _either(self.rapid_deceleration, deceleration)
+        if self.axis_limits or self.axis_accelerations or self.axis_decelerations:
+            share = self._axis_shares(end, length, is_arc)
+            feed = _limited(feed, self.axis_limits, share)
+            acceleration = _limited(acceleration, self.axis_accelerations, share)
+            deceleration = _limited(deceleration, self.axis_decelerations, share)
+        move = Segment(  # by place: names would cost a block twice what it takes to make one
+            RAPID if rapid else FEED,
+            block.line,
+            block.number,
+            self.part,
+            end,
+            target,
+            feed,
+            RAPIDS_END if rapid else modal.corner,
+            modal.corner_tolerance,
+            acceleration,
+            deceleration,
+            center,
+            normal,
+            sweep,
+        )
+        if spline is None:
+            self.path.add(move)
+        else:
+            self.path.add_point(move, flat=spline[0])
+        self.last = move
+        self.programmed = target
+        self.part = end
+
+    def take_rows(self, rows: Iterable[Any], programmed: list[float], part: list[float]) -> None:
+        """Moves that were made elsewhere lead to these positions, shape (k,).
+
+        Args:
+            rows: As ``Path.add_rows`` takes them.
+            programmed: Programmed position [mm or deg].
+            part: Part position [mm or deg].
+        """
+        last = self.path.add_rows(*rows)
+        self.programmed, self.part = programmed, part
+        if last is not None:
+            self.last = last
+
+    @property
+    def direction(self) -> Vector | None:
+        """Where the last move was going when it ended, programmed coordinates; None before one."""
+        move = self.last
+        return None if move is None else self.frame.unturn(direction_of(move, at_end=True))
+
+    # --- feeds
+
+    def _axis_shares(self, end: list[float], length: float, is_arc: bool) -> list[float]:
+        """How much of the path's speed each axis takes at most."""
+        shares = [abs(new - old) / length for new, old in zip(end, self.part, strict=True)]
+        return [1.0, 1.0, 1.0, *shares[3:]] if is_arc else shares
+
+    def _feed_per_minute(self, end: list[float], length: float, is_arc: bool) -> float:
+        modal = self.modal
+        feed = NAN if self.feed is None else self.feed
+        speed = NAN if self.spindle is None else self.spindle
+        finding = finding_of_feed(feed, modal.feed_mode, speed, float(self.spindle_turns))
+        if finding != PACED:
+            self._blame_feed(finding)
+        turning = not is_arc and only_turns(self.part, end, self.linear)
+        return feed_per_minute(
+            feed, modal.feed_mode, length, turning, modal.unit, speed, self._default_feeds
+        )
+
+    def _pace_by_rule(
+        self, pace: float, end: list[float], length: float, center: Vector | None, sweep: float
+    ) -> float:
+        """The pace of a move whose F counts another length than that of its path [mm/min or deg/min]."""
+        ways = (new - old for new, old in zip(end, self.part, strict=True))
+        turned = math.hypot(*(way for way, line in zip(ways, self.linear, strict=True) if not line))
+        turning = center is None and only_turns(self.part, end, self.linear)
+        move = Displacement(length, turned, turning)
+        if center is not None:
+            radius = arc_radius(self.part, center)
+            move = move._replace(radius=radius, around=radius * math.radians(abs(sweep)))
+        return pace_by_rule(self.feed_rule, pace, move, self.modal.feed_mode, self.modal.unit)
+
+    # --- coordinates
+
+    @property
+    def part_plane(self) -> Plane:
+        """The working plane as the part sees it."""
+        return self.frame.plane(self.modal.plane)
+
+    def unit_of(self, axis: int) -> float:
+        """What 1 of the axis of a column is in the program's unit [mm or deg]."""
+        return self.modal.unit if self.linear[axis] else 1.0
+
+    def begin_at(self, programmed: list[float]) -> None:
+        """Let the path, which has not begun, begin at a programmed position."""
+        self.programmed = programmed
+        self.part = self.path.position = self.frame.to_part(programmed)
+
+    def set_position(self, programmed: list[float], shift: str) -> None:
+        """Give the place where it stands other programmed coordinates; nothing moves."""
+        here = self.frame.to_part(programmed)
+        values = self.frame.shift(shift)
+        self.frame.set_shift(shift, list(map(moved_shift, values, self.part, here)))
+        self.programmed = programmed
+
+    def reframed(self) -> None:
+        """The frame has changed: see where it stands now."""
+        self.programmed = self.frame.to_programmed(self.part)
+
+
+def _limited(value: float, limits: Mapping[int, float], shares: list[float]) -> float:
+    """A value along the path so that no axis exceeds its own limit; NaN is no limit."""
+    bounds = [limit / shares[index] for index, limit in limits.items() if shares[index] > 0.0]
+    return min([value, *bounds]) if value == value else min(bounds, default=value)
+
+
+def _either(value: float, default: float) -> float:
+    """A value, or where it is NaN another one."""
+    return default if math.isnan(value) else value

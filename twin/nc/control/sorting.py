@@ -1,0 +1,202 @@
+"""The words of a block by what they are: codes, functions, and all others; which codes exclude each other."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from twin.nc.control.codes import GCode, MCode
+from twin.nc.control.control import Control, integer_of, number_of
+from twin.nc.control.dialect import Dialect
+from twin.nc.text.blocks import Word
+from twin.nc.text.expressions import Expression
+from twin.nc.text.slips import near
+
+Codes = Sequence[tuple[Word, GCode]]
+Functions = Sequence[tuple[Word, MCode]]
+
+
+class SortedBlock(NamedTuple):
+    """The codes of a block.
+
+    Attributes:
+        codes: Its G codes, in the order in which they take effect.
+        functions: Its M functions, in the order of the text.
+    """
+
+    codes: Codes
+    functions: Functions
+
+
+class WordSorter:
+    """Sorts the words of blocks for one control."""
+
+    def __init__(self, control: Control, dialect: Dialect) -> None:
+        self._control = control
+        self._dialect = dialect
+        words = dialect.words
+        self._special = frozenset(("G", "M", *words.signed, *words.series))
+        expressions = dialect.syntax.expressions
+        self._vacant = expressions is not None and expressions.vacant
+
+    def sort(self, block: Sequence[Word]) -> SortedBlock:
+        """Sort the words of a block; those that are no codes become the control's ``words`` and ``series``.
+
+        Raises:
+            ProgramError: Some of them cannot stand in one block.
+        """
+        control, dialect = self._control, self._dialect
+        codes: list[tuple[Word, GCode]] = []
+        functions: list[tuple[Word, MCode]] = []
+        words: dict[str, Word] = {}
+        control.codes, control.words, control.series = codes, words, []
+        special = self._special
+        for word in block:
+            address, value = word.address, word.value
+            if address not in special and address not in words and type(value) is float:
+                words[address] = word
+                continue
+            if isinstance(value, Expression) and address not in dialect.words.references:
+                value = control.compute(value, word)
+                word = word._replace(value=value)
+                if value != value:
+                    if not self._vacant:
+                        message = f"the value of '{address}' is no number"
+                        control.fail("number-range", message, word)
+                    continue  # computed of a vacant variable: the word is not there
+            if address == "G":
+                codes.append((word, self._g_code(word)))
+                continue
+            if address in dialect.words.signed and number_of(word) < 0.0:
+                address = f"{address}-"
+                word = word._replace(address=address)
+            if address == "M" and not self._takes_m(block):
+                functions.append((word, self._m_code(word)))
+            elif address in dialect.words.series and self._has_switch(block):
+                if isinstance(word.value, Expression):
+                    word = word._replace(value=control.compute(word.value, word))
+                control.series.append(word)
+            elif address in words:
+                control.fail(
+                    "duplicate-word",
+                    f"'{address}' stands twice in the block",
+                    word,
+                    "leave one out, or write two blocks",
+                )
+            else:
+                words[address] = word
+        if len(codes) > 1 or len(functions) > 1:
+            codes = codes_that_count(codes, last_of_group=dialect.codes.last_of_group_counts)
+            self._refuse_conflict(conflict_of(codes, functions))
+            control.codes = codes = in_order(codes, dialect.codes.groups)
+        return SortedBlock(codes, functions)
+
+    def _takes_m(self, block: Sequence[Word]) -> bool:
+        """Whether M is a word of one of the block's G codes, and no machine function."""
+        numbers = (word.value for word in block if word.address == "G")
+        codes = (self._dialect.codes.g.get(n) for n in numbers if isinstance(n, float))
+        return any(code is not None and "M" in code.takes for code in codes)
+
+    def _has_switch(self, block: Sequence[Word]) -> bool:
+        return any(word.address == self._dialect.words.series[0] for word in block)
+
+    def _g_code(self, word: Word) -> GCode:
+        number, codes = number_of(word), self._dialect.codes
+        code = codes.g.get(number)
+        if code is None:
+            known = [self._dialect.code_name(each) for each in sorted(codes.g)]
+            self._control.fail(
+                "unknown-g",
+                f"{word.text} is unknown to {self._dialect.name}",
+                word,
+                hint=codes.instead.get(number) or near(f"G{number:g}", known, self._dialect.name),
+            )
+        if code.refused:
+            self._control.fail("unsupported-g", f"{word.text} {code.refusal}", word)
+        return code
+
+    def _m_code(self, word: Word) -> MCode:
+        number, codes = integer_of(number_of(word)), self._dialect.codes
+        code = codes.function(number, self._control.settings.m_functions)
+        if code is None:
+            if number < 0:
+                self._control.fail("unknown-m", f"{word.text}: an M code is a whole number", word)
+            listed = near(f"M{number}", map("M{}".format, codes.m), self._dialect.name)
+            message = f"{word.text} is unknown to {self._dialect.name}"
+            own = f'one of the machine\'s builder: [m_functions] M{number} = "what it does" in the job'
+            self._control.fail("unknown-m", message, word, hint=f"{own}; {listed}")
+        return code
+
+    def _refuse_conflict(self, conflict: "Conflict | None") -> None:
+        """Say which codes cannot share a block.
+
+        Raises:
+            ProgramError: There are two.
+        """
+        if conflict is None:
+            return
+        both = f"{conflict.first.text} and {conflict.second.text}"
+        group = f" ({conflict.group})" if conflict.group else ""
+        message = f"{both} exclude each other{group}"
+        if conflict.performs:
+            message = f"{both} cannot share a block"
+        hint = "write them in two blocks"
+        self._control.fail("conflicting-codes", message, conflict.second, hint=hint)
+
+
+def in_order(codes: Codes, groups: Sequence[str]) -> list[tuple[Word, GCode]]:
+    """G codes as they take effect: by the order of their groups, those without one at last."""
+    order = {group: rank for rank, group in enumerate(groups)}
+    return sorted(codes, key=lambda pair: order.get(pair[1].group, len(order)))
+
+
+def codes_that_count(codes: Codes, *, last_of_group: bool) -> list[tuple[Word, GCode]]:
+    """G codes without those that another one of their modal group overrules.
+
+    Args:
+        codes: As they are written.
+        last_of_group: The last one overrules all others; else each overrules those that yield.
+    """
+    strong = {code.group for _, code in codes if not code.yields}
+    last = {code.group: word for word, code in codes}
+
+    def counts(word: Word, code: GCode) -> bool:
+        if code.yields and code.group in strong:
+            return False
+        return last[code.group] is word or not (code.yields or last_of_group)
+
+    return [(word, code) for word, code in codes if not code.group or counts(word, code)]
+
+
+class Conflict(NamedTuple):
+    """Two codes that cannot share a block.
+
+    Attributes:
+        first: One of them.
+        second: The other.
+        group: Their modal group, or empty.
+        performs: Both want to stand in the motion's place.
+    """
+
+    first: Word
+    second: Word
+    group: str = ""
+    performs: bool = False
+
+
+def conflict_of(codes: Codes, functions: Functions) -> Conflict | None:
+    """The first codes of a block that exclude each other, or None."""
+    seen: dict[str, Word] = {}
+    performing: Word | None = None
+    for word, code in codes:
+        if code.group and code.group in seen:
+            return Conflict(seen[code.group], word, code.group)
+        seen[code.group] = word
+        if code.perform is not None:
+            if performing is not None:
+                return Conflict(performing, word, performs=True)
+            performing = word
+    seen = {}
+    for word, function in functions:
+        other = seen.setdefault(function.group or word.text, word)
+        if other is not word:
+            return Conflict(other, word)
+    return None

@@ -1,0 +1,1 @@
+"""A class: a room for each pupil, each in a process of its own, behind one address."""
