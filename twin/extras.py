@@ -7,6 +7,7 @@ from twin.errors import UsageError
 PACKAGES = {
     "calibrate": ("scipy", "threadpoolctl"),
     "cluster": ("ray",),
+    "fmu": ("pythonfmu3",),
     "notebook": ("pandas",),
     "opcua": ("asyncua", "starlette", "uvicorn"),
     "serve": ("starlette", "uvicorn"),

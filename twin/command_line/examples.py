@@ -25,7 +25,10 @@ EXAMPLES = {
     ),
     "compare": ("twin compare out/part/recording.h5 log.csv --tolerance 0.05",),
     "calibrate": ("twin calibrate log.csv --base mill4 --out mine.toml",),
-    "export": ("twin export out/part/recording.h5 --every 10",),
+    "export": (
+        "twin export out/part/recording.h5 --every 10",
+        "twin export --fmu mill4 --out mill4.fmu",
+    ),
     "train": (
         "twin train --list",
         "twin train mefi_helix_hold",
