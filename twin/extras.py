@@ -8,6 +8,7 @@ PACKAGES = {
     "calibrate": ("scipy", "threadpoolctl"),
     "cluster": ("ray",),
     "fmu": ("pythonfmu3",),
+    "gym": ("gymnasium",),
     "notebook": ("pandas",),
     "opcua": ("asyncua", "starlette", "uvicorn"),
     "serve": ("starlette", "uvicorn"),

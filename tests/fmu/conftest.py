@@ -30,7 +30,9 @@ def recorded() -> Recorded:
     samples = LiveMachine(machine, position=zero).follow(points[1:])
     assert len(samples) == len(points) - 1
     return Recorded(
-        *(column[1:] for column in (points.position, points.velocity, points.acceleration)),
+        points.position[1:],
+        points.velocity[1:],
+        points.acceleration[1:],
         samples.joint_position,
         samples.joint_velocity,
         samples.drive_force,

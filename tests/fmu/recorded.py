@@ -4,7 +4,6 @@ from typing import NamedTuple
 
 from twin.nc.canonical import FloatArray
 
-
 START = (0.0, 0.0, -150.0, 0.0)
 """Where the axes stand before."""
 

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
 from command_line import Twin
+
 from tests.fmu.recorded import START, Recorded
 
 pytestmark = pytest.mark.oracle
@@ -34,6 +34,7 @@ def test_fmpy_moves_the_machine_as_the_twin_does(unit_file: Path, recorded: Reco
 
     description = read_model_description(str(unit_file))
     numbers = {each.name: each.valueReference for each in description.modelVariables}
+    assert description.coSimulation is not None
     folder = extract(str(unit_file))
     slave = FMU3Slave(
         guid=description.guid, unzipDirectory=folder, instanceName="mill",

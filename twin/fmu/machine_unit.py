@@ -8,9 +8,9 @@ import math
 
 import numpy as np
 
-from twin.machine.watching.alarms import SimulationError
 from twin.machine.description.config import Machine
 from twin.machine.simulation.live import LiveMachine
+from twin.machine.watching.alarms import SimulationError
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
 

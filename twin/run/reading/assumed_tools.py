@@ -4,7 +4,7 @@ Posts write ``(T1 D=10. CR=0. - ZMIN=-5. - flat end mill)`` and its relatives.
 """
 
 import re
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -123,17 +123,30 @@ def tool_lines(
     calls: list[tuple[int, int, int]],
     comments: list[tuple[int, str]],
     moves: Moves,
+    declared: Mapping[int, ToolComment],
     *,
     inches: bool,
 ) -> tuple[list[str], list[str], float]:
-    """Lines of the tools that the program calls, how each came about, and the largest diameter [mm]."""
+    """Lines of the tools that the program calls, how each came about, and the largest diameter [mm].
+
+    Args:
+        calls: Number, line and next move of every tool that comes.
+        comments: Lines and texts.
+        moves: What the program makes.
+        declared: Tools that the program itself gives their data.
+        inches: Comments count in inches.
+    """
     numbers = list(dict.fromkeys(number for number, _, _ in calls if number)) or [1]
     listed = listed_tools((comment for _, comment in comments), numbers, inches=inches)
     lines: list[str] = []
     told: list[str] = []
     largest = 0.0
     for number in numbers:
-        tool = listed.get(number) or _near_comment(number, calls, comments, inches=inches)
+        tool = (
+            declared.get(number)
+            or listed.get(number)
+            or _near_comment(number, calls, comments, inches=inches)
+        )
         rows = _rows_of(number, calls, len(moves))
         more, said, diameter = _tool_table(number, tool, moves, rows)
         lines += more

@@ -1,13 +1,15 @@
 """The dialect of a raw program: where its words fit several, all of them read it and are compared."""
 
 import dataclasses
+import math
 from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 
 from twin.errors import UsageError
-from twin.nc.canonical import Function, Moves, concatenate
+from twin.nc.canonical import Function, Motion, Moves, concatenate
 from twin.nc.control.dialect import Dialect
 from twin.nc.control.settings import ControlSettings, MachineFunction
 from twin.nc.dialects import DIALECTS
@@ -18,12 +20,15 @@ from twin.nc.text.diagnostics import Diagnostic, ProgramError
 from twin.nc.text.source import Source, read_source
 from twin.run.reading.assumed_reading import UNKNOWN_FUNCTION, unknown_functions
 
+BoolArray = npt.NDArray[np.bool_]
 _PREFERENCE = ("fanuc", "haas", "linuxcnc")
 """Which of several dialects that make the same of a program is taken: what most posts write for comes first."""
 _MOST_LINES = 200_000
 """Longer programs are not read by several dialects for comparison: that would take minutes."""
 _SAME = 1e-6
 """Positions that differ less are the same [mm or deg]; feeds by this share."""
+_CLEARANCE = 1.0
+"""How far between pecks a drill withdraws is a parameter of the control; rapids that differ by less ask nobody [mm]."""
 _NEARLY = 0.1
 """Feeds on the same path that differ by less are told, but they ask nobody: F of a helix counts its arc or its path."""
 _TOO_SLOW = 1.0 / 200.0
@@ -84,6 +89,10 @@ def chosen_dialect(path: Path, settings: ControlSettings, source: Source | None 
     if settings.machine_zero is None:  # the dialect does not depend on where that lies
         zero = dict.fromkeys(settings.axes.names, 0.0)
         settings = dataclasses.replace(settings, machine_zero=zero)
+    if (
+        settings.tool_change_height is None
+    ):  # nor on where a control goes by itself for another tool
+        settings = dataclasses.replace(settings, tool_change_height=-math.inf)
     common = [name for name in candidates if name in _PREFERENCE]
     rare = [name for name in candidates if name not in _PREFERENCE]
     trials = [_tried(path, DIALECTS[name], settings) for name in (common or rare)]
@@ -129,11 +138,11 @@ def _choice(name: str, meant: Sequence[_Trial], why: str) -> Choice:
     Raises:
         UsageError: They would not move alike.
     """
-    slower = ""
+    slightly = ""
     for other in meant[1:]:
         difference = _difference(meant[0], other)
-        if not difference and not slower:
-            slower = _feeds_apart(meant[0], other)
+        if not difference and not slightly:
+            slightly = _slight_difference(meant[0], other)
         if difference:
             names = [each.name for each in meant]
             raise UsageError(
@@ -144,8 +153,8 @@ def _choice(name: str, meant: Sequence[_Trial], why: str) -> Choice:
     if len(names) == 1:
         return Choice(DIALECTS[names[0]], why or "no other reads it without an error")
     same = f"{_either(names, 'and')} make the same moves of it"
-    if slower:
-        same += f", but for feeds: {slower}; {_type(names[1:])}"
+    if slightly:
+        same += f", but {slightly}; {_type(names[1:])}"
     return Choice(DIALECTS[names[0]], f"{same}; {why}" if why else same)
 
 
@@ -191,6 +200,7 @@ def _difference(one: _Trial, other: _Trial) -> str:
     a, b = one.moves, other.moves
     count = min(len(a), len(b))
     apart = np.abs(a.end[:count] - b.end[:count]).max(axis=1, initial=0.0) > _SAME
+    apart &= ~_pecks_apart(a, b, count)
     turned = np.abs(a.sweep[:count] - b.sweep[:count]) > _SAME
     kinds = (a.motion[:count] != b.motion[:count]) | (a.line[:count] != b.line[:count])
     ways = np.flatnonzero(apart | turned | kinds)
@@ -210,6 +220,25 @@ def _difference(one: _Trial, other: _Trial) -> str:
         if mine != theirs:
             return f"in line {mine[0]} {one.name} does {mine[1]} and {other.name} {theirs[1]}"
     return ""
+
+
+def _pecks_apart(a: Moves, b: Moves, count: int) -> BoolArray:
+    """Rapids of two dialects that end a little apart along Z alone, as pecks do, shape (count,)."""
+    off = np.abs(a.end[:count] - b.end[:count])
+    rapid = (a.motion[:count] == Motion.RAPID) & (b.motion[:count] == Motion.RAPID)
+    others = np.delete(off, 2, axis=1).max(axis=1, initial=0.0) <= _SAME
+    return rapid & others & (off[:, 2] > _SAME) & (off[:, 2] < _CLEARANCE)
+
+
+def _slight_difference(one: _Trial, other: _Trial) -> str:
+    """What two dialects make differently that asks nobody; empty: nothing."""
+    a, b = one.moves, other.moves
+    pecks = np.flatnonzero(_pecks_apart(a, b, min(len(a), len(b))))
+    if len(pecks):
+        row = int(pecks[0])
+        heights = f"{one.name} to Z{a.end[row, 2]:.4g} and {other.name} to Z{b.end[row, 2]:.4g}"
+        return f"in line {a.line[row]} they withdraw pecks differently, {heights}"
+    return _feeds_apart(one, other)
 
 
 def _feeds_apart(one: _Trial, other: _Trial, share: float = _SAME) -> str:

@@ -121,4 +121,5 @@ HEIDENHAIN = Dialect(
     ),
     tables=TABLES,
     library=flow.LIBRARY,
+    suffixes=(".h",),
 )

@@ -18,12 +18,14 @@ class Parameters:
         values: By number of the Q parameter; a feed that is FMAX is ``RAPID``.
         unit: Of lengths [mm].
         line: Of the definition, from 1.
+        live: The program changes them by assigning Q parameters.
     """
 
     name: str
     values: Mapping[int, float]
     unit: float
     line: int
+    live: bool = True
 
     def number(self, parameter: int, default: float = 0.0) -> float:
         """A value as it is written."""

@@ -88,9 +88,9 @@ DECISIONS = (
         example="straight_between_places",
     ),
     Decision(
-        "What is a tool that is called by its name?",
-        "One whose name is a number is that tool; others are refused.",
-        "The job knows its tools by numbers.",
+        "What is a tool that is called by a name which the job does not give?",
+        "The job's tools in the order in which the program first calls names, with a warning.",
+        "A name alone tells no diameter; the job's order is the only one there is.",
         example="name_of_a_tool",
     ),
     Decision(
@@ -128,5 +128,18 @@ DECISIONS = (
         "Tenths of an inch per minute.",
         "The manual of the iTNC says so, and posts write it; later ones show both units.",
         example="feed_in_inches",
+    ),
+    Decision(
+        "What is a parameter of a cycle that the program changes behind its definition?",
+        "It counts with its new value where the cycle is called.",
+        "Cycles read the Q parameters of their numbers; programs for the iTNC 530 are written so.",
+        example="parameter_changed_behind_definition",
+    ),
+    Decision(
+        "Where does the tool stand while TOOL CALL changes it?",
+        "It rises to machine zero of its axis, where the job says where the part lies; the height of the job or the "
+        "machine (tool_change) counts before. A tool that is in the spindle already stays where it is.",
+        "What happens is a macro of the machine's builder; programs call tools from within the part.",
+        example="rises_for_the_tool_change",
     ),
 )

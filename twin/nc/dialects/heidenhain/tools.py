@@ -2,7 +2,7 @@
 
 import re
 
-from twin.nc.control.compensation import NEEDS_TOOL, tool_numbered
+from twin.nc.control.compensation import NEEDS_TOOL, tool_named, tool_numbered
 from twin.nc.control.control import Control, integer_of
 from twin.nc.control.settings import ToolData
 from twin.nc.dialects.heidenhain.feeds import set_feed
@@ -19,7 +19,8 @@ _HEAD = re.compile(
     re.IGNORECASE,
 )
 """What stands behind TOOL CALL and TOOL DEF: name or number, and the axis of the tool."""
-_CHANGE = change_tool_at(None)
+_CHANGE = change_tool_at(0.0)
+"""Decision: the macro that the machine's builder has put behind TOOL CALL lifts the tool to machine zero."""
 _CORNER = re.compile(
     r"[ \t]*(?:0\.([12])[ \t]*([XYZ](?=[ \t]))?|(CYLINDER)[ \t]+([XYZ])(?=[ \t])|(ROTATION|FILE))",
     re.IGNORECASE,
@@ -61,16 +62,12 @@ def _number_of(control: Control, statement: Statement, match: re.Match[str]) -> 
     """The number of the tool that TOOL CALL brings; None: it brings none.
 
     Raises:
-        ProgramError: It is called by a name that is no number.
+        ProgramError: The job has no tool of that name.
     """
     if match["name"]:
-        name = text_of(control, match["name"])
-        if not name.isdigit():
-            message = f"the job knows tools by numbers, and this one is called {name}"
-            column = statement.text_column + match.start("name")
-            hint = "write its number, TOOL CALL 5 Z S3000, and the job's [[tools]] with it"
-            control.report.fail("tool-number", message, column, len(match["name"]), hint)
-        return named_word(statement, float(name), match.span("name"))
+        word = named_word(statement, 0.0, match.span("name"))
+        number = tool_named(control, text_of(control, match["name"]), word)
+        return word._replace(value=float(number))
     if not match["number"]:
         return None
     return word_of(control, statement, match.span("number"))
@@ -86,8 +83,13 @@ def _change(control: Control, number: Word) -> None:
     defined = memory_of(control).defined.get(index)
     if index != 0 and (control.tools.any is None or defined is None):
         tool_numbered(control, number)
-    next_tool(control, number)
-    _CHANGE(control)
+    if defined is None:
+        next_tool(control, number)
+    else:
+        control.tools.selected = index
+        control.function(f"T{index}", {"R": defined.radius})
+    if index != control.tools.spindle:
+        _CHANGE(control)
     control.function("M6", {})
     control.motion.spindle_turns = False
 

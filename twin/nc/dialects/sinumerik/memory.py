@@ -82,7 +82,6 @@ class SinumerikMemory:
         polar_radius: RP as programmed last [mm]; NaN: it is seen from where the tool stands.
         polar_angle: AP as programmed last, likewise [deg].
         tool_on: The tool in the spindle has its offset D.
-        tool_numbers: Numbers of tools that the program has called by names of its own.
         unit: Of lengths, as it was before the block [mm].
         allowance: OFFN [mm].
         rounding: RNDM [mm].
@@ -109,7 +108,6 @@ class SinumerikMemory:
     polar_radius: float = math.nan
     polar_angle: float = math.nan
     tool_on: bool = True
-    tool_numbers: dict[str, int] = dataclasses.field(default_factory=dict)
     unit: float = 1.0
     allowance: float = 0.0
     rounding: float = 0.0

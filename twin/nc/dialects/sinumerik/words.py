@@ -4,7 +4,7 @@ import math
 import re
 
 from twin.nc.control.codes import Action
-from twin.nc.control.compensation import compensate, tool_numbered
+from twin.nc.control.compensation import compensate, tool_named, tool_numbered
 from twin.nc.control.control import Control
 from twin.nc.dialects.sinumerik import frames
 from twin.nc.dialects.sinumerik.memory import memory_of
@@ -79,38 +79,11 @@ def dwell(control: Control) -> None:
 def next_tool(control: Control, word: Word) -> None:
     """T5, T="NAME": the tool that M6 brings; T0 leaves the spindle empty."""
     if word.mark:
-        word = word._replace(value=float(_tool_named(control, word)))
+        word = word._replace(value=float(tool_named(control, text_of(word), word)))
     number = control.number(word)
     if control.tools.table and number not in control.tools.table and number != 0.0:
         tool_numbered(control, word._replace(mark=""))
     base.next_tool(control, word._replace(mark=""))
-
-
-def _tool_named(control: Control, word: Word) -> int:
-    """The number of the tool with a name: the job's, or where its tools have none by their order.
-
-    Raises:
-        ProgramError: The job has no such tool.
-    """
-    name, tools, known = text_of(word), control.tools, memory_of(control).tool_numbers
-    named = {tool.name.upper(): number for number, tool in tools.table.items() if tool.name}
-    if name in named:
-        return named[name]
-    if name.isdigit() and (int(name) in tools.table or not tools.table):
-        return int(name)
-    if name not in known:
-        order = list(tools.table) or list(range(1, len(known) + 2))
-        if tools.any is not None:
-            order = list(range(1, len(known) + 2))
-        if named or len(known) >= len(order):
-            message = f'the job has no tool named "{name}"'
-            hint = f'give one of its [[tools]] name = "{name}"; named there: {", ".join(named) or "none"}'
-            control.fail("no-such-tool", message, word, hint)
-        known[name] = order[len(known)]
-        message = f'the job names no tools: "{name}" is taken for tool {known[name]}, by the order of the calls'
-        hint = f'name = "{name}" in the [[tools]] of the job says it'
-        control.warn("tool-name", message, word, hint)
-    return known[name]
 
 
 def change_tool(control: Control) -> None:

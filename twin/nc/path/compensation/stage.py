@@ -70,6 +70,7 @@ class Compensation:
         self.stage = OFF
         self.plane = _NO_PLANE
         self._signed_offset = 0.0
+        self._next_offset: float | None = None
         self._square = self._indirect = self._led = False
         self._held: list[Segment] = []
         """The move that waits for its successor, and moves along the normal that wait for its end."""
@@ -92,6 +93,11 @@ class Compensation:
     def has_moved(self) -> bool:
         """It is in force, and a move of its contour has come."""
         return self.in_force and self.stage is not STARTED
+
+    @property
+    def signed_offset(self) -> float:
+        """The radius in force, positive left of the contour [mm]."""
+        return self._signed_offset if self._next_offset is None else self._next_offset
 
     def acts_in(self, plane: Plane) -> bool:
         """Whether it is in force in a plane of the part."""
@@ -117,8 +123,19 @@ class Compensation:
         """
         self.plane, self._signed_offset = plane, signed_offset
         self._square, self._indirect, self._led = square, indirect, led
-        self.stage, self._here = STARTED, None
+        self.stage, self._here, self._next_offset = STARTED, None, None
         self._passed.clear()
+
+    def change(self, signed_offset: float) -> None:
+        """Another radius on the same side, from the next move's end on: that line leads from the one to the other.
+
+        Args:
+            signed_offset: The tool's radius, positive left of the contour [mm].
+        """
+        if self.stage is STARTED:
+            self._signed_offset = signed_offset
+        else:
+            self._next_offset = signed_offset
 
     def event(self, event: Event) -> None:
         """Something that happens where the path has come to."""
@@ -172,6 +189,16 @@ class Compensation:
             self._lead_in(move, curve, element)
         else:
             self._go_on(move, curve, element)
+        if self._next_offset is not None:
+            self._take_next_offset(move, curve, self._next_offset)
+
+    def _take_next_offset(self, move: Segment, curve: Curve, offset: float) -> None:
+        """The held move ends beside the contour by another radius than it began with."""
+        if curve[0]:
+            message = "the radius changes along a straight move, and this is an arc"
+            self._report.refuse(move, "compensation-change", message)
+        self._signed_offset, self._next_offset = offset, None
+        self._parallel = curves.parallel_of(curve, offset)
 
     # --- from move to move
 

@@ -89,7 +89,7 @@ def call_pattern(control: Control, statement: Statement) -> None:
 
 
 def defined(control: Control) -> Parameters:
-    """The parameters of the cycle that was defined last.
+    """The parameters of the cycle that was defined last, as Q parameters have them now.
 
     Raises:
         ProgramError: None was.
@@ -98,7 +98,10 @@ def defined(control: Control) -> Parameters:
     if parameters is None:
         hint = "write CYCL DEF 200 before; cycles such as 7, 10, 220 act where they are defined"
         control.fail("cycle-call", "no cycle is defined that could be called", hint=hint)
-    return parameters
+    if not parameters.live:
+        return parameters
+    now = {each: control.variables.read(f"Q{each}") for each in parameters.values}
+    return parameters.replaced({each: value for each, value in now.items() if value is not None})
 
 
 def go_over(control: Control, target: list[float], height: float, *, rapid: bool) -> None:

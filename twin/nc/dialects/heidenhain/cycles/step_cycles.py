@@ -65,4 +65,6 @@ def _define(control: Control, cycle: int) -> None:
         newer(control, given.replaced({_SURFACE: surface}))
 
     memory.cycle, memory.calls_always = perform, False
-    memory.parameters = Parameters(f"cycle {cycle}", values, control.modal.unit, control.block.line)
+    memory.parameters = Parameters(
+        f"cycle {cycle}", values, control.modal.unit, control.block.line, live=False
+    )
