@@ -145,6 +145,8 @@ class SceneFile(Table):
     time_limit_s: Annotated[float, Field(gt=0)] = 1800.0
     """Machine time from the first touch after which the scene is judged [s]."""
     picture: PictureTable = PictureTable()
+    guide: bool = False
+    """Whether the page tells who plays for the first time what to press; in scenes where that spoils nothing."""
     solution: tuple[StepTable, ...] = ()
     """A scripted operator who reaches full points."""
     mistake: tuple[StepTable, ...] = ()
