@@ -13,6 +13,8 @@ from twin.training.scene.scene_file import Scene, scene_of_job
 from twin.training.session.room import Room
 
 WELCOME = "Grbl 1.1h ['$' for help]"
+START_Z = -445.0
+"""Where the shipped job's machine stands first, 60 mm over its part zero [mm]."""
 
 
 @pytest.fixture(scope="module")
@@ -64,20 +66,20 @@ def bench(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> Bench:
 def test_a_line_is_answered_moves_and_comes_to_rest(bench: Bench) -> None:
     assert bench.send(b"G21G90\ng0 x10 y5 (there)\n") == ["ok", "ok"]
     bench.settle()
-    assert bench.place == (10.0, 5.0, -90.0)
+    assert bench.place == (10.0, 5.0, START_Z)
     assert bench.state == "Idle"
 
 
 def test_reports_are_those_of_grbl(bench: Bench) -> None:
     assert bench.send(b"$G\n") == ["[GC:G0 G54 G17 G21 G90 G94 M5 M9 T0 F0 S0]", "ok"]
-    assert bench.send(b"?") == ["<Idle|MPos:0.000,0.000,-90.000|FS:0,0|WCO:0.000,0.000,-150.000>"]
+    assert bench.send(b"?") == ["<Idle|MPos:0.000,0.000,-445.000|FS:0,0|WCO:0.000,0.000,-505.000>"]
     settings = bench.send(b"$$\n")
     assert settings[-1] == "ok"
     assert all(re.fullmatch(r"\$\d+=[\d.]+", line) for line in settings[:-1])
     assert bench.send(b"$10=2\n$110=30000\n$110=5\n") == ["ok", "ok", "error:3"]
     assert "|WPos:0.000,0.000,60.000|Bf:640,128|" in bench.send(b"?")[0]
     parameters = bench.send(b"$#\n")
-    assert parameters[0] == "[G54:0.000,0.000,-150.000]"
+    assert parameters[0] == "[G54:0.000,0.000,-505.000]"
     assert parameters[-2:] == ["[PRB:0.000,0.000,0.000:0]", "ok"]
 
 
