@@ -45,7 +45,7 @@ def rows() -> Iterator[Row]:
     """Cutting at two cells, a ring against its formula, then a film of the demo's scene."""
     for cell, published in PUBLISHED.items():
         yield Row(
-            room="picture",
+            package="picture",
             task=f"cut moves of {MOVE_MM} mm, 6 mm tool, cell {cell} mm",
             figure=moves_per_second(cell),
             unit="moves/s",
@@ -53,7 +53,7 @@ def rows() -> Iterator[Row]:
             peer_figure=published,
         )
         yield Row(
-            room="picture",
+            package="picture",
             task=f"the same on straight passes, cell {cell} mm",
             figure=straight_moves_per_second(cell),
             unit="moves/s",
