@@ -1,5 +1,6 @@
 """The motion of a control: where it stands, how fast it goes, and what becomes of programmed targets."""
 
+import functools
 import math
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
@@ -7,7 +8,7 @@ from typing import Any
 from twin.nc.control.modal import Modal
 from twin.nc.control.settings import ControlSettings
 from twin.nc.geometry.arcs import Point
-from twin.nc.geometry.frame import Frame, arc_about, moved_shift
+from twin.nc.geometry.frame import Arc, Frame, arc_about, moved_shift
 from twin.nc.geometry.planes import Plane, Vector
 from twin.nc.path.move_columns import FEED, NAN, RAPID, Segment
 from twin.nc.path.moves import (
@@ -33,8 +34,8 @@ from twin.nc.path.segments import direction_of
 from twin.nc.text.blocks import Block
 from twin.nc.text.reporter import Reporter
 
-NO_NORMAL = (NAN, NAN, NAN)
-"""That of a line."""
+_STRAIGHT = (None, (NAN, NAN, NAN), 0.0)
+"""Centre, normal and sweep of a line."""
 
 
 class Motion:
@@ -103,9 +104,16 @@ class Motion:
 
     # --- moves
 
-    def line_to(self, target: list[float], block: Block, *, rapid: bool) -> None:
-        """Move straight to a programmed position for a block; nothing when it stands there already."""
-        self._add(target, block, rapid=rapid)
+    def arc(self, center: Point, sweep: float) -> Arc:
+        """An arc about the plane's normal, as the part sees it.
+
+        Args:
+            center: Abscissa and ordinate of its programmed centre [mm].
+            sweep: Signed angle with all turns [deg].
+        """
+        return self.frame.arc(
+            arc_about(self.modal.plane.directions, self.programmed, center, sweep)
+        )
 
     def spline_to(self, target: list[float], block: Block, *, flat: bool) -> None:
         """Move on a spline through a programmed position; ``flat``: its height goes linearly.
@@ -114,32 +122,28 @@ class Motion:
         """
         if target == self.programmed:
             self.path.end_spline()
-        self._add(target, block, rapid=False, spline=(flat,))
+        self.move_to(target, block, add=functools.partial(self.path.add_point, flat=flat))
 
-    def arc_to(self, target: list[float], block: Block, center: Point, sweep: float) -> None:
-        """Move on an arc about the plane's normal.
-
-        Args:
-            target: Programmed position of its end, shape (k,).
-            block: That asks for it.
-            center: Abscissa and ordinate of its programmed centre [mm].
-            sweep: Signed angle with all turns [deg].
-        """
-        arc = self.frame.arc(arc_about(self.modal.plane.directions, self.programmed, center, sweep))
-        self._add(target, block, rapid=False, center=arc.center, normal=arc.normal, sweep=arc.sweep)
-
-    def _add(
+    def move_to(
         self,
         target: list[float],
         block: Block,
         *,
-        rapid: bool,
-        center: Vector | None = None,
-        normal: Vector = NO_NORMAL,
-        sweep: float = 0.0,
-        spline: tuple[bool] | None = None,
+        rapid: bool = False,
+        arc: Arc | None = None,
+        add: Callable[[Segment], None] | None = None,
     ) -> None:
+        """Move to a programmed position; nothing when it stands there already.
+
+        Args:
+            target: The position, shape (k,).
+            block: That asks for it.
+            rapid: At the machine's own speed.
+            arc: On which, as the part sees it; None: straight.
+            add: What takes the move; None: the path, as it is.
+        """
         end = self.frame.to_part(target)
+        center, normal, sweep = _STRAIGHT if arc is None else arc
         if center is None:
             length = line_length(self.part, end)
         else:
@@ -154,7 +158,7 @@ class Motion:
             feed = rapid_feed(self.rapid_feed, NAN if self.feed is None else self.feed)
         else:
             feed = self._feed_per_minute(end, length, is_arc)
-            if self.feed_rule is not PATH_COUNTS:
+            if self.feed_rule is not PATH_COUNTS and (is_arc or self.feed_rule.degree):
                 feed = self._pace_by_rule(feed, end, length, center, sweep)
         acceleration, deceleration = self.acceleration, self.deceleration
         if rapid:
@@ -181,10 +185,10 @@ class Motion:
             normal,
             sweep,
         )
-        if spline is None:
+        if add is None:
             self.path.add(self.last)
         else:
-            self.path.add_point(self.last, flat=spline[0])
+            add(self.last)
         self.programmed = target
         self.part = end
 
