@@ -30,7 +30,7 @@ import pytest
 MARKER = "twin"
 OUR_PACKAGE = Path(__file__).resolve().parent / "twin"
 NC_SUFFIXES = frozenset(
-    {".nc", ".cnc", ".ngc", ".tap", ".mpf", ".spf", ".iso", ".gcode", ".eia", ".min"}
+    {".nc", ".cnc", ".ngc", ".tap", ".mpf", ".spf", ".iso", ".gcode", ".eia", ".min", ".h"}
 )
 """As ``twin.check.discovery`` has them; a test holds the two together."""
 

@@ -1,5 +1,6 @@
 """What all tests share: the command line in the test's own process, kinds of tests, and what they cost."""
 
+import gc
 import os
 import sys
 from collections.abc import Iterator
@@ -10,10 +11,13 @@ from command_line import Finished, Twin
 from hypothesis import HealthCheck, settings
 
 from twin import cli
+from twin.__main__ import COLLECT_AFTER
 from twin.compilation.speed import VARIABLE
 
 # What is compiled beside a run, and when it is ready, would differ from one run of the tests to the next.
 os.environ.setdefault(VARIABLE, "wait")
+# As the command does: what is loaded, collected and compiled stays, and is searched for garbage in vain.
+gc.set_threshold(COLLECT_AFTER)
 # How long examples take to draw is the machine's load: a property fails by its examples alone.
 settings.register_profile(
     "untimed", deadline=None, suppress_health_check=[HealthCheck.too_slow], print_blob=True
@@ -34,6 +38,8 @@ _NEED = {
 }
 """Exhaustive tests that cannot even be read without a package of the extra ``exhaustive``."""
 collect_ignore = [file for file, package in _NEED.items() if find_spec(package) is None]
+BY_HAND = "by_hand"
+"""Marker of tests that run where ``-m`` names it, and else nowhere."""
 _BEGUN = pytest.StashKey[float]()
 _COST = "processor_seconds"
 
@@ -45,11 +51,29 @@ def pytest_itemcollected(item: pytest.Item) -> None:
         item.add_marker("exhaustive")
 
 
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leave out what runs by hand alone, unless it is asked for."""
+    if BY_HAND in config.option.markexpr:
+        return
+    left_out = [item for item in items if item.get_closest_marker(BY_HAND)]
+    items[:] = [item for item in items if not item.get_closest_marker(BY_HAND)]
+    config.hook.pytest_deselected(items=left_out)
+
+
+def pytest_collection_finish() -> None:
+    """Nothing that was collected is garbage before the end."""
+    gc.collect()
+    gc.freeze()
+
+
 def pytest_report_header() -> list[str]:
     """Name what is left out, and why."""
     return [
-        f"tests/{file} is left out: {_NEED[file]} is missing, which the extra 'exhaustive' brings"
-        for file in collect_ignore
+        f"tests marked {BY_HAND} are left out: -m {BY_HAND} runs them",
+        *(
+            f"tests/{file} is left out: {_NEED[file]} is missing, which the extra 'exhaustive' brings"
+            for file in collect_ignore
+        ),
     ]
 
 

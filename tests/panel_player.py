@@ -2,15 +2,18 @@
 
 import contextlib
 import dataclasses
+import itertools
 import threading
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
+from unittest import mock
 
 from browsers import CHROMIUM, FIREFOX, QUIET
 
 from twin.training.scene.scene_file import Scene, StepTable, read_scene, scene_path
+from twin.training.server import launch
 from twin.training.server.launch import OpenRoom, open_room
 
 if TYPE_CHECKING:
@@ -24,10 +27,16 @@ PLAYED_FASTER = 5.0
 What = Literal["solution", "mistake"]
 
 
+_rooms = itertools.count()
+
+
 @contextlib.contextmanager
 def served(scene: Scene, out: Path | None = None) -> Iterator[OpenRoom]:
     """A room whose machine runs on a thread of its own."""
-    with open_room(scene, out=out) as room:
+    with contextlib.ExitStack() as stack:
+        if next(_rooms):  # What the first has warmed up in this process is warm for all.
+            stack.enter_context(mock.patch.object(launch, "warm_up"))
+        room = stack.enter_context(open_room(scene, out=out))
         thread = threading.Thread(target=room.serve, daemon=True)
         thread.start()
         try:
@@ -37,7 +46,7 @@ def served(scene: Scene, out: Path | None = None) -> Iterator[OpenRoom]:
             thread.join(timeout=PATIENCE_S)
 
 
-def launch(playwright: "Playwright", name: str) -> "Browser":
+def opened_browser(playwright: "Playwright", name: str) -> "Browser":
     """A headless browser: Chromium, or the Firefox of the system, led by WebDriver BiDi."""
     if name == "firefox":
         return playwright.firefox.launch(executable_path=FIREFOX, channel="moz-firefox")
@@ -50,7 +59,7 @@ def browser(name: str = "chromium") -> Iterator["Browser"]:
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
-        opened = launch(playwright, name)
+        opened = opened_browser(playwright, name)
         yield opened
         opened.close()
 

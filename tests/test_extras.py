@@ -26,7 +26,7 @@ CASES = [
     (extra, package, command)
     for extra, packages in extras.PACKAGES.items()
     for package in packages
-    for command in COMMANDS[extra]
+    for command in COMMANDS.get(extra, ())
 ]
 
 

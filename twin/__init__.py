@@ -2,9 +2,10 @@
 
     import twin
 
-    moves = twin.interpret("part.nc")
+    moves = twin.interpret("G1 X10 F100", dialect="haas")
     setpoints = twin.plan("part.nc")
-    done = twin.run("part.toml", out="out/part")
+    result = twin.run("part.toml", out="out/part")
+    variants = twin.sweep("part.toml", {"machine.axes.X.kv": [5.0, 7.5]})
     difference = twin.compare("out/part/recording.h5", "log.csv")
 
 Each function's help has shapes, units and an example. Errors are raised as ``twin.errors.TwinError``.
@@ -15,11 +16,36 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from twin.api import compare, interpret, plan, run
+    from twin.api import (
+        Job,
+        Machine,
+        Result,
+        Stock,
+        Tolerance,
+        Tool,
+        compare,
+        interpret,
+        plan,
+        run,
+        sweep,
+    )
 
 from twin.version import __version__
 
-__all__ = ["__version__", "compare", "interpret", "plan", "run"]
+__all__ = [
+    "Job",
+    "Machine",
+    "Result",
+    "Stock",
+    "Tolerance",
+    "Tool",
+    "__version__",
+    "compare",
+    "interpret",
+    "plan",
+    "run",
+    "sweep",
+]
 
 
 def __getattr__(name: str) -> Any:

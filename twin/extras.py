@@ -7,6 +7,7 @@ from twin.errors import UsageError
 PACKAGES = {
     "calibrate": ("scipy", "threadpoolctl"),
     "cluster": ("ray",),
+    "notebook": ("pandas",),
     "opcua": ("asyncua", "starlette", "uvicorn"),
     "serve": ("starlette", "uvicorn"),
     "train": ("starlette", "uvicorn", "websockets"),

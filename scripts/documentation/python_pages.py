@@ -66,7 +66,7 @@ def python_page() -> str:
         "# Python",
         "The rooms of the command line as functions, with plain NumPy columns. `help(twin.run)` shows the same.",
     ]
-    for name in ("interpret", "plan", "run", "compare"):
+    for name in ("interpret", "plan", "run", "sweep", "compare"):
         function = getattr(twin, name)
         sections += [
             f"## `twin.{name}`",

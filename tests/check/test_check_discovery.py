@@ -80,3 +80,10 @@ def test_of_files_of_any_kind_programs_and_jobs_are_checked_each_once(tmp_path: 
     files = [*sorted(tmp_path.iterdir()), tmp_path / "gone.nc"]
     assert [path.name for path in checkable(files)] == ["job.toml", "alone.nc"]
     assert checkable([tmp_path / "pyproject.toml"]) == []
+
+
+def test_of_files_that_end_in_h_those_in_klartext_are_programs(tmp_path: Path) -> None:
+    (tmp_path / "part.h").write_text("; roughing\n0 BEGIN PGM PART MM\n1 END PGM PART MM\n")
+    (tmp_path / "board.h").write_text("#ifndef BOARD_H\n#define BOARD_H\n#endif\n")
+    assert names(tmp_path, find_programs([tmp_path])) == ["part.h"]
+    assert names(tmp_path, checkable(sorted(tmp_path.iterdir()))) == ["part.h"]

@@ -3,6 +3,8 @@ import sys
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
+import pytest
+
 from tests.check.test_check_runs import PROGRAM, write_job
 
 ROOT = Path(__file__).parents[2]
@@ -22,6 +24,7 @@ def pytest_in(path: Path, *arguments: str) -> tuple[int, str]:
     return done.returncode, done.stdout
 
 
+@pytest.mark.seconds("a process of pytest runs jobs")
 def test_jobs_are_tests_with_their_diagnostics_as_failures(tmp_path: Path):
     write_job(tmp_path, "good")
     write_job(tmp_path, "tight", tolerance=0.001)
@@ -45,6 +48,7 @@ def test_jobs_are_tests_with_their_diagnostics_as_failures(tmp_path: Path):
     assert float(properties["contour_um"] or 0) > 0.0
 
 
+@pytest.mark.processes
 def test_tests_are_chosen_spread_and_held_to_baselines(tmp_path: Path):
     write_job(tmp_path, "good")
     write_job(tmp_path, "wrong", "N10 X1 QQ5")
@@ -63,6 +67,7 @@ def test_tests_are_chosen_spread_and_held_to_baselines(tmp_path: Path):
     assert "good.nc:4:1: error baseline-path: ends at Y-4.27, baseline Y-4.25" in shown
 
 
+@pytest.mark.processes
 def test_an_nc_program_that_is_named_is_a_test_too(tmp_path: Path):
     write_job(tmp_path, "good")
     plain = tmp_path / "plain.nc"
@@ -82,6 +87,7 @@ def test_storing_baselines_needs_a_folder(tmp_path: Path):
     assert code == 4
 
 
+@pytest.mark.seconds("a process of pytest runs jobs")
 def test_a_project_may_have_a_package_of_the_same_name(tmp_path: Path):
     (tmp_path / "twin").mkdir()
     (tmp_path / "twin" / "__init__.py").write_text("WHOSE = 'theirs'\n")

@@ -5,6 +5,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 from twin.compilation.announcement import MESSAGE
 
 KERNELS = """
@@ -26,6 +28,7 @@ kernels.double(1), kernels.triple(1)
 """
 
 
+@pytest.mark.seconds("two processes load the compiler")
 def test_the_first_compilation_is_told_of_once(tmp_path: Path) -> None:
     (tmp_path / "kernels.py").write_text(KERNELS)
     root = Path(__file__).parents[2]

@@ -49,10 +49,7 @@ pytestmark = [
     pytest.mark.xdist_group("linuxcnc"),
 ]
 
-LONG_TESTS = "TWIN_TEST_LINUXCNC"
-takes_minutes = pytest.mark.skipif(
-    LONG_TESTS not in os.environ, reason="takes minutes on a busy computer: scripts/link runs it"
-)
+takes_minutes = pytest.mark.by_hand("minutes of real time with LinuxCNC; scripts/link runs it")
 
 SQUARE = """(a square with a rounded corner, a circle, and the table)
 G21 G90 G61

@@ -11,6 +11,9 @@ from twin.check.runner import check_program
 from twin.check.task import CheckSettings
 from twin.commands.pictures import ALARMS_OF_CONTACT
 from twin.files.shipped import resource_root
+from twin.run.preparation import prepare
+from twin.run.progress import no_progress
+from twin.run.run import Run
 
 pytestmark = pytest.mark.seconds("each program is run up to its alarm, and that is drawn")
 
@@ -24,11 +27,15 @@ EXPECTED = {
     "collision_faceplate": ("collision", 5, "the cutter meets the faceplate"),
     "collision_vise": ("collision", 6, "the holder's nut meets the fixed jaw"),
     "collision_second_tool": ("collision", 9, "the holder's nut meets the "),
-    "collision_tool_change": ("collision", 6, "the cutter meets the fixed jaw (20.00 mm deep)"),
+    "collision_tool_change": (
+        "collision",
+        6,
+        "a tool of 140 mm comes into the spindle: the cutter meets the fixed jaw (20.00 mm deep)",
+    ),
     "collision_change_in_part": (
         "collision",
         5,
-        "tool 2 comes into the spindle 20.00 mm deep in the part",
+        "tool 2, 130 mm long, comes into the spindle 20.00 mm deep in the part",
     ),
     "collision_drill": ("collision", 4, "the cutter meets the faceplate"),
     "collision_flank": ("collision", 5, "the cutter meets the jaw"),
@@ -57,6 +64,7 @@ EXPECTED = {
 FIRST_LINE_AFTER = {"collision_change_in_part": 7}
 """The move before which a tool change is an alarm."""
 NO_ALARM = "near_miss"
+TOLD_EVERY_DAY = {"soft_limit", "collision_holder", "tool_broken", "gouge"}
 
 
 def test_every_program_has_its_expectation():
@@ -109,7 +117,25 @@ def test_a_tool_that_leaves_the_part_without_a_move_has_stood_in_it(tmp_path: Pa
 
 
 @pytest.mark.parametrize("name", sorted(EXPECTED))
-def test_the_alarm_is_raised_at_its_line_and_the_recording_up_to_it_is_kept(
+def test_the_alarm_is_raised_at_its_line(name: str):
+    code, line, message = EXPECTED[name]
+    run = Run(prepare(FOLDER / f"{name}.toml"))
+    outcome = run.execute(run.dry_run(), None, no_progress)
+    assert outcome.verdict.outcome == "alarm"
+    assert [reason.what for reason in outcome.verdict.reasons] == [code], "nothing else is wrong"
+    (alarm,) = outcome.alarms
+    assert (alarm.code, alarm.line) == (code, line)
+    assert alarm.message.startswith(message)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=() if name in TOLD_EVERY_DAY else pytest.mark.thorough)
+        for name in sorted(EXPECTED)
+    ],
+)
+def test_the_alarm_is_told_and_drawn_and_the_recording_up_to_it_is_kept(
     twin: Twin, tmp_path: Path, name: str
 ):
     code, line, message = EXPECTED[name]

@@ -11,7 +11,7 @@ from twin.columns import join
 from twin.motion.phase_planner import plan_phases
 from twin.motion.planner import plan
 from twin.motion.setpoints.setpoints import Setpoints
-from twin.run.interpreted import interpreted
+from twin.run.dry_run import interpreted
 from twin.run.preparation import Preparation, prepare
 
 NIMBLE = mill(

@@ -92,7 +92,10 @@ def shipped(path: Path) -> Interpretation:
         SETTINGS,
         start=job.file.start,
         default_feed=job.file.default_feed or 1000.0,
-        tools={each.number: ToolData(each.diameter / 2.0, each.length) for each in job.file.tools},
+        tools={
+            each.number: ToolData(each.diameter / 2.0, each.length, each.name)
+            for each in job.file.tools
+        },
         any_tool="tools" not in job.file.model_fields_set,
         offsets=job.file.offsets,
         m_functions={

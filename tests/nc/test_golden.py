@@ -17,7 +17,9 @@ from twin.nc.interpreter import Interpretation
 from twin.nc.text.source import read_source
 
 GOLDEN = ROOT / "tests" / "golden"
-PROGRAMS = sorted((ROOT / "programs").glob("*/*.nc"))
+PROGRAMS = sorted(
+    path for suffix in ("nc", "h") for path in (ROOT / "programs").glob(f"*/*.{suffix}")
+)
 RULES = sorted(GOLDEN.glob("*/*/*.nc"))
 
 
@@ -81,12 +83,14 @@ def test_every_golden_file_has_its_program() -> None:
 @pytest.mark.parametrize("name", DIALECTS)
 def test_every_followed_code_has_its_golden_file(name: str) -> None:
     followed = {number for number, code in DIALECTS[name].codes.g.items() if not code.refused}
-    paths = {float(path.stem[1:]): path for path in (GOLDEN / name / "codes").glob("G*.nc")}
+    named = DIALECTS[name].syntax.codes
+    files = list((GOLDEN / name / "codes").glob("*.nc"))
+    paths = {named[path.stem]: path for path in files if path.stem in named}
+    paths |= {float(path.stem[1:]): path for path in files if path.stem[0] == "G"}
     assert followed == set(paths)
     for number, path in paths.items():
-        assert re.search(
-            rf"G0*{re.escape(f'{number:g}')}(?![0-9])", path.read_text(encoding="utf-8")
-        ), path
+        written = path.stem if path.stem in named else rf"G0*{re.escape(f'{number:g}')}"
+        assert re.search(rf"{written}(?![0-9])", path.read_text(encoding="utf-8")), path
 
 
 @pytest.mark.parametrize("name", DIALECTS)

@@ -7,8 +7,8 @@ import pytest
 from twin.errors import ConfigError, EmptyProgramError, UsageError
 from twin.nc.text.diagnostics import ProgramError
 from twin.run.assumed_job import AssumedJob, text_beside, with_assumptions
-from twin.run.assumed_tools import numbered_tool, tool_of_comment
 from twin.run.preparation import Preparation, prepare
+from twin.run.reading.assumed_tools import numbered_tool, tool_of_comment
 
 CONTOUR = """%
 O01001 (PLATE)
@@ -71,6 +71,19 @@ def test_feeds_that_hardly_differ_are_told_and_ask_nobody(tmp_path: Path) -> Non
     assert made.dialect.name == "fanuc"
     assert "in line 5 fanuc feeds 303" in made.dialect_reason
     assert "--dialect haas or --dialect linuxcnc" in made.dialect_reason
+
+
+def test_pecks_that_withdraw_differently_ask_nobody(tmp_path: Path) -> None:
+    """A Fanuc withdraws by 0.5 mm, LinuxCNC by 0.254 mm: parameters; a hole that is deeper for one of them asks."""
+    path = tmp_path / "part.nc"
+    text = "O1\nG21 G90 G54\nG0 Z20.\nG98 G83 X1. Y1. Z-9. R2. Q3. F90.\nG80\nM30\n"
+    path.write_text(text)
+    made = prepare(path)
+    assert made.dialect.name == "fanuc"
+    assert (
+        "in line 4 they withdraw pecks differently, fanuc to Z-0.5 and linuxcnc"
+        in made.dialect_reason
+    )
 
 
 def test_a_control_that_would_hardly_feed_was_not_meant(tmp_path: Path) -> None:
@@ -260,6 +273,9 @@ def test_the_job_can_be_kept_in_another_folder(tmp_path: Path) -> None:
         ("T2 90 DEG CHAMFER MILL 12 mm", (2, "chamfer", 12.0, None)),
         ("6.8 DRILL", (None, "drill", 6.8, None)),
         ("TC: 5mm Endmill", (None, "flat", 5.0, None)),
+        ("FREZA D5", (None, "", 5.0, None)),
+        ("T02 ID=002  DIA-0.5000  TOOL END MILL", (2, "flat", 0.5, None)),
+        ("FACE MILL H1 D2", (None, "flat", None, None)),
     ],
 )
 def test_comments_tell_tools(comment: str, tool: tuple[object, ...]) -> None:
@@ -267,6 +283,11 @@ def test_comments_tell_tools(comment: str, tool: tuple[object, ...]) -> None:
     number, text = (None, comment) if listed is None else listed
     found = tool_of_comment(text, inches=False)
     assert (number, found.kind, found.diameter, found.corner) == tool
+
+
+def test_a_comment_beside_its_call_tells_the_diameter_alone(tmp_path: Path) -> None:
+    made, _ = raw(tmp_path, CONTOUR.replace("(T1 D=10.", "(").replace("T1 M6", "T1 M6 (D26)"))
+    assert made.job.file.tools[0].diameter == 26.0
 
 
 def test_numbers_without_a_unit_are_inches_where_the_program_is() -> None:
@@ -304,3 +325,41 @@ def test_stock_that_is_cut_back_from_rapids_says_so_with_their_lines(tmp_path: P
     assert any("of line 13 go below its top" in line for line in assumed.assumptions)
     _, assumed = raw(tmp_path, CONTOUR.replace("N50 Z-4.", "N50 G1 Z-4. F300."))
     assert not any("not judged" in line for line in assumed.assumptions)
+
+
+KLARTEXT = """BEGIN PGM PLATE MM
+BLK FORM 0.1 Z X-5 Y+0 Z-20
+BLK FORM 0.2 X+95 Y+60 Z+1
+TOOL DEF 4 L+0 R+3
+TOOL CALL 4 Z S3000 F500
+L X-20 Y+10 Z+5 R0 FMAX M3
+L Z-2 F200
+L X+40
+L Z+50 FMAX
+END PGM PLATE MM
+"""
+
+
+def test_klartext_declares_its_stock_and_its_tools(tmp_path: Path) -> None:
+    _, made = raw(tmp_path, KLARTEXT)
+    assert made.tables["stock"] == {
+        "shape": "box",
+        "size": [100, 60, 21],
+        "position": [45.0, 30.0, 1.0],
+    }
+    (tool,) = made.tables["tools"]  # pyright: ignore[reportGeneralTypeIssues]
+    assert (tool["number"], tool["diameter"]) == (4, 6.0)
+
+
+def test_klartext_declares_a_cylinder(tmp_path: Path) -> None:
+    blank = "BLK FORM CYLINDER Z R40 L25 DIST+2\n"
+    _, made = raw(
+        tmp_path, KLARTEXT.split("BLK", maxsplit=1)[0] + blank + KLARTEXT.split("Z+1\n")[1]
+    )
+    stock = made.tables["stock"]
+    assert stock == {
+        "shape": "cylinder",
+        "diameter": 80,
+        "height": 25,
+        "position": [0.0, 0.0, 2.0],
+    }

@@ -33,21 +33,28 @@ def name_of(job: Path) -> str:
 each_job = pytest.mark.parametrize("job", JOBS, ids=name_of)
 
 
-@each_job
+def every_day(*, final: bool) -> pytest.MarkDecorator:
+    """Each job: every day those whose final position is said, or those others, the rest thoroughly."""
+    return pytest.mark.parametrize(
+        "job",
+        [
+            pytest.param(
+                job,
+                marks=() if (name_of(job) in FINAL) == final else pytest.mark.thorough,
+                id=name_of(job),
+            )
+            for job in JOBS
+        ],
+    )
+
+
+@every_day(final=False)
 def test_it_passes(job: Path):
     done = check_program(job, CheckSettings())
     assert done.passed, "\n".join(map(str, done.findings))
 
 
-@pytest.mark.parametrize(
-    "job",
-    [
-        pytest.param(
-            job, marks=() if name_of(job) in FINAL else pytest.mark.thorough, id=name_of(job)
-        )
-        for job in JOBS
-    ],
-)
+@every_day(final=True)
 def test_it_runs_and_ends_where_it_shall(twin: Twin, tmp_path: Path, job: Path):
     done = twin("run", job, "--out", tmp_path)
     assert done.code == 0, done.stderr

@@ -89,7 +89,12 @@ def test_the_cuts_end_with_the_part_as_it_was_cut(recorded):
         length, time_s = struct.unpack("<If", cut[:8])
         assert length == len(cut) - 8
         row, column, rows, width = struct.unpack("<HHHH", cut[16:24])
-        levels = np.frombuffer(zlib.decompress(cut[24:]), "<u2").reshape(rows, width)
+        cells = zlib.decompress(cut[24:])
+        levels = np.frombuffer(cells, "<u2", rows * width).reshape(rows, width)
+        if times:
+            tools = set(cells[2 * rows * width :])
+            assert tools <= {0, *run.description()["tools"]}
+            assert tools != {0}
         shown[row : row + rows, column : column + width] = levels
         times.append(time_s)
     part = recut(scene.recording, scene.summary, scene.stock).map

@@ -2,6 +2,7 @@
 
 import glob
 import os
+import re
 import tomllib
 from collections.abc import Iterable
 from pathlib import Path
@@ -9,10 +10,12 @@ from pathlib import Path
 from twin.errors import UsageError
 
 NC_SUFFIXES = frozenset(
-    {".nc", ".cnc", ".ngc", ".tap", ".mpf", ".spf", ".iso", ".gcode", ".eia", ".min"}
+    {".nc", ".cnc", ".ngc", ".tap", ".mpf", ".spf", ".iso", ".gcode", ".eia", ".min", ".h"}
 )
 """What a file must end in to be taken for an NC program when a folder is searched."""
-
+_KLARTEXT = re.compile(rb"^[ \t]*\d*[ \t]*BEGIN[ \t]+PGM\b", re.IGNORECASE | re.MULTILINE)
+"""What tells a Klartext program from the headers of C, whose names end in .h as well."""
+_HEAD_BYTES = 4096
 
 _FOREIGN_FOLDERS = frozenset({"node_modules", "site-packages", "__pycache__"})
 
@@ -59,9 +62,7 @@ def checkable(files: Iterable[Path]) -> list[Path]:
     run_by = {path: program_of(path) for path in there if path.suffix == ".toml"}
     jobs = [path for path, program in run_by.items() if program is not None]
     taken = set(run_by.values())
-    return jobs + [
-        path for path in there if path.suffix.lower() in NC_SUFFIXES and path.resolve() not in taken
-    ]
+    return jobs + [path for path in there if _is_program(path) and path.resolve() not in taken]
 
 
 def _expanded(paths: Iterable[str | Path]) -> Iterable[Path]:
@@ -84,12 +85,22 @@ def _programs_in(folder: Path) -> list[Path]:
             path = Path(root) / name
             if path.suffix == ".toml":
                 jobs.append(path)
-            elif path.suffix.lower() in NC_SUFFIXES:
+            elif _is_program(path):
                 programs.append(path)
     run_by = {job: program_of(job) for job in jobs}
     taken = {program for program in run_by.values() if program is not None}
     jobs = [job for job in jobs if run_by[job] is not None]
     return sorted([*jobs, *(path for path in programs if path.resolve() not in taken)])
+
+
+def _is_program(path: Path) -> bool:
+    if path.suffix.lower() != ".h":
+        return path.suffix.lower() in NC_SUFFIXES
+    try:
+        with path.open("rb") as file:
+            return _KLARTEXT.search(file.read(_HEAD_BYTES)) is not None
+    except OSError:
+        return False
 
 
 def without_jobs(programs: Iterable[Path]) -> list[Path]:

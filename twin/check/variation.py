@@ -24,8 +24,22 @@ def variants(path: Path, vary: Sequence[str]) -> list[Variant]:
     Raises:
         UsageError: A text is none of these, or there are too many combinations.
     """
-    axes = [[(key, value) for value in values] for key, values in map(_axis, vary)]
-    keys = [axis[0][0] for axis in axes]
+    return combinations(path, list(map(_axis, vary)))
+
+
+def combinations(path: Path, vary: Sequence[tuple[str, Sequence[Any]]]) -> list[Variant]:
+    """The same, of keys with their values.
+
+    Raises:
+        UsageError: A key stands twice, is none of a job or machine, or has no values; or there are too many
+            combinations.
+    """
+    for key, values in vary:
+        if not values:
+            raise UsageError(f"{key}: no values to vary it by")
+        _require_key(key, key)
+    axes = [[(key, value) for value in values] for key, values in vary]
+    keys = [key for key, _ in vary]
     if len(set(keys)) < len(keys):
         raise UsageError(f"--vary: a key stands twice: {', '.join(keys)}")
     count = functools.reduce(lambda product, axis: product * len(axis), axes, 1)
@@ -36,13 +50,17 @@ def variants(path: Path, vary: Sequence[str]) -> list[Variant]:
 
 def _axis(text: str) -> tuple[str, list[Any]]:
     key, equals, values = text.partition("=")
-    kind, *parts = key.strip().split(".")
-    if not (equals and values.strip() and parts and all(parts) and kind in ("job", "machine")):
+    _require_key(key.strip() if equals and values.strip() else "", text)
+    return key.strip(), _values(values, text)
+
+
+def _require_key(key: str, text: str) -> None:
+    kind, *parts = key.split(".")
+    if not (parts and all(parts) and kind in ("job", "machine")):
         raise UsageError(
             f"--vary {text}: write machine.KEY=VALUES or job.KEY=VALUES, "
             "such as machine.axes.X.kv=20,30,40 or job.default_feed=500:3000:6"
         )
-    return key.strip(), _values(values, text)
 
 
 def _values(values: str, text: str) -> list[Any]:

@@ -1,16 +1,38 @@
-"""``twin doctor --compile``: every kernel compiled before anybody waits for it."""
+"""Kernels compiled before anybody waits for them.
 
-from collections.abc import Callable, Sequence
+``twin doctor --compile`` compiles every kernel. A run that finds one missing compiles one after the other as its
+stages come to them, the planner's first, then those of drives, cut and comparison: these last ones are compiled in a
+second process meanwhile, which calls them with setpoints that no planner made. Both keep what they compile in one folder,
+and wait there for each other (``twin.compilation.cache``).
+"""
+
+import contextlib
+import multiprocessing
+import os
+import signal
+import sys
+import threading
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
+import numpy as np
 from numba.core import config as numba_config
 
 from twin.check.discovery import program_of
+from twin.compare.comparison import Comparison
 from twin.compilation.content import REQUIREMENTS, compilers
-from twin.compilation.folders import SHIPPED, keep_in, writable_folder
+from twin.compilation.folders import SHIPPED, keep_in, lasts, writable_folder
 from twin.compilation.inventory import inventory, note_complete
-from twin.errors import UsageError
+from twin.errors import TwinError, UsageError
 from twin.files.shipped import is_installed, machine_file, resource_root
+from twin.motion.setpoints.setpoints import Setpoints
+from twin.nc.canonical import FloatArray, Motion
+from twin.processor import available_cores
+from twin.run.assumed_job import with_assumptions
+from twin.run.dry_run import InterpretedProgram, interpreted
+from twin.run.preparation import prepare
+from twin.run.progress import no_progress
+from twin.run.run import Run
 
 JOBS = (
     "mefi/helix.toml",
@@ -25,6 +47,13 @@ JOBS = (
 """Shipped jobs that together call what a run calls: each control, corner mode, plane and kind of tool."""
 
 SCENE = "mefi_lead"
+
+SETPOINTS = 64
+"""That are enough for every kernel behind the planner."""
+BELOW_MM = 0.5
+"""Of the blank's top, where they begin."""
+STEP_MM = np.array([0.005, 0.005, -0.01])
+"""From one to the next: slow enough for any machine."""
 
 
 def compile_into_reach() -> Path:
@@ -112,11 +141,12 @@ def _run(job: Path) -> None:
 def _plan(job: Path) -> None:
     from twin.machine.description.motion_limits import motion_limits
     from twin.motion.report.summary import summarize
-    from twin.run.preparation import prepare
 
     made = prepare(job)
-    chunks = made.interpretation().chunks()
-    summarize(chunks, motion_limits(made.machine), start=made.start, axes=made.machine.axes)
+    program = interpreted(made)
+    summarize(
+        program.chunks(), motion_limits(made.machine), start=program.start, axes=made.machine.axes
+    )
 
 
 def _circle() -> None:
@@ -142,3 +172,83 @@ def _can_be_written(folder: Path) -> bool:
     except OSError:
         return False
     return True
+
+
+def start_compiling(path: Path, dialect: str | None, machine: str | None) -> None:
+    """Begin to compile beside this process, where a second core and a common folder for kernels are there.
+
+    The process ends with this one.
+
+    Args:
+        path: NC program or job file that is run.
+        dialect: Overrides the job's dialect.
+        machine: Overrides the job's machine.
+    """
+    if available_cores() < 2 or not lasts():
+        return
+    context = multiprocessing.get_context("spawn")
+    context.Process(
+        target=_compile_later_stages, args=(path, dialect, machine), daemon=True
+    ).start()
+
+
+def _compile_later_stages(path: Path, dialect: str | None, machine: str | None) -> None:
+    """Go through the later stages; what is wrong with the job is told by the run itself."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    sys.stdout = sys.stderr = Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115 (until the process ends)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+    with contextlib.suppress(TwinError):
+        preparation = prepare(path, dialect=dialect, machine=machine)
+        if preparation.job.path is None:
+            preparation, _ = with_assumptions(preparation, machine=machine, strict=False)
+        run = LaterStages(preparation)
+        run.execute(run.dry_run(), None, no_progress)
+
+
+def _end_with_parent() -> None:
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(0)
+
+
+class LaterStages(Run):
+    """A run whose setpoints go aslant into the middle of the blank and need no planner."""
+
+    def _setpoints(
+        self, program: InterpretedProgram, comparison: Comparison
+    ) -> Iterator[Setpoints]:
+        before = 0
+        for chunk in program.timed_chunks():
+            moves = chunk.moves
+            comparison.expect(moves)
+            feeds = np.flatnonzero(moves.motion == Motion.FEED)
+            if not len(feeds):
+                before += len(moves)
+                continue
+            # Two moves, for what is done where one ends.
+            ticks = np.arange(SETPOINTS)
+            move = np.minimum(feeds[0] + ticks // (SETPOINTS // 2), len(moves) - 1)
+            step = np.zeros(moves.start.shape[1])
+            step[:3] = STEP_MM
+            position = np.tile(moves.end[feeds[0]], (SETPOINTS, 1))
+            position[:, :3] = self._into_the_blank()
+            period = self.preparation.machine.file.servo_period_s
+            yield Setpoints(
+                time=ticks * np.float64(period),
+                line=moves.line[move],
+                move=before + move,
+                fraction=ticks % (SETPOINTS // 2) / (SETPOINTS // 2),
+                position=position + self.part_zero + np.outer(ticks, step),
+                velocity=np.tile(step / period, (SETPOINTS, 1)),
+                acceleration=np.zeros((SETPOINTS, len(step))),
+            )
+            return
+
+    def _into_the_blank(self) -> FloatArray:
+        """Just below its top, in the middle of what is not bored, part coordinates, shape (3,) [mm]."""
+        stock = self.preparation.job.file.stock
+        if stock is None:
+            return np.zeros(3)
+        aside = 0.0 if stock.bore is None else 0.25 * (stock.extent[0] + stock.bore)
+        return np.add(stock.position, (aside, 0.0, -BELOW_MM))

@@ -9,14 +9,14 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
-from twin import api
+from twin.api import setpoints
 from twin.commands.console import table_console
 from twin.compilation.announcement import announce_compilation
 from twin.errors import UsageError
 from twin.machine.description.motion_limits import motion_limits
 from twin.motion.report.drawing import draw_plan
 from twin.motion.report.summary import Summary, summarize
-from twin.run.interpreted import interpreted
+from twin.run.dry_run import interpreted
 from twin.run.preparation import prepare
 from twin.run.run import Run
 
@@ -62,7 +62,7 @@ def plan_and_print(
     folder.mkdir(parents=True, exist_ok=True)
     picture = folder / "plan.png"
     samples = math.ceil(summary.total / twin_machine.file.servo_period_s)
-    draw_plan(api.setpoints(Run(preparation), program), twin_machine.axes, samples, picture)
+    draw_plan(setpoints(Run(preparation), program), twin_machine.axes, samples, picture)
     if form == "json":
         typer.echo(json.dumps(_as_json(summary, picture), indent=2))
     else:

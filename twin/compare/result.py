@@ -37,6 +37,7 @@ class RunSummary:
         simulated: Final joint position by axis, part coordinates [mm or deg].
         near_miss: The content of the key ``near_miss``, or None when all kept their distance.
         scope: The content of the key ``scope``: what the verdict looked at.
+        tools: The rows of the key ``tools``: what each tool is, its time, what it took off.
     """
 
     program: str
@@ -50,6 +51,7 @@ class RunSummary:
     simulated: Mapping[str, float]
     near_miss: Mapping[str, Any] | None = None
     scope: Mapping[str, Any] | None = None
+    tools: Sequence[Mapping[str, Any]] = ()
 
 
 STAGES = ("interpret_s", "plan_s", "simulate_s", "compare_s", "cut_s", "render_s")
@@ -101,6 +103,7 @@ def result(
         ],
         "near_miss": None if summary.near_miss is None else dict(summary.near_miss),
         "cut": None if summary.cut is None else dict(summary.cut),
+        "tools": [dict(tool) for tool in summary.tools],
         "final": {"commanded": dict(summary.commanded), "simulated": dict(summary.simulated)},
     }
     return _rounded(content)

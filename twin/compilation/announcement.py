@@ -18,6 +18,7 @@ class _Announcer(event.Listener):
     def __init__(self) -> None:
         self.listens = False
         self.is_first: Callable[[], bool] | None = None
+        self.meanwhile: Callable[[], object] = lambda: None
 
     def on_start(self, event: Any) -> None:  # noqa: ARG002 (Numba passes it)
         """A compilation begins."""
@@ -25,6 +26,7 @@ class _Announcer(event.Listener):
         if is_first is not None and is_first():
             sys.stderr.write(MESSAGE if lasts() else f"kernels are {inventory()}\n")
             sys.stderr.flush()
+            self.meanwhile()
 
     def on_end(self, event: Any) -> None:
         """It has ended."""
@@ -33,12 +35,16 @@ class _Announcer(event.Listener):
 _announcer = _Announcer()
 
 
-def announce_compilation(is_first: Callable[[], bool] = lambda: True) -> None:
+def announce_compilation(
+    is_first: Callable[[], bool] = lambda: True, meanwhile: Callable[[], object] = lambda: None
+) -> None:
     """From now on, say so on stderr at the first compilation of this process.
 
     Args:
         is_first: Whether no process beside this one has said so; asked once.
+        meanwhile: Called then too, to begin what can go on beside the compiler.
     """
     if not _announcer.listens:
         _announcer.listens, _announcer.is_first = True, is_first
+        _announcer.meanwhile = meanwhile
         event.register("numba:compile", _announcer)

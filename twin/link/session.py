@@ -25,8 +25,7 @@ from twin.link.rehearsal import rehearse
 from twin.machine.simulation.live import LiveMachine
 from twin.machine.watching.alarms import Alarm, AlarmCode
 from twin.nc.canonical import Axes, concatenate
-from twin.run.dry_run import DryRun
-from twin.run.interpreted import InterpretedProgram
+from twin.run.dry_run import DryRun, InterpretedProgram
 from twin.run.outcome import Outcome
 from twin.run.progress import Progress
 from twin.run.run import Run

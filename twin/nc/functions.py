@@ -17,6 +17,9 @@ SPINDLE_SPEED = "S"
 """Sets the speed, and starts nothing."""
 COOLANT_ON = frozenset({"M7", "M8"})
 COOLANT_OFF = frozenset({"M9"})
+BLANK = "BLK FORM"
+"""What a program says of its blank, before it moves: X1 to Z2 of two corners, or D, L and Z2 of a cylinder about Z
+[mm]."""
 TOOL_CHANGE = "M6"
 OPTIONAL_STOP = "M1"
 """Stops where the operator's switch says so."""

@@ -17,10 +17,11 @@ from twin.nc.dialects.recognition import HEAD_LINES, comments_of, without_commen
 from twin.nc.functions import TOOL_CHANGE
 from twin.nc.interpreter import Interpretation
 from twin.nc.text.diagnostics import ProgramError
-from twin.run.assumed_reading import AssumedReading
-from twin.run.assumed_tools import BELOW, tool_lines
 from twin.run.placement import part_zero
 from twin.run.preparation import IGNORED_AT_ZERO, Preparation, anywhere, prepare_job
+from twin.run.reading.assumed_reading import AssumedReading
+from twin.run.reading.assumed_tools import BELOW, tool_lines
+from twin.run.reading.declared import declared_stock, declared_tools
 
 _MACHINE_ZERO_UNKNOWN = "no-machine-zero"
 """The finding of a program that counts from machine zero, where no job says where that lies."""
@@ -100,8 +101,12 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
     calls = _tool_calls(chunks)
     inches, lacking = interpretation.programs_in_inches, _lacking_axes(preparation)
     comments = list(_comments(preparation))
-    tools, told, diameter = tool_lines(calls, comments, moves, inches=inches)
-    stock, position, said = _stock(moves, comments, diameter / 2.0, inches=inches)
+    functions = [each for chunk in chunks for each in chunk.events if isinstance(each, Function)]
+    declared = declared_tools(functions)
+    tools, told, diameter = tool_lines(calls, comments, moves, declared, inches=inches)
+    stock, position, said = declared_stock(functions) or _stock(
+        moves, comments, diameter / 2.0, inches=inches
+    )
     lines = [
         f'program = "{preparation.job.program.name}"',
         f'dialect = "{preparation.dialect.name}"',

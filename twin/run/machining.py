@@ -11,6 +11,7 @@ from twin.cutting.forces.load_log import LoadLog
 from twin.cutting.inspection import Inspection, inspect
 from twin.cutting.nominal import NominalGouge, NominalWatch
 from twin.cutting.part import write_stl
+from twin.cutting.part_picture import part_picture
 from twin.cutting.program_summary import ProgramSummary
 from twin.cutting.spindle import standing
 from twin.job.job_file import JobFile, ToolTable
@@ -136,6 +137,10 @@ class Machining:
         if cutter is None or cutter.halted is None:
             return None
         return stock_alarm(cutter.halted, cutter.tool, cutter.plan.before(cutter.tool))
+
+    def picture(self) -> bytes:
+        """The part from above by now, PNG; empty without a stock."""
+        return b"" if self._cutter is None else part_picture(self._cutter.map)
 
     def finish(self, out: Path | None) -> CutResult | None:
         """What the cut came to; the part is written as ``part.stl`` into a folder, if one is given.

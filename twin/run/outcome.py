@@ -12,6 +12,7 @@ from twin.machine.watching.alarms import Alarm, NearMiss
 from twin.nc.canonical import FloatArray
 from twin.nc.text.diagnostics import Diagnostic
 from twin.run.scope import Scope
+from twin.run.tool_use import ToolUse
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -29,6 +30,8 @@ class Outcome:
         near_miss: The closest that the tool's side and the part's came, below the machine's limit.
         warnings: Those of the interpreter, of the program and of the cut.
         scope: What the verdict looked at.
+        tools: Those that were in the spindle, with their times and what they took off.
+        part: A picture of the part as it was cut, PNG; empty without a stock.
         samples: How many samples were recorded, settling included.
         duration_s: Machine time of the program, settling not counted [s].
         final_commanded: Program coordinates at the end, shape (k,) [mm or deg].
@@ -46,6 +49,8 @@ class Outcome:
     near_miss: NearMiss | None
     warnings: tuple[Diagnostic, ...]
     scope: Scope
+    tools: tuple[ToolUse, ...] = ()
+    part: bytes = b""
     samples: int
     duration_s: float
     final_commanded: FloatArray

@@ -19,15 +19,15 @@ from twin.nc.functions import SpindleState
 from twin.nc.interpreter import Interpretation
 from twin.nc.text.source import Source, read_source, source_from_text
 from twin.recording.reader import RecordingHeader
-from twin.run.assumed_reading import (
+from twin.run.placement import start_position
+from twin.run.reading.assumed_reading import (
     NOTHING_ASSUMED,
     UNKNOWN_FUNCTION,
     AssumedReading,
     assumed_reading,
     unknown_functions,
 )
-from twin.run.dialect_choice import chosen_dialect
-from twin.run.placement import start_position
+from twin.run.reading.dialect_choice import chosen_dialect
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -238,7 +238,7 @@ def _control_settings(job: Job, machine: Machine, *, strict: bool) -> ControlSet
         default_rotary_feed=job.file.default_rotary_feed or control.default_rotary_feed,
         start=machine.axes.named(start),
         tools={
-            tool.number: ToolData(radius=tool.diameter / 2.0, length=tool.length)
+            tool.number: ToolData(tool.diameter / 2.0, tool.length, tool.name)
             for tool in job.file.tools
         },
         any_tool="tools" not in job.file.model_fields_set,

@@ -87,6 +87,7 @@ def report_of(
         scope=tuple(outcome.scope.lines()),
         warnings=tuple((found.line, found.code, found.message) for found in outcome.warnings),
         stills=stills,
+        part=outcome.part,
     )
 
 
@@ -102,6 +103,7 @@ def _summary(run: Run, outcome: Outcome) -> RunSummary:
         stages={f"{name}_s": seconds for name, seconds in run.clock.seconds.items()},
         near_miss=None if outcome.near_miss is None else dataclasses.asdict(outcome.near_miss),
         scope=outcome.scope.as_json(),
+        tools=[use.as_json() for use in outcome.tools],
         cut=_cut(outcome, preparation.job.file.stock),
         commanded=named(outcome.final_commanded),
         simulated=named(outcome.final_simulated),

@@ -24,7 +24,7 @@ from twin.cutting.program_summary import ProgramSummary
 from twin.errors import ConfigError
 from twin.job.job_file import ToleranceTable
 from twin.machine.description.motion_limits import motion_limits
-from twin.machine.model.clamping import refuse_overlaps
+from twin.machine.model.clamping import refuse_overlaps, what_carries
 from twin.machine.model.model import build_spec, spindle_over_table_mm
 from twin.machine.simulation.growth import Growth
 from twin.machine.simulation.simulate import Simulation, simulate
@@ -41,8 +41,7 @@ from twin.run.cut_notices import (
     tooth_feed_notices,
     unjudged_limit_notices,
 )
-from twin.run.dry_run import DryRun, interpret_all
-from twin.run.interpreted import InterpretedProgram
+from twin.run.dry_run import DryRun, InterpretedProgram, interpret_all
 from twin.run.machining import Machining
 from twin.run.notices import Notice, shown
 from twin.run.outcome import Outcome
@@ -51,6 +50,7 @@ from twin.run.preparation import Preparation
 from twin.run.progress import Progress
 from twin.run.scope import nothing_judged, scope_of
 from twin.run.stages import StageClock
+from twin.run.tool_use import ToolTimes
 from twin.toolpath.part_frame import PartFrame
 from twin.units import UM_PER_MM
 from twin.version import __version__
@@ -137,6 +137,7 @@ class Run:
         self._process = None
         reached = _Reached(self.part_zero, dry_run.program.start)
         alarm, near_miss = dry_run.alarm or self._overspeed(dry_run), None
+        times = ToolTimes(dry_run.summary.tools, self.machine.file.servo_period_s)
         if alarm is None:
             with self._recording(out) as writer:
                 if motion is None:
@@ -156,6 +157,7 @@ class Run:
                         contour_um = comparison.add(samples)
                         lower = dry_run.summary.tools.lower(samples.setpoint.move)
                         self.trace.add(samples, contour_um, lower)
+                        times.add(samples)
                     if writer is not None:
                         with self.clock.stage("record"):
                             writer.append(samples, contour_um)
@@ -174,7 +176,12 @@ class Run:
             inspection = machining.inspect() if len(reached) else None
         alarms = (*self._breaks(reached.time_s), *(() if alarm is None else (alarm,)))
         outcome = self._outcome(dry_run, machining, reached, cut, inspection, alarms, comparison)
-        return dataclasses.replace(outcome, near_miss=near_miss)
+        return dataclasses.replace(
+            outcome,
+            near_miss=near_miss,
+            tools=times.result(cut),
+            part=machining.picture() if out is not None and len(reached) else b"",
+        )
 
     def _outcome(
         self,
@@ -250,6 +257,9 @@ class Run:
         elif watch.spindle_line and watch.first_feed:
             message = "the spindle turns, and the job has no [stock]: nothing that is cut is judged"
             yield Notice("no-stock", watch.spindle_line, message)
+        floats = what_carries(self.machine, self.spec)
+        if floats is not None:
+            yield Notice("stock-floats", 0, f"nothing carries the stock: {floats}")
         yield from tolerance_notices(job.tolerance, len(self.preparation.source.lines))
         if self._process is None:
             yield from tooth_feed_notices(watch, cut)

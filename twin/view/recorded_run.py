@@ -1,5 +1,6 @@
 """What a page shows of a recording: its samples, thinned where they are many, and the stock's cuts."""
 
+import itertools
 import struct
 from collections.abc import Iterator
 from typing import Any
@@ -115,11 +116,17 @@ class RecordedRun:
             return
         shape = cutter.map.heights.shape
         yield _timed(0.0, patch_message(cutter.map, (0, shape[0], 0, shape[1])))
-        for samples in recording.chunks(max(1, -(-len(recording) // CUTS))):
-            cutter.add(samples, self._scene.summary.is_rapid(samples.setpoint.move))
-            if cutter.changed[0] < cutter.changed[1]:
-                patch = patch_message(cutter.map, cutter.changed)
-                yield _timed(float(samples.setpoint.time[-1]), patch)
+        by = np.zeros(shape, np.uint8)
+        for chunk in recording.chunks(max(1, -(-len(recording) // CUTS))):
+            tools, _ = self._tools(chunk)
+            ends = [*np.flatnonzero(np.diff(tools)) + 1, len(chunk)]
+            for begin, end in itertools.pairwise([0, *ends]):
+                samples, before = chunk[begin:end], cutter.map.heights.copy()
+                cutter.add(samples, self._scene.summary.is_rapid(samples.setpoint.move))
+                if cutter.changed[0] < cutter.changed[1]:
+                    by[cutter.map.heights < before] = tools[begin]
+                    patch = patch_message(cutter.map, cutter.changed, tools=by)
+                    yield _timed(float(samples.setpoint.time[-1]), patch)
 
     def _cutter(self) -> Cutter | None:
         header, stock = self._scene.recording.header, self._scene.stock

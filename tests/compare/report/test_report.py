@@ -53,6 +53,7 @@ def report_of(
     summary = RunSummary(
         program="часть.nc", dialect="gost", machine="mill4", duration_s=2.8, wall_s=1.0, stages={},
         cut={"removed_mm3": 12.5, "gouges": []}, commanded={}, simulated={},
+        tools=[{"number": 7, "kind": "ball", "diameter_mm": 6.0, "length_mm": 60.0, "time_s": 2.5, "removed_mm3": 12.5}],
     )  # fmt: skip
     content = result(summary, figures, table, verdict)
     return Report(
@@ -147,3 +148,12 @@ def test_lines_are_counted_and_shown_as_the_interpreter_counts_them():
     assert ("3", "G1 Y-30") in shown
     assert ("4", "G1 X20") in shown
     assert max(len(line) for _, line in shown) == 200
+
+
+def test_the_tools_and_the_part_are_shown() -> None:
+    page = render_report(dataclasses.replace(report_of(), part=b"\x89PNG picture"))
+    row = re.search(r"<td>T7</td>.*?</tr>", page, re.DOTALL)
+    assert row is not None
+    assert re.findall(r">([^<>]+)</td>", row[0]) == ["T7", "ball", "6.00", "60.0", "2.5", "0.01"]
+    assert 'alt="the part from above' in page
+    assert 'alt="the part from above' not in render_report(report_of())

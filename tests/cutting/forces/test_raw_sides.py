@@ -1,6 +1,7 @@
 """Thin cuts on the sides of a blank that no tool has touched, at the cell that is chosen by default."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,6 +17,13 @@ from twin.nc.canonical import FloatArray
 RADIUS, DEPTH = 5.0, 3.0
 TOOL = ToolTable(number=1, diameter=2.0 * RADIUS, teeth=4)
 QUARTER = 0.5 * math.pi
+
+
+def thoroughly(*values: float) -> list[Any]:
+    return [pytest.param(value, marks=pytest.mark.thorough) for value in values]
+
+
+WIDTHS = [0.1, *thoroughly(0.2, 0.5), 1.0]
 
 
 def raw(stock: StockTable) -> Plate:
@@ -37,8 +45,8 @@ def assert_within(bench: ToothBench, expected: tuple[FloatArray, float, float]) 
     assert bench.figures[1] == pytest.approx(torque, rel=0.05)
 
 
-@pytest.mark.parametrize("size", [59.8, 60.0, 60.1, 60.3])
-@pytest.mark.parametrize("width", [0.1, 0.2, 0.5, 1.0])
+@pytest.mark.parametrize("size", [59.8, *thoroughly(60.0, 60.1), 60.3])
+@pytest.mark.parametrize("width", WIDTHS)
 @pytest.mark.parametrize("turn", range(4))
 def test_a_thin_cut_on_the_side_of_a_box(size: float, width: float, turn: int) -> None:
     part = raw(StockTable(shape="box", size=(size, size, 20.0)))
@@ -53,8 +61,8 @@ def test_a_thin_cut_on_the_side_of_a_box(size: float, width: float, turn: int) -
     assert_within(felt(part, way, ahead), by_hand(TOOL, DEPTH, *first))
 
 
-@pytest.mark.parametrize("diameter", [60.0, 60.3])
-@pytest.mark.parametrize("width", [0.1, 0.2, 0.5, 1.0])
+@pytest.mark.parametrize("diameter", [60.0, *thoroughly(60.3)])
+@pytest.mark.parametrize("width", WIDTHS)
 @pytest.mark.parametrize("degrees", [20.0, 45.0, 170.0])
 def test_a_thin_cut_around_a_cylinder(diameter: float, width: float, degrees: float) -> None:
     part = raw(StockTable(shape="cylinder", diameter=diameter, height=20.0))

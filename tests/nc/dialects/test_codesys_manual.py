@@ -11,6 +11,7 @@ from twin.nc.dialects.codesys.subprograms import LIBRARY
 from twin.nc.interpreter import Interpretation
 from twin.nc.text.diagnostics import ProgramError
 from twin.nc.text.source import read_source
+from twin.run.dry_run import InterpretedProgram
 from twin.run.preparation import prepare
 
 COUNTED = """
@@ -72,12 +73,17 @@ def test_a_jump_on_the_way_is_travelled() -> None:
     assert moves.feed[1] != moves.feed[1]
 
 
+def started(program: Path) -> list[float]:
+    preparation = prepare(program)
+    return InterpretedProgram(preparation, preparation.interpretation().chunks()).start.tolist()
+
+
 def test_the_machine_stands_where_the_path_begins(tmp_path: Path) -> None:
     program = tmp_path / "begin.nc"
     program.write_text("N10 G92 X20 Z5 N20 G1 X30 F10 E5 E-5\n")
-    assert prepare(program).start.tolist() == [20.0, 0.0, 5.0, 0.0]
+    assert started(program) == [20.0, 0.0, 5.0, 0.0]
     program.write_text("N10 G1 X30 F10 E5 E-5\n")
-    assert prepare(program).start.tolist() == [0.0] * 4
+    assert started(program) == [0.0] * 4
 
 
 def test_a_subprogram_is_a_file_of_its_own(tmp_path: Path) -> None:

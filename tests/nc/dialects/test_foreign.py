@@ -38,18 +38,7 @@ FOREIGN: dict[str, list[bytes]] = {
     "XML": [b'<?xml version="1.0"?><job/>'],
     "APT": [b"PARTNO PLATE\nGOTO / 1.0, 2.0, 3.0\nFEDRAT / 100\n"],
     "HP-GL": [b"IN;SP1;PU0,0;PD100,100;PU;"],
-    "Heidenhain": [
-        b"0 BEGIN PGM PLATE MM\n1 BLK FORM 0.1 Z X+0 Y+0 Z-20\n2 TOOL CALL 1 Z S3000\n3 L X+10 Y+10 R0 FMAX M3\n",
-        b"BEGIN PGM 100 MM\nTOOL CALL 5 Z S1000\nCC X+0 Y+0\nC X+10 Y+0 DR+\n",
-    ],
-    "Sinumerik": [
-        b"%_N_PLATE_MPF\n;$PATH=/_N_WKS_DIR\nG0 X0\n",
-        b'N10 G17 G54\nN20 T="MILL_10" D1\nN30 M6\nN40 G0 X0 Y0\nN50 G2 X10 Y0 CR=5\n',
-        b"G0 X0\nCYCLE81(10,0,2,-15)\nM30\n",
-        b"MCALL CYCLE83(5,0,1,-20)\nG0 SUPA Z0 D0\n",
-        b"DEF REAL DEPTH\nTRANS X10 Y10\nG1 X=R1 F100\n",
-        b"G0 X0\nCIP X10 Y0 I1=5 J1=5\n",
-    ],
+    "Heidenhain": [b"%PLATE G71 *\nN10 G30 G17 X+0 Y+0 Z-40 *\nN20 T1 G17 S3000 *\n"],
     "Mazatrol": [b"UNo. MAT INITIAL-Z ATC MODE\n0 CBN STL 50\nUNo. UNIT TOOL\n"],
     "Okuma": [
         b"$PLATE.MIN%\nG15 H1\nG0 X0 Y0\n",
@@ -73,6 +62,13 @@ FOREIGN: dict[str, list[bytes]] = {
     ],
     "TinyG": [b'{"sr":null}\nG0 X1\n'],
     "Brother": [b"O1000\nG100 T1 X0 Y0 Z50. G43 H1 S3000 M3\nG1 X10. F100.\nM30\n"],
+    "Excellon": [b"M48\nMETRIC,TZ\nT1C0.800\nT2C1.000\n%\nG90\nG05\nT1\nX10.0Y5.0\nM30\n"],
+    "Gerber": [b"%FSLAX46Y46*%\n%MOMM*%\n%ADD10C,0.200*%\nD10*\nX100Y100D02*\nM02*\n"],
+    "Fanuc TP": [
+        b"/PROG  PICK\n/ATTR\nOWNER = MNEDITOR;\n/MN\n 1:J P[1] 100% FINE ;\n/POS\n/END\n"
+    ],
+    "KUKA": [b"&ACCESS RVP\nDEF PICK( )\nPTP {A1 0,A2 -90}\nLIN {X 10,Y 5}\nEND\n"],
+    "ABB": [b"MODULE Main\nPROC main()\nMoveJ p10, v100, fine, tool0;\nENDPROC\nENDMODULE\n"],
     "Python": [b"import math\nprint(1)\n"],
     "JSON": [b'{"moves": [1, 2]}', b"[[1, 2]]"],
     "C program": [b"#include <stdio.h>\nint main() {}\n"],
@@ -85,8 +81,6 @@ HEADS: dict[str, list[bytes]] = {
     ],
     "Mazak": [b"(MAZAK VCN-410A)\nG0 X1.\n"],
     "Mitsubishi": [b"(POST: MITSUBISHI M70)\nG0 X1.\n"],
-    "Siemens|Sinumerik": [b"; SIEMENS 840D\nG0 X10\nG1 X20 F100\n"],
-    "Heidenhain": [b"; iTNC 530 DIN/ISO\nG0 X10\nG1 X20 F100\n"],
     "Hurco": [b"(HURCO WINMAX)\nG0 X1.\n"],
     "Centroid": [b"; CENTROID Acorn post\nG0 X1.\n"],
     "prose": [b"Dear colleague, please mill this part tomorrow and tell me when it is ready.\n"],

@@ -14,7 +14,7 @@ def test_the_page_is_that_of_the_declaration(name: str) -> None:
 def test_every_code_and_decision_is_described(name: str) -> None:
     dialect, text = DIALECTS[name], describe(DIALECTS[name])
     for number in dialect.codes.g:
-        assert f"\n| G{number} " in text
+        assert f"\n| {dialect.code_name(number)} " in text
     for decision in dialect.decisions:
         assert decision.answer in text
 

@@ -17,7 +17,7 @@ OWN = {
     ],
     "fagor8070": [
         "G01 R50 Q30", "G30 I5 J5", "$IF P1==1", "P1=5", "G01 X20I", "G01 X1=5", "#RPT[N1,N2]",
-        "G263=50", "G81 Z5 I-10", "G137", "G158 X5", "G72 S2", "%L sub", "LL contour", "NR 5", "#MCS G0 Z0", "#HSC ON", "G51 A5 E0.1", "G500",
+        "G263=50", "G81 Z5 I-10", "G137", "G158 X5", "G72 S2", "%L sub", "LL contour", "NR 5", "#MCS G0 Z0", "#HSC ON", "G51 A5 E0.1", "G501", "G500\nNR 5",
         "V.A.ORGT[1].Z=1", "Y1=5", "G83 Z5 I2 ; comment\nNR 5", "G36 I5\nNR 5", "G39 I2\nNR 5",
         "G73 Q45\nNR 5", "G102 X5\nNR 5", "G103 P1\nNR 5", "G112\nNR 5", "G136\nNR 5", "G187 P1\nNR 5",
         "G31 X1 Q5\nNR 5", "G87 Z5 I2\nNR 5",
@@ -37,6 +37,15 @@ OWN = {
         "G154 P2", "M97 P100", "G12 I5. D1", "O01000\nG187 P1", "G65 P1\nG103 P1", "G83 Z-5. I2.\nO1",
         "G154 P1\nG110", "G36 I1.\nX5.,C1.", "G102 X1\nG65 P1", "G136\nG65 P1", "G107 C5.\nG83 I1.",
         "IF[#1EQ1]GOTO5\nG187 P1", "WHILE[#1LT5]DO1\nG187", "#3000=1\nG187", ":1\nG187",
+    ],
+    "sinumerik": [
+        "%_N_PART_MPF", ";$PATH=/_N_WKS_DIR", "CYCLE81(10,0,2,-5)", "LONGHOLE(5,0,1,-2)", 'MSG("ready")', "MCALL", "TRANS X10",
+        "ROT", "G0 SUPA Z0", "COMPCAD", "G2 X5 Y0 CR=5", "CIP X5 I1=2", "X=IC(5)", 'T="MILL"', "GOTOF END", "DEF REAL DEPTH",
+        "R1=5", "R1=$P_UIFR[1,X,TR]", "G505", "G641 ADIS=1", "G500\nSUPA", "MCALL ; over", "G110 X5\nMCALL",
+    ],
+    "heidenhain": [
+        "BEGIN PGM A MM", "BLK FORM 0.1 Z X+0 Y+0 Z-9", "4 CYCL DEF 7.0 DATUM SHIFT", "LBL 1", "12 FN 0: Q1 = +5", "APPR LT X+0 Y+0 LEN5 RL",
+        "7 L X+10 Y+5 R0 FMAX M3", "L Z+50 FMAX ; text", "CALL LBL 5 REP 2",
     ],
     "grbl": ["$H", "$X", "$J=G91 X5 F100", "$X\nG43.1 Z5", "$H\nG28.1", "$H\nG1 X5 ; comment"],
     "mefi": ['G00 X1 "pohyb', "N5 X0 G73 L5 Q2", "G09 G02 X0 I100\nG73 Q2", "N5 X0 G73 Q2 L5"],
@@ -61,7 +70,7 @@ SHARED = (
     ("G102 C180", ("fagor8070", "gost", "haas")),
     ("G102 X0", ("fagor8070", "gost", "haas")),
     ("G103 P1", ("fagor8070", "haas")),
-    ("G112", ("fagor8070", "fanuc", "haas")),
+    ("G112", ("fagor8070", "fanuc", "haas", "sinumerik")),
     ("G136", ("fagor8070", "haas")),
     ("G187 P1", ("fagor8070", "haas")),
     ("G107 C20.", ("fanuc", "haas")),
@@ -78,7 +87,10 @@ SHARED = (
     (":1000", ("fanuc", "haas")),
     ("G09 G02 X0 I100", ("fanuc", "haas", "mefi")),
     ("G2 I50 J0 T180", ("codesys", "fanuc", "haas", "linuxcnc")),
-    ("G1 X5 ; comment", ("fagor8070", "fanuc", "grbl", "haas", "linuxcnc")),
+    (
+        "G1 X5 ; comment",
+        ("fagor8070", "fanuc", "grbl", "haas", "linuxcnc", "heidenhain", "sinumerik"),
+    ),
 )
 """Words that several controls know."""
 UNTOLD = (
@@ -105,7 +117,7 @@ def test_words_without_a_control_of_their_own_ask(line: str) -> None:
 def test_no_other_control_runs_what_decides(dialect: str, text: str) -> None:
     program = f"G90 F100 S100 M3\nG0 X0 Y0 Z0\n{text}\nM30"
     for other in OWN:
-        if other != dialect and text[0] not in "%$":  # a heading or a comment elsewhere
+        if other != dialect and text[0] not in "%$;":  # a heading or a comment elsewhere
             assert run(program, other).error is not None, other
 
 
@@ -142,8 +154,10 @@ def test_words_of_two_dialects_ask() -> None:
 
 
 def test_an_unknown_dialect_names_the_known() -> None:
-    with pytest.raises(UsageError, match="gost, codesys, fagor8070, mefi, fanuc, haas, linuxcnc"):
-        dialect_named("heidenhain")
+    with pytest.raises(
+        UsageError, match="gost, codesys, fagor8070, mefi, fanuc, haas, linuxcnc, grbl, heidenhain"
+    ):
+        dialect_named("dialog11")
 
 
 WRITTEN_FOR_ANOTHER = {"haas/unknown-g.nc"}

@@ -5,7 +5,8 @@
 
 import importlib.util
 import os
-from typing import get_args
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, get_args
 
 import pytest
 from browsers import CHROMIUM, FIREFOX
@@ -13,6 +14,9 @@ from panel_player import What, browser, play
 
 from twin.training.scene.scene_file import scene_names
 from twin.web.server import THREE
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
 
 BROWSER = os.environ.get("TWIN_TEST_BROWSER", "chromium")
 pytestmark = [
@@ -30,9 +34,14 @@ pytestmark = [
 ]
 
 
+@pytest.fixture(scope="module")
+def opened() -> "Iterator[Browser]":
+    with browser(BROWSER) as one:
+        yield one
+
+
 @pytest.mark.parametrize("what", get_args(What))
 @pytest.mark.parametrize("scene", scene_names())
-def test_a_scene_ends_as_intended(scene: str, what: What) -> None:
-    with browser(BROWSER) as opened:
-        played = play(opened, scene, what)
+def test_a_scene_ends_as_intended(opened: "Browser", scene: str, what: What) -> None:
+    played = play(opened, scene, what)
     assert played.intended, str(played)

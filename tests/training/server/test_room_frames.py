@@ -29,8 +29,16 @@ def heights(message: bytes) -> tuple[slice, slice, np.ndarray]:
     kind, epoch, row, column, rows, columns = struct.unpack("<BxxxIHHHH", message[:16])
     assert kind == 2
     assert epoch > 0
-    levels = np.frombuffer(zlib.decompress(message[16:]), "<u2").reshape(rows, columns)
+    levels = np.frombuffer(zlib.decompress(message[16:]), "<u2", rows * columns)
+    levels = levels.reshape(rows, columns)
     return slice(row, row + rows), slice(column, column + columns), levels
+
+
+def tools(message: bytes | None) -> set[int]:
+    """Numbers of the tools that have cut the cells of a patch."""
+    assert message is not None
+    rows, columns = struct.unpack("<HH", message[12:16])
+    return set(zlib.decompress(message[16:])[2 * rows * columns :])
 
 
 def test_a_page_that_follows_has_the_stock_as_it_is_cut():
@@ -60,8 +68,10 @@ def test_a_page_that_follows_has_the_stock_as_it_is_cut():
     assert max(sizes[1:]) < 20_000
     # A page that comes late, and one that sees the machine taken back, get the whole stock.
     assert heights(feed.patch(-1, -1)[0] or b"")[2].shape == shown.shape
+    assert tools(feed.patch(-1, -1)[0]) == {0, room.tables.spindle}
     session.rewind(100.0)
     feed.note(session.room)
+    assert tools(feed.patch(-1, -1)[0]) == {0}
     assert (heights(feed.patch(epoch, version)[0] or b"")[2] == LEVELS).all()
 
 

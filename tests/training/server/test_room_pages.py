@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from browsers import CHROMIUM, FIREFOX
-from panel_player import Player, launch, open_page, play, served, without_view
+from panel_player import Player, open_page, opened_browser, play, served, without_view
 
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.server.attempts import next_scene
@@ -67,7 +67,7 @@ def leader():
 
 @pytest.fixture(scope="module")
 def chromium(leader):
-    opened = launch(leader, "chromium")
+    opened = opened_browser(leader, "chromium")
     yield opened
     opened.close()
 
@@ -83,7 +83,7 @@ def led(request, leader):
     if request.param == "chromium":
         yield request.getfixturevalue("chromium")
         return
-    opened = launch(leader, request.param)
+    opened = opened_browser(leader, request.param)
     yield opened
     opened.close()
 

@@ -1,12 +1,11 @@
 """The first press of any key finds its kernels loaded."""
 
-import gc
 import subprocess
 import sys
 
 import pytest
-from numba.core.dispatcher import Dispatcher
 
+from tests.loaded_kernels import loaded
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.server.attempts import Attempts
 from twin.training.server.launch import warm_up
@@ -20,18 +19,6 @@ PRESSED = (
     ({"do": "cycle_start"}, 400), ({"do": "cycle_start"}, 200), ({"do": "rewind", "seconds": 3.0}, 1), ({"do": "go_on"}, 100),
 )  # fmt: skip
 """Commands, and slices of time behind each."""
-
-
-def loaded() -> set[tuple[str, str]]:
-    """Kernels of this package that are in memory, with their signatures."""
-    # ``isinstance`` would ask weak references for a class that may be gone.
-    kernels = [one for one in gc.get_objects() if issubclass(type(one), Dispatcher)]
-    return {
-        (f"{one.py_func.__module__}.{one.py_func.__qualname__}", str(signature))
-        for one in kernels
-        for signature in one.overloads
-        if one.py_func.__module__.startswith("twin.")
-    }
 
 
 def main() -> int:

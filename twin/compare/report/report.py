@@ -78,6 +78,7 @@ class Report:
         stills: Pictures of the run, PNG or JPEG, with a caption each.
         scope: What the verdict looked at, one sentence each.
         warnings: Line, code and message of each.
+        part: A picture of the part as it was cut, PNG; empty: there is none.
     """
 
     header: RecordingHeader
@@ -90,6 +91,7 @@ class Report:
     stills: Sequence[tuple[str, Path]] = ()
     scope: Sequence[str] = ()
     warnings: Sequence[tuple[int, str, str]] = ()
+    part: bytes = b""
 
 
 def write_report(path: Path, report: Report) -> None:
@@ -131,6 +133,8 @@ def render_report(report: Report) -> str:
         cut_figures=_cut_figures(cut),
         cut_events=_cut_events(cut)[:_TABLE_ROWS],
         stills=[(caption, _data_address(path)) for caption, path in report.stills],
+        part=_address_of(report.part, "image/png") if report.part else None,
+        tools=report.result["tools"][:_TABLE_ROWS],
         hover=_safe(_hover_data(report.trace, source)) if len(report.trace.time) else None,
         plots=_plots(report) if len(report.trace.time) else None,
     )
@@ -233,8 +237,13 @@ def _excerpt(source: Sequence[str], line: int) -> list[tuple[int, str]]:
 
 
 def _data_address(path: Path) -> str:
-    kind = _MEDIA.get(path.suffix.lower(), "application/octet-stream")
-    return f"data:{kind};base64,{base64.b64encode(path.read_bytes()).decode('ascii')}"
+    return _address_of(
+        path.read_bytes(), _MEDIA.get(path.suffix.lower(), "application/octet-stream")
+    )
+
+
+def _address_of(data: bytes, kind: str) -> str:
+    return f"data:{kind};base64,{base64.b64encode(data).decode('ascii')}"
 
 
 def _fixed(value: float | None, digits: int = 1) -> str:

@@ -48,6 +48,7 @@ class Alarm:
         time_s: When, from the start of the program [s]; 0 for what is seen before motion starts.
         axis: Name of the axis, empty where it concerns the whole machine.
         message: What happened, in one sentence with numbers.
+        between: Names of the two bodies that met; empty: none did.
     """
 
     code: AlarmCode
@@ -55,6 +56,7 @@ class Alarm:
     time_s: float
     axis: str
     message: str
+    between: tuple[str, ...] = ()
 
     def __str__(self) -> str:
         """One line for a person."""

@@ -1,5 +1,7 @@
 """How a control begins radius compensation, and the tools that its words name."""
 
+import math
+
 from twin.nc.control.control import Control, integer_of
 from twin.nc.geometry.matrices import handedness
 from twin.nc.path.compensation.stage import LEADING_OUT, OFF
@@ -28,8 +30,59 @@ def tool_numbered(control: Control, word: Word) -> int:
     return number
 
 
-def compensate(control: Control, side: float, radius: float) -> None:
-    """Start compensation on one side with a radius [mm].
+def tool_named(control: Control, name: str, word: Word) -> int:
+    """The number of the tool that a word calls by name, whose case does not count.
+
+    Decision: where no tool of the job has a name they are called in the job's order.
+
+    Raises:
+        ProgramError: The job has no such tool.
+    """
+    tools, name = control.tools, name.upper()
+    named = {tool.name.upper(): number for number, tool in tools.table.items() if tool.name}
+    if name in named:
+        return named[name]
+    if name.isdigit() and (int(name) in tools.table or not tools.table):
+        return int(name)
+    known = tools.names
+    if name not in known:
+        order = list(tools.table)
+        if tools.any is not None or not order:
+            order = list(range(1, len(known) + 2))
+        if named or len(known) >= len(order):
+            message = f'the job has no tool named "{name}"'
+            hint = f'give one of its [[tools]] name = "{name}"; named there: {", ".join(named) or "none"}'
+            control.fail("no-such-tool", message, word, hint)
+        known[name] = order[len(known)]
+        message = f'the job names no tools: "{name}" is taken for tool {known[name]}, by the order of the calls'
+        hint = f'name = "{name}" in the [[tools]] of the job says it'
+        control.warn("tool-name", message, word, hint)
+    return known[name]
+
+
+def side_in_force(control: Control) -> float:
+    """The side of the compensation that is in force, as ``compensate`` takes it."""
+    turned = handedness(control.motion.frame.matrix)
+    return math.copysign(1.0, control.path.compensation.signed_offset * turned)
+
+
+def change_radius(control: Control, radius: float, word: Word) -> None:
+    """Another radius of the compensation that is in force, on the same side [mm].
+
+    Raises:
+        ProgramError: There is none.
+    """
+    if not radius > 0.0:
+        message = f"compensation that is in force cannot take the radius {radius:g}"
+        control.fail("compensation-change", message, word, "end it by G40")
+    control.path.flush()
+    control.path.compensation.change(
+        side_in_force(control) * radius * handedness(control.motion.frame.matrix)
+    )
+
+
+def compensate(control: Control, side: float, radius: float, *, led: bool = False) -> None:
+    """Start compensation on one side with a radius [mm]; ``led`` as ``Compensation.begin`` has it.
 
     Raises:
         ProgramError: It is in force already, or the radius is no radius.
@@ -50,7 +103,8 @@ def compensate(control: Control, side: float, radius: float) -> None:
     modal = control.modal
     path.compensate(
         control.motion.part_plane,
-        side * radius * handedness(control.frame.matrix),
+        side * radius * handedness(control.motion.frame.matrix),
         square=modal.square_corners,
         indirect=modal.indirect_leads,
+        led=led,
     )

@@ -268,7 +268,7 @@ class Control:
         for index, word in self.take_axis_words():
             written = word.value
             assert isinstance(written, float)
-            counts = relative or word.incremental
+            counts = word.incremental or (relative and not word.mark)
             value = axis_target(written, unit, linear[index], counts, target[index])
             if not -LARGEST_COORDINATE <= value <= LARGEST_COORDINATE:
                 self.fail("number-range", f"{word.text} is farther than any machine reaches", word)

@@ -1,7 +1,7 @@
 """What a dialect is made of: its syntax, its codes, its words, its rules, and the decisions behind them."""
 
 import dataclasses
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
 
 from twin.nc.control.codes import Codes, Words
@@ -42,6 +42,8 @@ class Dialect:
         units: Units of lengths and feeds, for people.
         decisions: Every decision taken for it.
         marks: What tells its programs from others.
+        suffixes: Ends of the names of files that hold its programs alone, lower case.
+        tables: Further tables of its page: what is named, and what it is, by title.
         library: Adds files that the program calls, looked for in the folder of the program and read as the
             dialect is.
     """
@@ -56,12 +58,19 @@ class Dialect:
     units: str
     decisions: tuple[Decision, ...]
     marks: tuple[Mark, ...]
+    suffixes: tuple[str, ...] = ()
+    tables: Mapping[str, Mapping[str, str]] = dataclasses.field(default_factory=dict)
     library: Callable[[Source, Path, Language], Source] | None = None
 
     @property
     def keywords(self) -> Collection[str]:
         """What statements begin with."""
         return self.codes.statements.keys()
+
+    def code_name(self, number: float) -> str:
+        """How a G code of the table is written."""
+        names = (name for name, code in self.syntax.codes.items() if code == number)
+        return next(names, f"G{number:g}")
 
     def refusal(self, code: float) -> str | None:
         """Why a G code that the control knows is refused, given its number; None: it is not."""

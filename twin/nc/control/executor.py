@@ -267,9 +267,9 @@ class Executor:
         if word.address in meanings:
             message = f"nothing in this block uses '{word.text}'"
             control.fail("unused-word", message, word, self._meaning_of(word.address))
-        name, known = self.dialect.name, ", ".join(meanings)
-        message = f"'{word.address}' is no word of {name}"
-        control.fail("unknown-word", message, word, f"words of {name}: {known}")
+        message = f"'{word.address}' is no word of {self.dialect.name}"
+        hint = f"its words are listed by: twin dialects {self.dialect.name}"
+        control.fail("unknown-word", message, word, hint)
 
     def _meaning_of(self, address: str) -> str:
         return f"{address} in {self.dialect.name}: {self.dialect.words.meanings[address]}"

@@ -153,23 +153,8 @@ class Motion:
             return
         if self.before_move is not None:
             self.before_move(length)
-        modal, is_arc = self.modal, center is not None
-        if rapid:
-            feed = rapid_feed(self.rapid_feed, NAN if self.feed is None else self.feed)
-        else:
-            feed = self._feed_per_minute(end, length, is_arc)
-            if self.feed_rule is not PATH_COUNTS and (is_arc or self.feed_rule.degree):
-                feed = self._pace_by_rule(feed, end, length, center, sweep)
-        acceleration, deceleration = self.acceleration, self.deceleration
-        if rapid:
-            acceleration = _either(self.rapid_acceleration, acceleration)
-            deceleration = _either(self.rapid_deceleration, deceleration)
-        if self.axis_limits or self.axis_accelerations or self.axis_decelerations:
-            share = self._axis_shares(end, length, is_arc)
-            feed = _limited(feed, self.axis_limits, share)
-            acceleration = _limited(acceleration, self.axis_accelerations, share)
-            deceleration = _limited(deceleration, self.axis_decelerations, share)
-        self.last = Segment(  # by place: names would cost a block twice what it takes to make one
+        feed, acceleration, deceleration = self._rates(end, length, arc, rapid=rapid)
+        move = Segment(  # by place: names would cost a block twice what it takes to make one
             RAPID if rapid else FEED,
             block.line,
             block.number,
@@ -177,8 +162,8 @@ class Motion:
             end,
             target,
             feed,
-            RAPIDS_END if rapid else modal.corner,
-            modal.corner_tolerance,
+            RAPIDS_END if rapid else self.modal.corner,
+            self.modal.corner_tolerance,
             acceleration,
             deceleration,
             center,
@@ -186,9 +171,10 @@ class Motion:
             sweep,
         )
         if add is None:
-            self.path.add(self.last)
+            self.path.add(move)
         else:
-            add(self.last)
+            add(move)
+        self.last = move
         self.programmed = target
         self.part = end
 
@@ -213,6 +199,28 @@ class Motion:
 
     # --- feeds
 
+    def _rates(
+        self, end: list[float], length: float, arc: Arc | None, *, rapid: bool
+    ) -> tuple[float, float, float]:
+        """Feed, acceleration and deceleration of a move along its path."""
+        acceleration, deceleration = self.acceleration, self.deceleration
+        if rapid:
+            feed = rapid_feed(self.rapid_feed, NAN if self.feed is None else self.feed)
+            acceleration = _either(self.rapid_acceleration, acceleration)
+            deceleration = _either(self.rapid_deceleration, deceleration)
+        else:
+            feed = self._feed_per_minute(end, length, arc is not None)
+            if self.feed_rule is not PATH_COUNTS and (arc is not None or self.feed_rule.degree):
+                feed = self._pace_by_rule(feed, end, length, arc)
+        if not (self.axis_limits or self.axis_accelerations or self.axis_decelerations):
+            return feed, acceleration, deceleration
+        share = self._axis_shares(end, length, arc is not None)
+        return (
+            _limited(feed, self.axis_limits, share),
+            _limited(acceleration, self.axis_accelerations, share),
+            _limited(deceleration, self.axis_decelerations, share),
+        )
+
     def _axis_shares(self, end: list[float], length: float, is_arc: bool) -> list[float]:
         """How much of the path's speed each axis takes at most."""
         shares = [abs(new - old) / length for new, old in zip(end, self.part, strict=True)]
@@ -230,17 +238,15 @@ class Motion:
             feed, modal.feed_mode, length, turning, modal.unit, speed, self._default_feeds
         )
 
-    def _pace_by_rule(
-        self, pace: float, end: list[float], length: float, center: Vector | None, sweep: float
-    ) -> float:
+    def _pace_by_rule(self, pace: float, end: list[float], length: float, arc: Arc | None) -> float:
         """The pace of a move whose F counts another length than that of its path [mm/min or deg/min]."""
         ways = (new - old for new, old in zip(end, self.part, strict=True))
         turned = math.hypot(*(way for way, line in zip(ways, self.linear, strict=True) if not line))
-        turning = center is None and only_turns(self.part, end, self.linear)
+        turning = arc is None and only_turns(self.part, end, self.linear)
         move = Displacement(length, turned, turning)
-        if center is not None:
-            radius = arc_radius(self.part, center)
-            move = move._replace(radius=radius, around=radius * math.radians(abs(sweep)))
+        if arc is not None:
+            radius = arc_radius(self.part, arc.center)
+            move = move._replace(radius=radius, around=radius * math.radians(abs(arc.sweep)))
         return pace_by_rule(self.feed_rule, pace, move, self.modal.feed_mode, self.modal.unit)
 
     # --- coordinates

@@ -13,7 +13,7 @@ from twin.nc.text.lexer import Lexer
 from twin.nc.text.reporter import Reporter
 from twin.nc.text.source import Source
 
-_LABEL = re.compile(r"N[ \t]*[0-9]|\[", re.IGNORECASE)
+_LABEL = re.compile(r"N[ \t]*[0-9]|[\[:]", re.IGNORECASE)
 Key = TypeVar("Key")
 Found = TypeVar("Found")
 Parsed = TypeVar("Parsed")
@@ -289,9 +289,8 @@ class ProgramCounter:
         code, message = "unknown-label", f"{word} names {name}, and no block has it"
         if count > 1:
             code, message = "ambiguous-label", f"{word} names {name}, and {count} blocks have it"
-        self._report.fail(
-            code, message, *fail_at, hint=f"blocks here: {shown}{more}" if known else None
-        )
+        hint = f"blocks here: {shown}{more}" if known else f"write {name} before its block"
+        self._report.fail(code, message, *fail_at, hint=hint)
 
 
 _SHOWN_LABELS = 12

@@ -15,10 +15,12 @@ class ToolData:
     Attributes:
         radius: Of its cutting edge [mm].
         length: From the spindle nose to its tip [mm].
+        name: By which a program may call it; empty: by its number alone.
     """
 
     radius: float
     length: float
+    name: str = ""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)

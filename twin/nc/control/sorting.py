@@ -8,6 +8,7 @@ from twin.nc.control.control import Control, integer_of, number_of
 from twin.nc.control.dialect import Dialect
 from twin.nc.text.blocks import Word
 from twin.nc.text.expressions import Expression
+from twin.nc.text.slips import near
 
 Codes = Sequence[tuple[Word, GCode]]
 Functions = Sequence[tuple[Word, MCode]]
@@ -69,7 +70,12 @@ class WordSorter:
                     word = word._replace(value=control.compute(word.value, word))
                 control.series.append(word)
             elif address in words:
-                control.fail("duplicate-word", f"'{address}' stands twice in the block", word)
+                control.fail(
+                    "duplicate-word",
+                    f"'{address}' stands twice in the block",
+                    word,
+                    "leave one out, or write two blocks",
+                )
             else:
                 words[address] = word
         if len(codes) > 1 or len(functions) > 1:
@@ -91,13 +97,12 @@ class WordSorter:
         number, codes = number_of(word), self._dialect.codes
         code = codes.g.get(number)
         if code is None:
-            known = ", ".join(f"G{number}" for number in sorted(codes.g))
-            instead = codes.instead.get(number)
+            known = [self._dialect.code_name(each) for each in sorted(codes.g)]
             self._control.fail(
                 "unknown-g",
                 f"{word.text} is unknown to {self._dialect.name}",
                 word,
-                hint=f"known: {known}" if instead is None else instead,
+                hint=codes.instead.get(number) or near(f"G{number:g}", known, self._dialect.name),
             )
         if code.refused:
             self._control.fail("unsupported-g", f"{word.text} {code.refusal}", word)
@@ -107,15 +112,12 @@ class WordSorter:
         number, codes = integer_of(number_of(word)), self._dialect.codes
         code = codes.function(number, self._control.settings.m_functions)
         if code is None:
-            known = ", ".join(f"M{number}" for number in sorted(codes.m))
-            self._control.fail(
-                "unknown-m",
-                f"{word.text} is unknown to {self._dialect.name}",
-                word,
-                hint=f"known: {known}; one of the machine's builder is declared in the job by "
-                f'[m_functions] M{max(number, 0)} = "what it does", in the machine file under '
-                "[control.m_functions]",
-            )
+            if number < 0:
+                self._control.fail("unknown-m", f"{word.text}: an M code is a whole number", word)
+            listed = near(f"M{number}", map("M{}".format, codes.m), self._dialect.name)
+            message = f"{word.text} is unknown to {self._dialect.name}"
+            own = f'one of the machine\'s builder: [m_functions] M{number} = "what it does" in the job'
+            self._control.fail("unknown-m", message, word, hint=f"{own}; {listed}")
         return code
 
     def _refuse_conflict(self, conflict: "Conflict | None") -> None:

@@ -11,6 +11,7 @@ class Tools:
     Attributes:
         table: Tools by number.
         any: The tool that every other number means; None: there is none.
+        names: Numbers of tools that the program has called by names which the job does not give.
         spindle: Number of the tool in the spindle.
         selected: Number of the tool that the next change brings.
         length_call: Number of the tool whose length the block that runs calls; None: it calls none.
@@ -19,6 +20,7 @@ class Tools:
     def __init__(self, table: Mapping[int, ToolData], *, any_tool: bool = False) -> None:
         """Put the first tool into the spindle; ``any_tool``: every number means this one."""
         self.table = table
+        self.names: dict[str, int] = {}
         first = next(iter(table), None)
         self.any = table[first] if any_tool and first is not None else None
         self._reference = 0.0 if first is None else table[first].length

@@ -10,14 +10,27 @@ from twin.nc.dialects.fagor8070 import FAGOR8070
 from twin.nc.dialects.fanuc import FANUC, HAAS
 from twin.nc.dialects.gost import GOST
 from twin.nc.dialects.grbl import GRBL
+from twin.nc.dialects.heidenhain import HEIDENHAIN
 from twin.nc.dialects.linuxcnc import LINUXCNC
 from twin.nc.dialects.mefi import MEFI
 from twin.nc.dialects.outside import dialects_from_outside
+from twin.nc.dialects.sinumerik import SINUMERIK
 from twin.nc.text.source import Source
 
 OWN: Mapping[str, Dialect] = {
     dialect.name: dialect
-    for dialect in (GOST, CODESYS, FAGOR8070, MEFI, FANUC, HAAS, LINUXCNC, GRBL)
+    for dialect in (
+        GOST,
+        CODESYS,
+        FAGOR8070,
+        MEFI,
+        FANUC,
+        HAAS,
+        LINUXCNC,
+        GRBL,
+        HEIDENHAIN,
+        SINUMERIK,
+    )
 }
 """Those of this package by name."""
 _OUTSIDE, _FAILED = dialects_from_outside(OWN)
@@ -89,8 +102,17 @@ def marks_found(source: Source) -> dict[str, list[str]]:
             found |= {mark for mark, pattern in patterns.items() if pattern.search(shape)}
             if len(seen) < _MOST_SHAPES:
                 seen.add(shape)
+    decided = {
+        dialect.name
+        for dialect in DIALECTS.values()
+        if any(mark.decides and (dialect.name, mark.shown) in found for mark in dialect.marks)
+    }
     return {
-        dialect.name: [mark.shown for mark in dialect.marks if (dialect.name, mark.shown) in found]
+        dialect.name: [
+            mark.shown
+            for mark in dialect.marks
+            if (dialect.name, mark.shown) in found and (not decided or dialect.name in decided)
+        ]
         for dialect in DIALECTS.values()
     }
 

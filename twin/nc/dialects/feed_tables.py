@@ -87,6 +87,9 @@ _TABLES: Mapping[str, tuple[FeedRow, ...]] = {
         (f"the root of the squares of the arc and {_DIAMETER}", _MINUTES, "decision: as in a line"),
     ),
     "linuxcnc": _path_counts(_MINUTES, "manual of G93, G94; checked against rs274"),
+    "sinumerik": _path_counts(
+        _MINUTES, "programming manual, F and G93; decision: FGROUP holds X, Y, Z"
+    ),
     "fagor8070": _path_counts(
         "seconds of the move",
         "programming manual, F; parameter FEEDND No (feed_of_all_axes)",
@@ -100,6 +103,9 @@ _TABLES: Mapping[str, tuple[FeedRow, ...]] = {
     ),
     "gost": _path_counts("", "decision: ISO practice"),
     "mefi": _path_counts("", "decision: ISO practice; the page shows no feed"),
+    "heidenhain": _path_counts(
+        "", "user's manual, feed of rotary axes (M116); beside a path: decision"
+    ),
 }
 
 

@@ -33,6 +33,8 @@ _POST = "post the part again for one of: twin dialects"
 _MODEL = "it is a shape, not a program: make toolpaths in CAM and post them"
 _AS_LINUXCNC = "its moves are a part of LinuxCNC's language: --dialect linuxcnc reads it so"
 
+_ROBOT = "the machines here are mills"
+
 BINARY: tuple[tuple[bytes, str, str], ...] = (
     (b"%PDF-", "a PDF document", "save the program itself, as text"),
     (b"PK\x03\x04", "a zip archive, or a file of an office or CAM program", "unpack it first"),
@@ -75,18 +77,10 @@ TEXTS: tuple[Foreign, ...] = (
     Foreign("an APT or CL file (ISO 4343)", _POST, r"(?m)^\s*(?:GOTO\s*/|FEDRAT\s*/|PARTNO\b)", 2),
     Foreign("an HP-GL plot", _MODEL, r"(?:\bP[UD](?:-?\d+,-?\d+)?;){2}", comments=True),
     Foreign(
-        "a Heidenhain program",
-        _POST,
-        r"(?m)^\s*\d*\s*(?:BEGIN PGM|END PGM|TOOL CALL|CYCL DEF|BLK FORM|L +[XYZ][+-]|CC +X)",
-        2,
-    ),
-    Foreign("a Sinumerik program", _POST, r"(?m)^\s*%_N_|^;\$PATH=", comments=True),
-    Foreign(
-        "a Sinumerik program",
-        _POST,
-        r"(?m)^[^#$\n]*\b(?:(?:CYCLE\d+|POCKET\d|HOLES\d|SLOT\d|WORKPIECE|MSG)(?![A-Z])|MCALL\b(?! *\d)"
-        r"|A?(?:TRANS|ROT) [XYZ]|SUPA\b|CIP [XYZ]|TURN ?=|TRAORI|COMPCAD|COMPCURV|FFWON|GOTO[FB] "
-        r"|CR ?=|T ?= ?\"|DEF (?:REAL|INT)\b|REPEATB? [A-Z])",
+        "a Heidenhain program in DIN/ISO",
+        "post it as Klartext (.h), which --dialect heidenhain reads",
+        r"(?m)^\s*%\S+[ \t]+G7[01][ \t]*\*",
+        comments=True,
     ),
     Foreign(
         "a Mazatrol program",
@@ -132,6 +126,40 @@ TEXTS: tuple[Foreign, ...] = (
         r"(?m)^(?:N\d+ *)?G100 *T\d+",
     ),
     Foreign(
+        "a drill file of a circuit board (Excellon)",
+        "make a program of it by the CAM of circuit boards",
+        r"(?m)^M48\s*$|^T\d+(?:F\d+S\d+)?C[\d.]+",
+        2,
+        comments=True,
+    ),
+    Foreign(
+        "a picture of a circuit board (Gerber)",
+        "make a program of it by the CAM of circuit boards",
+        r"%FS[LTD]?[AI]X\d\dY\d\d|%MO(?:MM|IN)\*%",
+        comments=True,
+    ),
+    Foreign(
+        "a program for a robot (Fanuc TP)",
+        _ROBOT,
+        r"(?m)^/(?:PROG|MN|POS|ATTR)\b",
+        2,
+        comments=True,
+    ),
+    Foreign(
+        "a program for a robot (KUKA KRL)",
+        _ROBOT,
+        r"(?m)^\s*(?:&ACCESS|DEF \w+ ?\(|(?:PTP|LIN|CIRC) +\{)",
+        2,
+        comments=True,
+    ),
+    Foreign(
+        "a program for a robot (ABB RAPID)",
+        _ROBOT,
+        r"(?im)^\s*(?:MODULE \w+|PROC \w+\(|Move[JLC] )",
+        2,
+        comments=True,
+    ),
+    Foreign(
         "a Python program", "an NC program is text of blocks", r"(?m)^(?:import \w+|def \w+\()", 1
     ),
     Foreign(
@@ -147,8 +175,6 @@ TEXTS: tuple[Foreign, ...] = (
 """Texts of other controls and other kinds, in the order in which they are looked for."""
 
 CONTROLS: tuple[tuple[str, str, str], ...] = (
-    (r"sinumerik|siemens|(?<!\d)8[124]0 ?d(?:sl)?\b|828d", "a Sinumerik program", _POST),
-    (r"heidenhain|\b(?:i?tnc ?[4-7]\d\d)\b", "a Heidenhain program", _POST),
     (
         r"mazak|mazatrol",
         "a program for a Mazak (EIA)",

@@ -34,24 +34,33 @@ def describe(dialect: Dialect) -> str:
     """The page of one dialect, as Markdown."""
     supported = {n: code for n, code in dialect.codes.g.items() if not code.refused}
     refused = {n: code for n, code in dialect.codes.g.items() if code.refused}
-    start = ", ".join(f"G{number}" for number in sorted(dialect.codes.start))
+    start = ", ".join(map(dialect.code_name, sorted(dialect.codes.start)))
     sections = [
         f"# {dialect.title} (`{dialect.name}`)",
         "Made from the declaration in this folder by `python -m twin.nc.dialects.pages`.",
         f"Units: {dialect.units}.",
         f"Comments: {_comments(dialect)}. Files are read as UTF-8, else as {dialect.code_page}.",
-        f"In force when a program starts: {start}.",
-        "## G codes",
-        _g_table(supported),
+        *(
+            (
+                f"In force when a program starts: {start}.",
+                "## G codes",
+                _g_table(dialect, supported),
+            )
+            if supported
+            else ()
+        ),
         "## M codes",
         _m_table(dialect),
         "## Words",
         _word_table(dialect),
         *_expression_sections(dialect),
         *_feed_sections(dialect),
-        "## Refused",
-        _REFUSED,
-        _refused_table(refused),
+        *(
+            section
+            for title, rows in dialect.tables.items()
+            for section in (f"## {title}", _table(("word", "meaning"), rows.items()))
+        ),
+        *(("## Refused", _REFUSED, _refused_table(dialect, refused)) if supported else ()),
         "## Decisions where the documents are silent",
         f"Each is shown by a program of `tests/golden/{dialect.name}/decisions`.",
         _decisions(dialect),
@@ -84,10 +93,10 @@ def _comments(dialect: Dialect) -> str:
     )
 
 
-def _g_table(codes: dict[float, GCode]) -> str:
+def _g_table(dialect: Dialect, codes: dict[float, GCode]) -> str:
     rows = [
         (
-            f"G{number}",
+            dialect.code_name(number),
             code.meaning,
             code.group or ("this block" if code.once else ""),
             _GROUND[code.ground],
@@ -145,10 +154,13 @@ def _expression_sections(dialect: Dialect) -> list[str]:
     ]
 
 
-def _refused_table(codes: dict[float, GCode]) -> str:
+def _refused_table(dialect: Dialect, codes: dict[float, GCode]) -> str:
     if not codes:
         return "None."
-    rows = [(f"G{number}", code.meaning, code.refused) for number, code in sorted(codes.items())]
+    rows = [
+        (dialect.code_name(number), code.meaning, code.refused)
+        for number, code in sorted(codes.items())
+    ]
     return _table(("code", "meaning", "why"), rows)
 
 

@@ -20,7 +20,9 @@ _NAMES: Mapping[str, str] = {
     "fagor8070": r"\bfagor\b",
     "codesys": r"\bcodesys\b|softmotion",
     "mefi": r"\bmefi\b",
+    "heidenhain": r"heidenhain|\b(?:i?tnc ?[3-7]\d\d)\b",
     "grbl": r"\bgrbl",
+    "sinumerik": r"sinumerik|siemens|(?<!\d)8[124]0 ?d(?:sl)?\b|828d",
 }
 """What comments call the controls, and posts for them."""
 
@@ -45,6 +47,9 @@ def reading_of(source: Source) -> Reading:
     Raises:
         UsageError: It is written for a control that is not known here, is prose, or holds nothing.
     """
+    for dialect in DIALECTS.values():
+        if dialect.suffixes and source.name.lower().endswith(dialect.suffixes):
+            return Reading((dialect.name,), "by the end of its file's name")
     marks = {name: shown for name, shown in marks_found(source).items() if shown}
     everything = {mark for shown in marks.values() for mark in shown}
     complete = tuple(name for name, shown in marks.items() if everything <= set(shown))

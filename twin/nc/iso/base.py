@@ -87,7 +87,8 @@ def spindle_speed(control: Control, word: Word) -> None:
     """S: the spindle's speed [1/min]; reported where no spindle start carries it."""
     speed = control.number(word)
     if not speed >= 0.0:
-        control.fail("spindle-range", f"the speed {word.text} is negative", word)
+        message = f"the speed {word.text} is negative"
+        control.fail("spindle-range", message, word, "M4 turns it the other way")
     control.motion.spindle = speed
     others = control.block.words
     functions = (other.value for other in others if other.address == "M")

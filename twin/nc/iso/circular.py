@@ -215,6 +215,28 @@ def iso_arc(control: Control, rule: ArcRule) -> None:
     sweep_arc(control, target, arc_center(control, target, rule), clockwise=rule.clockwise)
 
 
+def tangent_arc_to(control: Control, target: list[float], name: str) -> None:
+    """Move to the target on the arc that leaves the last move along its direction.
+
+    Raises:
+        ProgramError: Nothing has moved before, or the arc would be a straight line.
+    """
+    direction = control.motion.direction
+    if direction is None:
+        control.fail("tangent-arc", f"{name} needs a move before it")
+    start, end = start_and_end(control, target)
+    tangent = control.modal.plane.local(direction)
+    if math.hypot(tangent[0], tangent[1]) < arcs.SAME_POINT:
+        message = f"the move before {name} has no direction in the plane"
+        control.fail("tangent-arc", message)
+    center = arcs.center_tangent(start, end, tangent[:2])
+    if center is None:
+        message = "the end lies straight ahead or at the start: no arc leads there"
+        control.fail("tangent-arc", message)
+    side = tangent[0] * (center[1] - start[1]) - tangent[1] * (center[0] - start[0])
+    sweep_arc(control, target, center, clockwise=side < 0.0)
+
+
 def both_senses(
     perform: Callable[[Control, ArcRule], None],
     rule: ArcRule,

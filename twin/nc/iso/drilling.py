@@ -134,7 +134,7 @@ def hole_in_force(control: Control, rule: CycleRule) -> Hole:
     return hole
 
 
-_NEEDED = {
+NEEDED_WORDS = {
     "R": "the height where the feed begins, such as R2.",
     "Z": "the depth of the hole, such as Z-10.",
     "Q": "the depth of a peck, such as Q2.",
@@ -158,7 +158,9 @@ def refuse_hole(control: Control, rule: CycleRule, hole: Hole) -> NoReturn:
             for value, address in sorted(addresses.items())
             if (rule.cycle.needed >> value) & 1 and math.isnan(control.cycle_state[value])
         ]
-        hint = "; ".join(f"{each}: {_NEEDED[each]}" for each in missing if each in _NEEDED)
+        hint = "; ".join(
+            f"{each}: {NEEDED_WORDS[each]}" for each in missing if each in NEEDED_WORDS
+        )
         control.fail("cycle-word", f"{name} needs {' and '.join(missing)}", hint=hint or None)
     if hole.fault == Fault.PLANE:
         message = f"{name} was called in another plane"

@@ -4,7 +4,7 @@ The coordinates are those of the axes: no work offset, preset, tool length, mirr
 acts on them.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from typing import NamedTuple
 
@@ -26,13 +26,20 @@ class PartFrame(NamedTuple):
     matrix: Matrix
 
 
-def enter_machine_frame(control: Control, code: str) -> PartFrame:
+def enter_machine_frame(
+    control: Control, code: str, zero: Mapping[str, float] | None = None
+) -> PartFrame:
     """Let programmed coordinates be those of the machine; ``code`` asks for it.
+
+    Args:
+        control: The control.
+        code: As messages call it.
+        zero: Part coordinates of another zero of the machine's builder; None: machine zero.
 
     Raises:
         ProgramError: Nobody said where machine zero is.
     """
-    zero, frame = machine_zero(control, code), control.frame
+    zero, frame = machine_zero(control, code) if zero is None else zero, control.frame
     kept, names = PartFrame(frame.shifts, frame.matrix), control.settings.axes.names
     frame.set_shifts([[0.0] * len(names) for _ in SHIFTS])
     frame.set_shift("offset", [zero.get(name, 0.0) for name in names])
@@ -49,7 +56,9 @@ def leave_machine_frame(control: Control, kept: PartFrame) -> None:
 
 
 @contextmanager
-def machine_frame(control: Control, code: str) -> Iterator[None]:
+def machine_frame(
+    control: Control, code: str, zero: Mapping[str, float] | None = None
+) -> Iterator[None]:
     """As ``enter_machine_frame``, within.
 
     Raises:
@@ -58,6 +67,6 @@ def machine_frame(control: Control, code: str) -> Iterator[None]:
     if control.path.compensation.in_force:
         message = "machine coordinates know no radius compensation"
         control.fail("compensation-change", message, hint=f"end it by G40 before {code}")
-    kept = enter_machine_frame(control, code)
+    kept = enter_machine_frame(control, code, zero)
     yield
     leave_machine_frame(control, kept)

@@ -166,7 +166,7 @@ def plain_rules(executor: Executor) -> PlainRules:
     settings = executor.control.settings
     kinds = {number: _kind_of_code(code) for number, code in dialect.codes.g.items()}
     plain = {int(number): kind for number, kind in kinds.items() if kind != NO_MOTION}
-    by_number = np.full(max(plain) + 1, NO_MOTION)
+    by_number = np.full(max(plain, default=0) + 1, NO_MOTION)
     by_number[list(plain)] = list(plain.values())
     rules = [
         getattr(dialect.codes.g[number].sets.get("interpolation"), "rule", None) for number in plain

@@ -28,6 +28,7 @@ class BlendKind(enum.Enum):
 
     FILLET = "arc of a radius, tangent to both moves"
     CHAMFER = "line between two points at a distance from the corner"
+    CHAMFER_LENGTH = "line of a length, as far from the corner on both moves"
     ARC = "arc between two points at a distance from the corner"
     SPLINE = "spline between two points at a distance from the corner"
 
@@ -38,15 +39,17 @@ class Blend:
 
     Attributes:
         kind: Its shape.
-        size: Radius of a fillet; distance from the corner of the others [mm].
+        size: Radius of a fillet; length of a ``CHAMFER_LENGTH``; distance from the corner of the others [mm].
         plane: In which it lies, part coordinates.
         halves: At most half of each move is given up, so that the size adapts to short moves.
+        feed: Of the blend [mm/min]; NaN: that of the first move.
     """
 
     kind: BlendKind
     size: float
     plane: Plane
     halves: bool = False
+    feed: float = math.nan
 
 
 class NoBlendError(Exception):
@@ -73,6 +76,11 @@ def blend_corner(
         return first, [], second
     if abs(turn) > 180.0 - _STRAIGHT_ON:
         raise NoBlendError("the path turns back on itself")
+    if blend.kind is BlendKind.CHAMFER_LENGTH:
+        if before[0] or behind[0]:
+            raise NoBlendError("a chamfer of a length lies between two lines")
+        legs = blend.size / (2.0 * math.cos(math.radians(turn) / 2.0))
+        blend = dataclasses.replace(blend, kind=BlendKind.CHAMFER, size=legs)
     if blend.kind is BlendKind.FILLET:
         left, right, center = _fillet(before, behind, turn, blend.size)
     else:
@@ -81,13 +89,14 @@ def blend_corner(
     begin, end = curves.point_at(before, left), curves.point_at(behind, right)
     head = part_of(first, before, plane, 0.0, left)
     tail = part_of(second, behind, plane, right, 1.0)
+    paced = head if math.isnan(blend.feed) else dataclasses.replace(head, feed=blend.feed)
     if blend.kind is BlendKind.CHAMFER:
-        return head, [line_between(first, head.end, tail.start)], tail
+        return head, [line_between(paced, head.end, tail.start)], tail
     if blend.kind is BlendKind.SPLINE:
         return head, _spline(head, tail, curves.length_of(before) * (1.0 - left)), tail
     if blend.kind is BlendKind.FILLET:
         sweep = sweep_between(begin, end, center, clockwise=turn < 0.0)
-        return head, _arcs(head, tail, plane, [curves.arc(begin, end, center, sweep)]), tail
+        return head, _arcs(paced, tail, plane, [curves.arc(begin, end, center, sweep)]), tail
     leaving, arriving = curves.tangent_at(before, left), curves.tangent_at(behind, right)
     return head, _arcs(head, tail, plane, _biarc(begin, end, leaving, arriving)), tail
 

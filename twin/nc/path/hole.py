@@ -109,6 +109,7 @@ class Hole(NamedTuple):
         clearance: It returns with rapid to this far above where it was [mm].
         retract: A ``Retract``.
         faster: How many times as fast as it went down a tap comes back.
+        rest: Above the hole, where it withdraws to the reference plane [s].
     """
 
     fault: int
@@ -128,6 +129,7 @@ class Hole(NamedTuple):
     clearance: float
     retract: int
     faster: float
+    rest: float = 0.0
 
 
 def hole_of(cycle: Cycle, values: Values, axis: int, to_reference: bool) -> Hole:
@@ -243,7 +245,7 @@ def count_passes(surface: float, bottom: float, depth: float) -> int:
 
 def most_acts(stops: int) -> int:
     """Room that ``write_acts`` needs."""
-    return 4 * stops + 9
+    return 5 * stops + 9
 
 
 def next_place(
@@ -302,8 +304,12 @@ def write_acts(hole: Hole, height: float, acts: Values, amounts: Values) -> int:
         else:
             peck = next_peck(peck, hole.factor, hole.reduction, hole.least)
             acts[at + 1], amounts[at + 1] = _UP, up
-            acts[at + 2], amounts[at + 2] = _UP, min(depth + hole.clearance, up)
-            at += 3
+            at += 2
+            if full and hole.rest > 0.0:
+                acts[at], amounts[at] = _WAIT, hole.rest
+                at += 1
+            acts[at], amounts[at] = _UP, min(depth + hole.clearance, up)
+            at += 1
     acts[at], amounts[at] = _DOWN, hole.bottom
     at += 1
     if hole.dwell > 0.0:

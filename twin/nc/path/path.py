@@ -27,6 +27,8 @@ class Path:
         position: Where the emitted path has come to, shape (k,) [mm or deg].
         compensation: Radius compensation of what it takes.
         defer: Takes an event that happens behind moves which a dialect holds back; False: it holds none.
+        leads: Makes the moves that lead to the next one, told it; None: nothing does. The next move begins
+            where they end on the contour, not where the path has come to.
     """
 
     def __init__(self, axes: Axes, start: list[float], report: Reporter) -> None:
@@ -40,6 +42,7 @@ class Path:
         self._synchronous: SynchronousAxes | None = None
         self.position = start
         self.defer: Callable[[Event], bool] = holds_none
+        self.leads: Callable[[Segment], None] | None = None
 
     def __len__(self) -> int:
         return self.columns.count
@@ -64,6 +67,9 @@ class Path:
 
     def add(self, move: Segment) -> None:
         """The next programmed move."""
+        if self.leads is not None:
+            leads, self.leads = self.leads, None
+            leads(move)
         if self._spline is not None:
             self._end_spline(move)
         self._before = move
@@ -76,7 +82,8 @@ class Path:
     def passes_on(self) -> bool:
         """No stage holds or changes moves: what is added is emitted as it is."""
         stages = (self._spline, self._rounding, self._loops, self._synchronous)
-        return self.compensation.stage is OFF and all(stage is None for stage in stages)
+        free = self.compensation.stage is OFF and self.leads is None
+        return free and all(stage is None for stage in stages)
 
     def add_rows(
         self, codes: IntArray, values: FloatArray, positions: FloatArray
@@ -166,17 +173,25 @@ class Path:
             self.compensation.add(move, self.position)
 
     def compensate(
-        self, plane: Plane, signed_offset: float, *, square: bool, indirect: bool
+        self,
+        plane: Plane,
+        signed_offset: float,
+        *,
+        square: bool,
+        indirect: bool,
+        led: bool = False,
     ) -> None:
         """Compensate from the next move on; arguments as for ``Compensation.begin``."""
         self.flush()
-        self.compensation.begin(plane.directions, signed_offset, square=square, indirect=indirect)
+        self.compensation.begin(
+            plane.directions, signed_offset, square=square, indirect=indirect, led=led
+        )
 
-    def end_compensation(self) -> None:
-        """The next line leads out."""
+    def end_compensation(self, *, led: bool = False) -> None:
+        """The next line leads out, unless that is ``led`` otherwise."""
         if self.compensation.in_force:
             self.flush()
-            self.compensation.end()
+            self.compensation.end(led=led)
 
     # --- loops
 

@@ -41,7 +41,7 @@ class MoveReport:
     def _span_of(self, move: Segment) -> tuple[int, int]:
         """Column and width of its block's number; without one of the line's first word."""
         text = self._report.text_of(move.line)
-        number = rf"N[ \t]*0*{move.block}(?![0-9])" if move.block >= 0 else r"\S+"
+        number = rf"(?:N|^)[ \t/]*0*{move.block}(?![0-9])" if move.block >= 0 else r"\S+"
         match = re.search(number, text, re.IGNORECASE)
         return (0, 1) if match is None else (match.start(), len(match[0]))
 

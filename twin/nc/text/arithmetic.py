@@ -243,6 +243,11 @@ def fraction(a: float) -> float:
     return a - math.trunc(a)
 
 
+def sign(a: float) -> float:
+    """-1 below 0, 1 above it, else 0."""
+    return float((a > 0.0) - (a < 0.0))
+
+
 def nearest_whole(a: float) -> float:
     """The nearest whole number; halves go up."""
     return float(math.floor(a + 0.5))

@@ -18,11 +18,13 @@ class Word(NamedTuple):
 
     Attributes:
         address: Upper case, such as ``X`` or ``FF``.
-        value: A number, or an expression where the program computes it.
+        value: A number, or an expression where the program computes it; NaN where it has none, as ``FMAX``.
         column: First character in the line, from 0.
         width: Characters from the address to the end of the value.
         incremental: The word alone is incremental (``X20I``).
         pointless: A number without a decimal point.
+        mark: What the program writes besides address and value: how the value counts (``IC``), the name of
+            a code, or a text in quotes.
     """
 
     address: str
@@ -31,10 +33,15 @@ class Word(NamedTuple):
     width: int
     incremental: bool = False
     pointless: bool = False
+    mark: str = ""
 
     @property
     def text(self) -> str:
         """The word as a programmer would write it."""
+        if self.mark:
+            return self.mark if self.address == "G" else f"{self.address}={self.mark}"
+        if self.value != self.value:
+            return self.address
         value = f"{self.value:.10g}" if isinstance(self.value, float) else "..."
         return f"{self.address}{value}"
 

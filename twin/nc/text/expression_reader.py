@@ -169,7 +169,7 @@ class _Reading:
         opening = self._syntax.brackets[0]
         if (match := self._reader.variable.match(self._text, self.at)) is not None:
             self.at = match.end()
-            return Variable(self._syntax.spelled(match[0]))
+            return self._subscripted(self._syntax.spelled(match[0]), depth)
         indirect = self._syntax.indirect
         if indirect and self._text[self.at : self.at + 1] == indirect:
             self._count()
@@ -203,6 +203,18 @@ class _Reading:
         arguments = self._arguments(name, after, function.arguments, depth)
         return Computed(name, function.compute, tuple(arguments))
 
+    def _subscripted(self, name: str, depth: int) -> Tree:
+        """A variable with the indices behind it, if there are any."""
+        brackets = self._syntax.subscripts
+        if not brackets or self._text[self.at :].lstrip()[:1] != brackets[0]:
+            return Variable(name)
+        indices = self._arguments(name, self.at, None, depth, brackets)
+        if len(indices) > 2:
+            self._fail("expression", f"{name} takes one or two indices")
+        if len(indices) == 2:
+            return NumberedVariable(name, Computed(name, self._syntax.joined, tuple(indices)))
+        return NumberedVariable(name, indices[0])
+
     def _quotient(self, name: str, at: int, depth: int) -> Tree:
         """``ATAN[1]/[2]``; where the dialect has them ``ATAN[1,2]`` and ``ATAN[1]``."""
         function = self._syntax.functions.get(name)
@@ -218,10 +230,12 @@ class _Reading:
             self._fail("expression", f"{name} does not take {len(arguments)} values")
         return Computed(name, function.compute, tuple(arguments))
 
-    def _arguments(self, name: str, at: int, count: int | None, depth: int) -> list[Tree]:
+    def _arguments(
+        self, name: str, at: int, count: int | None, depth: int, brackets: str = ""
+    ) -> list[Tree]:
         self._count()
         self.at = at
-        opening, closing = self._syntax.brackets
+        opening, closing = brackets or self._syntax.brackets
         self._skip_blanks()
         self._expect(opening)
         arguments = [self._or_zero(self.operation(0, depth + 1))]

@@ -117,6 +117,9 @@ class ExpressionSyntax:
         variable: Regular expression of a variable's name.
         indexed: Names that may be followed by an index in brackets, such as ``P``.
         brackets: Opening and closing character.
+        subscripts: Opening and closing character of the indices behind a variable, such as ``A[1,2]``; empty: it
+            has none but those of ``indexed``.
+        joined: Two such indices as one number.
         existence: Functions that tell whether their value is defined.
         prefixes: Operators before one value, besides + and -.
         spelled: One spelling for all ways to write a variable's name.
@@ -138,6 +141,8 @@ class ExpressionSyntax:
     variable: str
     brackets: str
     indexed: tuple[str, ...] = ()
+    subscripts: str = ""
+    joined: Callable[[float, float], float] = arithmetic.add
     existence: tuple[str, ...] = ()
     prefixes: Mapping[str, Callable[[float], float]] = dataclasses.field(default_factory=dict)
     spelled: Callable[[str], str] = str.upper

@@ -30,7 +30,11 @@ class Grammar:
             these, what is left of the line.
         address: An address alone.
         suffix: The incremental suffix alone.
+        label: The name of a block, or None where blocks have none.
+        form: A name before a bracket that says how a value counts, or None.
+        code: The name of a code, or None.
         statement: The keyword of a statement, or None where the dialect has none.
+        flag: A word without a value, or None likewise.
         reader: Reads computed values, or None.
         unfinished: The end of a text that a bracket must follow as a value, or None.
     """
@@ -54,9 +58,17 @@ class Grammar:
         self.comment_openings = {comment.opening[0] for comment in syntax.comments}
         self.address = _compiled(rf"{BLANKS}({syntax.address}){BLANKS_BETWEEN}")
         self.suffix = _compiled(suffix)
+        self.flag = _compiled(rf"{BLANKS}({syntax.flag})") if syntax.flag is not None else None
         self.statement = (
             _compiled(rf"{BLANKS}({syntax.statement})") if syntax.statement is not None else None
         )
+        self.label = _compiled(syntax.label) if syntax.label else None
+        self.form = (
+            _compiled(rf"{BLANKS}({'|'.join(syntax.forms)}){BLANKS}(?=\()")
+            if syntax.forms
+            else None
+        )
+        self.code = _compiled(rf"({'|'.join(syntax.codes)})\b") if syntax.codes else None
 
     def comment_end(self, line: str, at: int) -> int:
         """The place behind a line's comment that begins at a place, or as ``comments.comment_end``."""
@@ -88,8 +100,7 @@ class Grammar:
         name = address.upper()
         if len(name) > 1:
             name = name.rstrip("= \t")
-            name = self.syntax.aliases.get(name, name)
-        return name
+        return self.syntax.aliases.get(name, name)
 
 
 def _unfinished(expressions: ExpressionSyntax) -> re.Pattern[str]:

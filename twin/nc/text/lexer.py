@@ -3,16 +3,18 @@
 import re
 from collections.abc import Callable
 
-from twin.nc.text.blocks import Block
+from twin.nc.text.blocks import Block, Statement
 from twin.nc.text.comments import is_control
 from twin.nc.text.diagnostics import ProgramError
 from twin.nc.text.expression_reader import ExpressionReader
 from twin.nc.text.grammar import Grammar
+from twin.nc.text.keyword_line import KeywordLine
 from twin.nc.text.line_reader import LineReader
 from twin.nc.text.reporter import Reporter
 from twin.nc.text.syntax import Language
 
 _SPLIT = re.compile(r"[0-9.][ \t]+[0-9.]")
+_COMMA = re.compile(r"(?<=[0-9]),(?=[0-9])")
 _NUMBER_WITH_BLANKS = re.compile(r"[0-9.](?:[ \t]*[0-9.])+")
 
 
@@ -23,6 +25,9 @@ class Lexer:
         self._grammar = grammar = Grammar(language)
         self._block_end = grammar.syntax.block_end
         self._closes_up = grammar.syntax.blanks_in_numbers
+        self._continued = grammar.syntax.continued
+        self._has_commas = grammar.syntax.decimal_comma
+        self._reader = KeywordLine if grammar.syntax.worded else LineReader
         self._longest = grammar.syntax.longest_line
         self._report = report
 
@@ -50,12 +55,16 @@ class Lexer:
         self._report.line = number
         if len(line) > self._longest or not line.isprintable():
             self._check(line)
+        if self._continued and previous(number).rstrip().endswith(self._continued):
+            return (Block(number, 0, statement=Statement(self._continued, line, 0, 0)),)
         if self._block_end:
             line = line.rstrip(f"{self._block_end} \t")
         if self._closes_up and _SPLIT.search(line):
             line = self._grammar.outside_comments(_NUMBER_WITH_BLANKS, _closed_up, line)
+        if self._has_commas and "," in line:
+            line = self._grammar.outside_comments(_COMMA, lambda _comma: ".", line)
         try:
-            return LineReader(self._grammar, self._report, line, number).blocks()
+            return self._reader(self._grammar, self._report, line, number).blocks()
         except ProgramError:
             excuse = self._grammar.syntax.excused(line, previous(number))
             if excuse is None:

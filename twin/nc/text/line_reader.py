@@ -18,6 +18,7 @@ from twin.nc.text.expressions import (
 from twin.nc.text.grammar import Grammar
 from twin.nc.text.plain_word import BLANKS
 from twin.nc.text.reporter import Reporter
+from twin.nc.text.slips import near, slip_at
 
 LARGEST_LABEL = 4_294_967_295
 """Largest N number (32 bits, as the Fagor manual states)."""
@@ -25,12 +26,12 @@ LARGEST_LABEL = 4_294_967_295
 _STATEMENT = re.compile(r"[#$][A-Z]\w*", re.IGNORECASE)
 _GARBLED = re.compile(r"[-+.0-9]{1,20}")
 """What looks like a number and was not read as one."""
-_SKIP_LEVEL = re.compile(r"[1-9](?=[ \t]*[A-Z#/])", re.IGNORECASE)
+_SKIP_LEVEL = re.compile(r"[0-9](?=[ \t]*[A-Z#/:])", re.IGNORECASE)
 _LATE_SKIP = re.compile(r"(N[ \t]*[0-9]+)[ \t]*/", re.IGNORECASE)
 _NEXT_LABEL = re.compile(r"(?<=[ \t])N[ \t]*[0-9]", re.IGNORECASE)
-_NAMED_LABEL = re.compile(r"\[[ \t]*([A-Z_]\w*)[ \t]*\]", re.IGNORECASE)
 _BLANKS = re.compile(BLANKS)
 _EQUALS = re.compile(rf"{BLANKS}=")
+_QUOTED = re.compile(rf"{BLANKS}(\"[^\"]*\")")
 _PROSE = re.compile(r"[^\W\d_]{2,}(?:[ \t,;:'-]+[^\W\d_]+)+[ \t]*[.!?:]?[ \t]*(?=$|N[ \t]*[0-9])")
 """At least two words of letters alone, up to the end of the line or the next block."""
 _NO_NUMBER = re.compile(r"\b[A-Z](?:nan|inf|infinity|null|none|undefined)\b", re.IGNORECASE)
@@ -43,8 +44,12 @@ _LETTERS = frozenset(string.ascii_uppercase) - {"N"}
 """Addresses of words as they are."""
 _SHORT = len(f"{LARGEST_NUMBER:.0f}")
 """Characters of words whose number is below the largest one."""
-_LOOKALIKES = str.maketrans("АВСЕНІКМОРТХУЗ", "ABCEHIKMOPTXY3")
-"""Cyrillic letters that look like Latin ones: a keyboard left in the wrong layout."""
+_LOOKALIKES = str.maketrans("АВСЕНІКМОРТХУЗΑΒΕΖΗΙΚΜΝΟΡΤΥΧ", "ABCEHIKMOPTXY3ABEZHIKMNOPTYX")
+"""Cyrillic and Greek letters that look like Latin ones: a keyboard left in the wrong layout."""
+
+
+_LONE_LETTER = re.compile(r"(?<![A-Za-z#\[])[A-Za-z]$")
+"""The address of a word without a value."""
 
 
 class LineReader:
@@ -74,6 +79,7 @@ class LineReader:
         """
         has_statements = self._grammar.statement is not None
         end = len(self._line)
+        self._begin()
         while self._at < end:
             if has_statements and not self._words and self._statement():
                 continue
@@ -84,9 +90,13 @@ class LineReader:
         self._close()
         return self._done
 
+    def _begin(self) -> None:
+        """Read what can only begin a line, where a language has such a thing."""
+
     def _plain_words(self) -> bool:
         """Read words with plain numbers; True behind an N where a statement may follow."""
         grammar, at, add = self._grammar, self._at, self._words.append
+        relative = self._syntax.relative
         for blanks, written, address, number, suffix in grammar.words.findall(self._line, at):
             if not written:
                 break
@@ -101,11 +111,13 @@ class LineReader:
                         return True
                     add = self._words.append
                     continue
+                if address in relative:
+                    address, suffix = relative[address], address
             value = float(number)
             if width > _SHORT and not -LARGEST_NUMBER <= value <= LARGEST_NUMBER:
                 self._fail("number-range", f"the value is not within ±{LARGEST_NUMBER:g}", begin)
             # As Word(...), in a third of the time.
-            add(_tuple(Word, (address, value, begin, width, suffix != "", "." not in number)))
+            add(_tuple(Word, (address, value, begin, width, suffix != "", "." not in number, "")))
         self._at = at
         return False
 
@@ -123,6 +135,8 @@ class LineReader:
         if self._line[self._at] in self._grammar.comment_openings and self._comment():
             return True
         if self._block_skip() or self._named_label() or self._label_colon() or self._assignment():
+            return True
+        if self._named_code() or self._quoted_word():
             return True
         if not self._computed_word():
             self._refuse(self._at)
@@ -171,27 +185,54 @@ class LineReader:
             return False
         self._skippable = True
         self._at += 1
-        level = _SKIP_LEVEL.match(self._line, self._at) if self._syntax.skip_levels else None
-        if level is not None:
+        levels = self._syntax.skip_levels
+        level = _SKIP_LEVEL.match(self._line, self._at)
+        if level is not None and int(level[0]) in levels:
             self._skip_level, self._at = int(level[0]), level.end()
+        elif levels:
+            self._skip_level = levels[0]
         return True
 
     def _label_colon(self) -> bool:
         """``N20:``, which some write where the number is the target of a jump."""
         number = self._number != NO_BLOCK_NUMBER and not self._words
-        if not self._syntax.named_labels or not number or self._line[self._at] != ":":
+        if self._grammar.label is None or not number or self._line[self._at] != ":":
             return False
         self._at += 1
         return True
 
     def _named_label(self) -> bool:
-        if not self._syntax.named_labels or self._words or self._name:
+        pattern = self._grammar.label
+        if pattern is None or self._words or self._name:
             return False
-        match = _NAMED_LABEL.match(self._line, self._at)
+        match = pattern.match(self._line, self._at)
         if match is None:
             return False
         self._name = match[1].upper()
         self._at = match.end()
+        return True
+
+    def _named_code(self) -> bool:
+        """A code that has a name in the place of a number."""
+        pattern = self._grammar.code
+        match = pattern.match(self._line, self._at) if pattern is not None else None
+        if match is None:
+            return False
+        name = match[1].upper()
+        word = Word("G", self._syntax.codes[name], self._at, len(name), mark=name)
+        self._words.append(word)
+        self._at = match.end()
+        return True
+
+    def _quoted_word(self) -> bool:
+        """A word whose value is a text in quotes."""
+        match = self._grammar.address.match(self._line, self._at) if self._syntax.texts else None
+        text = _QUOTED.match(self._line, match.end()) if match is not None else None
+        if match is None or text is None or self._grammar.name(match[1]) not in self._syntax.texts:
+            return False
+        begin, self._at = match.start(1), text.end()
+        name = self._grammar.name(match[1])
+        self._words.append(Word(name, 0.0, begin, self._at - begin, mark=text[1]))
         return True
 
     def _statement(self) -> bool:
@@ -240,10 +281,13 @@ class LineReader:
         match = self._grammar.address.match(self._line, self._at)
         if reader is None or match is None:
             return False
-        begin = match.start(1)
+        begin, at = match.start(1), match.end()
         self._refuse_late_skip(match)
+        form = self._grammar.form.match(self._line, at) if self._grammar.form is not None else None
+        mark = "" if form is None else form[1].upper()
+        read = reader.read_value if form is None else reader.read_operand
         try:
-            expression, end = reader.read_value(self._line, match.end())
+            expression, end = read(self._line, at if form is None else form.end())
         except ExpressionError as error:
             if self._prose():
                 return True
@@ -252,10 +296,19 @@ class LineReader:
         name = self._grammar.name(match[1])
         if name == "N":
             self._fail("label", "a block number must be a plain number", begin)
+        if not match[1].endswith(sign := self._syntax.computed_behind):
+            message = f"a value that is computed follows {sign} here"
+            self._fail("expression", message, at, hint=f"write {name}{sign}...")
         suffix = self._grammar.suffix.match(self._line, end)
         assert suffix is not None
         self._at = suffix.end()
-        self._words.append(Word(name, expression, begin, self._at - begin, bool(suffix[1])))
+        relative, form_relative = (
+            self._syntax.relative,
+            form is not None and self._syntax.forms[mark],
+        )
+        incremental = bool(suffix[1]) or name in relative or form_relative
+        name, width = relative.get(name, name), self._at - begin
+        self._words.append(Word(name, expression, begin, width, incremental, mark=mark))
         return True
 
     def _assignment(self) -> bool:
@@ -307,10 +360,22 @@ class LineReader:
         name = _NAME.match(self._line, begin)
         if name is not None and error.code == "unknown-function":
             message = f"'{name[0]}' is no word of {self._grammar.language.name}"
-            hint = f"a value is a number, a variable or a function; {self._comments()}"
+            usual = f"a value is a number, a variable or a function; {self._comments()}"
+            hint = self._slip_at(begin) or usual
             self._fail("unknown-word", message, begin, width=len(name[0]), hint=hint)
         column = begin if error.column is None else min(error.column, len(self._line) - 1)
-        self._fail(error.code, str(error), column, hint=error.hint)
+        lone = _LONE_LETTER.search(self._line[: error.column].rstrip(" \t="))
+        if error.column is not None and lone is not None:
+            hint = self._slip_at(lone.start()) or "write a number after it"
+            self._fail("missing-value", f"'{lone[0]}' has no value", lone.start(), hint=hint)
+        slip = None
+        if error.code in ("expression", "unknown-function"):
+            slip = self._slip_at(column) or self._slip_at(begin)
+        hint = (slip or error.hint) if error.code == "unknown-function" else (error.hint or slip)
+        self._fail(error.code, str(error), column, hint=hint)
+
+    def _slip_at(self, column: int) -> str | None:
+        return slip_at(self._line, column, self._grammar.language.keywords)
 
     def _label(self, number: str, begin: int) -> None:
         value = float(number)
@@ -352,17 +417,17 @@ class LineReader:
         character = self._line[at]
         latin = character.upper().translate(_LOOKALIKES)
         address = self._grammar.address.match(self._line, at)
-        if "\u0400" <= character <= "\u04ff":
-            message = f"'{character}' is a Cyrillic letter"
+        if "\u0370" <= character <= "\u04ff":
+            alphabet = "Cyrillic" if character >= "\u0400" else "Greek"
+            message = f"'{character}' is a {alphabet} letter"
             hint = f"write the Latin {latin}" if latin != character.upper() else self._comments()
             self._fail("foreign-letter", message, at, hint=hint)
         statement = _STATEMENT.match(self._line, at)
         if statement is not None and self._grammar.statement is not None:
-            known = ", ".join(self._grammar.language.keywords)
-            message = f"'{statement[0]}' is no statement of {self._grammar.language.name}"
-            self._fail(
-                "unknown-statement", message, at, width=len(statement[0]), hint=f"known: {known}"
-            )
+            language = self._grammar.language
+            message = f"'{statement[0]}' is no statement of {language.name}"
+            hint = self._slip_at(at) or near(statement[0], language.keywords, language.name)
+            self._fail("unknown-statement", message, at, width=len(statement[0]), hint=hint)
         if address is not None:
             self._refuse_code()
             self._refuse_missing_value(address)
@@ -372,21 +437,26 @@ class LineReader:
             hint = "write a blank" if character.isspace() else None
             self._fail("unreadable", message, at, hint=hint)
         message = f"'{character}' begins no word of {self._grammar.language.name}"
-        self._fail("unreadable", message, at, hint=self._hint_for(character))
+        self._fail("unreadable", message, at, hint=self._hint_for(at))
 
     def _refuse_missing_value(self, address: re.Match[str]) -> NoReturn:
         name, end = address[1], address.end()
         garbled = _GARBLED.match(self._line, end)
         if garbled is not None:
             message = f"'{garbled[0]}' is no number"
-            self._fail("missing-value", message, end, width=len(garbled[0]))
+            hint = self._slip_at(end)
+            self._fail("missing-value", message, end, width=len(garbled[0]), hint=hint)
         slip = "O" in (name.upper(), self._line[end : end + 1].upper())
         hint = "the letter O is no 0" if slip else "write a number after it"
         self._fail("missing-value", f"'{name}' has no value", address.start(1), hint=hint)
 
-    def _hint_for(self, character: str) -> str | None:
+    def _hint_for(self, at: int) -> str | None:
+        character = self._line[at]
         if character == ",":
             return "decimals begin with a point"
+        slip = self._slip_at(at)
+        if slip is not None:
+            return slip
         return self._comments() if character in ";$\"('/" else None
 
     def _comments(self) -> str:

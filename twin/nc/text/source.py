@@ -98,7 +98,7 @@ def _source_of(pieces: Iterable[bytes], name: str, dialect: Language | None) -> 
         """Without the blank tape before and behind the program, which a DNC link sends as NUL; blank alone it stays."""
         begun, blanks, any_piece = False, b"", False
         for piece in seen():
-            any_piece = True
+            any_piece = any_piece or bool(piece)
             whole = (blanks + piece) if begun else piece.lstrip(b"\0")
             text = whole.rstrip(b"\0")
             blanks = whole[len(text) :]

@@ -42,17 +42,31 @@ class Syntax:
         statement: Regular expression of what begins a statement; its group 1 is the keyword.
         trailing_prose: Words of prose behind a block's words are left out with a warning.
         several_blocks: A further N begins a further block on the same line.
-        named_labels: ``[NAME]`` at its begin names a block.
+        label: Regular expression of a block's name at its begin, the name as its group 1; empty: blocks
+            have none.
         fractional_labels: The number of a block may have a fraction, which does not count.
-        skip_levels: A digit may stand behind the slash of a block that can be skipped.
+        skip_levels: Digits that may stand behind the slash of a block that can be skipped; a slash alone
+            means the first.
         block_end: Character that may end a line and says no more, such as ``;`` for the end of a block.
         inner_comments: Comments in brackets may stand anywhere within a statement.
         incremental_suffix: ``X20I`` makes one word incremental.
+        forms: Names before a value in brackets that say how it counts, such as ``X=IC(5)``, and whether
+            they make the word incremental.
+        codes: Names of G codes that are written without a number, and the number that the dialect's table
+            has for them.
+        texts: Addresses whose value may be a text in quotes, such as ``T="MILL"``.
+        computed_behind: What must end an address whose value is computed, such as ``=``; empty: nothing.
         aliases: Addresses that mean another one.
         assigned: Character that begins an assignment among the words, such as ``#1=5``; empty: there
             is none.
         open_assignments: What is assigned needs no brackets around its operators.
         blanks_in_numbers: Blanks between the characters of a number do not count.
+        decimal_comma: A comma between digits is a decimal point.
+        worded: Keywords of statements behind which the block's words stand; a block may also have a bare number
+            before it, and none of both.
+        flag: Regular expression of words that have no value, such as ``FMAX``; None: there are none.
+        continued: Character at the end of a line whose block goes on in the next one; empty: none does.
+        relative: Addresses of words that are incremental, such as ``IX``, and those that they stand for.
         longest_line: Characters that a line may have.
         excused: Why a line that cannot be read may be left out, given it and the line before:
             code of the warning, or None.
@@ -64,16 +78,25 @@ class Syntax:
     statement: str | None = None
     trailing_prose: bool = False
     several_blocks: bool = False
-    named_labels: bool = False
+    label: str = ""
     fractional_labels: bool = False
-    skip_levels: bool = False
+    skip_levels: range = range(0)
     block_end: str = ""
     inner_comments: bool = False
     incremental_suffix: bool = False
+    forms: Mapping[str, bool] = dataclasses.field(default_factory=dict)
+    codes: Mapping[str, float] = dataclasses.field(default_factory=dict)
+    texts: frozenset[str] = frozenset()
+    computed_behind: str = ""
     aliases: Mapping[str, str] = dataclasses.field(default_factory=dict)
     assigned: str = ""
     open_assignments: bool = False
     blanks_in_numbers: bool = False
+    decimal_comma: bool = False
+    worded: frozenset[str] = frozenset()
+    flag: str | None = None
+    continued: str = ""
+    relative: Mapping[str, str] = dataclasses.field(default_factory=dict)
     longest_line: int = LONGEST_LINE
     excused: Callable[[str, str], str | None] = lambda _line, _previous: None
 
@@ -113,7 +136,9 @@ class Mark:
     Attributes:
         pattern: Regular expression, searched line by line without regard to case.
         shown: How a person would say it.
+        decides: Where it stands, nothing that other dialects know counts.
     """
 
     pattern: str
     shown: str
+    decides: bool = False

@@ -4,11 +4,13 @@ import { View } from "../view/view.js";
 import { PATCH, readState, STATE } from "../view/wire.js";
 import { Connection } from "./connection.js";
 import { Desk } from "./desk.js";
+import { Looking } from "./looking.js";
 import { act_on, LANGUAGE_NAMES, make, Words } from "./parts.js";
 import { Preview } from "./preview.js";
 import { Score } from "./score.js";
 import { Screen } from "./screen.js";
 import { Sheets } from "./sheets.js";
+import { Trouble } from "./trouble.js";
 
 const VIEWS = ["front", "top", "tool", "part", "fit"];
 
@@ -33,9 +35,9 @@ const line = new Connection(hear, (down) => {
     document.getElementById("banner").hidden = true;
   }
 });
-const preview = new Preview(view);
+const preview = new Preview(view), trouble = new Trouble(view), looking = new Looking(view, trouble);
 const score = new Score(scene, line);
-const desk = new Desk(scene, line), screen = new Screen(scene, line), sheets = new Sheets(scene, line, view, desk, screen, score);
+const desk = new Desk(scene, line), screen = new Screen(scene, line), sheets = new Sheets(scene, line, looking, desk, screen, score);
 let attempt = null;
 screen.on_choice = () => { if (now.mode !== undefined && words) sheets.show(now, words); };
 
@@ -81,6 +83,7 @@ function show_soon() {
       sheets.show(now, words);
       score.show(now, words);
       preview.show(now, changed);
+      trouble.show(now);
       show_hand_over();
       changed.clear();
       document.body.dataset.ready = "yes";

@@ -1,15 +1,22 @@
 // The sheets beside the view: tasks, what is done by hand, how programs run, tables, alarms, view, trainer.
 
 import { alarm_sheet, manual_sheet, run_sheet } from "./machine_sheets.js";
+import { tool_colour } from "./looking.js";
 import { act_on, field, make, number, put_back, typing } from "./parts.js";
+
+/** In what colour the view shows what a tool has cut; set by its style, as pages here may hold no styles of their own. */
+function colour_of(number) {
+  const made = make("span", { class: "swatch", "aria-hidden": "true" });
+  made.style.background = tool_colour(number);
+  return made;
+}
 
 const MARKS = { open: "○", done: "●", failed: "×" };
 const BACK_S = [10, 60];
-const SHOWN = ["trail", "stock", "collision"];
 
 export class Sheets {
-  constructor(scene, line, view, desk, screen, score) {
-    Object.assign(this, { scene, line, view, desk, screen, score, asking: "", sheet: "tasks", shown: { trail: true, stock: true, collision: false }, drawn: "", state: null });
+  constructor(scene, line, looking, desk, screen, score) {
+    Object.assign(this, { scene, line, looking, desk, screen, score, asking: "", sheet: "tasks", drawn: "", state: null });
     document.addEventListener("next-sheet", () => {
       const names = this.names();
       this.choose(names[(names.indexOf(this.sheet) + 1) % names.length]);
@@ -43,7 +50,7 @@ export class Sheets {
     for (const tab of tabs.children) tab.setAttribute("aria-selected", tab.id === `tab-${this.sheet}`);
     sheet.setAttribute("aria-labelledby", `tab-${this.sheet}`);
     const acts = now.role === "trainer" || now.has_panel;
-    const what = { tasks: [now.verdicts, now.answers, now.hints, now.score, now.over, now.signature, this.asking], manual: [now.spindle, now.counter_clockwise, now.spindle_override, now.suspended, this.desk.hand], run: [now.optional_stop, now.block_skip, now.dry_run, now.searched, now.changed, this.screen.chosen], offsets: [now.zero, now.offsets], tools: [now.tools, now.tool, now.broken], history: [now.alarms], display: [this.shown], trainer: [now.faults, now.frozen, now.replaying] };
+    const what = { tasks: [now.verdicts, now.answers, now.hints, now.score, now.over, now.signature, this.asking], manual: [now.spindle, now.counter_clockwise, now.spindle_override, now.suspended, this.desk.hand], run: [now.optional_stop, now.block_skip, now.dry_run, now.searched, now.changed, this.screen.chosen], offsets: [now.zero, now.offsets], tools: [now.tools, now.tool, now.broken], history: [now.alarms], display: [], trainer: [now.faults, now.frozen, now.replaying] };
     const drawn = JSON.stringify([this.sheet, words.language, acts, now.refusals, what[this.sheet]]);
     if (drawn === this.drawn) return;
     // What is being typed stays; what has been sent is shown as the machine has it.
@@ -136,7 +143,7 @@ export class Sheets {
         return make("label", {}, words.label(name), field(given, (text) => this.line.say({ do: "set_tool", number: tool.number, [name]: number(text) })));
       };
       return [
-        make("h3", {}, `T${tool.number}${here ? " ◂" : ""}  ${words.label(`tool_${tool.kind}`)}`),
+        make("h3", {}, colour_of(tool.number), `T${tool.number}${here ? " ◂" : ""}  ${words.label(`tool_${tool.kind}`)}`),
         make("div", { class: "row" }, `${words.label("diameter")} ${tool.diameter}`),
         make("div", { class: "row" }, entry("length", tool.length), entry("radius", tool.radius)),
         here && !now.broken ? null : make("div", { class: "row" }, this.button(`change tool ${tool.number}`, words.label(here ? "new_tool" : "change_tool"), () => this.line.say({ do: "change_tool", number: tool.number }))),
@@ -151,17 +158,7 @@ export class Sheets {
     if (tool && state) line.say({ do: "set_tool", number: tool.number, length: Math.round(1e4 * (tool.length + state.position[now.axes.indexOf("Z")])) / 1e4 });
   }
 
-  display() {
-    return SHOWN.map((name) => {
-      const box = make("input", { type: "checkbox", id: `show-${name}`, "data-key": `show ${name}` });
-      box.checked = this.shown[name];
-      box.addEventListener("change", () => {
-        this.shown = { ...this.shown, [name]: box.checked };
-        this.view.say("show", { [name]: box.checked });
-      });
-      return make("div", { class: "row" }, make("label", {}, box, this.words.label(name)));
-    });
-  }
+  display() { return this.looking.sheet(this.words, this.now); }
 
   trainer() {
     const { now, words, line, scene } = this;

@@ -7,6 +7,8 @@ import threading
 from collections import deque
 from typing import Any
 
+import numpy as np
+
 from twin.cutting.height_map import HeightMap
 from twin.cutting.patches import patch_message
 from twin.cutting.sweeping import Rectangle, union
@@ -17,6 +19,8 @@ from twin.training.session.snapshot import Snapshot
 
 STATE = 1
 """First byte of the state; patches have their own."""
+MOST_TOOL = 255
+"""Tools of higher numbers are told apart from this one no more by what they have cut."""
 PATCHES_KEPT = 512
 """Changes of the stock that are remembered; a page that is further behind gets the whole stock."""
 
@@ -135,6 +139,8 @@ class StockFeed:
         self.epoch = 0
         self.version = 0
         self._map: HeightMap | None = None
+        self._known = np.zeros((0, 0))
+        self._tools = np.zeros((0, 0), np.uint8)
         self._changes: deque[tuple[int, Rectangle]] = deque(maxlen=PATCHES_KEPT)
         self._lock = threading.Lock()
 
@@ -149,10 +155,27 @@ class StockFeed:
                 self.epoch += 1
                 self.version += 1
                 self._changes.clear()
+                self._begin_tools(work.map)
             changed = work.take_changed()
             if changed[0] < changed[1]:
                 self.version += 1
                 self._changes.append((self.version, changed))
+                self._note_tool(work.map, changed, room.tables.spindle)
+
+    def _begin_tools(self, stock: HeightMap) -> None:
+        """Of a stock as it was earlier, what is cut was cut by whom it is known of."""
+        cut = stock.machined()
+        same = self._tools.shape == cut.shape
+        self._tools = np.where(cut, self._tools if same else 0, 0).astype(np.uint8)
+        self._known = stock.heights.copy()
+
+    def _note_tool(self, stock: HeightMap, changed: Rectangle, tool: int) -> None:
+        """What is lower than before was cut by the tool in the spindle."""
+        row, row_end, column, column_end = changed
+        cells = slice(row, row_end), slice(column, column_end)
+        lower = stock.heights[cells] < self._known[cells]
+        self._tools[cells][lower] = min(tool, MOST_TOOL)
+        self._known[cells] = stock.heights[cells]
 
     def patch(self, epoch: int, version: int) -> tuple[bytes | None, int, int]:
         """What a page lacks.
@@ -176,4 +199,5 @@ class StockFeed:
                 for number, changed in self._changes:
                     if number > version:
                         rectangle = union(rectangle, changed)
-            return patch_message(stock, rectangle, self.epoch), self.epoch, self.version
+            message = patch_message(stock, rectangle, self.epoch, self._tools)
+            return message, self.epoch, self.version

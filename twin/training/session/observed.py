@@ -32,6 +32,8 @@ class Notice:
         time_s: When, in machine time [s].
         finding: What the interpreter found, where that is the cause.
         block: Number of the block, such as ``N20``; empty where it has none.
+        between: Names of the two bodies that met; empty: none did.
+        place: Where the tip was, seen from the part, X Y Z [mm]; empty: not known.
     """
 
     code: str
@@ -41,6 +43,8 @@ class Notice:
     time_s: float = 0.0
     finding: Diagnostic | None = None
     block: str = ""
+    between: tuple[str, ...] = ()
+    place: tuple[float, ...] = ()
 
 
 def block_number(language: Language, program: Source, line: int) -> str:

@@ -56,7 +56,7 @@ BLOCKS_AT_REST, BLOCKS_IN_MOTION = 200, 50
 """Blocks that are interpreted in one slice of time, before the axes move and while they do."""
 BLOCKS_FOR_PLANNER = 400
 """Blocks more that are interpreted in one slice where the planner has caught up."""
-PLANNED_AT_REST = 16
+PLANNED_AT_REST = 8
 """Steps of planning in one slice before the axes can go: corners that are tried take a few milliseconds each."""
 MOVES_KEPT_BEHIND = 2
 """Moves behind the axes that are remembered: a stop at a block's end may count as the next one's beginning."""
@@ -496,7 +496,7 @@ class ProgramRun:
         control = self._control
         active = control.modal.active.numbers()
         if active != self._active:
-            self._active, self._codes = active, tuple(f"G{number:g}" for number in active)
+            self._active, self._codes = active, tuple(map(self._executor.dialect.code_name, active))
         factor = FEED_FACTORS.get(control.modal.feed_mode)
         state = ModalState(
             block.line, self._codes, control.motion.feed, control.tools.spindle, factor

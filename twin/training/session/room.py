@@ -360,7 +360,9 @@ class Room:
     def _latch(self, alarm: Alarm | None) -> None:
         # An axis that is jogged off its switch may meet the next alarm while the first one stands.
         if alarm is not None and (self.alarm is None or self.run is not None):
-            self.raise_alarm(Notice(alarm.code, alarm.message, alarm.axis, alarm.line))
+            self.raise_alarm(
+                Notice(alarm.code, alarm.message, alarm.axis, alarm.line, between=alarm.between)
+            )
 
     def raise_alarm(self, notice: Notice) -> None:
         """The control stops everything and says why; the first alarm counts."""
@@ -373,8 +375,10 @@ class Room:
     def _noted(self, notice: Notice) -> Notice:
         """Enter what went wrong into the history, for the sheet and the judge too."""
         notice = self._placed(notice)
+        moment = self._moment(notice)
+        notice = dataclasses.replace(notice, place=tuple(moment.tip.tolist()))
         self.alarms.append(notice)
-        self.moments.append(self._moment(notice))
+        self.moments.append(moment)
         self.judge.note_alarm(notice.code)
         return notice
 

@@ -88,6 +88,8 @@ class Snapshot:
     tool: int
     tools: tuple[ToolRow, ...]
     zero: Row
+    origin: Row
+    """Where the control's program zero is, seen from the part, X Y Z [mm]."""
     touches: bool
     """The feeler lamp."""
     verdicts: tuple[Verdict, ...]
@@ -172,6 +174,7 @@ def take_snapshot(room: Room) -> Snapshot:
             for number, tool in room.tables.tools.items()
         ),
         zero=_row(room.tables.zero),
+        origin=_row(room.part_frame.position(zero[None])[0]),
         touches=room.touches,
         verdicts=tuple(room.judge.verdicts),
         answers=tuple(room.judge.evidence.answers.items()),

@@ -2,9 +2,11 @@
 // themselves, so that a small step shows however coarse the drawn net is.
 
 import * as THREE from "./three/three.module.js";
+import { TOOL_COLOURS } from "./tool_colours.js";
 
 const RAW = new THREE.Color(0.25, 0.27, 0.3);
 const CUT = new THREE.Color(0.72, 0.74, 0.77);
+const SECTION = 0xd9822b;
 
 const VERTEX_PARS = `
 uniform sampler2D heights;
@@ -18,6 +20,9 @@ float stored(ivec2 at) {
 
 const FRAGMENT_PARS = `
 uniform sampler2D heights;
+uniform sampler2D tools;
+uniform bool byTool;
+uniform vec3 toolColours[${TOOL_COLOURS.length}];
 uniform vec2 cells;
 uniform float cellSize;
 uniform float blank;
@@ -50,7 +55,12 @@ const COLOUR = `
   if (stored(nearest) > 0.0) lowest = min(lowest, stored(nearest));
   float machined = step(lowest, 1.0 - 0.004 / blank);
   float sunk = clamp((around / 8.0 - here) * blank / 6.0, 0.0, 1.0);
-  diffuseColor.rgb = mix(rawColour, cutColour, machined) * (1.0 - 0.55 * sunk);
+  vec3 cutBy = cutColour;
+  if (byTool) {
+    int tool = int(255.0 * texelFetch(tools, clamp(nearest, ivec2(0), ivec2(cells) - 1), 0).r + 0.5);
+    if (tool > 0) cutBy = toolColours[(tool - 1) % ${TOOL_COLOURS.length}];
+  }
+  diffuseColor.rgb = mix(rawColour, cutBy, machined) * (1.0 - 0.55 * sunk);
 `;
 
 const NORMAL = `
@@ -72,7 +82,13 @@ export class Stock {
     this.shares = new Float32Array(rows * columns).fill(1);
     this.texture = new THREE.DataTexture(this.shares, columns, rows, THREE.RedFormat, THREE.FloatType);
     this.texture.needsUpdate = true;
+    this.by = new Uint8Array(rows * columns);
+    this.tools = new THREE.DataTexture(this.by, columns, rows, THREE.RedFormat, THREE.UnsignedByteType);
+    this.tools.unpackAlignment = 1;
+    this.tools.needsUpdate = true;
+    this.byTool = { value: false };
     const uniforms = {
+      tools: { value: this.tools }, byTool: this.byTool, toolColours: { value: TOOL_COLOURS.map((colour) => new THREE.Color(colour)) },
       heights: { value: this.texture }, cells: { value: new THREE.Vector2(columns, rows) },
       cellSize: { value: cell }, blank: { value: top - bottom }, rawColour: { value: RAW }, cutColour: { value: CUT },
     };
@@ -97,22 +113,66 @@ export class Stock {
     this.mesh = new THREE.Mesh(net(rows, columns, step), material);
     this.mesh.frustumCulled = false;
     this.mesh.position.set(grid.origin[0], grid.origin[1], bottom);
+    this.face = new THREE.Mesh(new THREE.BufferGeometry(), new THREE.MeshBasicMaterial({ color: SECTION, side: THREE.DoubleSide, toneMapped: false }));
+    this.face.frustumCulled = this.face.visible = false;
+    this.cut = null;
   }
 
-  /** Take over the heights of some cells; returns what they were. */
+  /** Height of the part at a place of its frame [mm]; below its underside outside of it. */
+  height(x, y) {
+    const { origin, cell, rows, columns, bottom, top } = this.grid;
+    const column = Math.round((x - origin[0]) / cell), row = Math.round((y - origin[1]) / cell);
+    if (row < 0 || column < 0 || row >= rows || column >= columns) return -Infinity;
+    const share = this.shares[row * columns + column];
+    return share > 0 ? bottom + share * (top - bottom) : -Infinity;
+  }
+
+  /** Cut the part open at a share of its width, in "x" or "y"; null: it is whole. Returns the plane in the part's frame. */
+  section(axis, share) {
+    const { origin, cell, rows, columns } = this.grid, along = axis === "x" ? columns : rows;
+    this.cut = axis ? { axis, number: Math.round(share * (along - 1)) } : null;
+    this.face.visible = !!axis;
+    if (!axis) return null;
+    this.fill_section();
+    const at = (axis === "x" ? origin[0] : origin[1]) + this.cut.number * cell;
+    return axis === "x" ? new THREE.Plane(new THREE.Vector3(-1, 0, 0), at) : new THREE.Plane(new THREE.Vector3(0, 1, 0), -at);
+  }
+
+  /** The face of the section: a strip from the part's underside to its height. */
+  fill_section() {
+    if (!this.cut) return;
+    const { origin, cell, rows, columns, bottom, top } = this.grid, { axis, number } = this.cut, count = axis === "x" ? rows : columns;
+    const places = [], faces = [];
+    for (let i = 0; i < count; i++) {
+      const [row, column] = axis === "x" ? [i, number] : [number, i], share = this.shares[row * columns + column];
+      const [x, y] = [origin[0] + column * cell, origin[1] + row * cell];
+      places.push(x, y, bottom, x, y, bottom + share * (top - bottom));
+      if (i && share > 0 && places[6 * i - 1] > bottom) faces.push(2 * i - 2, 2 * i, 2 * i + 1, 2 * i - 2, 2 * i + 1, 2 * i - 1);
+    }
+    this.face.geometry.dispose();
+    this.face.geometry = new THREE.BufferGeometry();
+    this.face.geometry.setAttribute("position", new THREE.Float32BufferAttribute(places, 3));
+    this.face.geometry.setIndex(faces);
+  }
+
+  /** Take over the heights of some cells, and who cut them; returns what they were. */
   put(patch) {
     const { columns } = this.grid;
-    const before = new Uint16Array(patch.levels.length);
+    const before = new Uint16Array(patch.levels.length), by = patch.tools && new Uint8Array(patch.tools.length);
     for (let row = 0; row < patch.rows; row++) {
       const to = (patch.row + row) * columns + patch.column;
       const from = row * patch.columns;
       for (let i = 0; i < patch.columns; i++) {
         before[from + i] = Math.round(65535 * this.shares[to + i]);
         this.shares[to + i] = patch.levels[from + i] / 65535;
+        if (!by) continue;
+        by[from + i] = this.by[to + i];
+        this.by[to + i] = patch.tools[from + i];
       }
     }
-    this.texture.needsUpdate = true;
-    return before;
+    this.texture.needsUpdate = this.tools.needsUpdate = true;
+    this.fill_section();
+    return { levels: before, tools: by };
   }
 }
 

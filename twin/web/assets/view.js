@@ -1,5 +1,7 @@
 // The view of a machine on a page: hands the canvas to a worker, and tells it what the hand does.
 
+const STILL_PX = 4; // A hand that moved farther has turned the view.
+
 export class View {
   /** canvas; address of the machine's files; tell: called with "ready" or "failed". */
   constructor(canvas, address, tell) {
@@ -7,6 +9,8 @@ export class View {
     this.waiting = [];
     this.ready = false;
     this.worker = null;
+    this.measuring = false;
+    this.on_measured = () => {};
     try {
       this.worker = new Worker(new URL("./view_worker.js", import.meta.url), { type: "module" });
       const surface = canvas.transferControlToOffscreen();
@@ -14,6 +18,7 @@ export class View {
       this.worker.onmessage = ({ data }) => {
         if (data.pictures !== undefined) Object.assign(document.body.dataset, { pictures: data.pictures, drawing: Math.round(data.drawing_ms) });
         if (data.failed) tell("failed", data.failed);
+        if (data.measured) this.on_measured(data.measured);
         if (data.ready) {
           this.ready = true;
           this.waiting.splice(0).forEach((said) => this.say(...said));
@@ -44,6 +49,13 @@ export class View {
   follow_hand() {
     const fingers = new Map();
     const canvas = this.canvas;
+    let pressed = null;
+    canvas.addEventListener("pointerdown", ({ clientX, clientY, button }) => { pressed = this.measuring && button === 0 ? [clientX, clientY] : null; });
+    canvas.addEventListener("pointerup", ({ clientX, clientY }) => {
+      if (!pressed || Math.hypot(clientX - pressed[0], clientY - pressed[1]) > STILL_PX) return;
+      const box = canvas.getBoundingClientRect();
+      this.say("measure", [(2 * (clientX - box.left)) / box.width - 1, 1 - (2 * (clientY - box.top)) / box.height]);
+    });
     canvas.addEventListener("contextmenu", (event) => event.preventDefault());
     canvas.addEventListener("wheel", (event) => {
       event.preventDefault();

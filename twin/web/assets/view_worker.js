@@ -5,23 +5,29 @@ import * as THREE from "./three/three.module.js";
 import { GLTFLoader } from "./three/GLTFLoader.js";
 import { RoomEnvironment } from "./three/RoomEnvironment.js";
 import { Chips, Coolant, Trail } from "./effects.js";
+import { Happened } from "./happened.js";
+import { Measure } from "./measure.js";
 import { Stock } from "./stock.js";
 import { wideLine } from "./wide_line.js";
 import { readPatch, readState } from "./wire.js";
 
 const SOFTWARE = /swiftshader|llvmpipe|software|basic render/i;
-const BACKGROUND = 0x55616d, FLOOR = 0x3c4751;
+const BACKGROUND = 0x76838f, FLOOR = 0xa3aeb8;
 const STILL_MS = 700; // Without a graphics card a view that is still for so long is drawn once as well as it can be.
 const FASTEST_MS = 33;
 const SLOW_MS = 120;
 const DASH_MM = 2.5; // Of the dashes of a rapid, and between them.
+const CLOSE_M = 0.34; // How near a crash is looked at.
 const PATH_PX = 3; // Width of the path on the page.
 const ABOVE_MM = 0.15; // What a path lies above the floor that it was cut into.
 
 let renderer, scene, camera, key, base, moved = 0, sharp = false, most_dots = 1, fine, by_processor, size = [1, 1], dirty = true, busy = false, last = 0, pictures = 0, drawing = 0, dots = 1, slow = 0;
 let machine = null, patches = Promise.resolve(), wanted = 0;
 const orbit = { azimuth: -0.9, elevation: 0.42, distance: 2.4, target: new THREE.Vector3(0, 0, 1), follows: "part" };
-const shown = { trail: true, stock: true, collision: false };
+const shown = { trail: true, stock: true, collision: false, by_tool: false };
+const happened = new Happened(), measure = new Measure();
+let section = { axis: null, share: 0.5 }, section_plane = null;
+const section_in_world = new THREE.Plane();
 const trail = new Trail();
 trail.line.position.z = ABOVE_MM;
 let path = null;
@@ -32,6 +38,7 @@ function open({ canvas, width, height, ratio, address, quality }) {
   fine = quality === "fine" || (quality !== "plain" && !by_processor);
   renderer = new THREE.WebGLRenderer({ canvas, antialias: fine, powerPreference: "high-performance" });
   base = address;
+  renderer.localClippingEnabled = true;
   renderer.toneMapping = THREE.ACESFilmicToneMapping;
   renderer.toneMappingExposure = 0.9;
   most_dots = ratio;
@@ -96,6 +103,8 @@ async function load(tool) {
   if (!first) scene.remove(machine.root);
   machine = assemble(described, drawn.scene);
   scene.add(machine.root);
+  happened.enter(machine);
+  cut_open();
   dirty = true;
   if (state) {
     move(state.machine);
@@ -128,11 +137,12 @@ function assemble(described, root) {
   });
   const part = frame(described.part, named);
   const tip = frame(described.tip, named);
-  const found = { root, joints, part, tip, bodies, cutter: named(described.cutter), radius: described.tool.diameter / 2, stock: null };
+  const found = { root, joints, part, tip, bodies, cutter: named(described.cutter), tool: described.tool, collision: described.collision, radius: described.tool.diameter / 2, stock: null };
   if (described.stock) {
     found.stock = machine?.stock ?? new Stock(described.stock, by_processor ? 3 : 1, fine);
-    part.add(found.stock.mesh);
+    part.add(found.stock.mesh, found.stock.face);
   }
+  part.add(measure.lines);
   part.add(trail.line);
   if (path) part.add(path);
   if (preview.length) part.add(...preview);
@@ -159,7 +169,10 @@ function frame(place, named) {
 function show(target) {
   if (!target) return;
   trail.line.visible = shown.trail;
-  if (target.stock) target.stock.mesh.visible = shown.stock;
+  if (target.stock) {
+    target.stock.mesh.visible = shown.stock;
+    target.stock.byTool.value = shown.by_tool;
+  }
   for (const body of target.bodies) body.visible = shown.collision;
   dirty = true;
 }
@@ -213,6 +226,29 @@ function look(name) {
   dirty = true;
 }
 
+/** Cut the part open, or close it again. */
+function cut_open() {
+  if (!machine?.stock) return;
+  section_plane = machine.stock.section(section.axis, section.share);
+  machine.stock.mesh.material.clippingPlanes = section_plane ? [section_in_world] : null;
+  machine.stock.mesh.material.needsUpdate = true;
+  dirty = true;
+}
+
+/** What stopped the machine: shown where it happened, and looked at once. */
+function happen({ alarm, broken, look_there }) {
+  if (!machine) {
+    Object.assign(happened, { given: alarm, broken });
+    return;
+  }
+  happened.tell(machine, alarm, broken);
+  if (alarm && look_there) {
+    orbit.target.copy(happened.place(machine));
+    Object.assign(orbit, { follows: "", distance: CLOSE_M, elevation: Math.max(0.3, Math.min(0.7, orbit.elevation)) });
+  }
+  dirty = true;
+}
+
 function turn({ azimuth = 0, elevation = 0, zoom = 1, pan = [0, 0] }) {
   orbit.azimuth -= azimuth;
   orbit.elevation = Math.min(1.5533, Math.max(-0.25, orbit.elevation + elevation));
@@ -257,6 +293,8 @@ function draw() {
   dirty = false;
   if (sharp !== was_sharp) refine();
   aim();
+  happened.follow(machine, camera);
+  if (section_plane) section_in_world.copy(section_plane).applyMatrix4(machine.part.matrixWorld);
   const began = performance.now();
   renderer.render(scene, camera);
   pictures += 1;
@@ -298,7 +336,7 @@ function cut_until(time) {
   }
   while (done > 0 && cuts[done - 1].time > time) {
     done -= 1;
-    machine.stock.put({ ...cuts[done].patch, levels: cuts[done].before });
+    machine.stock.put({ ...cuts[done].patch, ...cuts[done].before });
     dirty = true;
   }
 }
@@ -352,6 +390,13 @@ const heard = {
   size: resize,
   look,
   turn,
+  happen,
+  section(given) { section = given; cut_open(); },
+  measure(where) {
+    if (where) postMessage({ measured: machine ? measure.point(machine, camera, where) : [] });
+    else measure.clear();
+    dirty = true;
+  },
   show(what) { Object.assign(shown, what); show(machine); if (path) path.visible = shown.trail; },
 };
 

@@ -23,11 +23,12 @@ export function readState(buffer) {
   return state;
 }
 
-/** A patch: its cells, and their heights as shares of the blank's own height. */
+/** A patch: its cells, their heights as shares of the blank's own height, and by which tool each was cut, where that is told. */
 export async function readPatch(buffer) {
   const head = new DataView(buffer);
   const [epoch, row, column, rows, columns] = [head.getUint32(4, true), ...[8, 10, 12, 14].map((at) => head.getUint16(at, true))];
   const inflated = new Blob([new Uint8Array(buffer, 16)]).stream().pipeThrough(new DecompressionStream("deflate"));
-  const levels = new Uint16Array(await new Response(inflated).arrayBuffer());
-  return { epoch, row, column, rows, columns, levels };
+  const cells = rows * columns, bytes = await new Response(inflated).arrayBuffer();
+  const levels = new Uint16Array(bytes, 0, cells), tools = bytes.byteLength > 2 * cells ? new Uint8Array(bytes, 2 * cells, cells) : null;
+  return { epoch, row, column, rows, columns, levels, tools };
 }

@@ -136,7 +136,7 @@ CODESYS = Dialect(
         Mark(r"\bG0?4[ \t]*T", "G4 T"),
         Mark(r"\bE[ \t]*\+?\d.*\bE[ \t]*-[ \t]*\d", "E20 E-30 (acceleration and deceleration)"),
         Mark(r"\$[A-Z_]\w*\$", "$variable$"),
-        Mark(r"\bLET[ \t]+#|\bSUBPROGRAM\b", "LET, SUBPROGRAM"),
+        Mark(r"\bLET[ \t]+#|^[^;]*\bSUBPROGRAM\b", "LET, SUBPROGRAM"),
         Mark(r"\bG20[ \t]+L|\bL[?!][ \t]*\d", "G20 L, L?, L!"),
         Mark(r"\bG5[12][ \t]*D|\bG16[ \t]*[IJK]|\bG36\b.*\bD", "G51 D, G52 D, G16 I J K, G36 D"),
         Mark(r"\b(?:FF|P[ABC])[ \t]*\d", "FF, PA, PB, PC"),

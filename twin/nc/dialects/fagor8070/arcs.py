@@ -24,6 +24,7 @@ from twin.nc.iso.circular import (
     start_and_end,
     sweep_arc,
     take_center,
+    tangent_arc_to,
 )
 from twin.nc.text.blocks import Word
 
@@ -109,25 +110,10 @@ def set_circle_radius(control: Control, word: Word) -> None:
 
 
 def tangent_arc(control: Control) -> None:
-    """G08: the arc that leaves the last move along its direction.
-
-    Raises:
-        ProgramError: Nothing has moved before, or the arc would be a straight line.
-    """
-    direction_before = control.motion.direction
-    if direction_before is None:
+    """G08: the arc that leaves the last move along its direction."""
+    if control.motion.direction is None:
         control.fail("tangent-arc", "G08 needs a move before it")
-    goal = take_goal(control, arc=True)
-    start, end = start_and_end(control, goal.target)
-    tangent = control.modal.plane.local(direction_before)
-    if math.hypot(tangent[0], tangent[1]) < SAME_POINT:
-        control.fail("tangent-arc", "the move before G08 has no direction in the plane")
-    center = arcs.center_tangent(start, end, tangent[:2])
-    if center is None:
-        message = "the end lies straight ahead or at the start: no arc leads there"
-        control.fail("tangent-arc", message)
-    side = tangent[0] * (center[1] - start[1]) - tangent[1] * (center[0] - start[0])
-    sweep_arc(control, goal.target, center, clockwise=side < 0.0)
+    tangent_arc_to(control, take_goal(control, arc=True).target, "G08")
 
 
 def three_point_arc(control: Control) -> None:

@@ -192,6 +192,8 @@ START = (0, 15, 17, 21, 40, 49, 50, 50.1, 54, 64, 67, 69, 80, 90, 94, 97, 98)
 INSTEAD: Mapping[float, str] = {
     70: "inches are G20",
     71: "millimetres are G21",
+    90.1: "I, J and K always count from the start of the arc",
+    91.1: "I, J and K count from the start of the arc anyway: leave it out",
     158: "write G52 or G10 L2",
 }
 """Codes of other controls, and what this one has for them."""

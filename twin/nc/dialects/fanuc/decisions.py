@@ -106,6 +106,14 @@ DECISIONS: tuple[Decision, ...] = (
         example="length_behind_g28",
     ),
     Decision(
+        "What does another D do while compensation is in force?",
+        "The next straight move begins beside the contour by the old radius and ends beside it by the new one; an "
+        "arc, D0 and the other side are refused: end it by G40.",
+        "The manual draws the vector at a block's end with the value of that block; it leaves the spiral of an arc "
+        "and the crossing of the contour to figures that the twin does not follow.",
+        example="radius_changes",
+    ),
+    Decision(
         "What do timers, date and probe show?",
         "#3001 and #3002 hold what the program writes and go on by a millisecond each time that they are read; #3011 "
         "and #3012 are always 1 January 2000, noon; #5061 is where the last block ended.",

@@ -237,6 +237,7 @@ _SHARED_EXAMPLES = {
     "stops_by_variable",
     "angles",
     "timers",
+    "radius_changes",
     "lines_of_screens",
 }
 DECISIONS: tuple[Decision, ...] = (

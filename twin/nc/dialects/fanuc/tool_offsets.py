@@ -7,7 +7,13 @@ their numbers; lengths count against the job's first tool. D holds radii (parame
 from typing import NoReturn
 
 from twin.nc.control.codes import Action
-from twin.nc.control.compensation import NEEDS_TOOL, compensate, tool_numbered
+from twin.nc.control.compensation import (
+    NEEDS_TOOL,
+    change_radius,
+    compensate,
+    side_in_force,
+    tool_numbered,
+)
 from twin.nc.control.control import Control
 from twin.nc.dialects.fanuc.memory import ToolOffset, memory_of
 from twin.nc.dialects.fanuc.programs import whole
@@ -34,18 +40,14 @@ def set_length_number(control: Control, word: Word) -> None:
 
 
 def set_radius_number(control: Control, word: Word) -> None:
-    """D: the row of the radius.
-
-    Raises:
-        ProgramError: Compensation is in force with another one.
-    """
+    """D: the row of the radius; while compensation is in force the next line leads from the one to the other."""
     number = whole(control, word, "tool-offset", "offset number")
     memory = memory_of(control)
     starts = any(code in (41.0, 42.0) for code in _codes(control))
-    if control.path.compensation.in_force and not starts and number != memory.radius_number:
-        message = "the radius cannot change while compensation is in force"
-        control.fail("compensation-change", message, word, "end it by G40 first")
+    changes = control.path.compensation.in_force and number != memory.radius_number
     memory.radius_number = number
+    if changes and not starts:
+        change_radius(control, _radius(control, number), word)
 
 
 def _codes(control: Control) -> list[float]:
@@ -115,6 +117,11 @@ def compensation_code(number: int, side: float) -> Action:
         if row_number is None:
             message = f"G{number} needs D, the number of the radius"
             control.fail("tool-offset", message, control.code_word(number), f"G{number} D1")
+        word = control.code_word(number)
+        in_force = control.path.compensation.in_force and side_in_force(control) == side
+        if word is not None and in_force:
+            change_radius(control, _radius(control, row_number), word)
+            return
         compensate(control, side, _radius(control, row_number))
 
     return begin

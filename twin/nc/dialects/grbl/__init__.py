@@ -229,7 +229,7 @@ GRBL = Dialect(
     decisions=DECISIONS,
     marks=(
         Mark(
-            r"^[ \t]*\$(?:[HXCGI#$]|RST=[$#*]|J=.*)[ \t]*$",
+            r"^[ \t]*\$(?:[HXCGI#$]|RST=[$#*]|J=.*)[ \t]*(?:[;(].*)?$",
             "$H, $X, $J= (a command in a line of its own)",
         ),
         shared_marks.POINT_CODES,

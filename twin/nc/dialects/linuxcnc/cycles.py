@@ -15,6 +15,7 @@ from twin.nc.dialects.linuxcnc.memory import memory_of
 from twin.nc.dialects.linuxcnc.motion import check_feed, target
 from twin.nc.dialects.linuxcnc.offsets import refuse_in_compensation
 from twin.nc.iso.drilling import (
+    NEEDED_WORDS,
     drill,
     go_to_height,
     refuse_hole,
@@ -189,7 +190,10 @@ def _take_words(control: Control, kind: Kind) -> None:
         needed = ("R", control.settings.axes.names[axis], *kind.needed)
         missing = [letter for letter in needed if letter not in control.words]
         if missing:
-            control.fail("cycle-word", f"G{kind.number} needs {' and '.join(missing)}")
+            hint = "; ".join(
+                f"{each}: {NEEDED_WORDS[each]}" for each in missing if each in NEEDED_WORDS
+            )
+            control.fail("cycle-word", f"G{kind.number} needs {' and '.join(missing)}", hint=hint)
         memory.back_boring = (0.0, 0.0, 0.0)
     dwell = control.words.get("P") if "P" in kind.words else None
     if dwell is not None and control.number(dwell) < 0.0:

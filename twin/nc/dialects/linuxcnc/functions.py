@@ -19,7 +19,8 @@ def set_feed(control: Control, word: Word) -> None:
     """F: the feed; F0 is none."""
     feed = control.number(word)
     if feed < 0.0:
-        control.fail("feed-range", f"the feed {word.text} is negative", word)
+        message = f"the feed {word.text} is negative"
+        control.fail("feed-range", message, word, "the way says the direction, F how fast")
     control.motion.feed = feed or None
     memory_of(control).converted_feed = None
 

@@ -70,7 +70,8 @@ class Compensation:
         self.stage = OFF
         self.plane = _NO_PLANE
         self._signed_offset = 0.0
-        self._square = self._indirect = False
+        self._next_offset: float | None = None
+        self._square = self._indirect = self._led = False
         self._held: list[Segment] = []
         """The move that waits for its successor, and moves along the normal that wait for its end."""
         self._events: list[list[Event]] = []
@@ -93,12 +94,23 @@ class Compensation:
         """It is in force, and a move of its contour has come."""
         return self.in_force and self.stage is not STARTED
 
+    @property
+    def signed_offset(self) -> float:
+        """The radius in force, positive left of the contour [mm]."""
+        return self._signed_offset if self._next_offset is None else self._next_offset
+
     def acts_in(self, plane: Plane) -> bool:
         """Whether it is in force in a plane of the part."""
         return self.in_force and self.plane == plane.directions
 
     def begin(
-        self, plane: Directions, signed_offset: float, *, square: bool, indirect: bool
+        self,
+        plane: Directions,
+        signed_offset: float,
+        *,
+        square: bool,
+        indirect: bool,
+        led: bool = False,
     ) -> None:
         """Compensate from the next move on.
 
@@ -107,11 +119,23 @@ class Compensation:
             signed_offset: The tool's radius, positive left of the contour [mm].
             square: Outside corners between lines are extended as far as 90°.
             indirect: Leads go around the contour's first and last point.
+            led: The path has come to the compensated beginning of the contour already.
         """
         self.plane, self._signed_offset = plane, signed_offset
-        self._square, self._indirect = square, indirect
-        self.stage, self._here = STARTED, None
+        self._square, self._indirect, self._led = square, indirect, led
+        self.stage, self._here, self._next_offset = STARTED, None, None
         self._passed.clear()
+
+    def change(self, signed_offset: float) -> None:
+        """Another radius on the same side, from the next move's end on: that line leads from the one to the other.
+
+        Args:
+            signed_offset: The tool's radius, positive left of the contour [mm].
+        """
+        if self.stage is STARTED:
+            self._signed_offset = signed_offset
+        else:
+            self._next_offset = signed_offset
 
     def event(self, event: Event) -> None:
         """Something that happens where the path has come to."""
@@ -120,8 +144,8 @@ class Compensation:
         else:
             self._happen(event)
 
-    def end(self) -> None:
-        """Let go of what is held, square to itself, and wait for the line that leads out."""
+    def end(self, *, led: bool = False) -> None:
+        """Let go of what is held, square to itself, and wait for the line that leads out, if nothing else does."""
         before = self._parallel if self.stage is FOLLOWING else self._contour
         if self.stage is LEADING_IN:
             self._let_go(before, before, before[2])
@@ -129,7 +153,8 @@ class Compensation:
             part = curves.cut(before, self._start, before[2])
             self._pass(part, self._contour)
             self._let_go(before, part, before[2])
-        self.stage = LEADING_OUT if self.stage in (FOLLOWING, LEADING_OUT) else OFF
+        leads_out = self.stage in (FOLLOWING, LEADING_OUT) and not led
+        self.stage = LEADING_OUT if leads_out else OFF
 
     def add(self, move: Segment, position: list[float]) -> None:
         """The next move; the path has come to this position, shape (k,)."""
@@ -148,7 +173,7 @@ class Compensation:
                 message = "an arc outside the compensated plane cannot be compensated"
                 self._report.refuse(move, "compensation-plane", message)
             curve = (True, start, end, point_of(plane, move.center), move.sweep * sense)
-        if self.stage is STARTED:
+        if self.stage is STARTED and not self._led:
             self._take_lead(move, curve)
             return
         if not curves.leaves_room(curve, self._signed_offset):
@@ -156,15 +181,32 @@ class Compensation:
                 move, "compensation-radius", f"into the arc of radius {curves.radius_of(curve):.4f}"
             )
         element = curves.parallel_of(curve, self._signed_offset)
-        if self.stage is LEADING_IN:
+        if self.stage is STARTED:
+            self._here = position
+            self._hold(move, curve, element[1])
+            self._parallel, self.stage = element, FOLLOWING
+        elif self.stage is LEADING_IN:
             self._lead_in(move, curve, element)
         else:
             self._go_on(move, curve, element)
+        if self._next_offset is not None:
+            self._take_next_offset(move, curve, self._next_offset)
+
+    def _take_next_offset(self, move: Segment, curve: Curve, offset: float) -> None:
+        """The held move ends beside the contour by another radius than it began with."""
+        if curve[0]:
+            message = "the radius changes along a straight move, and this is an arc"
+            self._report.refuse(move, "compensation-change", message)
+        self._signed_offset, self._next_offset = offset, None
+        self._parallel = curves.parallel_of(curve, offset)
 
     # --- from move to move
 
     def _go_along_normal(self, move: Segment) -> None:
         """A move that does not go in the plane: at once before the lead-in, else behind the held move."""
+        if self.stage is STARTED and self._led:
+            message = "the contour must begin behind its approach with a move in the plane"
+            self._report.refuse(move, "compensation-start", message)
         if self.stage is STARTED:
             self._here = move.end
             self._drive(move)

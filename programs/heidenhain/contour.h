@@ -1,0 +1,38 @@
+0  BEGIN PGM CONTOUR MM
+1  ; A plate: its outline with rounded and chamfered corners, milled in two depths
+2  BLK FORM 0.1 Z X+0 Y+0 Z-20
+3  BLK FORM 0.2 X+100 Y+80 Z+0
+4  TOOL CALL 1 Z S6000 F900
+5  * - outline
+6  FN 0: Q1 = -4 ; depth of a pass
+7  FN 0: Q2 = +0 ; depth so far
+8  L X-20 Y-20 Z+20 R0 FMAX M13
+9  LBL 1
+10 Q2 = Q2 + Q1
+11 L Z+Q2 F600
+12 CALL LBL "OUTLINE"
+13 FN 11: IF +Q2 GT -8 GOTO LBL 1
+14 * - a bore in the middle, on a helix
+15 L Z+5 R0 FMAX
+16 CC X+50 Y+40
+17 LP PR+12 PA+0 R0 FMAX
+18 L Z+0.5 F300
+19 CP IPA+1080 IZ-6.5 DR+ F600
+20 CP IPA+360 DR+
+21 LP PR+8 PA+0
+22 L Z+50 R0 FMAX M9
+23 L M30
+24 LBL "OUTLINE"
+25 APPR LCT X+10 Y+30 R8 RL F800
+26 L Y+70
+27 RND R12 F600
+28 L X+60
+29 CR X+90 Y+50 R+32 DR-
+30 L Y+10
+31 CHF 8
+32 L X+10
+33 RND R6
+34 L Y+30
+35 DEP LCT X-20 Y-20 R8 F1500
+36 LBL 0
+37 END PGM CONTOUR MM

@@ -1,0 +1,3 @@
+BEGIN PGM A MM
+CYCL DEF 7.1 X+5 ~
+Y+3

@@ -1,0 +1,2 @@
+BEGIN PGM A MM
+FN 9: IF Q1 = 3 GOTO 5

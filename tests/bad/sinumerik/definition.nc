@@ -1,0 +1,1 @@
+DEF REAL 5X

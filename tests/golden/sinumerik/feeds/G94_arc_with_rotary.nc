@@ -1,0 +1,4 @@
+; TIME 6.283185 s: by F300 per minute
+G94
+G2 X20 Y0 C40 I10 J0 F300
+M30

@@ -1,0 +1,4 @@
+; TIME 6.362265 s: by F300 per minute
+G94
+G2 X20 Y0 Z-5 I10 J0 F300
+M30

@@ -1,0 +1,4 @@
+; TIME 10.000000 s: by F300 per minute
+G94
+G1 X30 Y40 F300
+M30

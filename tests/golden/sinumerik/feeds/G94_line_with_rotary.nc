@@ -1,0 +1,4 @@
+; TIME 4.000000 s: by F300 per minute
+G94
+G1 X20 C40 F300
+M30

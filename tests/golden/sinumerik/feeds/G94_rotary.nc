@@ -1,0 +1,4 @@
+; TIME 8.000000 s: by F300 per minute
+G94
+G1 C40 F300
+M30

@@ -1,0 +1,128 @@
+"""Interpret, plan and run: what the commands of these names do, without printing."""
+
+import contextlib
+from collections.abc import Iterator
+from pathlib import Path
+
+from twin.api.program import Program, prepared, scratch_folder
+from twin.api.result import Result
+from twin.columns import join
+from twin.machine.description.motion_limits import motion_limits
+from twin.motion.planner import plan as plan_chunks
+from twin.motion.setpoints.setpoints import Setpoints
+from twin.nc.canonical import Moves, concatenate
+from twin.run.dry_run import InterpretedProgram, interpreted
+from twin.run.progress import no_progress
+from twin.run.results import RESULT_FILES, write_results
+from twin.run.run import Run
+from twin.run.run_folder import run_folder
+
+
+def interpret(program: Program, *, dialect: str | None = None, machine: str | None = None) -> Moves:
+    """The canonical moves of a program or job, as columns in part coordinates.
+
+    Args:
+        program: NC program, job file, a shipped program's name (``mefi/helix``), NC text, or a ``twin.Job``.
+        dialect: One of ``twin dialects``; told by the program's words by default.
+        machine: A shipped machine's name, or a machine file; the job's by default.
+
+    Returns:
+        n moves over k axes. ``start``, ``end``: shape (n, k) [mm or deg]; ``feed``: shape (n,)
+        [mm/min or deg/min], NaN for rapids; ``line``: shape (n,); arcs with ``center`` and ``normal``,
+        shape (n, 3), ``radius`` [mm] and ``sweep`` [deg]. ``pandas.DataFrame(moves)`` has a column for
+        each, ``start`` and ``end`` by axis.
+
+    Raises:
+        ProgramError: The program is wrong; the message has the line and a caret.
+        UsageError: A file is missing or wrong.
+
+    Example:
+        >>> moves = twin.interpret("G1 X20.5 Y-4.25 F600", dialect="haas")
+        >>> moves.end[-1]
+        array([20.5 , -4.25,  0.  ,  0.  ])
+    """
+    with scratch_folder() as folder:
+        preparation, _ = prepared(program, folder, dialect=dialect, machine=machine)
+        chunks = preparation.interpretation().chunks()
+        return concatenate([chunk.moves for chunk in chunks], preparation.machine.axes)
+
+
+def plan(program: Program, *, dialect: str | None = None, machine: str | None = None) -> Setpoints:
+    """The setpoints of a program or job at the servo period, in machine coordinates.
+
+    Args:
+        program: NC program, job file, a shipped program's name, NC text, or a ``twin.Job``.
+        dialect: One of ``twin dialects``; told by the program's words by default.
+        machine: A shipped machine's name, or a machine file; the job's by default.
+
+    Returns:
+        n samples over k axes: ``time`` [s] and ``line``, shape (n,); ``position`` [mm or deg],
+        ``velocity`` [per s] and ``acceleration`` [per s²], shape (n, k).
+
+    Raises:
+        ProgramError: The program is wrong.
+        UsageError: A file is missing or wrong.
+
+    Example:
+        >>> setpoints = twin.plan("part.nc")
+        >>> setpoints.time[-1]  # the cycle time [s]
+        2.31
+    """
+    with scratch_folder() as folder:
+        preparation, _ = prepared(program, folder, dialect=dialect, machine=machine)
+        return join(list(setpoints(Run(preparation), interpreted(preparation))))
+
+
+def setpoints(run: Run, program: InterpretedProgram) -> Iterator[Setpoints]:
+    """The setpoints of a run's program, in chunks."""
+    machine = run.machine
+    return plan_chunks(
+        program.timed_chunks(),
+        motion_limits(machine),
+        period_s=machine.file.servo_period_s,
+        part_zero=run.part_zero,
+        start=program.start + run.part_zero,
+    )
+
+
+def run(
+    program: Program,
+    *,
+    out: str | Path | None = None,
+    dialect: str | None = None,
+    machine: str | None = None,
+) -> Result:
+    """Simulate, compare and cut a program or job.
+
+    Args:
+        program: NC program, job file, a shipped program's name, NC text, or a ``twin.Job``. Stock, tools and
+            zero of a program without a job are assumed, as ``twin run`` does (``Result.assumptions``).
+        out: Folder for what ``twin run`` writes: result, report, recording, part, and for the program where
+            that is text; made when missing. None: one that goes away with the result.
+        dialect: One of ``twin dialects``; told by the program's words by default.
+        machine: A shipped machine's name, or a machine file; the job's by default.
+
+    Raises:
+        ProgramError: The program is wrong.
+        UsageError: A file is missing or wrong, or another run holds the folder.
+
+    Example:
+        >>> result = twin.run("part.toml")
+        >>> result.ok, result["contour_um"].max()
+        (True, 3.4)
+    """
+    with contextlib.ExitStack() as unless_finished:
+        if out is None:
+            folder = unless_finished.enter_context(scratch_folder())
+        else:
+            folder = Path(out)
+            folder.mkdir(parents=True, exist_ok=True)
+        preparation, assumptions = prepared(
+            program, folder, dialect=dialect, machine=machine, assuming=True
+        )
+        chain = Run(preparation)
+        dry_run = chain.dry_run()
+        with run_folder(folder, RESULT_FILES):
+            outcome = chain.execute(dry_run, folder, no_progress)
+            write_results(chain, outcome, folder)
+        return Result(chain, outcome, folder, assumptions, unless_finished.pop_all())

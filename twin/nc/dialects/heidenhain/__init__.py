@@ -1,0 +1,125 @@
+"""HEIDENHAIN TNC 320 to 640, Klartext."""
+
+from twin.nc.control.codes import Codes, Words
+from twin.nc.control.control import Control, Rules
+from twin.nc.control.dialect import Dialect
+from twin.nc.dialects.heidenhain import corners, feeds, flow, parameters, paths, sides
+from twin.nc.dialects.heidenhain.decisions import DECISIONS
+from twin.nc.dialects.heidenhain.functions import FUNCTIONS, take_shortest_way
+from twin.nc.dialects.heidenhain.memory import KlartextMemory, acts_on_lines, memory_of
+from twin.nc.dialects.heidenhain.page import TABLES
+from twin.nc.dialects.heidenhain.statements import STATEMENTS, other_statement
+from twin.nc.dialects.heidenhain.syntax import SYNTAX
+from twin.nc.iso import shared_marks
+from twin.nc.iso.base import spindle_speed
+from twin.nc.text.blocks import Word
+from twin.nc.text.syntax import Mark
+
+_AXES = "XYZABCUVW"
+
+
+def _nothing(_control: Control, _word: Word) -> None:
+    """F or M without a value: what was in force stays."""
+
+
+def _prepare(control: Control) -> None:
+    corners.prepare(control)
+    control.modal.interpolation = paths.LINE
+
+
+def _after_motion(control: Control) -> None:
+    memory = memory_of(control)
+    memory.was_rapid, memory.rapid, memory.machine = memory.rapid, False, ""
+
+
+HEIDENHAIN = Dialect(
+    name="heidenhain",
+    title="HEIDENHAIN TNC 320 to 640 (Klartext)",
+    code_page="cp1252",
+    syntax=SYNTAX,
+    codes=Codes(
+        groups=(),
+        g={},
+        start=(),
+        m=FUNCTIONS,
+        statements=STATEMENTS,
+        other_statement=other_statement,
+    ),
+    words=Words(
+        axes=frozenset(_AXES),
+        motion=paths.MOTION_WORDS,
+        before_codes=True,
+        actions={
+            "F": feeds.set_feed,
+            "FU": feeds.set_feed_per_turn,
+            "FAUTO": feeds.feed_of_tool,
+            "FMAX": feeds.go_rapidly,
+            "S": spindle_speed,
+            **{name: sides.compensation_word(side) for name, side in sides.SIDES.items()},
+            "R+": sides.refuse_paraxial,
+            "R-": sides.refuse_paraxial,
+        },
+        meanings={
+            **dict.fromkeys(_AXES, "axis; incremental as IX; as LIN_Z beside an arc"),
+            "PR": "polar radius; incremental as IPR",
+            "PA": "polar angle; incremental as IPA",
+            "R": "radius of CR, RND and a lead",
+            "LEN": "length of a straight lead",
+            "CCA": "angle of a lead's arc",
+            "DR+": "arc counter-clockwise",
+            "DR-": "arc clockwise",
+            "DR": "with a value: what TOOL CALL adds to the radius",
+            "DL": "what TOOL CALL adds to the length",
+            "DR2": "what TOOL CALL adds to the corner of the tool",
+            "L": "length of TOOL DEF and BLK FORM",
+            "F": "feed per minute",
+            "FU": "feed per revolution of the spindle",
+            "FZ": "feed per tooth",
+            "FT": "seconds of a move",
+            "FMAX": "this block as fast as the machine can",
+            "FAUTO": "feed of TOOL CALL",
+            "R0": "no radius compensation",
+            "RL": "the tool left of the contour",
+            "RR": "the tool right of the contour",
+            "R+": "one axis longer by the radius",
+            "R-": "one axis shorter by the radius",
+            "S": "spindle speed",
+            "M": "machine function",
+            "MB": "way of M140; as MB MAX",
+            "MBMAX": "M140 to the end of the travel",
+            "LA": "blocks that M120 looks ahead",
+            "D": "diameter of BLK FORM CYLINDER",
+            "DIST": "top of BLK FORM CYLINDER above the datum",
+            "RI": "inner radius of BLK FORM CYLINDER",
+        },
+    ),
+    rules=Rules(
+        memory=KlartextMemory,
+        prepare=_prepare,
+        before_motion=take_shortest_way,
+        after_motion=_after_motion,
+        finish=flow.warn_of_missing_end,
+        read_variable=parameters.read_variable,
+        is_local=parameters.is_local,
+        acts_on_lines=acts_on_lines,
+    ),
+    units="mm or inches by BEGIN PGM, degrees; F in mm/min or tenths of an inch per minute",
+    decisions=DECISIONS,
+    marks=(
+        Mark(r"^[ \t]*\d*[ \t]*(?:BEGIN|END)[ \t]+PGM\b", "BEGIN PGM, END PGM", decides=True),
+        Mark(r"^[ \t]*\d*[ \t]*(?:BLK[ \t]+FORM|TOOL[ \t]+(?:CALL|DEF))\b", "BLK FORM, TOOL CALL"),
+        Mark(r"^[ \t]*\d*[ \t]*CYCL[ \t]+(?:DEF|CALL)\b", "CYCL DEF, CYCL CALL"),
+        Mark(r"^[ \t]*\d*[ \t]*(?:LBL|CALL[ \t]+LBL)[ \t]*[\d\"]", "LBL, CALL LBL"),
+        Mark(r"^[ \t]*\d*[ \t]*FN[ \t]*\d+[ \t]*:", "FN 0:"),
+        Mark(r"^[ \t]*\d*[ \t]*(?:APPR|DEP)[ \t]+P?L?(?:LT|LN|CT)\b", "APPR, DEP"),
+        Mark(
+            r"^[ \t]*\d*[ \t]*(?:L|LP|CP|CC|CR|CT)[ \t]+I?(?:[XYZABC]|P[RA])[ \t]*[-+]?[.\dQ]",
+            "L X+10",
+        ),
+        Mark(r"\bF[ \t]*MAX\b", "FMAX"),
+        shared_marks.SEMICOLON,
+    ),
+    tables=TABLES,
+    library=flow.LIBRARY,
+    suffixes=(".h",),
+)

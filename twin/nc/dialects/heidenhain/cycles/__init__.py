@@ -1,0 +1,1 @@
+"""Cycles: CYCL DEF, CYCL CALL, patterns, and what they make of the path."""

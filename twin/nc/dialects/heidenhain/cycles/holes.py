@@ -1,0 +1,271 @@
+"""Cycles of holes: 200 to 209, 240, 241, and the old 1 and 2.
+
+Decisions, since the manuals leave them open or the twin does not follow them: the rapid return into a hole ends
+0.2 mm above where the tool was (203: Q256, 205: Q258); Q395 is 0, the depth counts at the tip.
+"""
+
+from twin.nc.control.control import Control
+from twin.nc.dialects.heidenhain.cycle_values import Parameters
+from twin.nc.iso.drilling import drill, go_to_height, turn_spindle
+from twin.nc.path.drilling_cycle import Retract
+from twin.nc.path.hole import MOST_PECKS, Fault, Hole, count_passes, count_stops
+
+ADVANCE = 0.2
+"""How far above its last depth a rapid return ends [mm]."""
+
+
+def heights(control: Control, given: Parameters) -> tuple[float, float, float, float]:
+    """Surface, reference plane, bottom, and where the tool goes back to [mm].
+
+    Raises:
+        ProgramError: The cycle does not go down.
+    """
+    surface = given.length(203)
+    reference, bottom = surface + given.length(200), surface + given.length(201)
+    if not bottom < surface or given.length(200) < 0.0:
+        message = f"{given.name} goes down: Q201 is below 0 and Q200 not"
+        control.fail("cycle-depth", message, hint="Q200=+2, Q201=-20")
+    return surface, reference, bottom, max(reference, surface + given.length(204))
+
+
+def _hole(control: Control, given: Parameters, **changes: object) -> Hole:
+    """A hole that is drilled at once; changes are fields of it."""
+    surface, reference, bottom, back = heights(control, given)
+    plain = Hole(
+        fault=int(Fault.NONE),
+        reference=reference,
+        bottom=bottom,
+        back=back,
+        dwell=_seconds(control, given, 211),
+        surface=surface,
+        stops=0,
+        passes=False,
+        peck=0.0,
+        factor=1.0,
+        reduction=0.0,
+        least=0.0,
+        lift=0.0,
+        full_every=1,
+        clearance=ADVANCE,
+        retract=int(Retract.RAPID),
+        faster=1.0,
+        rest=0.0,
+    )
+    return plain._replace(**changes)
+
+
+def _seconds(control: Control, given: Parameters, parameter: int) -> float:
+    seconds = given.number(parameter)
+    if seconds < 0.0:
+        control.fail("dwell", f"{given.name} cannot wait {seconds:g} seconds (Q{parameter})")
+    return seconds
+
+
+def _pecked(
+    control: Control, given: Parameters, hole: Hole, reduction: float = 0.0, least: float = 0.0
+) -> Hole:
+    """A hole in pecks of Q202, each less deep than the one before by a reduction, down to a least."""
+    peck = given.length(202)
+    if peck <= 0.0 or reduction < 0.0 or (reduction > 0.0 and least <= 0.0):
+        message = f"{given.name} needs Q202 above 0, and with Q212 also Q205"
+        control.fail("cycle-depth", message, hint="Q202=+5")
+    stops = count_stops(hole.surface, hole.bottom, peck, (1.0, reduction, least))
+    if stops > MOST_PECKS:
+        message = f"the hole would need more than {MOST_PECKS} pecks"
+        control.fail("cycle-depth", message, hint="write a larger Q202")
+    return hole._replace(peck=peck, reduction=reduction, least=least, stops=stops)
+
+
+def _drill(control: Control, hole: Hole, feed: float | None) -> None:
+    """Drill with a feed, which the program's own survives; None: rapidly, which no hole is drilled.
+
+    Raises:
+        ProgramError: There is no feed.
+    """
+    if feed is None or feed <= 0.0:
+        message = "a hole is drilled with a feed above 0"
+        control.fail("feed-range", message, hint="Q206=+150")
+    kept, mode = control.motion.feed, control.modal.feed_mode
+    control.motion.feed = feed
+    drill(control, hole, None)
+    control.motion.feed, control.modal.feed_mode = kept, mode
+
+
+def drilling(control: Control, given: Parameters) -> None:
+    """200: in pecks, each time back to the clearance, where it waits Q210."""
+    hole = _hole(control, given, rest=_seconds(control, given, 210))
+    _drill(control, _pecked(control, given, hole), given.feed(206))
+
+
+def reaming(control: Control, given: Parameters) -> None:
+    """201: back with Q208, or 0 as it went down."""
+    down, back = given.feed(206), given.feed(208)
+    retract = Retract.RAPID if back is None else Retract.FEED
+    faster = back / down if back and down else 1.0
+    _drill(control, _hole(control, given, retract=int(retract), faster=faster), down)
+
+
+def universal_drilling(control: Control, given: Parameters) -> None:
+    """203: chips are broken Q213 times by a lift of Q256 before the tool comes out; out with Q208."""
+    breaks, lift = int(given.number(213)), given.length(256)
+    hole = _hole(control, given, rest=_seconds(control, given, 210))
+    hole = _pecked(control, given, hole, given.length(212), given.length(205))
+    if breaks > 0:
+        lift = lift or ADVANCE
+        hole = hole._replace(lift=lift, full_every=breaks + 1, clearance=ADVANCE)
+    down, back = given.feed(206), given.feed(208)
+    if back:
+        hole = hole._replace(retract=int(Retract.FEED), faster=back / (down or back))
+    _drill(control, hole, down)
+
+
+def universal_pecking(control: Control, given: Parameters) -> None:
+    """205: in pecks, in each of which the chip is broken every Q257; back into the hole to Q258 above its bottom."""
+    hole = _hole(control, given, clearance=given.length(258))
+    start = given.length(379)
+    if start > 0.0:
+        hole = hole._replace(surface=hole.surface - start)
+    hole = _pecked(control, given, hole, given.length(212), given.length(205))
+    breaking = given.length(257)
+    if 0.0 < breaking < hole.peck:
+        _break_chips(control, given, hole, breaking)
+    else:
+        _drill(control, hole, given.feed(206))
+
+
+def _break_chips(control: Control, given: Parameters, hole: Hole, breaking: float) -> None:
+    """Deep drilling whose pecks are made of shorter ones."""
+    lift, feed, depth, peck = (
+        given.length(256) or ADVANCE,
+        control.motion.feed,
+        hole.surface,
+        hole.peck,
+    )
+    if (hole.surface - hole.bottom) / breaking > MOST_PECKS:
+        message = f"the hole would need more than {MOST_PECKS} chips"
+        control.fail("cycle-depth", message, hint="write a larger Q257")
+    control.motion.feed = given.feed(206)
+    go_to_height(control, hole.reference)
+    while depth > hole.bottom:
+        if depth < hole.surface:
+            go_to_height(control, min(depth + hole.clearance, hole.reference))
+        goal = max(depth - peck, hole.bottom)
+        while depth > goal:
+            depth = max(depth - breaking, goal)
+            go_to_height(control, depth, rapid=False)
+            if depth > goal:
+                go_to_height(control, depth + lift)
+        if depth == hole.bottom and hole.dwell > 0.0:
+            control.dwell(hole.dwell)
+        go_to_height(control, hole.back if depth == hole.bottom else hole.reference)
+        peck = max(peck - hole.reduction, hole.least)
+    control.motion.feed = feed
+
+
+def boring(control: Control, given: Parameters) -> None:
+    """202: at the bottom the spindle stands, the tool leaves the wall by Q214, and comes back with Q208."""
+    aside = {0: (0.0, 0.0), 1: (-1.0, 0.0), 2: (0.0, -1.0), 3: (1.0, 0.0), 4: (0.0, 1.0)}
+    way = aside.get(int(given.number(214)))
+    if way is None:
+        control.fail("cycle-word", f"Q214 is 0 to 4, not {given.number(214):g}")
+    _, reference, bottom, back = heights(control, given)
+    feed, place = control.motion.feed, list(control.motion.programmed)
+    go_to_height(control, reference)
+    control.motion.feed = given.feed(206)
+    go_to_height(control, bottom, rapid=False)
+    if (seconds := _seconds(control, given, 211)) > 0.0:
+        control.dwell(seconds)
+    control.function("M5", {})
+    leave = list(control.motion.programmed)
+    leave[0], leave[1] = leave[0] + ADVANCE * way[0], leave[1] + ADVANCE * way[1]
+    control.line_to(leave, rapid=False)
+    control.motion.feed = given.feed(208) or given.feed(206)
+    go_to_height(control, reference, rapid=given.feed(208) is None)
+    go_to_height(control, back)
+    turn_spindle(control, "M3")
+    control.line_to([*place[:2], *control.motion.programmed[2:]], rapid=True)
+    control.motion.feed = feed
+
+
+def tapping(control: Control, given: Parameters) -> None:
+    """206: with a floating chuck, at the feed Q206."""
+    _drill(control, _hole(control, given, retract=int(Retract.REVERSED)), given.feed(206))
+
+
+def rigid_tapping(control: Control, given: Parameters) -> None:
+    """207: the feed follows from the pitch Q239, below 0 of a left-hand thread."""
+    _tap(control, given, _hole(control, given, dwell=0.0))
+
+
+def tapping_with_breaks(control: Control, given: Parameters) -> None:
+    """209: the chip is broken every Q257; back by Q256 times the pitch, or out of the hole; out Q403 times as fast."""
+    hole, depth = _hole(control, given, dwell=0.0), given.length(257)
+    if depth > 0.0:
+        passes = count_passes(hole.surface, hole.bottom, depth)
+        if passes > MOST_PECKS:
+            message = f"the thread would need more than {MOST_PECKS} passes"
+            control.fail("cycle-depth", message, hint="write a larger Q257")
+        lift = abs(given.length(239)) * given.number(256)
+        full = 0 if lift > 0.0 else 1
+        hole = hole._replace(passes=True, stops=passes - 1, peck=depth, lift=lift, full_every=full)
+    _tap(control, given, hole._replace(faster=given.number(403) or 1.0))
+
+
+def _tap(control: Control, given: Parameters, hole: Hole) -> None:
+    """Tap with the spindle's speed.
+
+    Raises:
+        ProgramError: There is no speed, or no pitch.
+    """
+    pitch, speed = given.length(239), control.motion.spindle
+    if pitch == 0.0:
+        control.fail("cycle-word", f"{given.name} needs the pitch Q239", hint="Q239=+1.5")
+    if speed is None or speed <= 0.0:
+        message = f"{given.name} needs the speed S of the spindle"
+        control.fail("feed-per-revolution", message, hint="write S in TOOL CALL")
+    retract = Retract.REVERSED if pitch > 0.0 else Retract.REVERSED_LEFT
+    feed = abs(pitch) * speed / control.modal.unit
+    turn_spindle(control, "M3" if pitch > 0.0 else "M4")
+    _drill(control, hole._replace(retract=int(retract)), feed)
+
+
+def centring(control: Control, given: Parameters) -> None:
+    """240: to the depth Q201.
+
+    Raises:
+        ProgramError: It is told the diameter.
+    """
+    if given.number(343) != 0.0:
+        message = (
+            "Q343=1 computes the depth of the diameter by the tool's point, which the twin does not"
+        )
+        control.fail("cycle-word", message, hint="write Q343=0 and the depth in Q201")
+    _drill(control, _hole(control, given), given.feed(206))
+
+
+def single_lip_drilling(control: Control, given: Parameters) -> None:
+    """241: slowly to the deepened start Q379, with Q253; there the speed Q428, and drilled; back with Q208."""
+    surface, reference, bottom, back = heights(control, given)
+    feed, start = control.motion.feed, surface - given.length(379)
+    if 0.0 < given.length(202) < surface - bottom:
+        message = "the twin drills a hole of cycle 241 at once"
+        control.fail("cycle-word", message, hint="write Q202 as large as the hole is deep")
+    go_to_height(control, reference)
+    before = control.motion.spindle
+    control.motion.spindle = given.number(427) or before
+    turn_spindle(control, {4: "M4"}.get(int(given.number(426)), "M3"))
+    control.motion.feed = given.feed(253)
+    go_to_height(control, start, rapid=control.motion.feed is None)
+    control.motion.spindle = given.number(428) or before
+    control.function("S", {"S": control.motion.spindle or 0.0})
+    control.motion.feed = given.feed(206)
+    go_to_height(control, bottom, rapid=False)
+    if (seconds := _seconds(control, given, 211)) > 0.0:
+        control.dwell(seconds)
+    control.motion.feed = given.feed(208) or (
+        given.feed(206) if given.feed(208) is not None else None
+    )
+    go_to_height(control, reference, rapid=control.motion.feed is None)
+    go_to_height(control, back)
+    control.motion.spindle, control.motion.feed = before, feed
+    turn_spindle(control, "M3")

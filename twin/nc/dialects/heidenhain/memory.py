@@ -1,0 +1,97 @@
+"""What only Klartext remembers: pole, tool data of the program, cycles, labels, transformations."""
+
+import dataclasses
+from collections.abc import Callable
+
+from twin.nc.control.control import Control
+from twin.nc.control.settings import ToolData
+from twin.nc.dialects.heidenhain.cycle_values import Parameters
+from twin.nc.geometry.planes import Plane, Vector
+
+Cycle = Callable[[Control, Parameters], None]
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Deltas:
+    """What TOOL CALL adds to a tool.
+
+    Attributes:
+        radius: DR [mm].
+        length: DL [mm].
+    """
+
+    radius: float = 0.0
+    length: float = 0.0
+
+
+@dataclasses.dataclass(slots=True)
+class KlartextMemory:
+    """The state of the dialect.
+
+    Attributes:
+        pole: Of CC, by column of its axes, programmed coordinates [mm].
+        circle_plane: That the axes of CC name; None: that of the tool axis.
+        rapid: FMAX stands in the block that runs.
+        was_rapid: It stood in the last block of a path.
+        machine: What M91 or M92 has put in the block that runs, or empty.
+        tool_feed: F of the last TOOL CALL, for F AUTO; None: it had none.
+        per_revolution: M136: F counts millimetres per revolution.
+        side: Of radius compensation: 1 left, -1 right, 0 none.
+        deltas: Of the tool in the spindle.
+        defined: Tools that TOOL DEF has given values, by number.
+        blank: First corner of BLK FORM, programmed coordinates; None before it.
+        cycle: The machining cycle that the next call runs; None: none is defined.
+        parameters: What it was given.
+        steps: What the steps of an old cycle have given so far, by parameter.
+        step: The last of these steps.
+        calls_always: M89: it runs behind every block that moves.
+        pattern: Places of PATTERN DEF, as they are programmed [mm].
+        repeats: How often a block that repeats a part still does so, by its line.
+        labels: Line of each label by the first line of its file and its name; None before they were looked for.
+        texts: Values of QS parameters.
+        shift: Of cycle 7, by column [mm or deg].
+        mirrored: Signs of cycle 8.
+        rotation: Of cycle 10 [deg].
+        scale: Of cycle 11.
+        order: In which of these the program has put them into force.
+        shortest: M126: rotary axes go the shorter way.
+    """
+
+    pole: dict[int, float] = dataclasses.field(default_factory=dict)
+    circle_plane: Plane | None = None
+    rapid: bool = False
+    was_rapid: bool = False
+    machine: str = ""
+    tool_feed: float | None = None
+    per_revolution: bool = False
+    side: float = 0.0
+    deltas: Deltas = Deltas()
+    defined: dict[int, ToolData] = dataclasses.field(default_factory=dict)
+    blank: list[float] | None = None
+    cycle: Cycle | None = None
+    parameters: Parameters | None = None
+    steps: dict[int, float] = dataclasses.field(default_factory=dict)
+    step: int = 0
+    calls_always: bool = False
+    pattern: list[Vector] = dataclasses.field(default_factory=list)
+    repeats: dict[int, int] = dataclasses.field(default_factory=dict)
+    labels: dict[tuple[int, str], int] | None = None
+    texts: dict[str, str] = dataclasses.field(default_factory=dict)
+    shift: dict[int, float] = dataclasses.field(default_factory=dict)
+    mirrored: Vector = (1.0, 1.0, 1.0)
+    rotation: float = 0.0
+    scale: float = 1.0
+    order: list[str] = dataclasses.field(default_factory=list)
+    shortest: bool = False
+
+
+def memory_of(control: Control) -> KlartextMemory:
+    """The dialect's memory."""
+    assert isinstance(control.memory, KlartextMemory)
+    return control.memory
+
+
+def acts_on_lines(control: Control) -> bool:
+    """A cycle behind every move, or the shorter way of rotary axes."""
+    memory = memory_of(control)
+    return memory.calls_always or memory.shortest

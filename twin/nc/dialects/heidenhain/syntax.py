@@ -1,0 +1,91 @@
+"""How Klartext is written: keywords, words with and without values, Q parameters and their formulas."""
+
+import math
+import operator
+
+from twin.nc.text import arithmetic
+from twin.nc.text.expressions import ARITHMETIC, ExpressionSyntax, Operator
+from twin.nc.text.syntax import Comment, Syntax
+
+_VALUE = r"(?=[ \t]*[-+]?[ \t]*(?:[.0-9]|Q))"
+_AXES = "XYZABCUVW"
+
+WORDED = frozenset(
+    (
+        *("L", "C", "CC", "CR", "CT", "LP", "CP", "CTP", "CYCL CALL", "CYCL CALL POS"),
+        *(f"APPR {polar}{kind}" for kind in ("LT", "LN", "CT", "LCT") for polar in ("", "P")),
+        *("DEP LT", "DEP LN", "DEP CT", "DEP LCT", "DEP PLCT"),
+    )
+)
+"""Keywords behind which the words of a block stand."""
+
+KEYWORDS = (
+    r"BEGIN[ \t]+PGM|END[ \t]+PGM|BLK[ \t]+FORM|TOOL[ \t]+(?:CALL|DEF)|STOP\b|\*"
+    r"|CYCL[E]?[ \t]+DEF|CYCL[ \t]+CALL[ \t]+(?:PAT|POS)\b|CYCL[ \t]+CALL\b|PATTERN[ \t]+DEF\b"
+    r"|CALL[ \t]+(?:LBL|PGM|SELECTED[ \t]+PGM)|LBL(?![A-Z_])|FN[ \t]*[0-9]+[ \t]*:|IF\b"
+    r"|(?:APPR|DEP)[ \t]+P?(?:LCT|LT|LN|CT)\b|RND\b|CHF(?![A-Z_])"
+    r"|CTP\b|CC\b|CR\b|CT\b|CP\b|LP\b|LN\b|L(?=[ \t]|$)"
+    r"|C(?=[ \t]+(?![-+.0-9]|Q[LR]?[0-9])|$)|Q[LR]?[0-9]{1,4}[ \t]*(?==)|QS[0-9]{1,4}[ \t]*(?==)"
+    r"|PLANE\b|FUNCTION\b|TRANS\b|TCH[ \t]+PROBE|SEL[ \t]+[A-Z]+|CONTOUR[ \t]+DEF|DECLARE\b|ERROR\b"
+    r"|F(?:LT|CT|L|C|POL|SELECT)(?![A-Z0-9_=])|SPL\b|APPR\b|DEP\b|POLARKIN\b|TABDATA\b|OPEN\b|CLOSE\b"
+)
+"""Keywords of Klartext, those that are refused among them; longer ones first."""
+
+_ADDRESS = (
+    rf"I?(?:PR|PA){_VALUE}|LIN_[XYZ]|I[{_AXES}]{_VALUE}|LEN|CCA|DL|DR{_VALUE}|DR2|DIST|RI|MB{_VALUE}|LA"
+    rf"|FU|FZ|FT|R(?!0(?![.,0-9]))|L{_VALUE}|[{_AXES}FSMDN]"
+)
+_FLAG = (
+    r"R(?=[ \t]|$)|R[LR](?![A-Z0-9_])|R0(?![.,0-9])|R[-+](?![ \t]*[.0-9Q])|DR[ \t]*[-+](?![ \t]*[.0-9Q])|F[ \t]*MAX|F[ \t]*AUTO"
+    r"|MB[ \t]*MAX|[FM](?=[ \t]|$)"
+)
+
+Q_PARAMETER = r"Q[LR]?[0-9]{1,4}"
+
+EXPRESSIONS = ExpressionSyntax(
+    operators={
+        **{name: each for name, each in ARITHMETIC.items() if name != "MOD"},
+        "%": Operator(6, math.fmod),
+        "DIV": Operator(6, arithmetic.divide),
+        "^": Operator(7, math.pow),
+        "LEN": Operator(5, math.hypot),
+        "ANG": Operator(5, arithmetic.direction_from_zero),
+    },
+    functions={},
+    constants={"PI": math.pi},
+    variable=Q_PARAMETER,
+    brackets="()",
+    bracketed=True,
+    prefixes={
+        "SIN": arithmetic.sine_of_degrees,
+        "COS": arithmetic.cosine_of_degrees,
+        "TAN": arithmetic.tangent_of_degrees,
+        "ASIN": arithmetic.arc_sine_in_degrees,
+        "ACOS": arithmetic.arc_cosine_in_degrees,
+        "ATAN": arithmetic.arc_tangent_in_degrees,
+        "SQRT": math.sqrt,
+        "SQ": arithmetic.square,
+        "LN": math.log,
+        "LOG": math.log10,
+        "EXP": math.exp,
+        "NEG": operator.neg,
+        "INT": arithmetic.whole_part,
+        "ABS": math.fabs,
+        "FRAC": arithmetic.fraction,
+        "SGN": arithmetic.sign,
+    },
+)
+"""Formulas and the operators of FN 4, FN 8 and FN 13; angles are degrees (manual)."""
+
+SYNTAX = Syntax(
+    address=_ADDRESS,
+    comments=(Comment(";"),),
+    expressions=EXPRESSIONS,
+    statement=KEYWORDS,
+    worded=WORDED,
+    flag=_FLAG,
+    relative={**{f"I{axis}": axis for axis in _AXES}, "IPR": "PR", "IPA": "PA"},
+    aliases={f"LIN_{axis}": axis for axis in "XYZ"},
+    decimal_comma=True,
+    continued="~",
+)

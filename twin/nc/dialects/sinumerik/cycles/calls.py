@@ -1,0 +1,97 @@
+"""How cycles are called: their values by the names that the manuals give the parameters."""
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import NamedTuple, NoReturn
+
+from twin.nc.control.control import Control
+from twin.nc.dialects.sinumerik.subprograms import bracketed, split_values
+from twin.nc.text.blocks import Statement
+
+
+class CycleCall(NamedTuple):
+    """A cycle that is being called.
+
+    Attributes:
+        control: The control.
+        statement: What calls it.
+        values: What the call gives, by the name of the parameter.
+        texts: What it gives as a text in quotes.
+    """
+
+    control: Control
+    statement: Statement
+    values: Mapping[str, float]
+    texts: Mapping[str, str]
+
+    def get(self, name: str, default: float = 0.0) -> float:
+        """A value, or where it is left out another one."""
+        return self.values.get(name, default)
+
+    def length(self, name: str, default: float = 0.0) -> float:
+        """A length [mm]."""
+        return self.get(name, default) * self.control.modal.unit
+
+    def need(self, *names: str) -> None:
+        """The values of these parameters must be there.
+
+        Raises:
+            ProgramError: One is missing.
+        """
+        missing = [name for name in names if name not in self.values]
+        if missing:
+            self.refuse("cycle-word", f"needs {' and '.join(missing)}")
+
+    def refuse(self, code: str, message: str, hint: str | None = None) -> NoReturn:
+        """Refuse the call."""
+        self.control.fail(code, f"{self.statement.keyword} {message}", self.statement, hint)
+
+    def only(self, name: str, *followed: float) -> float:
+        """A value that must be one of those that are followed; 0 where it is left out."""
+        value = self.get(name)
+        if value not in (0.0, *followed):
+            known = ", ".join(f"{each:g}" for each in (0.0, *followed))
+            self.refuse("unsupported-word", f"is followed with {name} {known} alone, not {value:g}")
+        return value
+
+
+class CycleForm(NamedTuple):
+    """A cycle: its parameters in their order, and what it does."""
+
+    parameters: Sequence[str]
+    run: Callable[[CycleCall], None]
+
+
+def read_call(control: Control, statement: Statement, form: CycleForm) -> CycleCall:
+    """The values of a call.
+
+    Raises:
+        ProgramError: They cannot be read, or are too many.
+    """
+    inner, column, end = bracketed(control, statement.text, statement.text_column)
+    if statement.text[end:].strip():
+        at = statement.text_column + end
+        control.report.fail("call-values", f"nothing may follow {statement.keyword}", at)
+    values, texts = dict[str, float](), dict[str, str]()
+    given = split_values(inner) if inner.strip() else []
+    if len(given) > len(form.parameters):
+        message = f"{statement.keyword} takes {len(form.parameters)} values, not {len(given)}"
+        control.fail("call-values", message, statement, ", ".join(form.parameters))
+    for name, (text, begin) in zip(form.parameters, given, strict=False):
+        bare = text.strip()
+        if bare.startswith('"'):
+            texts[name] = bare.strip('"')
+        elif bare:
+            at = column + begin
+            values[name] = control.compute(control.statements.expression(text, at), at)
+    return CycleCall(control, statement, values, texts)
+
+
+def require_no_compensation(call: CycleCall) -> None:
+    """A cycle moves the tool's centre by itself.
+
+    Raises:
+        ProgramError: Compensation is in force.
+    """
+    if call.control.path.compensation.in_force:
+        message = "cannot run while radius compensation is in force"
+        call.refuse("compensation-change", message, "end it by G40 first")

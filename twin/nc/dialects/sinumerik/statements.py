@@ -1,0 +1,88 @@
+"""Statements of the SINUMERIK: keywords, assignments, calls of subprograms and cycles."""
+
+import re
+
+from twin.nc.control.codes import StatementAction
+from twin.nc.control.control import Control
+from twin.nc.dialects.sinumerik import flow, subprograms
+from twin.nc.dialects.sinumerik.codes import NUMBERS
+from twin.nc.dialects.sinumerik.cycles import CYCLES, call_cycle
+from twin.nc.dialects.sinumerik.known import PASSED_STATEMENTS, REFUSED_STATEMENTS
+from twin.nc.dialects.sinumerik.variables import assign, define
+from twin.nc.text.blocks import Statement
+
+_ASSIGNED = re.compile(r"[ \t]*(?:\[[^\]]*\])?[ \t]*=(?!=)")
+
+
+def _pass_over(control: Control, statement: Statement) -> None:
+    """A statement that changes nothing of the path: told once."""
+    keyword = statement.keyword
+    message = f"{keyword} does not change the path here: {PASSED_STATEMENTS[keyword]}"
+    control.report.notice(keyword, message, statement.column, len(keyword))
+
+
+def _refuse(control: Control, statement: Statement) -> None:
+    """A statement of the control that the twin does not follow.
+
+    Raises:
+        ProgramError: Always.
+    """
+    keyword = statement.keyword
+    message = f"{keyword} is known to the control and not simulated: {REFUSED_STATEMENTS[keyword]}"
+    control.fail("unsupported-statement", message, statement)
+
+
+def _repeat(control: Control, statement: Statement) -> None:
+    """REPEAT alone begins a loop; with a label it runs blocks again."""
+    if statement.text.strip():
+        subprograms.repeat_blocks(control, statement)
+    else:
+        flow.begin_repeat(control, statement)
+
+
+def _alarm(control: Control, statement: Statement) -> None:
+    """SETAL(65000): the program stops itself.
+
+    Raises:
+        ProgramError: Always.
+    """
+    message = f"the program stops itself: SETAL{statement.text.strip()}"
+    control.fail("program-error", message, statement, "the program's own checks have failed")
+
+
+STATEMENTS: dict[str, StatementAction] = {
+    **dict.fromkeys(PASSED_STATEMENTS, _pass_over),
+    **dict.fromkeys(REFUSED_STATEMENTS, _refuse),
+    **flow.STATEMENTS,
+    **subprograms.STATEMENTS,
+    **dict.fromkeys(CYCLES, call_cycle),
+    "DEF": define,
+    "REPEAT": _repeat,
+    "SETAL": _alarm,
+}
+
+
+def other_statement(control: Control, statement: Statement) -> None:
+    """An assignment, or the call of a subprogram."""
+    keyword = statement.keyword
+    if keyword[0] == "$" or keyword == "R" or _ASSIGNED.match(statement.text) is not None:
+        assign(control, statement)
+    elif keyword[0] == "L" and keyword[1:].isdigit():
+        subprograms.numbered(control, statement)
+    else:
+        subprograms.call_named(control, statement, keyword, statement.text, statement.text_column)
+
+
+LONG_WORDS = (
+    *("CR", "AR", "AP", "RP", "TURN", "I1", "J1", "K1", "ANG", "RPL"),
+    *("RND", "RNDM", "CHR", "CHF", "ADIS", "ADISPOS", "OFFN", "DISC", "FB", "SPOS", "LIMS", "FP"),
+    *("FRC", "FRCM", "OVR", "OVRRAP", "DISR", "DISCL", "SPOSA"),
+)
+"""Addresses of several letters, which = follows."""
+
+_LONG = "|".join(word for word in LONG_WORDS if word.isalpha())
+PATTERN = (
+    r"%|R[0-9]+(?=[ \t]*=(?!=))|R(?=[ \t]*\[)|\$[A-Z_]\w*|L[0-9]+\b(?![ \t]*=)"
+    rf"|(?!(?:{'|'.join(NUMBERS)})\b|(?:{_LONG})[ \t]*=)[A-Z_][A-Z_]\w*\b(?![ \t]*:(?!=))"
+)
+"""What begins a statement."""

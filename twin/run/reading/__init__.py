@@ -1,0 +1,1 @@
+"""How a raw program is read: its dialect, its numbers, its tools, as far as its text tells them."""

@@ -1,0 +1,115 @@
+"""How a raw program is read: what its job would tell the control, as far as the program's text shows it."""
+
+import re
+from collections.abc import Iterator, Mapping
+from itertools import islice
+from types import MappingProxyType
+from typing import NamedTuple
+
+from twin.nc.control.dialect import Dialect
+from twin.nc.control.settings import ToolData
+from twin.nc.dialects.recognition import comments_of, without_comments
+from twin.nc.text.source import Source
+from twin.run.reading.assumed_tools import USUAL_LENGTH, listed_tools
+
+_MOST_LINES = 200_000
+"""So many lines are looked at."""
+_LENGTH = re.compile(
+    r"(?<![A-Z#\[])([XYZABCIJKRF])[ \t]*[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)", re.IGNORECASE
+)
+_OFFSET = re.compile(
+    r"(?<![A-Z0-9.])G[ \t]*(5[4-9](?:\.[1-3])?)(?![0-9.])(?![ \t]*P)", re.IGNORECASE
+)
+_FUNCTION = re.compile(r"(?<![A-Z#\[])M[ \t]*([0-9]{1,4})(?![0-9.\[#])", re.IGNORECASE)
+_TOOL = re.compile(r"(?<![A-Z#\[])T[ \t]*([0-9]{1,4})(?![0-9.])", re.IGNORECASE)
+_INCHES = re.compile(r"(?<![A-Z0-9.])G[ \t]*[27]0(?![0-9.])", re.IGNORECASE)
+_USUAL_OFFSET = "G54"
+UNKNOWN_FUNCTION = "not known here: taken to do nothing"
+
+
+class AssumedReading(NamedTuple):
+    """Keys of the job, and what was assumed and from what, for people.
+
+    Attributes:
+        keys: Of the job file, that it does not give itself.
+        told: A line each.
+        tools: What comments tell of the tools, for radius compensation; the job's own come later, by what
+            they do.
+    """
+
+    keys: dict[str, object]
+    told: tuple[str, ...]
+    tools: Mapping[int, ToolData] = MappingProxyType({})
+
+
+NOTHING_ASSUMED = AssumedReading({}, ())
+
+
+def assumed_reading(source: Source) -> AssumedReading:
+    """What the text of a raw program shows of how it is to be read, in whatever dialect."""
+    keys: dict[str, object] = {}
+    told: list[str] = []
+    bare = _bare_number(source)
+    if bare:
+        keys["decimal_point"] = "calculator"
+        told.append(
+            f"{bare} counts whole units: the program never writes a whole number with a point"
+        )
+    offsets = {f"G{found[1]}" for line in _blocks(source) for found in _OFFSET.finditer(line)}
+    if len(offsets) == 1 and _USUAL_OFFSET not in offsets:
+        (offset,) = offsets
+        keys["offsets"] = {offset: {}}
+        told.append(f"{offset} lies at program zero: the program names no other work offset")
+    return AssumedReading(keys, tuple(told), _told_tools(source))
+
+
+def _told_tools(source: Source) -> dict[int, ToolData]:
+    blocks = list(_blocks(source))
+    numbers = {int(found[1]) for line in blocks for found in _TOOL.finditer(line)}
+    inches = any(_INCHES.search(line) for line in blocks)
+    comments = (each for line in islice(source.lines, _MOST_LINES) for each in comments_of(line))
+    told = listed_tools(comments, numbers, inches=inches)
+    return {
+        number: ToolData(radius=tool.diameter / 2.0, length=USUAL_LENGTH)
+        for number, tool in told.items()
+        if tool.diameter is not None
+    }
+
+
+def unknown_functions(
+    source: Source, dialect: Dialect, declared: frozenset[int]
+) -> tuple[int, ...]:
+    """M codes of a program that neither its dialect nor the machine's builder gives a meaning."""
+    if dialect.codes.any_m:
+        return ()
+    numbers = {int(found[1]) for line in _blocks(source) for found in _FUNCTION.finditer(line)}
+    return tuple(sorted(numbers - set(dialect.codes.m) - declared))
+
+
+def _blocks(source: Source) -> Iterator[str]:
+    return map(without_comments, islice(source.lines, _MOST_LINES))
+
+
+def _bare_number(source: Source) -> str:
+    """The first number without a point of a program whose numbers without a point count whole units.
+
+    Such a program writes its fractions with a point and its whole numbers without one. Where a whole number
+    has a point somewhere (``X20.``), one without is a slip or counts increments. Where no number has a
+    point, increments would put the whole program within a millimetre if all are below 1000. Empty: it is none.
+    """
+    first, fractions, largest = "", False, 0
+    for line in _blocks(source):
+        for found in _LENGTH.finditer(line):
+            number = found[2]
+            if number.endswith("."):
+                return ""
+            if "." in number:
+                fractions = True
+            elif int(number):
+                first = first or found[0]
+                largest = max(largest, int(number) if found[1] not in "fF" else 0)
+    return first if fractions or 0 < largest < _INCREMENTS else ""
+
+
+_INCREMENTS = 1000
+"""So many least input increments are a millimetre."""

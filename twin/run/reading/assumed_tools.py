@@ -1,0 +1,243 @@
+"""The tools that are assumed for a raw program: of the lists and comments of posts, and of what they do.
+
+Posts write ``(T1 D=10. CR=0. - ZMIN=-5. - flat end mill)`` and its relatives.
+"""
+
+import re
+from collections.abc import Collection, Iterable, Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from twin.nc.canonical import Motion, Moves
+from twin.nc.dialects.recognition import HEAD_LINES
+
+_INCH = 25.4
+_NUMBER = r"[0-9]*[.,]?[0-9]+|[0-9]+[.,]"
+
+_LISTED = (
+    re.compile(r"^\s*T\s*([0-9]+)\s*(?:\||-|:|=|,|\s)\s*(.*\S)", re.IGNORECASE),
+    re.compile(r"\bTOOL\s*(?:NO\.?|NUMBER|#|-|=|:)?\s*([0-9]+)\b\s*[-:=,|]*\s*(.*)", re.IGNORECASE),
+    re.compile(r"^\s*([0-9]+)\s*=\s*(.*\b(?:MILL|DRILL|BIT|TAP)\b.*)", re.IGNORECASE),
+)
+"""Comments that begin with the tool's number."""
+
+_KINDS: tuple[tuple[str, str], ...] = (
+    (
+        r"SPOT|CENT(?:ER|RE) ?DRILL|CHAMFER|COUNTERSINK|C'?SINK|\bV[- ]?(?:BIT|CARVE|TOOL)|ENGRAV|FASE",
+        "chamfer",
+    ),
+    (r"DRILL|BOHRER|\bTAP\b|\bTAPPING|REAM", "drill"),
+    (r"BULL|CORNER RAD|RADIUSED|TOROID", "bull"),
+    (r"BALL|SPHER|\bKUGEL", "ball"),
+)
+"""Words of comments, and the kind that they tell; other tools are end mills."""
+
+_DIAMETERS = (
+    rf"\b(?:DIA(?:METER|M)?\.?|D(?=\s*[=:]))\s*(?:OFF\.?\s*-?\s*[0-9]+\s*(?:LEN\.?\s*-?\s*[0-9]+\s*)?(?:DIA\.?)\s*)?[-=:]?\s*({_NUMBER})\s*(MM|IN(?:CH)?\b|\")?",
+    rf"[ØøΦ⌀]\s*({_NUMBER})\s*(MM|IN(?:CH)?\b|\")?",
+    rf"\{{\s*({_NUMBER})\s*(MM|IN(?:CH)?)?",
+    rf"({_NUMBER})\s*(MM|IN(?:CH)?\b|\")",
+    rf"(?<![A-Z0-9./])({_NUMBER})()(?=\s*(?:\w+\s+){{0,2}}(?:END ?MILL|MILL|DRILL|BALL|BULL|TAP|CUTTER|REAMER|CHAMFER|FLAT|SPOT|DIA))",
+    rf"^\s*({_NUMBER})()\s*$",
+    rf"^(?!.*\bH\s*[0-9]).*\bD\s*({_NUMBER})()(?![0-9.])",
+)
+_FRACTION = re.compile(r"(?<![0-9.])([0-9]+)/([0-9]+)(?![0-9])")
+_THREAD = re.compile(r"\bM([0-9]+(?:\.[0-9]+)?)(?:\s*[Xx][0-9.]+)?\s*(?:TAP|GEWINDE)")
+_CORNER = re.compile(
+    rf"\b(?:CR|R|RAD(?:IUS)?|CORNER RAD(?:IUS)?)\s*[=:.-]?\s*({_NUMBER})", re.IGNORECASE
+)
+_TAPER = re.compile(r"\bTAPER\s*=\s*([0-9.]+)\s*DEG", re.IGNORECASE)
+
+
+class ToolComment(NamedTuple):
+    """What a comment tells of a tool.
+
+    Attributes:
+        kind: As ``ToolTable`` has it; empty: it is not told.
+        diameter: [mm]; None: it is not told.
+        corner: Radius of a bull-nose's corner [mm].
+        text: The comment.
+    """
+
+    kind: str
+    diameter: float | None
+    corner: float | None
+    text: str
+
+
+def numbered_tool(comment: str) -> tuple[int, str] | None:
+    """The number of the tool that a comment lists, and what it says of it; None: it lists none."""
+    for pattern in _LISTED:
+        found = pattern.search(comment)
+        if found is not None and found[2]:
+            return int(found[1]), found[2]
+    return None
+
+
+def tool_of_comment(text: str, *, inches: bool) -> ToolComment:
+    """What a comment tells of a tool; numbers without a unit are the program's."""
+    upper = text.upper()
+    kind = next((kind for words, kind in _KINDS if re.search(words, upper)), "")
+    diameter = _diameter(upper, inches=inches)
+    corner = _CORNER.search(upper)
+    radius = None if corner is None else _value(corner[1]) * (_INCH if inches else 1.0)
+    if diameter and radius and kind in ("", "bull") and "CR=" in upper.replace(" ", ""):
+        kind = "ball" if 2.0 * radius >= diameter * 0.999 else "bull"
+    if not kind and re.search(r"MILL|CUTTER|FRÄSER|FLAT|ROUTER|UPCUT|DOWNCUT|COMPRESSION", upper):
+        kind = "flat"
+    if kind == "bull" and (not diameter or not radius or 2.0 * radius > diameter):
+        kind, radius = "flat", None
+    return ToolComment(kind, diameter, radius if kind == "bull" else None, text.strip())
+
+
+def _diameter(text: str, *, inches: bool) -> float | None:
+    thread = _THREAD.search(text)
+    if thread is not None:
+        return float(thread[1])
+    fraction = _FRACTION.search(text)
+    if fraction is not None and int(fraction[2]) in (2, 4, 8, 16, 32, 64):
+        return int(fraction[1]) / int(fraction[2]) * _INCH
+    for pattern in _DIAMETERS:
+        found = re.search(pattern, text)
+        if found is not None and 0.0 < _value(found[1]) < 500.0:
+            by_unit = bool(found[2]) and not found[2].startswith("M")
+            inch = by_unit or (inches and not found[2])
+            return _value(found[1]) * (_INCH if inch else 1.0)
+    return None
+
+
+def _value(text: str) -> float:
+    return float(text.replace(",", "."))
+
+
+_USUAL_DIAMETER = 10.0
+USUAL_LENGTH, _USUAL_FLUTE = 60.0, 25.0
+_NEAR_LINES = 3
+"""So far from the call of a tool a comment may stand that describes it."""
+BELOW = 1e-6
+"""Ways and depths that are less are none [mm]."""
+
+
+def tool_lines(
+    calls: list[tuple[int, int, int]],
+    comments: list[tuple[int, str]],
+    moves: Moves,
+    declared: Mapping[int, ToolComment],
+    *,
+    inches: bool,
+) -> tuple[list[str], list[str], float]:
+    """Lines of the tools that the program calls, how each came about, and the largest diameter [mm].
+
+    Args:
+        calls: Number, line and next move of every tool that comes.
+        comments: Lines and texts.
+        moves: What the program makes.
+        declared: Tools that the program itself gives their data.
+        inches: Comments count in inches.
+    """
+    numbers = list(dict.fromkeys(number for number, _, _ in calls if number)) or [1]
+    listed = listed_tools((comment for _, comment in comments), numbers, inches=inches)
+    lines: list[str] = []
+    told: list[str] = []
+    largest = 0.0
+    for number in numbers:
+        tool = (
+            declared.get(number)
+            or listed.get(number)
+            or _near_comment(number, calls, comments, inches=inches)
+        )
+        rows = _rows_of(number, calls, len(moves))
+        more, said, diameter = _tool_table(number, tool, moves, rows)
+        lines += more
+        told.append(said)
+        largest = max(largest, diameter)
+    return lines, told, largest
+
+
+def listed_tools(
+    comments: Iterable[str], numbers: Collection[int], *, inches: bool
+) -> dict[int, ToolComment]:
+    """What comments that begin with a tool's number tell of the tools, by number."""
+    listed: dict[int, ToolComment] = {}
+    for comment in comments:
+        found = numbered_tool(comment)
+        if found is not None and found[0] in numbers:
+            tool = tool_of_comment(found[1], inches=inches)
+            if tool.diameter is not None or tool.kind:
+                listed.setdefault(found[0], tool)
+    return listed
+
+
+def _near_comment(
+    number: int,
+    calls: list[tuple[int, int, int]],
+    comments: list[tuple[int, str]],
+    *,
+    inches: bool,
+) -> ToolComment | None:
+    """What a comment beside a tool's call tells of it; without a list, and one tool alone, any comment of the head."""
+    lines = [line for each, line, _ in calls if each == number]
+    near = [
+        (abs(line - call), text)
+        for line, text in comments
+        for call in lines
+        if abs(line - call) <= _NEAR_LINES
+    ]
+    if not lines:
+        near = [(line, text) for line, text in comments if line <= HEAD_LINES]
+    for distance, text in sorted(near):
+        tool = tool_of_comment(text, inches=inches)
+        beside = not distance and lines
+        if (tool.diameter is not None and (tool.kind or beside)) or (tool.kind and beside):
+            return tool
+    return None
+
+
+def _rows_of(number: int, calls: list[tuple[int, int, int]], count: int) -> list[int]:
+    """Moves with a tool; all of them where no tool is called."""
+    if not calls:
+        return list(range(count))
+    rows: list[int] = []
+    for place, (each, _, begin) in enumerate(calls):
+        end = calls[place + 1][2] if place + 1 < len(calls) else count
+        if each == number:
+            rows += range(begin, end)
+    return rows
+
+
+def _tool_table(
+    number: int, tool: ToolComment | None, moves: Moves, rows: list[int]
+) -> tuple[list[str], str, float]:
+    """A tool's lines, how it came about, and its diameter [mm]."""
+    feeds = [row for row in rows if moves.motion[row] == Motion.FEED]
+    ways = moves.end[feeds, :2] - moves.start[feeds, :2]
+    drills = bool(feeds) and bool((np.abs(ways) < BELOW).all())
+    depth = max(0.0, -float(moves.end[feeds, 2].min())) if feeds else 0.0
+    kind = (tool.kind if tool else "") or ("drill" if drills else "flat")
+    diameter = (tool.diameter if tool else None) or _USUAL_DIAMETER
+    flute = max(_USUAL_FLUTE, np.ceil(depth + 5.0))
+    length = max(USUAL_LENGTH, np.ceil(flute * 1.6 + 20.0))
+    kind_from = "its comment" if tool and tool.kind else "what it does"
+    size_from = "its comment" if tool and tool.diameter else "a guess"
+    lines = [
+        "[[tools]]",
+        f"number = {number}" + (f"  # {_plain(tool.text)}" if tool else ""),
+        f'kind = "{kind}"  # flat, ball, bull, drill, chamfer: from {kind_from}',
+        f"diameter = {round(float(diameter), 4)}  # mm: {size_from}",
+        *([f"corner = {tool.corner}  # mm"] if tool and tool.corner and kind == "bull" else []),
+        f"flute = {flute:.1f}  # mm: a guess",
+        f"length = {length:.1f}  # from the spindle nose to the tip, mm: a guess",
+        "",
+    ]
+    said = f"T{number} {kind} of {diameter:g} mm: " + (
+        f"from its comment ({_plain(tool.text)})"
+        if tool and tool.diameter
+        else "diameter is a guess"
+    )
+    return lines, said, diameter
+
+
+def _plain(text: str) -> str:
+    """A comment of a program as one of a job file."""
+    return "".join(each for each in text if each.isprintable())[:80]

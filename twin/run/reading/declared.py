@@ -1,0 +1,67 @@
+"""What a program itself declares of its blank and its tools, as Klartext does by BLK FORM and TOOL DEF."""
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+import numpy as np
+
+from twin.nc.canonical import FloatArray, Function
+from twin.nc.functions import BLANK
+from twin.run.reading.assumed_tools import ToolComment
+
+_RADIUS = "R"
+
+
+class DeclaredStock(NamedTuple):
+    """The blank of a program.
+
+    Attributes:
+        lines: Of the job file.
+        top: Centre of its top face, shape (3,) [mm].
+        told: It, for people.
+    """
+
+    lines: list[str]
+    top: FloatArray
+    told: str
+
+
+def declared_stock(functions: Iterable[Function]) -> DeclaredStock | None:
+    """The blank that a program declares last; None: it declares none that has a volume."""
+    blanks = [each.arguments for each in functions if each.word == BLANK]
+    if not blanks:
+        return None
+    values = blanks[-1]
+    if "D" in values:
+        top = np.array([0.0, 0.0, values["Z2"]])
+        shape = ["cylinder", f"diameter = {values['D']:g}", f"height = {values['L']:g}"]
+        whole, said = min(values["D"], values["L"]) > 0.0, f"⌀ {values['D']:g} x {values['L']:g}"
+    else:
+        low, high = (np.array([values[f"{name}{side}"] for name in "XYZ"]) for side in (1, 2))
+        low, high = np.minimum(low, high), np.maximum(low, high)
+        size, middle = high - low, (low + high) / 2.0
+        top = np.array([middle[0], middle[1], high[2]])
+        shape = ["box", f"size = [{', '.join(f'{value:g}' for value in size)}]"]
+        whole, said = bool((size > 0.0).all()), " x ".join(f"{value:g}" for value in size)
+    if not whole:
+        return None
+    place = ", ".join(f"{value:.3f}" for value in top)
+    lines = [
+        "[stock]",
+        f'shape = "{shape[0]}"',
+        *(f"{line}  # mm: from BLK FORM" for line in shape[1:]),
+        f"position = [{place}]  # centre of its top face, mm",
+        "",
+    ]
+    return DeclaredStock(lines, top, f"stock {said} mm, top at Z{top[2]:g}: from BLK FORM")
+
+
+def declared_tools(functions: Iterable[Function]) -> dict[int, ToolComment]:
+    """The tools that a program gives a radius, by number."""
+    return {
+        int(each.word[1:]): ToolComment(
+            "", 2.0 * each.arguments[_RADIUS], None, f"TOOL DEF R {each.arguments[_RADIUS]:g}"
+        )
+        for each in functions
+        if each.word[:1] == "T" and each.word[1:].isdigit() and each.arguments.get(_RADIUS)
+    }

@@ -1,0 +1,252 @@
+"""The dialect of a raw program: where its words fit several, all of them read it and are compared."""
+
+import dataclasses
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from twin.errors import UsageError
+from twin.nc.canonical import Function, Motion, Moves, concatenate
+from twin.nc.control.dialect import Dialect
+from twin.nc.control.settings import ControlSettings, MachineFunction
+from twin.nc.dialects import DIALECTS
+from twin.nc.dialects.foreign import require_program
+from twin.nc.dialects.recognition import reading_of
+from twin.nc.interpreter import Interpretation
+from twin.nc.text.diagnostics import Diagnostic, ProgramError
+from twin.nc.text.source import Source, read_source
+from twin.run.reading.assumed_reading import UNKNOWN_FUNCTION, unknown_functions
+
+BoolArray = npt.NDArray[np.bool_]
+_PREFERENCE = ("fanuc", "haas", "linuxcnc")
+"""Which of several dialects that make the same of a program is taken: what most posts write for comes first."""
+_MOST_LINES = 200_000
+"""Longer programs are not read by several dialects for comparison: that would take minutes."""
+_SAME = 1e-6
+"""Positions that differ less are the same [mm or deg]; feeds by this share."""
+_CLEARANCE = 1.0
+"""How far between pecks a drill withdraws is a parameter of the control; rapids that differ by less ask nobody [mm]."""
+_NEARLY = 0.1
+"""Feeds on the same path that differ by less are told, but they ask nobody: F of a helix counts its arc or its path."""
+_TOO_SLOW = 1.0 / 200.0
+"""A dialect in which the fastest feed is less than this share of another's is not the one that was meant: a
+Haas counts F300 without a point as 0.3 mm/min, and a post for it writes F300."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Choice:
+    """A dialect, and why it was taken.
+
+    Attributes:
+        dialect: The dialect.
+        reason: Why, for people; empty: nothing was chosen.
+    """
+
+    dialect: Dialect
+    reason: str
+
+
+@dataclasses.dataclass(frozen=True)
+class _Trial:
+    """What one dialect makes of a program."""
+
+    name: str
+    moves: Moves
+    functions: list[tuple[int, str]]
+    unknown: tuple[int, ...]
+    error: Diagnostic | None
+
+    @property
+    def fastest(self) -> float:
+        """Its fastest feed [mm/min]."""
+        return float(np.nanmax(self.moves.feed, initial=0.0))
+
+
+def chosen_dialect(path: Path, settings: ControlSettings, source: Source | None = None) -> Choice:
+    """Tell the dialect of a raw program.
+
+    Args:
+        path: The program.
+        settings: What its control is told of machine and job.
+        source: The program, where it was read already.
+
+    Raises:
+        UsageError: It is no program, or one for another control, or several dialects would move differently.
+        ProgramError: Every dialect that it may be written in refuses it; the error is that of the one that
+            reads it farthest.
+    """
+    require_program(path)
+    source = read_source(path) if source is None else source
+    reading = reading_of(source)
+    candidates = sorted(reading.candidates, key=_rank)
+    if len(candidates) == 1:
+        return Choice(DIALECTS[candidates[0]], reading.reason)
+    if len(source.lines) > _MOST_LINES:
+        raise UsageError(f"{source.name}: could be {_either(candidates)}; {_type(candidates)}")
+    if settings.machine_zero is None:  # the dialect does not depend on where that lies
+        zero = dict.fromkeys(settings.axes.names, 0.0)
+        settings = dataclasses.replace(settings, machine_zero=zero)
+    common = [name for name in candidates if name in _PREFERENCE]
+    rare = [name for name in candidates if name not in _PREFERENCE]
+    trials = [_tried(path, DIALECTS[name], settings) for name in (common or rare)]
+    good = [trial for trial in trials if trial.error is None]
+    if not good:
+        further = [_tried(path, DIALECTS[name], settings) for name in rare] if common else []
+        raise _refused(trials, [trial.name for trial in further if trial.error is None])
+    least = min(len(trial.unknown) for trial in good)
+    knowing = [trial for trial in good if len(trial.unknown) == least]
+    fastest = max(trial.fastest for trial in knowing)
+    meant = [trial for trial in knowing if trial.fastest >= fastest * _TOO_SLOW]
+    return _choice(source.name, meant, _dropped(good, knowing, meant))
+
+
+def _refused(trials: Sequence[_Trial], others: Sequence[str]) -> ProgramError:
+    """The error of the dialect that reads a program farthest, and what else may be tried."""
+    farthest = max(trials, key=lambda trial: trial.error.line if trial.error else 0).error
+    name = next(trial.name for trial in trials if trial.error is farthest)
+    assert farthest is not None
+    message = f"read as {name}, which reads it farthest: {farthest.message}"
+    further = f"; {_either(others, 'and')} would read it" if others else ""
+    names = [trial.name for trial in trials if trial.name != name] + list(others)
+    another = f"another control: {_type(names)}{further}" if names else ""
+    hint = "; ".join(filter(None, (farthest.hint, another)))
+    return ProgramError(dataclasses.replace(farthest, message=message, hint=hint or None))
+
+
+def _dropped(good: Sequence[_Trial], knowing: Sequence[_Trial], meant: Sequence[_Trial]) -> str:
+    """Why some of the dialects that read a program are not the one that was meant; empty: all may be."""
+    slow = [trial for trial in knowing if trial not in meant]
+    ignorant = [trial.name for trial in good if trial not in knowing]
+    reasons = [f"{trial.name} would feed {trial.fastest:g} mm/min at most" for trial in slow]
+    if ignorant:
+        reasons.append(
+            f"{_either(ignorant, 'and')} {'lack' if len(ignorant) > 1 else 'lacks'} some of its M codes"
+        )
+    return "; ".join(reasons)
+
+
+def _choice(name: str, meant: Sequence[_Trial], why: str) -> Choice:
+    """The dialect that is taken of those that may be meant.
+
+    Raises:
+        UsageError: They would not move alike.
+    """
+    slightly = ""
+    for other in meant[1:]:
+        difference = _difference(meant[0], other)
+        if not difference and not slightly:
+            slightly = _slight_difference(meant[0], other)
+        if difference:
+            names = [each.name for each in meant]
+            raise UsageError(
+                f"{name}: could be {_either(names)}, and they would not move alike: "
+                f"{difference}; {_type(names)}"
+            )
+    names = [trial.name for trial in meant]
+    if len(names) == 1:
+        return Choice(DIALECTS[names[0]], why or "no other reads it without an error")
+    same = f"{_either(names, 'and')} make the same moves of it"
+    if slightly:
+        same += f", but {slightly}; {_type(names[1:])}"
+    return Choice(DIALECTS[names[0]], f"{same}; {why}" if why else same)
+
+
+def _rank(name: str) -> int:
+    return _PREFERENCE.index(name) if name in _PREFERENCE else len(_PREFERENCE)
+
+
+def _either(names: Sequence[str], word: str = "or") -> str:
+    return f"{', '.join(names[:-1])} {word} {names[-1]}" if len(names) > 1 else names[0]
+
+
+def _type(names: Sequence[str]) -> str:
+    return f"type {_either([f'--dialect {name}' for name in names])}"
+
+
+def _tried(path: Path, dialect: Dialect, settings: ControlSettings) -> _Trial:
+    """What a dialect makes of a program."""
+    source = read_source(path, dialect)
+    unknown = unknown_functions(source, dialect, frozenset(settings.m_functions))
+    functions_of_the_builder = dict.fromkeys(unknown, MachineFunction(UNKNOWN_FUNCTION))
+    settings = dataclasses.replace(
+        settings, m_functions={**settings.m_functions, **functions_of_the_builder}
+    )
+    chunks, error = [], None
+    try:
+        if dialect.library is not None:
+            source = dialect.library(source, path.parent, dialect)
+        chunks.extend(Interpretation(source, dialect, settings).chunks())
+    except ProgramError as raised:
+        error = raised.diagnostic
+    functions = [
+        (event.line, f"{event.word} {sorted(event.arguments.items())}")
+        for chunk in chunks
+        for event in chunk.events
+        if isinstance(event, Function)
+    ]
+    moves = concatenate((chunk.moves for chunk in chunks), settings.axes)
+    return _Trial(dialect.name, moves, functions, unknown, error)
+
+
+def _difference(one: _Trial, other: _Trial) -> str:
+    """The first thing that two dialects make differently; empty: none."""
+    a, b = one.moves, other.moves
+    count = min(len(a), len(b))
+    apart = np.abs(a.end[:count] - b.end[:count]).max(axis=1, initial=0.0) > _SAME
+    apart &= ~_pecks_apart(a, b, count)
+    turned = np.abs(a.sweep[:count] - b.sweep[:count]) > _SAME
+    kinds = (a.motion[:count] != b.motion[:count]) | (a.line[:count] != b.line[:count])
+    ways = np.flatnonzero(apart | turned | kinds)
+    if len(ways) or len(a) != len(b):
+        row = int(ways[0]) if len(ways) else count
+        longer = a if len(a) > row else b
+        goals = " and ".join(
+            f"{trial.name} goes to {_place(trial.moves, row)}"
+            if len(trial.moves) > row
+            else f"{trial.name} does not move"
+            for trial in (one, other)
+        )
+        return f"in line {longer.line[row]} {goals}"
+    if not np.allclose(a.feed, b.feed, rtol=_NEARLY, equal_nan=True):
+        return _feeds_apart(one, other, _NEARLY)
+    for mine, theirs in zip(one.functions, other.functions, strict=False):
+        if mine != theirs:
+            return f"in line {mine[0]} {one.name} does {mine[1]} and {other.name} {theirs[1]}"
+    return ""
+
+
+def _pecks_apart(a: Moves, b: Moves, count: int) -> BoolArray:
+    """Rapids of two dialects that end a little apart along Z alone, as pecks do, shape (count,)."""
+    off = np.abs(a.end[:count] - b.end[:count])
+    rapid = (a.motion[:count] == Motion.RAPID) & (b.motion[:count] == Motion.RAPID)
+    others = np.delete(off, 2, axis=1).max(axis=1, initial=0.0) <= _SAME
+    return rapid & others & (off[:, 2] > _SAME) & (off[:, 2] < _CLEARANCE)
+
+
+def _slight_difference(one: _Trial, other: _Trial) -> str:
+    """What two dialects make differently that asks nobody; empty: nothing."""
+    a, b = one.moves, other.moves
+    pecks = np.flatnonzero(_pecks_apart(a, b, min(len(a), len(b))))
+    if len(pecks):
+        row = int(pecks[0])
+        heights = f"{one.name} to Z{a.end[row, 2]:.4g} and {other.name} to Z{b.end[row, 2]:.4g}"
+        return f"in line {a.line[row]} they withdraw pecks differently, {heights}"
+    return _feeds_apart(one, other)
+
+
+def _feeds_apart(one: _Trial, other: _Trial, share: float = _SAME) -> str:
+    """The first feed that two dialects make differently; empty: none."""
+    a, b = one.moves, other.moves
+    apart = np.flatnonzero(~np.isclose(a.feed, b.feed, rtol=share, equal_nan=True))
+    if not len(apart):
+        return ""
+    row = int(apart[0])
+    paces = f"{one.name} feeds {a.feed[row]:g} and {other.name} {b.feed[row]:g} a minute"
+    return f"in line {a.line[row]} {paces}"
+
+
+def _place(moves: Moves, row: int) -> str:
+    names = moves.axes.names
+    return " ".join(f"{n}{v:g}" for n, v in zip(names, moves.end[row].round(4), strict=True))
