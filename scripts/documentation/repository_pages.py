@@ -21,6 +21,7 @@ PAGES: Mapping[str, str] = {
     "twin/logs/README.md": "rooms/logs.md",
     "twin/serve/README.md": "rooms/serve.md",
     "twin/compilation/README.md": "rooms/compilation.md",
+    "twin/fmu/README.md": "rooms/fmu.md",
     "twin/link/README.md": "rooms/link.md",
     "twin/nc/dialects/gost.md": "reference/dialects/gost.md",
     "twin/nc/dialects/codesys.md": "reference/dialects/codesys.md",

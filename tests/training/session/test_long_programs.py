@@ -84,6 +84,7 @@ def endless():
     return session_of("G1 F12000 Z50\no1 while [1]\nX0.2\nX0\no1 endwhile\nM2\n")
 
 
+@pytest.mark.seconds("an endless program runs for a while")
 def test_single_block_and_going_back_find_their_way_in_an_endless_program(endless):
     do(endless, "cycle_start")
     endless.advance(1500)
