@@ -29,6 +29,7 @@ PAGES: Mapping[str, str] = {
     "twin/nc/dialects/mefi.md": "reference/dialects/mefi.md",
     "twin/nc/dialects/grbl.md": "reference/dialects/grbl.md",
     "twin/nc/dialects/heidenhain.md": "reference/dialects/heidenhain.md",
+    "twin/nc/dialects/sinumerik.md": "reference/dialects/sinumerik.md",
     "twin/nc/dialects/linuxcnc.md": "reference/dialects/linuxcnc.md",
     "twin/nc/dialects/fanuc.md": "reference/dialects/fanuc.md",
     "twin/nc/dialects/haas.md": "reference/dialects/haas.md",
