@@ -16,7 +16,7 @@ _LEAD = (
 )
 _MORE = (
     "How it is read while it grows, from MATLAB and from pandas: "
-    "[what the verdict rests on](../rooms/compare.md#the-recording)."
+    "[what the verdict rests on](../packages/compare.md#the-recording)."
 )
 _MEANINGS = {
     "time": "end of the sample",

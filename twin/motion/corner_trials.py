@@ -18,7 +18,7 @@ from twin.motion.blocks.blocks import Blocks, BoolArray, Surroundings
 from twin.motion.blocks.corners import Borders, find_borders
 from twin.motion.limits import MotionLimits
 from twin.motion.phases_of_pieces import phases_of_pieces
-from twin.motion.pieces.pieces import Pieces, blocks_to_cut, cut
+from twin.motion.pieces.pieces import BATCH, Pieces, blocks_to_cut, cut
 from twin.motion.steps import Step
 from twin.nc.canonical import Chunk, Corner, FloatArray, IntArray
 
@@ -104,6 +104,7 @@ class PiecesOfChunks(Step[_Span, Pieces]):
         limits: Of the axes and the path.
         start: Where the axes stand before, part coordinates, shape (k,) [mm or deg].
         largest_override: Of the feed that the limits of a piece must leave room for.
+        batch: How many blocks are cut together.
 
     Raises:
         ValueError: When pulled: a move does not begin where the one before it ended.
@@ -115,8 +116,9 @@ class PiecesOfChunks(Step[_Span, Pieces]):
         limits: MotionLimits,
         start: FloatArray,
         largest_override: float = 1.0,
+        batch: int = BATCH,
     ) -> None:
-        super().__init__(_Spans(blocks_to_cut(chunks, start), limits, largest_override))
+        super().__init__(_Spans(blocks_to_cut(chunks, start, batch), limits, largest_override))
         self._limits, self._largest_override = limits, largest_override
 
     def take(self, part: _Span) -> Iterator[Pieces]:
