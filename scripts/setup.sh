@@ -62,8 +62,9 @@ setup_environment() {
         echo "setting up .venv"
         [ -x .venv/bin/python ] || "$python" -m venv .venv
         # By the environment, so that the isolated build keeps to the same versions.
+        # Without byte code, which Python makes of what it loads: half of the work would be for what nobody does.
         PIP_CONSTRAINT="$PWD/constraints.txt" MILL_TWIN_KERNELS=0 .venv/bin/python -m pip install \
-            --quiet --disable-pip-version-check --editable ".${extra[$wanted]}"
+            --quiet --disable-pip-version-check --no-compile --editable ".${extra[$wanted]}"
         echo "$stamp" >".venv/stamp-$wanted"
     fi
     PATH="$PWD/.venv/bin:$PATH"

@@ -30,6 +30,7 @@ KINDS = frozenset(
 )
 """Markers of what ``scripts/test`` leaves to ``scripts/test --all``."""
 _NEED = {
+    "api/test_feed_environment.py": "gymnasium",
     "compare/report/test_report_page.py": "playwright",
     "motion/profile/test_time_optimality.py": "toppra",
     "serve/test_independent_client.py": "pymtconnect",

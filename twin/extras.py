@@ -7,6 +7,8 @@ from twin.errors import UsageError
 PACKAGES = {
     "calibrate": ("scipy", "threadpoolctl"),
     "cluster": ("ray",),
+    "fmu": ("pythonfmu3",),
+    "gym": ("gymnasium",),
     "notebook": ("pandas",),
     "opcua": ("asyncua", "starlette", "uvicorn"),
     "serve": ("starlette", "uvicorn"),

@@ -1,4 +1,4 @@
-"""MkDocs asks here for the pages that are not written by hand: rooms, machines and the reference."""
+"""MkDocs asks here for the pages that are not written by hand: packages, machines and the reference."""
 
 import sys
 from pathlib import Path

@@ -23,7 +23,7 @@ _LEAD = (
 )
 _MORE = (
     "How it is read while it grows, from MATLAB and from pandas: "
-    "[what the verdict rests on](../rooms/compare.md#the-recording)."
+    "[what the verdict rests on](../packages/compare.md#the-recording)."
 )
 _MEANINGS = {
     "time": "end of the sample",
@@ -64,7 +64,7 @@ def python_page() -> str:
     """The functions of the package, with their shapes and units."""
     sections = [
         "# Python",
-        "The rooms of the command line as functions, with plain NumPy columns. `help(twin.run)` shows the same.",
+        "The commands as functions, with plain NumPy columns. `help(twin.run)` shows the same.",
     ]
     for name in ("interpret", "plan", "run", "sweep", "compare"):
         function = getattr(twin, name)

@@ -23,6 +23,7 @@ def page() -> str:
     return text
 
 
+@pytest.mark.seconds("a log is fitted and its page made")
 def test_it_shows_overlays_what_is_left_spectrum_and_correlations(page: str) -> None:
     # Two logs with lag, rest and spectrum each, and the correlations.
     assert page.count("<svg") == 2 * 3 + 1
@@ -35,6 +36,7 @@ def test_it_needs_no_other_file(page: str) -> None:
     assert not re.search(r"url\((?!#)", page)
 
 
+@pytest.mark.seconds("a log is fitted and its page made")
 def test_a_force_that_is_left_unexplained_is_no_green_page() -> None:
     log = logged(mill(), strokes(2.0))
     axis = log.axes["X"]

@@ -11,6 +11,7 @@ from twin.machine.description.config import read_machine
 from twin.units import kv_per_second
 
 
+@pytest.mark.seconds("circles are run at the machine")
 @pytest.mark.parametrize(("radius", "feed"), [(20.0, 3000.0), (50.0, 6000.0)])
 def test_a_circle_shrinks_as_the_loop_gains_say(tmp_path: Path, radius: float, feed: float):
     """The gain of a position loop around a velocity loop that integrates, at the circle's frequency.

@@ -34,6 +34,7 @@ def test_a_closed_pipe_ends_the_command_without_a_complaint(long_program: str):
     assert process.wait() == 141
 
 
+@pytest.mark.seconds("a process of the command runs a program")
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no device that is always full")
 def test_a_full_disk_behind_the_output_is_told_and_loses_no_file(tmp_path: Path):
     (tmp_path / "part.nc").write_text("N10 G00 X1\n", encoding="utf-8")

@@ -1,6 +1,11 @@
 """Which line of a program a difference of blocks follows from."""
 
-from twin.compare.changed_lines import changed_lines, told_by_line, without_comments
+from twin.compare.changed_lines import (
+    changed_lines,
+    changed_offsets,
+    told_by_line,
+    without_comments,
+)
 from twin.compare.verdict import Reason
 
 PROGRAM = ["O1", "G0 Z5", "G83 X0 Z-10 Q2", "X10", "X20 (the last)", "G80", "M30"]
@@ -20,6 +25,17 @@ def test_changed_new_and_lost_lines():
     assert changed_lines(STORED, [*PROGRAM[:3], "X5", *PROGRAM[3:]]) == [4]
     assert changed_lines(STORED, [*PROGRAM[:5], PROGRAM[6]]) == [6]
     assert changed_lines(STORED, PROGRAM[:-1]) == [6]
+
+
+def test_another_offset_is_told_where_nothing_else_of_its_line_has_changed():
+    stored = without_comments(["G43 H1", "G41 D1 X5", "#D1=3", "G40", "G41 D2 X5"])
+    now = ["G43 H2", "(new)", "G41 d2 X5", "#D2=3", "G40", "G41 X5"]
+    assert list(changed_offsets(stored, now)) == [
+        (1, "H2, baseline H1"),
+        (3, "d2, baseline D1"),
+        (6, "no offset, baseline D2"),
+    ]
+    assert list(changed_offsets(stored, ["G43 H1", "G41 D2 X6", "#D1=3", "G40", "G41 D2 X5"])) == []
 
 
 def test_what_a_word_of_a_cycle_changes_is_told_once_at_its_line():

@@ -59,6 +59,25 @@ def test_within_tolerance_passes_and_the_limit_itself_is_within():
         assert verdict.exit_code is ExitCode.OK
 
 
+EVERY_LIMIT = {
+    "contour_um": 12.0, "rapid_contour_um": 10.8, "corner_um": 6.0, "following_um": 150.0,
+    "following_mdeg": 30.0, "circular_deviation_um": 3.0, "cycle_time_s": 2.5,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("key", EVERY_LIMIT)
+@pytest.mark.parametrize(
+    ("more", "outcome"), [(0.0, "pass"), (4e-7, "pass"), (-4e-7, "pass"), (-2e-6, "fail")]
+)
+def test_a_value_that_is_printed_as_its_limit_holds(key: str, more: float, outcome: str):
+    """Of every figure: a value and its limit are compared as ``result.json`` has them."""
+    value = EVERY_LIMIT[key]
+    wide = {"contour_um": 1e3} | {key: value + more}
+    verdict = judge(figures(), ToleranceTable(**wide), cycle_time_s=2.5)
+    assert key in {check.what for check in verdict.checks}
+    assert verdict.outcome == outcome
+
+
 def test_a_contour_error_fails_with_value_limit_line_and_time():
     verdict = judge(figures(), ToleranceTable(contour_um=11.9))
     assert (verdict.outcome, verdict.exit_code) == ("fail", ExitCode.FAILED)

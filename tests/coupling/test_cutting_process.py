@@ -148,6 +148,7 @@ def test_a_finishing_pass_leaves_less_than_the_roughing_pass_did() -> None:
     assert abs(finishing) < 0.6 * abs(roughing)
 
 
+@pytest.mark.seconds("a cut goes on until its tool breaks")
 def test_a_broken_tool_cuts_no_more() -> None:
     machine = shipped_machine()
     weak = TOOL.model_copy(update={"force_limit": 300.0})

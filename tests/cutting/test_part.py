@@ -79,6 +79,7 @@ def test_nothing_left_gives_an_empty_mesh() -> None:
     assert len(part_mesh(height_map).faces) == 0
 
 
+@pytest.mark.seconds("a fine map is made")
 def test_fine_map_is_thinned(tmp_path: Path) -> None:
     height_map = blank(BOX, ORIGIN, 0.03)
     mesh = reloaded(height_map, tmp_path)

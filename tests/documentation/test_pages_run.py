@@ -3,6 +3,8 @@
 A block that no test runs says why in the line above it: ``<!-- not run by a test: REASON -->``.
 """
 
+import contextlib
+import io
 import os
 import re
 import subprocess
@@ -118,7 +120,9 @@ def test_a_page_does_what_it_says(desk: Path, page: str):
         elif block.language == "text" and said:
             assert shows(said, block.text), block.text + said
         elif block.language == "python":
-            exec(compile(block.text, page, "exec"), names)  # noqa: S102 (our own page)
+            with contextlib.redirect_stdout(io.StringIO()) as printed:
+                exec(compile(block.text, page, "exec"), names)  # noqa: S102 (our own page)
+            said = printed.getvalue()
     if page.endswith("python.md"):
         assert (desk / "contour_error.png").stat().st_size > 10_000
         assert {"start_X", "end_C", "corner"} <= set(names["frame"].columns)

@@ -179,8 +179,8 @@ class Program:
         return out or [Chunk(moves, tuple(self.events))]
 
 
-def limits() -> st.SearchStrategy[MotionLimits]:
-    """Machines of all tempers."""
+def limits(most_knee: float = 20.0) -> st.SearchStrategy[MotionLimits]:
+    """Machines of all tempers, that step an axis's velocity by so much at most [mm/s or deg/s]; 0: nowhere."""
 
     def per_axis(low: float, high: float) -> st.SearchStrategy[FloatArray]:
         return st.lists(st.floats(low, high), min_size=4, max_size=4).map(np.array)
@@ -192,8 +192,8 @@ def limits() -> st.SearchStrategy[MotionLimits]:
         jerk=per_axis(500.0, 1e6),
         path_acceleration=st.floats(50.0, 20000.0),
         path_jerk=st.floats(500.0, 1e6),
-        junction_velocity_step=per_axis(0.0, 20.0),
-        junction_acceleration_step=per_axis(0.0, 3000.0),
+        junction_velocity_step=per_axis(0.0, most_knee),
+        junction_acceleration_step=per_axis(0.0, 150.0 * most_knee),
         corner_tolerance=st.floats(1e-4, 1.0),
         further_corner_tolerance=st.floats(1e-4, 1.0),
     )

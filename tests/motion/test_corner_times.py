@@ -8,7 +8,8 @@ import pytest
 from motion_programs import Program, mill
 from random_programs import KINDS, UNEVEN_KINDS, random_machine, random_program
 
-from twin.files.shipped import resource_root
+from twin.files.shipped import machine_file, resource_root
+from twin.machine.description.config import read_machine
 from twin.machine.description.motion_limits import motion_limits
 from twin.motion.limits import MotionLimits
 from twin.motion.phase_planner import plan_phases
@@ -75,3 +76,59 @@ def test_more_tolerance_never_costs_time() -> None:
         seconds(square.chunks(), mill(corner_tolerance=wide), square.start) for wide in TOLERANCES
     ]
     assert all(after <= before * SLACK for before, after in itertools.pairwise(times))
+
+
+def chord_program(rng: np.random.Generator, corner: Corner) -> Program:
+    """Chords of a curve as CAM writes them, nearly straight to rough, at one feed or many."""
+    program = Program()
+    program.corner = corner
+    feed = float(np.exp(rng.uniform(np.log(300.0), np.log(10000.0))))
+    step, angle = float(rng.choice([0.02, 0.05, 0.1, 0.3, 1.0])), 0.0
+    rough, radius = np.exp(rng.uniform(np.log([1e-4, 1.0]), np.log([0.3, 300.0])))
+    changes = rng.random() < 0.3
+    for _ in range(int(rng.integers(20, 300))):
+        angle += step / radius + rng.normal() * rough
+        if changes and rng.random() < 0.1:
+            feed *= float(rng.uniform(0.5, 2.0))
+        along = np.array([np.cos(angle), np.sin(angle), 0.0, 0.0])
+        program.line(*(program.position + step * along), feed=feed)
+    return program
+
+
+def knee_machine(rng: np.random.Generator) -> MotionLimits:
+    """The shipped mill's limits, or a machine of any temper, that passes knees."""
+    if rng.random() < 0.5:
+        return motion_limits(read_machine(machine_file("mill4")))
+    return dataclasses.replace(
+        random_machine(rng),
+        junction_velocity_step=np.exp(rng.uniform(-3.0, 2.0, 4)),
+        junction_acceleration_step=np.exp(rng.uniform(3.0, 7.0, 4)),
+    )
+
+
+def never_slower(first: int, last: int) -> None:
+    """Continuous, exact path, exact stop: each takes no less time than the one before it."""
+    for seed in range(first, last):
+        times = []
+        for corner in (Corner.CONTINUOUS, Corner.EXACT_PATH, Corner.EXACT_STOP):
+            rng = np.random.default_rng(seed)
+            machine, kinds = knee_machine(rng), (*KINDS, *UNEVEN_KINDS)
+            program = (
+                chord_program(rng, corner)
+                if seed % 4 == 0
+                else random_program(rng, corner, kinds=kinds)
+            )
+            times.append(seconds(program.chunks(), machine, program.start))
+        assert times[0] <= times[1] * SLACK, seed
+        assert times[1] <= times[2] * SLACK, seed
+
+
+@pytest.mark.seconds("40 programs are planned in three ways")
+def test_each_freer_way_through_corners_is_no_slower() -> None:
+    never_slower(7000, 7040)
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("first", range(0, 1000, BATCH))
+def test_each_freer_way_is_no_slower_in_many_programs(first: int) -> None:
+    never_slower(first, first + BATCH)

@@ -1,10 +1,11 @@
 """What is assumed for a raw program: its dialect, its stock and zero, its tools."""
 
+import contextlib
 from pathlib import Path
 
 import pytest
 
-from twin.errors import ConfigError, EmptyProgramError, UsageError
+from twin.errors import ConfigError, EmptyProgramError, TwinError, UsageError
 from twin.nc.text.diagnostics import ProgramError
 from twin.run.assumed_job import AssumedJob, text_beside, with_assumptions
 from twin.run.preparation import Preparation, prepare
@@ -84,6 +85,12 @@ def test_pecks_that_withdraw_differently_ask_nobody(tmp_path: Path) -> None:
         "in line 4 they withdraw pecks differently, fanuc to Z-0.5 and linuxcnc"
         in made.dialect_reason
     )
+
+
+def test_where_a_control_goes_by_itself_for_another_tool_asks_nobody(tmp_path: Path) -> None:
+    path = tmp_path / "part.nc"
+    path.write_text(CONTOUR.replace("N70 G53 G0 Z0.\n", "").replace("N65 G0 Z15.\n", ""))
+    assert prepare(path).dialect_reason == "fanuc, haas and linuxcnc make the same moves of it"
 
 
 def test_a_control_that_would_hardly_feed_was_not_meant(tmp_path: Path) -> None:
@@ -363,3 +370,16 @@ def test_klartext_declares_a_cylinder(tmp_path: Path) -> None:
         "height": 25,
         "position": [0.0, 0.0, 2.0],
     }
+
+
+@pytest.mark.parametrize(
+    "damage",
+    ["X" + "9" * 6000, "(T" + "9" * 6000 + " DRILL)", "(T1 D=1e999 - DRILL)", "(1/0 DRILL)", "(STOCK X0 Y0 Z0)", "M9999 T99999999", "\0G57"],
+)  # fmt: skip
+def test_damaged_text_is_refused_or_read_and_never_ends_in_a_traceback(
+    damage: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "part.nc"
+    path.write_text(CONTOUR.replace("N30", f"{damage}\nN30"))
+    with contextlib.suppress(TwinError):
+        with_assumptions(prepare(path, assuming=True), machine=None, strict=False)

@@ -68,6 +68,7 @@ def test_a_load_on_the_axes_without_a_force_is_refused(tmp_path: Path) -> None:
 DRILLING = "N10 G90 G0 X0 Y0 Z5\nN20 M3 S5000\nN30 G1 Z-8 F300\nN50 G0 Z5\nN60 M30\n"
 
 
+@pytest.mark.seconds("a job is run with its forces")
 def test_a_job_gives_constants_of_its_own(tmp_path: Path) -> None:
     own = "specific_force = 1200.0\nexponent = 0.2\n"
     twin.run(job(tmp_path, "", own), out=tmp_path / "own")

@@ -157,3 +157,21 @@ def test_strict_makes_them_failures(tmp_path: Path) -> None:
     program, parts, code, line = SLIPS["no G43"]
     with pytest.raises(ProgramError, match=code):
         run(tmp_path, program, parts, strict=True)
+
+
+def test_an_alarm_judges_nothing_that_never_ran(tmp_path: Path) -> None:
+    """Corners, arcs and rapids behind it are not there, and a tolerance on them is no failure."""
+    behind = (
+        "".join(f"G1 X{20 - k}. Y{k % 2}. F600.\n" for k in range(37))
+        + "G2 I5. J0.\nG0 Z20.\nM30\n"
+    )
+    asked = "[tolerance]\ncontour_um = 50.0\ncorner_um = 100.0\ncircular_deviation_um = 5.0"
+    stop = "G0 X-30. Y0.\nG0 Z-2.\nG0 X30.\n"
+    outcome = run(tmp_path, HEAD + stop + behind, {"more": asked})
+    assert codes(outcome) == {"rapid-into-stock": 6}
+    assert outcome.verdict.outcome == "alarm"
+    assert outcome.figures.corners.line <= 5
+    assert outcome.figures.corners.count <= 2
+    assert outcome.figures.arcs == ()
+    assert max(outcome.figures.blocks.line) <= 6
+    assert any(each.what == "all behind line 6" for each in outcome.scope.not_watched)

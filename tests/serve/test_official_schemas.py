@@ -12,8 +12,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from bad_days.agent_attacks import serving
 
+from tests.serve.agent_attacks import serving
 from tests.serve.schema_check import Schemas
 from twin.files.shipped import resource_root
 

@@ -132,6 +132,7 @@ def test_busy_clients_do_not_hold_the_machine_up(
     assert clock.wound_s - agent.observed_s < 2.0
 
 
+@pytest.mark.seconds("a process of the command runs a program")
 def test_the_command_prints_its_address_and_ends_on_request(tmp_path: Path):
     program = tmp_path / "part.nc"
     program.write_text(PROGRAM, encoding="utf-8")

@@ -64,6 +64,7 @@ def any_move(draw: st.DrawFn) -> Moves:
     return moves_of(arc(start, center, normal, sweep, lead=lead, turn=turn))
 
 
+@pytest.mark.seconds("every point of a path is tried")
 @settings(max_examples=examples(60), derandomize=True, deadline=None)
 @given(any_move(), point3, fractions, st.floats(0, 1))
 def test_nearest_point_agrees_with_brute_force(

@@ -54,6 +54,7 @@ def columns(content: bytes) -> np.ndarray:
     return np.frombuffer(content[8:], "<f4").reshape(9 + axes, count)
 
 
+@pytest.mark.seconds("a program is run to be viewed")
 def test_the_samples_are_those_of_the_recording(recorded):
     run, scene = recorded
     found = columns(run.samples())

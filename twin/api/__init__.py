@@ -16,6 +16,7 @@ from twin.api.functions import interpret, plan, run, setpoints
 from twin.api.machine import Machine
 from twin.api.program import Program
 from twin.api.result import Result
+from twin.api.session import Session
 from twin.api.variations import sweep
 from twin.compare.track_comparison import compare_files as compare
 from twin.job.job_file import JobFile as Job
@@ -28,6 +29,7 @@ __all__ = [
     "Machine",
     "Program",
     "Result",
+    "Session",
     "Stock",
     "Tolerance",
     "Tool",

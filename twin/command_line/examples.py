@@ -25,7 +25,10 @@ EXAMPLES = {
     ),
     "compare": ("twin compare out/part/recording.h5 log.csv --tolerance 0.05",),
     "calibrate": ("twin calibrate log.csv --base mill4 --out mine.toml",),
-    "export": ("twin export out/part/recording.h5 --every 10",),
+    "export": (
+        "twin export out/part/recording.h5 --every 10",
+        "twin export --fmu mill4 --out mill4.fmu",
+    ),
     "train": (
         "twin train --list",
         "twin train mefi_helix_hold",
@@ -39,6 +42,7 @@ EXAMPLES = {
         "twin serve part.toml",
         "twin serve part.toml --port 5001 --speed 10",
         "twin serve --scene fagor_first_steps",
+        "twin serve part.toml --grbl 2323",
     ),
     "machine list": ("twin machine list", "twin machine list --format json"),
     "machine show": ("twin machine show mill4 --feed 3000", "twin machine show ./my_machine.toml"),

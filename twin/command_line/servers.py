@@ -124,6 +124,14 @@ def serve(
         Path | None,
         typer.Option("--opcua-trust", metavar="DIR", help="Certificates of OPC UA's clients."),
     ] = None,
+    grbl: Annotated[
+        str | None,
+        typer.Option(
+            "--grbl",
+            metavar="PORT|pty",
+            help="Take programs from Grbl's senders, at the job's machine.",
+        ),
+    ] = None,
     dialect: DialectOption = None,
     machine: MachineOption = None,
 ) -> None:
@@ -132,8 +140,12 @@ def serve(
 
     source = agent.Source(
         host=host, port=port, speed=speed, buffer=buffer, dialect=dialect, machine=machine,
-        opcua_port=opcua, opcua_trust=opcua_trust,
+        opcua_port=opcua, opcua_trust=opcua_trust, grbl=grbl,
     )  # fmt: skip
+    if grbl is not None:
+        if scene is not None or dialect is not None:
+            raise UsageError("--grbl drives the machine of a job, in Grbl's own dialect")
+        raise typer.Exit(agent.serve_grbl(job, source))
     if (job is None) == (scene is None):
         raise UsageError("give a program or a job, or --scene and a training scene")
     if scene is not None:

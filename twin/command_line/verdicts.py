@@ -16,6 +16,7 @@ from twin.command_line.options import (
     StrictOption,
     json_file_of,
 )
+from twin.errors import UsageError
 
 
 def check(
@@ -127,11 +128,22 @@ def compare(
 
 
 def export(
-    recording: Annotated[Path, typer.Argument(help="recording.h5", show_default=False)],
+    recording: Annotated[
+        Path | None, typer.Argument(help="recording.h5", show_default=False)
+    ] = None,
     out: Annotated[Path | None, typer.Option("--out", help="Default: beside it, .csv.")] = None,
     every: Annotated[int, typer.Option("--every", help="Write one of so many samples.")] = 1,
+    fmu: Annotated[
+        str | None,
+        typer.Option("--fmu", metavar="MACHINE", help="A unit for co-simulation (FMI 3) instead."),
+    ] = None,
 ) -> None:
-    """Write a recording as CSV, units in the header."""
-    from twin.commands.export import export_and_print
+    """Write a recording as CSV, units in the header; or a machine for other simulators."""
+    from twin.commands.export import export_and_print, export_unit
 
+    if (recording is None) == (fmu is None):
+        raise UsageError("give a recording.h5, or --fmu and a machine")
+    if fmu is not None:
+        raise typer.Exit(export_unit(fmu, out))
+    assert recording is not None
     raise typer.Exit(export_and_print(recording, out, every=every))

@@ -1,10 +1,11 @@
-"""``twin export``: a recording as CSV."""
+"""``twin export``: a recording as CSV, a machine as a unit for co-simulation."""
 
 from pathlib import Path
 
 import typer
 
 from twin.errors import ExitCode, UsageError
+from twin.extras import require_extra
 from twin.recording.export import export_csv
 from twin.recording.reader import open_recording
 
@@ -29,4 +30,27 @@ def export_and_print(recording: Path, out: Path | None, *, every: int = 1) -> Ex
     with open_recording(recording) as opened:
         rows = export_csv(opened, path, every=every)
     typer.echo(f"{rows} rows in {path}")
+    return ExitCode.OK
+
+
+def export_unit(machine: str, out: Path | None) -> ExitCode:
+    """Write a machine as a unit for co-simulation (FMI 3).
+
+    Args:
+        machine: A shipped machine's name, or its file.
+        out: The file to be; by default the machine's name in the working folder.
+
+    Raises:
+        UsageError: The extra is missing, there is no such machine, or the file cannot be written.
+        ConfigError: The machine is wrong.
+    """
+    require_extra("fmu", "twin export --fmu")
+    from twin.fmu.build import build_unit
+
+    path = out or Path(f"{Path(machine).stem}.fmu")
+    try:
+        build_unit(machine, path)
+    except OSError as error:
+        raise UsageError(f"{path}: cannot be written: {error.strerror}") from error
+    typer.echo(f"{path}: FMI 3, co-simulation; steps of one servo period")
     return ExitCode.OK

@@ -4,12 +4,12 @@ from pathlib import Path
 
 import typer
 
-from twin.commands.run import read_as, reading_line
 from twin.errors import ExitCode, UsageError
 from twin.files.atomic import write_text
 from twin.nc.text.diagnostics import ProgramError
 from twin.run.assumed_job import assumed_job
 from twin.run.preparation import prepare
+from twin.run.raw_program import read_as, told_of_reading
 
 
 def init_and_print(
@@ -38,9 +38,7 @@ def init_and_print(
     except ProgramError as error:
         raise read_as(error, preparation) from None
     write_text(path, assumed.text)
-    if preparation.dialect_reason:
-        typer.echo(reading_line(preparation), err=True)
-    for line in assumed.assumptions:
-        typer.echo(f"assumed: {line}", err=True)
+    for line in told_of_reading(preparation, assumed.assumptions):
+        typer.echo(line, err=True)
     typer.echo(f"{path}: check the stock and the tools, then: twin run {path}")
     return ExitCode.OK

@@ -5,7 +5,9 @@ from pathlib import Path
 
 from twin.errors import UsageError
 from twin.nc.jsonl import json_lines, text_lines
+from twin.nc.text.diagnostics import ProgramError
 from twin.run.preparation import prepare
+from twin.run.raw_program import read_as, told_of_reading
 
 FORMATS = {"text": text_lines, "jsonl": json_lines}
 
@@ -22,12 +24,14 @@ def print_interpretation(
     if form not in FORMATS:
         raise UsageError(f"no format '{form}': known formats are {', '.join(FORMATS)}")
     preparation = prepare(program, dialect=dialect, machine=machine, strict=strict, assuming=True)
-    for line in preparation.reading.told:
-        sys.stderr.write(f"assumed: {line}\n")
+    for told in told_of_reading(preparation, preparation.reading.told):
+        sys.stderr.write(f"{told}\n")
     interpretation = preparation.interpretation()
     try:
         for line in FORMATS[form](interpretation):
             sys.stdout.write(f"{line}\n")
+    except ProgramError as error:
+        raise read_as(error, preparation) from None
     finally:
         sys.stdout.flush()
         for warning in interpretation.diagnostics:

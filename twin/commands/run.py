@@ -1,6 +1,5 @@
 """``twin run``: the whole chain into a folder, and the verdict for a person."""
 
-import dataclasses
 from pathlib import Path
 
 import typer
@@ -17,6 +16,7 @@ from twin.run.messages import alarm_diagnostic, near_miss_diagnostic, reason_tex
 from twin.run.outcome import Outcome
 from twin.run.preparation import Preparation, prepare
 from twin.run.progress import shown_progress
+from twin.run.raw_program import read_as, told_of_reading
 from twin.run.results import RESULT_FILES, write_results
 from twin.run.run import Run
 from twin.run.run_folder import program_stem, run_folder, without_verdict
@@ -83,31 +83,14 @@ def _assumed(
         made, assumed = with_assumptions(preparation, machine=machine, strict=strict)
     except ProgramError as error:
         raise read_as(error, preparation) from None
-    if made.dialect_reason:
-        typer.echo(reading_line(made), err=True)
-    for line in assumed.assumptions:
-        typer.echo(f"assumed: {line}", err=True)
+    for line in told_of_reading(made, assumed.assumptions):
+        typer.echo(line, err=True)
     if save_job is None:
         typer.echo("to keep and correct this: --save-job FILE", err=True)
     else:
         write_text(save_job, text_beside(save_job, assumed, preparation.job.program))
         typer.echo(f"the job is kept in {save_job}", err=True)
     return made
-
-
-def reading_line(preparation: Preparation) -> str:
-    """In which dialect a raw program was read that nobody named, and why."""
-    return f"read as {preparation.dialect.name}: {preparation.dialect_reason}"
-
-
-def read_as(error: ProgramError, preparation: Preparation) -> ProgramError:
-    """An error of a raw program, with the dialect that it was read in where nobody named one."""
-    if not preparation.dialect_reason:
-        return error
-    finding = error.diagnostic
-    said = f"{reading_line(preparation)}; another control: --dialect NAME"
-    hint = f"{finding.hint}; {said}" if finding.hint else said
-    return ProgramError(dataclasses.replace(finding, hint=hint))
 
 
 def _draw_contact(run: Run, dry_run: DryRun, folder: Path) -> None:

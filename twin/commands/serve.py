@@ -1,4 +1,4 @@
-"""``twin serve``: an MTConnect agent over a job that is run again and again, or a training room."""
+"""``twin serve``: MTConnect over a job that is run again and again, over a training room, or over a machine for Grbl's senders."""
 
 import asyncio
 import contextlib
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from twin.machine.description.config import Machine
     from twin.serve.agent import Agent
     from twin.serve.playback import Production
+    from twin.training.scene.scene_file import Scene
 
 FIRST_PORT, LAST_PORT = 5000, 5099
 """Where a free port is looked for when none is named; 5000 is what MTConnect agents use."""
@@ -45,6 +46,7 @@ class Source:
         machine: Overrides the job's machine.
         opcua_port: Where OPC UA is told beside MTConnect; None: nowhere.
         opcua_trust: Folder of the certificates of OPC UA's clients.
+        grbl: Port at which a machine takes programs from Grbl's senders, or ``pty``; None: it takes none.
     """
 
     host: str
@@ -55,6 +57,7 @@ class Source:
     machine: str | None = None
     opcua_port: int | None = None
     opcua_trust: Path | None = None
+    grbl: str | None = None
 
 
 def serve_job(path: Path, source: Source) -> ExitCode:
@@ -113,43 +116,120 @@ def serve_scene(name: str, source: Source) -> ExitCode:
         raise UsageError("--speed is for jobs: the clock of a training room is the day's")
     require_extra("train", "twin serve --scene")
     _check_opcua(source)
-    from twin.serve.agent import Agent
-    from twin.serve.clock import Clock
-    from twin.serve.device import device_of
-    from twin.serve.room import RoomObserver, observe_room
     from twin.training.scene.scene_file import read_scene, scene_path
-    from twin.training.server.launch import open_room
 
     with _listen(source.host, source.port) as listener:
         announce_compilation()
         scene = read_scene(scene_path(name))
-        machine = scene.preparation.machine
-        device = device_of(machine.file.name, machine.axes)
         description = f"The machine of the training scene {scene.name}"
-        agent = Agent(device, Clock(), description, source.buffer)
-        observer = RoomObserver(scene.preparation.source.name)
-        with open_room(scene, out=Path("out") / "training", promptly=True) as room:
-            stop = threading.Event()
-
-            def leave() -> None:
-                stop.set()
-                room.stop()
-
-            def observe() -> Coroutine[Any, Any, None]:
-                seen = observe_room(agent, observer, lambda: room.driver.look.now)
-                program = scene.preparation.source.name
-                tools = _tools(scene.preparation.job.file)
-                return _with_opcua(seen, agent, source, (machine, program, tools))
-
-            with (
-                _served(agent, observe, listener, stop, room.stop),
-                let_interruption_stop(leave),
-            ):
-                typer.echo(_address(listener))
-                for role, address in room.addresses.items():
-                    typer.echo(f"{scene.name}, {role}: {address}", err=True)
-                room.serve()
+        _serve_room(scene, source, listener, description)
     return ExitCode.OK
+
+
+def serve_grbl(job: Path | None, source: Source) -> ExitCode:
+    """Let Grbl's senders stream programs to the machine of a job, and tell monitors of it.
+
+    Args:
+        job: NC program or job file: machine, blank, tool; none: of the shipped one.
+        source: Where, and how fast.
+
+    Raises:
+        UsageError: The web server is not installed, or nobody can or may listen there.
+        TwinError: The job is wrong.
+    """
+    from twin.files.shipped import resource_root
+    from twin.training.scene.scene_file import scene_of_job
+
+    require_extra("train", "twin serve --grbl")
+    _check_opcua(source)
+    with _listen(source.host, source.port) as listener, _grbl_line(source) as line:
+        announce_compilation()
+        prepared = prepare(
+            job or resource_root("programs") / "grbl" / "box_lid.toml",
+            dialect="grbl",
+            machine=source.machine,
+        )
+        scene = scene_of_job("grbl", prepared)
+        description = f"A simulated machine that senders of Grbl drive{_faster(source.speed)}"
+        _serve_room(scene, source, listener, description, line)
+    return ExitCode.OK
+
+
+@contextlib.contextmanager
+def _grbl_line(source: Source) -> "Iterator[socket.socket | int]":
+    """Where senders come in: a socket, or the twin's end of a pseudo-terminal.
+
+    Raises:
+        UsageError: Nobody can or may listen there.
+    """
+    from twin.serve.grbl.server import PSEUDO_TERMINAL, pseudo_terminal
+    from twin.web.guard import LOCAL_NAMES
+
+    if source.grbl == PSEUDO_TERMINAL:
+        with pseudo_terminal() as (master, path):
+            typer.echo(f"Grbl's senders open {path}")
+            yield master
+        return
+    if source.host not in LOCAL_NAMES:
+        raise UsageError(
+            f"Grbl's protocol knows no passwords: --grbl listens at this computer alone, not at {source.host}"
+        )
+    if source.grbl is None or not source.grbl.isdecimal() or not 0 < int(source.grbl) < 1 << 16:
+        raise UsageError(f"--grbl {source.grbl}: give a port from 1 to 65535, or {PSEUDO_TERMINAL}")
+    with _listen(source.host, int(source.grbl)) as listener:
+        typer.echo(
+            f"Grbl's senders connect to {_address(listener).removeprefix('http://').rstrip('/')}"
+        )
+        yield listener
+
+
+def _serve_room(
+    scene: "Scene", source: Source, listener: socket.socket, description: str,
+    line: "socket.socket | int | None" = None,
+) -> None:  # fmt: skip
+    """Open a room, tell monitors of its machine, and let senders drive it where there is a line for them."""
+    from twin.serve.agent import Agent
+    from twin.serve.clock import Clock
+    from twin.serve.device import device_of
+    from twin.serve.grbl.server import GrblLine
+    from twin.serve.room import RoomObserver, observe_room
+    from twin.training.server.launch import open_room
+
+    machine = scene.preparation.machine
+    device = device_of(machine.file.name, machine.axes)
+    agent = Agent(device, Clock(source.speed), description, source.buffer)
+    observer = RoomObserver(scene.preparation.source.name)
+    out = Path("out") / "training" if line is None else None
+    with open_room(scene, out=out, promptly=True) as room:
+        room.driver.speed = source.speed
+        stop = threading.Event()
+
+        def leave() -> None:
+            stop.set()
+            room.stop()
+
+        def observe() -> Coroutine[Any, Any, None]:
+            seen = observe_room(agent, observer, lambda: room.driver.look.now)
+            program = scene.preparation.source.name
+            tools = _tools(scene.preparation.job.file)
+            told = _with_opcua(seen, agent, source, (machine, program, tools))
+            return told if line is None else _beside(GrblLine(room.driver).serve(line), told)
+
+        with (
+            _served(agent, observe, listener, stop, room.stop),
+            let_interruption_stop(leave),
+        ):
+            typer.echo(_address(listener))
+            for role, address in room.addresses.items():
+                typer.echo(f"{scene.name}, {role}: {address}", err=True)
+            room.serve()
+
+
+async def _beside(*tasks: Coroutine[Any, Any, None]) -> None:
+    """Run tasks until one fails or all are cancelled."""
+    async with asyncio.TaskGroup() as group:
+        for task in tasks:
+            group.create_task(task)
 
 
 def _tools(job: "JobFile") -> dict[int, str]:
@@ -190,9 +270,7 @@ async def _with_opcua(
     from twin.serve.opcua.server import Content, Place, mirror
 
     place = Place(source.host, source.opcua_port, source.opcua_trust)
-    async with asyncio.TaskGroup() as group:
-        group.create_task(mirror(agent, place, Content(*named), _say))
-        group.create_task(observe)
+    await _beside(mirror(agent, place, Content(*named), _say), observe)
 
 
 def _produce(run: Run, folder: Path) -> "Production":
@@ -270,8 +348,11 @@ def _served(
 
 
 def _description(speed: float) -> str:
-    faster = "" if speed == 1.0 else f"; its clock runs {speed:g} times as fast as the day"
-    return f"A simulated machine that runs one job again and again{faster}"
+    return f"A simulated machine that runs one job again and again{_faster(speed)}"
+
+
+def _faster(speed: float) -> str:
+    return "" if speed == 1.0 else f"; its clock runs {speed:g} times as fast as the day"
 
 
 def _address(listener: socket.socket) -> str:

@@ -23,7 +23,12 @@ from twin.compare.baseline_text import (
     write,
 )
 from twin.compare.block_difference import block_differences, same_end
-from twin.compare.changed_lines import changed_lines, told_by_line, without_comments
+from twin.compare.changed_lines import (
+    changed_lines,
+    changed_offsets,
+    told_by_line,
+    without_comments,
+)
 from twin.compare.verdict import Reason
 from twin.errors import UsageError
 from twin.files.atomic import complete_or_absent
@@ -110,11 +115,22 @@ def compare_baseline(
                 pairs = _Pairs(read_entries(lines, head.axes), entries(chunks), limits)
                 changed = changed_lines(head.source, source) if head.source else []
                 found = _program_reasons(pairs, head.axes, limits)
-                reasons += _first_of(told_by_line(found, changed))
+                told = list(told_by_line(found, changed))
+                known = {reason.line for reason in told}
+                told += [
+                    each for each in _offset_reasons(head.source, source) if each.line not in known
+                ]
+                reasons += _first_of(iter(told))
     except (ValueError, IndexError, TypeError) as error:
         message = f"{path}: is not a baseline of this twin: {error}; --update-baseline stores one"
         raise UsageError(message) from error
     return reasons + ([] if figures is None else _figure_reasons(head.figures, figures, limits))
+
+
+def _offset_reasons(stored: Sequence[str], now: Sequence[str]) -> Iterator[Reason]:
+    """Other offsets, where nothing moves differently for them."""
+    for line, message in changed_offsets(stored, now) if stored else ():
+        yield Reason("baseline-function", message, line, 0.0)
 
 
 def _settings_reasons(stored: Mapping[str, str], now: Mapping[str, str]) -> list[Reason]:

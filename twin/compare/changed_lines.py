@@ -9,6 +9,9 @@ from twin.compare.verdict import Reason
 _COMMENT = re.compile(r"\([^()]*\)|;.*")
 """What most controls read as a comment; a line that differs in nothing else has not changed."""
 
+_OFFSET = re.compile(r"(?<![A-Z#&%@_])[DH] ?\d+", re.IGNORECASE)
+"""The number of an offset of a tool's radius or length."""
+
 
 def without_comments(lines: Iterable[str]) -> list[str]:
     """The lines of a program as they are compared: without comments, blanks once; empty ones stay."""
@@ -32,6 +35,27 @@ def changed_lines(before: Sequence[str], now: Sequence[str]) -> list[int]:
         elif what != "equal":
             found.update(numbers[begin:end])
     return sorted(found)
+
+
+def changed_offsets(before: Sequence[str], now: Sequence[str]) -> Iterator[tuple[int, str]]:
+    """Lines that differ in a word D or H alone, with what was said and what is said now.
+
+    Another offset with the same value moves nothing differently today, and does on the machine tomorrow.
+
+    Args:
+        before: As in ``changed_lines``.
+        now: As in ``changed_lines``.
+    """
+    numbered = [(n, line) for n, line in enumerate(without_comments(now), 1) if line]
+    texts = [line for _, line in numbered]
+    matcher = difflib.SequenceMatcher(None, before, texts, autojunk=False)
+    for what, first, last, begin, end in matcher.get_opcodes():
+        if what != "replace" or last - first != end - begin:
+            continue
+        for there, (line, here) in zip(before[first:last], numbered[begin:end], strict=True):
+            if _OFFSET.sub(" ", there).split() == _OFFSET.sub(" ", here).split():
+                said, says = (" ".join(_OFFSET.findall(each)) for each in (there, here))
+                yield line, f"{says or 'no offset'}, baseline {said or 'no offset'}"
 
 
 def told_by_line(reasons: Iterable[Reason], changed: Sequence[int]) -> Iterator[Reason]:

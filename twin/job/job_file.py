@@ -384,8 +384,8 @@ class Job:
 
     Attributes:
         folder: What relative paths in it are relative to.
-        file: Its checked content; the files of an STL stock and of a nominal part are whole
-            paths.
+        file: Its checked content; the files of an STL stock, of a nominal part and of fixtures are
+            whole paths.
         program: The NC program.
         path: The job file; None where a program has none.
         tolerances_from: Which file sets each tolerance, ``default`` where none does, by its key.
@@ -406,6 +406,9 @@ class Job:
             whole = str((folder / file.nominal.file).absolute())
             nominal = file.nominal.model_copy(update={"file": whole})
             file = file.model_copy(update={"nominal": nominal})
+        if file.fixtures:
+            fixtures = tuple(fixture.in_folder(folder) for fixture in file.fixtures)
+            file = file.model_copy(update={"fixtures": fixtures})
         self.folder = folder
         self.file = file
         self.program = folder / file.program

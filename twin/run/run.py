@@ -24,7 +24,7 @@ from twin.cutting.program_summary import ProgramSummary
 from twin.errors import ConfigError
 from twin.job.job_file import ToleranceTable
 from twin.machine.description.motion_limits import motion_limits
-from twin.machine.model.clamping import refuse_overlaps
+from twin.machine.model.clamping import refuse_overlaps, what_carries
 from twin.machine.model.model import build_spec, spindle_over_table_mm
 from twin.machine.simulation.growth import Growth
 from twin.machine.simulation.simulate import Simulation, simulate
@@ -257,6 +257,9 @@ class Run:
         elif watch.spindle_line and watch.first_feed:
             message = "the spindle turns, and the job has no [stock]: nothing that is cut is judged"
             yield Notice("no-stock", watch.spindle_line, message)
+        floats = what_carries(self.machine, self.spec)
+        if floats is not None:
+            yield Notice("stock-floats", 0, f"nothing carries the stock: {floats}")
         yield from tolerance_notices(job.tolerance, len(self.preparation.source.lines))
         if self._process is None:
             yield from tooth_feed_notices(watch, cut)

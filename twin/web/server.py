@@ -31,8 +31,8 @@ LINE_S = 30.0
 """Longest that a line lasts which is no stream."""
 MOST_WAITING = 64
 """Lines that may be open without having said what they want; of more the oldest is hung up."""
-LONGEST_MESSAGE = 16384
-"""Of a page [bytes]."""
+LONGEST_MESSAGE = 262_144
+"""Of a page [bytes]: a program of 60,000 letters."""
 
 
 class BoundedProtocol(H11Protocol):

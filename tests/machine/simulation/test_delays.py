@@ -51,6 +51,7 @@ def response(axis: AxisTable, moved: float, rate: float) -> complex:
     return complex(filtered * late * told / (moved * s**2 + late * back))
 
 
+@pytest.mark.seconds("circles are run at the machine")
 @pytest.mark.parametrize(
     ("changes", "within_um"),
     [

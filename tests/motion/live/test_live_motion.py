@@ -99,13 +99,18 @@ def test_any_operator_keeps_path_and_limits(
 
 
 @SETTINGS
-@given(programs(most=8, corners=(Corner.CONTINUOUS,)), limits(), BUTTONS)
+@given(
+    programs(most=8, corners=(Corner.CONTINUOUS,)),
+    st.one_of(limits(), limits(most_knee=0.0)),
+    BUTTONS,
+)
 def test_any_operator_keeps_the_limits_of_a_continuous_path(
     program: Program, machine: MotionLimits, buttons: list[tuple[int, str, float]]
 ) -> None:
+    knees = bool(np.any(machine.junction_velocity_step))
     setpoints = operate(live(program, machine), buttons)
-    assert_within_limits(setpoints, machine, PERIOD)
-    assert_consistent(setpoints, machine, PERIOD)
+    assert_within_limits(setpoints, machine, PERIOD, knees=knees)
+    assert_consistent(setpoints, machine, PERIOD, knees=knees)
     assert np.array_equal(setpoints.position[-1], program.position + ZERO)
 
 

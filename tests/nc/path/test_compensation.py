@@ -20,6 +20,7 @@ def away_from(path: FloatArray, contour: FloatArray) -> FloatArray:
     return np.linalg.norm(path[:, None, :2] - contour[None, :, :2], axis=2).min(axis=1)
 
 
+@pytest.mark.seconds("every polygon is offset and measured")
 @settings(max_examples=40, derandomize=True, deadline=None)
 @given(
     corners=st.integers(3, 9),

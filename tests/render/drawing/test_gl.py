@@ -10,6 +10,7 @@ from twin.render.drawing import gl
 from twin.render.drawing.gl import Probe
 
 
+@pytest.mark.seconds("processes try each kind of OpenGL")
 def test_doctor_finds_opengl_and_encoder() -> None:
     facts = doctor.render_facts()
     assert facts.ready

@@ -45,6 +45,7 @@ def projected(play: Stage, camera: str, point: FloatArray) -> tuple[float, float
     return SIZE[0] / 2 - focal * seen[0] / seen[2], SIZE[1] / 2 + focal * seen[1] / seen[2]
 
 
+@pytest.mark.seconds("a stage is built and drawn")
 @pytest.mark.parametrize("line", [2, 3, 4])
 def test_tool_tip_is_where_the_recording_says(scene: Scene, line: int) -> None:
     with stage(scene, SIZE, DRAFT) as play:

@@ -97,6 +97,7 @@ def test_every_alarm_of_a_scenes_scripts_is_translated(name):
                 assert (translated(message, language) == message) == (language == "en"), message
 
 
+@pytest.mark.seconds("scripts are played")
 def test_a_script_that_ends_otherwise_is_told(tmp_path):
     shipped = scene_path("fagor_full_circle")
     text = shipped.read_text(encoding="utf-8").replace(

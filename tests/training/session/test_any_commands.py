@@ -94,6 +94,7 @@ def live(session: Session, what: dict[str, Any], slices: int, who: Any) -> None:
     assert room.alarm is None or room.alarm.code != "internal"
 
 
+@pytest.mark.seconds("hundreds of commands at a running machine")
 @given(STEPS)
 @settings(max_examples=examples(12), derandomize=True, deadline=None, phases=[Phase.generate])
 def test_random_commands_never_end_the_room_and_leave_no_trace_where_they_are_refused(steps):
@@ -103,6 +104,7 @@ def test_random_commands_never_end_the_room_and_leave_no_trace_where_they_are_re
     recover(session)
 
 
+@pytest.mark.seconds("hundreds of commands at a running machine")
 @pytest.mark.parametrize("seed", range(3))
 def test_after_a_long_quarrel_with_its_panel_the_machine_can_be_started_again(seed):
     session, chance = Session(scene()), random.Random(seed)  # noqa: S311 (no cryptography)

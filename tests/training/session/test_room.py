@@ -198,6 +198,7 @@ def test_a_lost_offset_shows_and_the_machine_is_repaired(session):
     assert session.room.machine.machine.axis("X").backlash == 0.0
 
 
+@pytest.mark.seconds("a session is lived twice")
 def test_living_it_again_is_the_same_to_the_last_bit(session):
     do(session, "cycle_start")
     session.advance(120)
@@ -255,6 +256,7 @@ ANYTHING = st.recursive(
 NAMES = st.sampled_from(["jog", "mode", "edit", "override", "set_tool", "inject", "answer", "nope"])
 
 
+@pytest.mark.seconds("hundreds of commands at a running machine")
 @given(ANYTHING | st.dictionaries(st.sampled_from(["do", "axis", "step", "mode", "line", "fault"]), ANYTHING | NAMES))  # fmt: skip
 @settings(max_examples=examples(200), derandomize=True, deadline=None)
 def test_malformed_commands_are_refused_in_words(data):

@@ -338,8 +338,9 @@ class Machine:
     """
 
     def __init__(self, path: Path, file: MachineFile, blank: Blank | None = None) -> None:
+        fixtures = tuple(fixture.in_folder(path.parent) for fixture in file.fixtures)
         self.path = path
-        self.file = file
+        self.file = file.model_copy(update={"fixtures": fixtures}) if fixtures else file
         self.blank = blank
         self.axes = file.ordered_axes()
         turning = None if file.table is None else file.table.axis

@@ -9,6 +9,7 @@ from twin.machine.description.config import Blank, Machine
 from twin.machine.description.measured_mass import set_measured_masses
 from twin.machine.model.drive_actuators import add_drives
 from twin.machine.model.drives import Drive, tune
+from twin.machine.model.fixture_shape import add_fixture
 from twin.machine.model.tool_shape import (
     CLAMPED_SIDE,
     COLLISION_GROUP,
@@ -131,32 +132,13 @@ def _require_actuators(spec: mujoco.MjSpec, machine: Machine) -> None:
 
 
 def _add_fixtures(spec: mujoco.MjSpec, machine: Machine) -> None:
-    top = spec.site(TABLE_TOP)
     taken = [geom.name for geom in spec.geoms]
     for fixture in machine.file.fixtures:
         if fixture.name in taken:
             raise ConfigError(
                 f"{machine.path}: fixture '{fixture.name}' has the name of a part of the machine"
             )
-        half = np.array(fixture.extent) / 2 * MM
-        center = top.pos + np.array(fixture.position) * MM + [0.0, 0.0, half[2]]
-        is_box = fixture.size is not None
-        for name, group, material in (
-            (fixture.name, COLLISION_GROUP, ""),
-            (f"{fixture.name} seen", VISUAL_GROUP, "steel"),
-        ):
-            collides = group == COLLISION_GROUP
-            top.parent.add_geom(
-                name=name,
-                type=mujoco.mjtGeom.mjGEOM_BOX if is_box else mujoco.mjtGeom.mjGEOM_CYLINDER,
-                size=list(half) if is_box else [half[0], half[2], 0.0],
-                pos=list(center),
-                material=material,
-                group=group,
-                contype=PART_SIDE | CLAMPED_SIDE if collides else 0,
-                conaffinity=TOOL_SIDE | FRAME_SIDE if collides else 0,
-                mass=0.0,
-            )
+        add_fixture(spec, spec.site(TABLE_TOP), fixture)
         _add_weight(spec, fixture.weight.moved(fixture.position))
 
 

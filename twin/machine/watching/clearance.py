@@ -25,6 +25,7 @@ import mujoco
 import numpy as np
 
 from twin.machine.description.config import Machine
+from twin.machine.model.fixture_shape import fixture_of
 from twin.machine.model.tool_shape import (
     COLLISION_GROUP,
     CUTTER,
@@ -314,7 +315,7 @@ class Clearance:
         )
 
     def _names(self, pair: int) -> tuple[str, str]:
-        one, two = (self._model.geom(geom).name for geom in self._pairs[pair])
+        one, two = (fixture_of(self._model.geom(geom).name) for geom in self._pairs[pair])
         return CUTTER if one in CUTTING_PARTS else one, two
 
     def _remember(self, way: "_Way", row: int, clearance: float, pair: int) -> None:

@@ -122,3 +122,47 @@ def border_velocities(
         # A continuous path has no steps at all: where there is no room to round them, it stops.
         velocity[i] = 0.0 if rounded[i] and steps else min(by_tangent, math.sqrt(by_curvature))
     return velocity
+
+
+MOST_TOGETHER = 32
+"""Borders that are looked at together: of short blocks some milliseconds at the feed."""
+
+
+@array_kernel
+def slow_dense_knees(
+    velocity: FloatArray, tangent_step: FloatArray, length: FloatArray, angle: FloatArray,
+    velocity_step: FloatArray, acceleration: FloatArray,
+) -> None:  # fmt: skip
+    """Lower the velocities of knees that follow one another closely, in place.
+
+    Each knee alone may step an axis's velocity; along a stretch d between two of them, which takes d / v, an axis
+    gains by all its knees S v. That is to be no more than one step and what its acceleration gains
+    meanwhile: S v <= step + acceleration d / v. So an arc that is written as chords is driven no faster than as an arc.
+
+    Args:
+        velocity: Highest at each border, shape (n,).
+        tangent_step: From ``border_steps``.
+        length: Of the blocks, shape (n,).
+        angle: Sweep of the blocks, 0 for lines, shape (n,) [rad].
+        velocity_step: Largest of each axis, shape (k,).
+        acceleration: Of each axis, shape (k,).
+    """
+    count, axes = tangent_step.shape
+    sums = np.zeros(axes)
+    for i in range(1, count):
+        if not 0.0 < velocity[i] < math.inf:
+            continue
+        way = 0.0
+        sums[:] = tangent_step[i]
+        for j in range(i + 1, min(count, i + MOST_TOGETHER + 1)):
+            if angle[j - 1] != 0.0 or velocity[j] == 0.0:
+                break
+            way += length[j - 1]
+            lowest = math.inf
+            for axis in range(axes):
+                sums[axis] += tangent_step[j, axis]
+                turn, step = abs(sums[axis]), velocity_step[axis]
+                if turn > 0.0:
+                    gained = math.sqrt(step * step + 4.0 * turn * acceleration[axis] * way)
+                    lowest = min(lowest, 0.5 * (step + gained) / turn)
+            velocity[i], velocity[j] = min(velocity[i], lowest), min(velocity[j], lowest)

@@ -12,7 +12,12 @@ import dataclasses
 import numpy as np
 
 from twin.motion.blocks.blocks import Blocks, BoolArray
-from twin.motion.blocks.border_kernels import border_steps, border_velocities, tolerance_shares
+from twin.motion.blocks.border_kernels import (
+    border_steps,
+    border_velocities,
+    slow_dense_knees,
+    tolerance_shares,
+)
 from twin.motion.blocks.corner_choice_kernels import (
     BlockMotion,
     Corners,
@@ -89,6 +94,13 @@ def find_borders(blocks: Blocks, limits: MotionLimits, largest_override: float =
         np.broadcast_to(limits.junction_velocity_step, axes),
         np.broadcast_to(limits.junction_acceleration_step, axes),
     )  # fmt: skip
+    if np.any(corner == Corner.EXACT_PATH):
+        acceleration = limits.acceleration.copy()
+        acceleration[:3] = np.minimum(acceleration[:3], limits.path_acceleration)
+        slow_dense_knees(
+            entry, tangent_step, blocks.length, shapes.angle,
+            np.broadcast_to(limits.junction_velocity_step, axes), acceleration,
+        )  # fmt: skip
     return Borders(tangent_step, curvature_step, width, entry, overlap)
 
 

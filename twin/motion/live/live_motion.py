@@ -27,7 +27,9 @@ from twin.columns import join
 from twin.motion.corner_trials import PiecesOfChunks
 from twin.motion.limits import MotionLimits
 from twin.motion.live.overridden_plan import OverriddenPlan, Overrides
+from twin.motion.pieces.pieces import BATCH
 from twin.motion.planner import WatchedEnd
+from twin.motion.profile.windows import LOOK_AHEAD
 from twin.motion.setpoints.sampling import at_end, sample, standing
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Chunk, FloatArray
@@ -60,6 +62,7 @@ class LiveMotion:
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
         start: Where the axes stand before the program, machine coordinates, shape (k,) [mm or deg].
         largest_override: Highest feed override.
+        look_ahead: Blocks that are cut and planned at a time, and seen at least beyond these.
 
     Raises:
         ValueError: ``largest_override`` is below 1; or, in ``begin`` and ``advance``, a move does not
@@ -75,6 +78,7 @@ class LiveMotion:
         part_zero: FloatArray,
         start: FloatArray,
         largest_override: float = LARGEST_OVERRIDE,
+        look_ahead: int = LOOK_AHEAD,
     ) -> None:
         if not 1.0 <= largest_override < math.inf:
             raise ValueError(f"largest_override must be 1 or more, not {largest_override}")
@@ -83,8 +87,11 @@ class LiveMotion:
         self._part_zero = part_zero
         self._program = WatchedEnd(chunks, start, part_zero)
         self._plan = OverriddenPlan(
-            PiecesOfChunks(self._program, limits, start - part_zero, largest_override),
+            PiecesOfChunks(
+                self._program, limits, start - part_zero, largest_override, min(BATCH, look_ahead)
+            ),
             limits.arrays(),
+            look_ahead,
         )
         self._wanted = self._granted = Overrides()
         self._dropped = False

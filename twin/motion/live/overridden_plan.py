@@ -16,7 +16,7 @@ from twin.motion.profile.forward_pass_kernels import STATE_AT_REST, Stands, forw
 from twin.motion.profile.phase_kernels import PhaseRows, write_brake
 from twin.motion.profile.phases import Phases, brakes_from, no_phases, phases_of
 from twin.motion.profile.state import Course, State
-from twin.motion.profile.windows import Window, Windows
+from twin.motion.profile.windows import LOOK_AHEAD, Window, Windows
 from twin.motion.retiming.retiming import PhaseTable, pieces_for_runs
 from twin.motion.setpoints.sampling_kernels import OVERLAPPING, state_at
 from twin.nc.canonical import FloatArray
@@ -72,6 +72,7 @@ class OverriddenPlan:
     Args:
         parts: The program's pieces, in order.
         machine: Limits of the axes and the path.
+        look_ahead: Blocks that are planned at a time, and seen at least beyond these.
 
     Attributes:
         phases: What is planned and not yet forgotten, in order.
@@ -80,8 +81,10 @@ class OverriddenPlan:
         at_block_end: Whether that is the end of a single block.
     """
 
-    def __init__(self, parts: Iterable[Pieces], machine: MachineLimits) -> None:
-        self._windows = Windows(parts)
+    def __init__(
+        self, parts: Iterable[Pieces], machine: MachineLimits, look_ahead: int = LOOK_AHEAD
+    ) -> None:
+        self._windows = Windows(parts, look_ahead)
         self._machine = machine
         self._state = STATE_AT_REST.copy()
         self._wishes = Overrides()

@@ -84,17 +84,20 @@ class Pieces(Columns):
     geometry: Picked[Geometry]
 
 
-def blocks_to_cut(chunks: Iterable[Chunk], start: FloatArray) -> Iterator[Surroundings]:
+def blocks_to_cut(
+    chunks: Iterable[Chunk], start: FloatArray, batch: int = BATCH
+) -> Iterator[Surroundings]:
     """A program's blocks, as many at a time as are cut together.
 
     Args:
         chunks: The program.
         start: Where the axes stand before, part coordinates, shape (k,) [mm or deg].
+        batch: How many that are.
 
     Raises:
         ValueError: A move does not begin where the one before it ended.
     """
-    return WithNeighbours(BlocksOfChunks(chunks, start), BATCH, CONTEXT, MAX_ANGLE)
+    return WithNeighbours(BlocksOfChunks(chunks, start), batch, CONTEXT, MAX_ANGLE)
 
 
 def cut(

@@ -14,7 +14,8 @@ MOST_TURN = 40.0 * math.pi
 """What a run turns by at most [rad]: a longer one is cut, and each part takes its own time to plan."""
 
 LEAST_TURN_FROM_REST = math.radians(10.0)
-"""What a run that begins or ends at rest turns by at least to get a time law of its own [rad]."""
+"""What a run turns by at least to get a time law of its own that begins or ends at rest, or at a step of the
+path that holds it back [rad]."""
 
 HOLD_TURN = 0.5 * math.pi
 """What a run turns by at most while it keeps the programmed feed [rad]: there is nothing to gain."""
@@ -90,7 +91,9 @@ def find_runs(
         if not joined:
             if ends > first >= 0:
                 found[used, 0], found[used, 1] = first, ends
-                rests = phases[first, 3] == 0.0 or _end_velocity(phases[ends - 1]) < REST
+                rests = _from_step(phases, phase_pieces, pieces, first)
+                rests |= _from_step(phases, phase_pieces, pieces, ends)
+                rests |= _end_velocity(phases[ends - 1]) < REST
                 least = LEAST_TURN_FROM_REST if rests else LEAST_TURN
                 if freely >= least * (1.0 - BARELY):
                     found[used, 2] = LONG if turned >= LEAST_TURN * (1.0 - BARELY) else SHORT
@@ -104,6 +107,18 @@ def find_runs(
             hold, held = -1, 0.0
             freely += turn
     return found[:used]
+
+
+@arithmetic_kernel
+def _from_step(phases: FloatArray, phase_pieces: IntArray, pieces: RunPieces, row: int) -> bool:
+    """Whether a phase begins at rest, or where a step of the path holds it back."""
+    if row == len(phases):
+        return False
+    _, _, x, v, _, _ = phases[row]
+    piece = phase_pieces[row, 0]
+    if v == 0.0 or piece >= len(pieces.length):
+        return v == 0.0
+    return x <= BARELY * pieces.length[piece] and pieces.entry[piece] != math.inf
 
 
 @arithmetic_kernel

@@ -10,6 +10,7 @@ from twin.motion.limits import MachineLimits
 from twin.motion.retiming.run_kernels import BARELY, RunEnds, RunPieces
 from twin.motion.retiming.solver_kernels import RunTable
 from twin.nc.canonical import FloatArray, IntArray
+from twin.toolpath.geometry_kernels import Curves
 
 STEP_ANGLE = math.radians(6.0)
 """Longest interval of a run where it turns fastest [rad]."""
@@ -98,9 +99,13 @@ def cut_run(ends: RunEnds, pieces: RunPieces, machine: MachineLimits) -> RunNode
     piece, x, distance, (v0, _), (v1, _), peak = ends
     turn = pieces.fraction_per_length[piece] * abs(pieces.curves.angle[pieces.move[piece]])
     jerk, acceleration = pieces.path_jerk[piece], pieces.path_acceleration[piece]
-    # What a straight share of the path asks of an axis is the same everywhere.
+    moves = v0 > 0.0 or v1 > 0.0
+    # What a straight share of the path asks of an axis is the same everywhere; a curve's share, where it
+    # points along the axis, counts where a change of velocity begins or ends in motion, as it is given there.
     for axis in range(len(machine.jerk)):
         even = _even_slope(pieces, piece, axis)
+        if even == 0.0 and moves and axis < 3:
+            even = turn * _radius(pieces.curves, pieces.move[piece], axis)
         if even > 0.0:
             jerk = min(jerk, machine.jerk[axis] / even)
             acceleration = min(acceleration, machine.acceleration[axis] / even)
@@ -159,6 +164,12 @@ def cut_run(ends: RunEnds, pieces: RunPieces, machine: MachineLimits) -> RunNode
             nodes.path[node, 1], nodes.path[node, 2] = v, a
         place = before
     return nodes
+
+
+@arithmetic_kernel
+def _radius(curves: Curves, move: int, axis: int) -> float:
+    """How far an axis goes to either side along a curve [mm]."""
+    return math.hypot(curves.cosine[move, axis], curves.sine[move, axis])
 
 
 @arithmetic_kernel

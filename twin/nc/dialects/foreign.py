@@ -33,6 +33,8 @@ _POST = "post the part again for one of: twin dialects"
 _MODEL = "it is a shape, not a program: make toolpaths in CAM and post them"
 _AS_LINUXCNC = "its moves are a part of LinuxCNC's language: --dialect linuxcnc reads it so"
 
+_ROBOT = "the machines here are mills"
+
 BINARY: tuple[tuple[bytes, str, str], ...] = (
     (b"%PDF-", "a PDF document", "save the program itself, as text"),
     (b"PK\x03\x04", "a zip archive, or a file of an office or CAM program", "unpack it first"),
@@ -122,6 +124,40 @@ TEXTS: tuple[Foreign, ...] = (
         "a program for a Brother Speedio",
         "write G100 T as T, G43 H and M6, or post it for fanuc",
         r"(?m)^(?:N\d+ *)?G100 *T\d+",
+    ),
+    Foreign(
+        "a drill file of a circuit board (Excellon)",
+        "make a program of it by the CAM of circuit boards",
+        r"(?m)^M48\s*$|^T\d+(?:F\d+S\d+)?C[\d.]+",
+        2,
+        comments=True,
+    ),
+    Foreign(
+        "a picture of a circuit board (Gerber)",
+        "make a program of it by the CAM of circuit boards",
+        r"%FS[LTD]?[AI]X\d\dY\d\d|%MO(?:MM|IN)\*%",
+        comments=True,
+    ),
+    Foreign(
+        "a program for a robot (Fanuc TP)",
+        _ROBOT,
+        r"(?m)^/(?:PROG|MN|POS|ATTR)\b",
+        2,
+        comments=True,
+    ),
+    Foreign(
+        "a program for a robot (KUKA KRL)",
+        _ROBOT,
+        r"(?m)^\s*(?:&ACCESS|DEF \w+ ?\(|(?:PTP|LIN|CIRC) +\{)",
+        2,
+        comments=True,
+    ),
+    Foreign(
+        "a program for a robot (ABB RAPID)",
+        _ROBOT,
+        r"(?im)^\s*(?:MODULE \w+|PROC \w+\(|Move[JLC] )",
+        2,
+        comments=True,
     ),
     Foreign(
         "a Python program", "an NC program is text of blocks", r"(?m)^(?:import \w+|def \w+\()", 1

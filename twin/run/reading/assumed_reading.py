@@ -97,7 +97,7 @@ def _bare_number(source: Source) -> str:
     has a point somewhere (``X20.``), one without is a slip or counts increments. Where no number has a
     point, increments would put the whole program within a millimetre if all are below 1000. Empty: it is none.
     """
-    first, fractions, largest = "", False, 0
+    first, fractions, largest = "", False, 0.0
     for line in _blocks(source):
         for found in _LENGTH.finditer(line):
             number = found[2]
@@ -105,9 +105,9 @@ def _bare_number(source: Source) -> str:
                 return ""
             if "." in number:
                 fractions = True
-            elif int(number):
+            elif float(number):
                 first = first or found[0]
-                largest = max(largest, int(number) if found[1] not in "fF" else 0)
+                largest = max(largest, float(number) if found[1] not in "fF" else 0.0)
     return first if fractions or 0 < largest < _INCREMENTS else ""
 
 

@@ -16,9 +16,11 @@ _INCH = 25.4
 _NUMBER = r"[0-9]*[.,]?[0-9]+|[0-9]+[.,]"
 
 _LISTED = (
-    re.compile(r"^\s*T\s*([0-9]+)\s*(?:\||-|:|=|,|\s)\s*(.*\S)", re.IGNORECASE),
-    re.compile(r"\bTOOL\s*(?:NO\.?|NUMBER|#|-|=|:)?\s*([0-9]+)\b\s*[-:=,|]*\s*(.*)", re.IGNORECASE),
-    re.compile(r"^\s*([0-9]+)\s*=\s*(.*\b(?:MILL|DRILL|BIT|TAP)\b.*)", re.IGNORECASE),
+    re.compile(r"^\s*T\s*([0-9]{1,6})\s*(?:\||-|:|=|,|\s)\s*(.*\S)", re.IGNORECASE),
+    re.compile(
+        r"\bTOOL\s*(?:NO\.?|NUMBER|#|-|=|:)?\s*([0-9]{1,6})\b\s*[-:=,|]*\s*(.*)", re.IGNORECASE
+    ),
+    re.compile(r"^\s*([0-9]{1,6})\s*=\s*(.*\b(?:MILL|DRILL|BIT|TAP)\b.*)", re.IGNORECASE),
 )
 """Comments that begin with the tool's number."""
 
@@ -42,7 +44,7 @@ _DIAMETERS = (
     rf"^\s*({_NUMBER})()\s*$",
     rf"^(?!.*\bH\s*[0-9]).*\bD\s*({_NUMBER})()(?![0-9.])",
 )
-_FRACTION = re.compile(r"(?<![0-9.])([0-9]+)/([0-9]+)(?![0-9])")
+_FRACTION = re.compile(r"(?<![0-9.])([0-9]{1,4})/([0-9]{1,4})(?![0-9])")
 _THREAD = re.compile(r"\bM([0-9]+(?:\.[0-9]+)?)(?:\s*[Xx][0-9.]+)?\s*(?:TAP|GEWINDE)")
 _CORNER = re.compile(
     rf"\b(?:CR|R|RAD(?:IUS)?|CORNER RAD(?:IUS)?)\s*[=:.-]?\s*({_NUMBER})", re.IGNORECASE

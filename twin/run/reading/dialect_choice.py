@@ -1,6 +1,7 @@
 """The dialect of a raw program: where its words fit several, all of them read it and are compared."""
 
 import dataclasses
+import math
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -88,6 +89,10 @@ def chosen_dialect(path: Path, settings: ControlSettings, source: Source | None 
     if settings.machine_zero is None:  # the dialect does not depend on where that lies
         zero = dict.fromkeys(settings.axes.names, 0.0)
         settings = dataclasses.replace(settings, machine_zero=zero)
+    if (
+        settings.tool_change_height is None
+    ):  # nor on where a control goes by itself for another tool
+        settings = dataclasses.replace(settings, tool_change_height=-math.inf)
     common = [name for name in candidates if name in _PREFERENCE]
     rare = [name for name in candidates if name not in _PREFERENCE]
     trials = [_tried(path, DIALECTS[name], settings) for name in (common or rare)]

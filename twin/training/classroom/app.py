@@ -21,9 +21,9 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 from websockets.asyncio.client import unix_connect
 from websockets.exceptions import WebSocketException
 
-from twin.errors import UsageError
+from twin.errors import TwinError
 from twin.files.toml import Table
-from twin.training.classroom.marks import ClassFile, Mark, as_csv, as_statements
+from twin.training.classroom.marks import MADE_SCENES, ClassFile, Mark, as_csv, as_statements
 from twin.training.classroom.rooms import RoomError, Rooms, Seat
 from twin.training.scene.scene_file import read_scene, scene_names, scene_path
 from twin.training.scene.vocabulary import LANGUAGES, Language, Words
@@ -85,7 +85,7 @@ class ClassApp:
             language: Of the teacher's page, until he chooses another.
         """
         self._rooms, self._file, self._links, self._language = rooms, file, links, language
-        self._scenes = {name: read_scene(scene_path(name)).file.title for name in scene_names()}
+        self._shipped = {name: read_scene(scene_path(name)).file.title for name in scene_names()}
         teacher: list[BaseRoute] = [
             Route("/", self._page),
             Route("/class.json", self._class),
@@ -145,9 +145,16 @@ class ClassApp:
         return JSONResponse(Words(language, "").as_data())
 
     async def _class(self, _request: Request) -> Response:
-        return JSONResponse(
-            {"language": self._language, "languages": LANGUAGES, "scenes": self._scenes}
-        )
+        scenes = await anyio.to_thread.run_sync(self._scenes)
+        return JSONResponse({"language": self._language, "languages": LANGUAGES, "scenes": scenes})
+
+    def _scenes(self) -> dict[str, dict[Language, str]]:
+        """Titles of all scenes that can be handed out: the shipped ones, and those that were made in a room."""
+        made: dict[str, dict[Language, str]] = {}
+        for path in sorted((self._file.folder / MADE_SCENES).glob("*.toml")):
+            with contextlib.suppress(TwinError):
+                made[str(path)] = read_scene(path).file.title
+        return made | self._shipped
 
     async def _marks_csv(self, _request: Request) -> Response:
         text = as_csv(await anyio.to_thread.run_sync(self._file.marks))
@@ -178,14 +185,12 @@ class ClassApp:
         try:
             wish = _Wish.validate_json(text)
             seats = [self._rooms.seats[key] for key in wish.seats]
-            if isinstance(wish, HandOut):
-                scene_path(wish.scene)
+            if isinstance(wish, HandOut) and wish.scene not in self._scenes():
+                return f"no scene {wish.scene!r}"
         except pydantic.ValidationError as error:
             return str(error.errors()[0]["msg"])
         except KeyError as error:
             return f"no seat {error}"
-        except UsageError as error:
-            return str(error)
         for seat in seats:
             if isinstance(wish, HandOut):
                 self._rooms.hand_out(seat, wish.scene)
@@ -218,7 +223,7 @@ class ClassApp:
                 "name": seat.pupil.name,
                 "link": self._links[seat.key],
                 "scene": seat.status.get("scene", seat.scene),
-                "title": seat.status.get("title") or self._scenes.get(seat.scene, seat.scene),
+                "title": seat.status.get("title") or self._shipped.get(seat.scene, seat.scene),
                 "held": seat.held,
                 "failed": seat.failed,
                 "room": {**seat.status, "stuck": stuck(seat, time.monotonic())}
@@ -227,7 +232,7 @@ class ClassApp:
                 "marks": [
                     {
                         "scene": scene,
-                        "title": self._scenes.get(scene) or mark.title,
+                        "title": self._shipped.get(scene) or mark.title,
                         "points": mark.points,
                         "of": mark.points_of,
                         "attempts": attempts[pupil, scene],

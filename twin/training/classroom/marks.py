@@ -14,6 +14,8 @@ from typing import Any, cast
 from twin.errors import UsageError
 
 FILE = "class.sqlite"
+MADE_SCENES = "scenes"
+"""Folder beside it, of the scenes that the teacher makes in a room."""
 _WAIT_S = 10.0
 """For another process that writes."""
 _TABLES = """

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from twin.errors import TwinError
-from twin.training.classroom.marks import ClassFile
+from twin.training.classroom.marks import MADE_SCENES, ClassFile
 from twin.training.classroom.recorder import Recorder
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.scene.vocabulary import Language
@@ -62,7 +62,8 @@ def run_room(order: RoomOrder, pipe: Connection) -> None:
     os.nice(NICE)
     try:
         scene = read_scene(scene_path(order.scene))
-        attempts = Attempts(order.language or scene.file.language, order.sheets)
+        scenes = order.folder / MADE_SCENES
+        attempts = Attempts(order.language or scene.file.language, order.sheets, scenes)
         attempt = attempts.begin(scene)
     except TwinError as error:
         pipe.send({"failed": str(error)})

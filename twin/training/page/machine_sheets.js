@@ -1,6 +1,6 @@
 // Sheets of the machine: what is done by hand, how programs run, the alarms that came.
 
-import { make, number } from "./parts.js";
+import { act_on, make, number, write } from "./parts.js";
 
 const WHEEL_STEPS = [0.001, 0.01, 0.1, 1];
 const SPINDLE_STEP = 10;
@@ -70,12 +70,34 @@ export function run_sheet(sheets) {
   const cancel = now.searched ? sheets.button("search cancel", words.label("search_cancel"), () => line.say({ do: "search", line: 0 })) : null;
   return [
     ...["optional_stop", "block_skip", "dry_run"].map(box),
-    make("p", { class: "quiet" }, words.label("search_help")),
+    make("h3", {}, words.label("block_search")), make("p", { class: "quiet" }, words.label("search_help")), ...finder(sheets),
     now.searched ? make("p", { class: "hint" }, words.label("search_set", { line: now.searched })) : null,
     make("div", { class: "row" }, search, cancel),
     make("h3", {}, words.label("program")),
-    make("div", { class: "row" }, now.changed ? ask("undo") : null, ask("reload")),
+    make("div", { class: "row" }, sheets.button("edit program", words.label("edit_program"), () => sheets.editor.open()), now.changed ? ask("undo") : null, ask("reload")),
   ].filter(Boolean);
+}
+
+/** Finds blocks by what stands in them; the one that is chosen is where the program would begin. */
+function finder({ now, words, screen }) {
+  const text = make("input", { type: "search", "data-key": "find block", "aria-label": words.label("find_block"), placeholder: words.label("find_block"), value: screen.sought ?? "" });
+  const found = make("span", { role: "status", class: "quiet" });
+  const find = (step) => {
+    screen.sought = text.value;
+    const sought = text.value.trim().toLowerCase();
+    const lines = sought ? now.program.flatMap((one, index) => (one.toLowerCase().includes(sought) ? [index + 1] : [])) : [];
+    if (!lines.length) return write(found, sought ? words.label("not_found") : "");
+    const next = step > 0 ? lines.find((one) => one > screen.chosen) ?? lines[0] : lines.findLast((one) => one < screen.chosen) ?? lines.at(-1);
+    return screen.choose(next);
+  };
+  text.addEventListener("keydown", (event) => { if (event.key === "Enter") find(event.shiftKey ? -1 : 1); });
+  const button = (name, label, step) => {
+    const made = make("button", { type: "button", "data-key": name, "aria-label": words.label(label) }, step < 0 ? "▲" : "▼");
+    act_on(made, () => find(step));
+    return made;
+  };
+  const chosen = screen.chosen ? make("p", {}, make("b", {}, `${screen.chosen}: `), make("code", {}, now.program[screen.chosen - 1] ?? "")) : null;
+  return [make("div", { class: "row name" }, text, button("find before", "find_before", -1), button("find next", "find_next", 1)), found, chosen];
 }
 
 export function alarm_sheet({ now, words }) {

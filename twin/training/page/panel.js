@@ -4,6 +4,8 @@ import { View } from "../view/view.js";
 import { PATCH, readState, STATE } from "../view/wire.js";
 import { Connection } from "./connection.js";
 import { Desk } from "./desk.js";
+import { Editor } from "./editor.js";
+import { Help } from "./help.js";
 import { Looking } from "./looking.js";
 import { act_on, LANGUAGE_NAMES, make, Words } from "./parts.js";
 import { Preview } from "./preview.js";
@@ -36,8 +38,8 @@ const line = new Connection(hear, (down) => {
   }
 });
 const preview = new Preview(view), trouble = new Trouble(view), looking = new Looking(view, trouble);
-const score = new Score(scene, line);
-const desk = new Desk(scene, line), screen = new Screen(scene, line), sheets = new Sheets(scene, line, looking, desk, screen, score);
+const score = new Score(scene, line), editor = new Editor(line), help = new Help(scene);
+const desk = new Desk(scene, line), screen = new Screen(scene, line), sheets = new Sheets(scene, line, looking, desk, screen, score, editor);
 let attempt = null;
 screen.on_choice = () => { if (now.mode !== undefined && words) sheets.show(now, words); };
 
@@ -84,6 +86,8 @@ function show_soon() {
       score.show(now, words);
       preview.show(now, changed);
       trouble.show(now);
+      help.show(now, words);
+      editor.show(now, words, changed);
       show_hand_over();
       changed.clear();
       document.body.dataset.ready = "yes";

@@ -69,8 +69,7 @@ export class Screen {
         message.className = "refusal";
         message.replaceChildren(`${words.label("not_written")}: ${now.trouble}`);
       } else {
-        message.className = "keys";
-        message.replaceChildren(words.label("keys"));
+        message.replaceChildren();
       }
     }
     const others = now.pages ?? {};

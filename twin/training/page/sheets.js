@@ -15,8 +15,8 @@ const MARKS = { open: "○", done: "●", failed: "×" };
 const BACK_S = [10, 60];
 
 export class Sheets {
-  constructor(scene, line, looking, desk, screen, score) {
-    Object.assign(this, { scene, line, looking, desk, screen, score, asking: "", sheet: "tasks", drawn: "", state: null });
+  constructor(scene, line, looking, desk, screen, score, editor) {
+    Object.assign(this, { scene, line, looking, desk, screen, score, editor, asking: "", sheet: "tasks", drawn: "", state: null });
     document.addEventListener("next-sheet", () => {
       const names = this.names();
       this.choose(names[(names.indexOf(this.sheet) + 1) % names.length]);
@@ -50,7 +50,7 @@ export class Sheets {
     for (const tab of tabs.children) tab.setAttribute("aria-selected", tab.id === `tab-${this.sheet}`);
     sheet.setAttribute("aria-labelledby", `tab-${this.sheet}`);
     const acts = now.role === "trainer" || now.has_panel;
-    const what = { tasks: [now.verdicts, now.answers, now.hints, now.score, now.over, now.signature, this.asking], manual: [now.spindle, now.counter_clockwise, now.spindle_override, now.suspended, this.desk.hand], run: [now.optional_stop, now.block_skip, now.dry_run, now.searched, now.changed, this.screen.chosen], offsets: [now.zero, now.offsets], tools: [now.tools, now.tool, now.broken], history: [now.alarms], display: [], trainer: [now.faults, now.frozen, now.replaying] };
+    const what = { tasks: [now.verdicts, now.answers, now.hints, now.score, now.over, now.signature, this.asking], manual: [now.spindle, now.counter_clockwise, now.spindle_override, now.suspended, this.desk.hand], run: [now.optional_stop, now.block_skip, now.dry_run, now.searched, now.changed, this.screen.chosen], offsets: [now.zero, now.offsets, now.tool, now.tools], tools: [now.tools, now.tool, now.broken], history: [now.alarms], display: [], trainer: [now.faults, now.frozen, now.replaying, now.made] };
     const drawn = JSON.stringify([this.sheet, words.language, acts, now.refusals, what[this.sheet]]);
     if (drawn === this.drawn) return;
     // What is being typed stays; what has been sent is shown as the machine has it.
@@ -112,10 +112,18 @@ export class Sheets {
       const reading = make("input", { id: `reading-${axis}`, "data-key": `reading ${axis}`, inputmode: "decimal", value: "0", "aria-label": `${words.label("preset_help")} ${axis}` });
       const set = () => line.say({ do: "set_zero", axis, reading: number(reading.value) });
       reading.addEventListener("keydown", (event) => { if (event.key === "Enter") set(); });
-      return make("div", { class: "row tight" }, make("b", {}, axis), make("span", { class: "number" }, now.zero[index].toFixed(3)), reading, this.button(`preset ${axis}`, words.label("preset"), set));
-    });
+      const row = make("div", { class: "row tight" }, make("b", {}, axis), make("span", { class: "number" }, now.zero[index].toFixed(3)), reading, this.button(`preset ${axis}`, words.label("preset"), set));
+      return ["X", "Y"].includes(axis) ? [row, this.touched(axis)] : [row];
+    }).flat();
     const table = now.offsets.length ? [make("h3", {}, words.label("work_offsets")), ...now.offsets.flatMap((row) => this.offset_row(...row))] : [];
     return [make("p", { class: "quiet" }, words.label("preset_help")), ...rows, ...table];
+  }
+
+  /** An edge that the tool touches is zero: its middle stands off it by its radius. */
+  touched(axis) {
+    const { now, words, line } = this, radius = now.tools.find(({ number: one }) => one === now.tool).radius;
+    const edge = (sign, name) => this.button(`touched ${axis}${sign < 0 ? "-" : "+"}`, words.label(name, { axis }), () => line.say({ do: "set_zero", axis, reading: sign * radius }));
+    return make("div", { class: "row" }, edge(-1, "touched_from_below"), edge(1, "touched_from_above"));
   }
 
   /** A work offset: a field for each axis, written by Enter. */
@@ -160,6 +168,19 @@ export class Sheets {
 
   display() { return this.looking.sheet(this.words, this.now); }
 
+  /** Writes what stands here down as a scene. */
+  make_scene() {
+    const { words, line, now } = this;
+    const title = make("input", { "data-key": "scene title", maxlength: 80, "aria-label": words.label("scene_title") });
+    const story = make("textarea", { "data-key": "scene story", maxlength: 2000, rows: 3, "aria-label": words.label("scene_story") });
+    const made = now.made && make("p", { class: now.made.path ? "done" : "hint", role: "status" }, now.made.path ? words.label("scene_made", { path: now.made.path }) : words.text(now.made.refused));
+    return [
+      make("h3", {}, words.label("make_scene")), make("p", { class: "quiet" }, words.label("make_scene_help")),
+      make("div", { class: "row name" }, make("label", {}, words.label("scene_title"), title)), make("div", { class: "row name" }, make("label", {}, words.label("scene_story"), story)),
+      make("div", { class: "row" }, this.button("make scene", words.label("make_scene"), () => line.say({ make_scene: { title: title.value, story: story.value } }))), made,
+    ].filter(Boolean);
+  }
+
   trainer() {
     const { now, words, line, scene } = this;
     const ask = (name, given = {}, label = name, values = {}) => this.button(label === "rewind" ? `rewind ${given.seconds}` : name, words.label(label, values), () => line.say({ do: name, ...given }));
@@ -190,6 +211,7 @@ export class Sheets {
     const active = now.faults.map((fault) => make("li", { class: "failed" }, `● ${words.label(`fault_${fault.kind}`)} ${fault.axis} ${fault.value} ${unit_of(fault)}`));
     return [
       make("div", { class: "row" }, ...time), make("h3", {}, words.label("inject")), make("div", { class: "row" }, kind), make("div", { class: "row" }, axis, value, unit), make("div", { class: "row" }, inject),
+      ...this.make_scene(),
       make("h3", {}, words.label("active_faults")), active.length ? make("ul", {}, ...active) : make("p", { class: "quiet" }, words.label("no_faults")), make("div", { class: "row" }, ask("repair")),
     ];
   }

@@ -145,6 +145,8 @@ class SceneFile(Table):
     time_limit_s: Annotated[float, Field(gt=0)] = 1800.0
     """Machine time from the first touch after which the scene is judged [s]."""
     picture: PictureTable = PictureTable()
+    guide: bool = False
+    """Whether the page tells who plays for the first time what to press; in scenes where that spoils nothing."""
     solution: tuple[StepTable, ...] = ()
     """A scripted operator who reaches full points."""
     mistake: tuple[StepTable, ...] = ()
@@ -226,3 +228,26 @@ def read_scene(path: Path) -> Scene:
         if axis not in axes:
             raise ConfigError(f"{path}: no axis '{axis}': the machine has {', '.join(axes)}")
     return scene
+
+
+_WITHOUT_END_S = 1e9
+"""Time limit of a room without a lesson [s]."""
+
+
+def scene_of_job(name: str, preparation: Preparation) -> Scene:
+    """A room without a lesson: the machine of a job, for programs that come from elsewhere.
+
+    Args:
+        name: What the room is called.
+        preparation: The job made concrete.
+    """
+    file = SceneFile(
+        schema=1,
+        title={"en": name},
+        story={"en": "Programs come from a sender."},
+        job=preparation.job.file,
+        start=StartTable(mode="mdi"),
+        tasks=(TaskTable(text={"en": "Run a program to its end."}, finished=True),),
+        time_limit_s=_WITHOUT_END_S,
+    )
+    return Scene(name, file, preparation)

@@ -18,6 +18,7 @@ from starlette.staticfiles import StaticFiles
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from twin.cutting.patches import grid_of
+from twin.errors import TwinError
 from twin.nc.iso.base import jog_block
 from twin.nc.text.diagnostics import Diagnostic
 from twin.render.machine_glb import DrawnMachine, drawn_machine
@@ -40,7 +41,10 @@ from twin.training.server.frames import (
     path_message,
     state_message,
 )
+from twin.training.server.program_check import ProgramCheck
+from twin.training.server.scene_maker import scene_of, write_scene
 from twin.training.server.seats import Page, Seats
+from twin.training.session.commands import LONGEST_TEXT
 from twin.training.session.preview import Preview
 from twin.training.session.room import Room
 from twin.web.guard import ASSETS
@@ -99,6 +103,7 @@ class RoomApp:
         self._spoken: tuple[Look | None, dict[str, str]] = None, {}
         # A page that was open before a restart must see that its attempt is another one.
         self._opening = secrets.token_hex(4)
+        self._program_check = ProgramCheck(driver)
         self._one_path = asyncio.Lock()
         self._one_change = threading.Lock()
         self._last_path: tuple[Any, bytes] = None, b""
@@ -127,6 +132,7 @@ class RoomApp:
                 "next": next_scene(scene.name),
                 "title": file.title,
                 "story": file.story,
+                "guide": file.guide,
                 "tasks": [
                     {
                         "text": task.text,
@@ -280,6 +286,10 @@ class RoomApp:
                 return await socket.close(1008)
             if "beat" in said:
                 self._driver.beat(page.number)
+            elif "check" in said:
+                self._program_check.soon(page.number, said["check"], socket.send_text)
+            elif "make_scene" in said:
+                await self._make_scene(socket, page, said["make_scene"])
             elif "panel" in said:
                 self.seats.hand_over(page, str(said["panel"]))
             elif "attempt" in said:
@@ -287,6 +297,23 @@ class RoomApp:
             elif self.seats.may(page, said):
                 who = "trainer" if page.role == "trainer" else "operator"
                 self._driver.ask(said, who, page.number)
+
+    async def _make_scene(self, socket: WebSocket, page: Page, given: Any) -> None:
+        """Write the room down as a scene, for a trainer, and say where it lies."""
+        folder, language = self._attempts.scenes, self._attempts.language
+        if page.role != "trainer" or folder is None or not isinstance(given, dict):
+            return
+        title, story = (str(given.get(key, ""))[:LONGEST_TEXT] for key in ("title", "story"))
+        try:
+            scene = await asyncio.wrap_future(
+                self._driver.inquire(lambda room: scene_of(room, language, title, story))
+            )
+            path = await anyio.to_thread.run_sync(write_scene, scene, folder)
+        except TwinError as error:
+            made = {"refused": _in_all(str(error))}
+        else:
+            made = {"path": str(path)}
+        await socket.send_text(json.dumps({"made": made}))
 
     async def _tell_until_gone(self, socket: WebSocket, page: Page) -> None:
         """Show a page the machine until it is gone, or reads no more."""

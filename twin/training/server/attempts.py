@@ -34,17 +34,20 @@ class Attempts:
 
     Attributes:
         language: Of sheets, and of pages that choose no other.
+        scenes: Folder for scenes that a trainer makes; None: there is none.
     """
 
-    def __init__(self, language: Language, out: Path | None) -> None:
+    def __init__(self, language: Language, out: Path | None, scenes: Path | None = None) -> None:
         """Prepare nothing yet.
 
         Args:
             language: Of the sheets.
             out: Folder for logs and score sheets; None: none are written.
+            scenes: Folder for scenes that a trainer makes; None: one within ``out``.
         """
         self.language: Language = language
         self._out = out
+        self.scenes = scenes or (out and out / "scenes")
 
     @staticmethod
     def prepared(scene: Scene) -> Scene:

@@ -258,7 +258,9 @@ class Driver:
         share = kept / self._owed_s if self._owed_s > 0.0 else 1.0
         self._kept_up += 0.02 * (self.speed * share - self._kept_up)
         gone, most = 0, int(min(kept, self.speed * CAUGHT_UP_AT_ONCE_S) / slice_s)
-        while gone < most and (gone == 0 or self._rests or self._asked.empty()):
+        while gone < most and (
+            gone == 0 or self._rests or (self._asked.empty() and self._questions.empty())
+        ):
             session.advance()
             gone += 1
         self._owed_s = kept - gone * slice_s

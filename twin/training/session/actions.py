@@ -216,6 +216,12 @@ def _edit(room: Room, command: c.Edit) -> None:
     _load(room, lines)
 
 
+def _load_program(room: Room, command: c.Load) -> None:
+    _require_no_run(room, "a program cannot be edited while something runs: reset first")
+    room.edits = [*room.edits, room.lines][-EDITS_KEPT:]
+    _load(room, command.text.rstrip("\n").split("\n"))
+
+
 def _undo(room: Room, _command: c.Undo) -> None:
     _require_no_run(room, "a program cannot be edited while something runs: reset first")
     if not room.edits:
@@ -379,6 +385,7 @@ _ACTIONS: dict[type, Callable[[Room, Any], None]] = {
     c.Switch: _switch,
     c.Enter: _enter,
     c.Edit: _edit,
+    c.Load: _load_program,
     c.Undo: _undo,
     c.Reload: _reload,
     c.Spindle: _spindle,

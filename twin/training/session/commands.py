@@ -4,6 +4,7 @@ A session is nothing but its scene and the commands that were given at each tick
 a log of them is enough to live it again.
 """
 
+import re
 from typing import Annotated, Any, Literal
 
 import pydantic
@@ -29,6 +30,26 @@ AxisName = Annotated[str, Field(max_length=8)]
 
 LONGEST_TEXT = 2000
 """Characters of a block, of a program's line, of an answer."""
+LONGEST_PROGRAM = 60_000
+"""Characters of a program that is loaded from the page."""
+_NO_TEXT = re.compile(r"[^\S\t\n ]|[\x00-\x08\x0e-\x1f\x7f]")
+"""What is in no line of a program."""
+
+
+def _plain(text: str) -> str:
+    """A text with one kind of line ends, and nothing in it that cannot be seen.
+
+    Raises:
+        ValueError: It holds a control character.
+    """
+    text = text.replace("\r\n", "\n").replace("\xa0", " ")
+    found = _NO_TEXT.search(text)
+    if found:
+        raise ValueError(f"U+{ord(found[0]):04X} is no letter of a program")
+    return text
+
+
+ProgramText = Annotated[str, pydantic.AfterValidator(_plain)]
 
 
 class SelectMode(Table):
@@ -139,7 +160,7 @@ class Enter(Table):
     """Type a block into MDI."""
 
     do: Literal["mdi"] = "mdi"
-    text: Annotated[str, Field(max_length=LONGEST_TEXT)]
+    text: Annotated[ProgramText, Field(max_length=LONGEST_TEXT)]
 
 
 class Edit(Table):
@@ -147,7 +168,14 @@ class Edit(Table):
 
     do: Literal["edit"] = "edit"
     line: Annotated[int, Field(ge=1, le=MOST)]
-    text: Annotated[str, Field(max_length=LONGEST_TEXT)] | None = None
+    text: Annotated[ProgramText, Field(max_length=LONGEST_TEXT)] | None = None
+
+
+class Load(Table):
+    """Load another program, or the same as it was edited elsewhere."""
+
+    do: Literal["load"] = "load"
+    text: Annotated[ProgramText, Field(max_length=LONGEST_PROGRAM)]
 
 
 class Undo(Table):
@@ -300,7 +328,7 @@ SessionCommand = Freeze | Unfreeze | Rewind | StartReplay | EndReplay
 
 Command = (
     SelectMode | CycleStart | FeedHold | Reset | EmergencyStop | Override | Jog | JogStop
-    | Handwheel | Reference | ReturnToPath | Search | Switch | Enter | Edit | Undo | Reload
+    | Handwheel | Reference | ReturnToPath | Search | Switch | Enter | Edit | Load | Undo | Reload
     | Spindle | Coolant | ChangeTool | NewBlank | SetZero | SetOffset | SetTool | Sign | Answer | Hint
     | Finish | Inject | Repair | SessionCommand
 )  # fmt: skip

@@ -12,13 +12,14 @@ import dataclasses
 import math
 from collections import deque
 from collections.abc import Iterator
-from typing import Literal, NamedTuple
+from typing import Literal, NamedTuple, Protocol
 
 import numpy as np
 
 from twin.machine.description.config import Machine
 from twin.machine.description.motion_limits import motion_limits
 from twin.machine.watching.travel import soft_limit_alarm
+from twin.motion.blocks.corners import CONTEXT
 from twin.motion.live.live_motion import LiveMotion
 from twin.motion.profile.windows import LOOK_AHEAD
 from twin.motion.setpoints.setpoints import Setpoints
@@ -56,12 +57,17 @@ BLOCKS_AT_REST, BLOCKS_IN_MOTION = 200, 50
 """Blocks that are interpreted in one slice of time, before the axes move and while they do."""
 BLOCKS_FOR_PLANNER = 400
 """Blocks more that are interpreted in one slice where the planner has caught up."""
-PLANNED_AT_REST = 16
+PLANNED_AT_REST = 8
 """Steps of planning in one slice before the axes can go: corners that are tried take a few milliseconds each."""
 MOVES_KEPT_BEHIND = 2
 """Moves behind the axes that are remembered: a stop at a block's end may count as the next one's beginning."""
 SLICES_AT_REST = 100
 """Slices after which the axes begin with what moves there are."""
+
+STREAMED_LOOK_AHEAD = 64
+"""Blocks of a stream that are planned at a time, and that the planner sees at least beyond these."""
+STREAMED_AHEAD = 3 * STREAMED_LOOK_AHEAD + CONTEXT
+"""Moves of a stream that make its axes begin, though more come: what the planner sees at least."""
 
 LARGEST_OVERRIDE = 1.2
 """Factor at the end of the feed override dial."""
@@ -80,20 +86,43 @@ class _TooFewMovesError(Exception):
 Ending = Literal["end", "stop", "tool", "wait", "soft-limit", "program"]
 
 
+class BlockStream(Protocol):
+    """Blocks that come while they are run, as a sender streams them.
+
+    They are a program part as long as they come: it ends where none came for a while before the axes have begun,
+    or where the planner has caught up with them.
+    """
+
+    @property
+    def quiet(self) -> bool:
+        """Whether no block has come for a while."""
+        ...
+
+    def next(self, executor: Executor, moves_ahead: int) -> Block | None:
+        """The next block, told how many moves lie ahead of the axes; None: none has come, or none is wanted."""
+        ...
+
+    def refuse(self, executor: Executor, finding: Diagnostic) -> None:
+        """The last block is wrong: it is to leave no trace."""
+        ...
+
+
 class Inherited(NamedTuple):
-    """What an MDI block finds in force that the one before it left.
+    """What a block finds in force that those before it, typed in or streamed, left.
 
     Attributes:
         modal: G codes.
         shifts: Of the part's zero, as the frame keeps them [mm or deg].
         feed: F as programmed, or None.
         spindle: S as programmed, or None [1/min].
+        memory: What the dialect remembers, where it outlives a program; None: it begins with its own.
     """
 
     modal: Modal
     shifts: list[list[float]]
     feed: float | None
     spindle: float | None
+    memory: object = None
 
     def after_offset(self, name: str, column: int, moved: float) -> "Inherited":
         """The same after a work offset has changed: the one in force shifts the part's zero.
@@ -119,12 +148,14 @@ class RunOptions:
         dry_feed: What all feeds are replaced by in a dry run [mm/min]; None: none.
         search: Source line to begin at: what stands before it is only computed. 0: the beginning.
         inherited: What is in force at the beginning; None: what the control begins with.
+        stream: Where blocks come from, in place of the source.
     """
 
     soft_limits: bool = True
     dry_feed: float | None = None
     search: int = 0
     inherited: Inherited | None = None
+    stream: BlockStream | None = None
 
 
 class ProgramRun:
@@ -274,6 +305,7 @@ class ProgramRun:
             self._begin_singly()
         setpoints = motion.advance(count)
         if len(setpoints):
+            self._move = int(setpoints.move[-1])
             self._forget_behind(int(setpoints.move[0]))
         if single and not self.dropped and not self._walk.paused:
             self._stop_behind_block(motion, setpoints)
@@ -360,13 +392,19 @@ class ProgramRun:
         """Interpret some blocks more; the axes can go once there are moves."""
         most = BLOCKS_AT_REST if self._motion is None else BLOCKS_IN_MOTION
         self._left = BLOCKS_FOR_PLANNER
-        if self.ending is None and len(self._waiting) < self._ahead:
+        stream = self._options.stream
+        if self.ending is None and (stream is not None or len(self._waiting) < self._ahead):
             self._interpret(most)
         self._looks += 1
-        long_enough = self._looks > SLICES_AT_REST
+        if stream is not None and self._motion is None and self.ending is None and stream.quiet:
+            self._end_stream()
+        long_enough = self._looks > SLICES_AT_REST and stream is None
         if self._motion is None and long_enough and len(self._control.path):
             self._finish_chunk(self._control.path.take())
-        enough = long_enough or self.ending is not None or len(self._waiting) >= CHUNKS_AHEAD
+        begins = (
+            len(self._waiting) >= CHUNKS_AHEAD if stream is None else self._count >= STREAMED_AHEAD
+        )
+        enough = long_enough or self.ending is not None or begins
         if self._motion is not None and (self._waiting or self.ending is not None):
             self._motion.work()
         known = self._waiting or self._beginning is not None
@@ -384,6 +422,7 @@ class ProgramRun:
                 part_zero=zero,
                 start=start,
                 largest_override=LARGEST_OVERRIDE,
+                look_ahead=LOOK_AHEAD if self._options.stream is None else STREAMED_LOOK_AHEAD,
             )
         self._takes_any = at_any_rate
         try:
@@ -398,7 +437,7 @@ class ProgramRun:
     def _forget(self) -> None:
         self._motion: LiveMotion | None = None
         self._beginning: LiveMotion | None = None
-        self._looks = self._left = 0
+        self._looks = self._left = self._move = 0
         self._ahead = CHUNKS_AHEAD
         self._takes_any = False
         self._waiting: deque[Chunk] = deque()
@@ -420,22 +459,46 @@ class ProgramRun:
         if not self._waiting and self.ending is None:
             self._interpret(min(BLOCKS_IN_MOTION, self._left))
             self._left -= BLOCKS_IN_MOTION
+        if not self._waiting and self.ending is None and self._options.stream is not None:
+            self._end_stream()
         if not self._waiting and self.ending is None:
             self._finish_chunk(self._control.path.take())
             if not len(self._waiting[-1].moves) and self.ending is None:
                 self.ending = "wait"
         return self._waiting.popleft() if self._waiting else None
 
+    @property
+    def moves_ahead(self) -> int:
+        """Moves that are interpreted and not yet driven."""
+        return self._count + len(self._control.path) - self._move
+
+    def take_streamed(self) -> None:
+        """Interpret what a stream has for the run, before the next slice of time comes to it."""
+        if self.ending is None:
+            self._interpret(BLOCKS_IN_MOTION)
+
+    def _end_stream(self) -> None:
+        """What has been streamed is a whole: what comes now begins another part."""
+        self._control.path.finish()
+        self.ending = "end"
+        self._finish_chunk(self._control.path.take())
+
     def _interpret(self, most: int) -> None:
         """Interpret at most so many blocks, until there are enough moves or the part ends."""
-        control, refused = self._control, None
+        control, refused, stream = self._control, None, self._options.stream
         enough = False
         try:
             while most > 0 and not enough and self.ending is None:
                 most -= 1
                 block, self._found = self._found, None
-                if block is None and not control.ended:
+                if stream is not None:
+                    block = stream.next(self._executor, self.moves_ahead)
+                elif block is None and not control.ended:
                     block = control.program_counter.next()
+                if block is None and stream is not None:
+                    if control.ended:
+                        self._end_stream()
+                    break
                 if block is None:
                     self._executor.finish()
                     self.ending = "end"
@@ -455,11 +518,18 @@ class ProgramRun:
                 self._look_for_stop(block)
                 enough = len(control.path) >= MOVES_AT_ONCE
         except ProgramError as error:
-            self._end_by(error.diagnostic)
+            if stream is None:
+                self._end_by(error.diagnostic)
+            else:
+                stream.refuse(self._executor, error.diagnostic)
         if self._arrival is not None:
             chunk, self._arrival = self._arrival, None
             self._finish_chunk(chunk)
-        elif enough or self.ending is not None:
+        elif (
+            enough
+            or self.ending is not None
+            or (stream is not None and (len(control.path) or refused is not None))
+        ):
             self._finish_chunk(control.path.take(refused))
 
     def _end_by(self, finding: Diagnostic) -> None:
@@ -544,10 +614,13 @@ class ProgramRun:
         """What an MDI block leaves in force for the next one."""
         control, motion = self._control, self._control.motion
         shifts = [list(shift) for shift in control.frame.shifts]
-        return Inherited(control.modal.fork(), shifts, motion.feed, motion.spindle)
+        memory = None if self._options.stream is None else control.memory
+        return Inherited(control.modal.fork(), shifts, motion.feed, motion.spindle, memory)
 
     def _inherit(self, before: Inherited) -> None:
         control, motion = self._control, self._control.motion
+        if before.memory is not None:
+            control.memory = before.memory
         control.modal.restore(before.modal)
         control.frame.set_shifts([list(shift) for shift in before.shifts])
         motion.reframed()

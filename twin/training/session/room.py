@@ -7,7 +7,7 @@ at the same ticks give the same motion, to the last bit.
 import dataclasses
 from collections import deque
 from collections.abc import Iterable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from twin.machine.watching.alarms import Alarm, AlarmCode, AlarmStandsError
 from twin.machine.watching.watch import limit_switches
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray, Function
-from twin.nc.control.settings import ToolData
+from twin.nc.control.settings import ControlSettings, ToolData
 from twin.nc.functions import (
     COOLANT_OFF,
     COOLANT_ON,
@@ -453,11 +453,10 @@ class Room:
         self.label = np.zeros(len(self.label))
         preparation = self.scene.preparation
         try:
-            settings = dataclasses.replace(preparation.settings, **self._situation())
             run = ProgramRun(
                 source,
                 preparation.dialect,
-                settings,
+                self.settings_here(),
                 self.machine.machine,
                 options or RunOptions(),
             )
@@ -478,7 +477,7 @@ class Room:
         return PathToCome(
             source=self.program,
             dialect=preparation.dialect,
-            settings=dataclasses.replace(preparation.settings, **self._situation()),
+            settings=self.settings_here(),
             machine=self.machine.machine,
             search=self.searched,
             stand=self.standing_setpoint,
@@ -489,7 +488,7 @@ class Room:
             frame=self.part_frame,
         )
 
-    def _situation(self) -> dict[str, Any]:
+    def settings_here(self) -> ControlSettings:
         """What the interpreter must know of the machine as it stands."""
         names = self.machine.machine.axes.names
         zero = self.tables.program_zero
@@ -502,14 +501,16 @@ class Room:
             )
         }
         start = self.standing_setpoint - zero
-        return {
-            "start": dict(zip(names, map(float, start), strict=True)),
-            "tools": tools,
-            "machine_zero": dict(zip(names, map(float, -zero), strict=True)),
+        settings = self.scene.preparation.settings
+        return dataclasses.replace(
+            settings,
+            start=dict(zip(names, map(float, start), strict=True)),
+            tools=tools,
+            machine_zero=dict(zip(names, map(float, -zero), strict=True)),
             # A copy: a run that is made again begins with the table as it was.
-            "offsets": {name: dict(values) for name, values in self.tables.offsets.items()},
-            "block_skip": self.scene.preparation.settings.block_skip or self.switches.block_skip,
-        }
+            offsets={name: dict(values) for name, values in self.tables.offsets.items()},
+            block_skip=settings.block_skip or self.switches.block_skip,
+        )
 
     def go_on(self, *, paused: bool = False) -> None:
         """Drive the part of the program that comes next; ``paused``: start is waited for."""

@@ -114,6 +114,13 @@ class Workpiece:
         inside = 0 <= row < rows and 0 <= column < columns
         return float(map_.heights[row, column] - corner[2]) if inside else -math.inf
 
+    def program_place(self, row: int, column: int) -> tuple[float, float]:
+        """X and Y of a cell of the map, program coordinates at C0 [mm]."""
+        map_ = self._cutter.map
+        corner = self._zero[:3] - np.array([*self._frame.center, 0.0])
+        x, y = map_.origin[0] + column * map_.cell, map_.origin[1] + row * map_.cell
+        return float(x - corner[0]), float(y - corner[1])
+
     def take_changed(self) -> Rectangle:
         """Cells that have changed since the last call; none when the rows end before they begin."""
         changed, self._changed = self._changed, (0, 0, 0, 0)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Make the meshes of the shipped machines with trimesh: ``python scripts/drawing/make_meshes.py [MACHINE ...]``.
+"""Make the meshes of the shipped machines with trimesh: ``python models/make_meshes.py [MACHINE ...]``.
 
 Every part is a join of convex bodies and bodies of revolution, written as one STL per body and
 material into ``models/<machine>/assets``. All lengths are metres; parts are drawn where they stand
@@ -16,7 +16,7 @@ import trimesh
 
 Mesh = trimesh.Trimesh
 Point = tuple[float, float, float]
-MODELS = pathlib.Path(__file__).resolve().parents[2] / "models"
+MODELS = pathlib.Path(__file__).resolve().parent
 
 
 def hull(points: np.ndarray | list[Point]) -> Mesh:

@@ -1,19 +1,16 @@
-"""A training room with its page open for a long time: scripts/bench --room [MINUTES].
+"""A training room with its page open for a long time.
 
 The scene's program is cut again and again, each time from a new blank, while a page and a watcher
-look on. A line for each minute says how machine time has kept up with the wall's and what the room
-needs of memory; the exit code is 1 where time was lost or memory has grown.
+look on; with ``-s`` each look says how machine time has kept up with the wall's and what the room needs of memory.
 """
 
-import sys
 import time
 from collections.abc import Iterator
 from typing import NamedTuple
 
+import pytest
 from benches.training_room import RoomProcess, room_process
 from panel_player import browser
-from rich.console import Console
-from rich.table import Table
 
 MINUTES = 20.0
 LOOK_S = 10.0
@@ -43,9 +40,8 @@ def looks(room: RoomProcess, minutes: float) -> Iterator[Look]:
         time.sleep(LOOK_S)
 
 
-def main(minutes: float) -> int:
-    """Look on; the exit code."""
-    table = Table("minute", "machine time per time", "lost", "memory", "programs begun")
+@pytest.mark.by_hand("twenty minutes of real time with a browser")
+def test_a_long_session_loses_no_time_and_does_not_grow() -> None:
     seen: list[Look] = []
     with room_process() as room, browser() as opened:
         addresses = room.ask("addresses")
@@ -53,22 +49,9 @@ def main(minutes: float) -> int:
             page = opened.new_context(viewport={"width": 1280, "height": 720}).new_page()
             page.goto(addresses[role])
             page.wait_for_selector("body[data-view=ready]")
-        for look in looks(room, minutes):
+        for look in looks(room, MINUTES):
             seen.append(look)
-            if int(look.wall_s / 60.0) > len(table.rows):
-                first = seen[0]
-                factor = (look.machine_s - first.machine_s) / (look.wall_s - first.wall_s)
-                table.add_row(
-                    f"{look.wall_s / 60.0:.0f}", f"{factor:.4f}", f"{look.lost_s:.1f} s",
-                    f"{look.memory_mb:.0f} MB", str(look.programs),
-                )  # fmt: skip
-                line = ", ".join(str(next(reversed(list(each.cells)))) for each in table.columns)
-                Console(stderr=True).print(line)
-    Console(width=100).print(table)
+            print(look, flush=True)
     settled = [one.memory_mb for one in seen if one.wall_s > 60.0 * SETTLED_MINUTES]
-    grown = max(settled, default=0.0) - min(settled[:1], default=0.0)
-    return int(seen[-1].lost_s > 0.0 or grown > GROWN_MB)
-
-
-if __name__ == "__main__":
-    sys.exit(main(float(sys.argv[1]) if len(sys.argv) > 1 else MINUTES))
+    assert seen[-1].lost_s == 0.0
+    assert max(settled) - settled[0] <= GROWN_MB

@@ -114,7 +114,7 @@ def complaints() -> Iterator[str]:
 def serving(job: Path) -> Iterator[Served]:
     """``twin serve`` in a process of its own."""
     command = [sys.executable, "-m", "twin", "serve", str(job), "--buffer", str(BUFFER)]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:  # noqa: S603 (own)
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
         try:
             assert process.stdout is not None
             address = urlsplit(process.stdout.readline().strip())
