@@ -259,13 +259,17 @@ DEPTHS = {
         [10, 2, -5, 2, -4.8, -10, 2, -9.8, -15, 50],
     ),
     "M89 calls at every place until M99": (
-        "CYCL DEF 201 REAMING Q200=2 Q201=-5 Q206=100 Q211=0 Q208=250 Q203=0 Q204=20\n"
-        "L X+10 FMAX M89\nL X+20 FMAX M99\nL X+30 FMAX",
+        (
+            "CYCL DEF 201 REAMING Q200=2 Q201=-5 Q206=100 Q211=0 Q208=250 Q203=0 Q204=20\n"
+            "L X+10 FMAX M89\nL X+20 FMAX M99\nL X+30 FMAX"
+        ),
         [10, 2, -5, 2, 20, 20, 2, -5, 2, 20, 20],
     ),
     "CYCL CALL POS calls at a place above the part": (
-        "CYCL DEF 201 REAMING Q200=2 Q201=-5 Q206=100 Q211=0 Q208=250 Q203=0 Q204=20\n"
-        "CYCL CALL POS X+10 Y+0 Z+0 FMAX",
+        (
+            "CYCL DEF 201 REAMING Q200=2 Q201=-5 Q206=100 Q211=0 Q208=250 Q203=0 Q204=20\n"
+            "CYCL CALL POS X+10 Y+0 Z+0 FMAX"
+        ),
         [10, 2, -5, 2, 20],
     ),
     "Q203 is where the surface lies, absolute": (
