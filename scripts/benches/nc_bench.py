@@ -37,12 +37,12 @@ _SETTINGS = ControlSettings(
     tools={1: ToolData(radius=2.0, length=60.0)},
     decimal_point="calculator",
 )
-_SAME_LANGUAGE = ("gost", "fanuc", "linuxcnc")
+_SAME_LANGUAGE = ("gost", "fanuc", "linuxcnc", "sinumerik")
 """Dialects that read these programs as they stand."""
 
 
 def rows() -> Iterator[Row]:
-    """Lines and arcs with helices in three dialects beside each peer; programs that compute beside ``rs274``."""
+    """Lines and arcs with helices in several dialects beside each peer; programs that compute beside ``rs274``."""
     with tempfile.TemporaryDirectory() as folder:
         for task, path in _programs(Path(folder)):
             peers = [measure(path) for measure in (_nc_gcode_interpreter, _rs274)]

@@ -3,11 +3,14 @@
 import functools
 import json
 import os
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
 
+from twin.check import runner
 from twin.check.outcome import CheckOutcome
 from twin.check.program import file_of
 from twin.check.runner import check_all, check_program
@@ -150,6 +153,42 @@ def test_programs_are_spread_over_processes(tmp_path: Path):
     outcomes = list(check_all(paths, functools.partial(mark, folder=tmp_path), jobs=2))
     assert {outcome.program for outcome in outcomes} == {str(path) for path in paths}
     assert str(os.getpid()) not in {path.read_text() for path in tmp_path.iterdir()}
+
+
+@pytest.fixture
+def at_once(monkeypatch: pytest.MonkeyPatch) -> Callable[[float], int]:
+    """Check eight programs on two cores, each taking some time [s]; how many were checked at once."""
+    running, most = 0, 0
+
+    def check(path: Path, seconds: float) -> CheckOutcome:
+        nonlocal running, most
+        running += 1
+        most = max(most, running)
+        time.sleep(seconds)
+        running -= 1
+        return outcome_of(str(path))
+
+    def checked(seconds: float) -> int:
+        programs = [Path(str(number)) for number in range(8)]
+        found = list(check_all(programs, functools.partial(check, seconds=seconds)))
+        assert {each.program for each in found} == set(map(str, programs))
+        return most
+
+    monkeypatch.setattr(runner, "available_cores", lambda: 2)
+    monkeypatch.setattr(runner, "_pool", lambda workers, _: ThreadPoolExecutor(workers))
+    return checked
+
+
+def test_programs_that_are_over_soon_are_left_to_one_worker(at_once: Callable[[float], int]):
+    assert at_once(0.0) == 1
+
+
+@pytest.mark.parametrize("limit", ["WORKER_PAYS_S", "LONG_S"])
+def test_work_that_lasts_is_spread(
+    at_once: Callable[[float], int], monkeypatch: pytest.MonkeyPatch, limit: str
+):
+    monkeypatch.setattr(runner, limit, 0.01)
+    assert at_once(0.05) == 2
 
 
 @pytest.mark.processes

@@ -2,7 +2,10 @@
 
 import concurrent.futures
 import signal
+import time
+from collections import deque
 from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future
 from concurrent.futures.process import BrokenProcessPool
 from multiprocessing.context import SpawnContext
 from multiprocessing.synchronize import Lock
@@ -15,6 +18,11 @@ from twin.processor import available_cores
 
 TaskT = TypeVar("TaskT")
 """A program or a variant of one."""
+WORKER_PAYS_S = 8.0
+"""Work that is left for one worker from which on another one shortens it: to begin costs it some 3 s, of which
+half is work that the first one has done already (libraries, loading of kernels) [s]."""
+LONG_S = 6.0
+"""A program that takes longer is none of those that are over before another worker has begun [s]."""
 
 
 def check_program(path: Path, settings: CheckSettings) -> CheckOutcome:
@@ -40,7 +48,7 @@ def check_all(
     Args:
         programs: What to check.
         check: How one is checked; sent to other processes, so a module's function or a partial.
-        jobs: How many processes; one for each core by default.
+        jobs: How many processes; by default as many as there are cores, where that pays: one begins.
 
     Yields:
         The outcomes as they become known, in any order.
@@ -52,21 +60,37 @@ def check_all(
         return
     # Fresh processes: a fork of one that has run threads or OpenGL may hang.
     context = SpawnContext()
-    crashed = []
+    waiting, running = deque(programs), dict[Future[CheckOutcome], TaskT]()
+    crashed: list[TaskT] = []
+    at_a_time, is_warm = workers if jobs else 1, False
     with _pool(workers, context) as pool:
-        futures = {pool.submit(check, path): path for path in programs}
         try:
-            for future in concurrent.futures.as_completed(futures):
-                try:
-                    yield future.result()
-                except BrokenProcessPool:
-                    crashed.append(futures[future])
+            while waiting or running:
+                while waiting and len(running) < at_a_time:
+                    future = pool.submit(check, waiting[0])
+                    running[future] = waiting.popleft()
+                began = time.perf_counter()
+                patience_s = LONG_S if at_a_time < workers else None
+                done, _ = concurrent.futures.wait(running, patience_s, FIRST_COMPLETED)
+                # The first program takes the worker's own start besides.
+                left_s = (time.perf_counter() - began) * len(waiting) * is_warm
+                if not done or left_s > WORKER_PAYS_S:
+                    at_a_time = workers
+                is_warm = bool(done)
+                for future in done:
+                    program = running.pop(future)
+                    try:
+                        yield future.result()
+                    except BrokenProcessPool:
+                        crashed.append(program)
+        except BrokenProcessPool:
+            crashed += waiting
         finally:
             # When interrupted, what has not begun shall not begin.
             pool.shutdown(wait=False, cancel_futures=True)
     # A process that died took every waiting program with it: each gets a process of its own.
-    for path in crashed:
-        yield _check_alone(path, check, context)
+    for program in crashed:
+        yield _check_alone(program, check, context)
 
 
 def run_tasks(

@@ -24,7 +24,8 @@ MachineArgument = Annotated[
     str, typer.Argument(help="A shipped machine's name, or a machine.toml.", show_default=False)
 ]
 JobsOption = Annotated[
-    int | None, typer.Option("--jobs", min=1, help="How many at a time; default: all cores.")
+    int | None,
+    typer.Option("--jobs", min=1, help="How many at a time; default: all cores, where that pays."),
 ]
 ClusterOption = Annotated[
     str | None,

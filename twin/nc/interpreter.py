@@ -12,7 +12,7 @@ from twin.nc.control.settings import ControlSettings
 from twin.nc.coverage import Coverage
 from twin.nc.line_kernel.choice import usual_kernel
 from twin.nc.line_kernel.plain_state import LineKernel, LineRuns
-from twin.nc.path.move_columns import CHUNK
+from twin.nc.path.move_columns import CHUNK, Refused
 from twin.nc.text.blocks import Block
 from twin.nc.text.diagnostics import Diagnostic, ProgramError
 from twin.nc.text.source import Source
@@ -98,7 +98,8 @@ class Interpretation:
         Raises:
             ProgramError: The program is wrong; the moves before the wrong block have been yielded.
         """
-        control, refused = self._control, None
+        control, begun = self._control, None
+        columns = control.path.columns
         kernel = self._kernel(len(self.source.lines))
         lines = None if kernel is None else LineRuns(self._executor, kernel)
         try:
@@ -106,28 +107,28 @@ class Interpretation:
             while not control.ended:
                 if lines is not None and (run := lines.run()):
                     self.coverage.note(run.start + 1, run.stop + 1)
-                    if len(control.path) >= CHUNK:
-                        yield control.path.take()
+                    if columns.count >= CHUNK:
+                        yield columns.take()
                     continue
                 block = control.program_counter.next()
                 if block is None:
                     break
-                refused = control.path.refusal(block.line)
+                begun = (columns.count, len(columns.events), block.line)
                 self._executor.run(block)
-                refused = None
+                begun = None
                 self._note(block)
-                if len(control.path) >= CHUNK:
-                    yield control.path.take()
+                if columns.count >= CHUNK:
+                    yield columns.take()
             self._executor.finish()
         except ProgramError:
-            yield control.path.take(refused)
+            yield columns.take(None if begun is None else Refused(*begun))
             raise
-        yield control.path.take()
+        yield columns.take()
 
     def _note(self, block: Block) -> None:
         """A block was run."""
         control, tools = self._control, self._control.tools
-        if not control.settings.skips(block):
+        if not (block.skippable and control.settings.skips(block)):
             self.coverage.note(block.line, block.line + 1)
         if int(control.modal.active.get("compensation", _NO_COMPENSATION)) in _COMPENSATION:
             self.compensated.add(block.line)

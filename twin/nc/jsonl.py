@@ -1,4 +1,11 @@
-"""What the interpreter made of a program, as lines of JSON or of text."""
+"""What the interpreter made of a program, as lines of JSON or of text.
+
+``start`` and ``end`` of a move are where the axes are: the coordinates of the job's part zero, for the tip of the
+job's first tool, whose length the part zero was taken with. A work offset and a tool length in force move them:
+with a tool that is 35 mm longer than the first under G43, a programmed Z2 ends at Z37. ``display``, where it is
+not ``end``, is what the control's screen shows, which is what the program says: Z2. The text for people shows that
+alone. Moves under radius compensation are those of the tool centre, and have ``tool_center``.
+"""
 
 import itertools
 import json

@@ -42,7 +42,7 @@ def tool_named(control: Control, name: str, word: Word) -> int:
     named = {tool.name.upper(): number for number, tool in tools.table.items() if tool.name}
     if name in named:
         return named[name]
-    if name.isdigit() and (int(name) in tools.table or not tools.table):
+    if name.isdigit():
         return int(name)
     known = tools.names
     if name not in known:

@@ -255,18 +255,21 @@ class Control:
                 word = words.pop(name)
                 if name not in self.settings.axis_words or number_of(word) != 0.0:
                     refuse_axis(self, word)
-        return [(columns[each], words.pop(each)) for each in list(words) if each in columns]
+        found: list[tuple[int, Word]] = []
+        for each in tuple(words):
+            if each in columns:
+                found.append((columns[each], words.pop(each)))  # noqa: PERF401 (a call less)
+        return found
 
     def target(self) -> list[float]:
         """Take the axis words; the programmed position that they ask for, shape (k,)."""
         target, linear = list(self.motion.programmed), self.motion.linear
         unit, relative = self.modal.unit, self.modal.incremental
         for index, word in self.take_axis_words():
-            incremental = word.incremental or (relative and not word.mark)
-            here = target[index]
             written = word.value
             assert isinstance(written, float)
-            value = axis_target(written, unit, linear[index], incremental, here)
+            counts = word.incremental or (relative and not word.mark)
+            value = axis_target(written, unit, linear[index], counts, target[index])
             if not -LARGEST_COORDINATE <= value <= LARGEST_COORDINATE:
                 self.fail("number-range", f"{word.text} is farther than any machine reaches", word)
             target[index] = value
@@ -290,11 +293,17 @@ class Control:
 
     def line_to(self, target: list[float], *, rapid: bool) -> None:
         """Move straight to a programmed position; nothing when it stands there already."""
-        self.motion.line_to(target, self.block, rapid=rapid)
+        self.motion.move_to(target, self.block, rapid=rapid)
 
     def arc_to(self, target: list[float], center: Point, sweep: float) -> None:
-        """Move on an arc about the plane's normal; arguments as for ``Motion.arc_to``."""
-        self.motion.arc_to(target, self.block, center, sweep)
+        """Move on an arc about the plane's normal.
+
+        Args:
+            target: Programmed position of its end, shape (k,).
+            center: Abscissa and ordinate of its programmed centre [mm].
+            sweep: Signed angle with all turns [deg].
+        """
+        self.motion.move_to(target, self.block, arc=self.motion.arc(center, sweep))
 
     def dwell(self, seconds: float) -> None:
         """Wait."""

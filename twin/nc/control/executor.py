@@ -12,7 +12,7 @@ from twin.nc.control.control import Control, integer_of, number_of
 from twin.nc.control.dialect import Dialect
 from twin.nc.control.modal import ModalChanges
 from twin.nc.control.settings import ControlSettings
-from twin.nc.control.sorting import Codes, SortedBlock, WordSorter
+from twin.nc.control.sorting import Codes, Functions, WordSorter
 from twin.nc.functions import starts_spindle, turns_behind
 from twin.nc.text.blocks import Assignment, Block, Statement, Word
 from twin.nc.text.expressions import ExpressionError
@@ -35,6 +35,7 @@ class Executor:
             dialect, dialect.rules, letters, modal, settings, source, self.run
         )
         self._sorter = WordSorter(control, dialect)
+        self._repeats = dialect.words.repeat != ""
         self._pointless = dialect.rules.pointless(settings)
         modal.put(dialect.codes.start_state)
         for number in dialect.codes.start:
@@ -75,28 +76,27 @@ class Executor:
         control = self.control
         control.block = block
         control.report.line = block.line
-        if control.settings.skips(block):
+        if block.skippable and control.settings.skips(block):
             return
         if self._pointless:
             block = control.block = self.dialect.rules.count(control, block)
-        if self.dialect.words.repeat:
+        if self._repeats:
             block = self._repeated(block)
         if block.statement is not None:
             self._run_statement(block.statement)
             return
-        found = self._sorter.sort(block.words)
+        codes, functions = self._sorter.sort(block.words)
         if block.assignments:
             self._assign(block.assignments)
-        restore = self._apply_codes(found.codes)
-        self._run_in_order(found)
+        restore = self._apply_codes(codes) if codes else ()
+        self._run_in_order(codes, functions)
         if control.words or control.series:
             self._refuse_unused()
         for replaced in restore:
             control.modal.put(replaced)
 
-    def _run_in_order(self, block: SortedBlock) -> None:
-        """All that the block does, when its modal codes are in force."""
-        codes, functions = block
+    def _run_in_order(self, codes: Codes, functions: Functions) -> None:
+        """All that a block does, when its modal codes are in force."""
         control, before_codes = self.control, self.dialect.words.before_codes
         instead = None
         for _, code in codes:

@@ -1,5 +1,6 @@
 """The motion of a control: where it stands, how fast it goes, and what becomes of programmed targets."""
 
+import functools
 import math
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
@@ -7,7 +8,7 @@ from typing import Any
 from twin.nc.control.modal import Modal
 from twin.nc.control.settings import ControlSettings
 from twin.nc.geometry.arcs import Point
-from twin.nc.geometry.frame import Frame, arc_about, moved_shift
+from twin.nc.geometry.frame import Arc, Frame, arc_about, moved_shift
 from twin.nc.geometry.planes import Plane, Vector
 from twin.nc.path.move_columns import FEED, NAN, RAPID, Segment
 from twin.nc.path.moves import (
@@ -33,8 +34,8 @@ from twin.nc.path.segments import direction_of
 from twin.nc.text.blocks import Block
 from twin.nc.text.reporter import Reporter
 
-NO_NORMAL = (NAN, NAN, NAN)
-"""That of a line."""
+_STRAIGHT = (None, (NAN, NAN, NAN), 0.0)
+"""Centre, normal and sweep of a line."""
 
 
 class Motion:
@@ -103,9 +104,16 @@ class Motion:
 
     # --- moves
 
-    def line_to(self, target: list[float], block: Block, *, rapid: bool) -> None:
-        """Move straight to a programmed position for a block; nothing when it stands there already."""
-        self._add(target, block, rapid=rapid)
+    def arc(self, center: Point, sweep: float) -> Arc:
+        """An arc about the plane's normal, as the part sees it.
+
+        Args:
+            center: Abscissa and ordinate of its programmed centre [mm].
+            sweep: Signed angle with all turns [deg].
+        """
+        return self.frame.arc(
+            arc_about(self.modal.plane.directions, self.programmed, center, sweep)
+        )
 
     def spline_to(self, target: list[float], block: Block, *, flat: bool) -> None:
         """Move on a spline through a programmed position; ``flat``: its height goes linearly.
@@ -114,32 +122,28 @@ class Motion:
         """
         if target == self.programmed:
             self.path.end_spline()
-        self._add(target, block, rapid=False, spline=(flat,))
+        self.move_to(target, block, add=functools.partial(self.path.add_point, flat=flat))
 
-    def arc_to(self, target: list[float], block: Block, center: Point, sweep: float) -> None:
-        """Move on an arc about the plane's normal.
-
-        Args:
-            target: Programmed position of its end, shape (k,).
-            block: That asks for it.
-            center: Abscissa and ordinate of its programmed centre [mm].
-            sweep: Signed angle with all turns [deg].
-        """
-        arc = self.frame.arc(arc_about(self.modal.plane.directions, self.programmed, center, sweep))
-        self._add(target, block, rapid=False, center=arc.center, normal=arc.normal, sweep=arc.sweep)
-
-    def _add(
+    def move_to(
         self,
         target: list[float],
         block: Block,
         *,
-        rapid: bool,
-        center: Vector | None = None,
-        normal: Vector = NO_NORMAL,
-        sweep: float = 0.0,
-        spline: tuple[bool] | None = None,
+        rapid: bool = False,
+        arc: Arc | None = None,
+        add: Callable[[Segment], None] | None = None,
     ) -> None:
+        """Move to a programmed position; nothing when it stands there already.
+
+        Args:
+            target: The position, shape (k,).
+            block: That asks for it.
+            rapid: At the machine's own speed.
+            arc: On which, as the part sees it; None: straight.
+            add: What takes the move; None: the path, as it is.
+        """
         end = self.frame.to_part(target)
+        center, normal, sweep = _STRAIGHT if arc is None else arc
         if center is None:
             length = line_length(self.part, end)
         else:
@@ -149,22 +153,7 @@ class Motion:
             return
         if self.before_move is not None:
             self.before_move(length)
-        modal, is_arc = self.modal, center is not None
-        if rapid:
-            feed = rapid_feed(self.rapid_feed, NAN if self.feed is None else self.feed)
-        else:
-            feed = self._feed_per_minute(end, length, is_arc)
-            if self.feed_rule is not PATH_COUNTS:
-                feed = self._pace_by_rule(feed, end, length, center, sweep)
-        acceleration, deceleration = self.acceleration, self.deceleration
-        if rapid:
-            acceleration = _either(self.rapid_acceleration, acceleration)
-            deceleration = _either(self.rapid_deceleration, deceleration)
-        if self.axis_limits or self.axis_accelerations or self.axis_decelerations:
-            share = self._axis_shares(end, length, is_arc)
-            feed = _limited(feed, self.axis_limits, share)
-            acceleration = _limited(acceleration, self.axis_accelerations, share)
-            deceleration = _limited(deceleration, self.axis_decelerations, share)
+        feed, acceleration, deceleration = self._rates(end, length, arc, rapid=rapid)
         move = Segment(  # by place: names would cost a block twice what it takes to make one
             RAPID if rapid else FEED,
             block.line,
@@ -173,18 +162,18 @@ class Motion:
             end,
             target,
             feed,
-            RAPIDS_END if rapid else modal.corner,
-            modal.corner_tolerance,
+            RAPIDS_END if rapid else self.modal.corner,
+            self.modal.corner_tolerance,
             acceleration,
             deceleration,
             center,
             normal,
             sweep,
         )
-        if spline is None:
+        if add is None:
             self.path.add(move)
         else:
-            self.path.add_point(move, flat=spline[0])
+            add(move)
         self.last = move
         self.programmed = target
         self.part = end
@@ -210,6 +199,28 @@ class Motion:
 
     # --- feeds
 
+    def _rates(
+        self, end: list[float], length: float, arc: Arc | None, *, rapid: bool
+    ) -> tuple[float, float, float]:
+        """Feed, acceleration and deceleration of a move along its path."""
+        acceleration, deceleration = self.acceleration, self.deceleration
+        if rapid:
+            feed = rapid_feed(self.rapid_feed, NAN if self.feed is None else self.feed)
+            acceleration = _either(self.rapid_acceleration, acceleration)
+            deceleration = _either(self.rapid_deceleration, deceleration)
+        else:
+            feed = self._feed_per_minute(end, length, arc is not None)
+            if self.feed_rule is not PATH_COUNTS and (arc is not None or self.feed_rule.degree):
+                feed = self._pace_by_rule(feed, end, length, arc)
+        if not (self.axis_limits or self.axis_accelerations or self.axis_decelerations):
+            return feed, acceleration, deceleration
+        share = self._axis_shares(end, length, arc is not None)
+        return (
+            _limited(feed, self.axis_limits, share),
+            _limited(acceleration, self.axis_accelerations, share),
+            _limited(deceleration, self.axis_decelerations, share),
+        )
+
     def _axis_shares(self, end: list[float], length: float, is_arc: bool) -> list[float]:
         """How much of the path's speed each axis takes at most."""
         shares = [abs(new - old) / length for new, old in zip(end, self.part, strict=True)]
@@ -227,17 +238,15 @@ class Motion:
             feed, modal.feed_mode, length, turning, modal.unit, speed, self._default_feeds
         )
 
-    def _pace_by_rule(
-        self, pace: float, end: list[float], length: float, center: Vector | None, sweep: float
-    ) -> float:
+    def _pace_by_rule(self, pace: float, end: list[float], length: float, arc: Arc | None) -> float:
         """The pace of a move whose F counts another length than that of its path [mm/min or deg/min]."""
         ways = (new - old for new, old in zip(end, self.part, strict=True))
         turned = math.hypot(*(way for way, line in zip(ways, self.linear, strict=True) if not line))
-        turning = center is None and only_turns(self.part, end, self.linear)
+        turning = arc is None and only_turns(self.part, end, self.linear)
         move = Displacement(length, turned, turning)
-        if center is not None:
-            radius = arc_radius(self.part, center)
-            move = move._replace(radius=radius, around=radius * math.radians(abs(sweep)))
+        if arc is not None:
+            radius = arc_radius(self.part, arc.center)
+            move = move._replace(radius=radius, around=radius * math.radians(abs(arc.sweep)))
         return pace_by_rule(self.feed_rule, pace, move, self.modal.feed_mode, self.modal.unit)
 
     # --- coordinates

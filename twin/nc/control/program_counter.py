@@ -2,12 +2,12 @@
 
 import dataclasses
 import re
-from collections.abc import Callable, Container, Iterator
+from collections.abc import Callable, Container, Hashable, Iterator
 from typing import NoReturn, TypeVar, cast
 
 from twin.nc.canonical import NO_BLOCK_NUMBER
 from twin.nc.control.modal import Modal
-from twin.nc.text.blocks import Block, Location, Statement
+from twin.nc.text.blocks import Block, Location
 from twin.nc.text.diagnostics import ProgramError
 from twin.nc.text.lexer import Lexer
 from twin.nc.text.reporter import Reporter
@@ -69,7 +69,7 @@ class ProgramCounter:
         self.calls: list[Call] = []
         self._labels: FoundInText[int | str, list[Location]] | None = None
         self._cache = FoundInText[int, tuple[Block, ...]]()
-        self._parsed = FoundInText[Statement, object]()
+        self._parsed = FoundInText[Hashable, object]()
         self._told_to_end = False
         self._here: tuple[Block, ...] = ()
         self._here_line = -1
@@ -106,7 +106,7 @@ class ProgramCounter:
         if line == self._here_line and part >= len(self._here):
             line, part = line + 1, 0
         while line < self._line_count:
-            blocks = self._blocks(line)
+            blocks = self._here if line == self._here_line else self._blocks(line)
             if part < len(blocks):
                 self._line, self._part = line, part + 1
                 if (line, part) > self._furthest:
@@ -225,13 +225,13 @@ class ProgramCounter:
             self._refuse_label(label, len(locations), fail_at, word)
         return locations[0]
 
-    def parsed(self, statement: Statement, parse: Callable[[], Parsed]) -> Parsed:
-        """What a statement says, read when it is run first."""
-        found = self._parsed.get(statement)
+    def parsed(self, text: Hashable, parse: Callable[[], Parsed]) -> Parsed:
+        """What a statement, or what was made of one, says: read when it is run first."""
+        found = self._parsed.get(text)
         if found is None:
             found = parse()
             if len(self._parsed) < _CACHED_LINES:
-                self._parsed[statement] = found
+                self._parsed[text] = found
         return cast("Parsed", found)
 
     def labels(self) -> dict[int | str, list[Location]]:

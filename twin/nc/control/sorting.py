@@ -14,18 +14,6 @@ Codes = Sequence[tuple[Word, GCode]]
 Functions = Sequence[tuple[Word, MCode]]
 
 
-class SortedBlock(NamedTuple):
-    """The codes of a block.
-
-    Attributes:
-        codes: Its G codes, in the order in which they take effect.
-        functions: Its M functions, in the order of the text.
-    """
-
-    codes: Codes
-    functions: Functions
-
-
 class WordSorter:
     """Sorts the words of blocks for one control."""
 
@@ -37,8 +25,11 @@ class WordSorter:
         expressions = dialect.syntax.expressions
         self._vacant = expressions is not None and expressions.vacant
 
-    def sort(self, block: Sequence[Word]) -> SortedBlock:
+    def sort(self, block: Sequence[Word]) -> tuple[Codes, Functions]:
         """Sort the words of a block; those that are no codes become the control's ``words`` and ``series``.
+
+        Returns:
+            Its G codes, in the order in which they take effect; its M functions, in the order of the text.
 
         Raises:
             ProgramError: Some of them cannot stand in one block.
@@ -48,15 +39,19 @@ class WordSorter:
         functions: list[tuple[Word, MCode]] = []
         words: dict[str, Word] = {}
         control.codes, control.words, control.series = codes, words, []
-        special = self._special
+        special, known = self._special, dialect.codes.g
         for word in block:
             address, value = word.address, word.value
-            if address not in special and address not in words and type(value) is float:
-                words[address] = word
-                continue
+            if type(value) is float:
+                if address not in special and address not in words:
+                    words[address] = word
+                    continue
+                if address == "G" and (code := known.get(value)) is not None and not code.refused:
+                    codes.append((word, code))
+                    continue
             if isinstance(value, Expression) and address not in dialect.words.references:
                 value = control.compute(value, word)
-                word = word._replace(value=value)
+                word = Word(address, value, *word[2:])  # in a third of the time of ``_replace``
                 if value != value:
                     if not self._vacant:
                         message = f"the value of '{address}' is no number"
@@ -87,7 +82,7 @@ class WordSorter:
             codes = codes_that_count(codes, last_of_group=dialect.codes.last_of_group_counts)
             self._refuse_conflict(conflict_of(codes, functions))
             control.codes = codes = in_order(codes, dialect.codes.groups)
-        return SortedBlock(codes, functions)
+        return codes, functions
 
     def _takes_m(self, block: Sequence[Word]) -> bool:
         """Whether M is a word of one of the block's G codes, and no machine function."""

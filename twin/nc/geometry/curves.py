@@ -199,8 +199,11 @@ def crossing_of(older: Curve, younger: Curve) -> tuple[bool, float, float]:
     found, left, right = False, 0.0, 0.0
     for number in range(count):
         point = first if number == 0 else second
-        one, other = along(older, point), along(younger, point)
-        if inside(older, one) and inside(younger, other):
+        one = along(older, point)
+        if not inside(older, one):
+            continue
+        other = along(younger, point)
+        if inside(younger, other):
             if not found or (one, other) < (left, right):
                 left, right = one, other
             found = True
@@ -209,6 +212,8 @@ def crossing_of(older: Curve, younger: Curve) -> tuple[bool, float, float]:
 
 def inside(curve: Curve, share: float) -> bool:
     """Whether a place lies between the curve's ends, not near them."""
+    if not 0.0 < share < 1.0:
+        return False
     end = _END / max(length_of(curve), _END)
     return end < share < 1.0 - end
 

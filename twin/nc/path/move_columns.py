@@ -25,6 +25,8 @@ CHUNK = 4096
 """Moves in a chunk: enough to make NumPy's overhead vanish, little to hold in memory."""
 
 NAN = math.nan
+_NOWHERE = (NAN, NAN, NAN)
+"""The centre of a line."""
 
 LINE, ARC = int(Shape.LINE), int(Shape.ARC)
 RAPID, FEED = Motion.RAPID, Motion.FEED
@@ -66,25 +68,6 @@ class Segment:
     center: Vector | None = None
     normal: Vector = (NAN, NAN, NAN)
     sweep: float = 0.0
-
-    @property
-    def codes(self) -> tuple[int, ...]:
-        """Motion, shape, line, block and corner."""
-        shape = LINE if self.center is None else ARC
-        return (int(self.motion), shape, self.line, self.block, int(self.corner))
-
-    @property
-    def values(self) -> tuple[float, ...]:
-        """Centre, normal, sweep, feed, corner tolerance, acceleration and deceleration."""
-        return (
-            *((NAN, NAN, NAN) if self.center is None else self.center),
-            *self.normal,
-            self.sweep,
-            self.feed,
-            self.corner_tolerance,
-            self.acceleration,
-            self.deceleration,
-        )
 
 
 class Refused(NamedTuple):
@@ -128,6 +111,7 @@ class MoveColumns:
 
     Attributes:
         count: How many moves.
+        events: Each with its place among the moves.
     """
 
     def __init__(self, axes: Axes) -> None:
@@ -139,7 +123,7 @@ class MoveColumns:
 
     def _clear(self) -> None:
         self._parts: list[tuple[IntArray, FloatArray, FloatArray]] = []
-        self._events: list[Event] = []
+        self.events: list[Event] = []
         self.count = 0
         self._clear_lists()
 
@@ -148,16 +132,21 @@ class MoveColumns:
         self._values: list[float] = []
         self._positions: list[float] = []
 
-    @property
-    def events(self) -> int:
-        """How many events."""
-        return len(self._events)
-
     def add(self, move: Segment) -> None:
         """Append a move."""
-        self._codes += move.codes
-        self._values += move.values
-        positions = self._positions
+        center = move.center
+        shape = LINE if center is None else ARC
+        self._codes += (move.motion, shape, move.line, move.block, move.corner)
+        values, positions = self._values, self._positions
+        values += _NOWHERE if center is None else center
+        values += move.normal
+        values += (
+            move.sweep,
+            move.feed,
+            move.corner_tolerance,
+            move.acceleration,
+            move.deceleration,
+        )
         positions += move.start
         positions += move.end
         positions += move.display
@@ -187,7 +176,7 @@ class MoveColumns:
 
     def add_event(self, event: Event) -> None:
         """Append an event after the moves so far."""
-        self._events.append(dataclasses.replace(event, before=self.count))
+        self.events.append(dataclasses.replace(event, before=self.count))
 
     def take(self, refused: "Refused | None" = None) -> Chunk:
         """All that was appended but for what a refused block did, as columns; nothing is left here."""
@@ -196,7 +185,7 @@ class MoveColumns:
         none = (np.zeros((0, 5), np.int64), np.zeros((0, 11)), np.zeros((0, 3, k)))
         columns = zip(*(self._parts or [none]), strict=True)
         codes, values, positions = (np.concatenate(each) for each in columns)
-        events = self._events
+        events = self.events
         if refused is not None:
             kept = codes[:, 2] != refused.line
             kept[: refused.moves] = True

@@ -23,6 +23,7 @@ class Path:
     """Takes moves and events in program order.
 
     Attributes:
+        columns: What has been emitted.
         position: Where the emitted path has come to, shape (k,) [mm or deg].
         compensation: Radius compensation of what it takes.
         defer: Takes an event that happens behind moves which a dialect holds back; False: it holds none.
@@ -31,7 +32,7 @@ class Path:
     """
 
     def __init__(self, axes: Axes, start: list[float], report: Reporter) -> None:
-        self._columns = MoveColumns(axes)
+        self.columns = MoveColumns(axes)
         self._report = MoveReport(report)
         self._before: Segment | None = None
         self._spline: Spline | None = None
@@ -44,15 +45,15 @@ class Path:
         self.leads: Callable[[Segment], None] | None = None
 
     def __len__(self) -> int:
-        return self._columns.count
+        return self.columns.count
 
     def take(self, refused: Refused | None = None) -> Chunk:
         """All that has been emitted but for what a refused block did, as columns."""
-        return self._columns.take(refused)
+        return self.columns.take(refused)
 
     def refusal(self, line: int) -> Refused:
         """That the block of a line, which comes next, is refused."""
-        return Refused(self._columns.count, self._columns.events, line)
+        return Refused(self.columns.count, len(self.columns.events), line)
 
     def finish(self) -> None:
         """Nothing follows: emit what the stages hold."""
@@ -72,7 +73,10 @@ class Path:
         if self._spline is not None:
             self._end_spline(move)
         self._before = move
-        self._round(move)
+        if self._rounding is None:
+            self._compensate(move)
+        else:
+            self._rounding.add(move)
 
     @property
     def passes_on(self) -> bool:
@@ -87,7 +91,7 @@ class Path:
         """Programmed moves as ``MoveColumns`` takes them, while ``passes_on``; the last of them."""
         if not len(codes):
             return None
-        self._columns.add_rows(codes, values, positions)
+        self.columns.add_rows(codes, values, positions)
         self._before = segment_of(codes[-1], values[-1], positions[-1])
         self.position = self._before.end
         return self._before
@@ -215,7 +219,7 @@ class Path:
         """From now on the axis of this column goes evenly over the moves that follow."""
         self.flush()
         if self._synchronous is None:
-            self._synchronous = SynchronousAxes(self._columns.add, self._columns.add_event)
+            self._synchronous = SynchronousAxes(self.columns.add, self.columns.add_event)
         self._synchronous.begin(axis)
 
     def go_as_programmed(self, axis: int) -> None:
@@ -230,14 +234,16 @@ class Path:
         if move.center is None and move.start == move.end:
             return
         self.position = move.end
-        if self._loops is None:
+        if self._loops is not None:
+            self._loops.add(move)
+        elif self._synchronous is not None:
             self._out(move)
         else:
-            self._loops.add(move)
+            self.columns.add(move)
 
     def _out(self, move: Segment) -> None:
         if self._synchronous is None:
-            self._columns.add(move)
+            self.columns.add(move)
         elif not self._synchronous.add(move):
             message = f"an axis cannot go evenly over more than {MOST_MOVES} moves"
             self._report.refuse(move, "even-axis", message)
@@ -250,7 +256,7 @@ class Path:
 
     def _note(self, event: Event) -> None:
         if self._synchronous is None:
-            self._columns.add_event(event)
+            self.columns.add_event(event)
         else:
             self._synchronous.event(event)
 

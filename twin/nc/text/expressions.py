@@ -6,7 +6,7 @@ are the same for all.
 
 import dataclasses
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Protocol
 
 from twin.nc.text import arithmetic
@@ -65,14 +65,19 @@ class Expression:
         text: As the program writes it.
         tree: What it is made of.
         compute: Its value in a scope; raises ``ExpressionError`` where it has none.
+        functions: What its operators and functions compute.
     """
 
     text: str
     tree: "Tree"
     compute: "Compute" = dataclasses.field(init=False, compare=False, repr=False)
+    functions: frozenset[Callable[..., float]] = dataclasses.field(
+        init=False, compare=False, repr=False
+    )
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "compute", compiled(self.tree))
+        object.__setattr__(self, "functions", frozenset(_functions(self.tree)))
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -233,6 +238,18 @@ Tree = Number | Variable | NumberedVariable | OrZero | Negative | Computed | Exi
 
 Compute = Callable[[Scope], float]
 """A value in a scope."""
+
+
+def _functions(tree: Tree) -> Iterator[Callable[..., float]]:
+    match tree:
+        case Computed(_, compute, operands):
+            yield compute
+            for each in operands:
+                yield from _functions(each)
+        case NumberedVariable(_, operand) | OrZero(operand) | Negative(operand) | Exists(operand):
+            yield from _functions(operand)
+        case _:
+            pass
 
 
 def compiled(tree: Tree) -> Compute:

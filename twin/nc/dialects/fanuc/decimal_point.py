@@ -59,7 +59,8 @@ def count(control: Control, block: Block) -> Block:
         message = "an assignment stands alone in its block"
         control.report.line = block.line
         control.report.fail("assignment", message, second.column, second.width, "write two blocks")
-    block = _rounded(control, block)
+    if any(isinstance(word.value, Expression) and rounds(word.value) for word in block.words):
+        block = _rounded(control, block)
     looked_at = pointless(control.settings)
     if not any(word.address in looked_at for word in block.words):
         return block
@@ -117,14 +118,13 @@ def argument(control: Control, word: Word) -> Word:
 
 def _rounded(control: Control, block: Block) -> Block:
     """ROUND in a word goes to the least increment of its address."""
-    words: list[Word] = []
-    for word in block.words:
+    words = list(block.words)
+    for place, word in enumerate(block.words):
         value = word.value
-        if isinstance(value, Expression) and rounds(value.tree):
+        if isinstance(value, Expression) and rounds(value):
             increment, _ = _increment(control, word.address, set())
-            word = word._replace(value=rounding_to(value, increment))
-        words.append(word)
-    return block if words == list(block.words) else block._replace(words=tuple(words))
+            words[place] = word._replace(value=rounding_to(value, increment))
+    return block._replace(words=tuple(words))
 
 
 def _increment(control: Control, address: str, codes: set[float | Expression]) -> tuple[float, str]:

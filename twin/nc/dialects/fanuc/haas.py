@@ -166,10 +166,29 @@ def _with_words(meaning: str, letters: str) -> MCode:
     return MCode(meaning=f"{meaning}: {' '.join(letters)}", action=action, ground="manual")
 
 
+def _refused_function(meaning: str, reason: str) -> MCode:
+    """A function that decides how the program goes on by what the twin does not have."""
+
+    def action(control: Control) -> None:
+        word = next((each for each in control.block.words if each.address == "M"), None)
+        control.fail(
+            "unknown-m", f"{'' if word is None else word.text} ({meaning}): {reason}", word
+        )
+
+    return MCode(meaning=f"{meaning}; refused: {reason}", action=action, ground="manual")
+
+
+_NO_INPUTS = "the twin has no inputs to ask"
+
 HAAS_M_CODES: Mapping[int, MCode] = {
     **M_CODES,
     6: dataclasses.replace(M_CODES[6], action=change_tool_at(_CHANGE_HEIGHT), ground="manual"),
     97: flow_function("run blocks of this program as a subprogram: P L", programs.call_block),
+    46: _refused_function("jump where a pallet is loaded", "the twin has no pallets"),
+    78: _refused_function("alarm where a probe has touched", NO_PROBE),
+    79: _refused_function("alarm where no probe has touched", NO_PROBE),
+    96: _refused_function("jump where an input is off", _NO_INPUTS),
+    109: _refused_function("question to the operator", _NO_INPUTS),
     59: _with_words("output relay on", "P"),
     69: _with_words("output relay off", "P"),
     70: _with_words("vice clamped", "P"),

@@ -22,11 +22,8 @@ from twin.nc.text.expressions import (
     ExpressionSyntax,
     FunctionOf,
     Number,
-    NumberedVariable,
     Operator,
-    OrZero,
     Tree,
-    Variable,
 )
 
 LOCAL = range(1, 34)
@@ -151,15 +148,9 @@ def write_variable(
         control.report.fail(error.code, str(error), assignment.column, assignment.width, error.hint)
 
 
-def rounds(tree: Tree) -> bool:
-    """Whether ROUND stands in an expression."""
-    match tree:
-        case Computed(_, compute, operands):
-            return compute in _ROUNDING or any(rounds(each) for each in operands)
-        case NumberedVariable(_, operand) | OrZero(operand):
-            return rounds(operand)
-        case _:
-            return not isinstance(tree, Number | Variable) and rounds(tree.operand)
+def rounds(expression: Expression) -> bool:
+    """Whether ROUND stands in it."""
+    return not expression.functions.isdisjoint(_ROUNDING)
 
 
 def rounding_to(expression: Expression, increment: float) -> Expression:

@@ -39,6 +39,12 @@ def refuse(
 
 def values_of(control: Control, word: OWord, statement: Statement) -> list[tuple[Expression, int]]:
     """The values behind a keyword, with their columns; each stands in square brackets."""
+    return control.program_counter.parsed(word, lambda: _read_values(control, word, statement))
+
+
+def _read_values(
+    control: Control, word: OWord, statement: Statement
+) -> list[tuple[Expression, int]]:
     found, at, text = list[tuple[Expression, int]](), 0, word.text.rstrip()
     while at < len(text):
         if text[at] in " \t":
@@ -309,7 +315,7 @@ _WORDS: dict[str, Callable[[Control, Statement, OWord], None]] = {
 
 def run_o_word(control: Control, statement: Statement) -> None:
     """A line that begins with an O-word."""
-    word = o_word(statement)
+    word = control.program_counter.parsed(statement, lambda: o_word(statement))
     if word is None or not word.label:
         refuse(control, statement, "o-word", "O needs a label", "write o100 or o<name>")
     run = _WORDS.get(word.keyword)

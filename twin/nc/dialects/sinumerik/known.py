@@ -105,7 +105,6 @@ REFUSED_STATEMENTS = each_name(
         "G63, G331, G332": "write CYCLE84 or CYCLE840",
         "CONTPRON, CONTDCON, EXECUTE, EXECTAB, INTERSEC, ISPOINTS, CALCFIR, CALCDAT": "tables of contours are not simulated",
         "SPLINEPATH": _SPLINES,
-        "CYCLE800": "it turns the part about the machine's axes, which is not followed; post the part for indexing by A, B or C",
         "CYCLE60": "engraving of texts is not simulated; post the letters as lines",
         "CYCLE62": "it names the contours of CYCLE63 and CYCLE64, which are not followed",
         "CYCLE63, CYCLE64": "pockets and spigots of any contour are not simulated; post their paths",

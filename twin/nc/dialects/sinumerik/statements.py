@@ -50,6 +50,28 @@ def _alarm(control: Control, statement: Statement) -> None:
     control.fail("program-error", message, statement, "the program's own checks have failed")
 
 
+def _swivel(control: Control, statement: Statement) -> None:
+    """CYCLE800() ends a swivelled plane, and none is ever in force here.
+
+    Raises:
+        ProgramError: It begins one.
+    """
+    inner, column, _ = subprograms.bracketed(control, statement.text, statement.text_column)
+    values = subprograms.split_values(inner)
+    plane = [(text, at) for text, at in values[_SWIVEL] if text.strip()]
+    if any(
+        control.compute(control.statements.expression(text, column + at), column + at)
+        for text, at in plane
+    ):
+        message = "CYCLE800 is known to the control and not simulated: it swivels the plane"
+        hint = "post the part for indexing by words of the rotary axes; CYCLE800() and angles of 0 are read"
+        control.fail("unsupported-statement", message, statement, hint)
+
+
+_SWIVEL = slice(4, 13)
+"""Parameters of CYCLE800 that shift and turn: _X0 to _Z1."""
+
+
 STATEMENTS: dict[str, StatementAction] = {
     **dict.fromkeys(PASSED_STATEMENTS, _pass_over),
     **dict.fromkeys(REFUSED_STATEMENTS, _refuse),
@@ -59,6 +81,7 @@ STATEMENTS: dict[str, StatementAction] = {
     "DEF": define,
     "REPEAT": _repeat,
     "SETAL": _alarm,
+    "CYCLE800": _swivel,
 }
 
 
@@ -76,7 +99,7 @@ def other_statement(control: Control, statement: Statement) -> None:
 LONG_WORDS = (
     *("CR", "AR", "AP", "RP", "TURN", "I1", "J1", "K1", "ANG", "RPL"),
     *("RND", "RNDM", "CHR", "CHF", "ADIS", "ADISPOS", "OFFN", "DISC", "FB", "SPOS", "LIMS", "FP"),
-    *("FRC", "FRCM", "OVR", "OVRRAP", "DISR", "DISCL", "SPOSA"),
+    *("FRC", "FRCM", "OVR", "OVRRAP", "DISR", "DISCL", "SPOSA", "CTOL", "OTOL"),
 )
 """Addresses of several letters, which = follows."""
 

@@ -140,8 +140,8 @@ def lines_around(control: Control) -> range:
 
 def heading(control: Control, statement: Statement) -> None:
     """%_N_NAME_MPF: the program's name. Another program behind it ends it."""
-    if control.block.line - 1 == memory_of(control).main.start:
-        return
+    if control.block.line - 1 == memory_of(control).main.start or not statement.text.strip():
+        return  # a lone % marks the tape
     if control.program_counter.is_calling:
         message = "the subprogram ends without M17 or RET"
         control.fail("return-outside", message, statement, "write M17 or RET at its end")

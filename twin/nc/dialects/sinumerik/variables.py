@@ -60,6 +60,13 @@ def _whole_quotient(a: float, b: float) -> float:
     return float(math.trunc(a / b))
 
 
+def _remainder(a: float, b: float) -> float:
+    """MOD, which is there for whole numbers (manual)."""
+    if a != int(a) or b != int(b):
+        raise ValueError(a)
+    return math.fmod(a, b)
+
+
 def _decimal(mantissa: float, exponent: float) -> float:
     """``2.5EX-3``: an exponent of ten."""
     return mantissa * 10.0**exponent
@@ -119,7 +126,7 @@ EXPRESSIONS = ExpressionSyntax(
         "*": Operator(8, arithmetic.multiply),
         "/": Operator(8, arithmetic.divide),
         "DIV": Operator(8, _whole_quotient),
-        "MOD": Operator(8, arithmetic.remainder_of_wholes),
+        "MOD": Operator(8, _remainder),
         "+": Operator(7, arithmetic.add),
         "-": Operator(7, arithmetic.subtract),
         "B_AND": Operator(6, arithmetic.bits_of_both),

@@ -173,6 +173,10 @@ def rapid_corner_distance(_control: Control, _word: Word) -> None:
     """ADISPOS=: the same of rapids, which end as the machine's rapids do here."""
 
 
+def compressor_tolerance(_control: Control, _word: Word) -> None:
+    """CTOL=, OTOL=: how far compressor and rounding may leave the path, which the machine file says here."""
+
+
 def speed_limit(control: Control, word: Word) -> None:
     """LIMS=: the limit of G96, which a mill does not use."""
     if not control.number(word) > 0.0:

@@ -12,10 +12,9 @@ NECK = 50
 
 
 class _Element(NamedTuple):
-    """An element that was passed: where it lies, what it belongs to and the line of that."""
+    """An element that was passed, what it belongs to and the line of that."""
 
     curve: Curve
-    box: Box
     own: Curve | None
     line: int
 
@@ -25,23 +24,37 @@ class Passed:
 
     def __init__(self) -> None:
         self._elements: collections.deque[_Element] = collections.deque(maxlen=NECK)
+        self._boxes: collections.deque[Box] = collections.deque(maxlen=NECK)
+        """Where each of them lies."""
 
     def clear(self) -> None:
         """Forget them: the tool has moved along the normal."""
         self._elements.clear()
+        self._boxes.clear()
 
-    def add(self, element: Curve, own: Curve | None, line: int) -> None:
-        """Remember an element, and the contour's that it belongs to, if any."""
-        self._elements.append(_Element(element, curves.box_of(element), own, line))
+    def add(self, element: Curve, own: Curve | None, line: int) -> int | None:
+        """Remember the next element, unless it crosses one where the contour does not cross itself.
 
-    def crossed_by(self, element: Curve, own: Curve | None) -> int | None:
-        """Line of an element that a new one crosses where the contour does not cross itself; or None."""
-        left, low, right, high = curves.box_of(element)
-        for number, (curve, box, _, line) in enumerate(self._elements):
-            if box[2] < left or box[0] > right or box[1] > high or box[3] < low:
-                continue
+        Args:
+            element: The element.
+            own: That of the contour to which it belongs, or None.
+            line: Its line.
+
+        Returns:
+            Line of the element that it crosses; None: none.
+        """
+        left, low, right, high = box = curves.box_of(element)
+        near = [
+            number
+            for number, (west, south, east, north) in enumerate(self._boxes)
+            if east >= left and west <= right and south <= high and north >= low
+        ]
+        for number in near:
+            curve, _, passed = self._elements[number]
             if curves.crossing_of(curve, element)[0] and not self._is_excused(number, own):
-                return line
+                return passed
+        self._elements.append(_Element(element, own, line))
+        self._boxes.append(box)
         return None
 
     def _is_excused(self, number: int, own: Curve | None) -> bool:

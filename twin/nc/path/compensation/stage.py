@@ -151,7 +151,7 @@ class Compensation:
             self._let_go(before, before, before[2])
         elif self.stage is FOLLOWING:
             part = curves.cut(before, self._start, before[2])
-            self._refuse_neck(part, self._contour)
+            self._pass(part, self._contour)
             self._let_go(before, part, before[2])
         leads_out = self.stage in (FOLLOWING, LEADING_OUT) and not led
         self.stage = LEADING_OUT if leads_out else OFF
@@ -228,14 +228,12 @@ class Compensation:
                 "compensation-gouge",
                 "into the inside corner: it would cut into the contour before or after",
             )
-        part, line = curves.cut(before, self._start, at), self._held[0].line
-        self._refuse_neck(part, held)
-        self._passed.add(part, held, line)
+        part = curves.cut(before, self._start, at)
+        self._pass(part, held)
         sweep = abs(turn) if offset < 0.0 else -abs(turn)
         corner = (True, before[2], element[1], curve[1], sweep)
         if rolls:
-            self._refuse_neck(corner, None)
-            self._passed.add(corner, None, line)
+            self._pass(corner, None)
         around = self._held[0]
         self._let_go(before, part, at)
         if rolls:
@@ -346,14 +344,14 @@ class Compensation:
         message = f"the tool's radius {abs(self._signed_offset):g} does not fit {where}"
         self._report.refuse(move, code, message)
 
-    def _refuse_neck(self, element: Curve, own: Curve | None) -> None:
-        """Refuse an element that crosses one that was passed.
+    def _pass(self, element: Curve, own: Curve | None) -> None:
+        """Pass an element of the path; refuse one that crosses another that was passed.
 
         Args:
             element: A part of the parallel, or the way around a corner.
             own: The element of the contour that it belongs to, or None.
         """
-        line = self._passed.crossed_by(element, own)
+        line = self._passed.add(element, own, self._held[0].line)
         if line is not None:
             where = f"between this element and that of line {line}: the path crosses itself"
             self._refuse_radius(self._held[0], "compensation-gouge", where)

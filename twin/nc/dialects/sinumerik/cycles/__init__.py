@@ -5,10 +5,11 @@ from collections.abc import Mapping
 from twin.nc.control.control import Control
 from twin.nc.dialects.sinumerik.cycles.calls import CycleForm, read_call
 from twin.nc.dialects.sinumerik.cycles.drilling import DRILLING
+from twin.nc.dialects.sinumerik.cycles.milling import MILLING
 from twin.nc.dialects.sinumerik.cycles.patterns import PATTERNS
 from twin.nc.text.blocks import Statement
 
-CYCLES: Mapping[str, CycleForm] = {**DRILLING, **PATTERNS}
+CYCLES: Mapping[str, CycleForm] = {**DRILLING, **PATTERNS, **MILLING}
 
 
 def call_cycle(control: Control, statement: Statement) -> None:

@@ -12,7 +12,7 @@ from twin.nc.dialects.sinumerik.cycles.calls import CycleCall, CycleForm, requir
 from twin.nc.iso.drilling import go_to_height, turn_spindle
 
 _HEIGHTS = ("RTP", "RFP", "SDIS", "DP", "DPR")
-_NEW = ("_GMODE", "_DMODE", "_AMODE")
+NEW_MODES = ("_GMODE", "_DMODE", "_AMODE")
 _CHIP_BREAK = 1.0
 """How far chip breaking withdraws where _VRT does not say it (manual) [mm]."""
 _ANTICIPATION, _ANTICIPATION_SHARE, _MOST_ANTICIPATION = 0.6, 1.0 / 50.0, 7.0
@@ -40,26 +40,33 @@ class Heights(NamedTuple):
     bottom: float
 
 
-def heights_of(call: CycleCall, depth: str = "DP", relative: str = "DPR") -> Heights:
-    """The heights that a call gives.
+def heights_of(
+    call: CycleCall,
+    depth: str = "DP",
+    relative: str = "DPR",
+    back: str = "RTP",
+    surface: str = "RFP",
+    safety: str = "SDIS",
+) -> Heights:
+    """The heights that a call gives by parameters of these names.
 
     Raises:
         ProgramError: They do not lie one below the other.
     """
     require_no_compensation(call)
-    call.need("RTP", "RFP")
+    if call.get("_AXN") not in (0.0, call.control.modal.plane.axes[2] + 1.0):
+        call.refuse("unsupported-word", "drills along the axis across the plane alone (_AXN)")
+    call.need(back, surface)
     if depth not in call.values and relative not in call.values:
-        call.refuse(
-            "cycle-word",
-            f"needs {depth}, the bottom" + (f", or {relative}, the depth" if relative else ""),
-        )
-    surface = call.length("RFP")
-    bottom = call.length(depth) if depth in call.values else surface - abs(call.length(relative))
+        below = f", or {relative}, the depth" if relative else ""
+        call.refuse("cycle-word", f"needs {depth}, the bottom{below}")
+    above = call.length(surface)
+    bottom = call.length(depth) if depth in call.values else above - abs(call.length(relative))
     if call.get("_AMODE") % 10.0 == 1.0 and depth in call.values:  # the depth is incremental
-        bottom = surface - abs(call.length(depth))
-    heights = Heights(call.length("RTP"), surface, surface + abs(call.length("SDIS")), bottom)
-    if not heights.bottom < surface <= heights.back:
-        message = f"must go down: RTP {heights.back:g}, RFP {surface:g}, bottom {heights.bottom:g}"
+        bottom = above - abs(call.length(depth))
+    heights = Heights(call.length(back), above, above + abs(call.length(safety)), bottom)
+    if not heights.bottom < above <= heights.back:
+        message = f"must go down: {back} {heights.back:g}, {surface} {above:g}, bottom {bottom:g}"
         call.refuse("cycle-depth", message)
     return heights
 
@@ -97,11 +104,11 @@ def _drill(call: CycleCall) -> None:
     go_to_height(call.control, heights.back)
 
 
-def pecks(total: float, first: float, degression: float) -> list[float]:
+def pecks(total: float, first: float, degression: float, least: float = 0.0) -> list[float]:
     """Depths of the pecks of deep drilling, one after the other [mm].
 
-    Each is less deep than the one before by the degression, but not less than it; below 0 that is a factor. As the
-    manual has it, the last two are equally deep where less than two of the degression would be left.
+    Each is less deep than the one before by the degression, but not less than it, nor than the least; below 0 that is
+    a factor. As the manual has it, the last two are equally deep where less than two of the degression would be left.
     """
     depths, rest, peck = list[float](), total, first
     while rest > 1e-9:
@@ -121,6 +128,7 @@ def pecks(total: float, first: float, degression: float) -> list[float]:
             peck = max(peck - degression, min(degression, peck))
         elif degression < 0.0:
             peck = peck * -degression
+        peck = max(peck, least)
     return depths
 
 
@@ -137,12 +145,9 @@ def _deep(call: CycleCall) -> None:
     if degression < -1.0:
         call.refuse("cycle-depth", "takes DAM from -1, a factor, upwards, an amount")
     degression = degression * control.modal.unit if degression > 0.0 else degression
-    least = abs(call.length("_MDEP"))
-    depths = pecks(total, min(first, total), degression)
-    if len(depths) > _MOST_PECKS or (least and min(depths[:-1], default=least) < least):
-        call.refuse(
-            "cycle-depth", f"would need more than {_MOST_PECKS} pecks, or less deep ones than _MDEP"
-        )
+    depths = pecks(total, min(first, total), degression, abs(call.length("_MDEP")))
+    if len(depths) > _MOST_PECKS:
+        call.refuse("cycle-depth", f"would need more than {_MOST_PECKS} pecks")
     clears = call.only("VARI", 1.0) == 1.0
     lift = abs(call.length("_VRT")) or _CHIP_BREAK
     gap = abs(call.length("_DIS1")) or max(
@@ -304,26 +309,26 @@ def _bore_and_stop(call: CycleCall) -> None:
 
 
 DRILLING = {
-    "CYCLE81": CycleForm((*_HEIGHTS, "DTB", *_NEW), _drill),
-    "CYCLE82": CycleForm((*_HEIGHTS, "DTB", *_NEW, "_VARI", "S_ZA", "S_FA", "S_ZD", "S_FD"), _drill),
+    "CYCLE81": CycleForm((*_HEIGHTS, "DTB", *NEW_MODES), _drill),
+    "CYCLE82": CycleForm((*_HEIGHTS, "DTB", *NEW_MODES, "_VARI", "S_ZA", "S_FA", "S_ZD", "S_FD"), _drill),
     "CYCLE83": CycleForm(
         (*_HEIGHTS, "FDEP", "FDPR", "DAM", "DTB", "DTS", "FRF", "VARI", "_AXN", "_MDEP", "_VRT", "_DTD", "_DIS1",
-         *_NEW),
+         *NEW_MODES),
         _deep,
     ),
     "CYCLE84": CycleForm(
         (*_HEIGHTS, "DTB", "SDAC", "MPIT", "PIT", "POSS", "SST", "SST1", "_AXN", "_PITA", "_TECHNO", "_VARI",
-         "_DAM", "_VRT", "_PITM", "_PTAB", "_PTABA", *_NEW),
+         "_DAM", "_VRT", "_PITM", "_PTAB", "_PTABA", *NEW_MODES),
         _tap,
     ),
     "CYCLE840": CycleForm(
         (*_HEIGHTS, "DTB", "SDR", "SDAC", "ENC", "MPIT", "PIT", "_AXN", "_PITA", "_TECHNO", "_PITM", "_PTAB",
-         "_PTABA", *_NEW),
+         "_PTABA", *NEW_MODES),
         _tap_in_chuck,
     ),
-    "CYCLE85": CycleForm((*_HEIGHTS, "DTB", "FFR", "RFF", *_NEW), _ream),
-    "CYCLE86": CycleForm((*_HEIGHTS, "DTB", "SDIR", "RPA", "RPO", "RPAP", "POSS", *_NEW), _bore),
+    "CYCLE85": CycleForm((*_HEIGHTS, "DTB", "FFR", "RFF", *NEW_MODES), _ream),
+    "CYCLE86": CycleForm((*_HEIGHTS, "DTB", "SDIR", "RPA", "RPO", "RPAP", "POSS", *NEW_MODES), _bore),
     "CYCLE87": CycleForm((*_HEIGHTS, "SDIR"), _bore_and_stop),
     "CYCLE88": CycleForm((*_HEIGHTS, "DTB", "SDIR"), _bore_and_stop),
-    "CYCLE89": CycleForm((*_HEIGHTS, "DTB", *_NEW), _ream),
+    "CYCLE89": CycleForm((*_HEIGHTS, "DTB", *NEW_MODES), _ream),
 }  # fmt: skip
