@@ -1,6 +1,6 @@
-"""Measures the rooms and their peers side by side and prints one table.
+"""Measures the packages and their peers side by side and prints one table.
 
-Each file ``scripts/benches/<room>_bench.py`` has a function ``rows()`` that yields its lines.
+Each file ``scripts/benches/<package>_bench.py`` has a function ``rows()`` that yields its lines.
 """
 
 import importlib
@@ -20,14 +20,14 @@ from twin.compilation.speed import VARIABLE
 BENCHES = Path(__file__).parent / "benches"
 
 
-def rooms() -> list[str]:
-    """The rooms that have a bench."""
+def packages() -> list[str]:
+    """The packages that have a bench."""
     return sorted(p.stem.removesuffix("_bench") for p in BENCHES.glob("*_bench.py"))
 
 
-def rows(room: str) -> Iterator[Row]:
-    """The lines of one room, as they are measured."""
-    return cast(Iterator[Row], importlib.import_module(f"benches.{room}_bench").rows())
+def rows(package: str) -> Iterator[Row]:
+    """The lines of one package, as they are measured."""
+    return cast(Iterator[Row], importlib.import_module(f"benches.{package}_bench").rows())
 
 
 def machine() -> str:
@@ -44,21 +44,21 @@ def machine() -> str:
 
 
 def main(chosen: list[str]) -> int:
-    """Measure the rooms named, or all; the exit code."""
-    unknown = set(chosen) - set(rooms())
+    """Measure the packages named, or all; the exit code."""
+    unknown = set(chosen) - set(packages())
     if unknown:
-        print(f"no bench for {', '.join(sorted(unknown))}; there are: {', '.join(rooms())}")
+        print(f"no bench for {', '.join(sorted(unknown))}; there are: {', '.join(packages())}")
         return 2
     os.environ[VARIABLE] = "wait"
-    table = Table("room", "task", "this project", "peer", "its figure", "ratio", title=machine())
-    for room in chosen or rooms():
-        for row in rows(room):
+    table = Table("package", "task", "this project", "peer", "its figure", "ratio", title=machine())
+    for package in chosen or packages():
+        for row in rows(package):
             theirs = "absent" if row.peer and row.peer_figure is None else ""
             ratio = ""
             if row.peer_figure is not None:
                 theirs, ratio = f"{row.peer_figure:,.4g}", f"{row.figure / row.peer_figure:.2f}"
             table.add_row(
-                row.room, row.task, f"{row.figure:,.4g} {row.unit}", row.peer, theirs, ratio
+                row.package, row.task, f"{row.figure:,.4g} {row.unit}", row.peer, theirs, ratio
             )
     Console(width=140).print(table)
     return 0

@@ -50,7 +50,7 @@ _is_set_up() {
 
 # setup_environment [dev|docs|exhaustive]: with that extra, or with what a run needs alone.
 setup_environment() {
-    local python stamp wanted="${1:-run}"
+    local python stamp wanted="${1:-run}" byte_code=()
     python=$(_find_python)
     "$python" -c 'import ensurepip, venv' 2>/dev/null || _need_packages python3-venv
     # Off-screen pictures: EGL with Mesa's software drivers. Without them all but pictures works.
@@ -62,9 +62,10 @@ setup_environment() {
         echo "setting up .venv"
         [ -x .venv/bin/python ] || "$python" -m venv .venv
         # By the environment, so that the isolated build keeps to the same versions.
-        # Without byte code, which Python makes of what it loads: half of the work would be for what nobody does.
+        # Python makes byte code of what it loads, unless it is told not to: for all packages it is half of the work.
+        [ -n "${PYTHONDONTWRITEBYTECODE:-}" ] || byte_code=(--no-compile)
         PIP_CONSTRAINT="$PWD/constraints.txt" MILL_TWIN_KERNELS=0 .venv/bin/python -m pip install \
-            --quiet --disable-pip-version-check --no-compile --editable ".${extra[$wanted]}"
+            --quiet --disable-pip-version-check "${byte_code[@]}" --editable ".${extra[$wanted]}"
         echo "$stamp" >".venv/stamp-$wanted"
     fi
     PATH="$PWD/.venv/bin:$PATH"

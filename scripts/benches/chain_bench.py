@@ -34,7 +34,9 @@ def rows() -> Iterator[Row]:
         yield Row("chain", "  times real time", hours * HOUR_S / seconds, "x")
         stages = result["stages"]
         other = max(stages[name] for name in stages if name != "simulate_s")
-        yield Row("chain", "  busiest room, of the simulation", other / stages["simulate_s"], "x")
+        yield Row(
+            "chain", "  busiest other package, of the simulation", other / stages["simulate_s"], "x"
+        )
         size = (out / "recording.h5").stat().st_size
         yield Row("chain", "  recording", size / hours / 1e6, "MB")
         small = folder / "ten.nc"

@@ -15,7 +15,7 @@ class Row:
     """A figure of this project beside that of a peer, taken in the same run.
 
     Attributes:
-        room: The room that is measured.
+        package: The package that is measured.
         task: What was done.
         figure: This project's figure.
         unit: Its unit; a rate is better when higher, a time or a share when lower.
@@ -23,7 +23,7 @@ class Row:
         peer_figure: The peer's figure in the same unit; None where it is not installed.
     """
 
-    room: str
+    package: str
     task: str
     figure: float
     unit: str

@@ -56,7 +56,8 @@ export class Sheets {
     // What is being typed stays; what has been sent is shown as the machine has it.
     const same = this.drawn && JSON.parse(this.drawn)[0] === this.sheet, before = typing(sheet);
     this.drawn = drawn;
-    sheet.replaceChildren(...this[this.sheet]());
+    const heading = this.sheet === "tasks" ? [] : [make("h2", { class: "unseen" }, words.label(this.sheet))];
+    sheet.replaceChildren(...heading, ...this[this.sheet]());
     if (!acts) for (const one of sheet.querySelectorAll("button, input, select")) one.disabled = this.sheet !== "display";
     put_back(sheet, same ? before : { ...before, values: [] });
   }
