@@ -6,7 +6,6 @@ from tests.nc.running import run
 from twin.nc.dialects import DIALECTS, dialect_named
 from twin.nc.iso.base import jog_block
 
-
 WITHOUT_C = ("grbl",)
 """It moves X, Y and Z alone."""
 
