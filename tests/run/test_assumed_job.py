@@ -101,6 +101,10 @@ def test_a_control_that_would_hardly_feed_was_not_meant(tmp_path: Path) -> None:
     assert made.dialect.name == "fanuc"
     assert "haas would feed 0.6 mm/min at most" in made.dialect_reason
     assert made.reading.keys == {}
+    path.write_text(path.read_text().replace("G43 H1", "M10\nG43 H1"))  # which a Haas alone knows
+    made = prepare(path, assuming=True)
+    assert made.dialect.name == "fanuc"
+    assert made.reading.told == ("M10 does nothing: fanuc has no such code",)
 
 
 @pytest.mark.parametrize(

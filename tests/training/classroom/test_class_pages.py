@@ -101,7 +101,9 @@ def test_no_mark_is_lost_and_the_teachers_page_is_right(tmp_path):
                 page.wait_for_selector("body[data-ready=yes]")
                 hand_in(page)
             for name in NAMES:
-                until(lambda name=name: len(re.findall(r": \d+/\d+", row(teacher, name))) == 2, "two")
+                until(
+                    lambda name=name: len(re.findall(r": \d+/\d+", row(teacher, name))) == 2, "two"
+                )
     finally:
         server.stop()
     marks = [(one.pupil, one.scene) for one in ClassFile(out).marks() if one.handed_in]
