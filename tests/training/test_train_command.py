@@ -41,6 +41,10 @@ def test_the_list_names_every_scene_in_the_language_asked_for() -> None:
         (["--certificate", "nowhere.pem"], "no certificate with its key"),
         (["--key", "nowhere.pem"], "belongs to a --certificate"),
         (["--port", "99999"], ""),
+        (["--out", __file__], "that is a file"),
+        (["--class", "nowhere.csv"], "nowhere.csv: No such file"),
+        (["--seats", "61"], "a class has 1 to 60 seats"),
+        (["--class", "nowhere.csv", "--seats", "2"], "give --class ROSTER.csv, or --seats"),
     ],
 )
 def test_what_cannot_be_opened_is_refused(arguments: list[str], message: str) -> None:

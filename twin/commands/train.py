@@ -118,6 +118,8 @@ def train(name: str, place: Place, out: Path | None) -> ExitCode:
     from twin.training.server.launch import open_room
     from twin.web.server import LOOPBACK
 
+    if out is not None and out.exists() and not out.is_dir():
+        raise UsageError(f"--out {out}: that is a file; log and sheet need a folder")
     announce_compilation()
     scene = read_scene(scene_path(name))
     with contextlib.ExitStack() as stack:

@@ -136,6 +136,11 @@ def test_there_is_an_end_to_pages_and_to_what_one_may_say():
     seats = Seats()
     pages = [seats.sit("watcher") for _ in range(MOST_PAGES + 1)]
     assert pages[-1] is None
+    # Watchers leave seats for who acts.
+    acting = [seats.sit("operator") for _ in range(MOST_PAGES + 1)]
+    assert sum(page is not None for page in pages + acting) == MOST_PAGES
+    assert acting[0] is not None
+    assert seats.may(acting[0], {"do": "cycle_start"})
     page = pages[0]
     assert page is not None
     assert sum(page.may_speak() for _ in range(10_000)) < 2 * MESSAGES

@@ -69,9 +69,17 @@ class Rounding:
             self._waiting.append(event)
 
     def flush(self) -> None:
-        """Nothing follows that could be blended."""
+        """Nothing follows that could be blended.
+
+        Raises:
+            ProgramError: The program asks for a blend here.
+        """
         held, self._held = self._held, None
         if held is not None:
+            if self.once is not None:
+                self._report.refuse(
+                    held, "blend", "no move follows with which the corner could be blended"
+                )
             self._emit(held)
         self._let_happen()
 

@@ -49,7 +49,7 @@ export class Screen {
     write(this.at("control"), words.label("title"));
     write(this.at("mode-chip"), words.label(`mode_${now.mode}`));
     const [name, colour] = now.replaying ? ["replaying", "blue"] : now.frozen ? ["frozen", "blue"]
-      : now.alarm ? [now.alarm.code === "program" ? "error" : "alarm", "red"] : now.held ? ["held", "yellow"] : now.running ? ["running", "green"] : ["ready", ""];
+      : now.alarm?.code === "emergency-stop" && !now.pressed ? ["reset_needed", "red"] : now.alarm ? [now.alarm.code === "program" ? "error" : "alarm", "red"] : now.held ? ["held", "yellow"] : now.running ? ["running", "green"] : ["ready", ""];
     write(this.at("state-chip"), words.label(name));
     this.at("state-chip").className = `chip ${colour}`;
     const message = this.at("message");
@@ -106,7 +106,7 @@ export class Screen {
     const turns = now.counter_clockwise ? "↺" : "↻";
     const spindle = now.spindle_turning === null ? "-" : Math.abs(0.01 * now.spindle_override * now.spindle_turning).toFixed(0);
     const real = Number.isNaN(state.spindleSpeed) || Math.abs(state.spindleSpeed - Number(spindle)) < 0.01 * Number(spindle) + 1 ? "" : `${state.spindleSpeed.toFixed(0)} → `;
-    const speeds = [["", `F ${shown}`], ["quiet", `(${feed}) ${unit}`], [state.turns ? "on" : "quiet", `S ${real}${spindle}${state.turns ? ` ${turns}` : ""}`], [now.broken ? "broken" : "", `T ${now.tool}${now.broken ? " ✕" : ""}`]];
+    const speeds = [["", `F ${shown}`], ["quiet", now.modal?.feed == null ? unit : `(${feed}) ${unit}`], [state.turns ? "on" : "quiet", `S ${real}${spindle}${state.turns ? ` ${turns}` : ""}`], [now.broken ? "broken" : "", `T ${now.tool}${now.broken ? " ✕" : ""}`]];
     if (now.searched) speeds.push(["contact", `▶ ${now.searched}`]);
     for (const [name, mark] of [["optional_stop", "M01"], ["block_skip", "/"], ["dry_run", words.label("dry_run")]]) if (now[name]) speeds.push(["coolant", mark]);
     if (state.coolant) speeds.push(["coolant", words.label("coolant")]);

@@ -7,6 +7,8 @@ from typing import Any
 
 MOST_PAGES = 40
 """Pages that may be open at a time."""
+KEPT_FREE = 8
+"""Of them those that no watcher takes: whoever acts finds a seat."""
 MESSAGES, MESSAGES_PER_S = 150.0, 75.0
 """How many messages a page may send at once, and how many it may send in the long run."""
 
@@ -45,7 +47,8 @@ class Seats:
 
     def sit(self, role: str) -> Page | None:
         """A page is opened; None where there are too many."""
-        if len(self._pages) >= MOST_PAGES:
+        most = MOST_PAGES - (KEPT_FREE if role == "watcher" else 0)
+        if len(self._pages) >= most:
             return None
         page = Page(next(self._numbers), role)
         self._pages[page.number] = page

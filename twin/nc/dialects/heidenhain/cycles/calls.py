@@ -10,7 +10,7 @@ from twin.nc.text.blocks import Statement
 
 HEIGHT = 2
 """Column of the tool axis."""
-SURFACE, SECOND_CLEARANCE, CLEARANCE = 203, 204, 200
+SURFACE, SECOND_CLEARANCE, CLEARANCE, DEPTH = 203, 204, 200, 201
 
 
 def call_cycle(control: Control) -> None:
@@ -19,12 +19,23 @@ def call_cycle(control: Control) -> None:
     Raises:
         ProgramError: None is defined, or compensation is in force.
     """
-    memory, parameters = memory_of(control), defined(control)
+    parameters = defined(control)
     if control.path.compensation.in_force or control.path.leads is not None:
         message = "a cycle is not called while radius compensation is in force"
         control.fail("compensation-change", message, hint="end it by R0 before")
-    assert memory.cycle is not None
-    memory.cycle(control, parameters)
+    _run(control, parameters)
+
+
+def _run(control: Control, parameters: Parameters) -> None:
+    """Run the cycle that was defined last; a depth of 0 runs nothing (manual)."""
+    if parameters.values.get(DEPTH) == 0.0:
+        control.report.warn(
+            "cycle-depth", f"{parameters.name} does nothing: its depth Q{DEPTH} is 0"
+        )
+        return
+    cycle = memory_of(control).cycle
+    assert cycle is not None
+    cycle(control, parameters)
 
 
 def call_from_now_on(control: Control) -> None:
@@ -114,8 +125,7 @@ def go_over(control: Control, target: list[float], height: float, *, rapid: bool
 
 def run_raised(control: Control, raised: float, *, second: bool = True) -> None:
     """Run the cycle with its surface raised [mm]; without ``second`` it ends at the first clearance."""
-    memory, parameters = memory_of(control), defined(control)
+    parameters = defined(control)
     surface = parameters.number(SURFACE) + raised / parameters.unit
     changed = {SURFACE: surface, **({} if second else {SECOND_CLEARANCE: 0.0})}
-    assert memory.cycle is not None
-    memory.cycle(control, parameters.replaced(changed))
+    _run(control, parameters.replaced(changed))
