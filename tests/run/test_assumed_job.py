@@ -129,6 +129,15 @@ def test_numbers_without_a_point_count_whole_units_where_the_program_shows_it(
     assert prepare(path, dialect="fanuc").settings.decimal_point is None
 
 
+def test_a_control_that_alone_reads_a_program_and_crawls_was_not_meant(tmp_path: Path) -> None:
+    path = tmp_path / "part.nc"
+    path.write_text("O1\nG21 G90 G54\nG0 Z20.\nG82 X5. Y5. Z-5. R2. P500. F20\nG80\nM30\n")
+    with pytest.raises(ProgramError) as raised:
+        prepare(path, assuming=True)
+    assert "read as fanuc" in str(raised.value)
+    assert "P counts milliseconds" in str(raised.value)
+
+
 def test_codes_of_the_builder_and_a_single_work_offset_are_assumed_and_kept(tmp_path: Path) -> None:
     text = CONTOUR.replace("N35 G54", "N35 G57 M155").replace("N110", "N108 M256\nN110")
     path = tmp_path / "part.nc"

@@ -31,6 +31,8 @@ _CLEARANCE = 1.0
 """How far between pecks a drill withdraws is a parameter of the control; rapids that differ by less ask nobody [mm]."""
 _NEARLY = 0.1
 """Feeds on the same path that differ by less are told, but they ask nobody: F of a helix counts its arc or its path."""
+_CRAWLS = 1.0
+"""A dialect that alone reads a program, and in which it feeds slower than this, was not meant [mm/min]."""
 _TOO_SLOW = 1.0 / 200.0
 """A dialect in which the fastest feed is less than this share of another's is not the one that was meant: a
 Haas counts F300 without a point as 0.3 mm/min, and a post for it writes F300."""
@@ -97,6 +99,9 @@ def chosen_dialect(path: Path, settings: ControlSettings, source: Source | None 
     rare = [name for name in candidates if name not in _PREFERENCE]
     trials = [_tried(path, DIALECTS[name], settings) for name in (common or rare)]
     good = [trial for trial in trials if trial.error is None]
+    refusing = [trial for trial in trials if trial.error is not None]
+    if refusing and all(0.0 < trial.fastest < _CRAWLS for trial in good):
+        good, trials = [], refusing
     if not good:
         further = [_tried(path, DIALECTS[name], settings) for name in rare] if common else []
         raise _refused(trials, [trial.name for trial in further if trial.error is None])
