@@ -131,11 +131,12 @@ def test_numbers_without_a_point_count_whole_units_where_the_program_shows_it(
 
 def test_a_control_that_alone_reads_a_program_and_crawls_was_not_meant(tmp_path: Path) -> None:
     path = tmp_path / "part.nc"
-    path.write_text("O1\nG21 G90 G54\nG0 Z20.\nG82 X5. Y5. Z-5. R2. P500. F20\nG80\nM30\n")
+    path.write_text(
+        "O1\nG21 G90 G54\nG0 Z20.\nG82 X5. Y5. Z-5. R2. P500. F20\nG80\nG0 G91 G28 Z0\nM30\n"
+    )
     with pytest.raises(ProgramError) as raised:
         prepare(path, assuming=True)
-    assert "read as fanuc" in str(raised.value)
-    assert "P counts milliseconds" in str(raised.value)
+    assert "read as linuxcnc, which reads it farthest" in str(raised.value)
 
 
 def test_codes_of_the_builder_and_a_single_work_offset_are_assumed_and_kept(tmp_path: Path) -> None:
