@@ -12,7 +12,7 @@ sys.path[:0] = [str(Path(__file__).parents[1])]
 from documentation.code_pages import codes_page
 from documentation.command_pages import commands_page
 from documentation.key_tables import job_page, machine_page, scene_page
-from documentation.python_pages import python_page, recording_page
+from documentation.recording_page import recording_page
 from documentation.repository_pages import pictures, repository_pages
 
 GENERATED = {
@@ -22,7 +22,6 @@ GENERATED = {
     "reference/recording.md": recording_page,
     "reference/commands.md": commands_page,
     "reference/codes.md": codes_page,
-    "reference/python.md": python_page,
 }
 """Pages made from the source, by their addresses."""
 

@@ -73,7 +73,7 @@ def test_a_value_that_is_printed_as_its_limit_holds(key: str, more: float, outco
     """Of every figure: a value and its limit are compared as ``result.json`` has them."""
     value = EVERY_LIMIT[key]
     wide = {"contour_um": 1e3} | {key: value + more}
-    verdict = judge(figures(), ToleranceTable(**wide), cycle_time_s=2.5)
+    verdict = judge(figures(), ToleranceTable.model_validate(wide), cycle_time_s=2.5)
     assert key in {check.what for check in verdict.checks}
     assert verdict.outcome == outcome
 

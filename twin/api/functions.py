@@ -36,7 +36,7 @@ def interpret(program: Program, *, dialect: str | None = None, machine: str | No
         ProgramError: The program is wrong; the message has the line and a caret.
         UsageError: A file is missing or wrong.
 
-    Example:
+    Examples:
         >>> moves = twin.interpret("G1 X20.5 Y-4.25 F600", dialect="haas")
         >>> moves.end[-1]
         array([20.5 , -4.25,  0.  ,  0.  ])
@@ -56,14 +56,14 @@ def plan(program: Program, *, dialect: str | None = None, machine: str | None = 
         machine: A shipped machine's name, or a machine file; the job's by default.
 
     Returns:
-        n samples over k axes: ``time`` [s] and ``line``, shape (n,); ``position`` [mm or deg],
+        n samples over k axes, with ``time`` [s] and ``line``, shape (n,); ``position`` [mm or deg],
         ``velocity`` [per s] and ``acceleration`` [per s²], shape (n, k).
 
     Raises:
         ProgramError: The program is wrong.
         UsageError: A file is missing or wrong.
 
-    Example:
+    Examples:
         >>> setpoints = twin.plan("part.nc")
         >>> setpoints.time[-1]  # the cycle time [s]
         2.31
@@ -106,7 +106,7 @@ def run(
         ProgramError: The program is wrong.
         UsageError: A file is missing or wrong, or another run holds the folder.
 
-    Example:
+    Examples:
         >>> result = twin.run("part.toml")
         >>> result.ok, result["contour_um"].max()
         (True, 3.4)

@@ -58,7 +58,7 @@ class Session:
 
     Untouched it moves as ``twin.run`` does.
 
-    Example:
+    Examples:
         >>> session = twin.Session("mefi/helix")
         >>> while not session.done:
         ...     step = session.step(50)

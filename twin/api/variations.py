@@ -40,7 +40,7 @@ def sweep(
         progress: Tell on stderr how far it is.
 
     Returns:
-        A row for each combination, in the order of their product: a column for each key, ``verdict``,
+        A row for each combination, in the order of their product, with a column for each key, ``verdict``,
         ``contour_um``, ``worst_line``, ``cycle_time_s``, ``findings``.
 
     Raises:

@@ -1,11 +1,5 @@
-"""Reference of Python and of the files that a run writes, from docstrings and declarations."""
+"""Reference of the recording that a run writes, from its declarations."""
 
-import inspect
-import re
-from collections.abc import Callable
-from typing import Any
-
-import twin
 from twin.recording.form import (
     COLUMNS,
     CONTOUR,
@@ -16,7 +10,6 @@ from twin.recording.form import (
     RecordingHeader,
 )
 
-_SECTION = re.compile(r"^(Args|Returns|Raises|Yields|Example|Attributes):$")
 _LEAD = (
     "`recording.h5` is plain HDF5: n samples at the servo period, axes in the order of the attribute `axes`. "
     "Sample i of every dataset belongs to the instant `time[i]`."
@@ -58,72 +51,6 @@ _ATTRIBUTES = {
     "alarms": "what the machine raised, as JSON: pairs of time [s] and text",
     "complete": "true where the run was written to its end",
 }
-
-
-def python_page() -> str:
-    """The functions of the package, with their shapes and units."""
-    sections = [
-        "# Python",
-        "The commands as functions, with plain NumPy columns. `help(twin.run)` shows the same.",
-    ]
-    for name in ("interpret", "plan", "run", "sweep", "compare"):
-        function = getattr(twin, name)
-        sections += [
-            f"## `twin.{name}`",
-            _signature(name, function),
-            _docstring(inspect.getdoc(function) or ""),
-        ]
-    return "\n\n".join(sections) + "\n"
-
-
-def _signature(name: str, function: Callable[..., Any]) -> str:
-    """A function's head, a line for each of its arguments."""
-    signature = inspect.signature(function)
-    arguments = [str(each).replace("pathlib.", "") for each in signature.parameters.values()]
-    first = next(
-        (
-            at
-            for at, each in enumerate(signature.parameters.values())
-            if each.kind is each.KEYWORD_ONLY
-        ),
-        len(arguments),
-    )
-    arguments.insert(first, "*") if first < len(arguments) else None
-    result = inspect.formatannotation(signature.return_annotation).rpartition(".")[2]
-    lines = "".join(f"    {argument},\n" for argument in arguments)
-    return f"```python\ntwin.{name}(\n{lines}) -> {result}\n```"
-
-
-def _docstring(text: str) -> str:
-    """A docstring in Google's form as Markdown: parts in bold, names as lists, examples as code."""
-    parts: list[str] = []
-    section = ""
-    for line in text.splitlines():
-        found = _SECTION.match(line)
-        if found:
-            section = found[1]
-            parts += ["", f"**{section}**", ""]
-        elif section == "Example":
-            parts.append(line)
-        elif section in ("Args", "Raises", "Attributes") and (
-            entry := re.match(r"    (\w+): (.*)", line)
-        ):
-            parts.append(f"- `{entry[1]}`: {entry[2]}")
-        else:
-            parts.append(
-                line.strip()
-                if not section
-                else f"  {line.strip()}"
-                if parts[-1].startswith(("-", "  "))
-                else line.strip()
-            )
-    marked = "\n".join(parts).replace("``", "`")
-    return re.sub(r"(?m)((?:^    .*\n?)+)", lambda code: _fenced(code[0]), marked)
-
-
-def _fenced(code: str) -> str:
-    lines = "\n".join(line[4:] for line in code.rstrip().splitlines())
-    return f"```pycon\n{lines}\n```\n"
 
 
 def recording_page() -> str:

@@ -1,0 +1,34 @@
+"""Warnings that are wrong: 200 ordinary programs, which were not there when they were made, draw none."""
+
+from pathlib import Path
+
+import pytest
+
+from tests.run.ordinary_programs import ordinary
+from tests.run.test_verdict_scope import codes
+from twin.run.preparation import prepare
+from twin.run.progress import no_progress
+from twin.run.run import Run
+
+BATCH = 10
+
+
+def drawn(folder: Path, seed: int) -> dict[str, int]:
+    """What a program draws, by code; none of it is right."""
+    program, job, _ = ordinary(seed)
+    (folder / "p.nc").write_text(program)
+    (folder / "p.toml").write_text(job)
+    chain = Run(prepare(folder / "p.toml"))
+    return codes(chain.execute(chain.dry_run(), None, no_progress))
+
+
+@pytest.mark.seconds("ten programs are run whole")
+def test_a_few_ordinary_programs_draw_nothing(tmp_path: Path) -> None:
+    assert {seed: found for seed in range(4) if (found := drawn(tmp_path, seed))} == {}
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("first", range(0, 200, BATCH))
+def test_ordinary_programs_draw_nothing(first: int, tmp_path: Path) -> None:
+    seeds = range(first, first + BATCH)
+    assert {seed: found for seed in seeds if (found := drawn(tmp_path, seed))} == {}
