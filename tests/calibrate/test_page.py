@@ -25,9 +25,17 @@ def page() -> str:
 
 @pytest.mark.seconds("a log is fitted and its page made")
 def test_it_shows_overlays_what_is_left_spectrum_and_correlations(page: str) -> None:
-    # Two logs with lag, rest and spectrum each, and the correlations.
-    assert page.count("<svg") == 2 * 3 + 1
-    for word in ("hold-out", "damping_ratio", "mass", "What they do not tell"):
+    # Two logs with lag, rest, spectrum and whiteness each, the correlations, the Bode plot.
+    assert page.count("<svg") == 2 * 4 + 2
+    assert len(page.encode()) < 300_000
+    for word in (
+        "hold-out",
+        "damping_ratio",
+        "mass",
+        "What they do not tell",
+        "phase margin",
+        "Structures that competed",
+    ):
         assert word in page
 
 

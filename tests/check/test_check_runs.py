@@ -148,6 +148,7 @@ def die_if_bad(path: Path) -> CheckOutcome:
     return CheckOutcome(program=str(path), verdict="pass", exit_code=ExitCode.OK)
 
 
+@pytest.mark.processes
 def test_programs_are_spread_over_processes(tmp_path: Path):
     paths = [Path(f"program{index}") for index in range(4)]
     outcomes = list(check_all(paths, functools.partial(mark, folder=tmp_path), jobs=2))

@@ -101,6 +101,10 @@ def test_a_control_that_would_hardly_feed_was_not_meant(tmp_path: Path) -> None:
     assert made.dialect.name == "fanuc"
     assert "haas would feed 0.6 mm/min at most" in made.dialect_reason
     assert made.reading.keys == {}
+    path.write_text(path.read_text().replace("G43 H1", "M10\nG43 H1"))  # which a Haas alone knows
+    made = prepare(path, assuming=True)
+    assert made.dialect.name == "fanuc"
+    assert made.reading.told == ("M10 does nothing: fanuc has no such code",)
 
 
 @pytest.mark.parametrize(
@@ -123,6 +127,16 @@ def test_numbers_without_a_point_count_whole_units_where_the_program_shows_it(
     assert (made.settings.decimal_point == "calculator") == calculator
     assert bool(made.reading.told) == calculator
     assert prepare(path, dialect="fanuc").settings.decimal_point is None
+
+
+def test_a_control_that_alone_reads_a_program_and_crawls_was_not_meant(tmp_path: Path) -> None:
+    path = tmp_path / "part.nc"
+    path.write_text(
+        "O1\nG21 G90 G54\nG0 Z20.\nG82 X5. Y5. Z-5. R2. P500. F20\nG80\nG0 G91 G28 Z0\nM30\n"
+    )
+    with pytest.raises(ProgramError) as raised:
+        prepare(path, assuming=True)
+    assert "read as linuxcnc, which reads it farthest" in str(raised.value)
 
 
 def test_codes_of_the_builder_and_a_single_work_offset_are_assumed_and_kept(tmp_path: Path) -> None:

@@ -23,7 +23,7 @@ AXES = Axes(("X", "Y", "Z", "C"), ("linear", "linear", "linear", "rotary"))
 MOVING: dict[str, Value] = {
     "X_position": "-12.345678", "X_position_commanded": "-12.300000", "X_load": "3.25",
     "C_position": "721.5", "C_position_commanded": "721.5", "C_load": "0.00",
-    "path_feedrate": "50.0000", "spindle_speed": "8000", "line": "12", "block": "N12 <G1> & X3",
+    "path_feedrate": "50.0000", "spindle_speed": "8000", "feed_override": "80", "rapid_override": "50", "spindle_override": "110", "line": "12", "block": "N12 <G1> & X3",
     "tool_number": "3", "part_count": "7", "program": "part.nc",
 }  # fmt: skip
 STATES: dict[str, dict[str, Value]] = {

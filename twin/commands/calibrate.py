@@ -24,7 +24,6 @@ from twin.logs.machine_log import MachineLog, read_machine_log
 from twin.machine.description.config import read_machine
 
 if TYPE_CHECKING:
-    from twin.calibrate.fit.ball_bar import BallBarFit
     from twin.calibrate.result import Calibration
 
 
@@ -105,7 +104,8 @@ def calibrate_and_print(request: Request) -> ExitCode:
 
     wanted = [name.strip().upper() for name in request.axes.split(",")] if request.axes else []
     circles = [read_ball_bar(path, request.columns) for path in request.ball_bars]
-    result = calibrate(machine, read(request.logs), read(request.hold_out), wanted, circles)
+    fitted, held = read(request.logs), read(request.hold_out)
+    result = calibrate(machine, fitted, held, wanted, circles)
     if request.out is not None:
         write_text(
             request.out,
@@ -117,8 +117,18 @@ def calibrate_and_print(request: Request) -> ExitCode:
         )
     if request.report is not None:
         from twin.calibrate.report.page import calibration_page
+        from twin.calibrate.report.record import record_of
 
-        write_text(request.report, calibration_page(result))
+        logs = [
+            (role, path, log)
+            for role, paths, read_logs in (
+                ("fit", request.logs, fitted), ("hold-out", request.hold_out, held)
+            )
+            for path, log in zip(paths, read_logs, strict=True)
+        ]  # fmt: skip
+        base = (request.base, machine_file(request.base))
+        record = record_of(base, request.columns, logs)
+        write_text(request.report, calibration_page(result, record))
     # Where the figures go to the standard output, nothing else does.
     with contextlib.redirect_stdout(sys.stderr if request.json_file == STDOUT else sys.stdout):
         _print(result)
@@ -138,6 +148,7 @@ def _base_for(base: str, out: Path) -> str:
 
 
 def _print(result: "Calibration") -> None:
+    from twin.calibrate.fit.ball_bar import circle_line
     from twin.calibrate.result import verdict_sentence
 
     for log, findings in result.findings.items():
@@ -165,7 +176,7 @@ def _print(result: "Calibration") -> None:
     if result.logs:
         _print_logs(console, result)
     for circle in result.ball_bars:
-        typer.echo(_circle_line(circle))
+        typer.echo(circle_line(circle))
     for name, axis in result.axes.items():
         typer.echo(verdict_sentence(name, axis, result.logs))
 
@@ -188,20 +199,6 @@ def _print_logs(console: Console, result: "Calibration") -> None:
     for figures in result.logs:
         if figures.ramps_line:
             typer.echo(figures.ramps_line)
-
-
-def _circle_line(circle: "BallBarFit") -> str:
-    from twin.calibrate.fit.ball_bar import ONE_DIRECTION
-
-    lost = ", ".join(f"{name} {1e3 * one.value:.2f} µm" for name, one in circle.lost.items())
-    told = f"{circle.log}: circle {circle.plane}: lost where the axes turn round: {lost}; "
-    if circle.squareness is None or circle.lag is None:
-        told += ONE_DIRECTION
-    else:
-        first, second = circle.plane
-        told += f"squareness {circle.squareness.value:.2f} µm/m; "
-        told += f"{first} lags {1e3 * circle.lag.value:.4g} ms more than {second}"
-    return f"{told}; {1e3 * circle.left_rms:.2f} of {1e3 * circle.logged_rms:.2f} µm are left"
 
 
 def _share(value: float | None) -> str:

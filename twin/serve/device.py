@@ -74,7 +74,10 @@ def device_of(name: str, axes: Axes) -> Component:
         "Rotary",
         "S",
         "S",
-        (DataItem("spindle_speed", "SAMPLE", "ROTARY_VELOCITY", "REVOLUTION/MINUTE", "ACTUAL"),),
+        (
+            DataItem("spindle_speed", "SAMPLE", "ROTARY_VELOCITY", "REVOLUTION/MINUTE", "ACTUAL"),
+            DataItem("spindle_override", "EVENT", "ROTARY_VELOCITY_OVERRIDE"),
+        ),
     )
     path = Component(
         "Path",
@@ -84,6 +87,8 @@ def device_of(name: str, axes: Axes) -> Component:
             DataItem("path_feedrate", "SAMPLE", "PATH_FEEDRATE", "MILLIMETER/SECOND", "ACTUAL"),
             DataItem("block", "EVENT", "BLOCK"),
             DataItem("execution", "EVENT", "EXECUTION"),
+            DataItem("feed_override", "EVENT", "PATH_FEEDRATE_OVERRIDE", sub_type="PROGRAMMED"),
+            DataItem("rapid_override", "EVENT", "PATH_FEEDRATE_OVERRIDE", sub_type="RAPID"),
             DataItem("line", "EVENT", "LINE_NUMBER", sub_type="ABSOLUTE"),
             DataItem("mode", "EVENT", "CONTROLLER_MODE"),
             DataItem("part_count", "EVENT", "PART_COUNT", sub_type="ALL"),

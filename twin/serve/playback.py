@@ -80,6 +80,10 @@ def _parts(production: Production, recording: Recording | None) -> Iterator[Tick
             "availability": "AVAILABLE",
             "emergency_stop": "ARMED",
             "mode": "AUTOMATIC",
+            # Nobody turns them in a job.
+            "feed_override": "100",
+            "rapid_override": "100",
+            "spindle_override": "100",
             "program": production.program,
             "tool_number": str(production.summary.tools.at(0).number),
         },

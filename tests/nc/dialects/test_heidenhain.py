@@ -345,7 +345,7 @@ REFUSED = {
     "a call with no cycle": ("CYCL CALL", "CYCL DEF"),
     "a cycle that is not known": ("CYCL DEF 999 MAGIC Q200=2", "999"),
     "an axis that the machine lacks": ("L A+10 F100", "A"),
-    "a word of another control": ("G1 X10 F100", "'G'"),
+    "a word of another control": ("G1 X10 F100", "L X+10"),
     "an M function that is not known": ("L X+1 F100 M777", "M777"),
     "compensation begun on an arc": ("L X+10 F100\nCC X+0 Y+0\nC X+0 Y+10 DR+ RL", "line"),
     "a tool that the job lacks": ("TOOL CALL 9 Z S1000", "9"),

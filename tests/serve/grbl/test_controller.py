@@ -154,6 +154,7 @@ def test_what_the_part_says_is_alarm_3_with_its_name(bench: Bench) -> None:
     assert any("rapid-into-stock" in line for line in answers)
 
 
+@pytest.mark.seconds("an axis is driven along its travel")
 def test_homing_answers_when_it_is_done(bench: Bench) -> None:
     assert bench.send(b"$H\n", 3) == []
     assert bench.state == "Home"

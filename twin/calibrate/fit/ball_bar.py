@@ -77,6 +77,19 @@ def fit_ball_bar(log: BallBarLog) -> BallBarFit:
     )
 
 
+def circle_line(circle: BallBarFit) -> str:
+    """What a circle came to, in words."""
+    lost = ", ".join(f"{name} {1e3 * one.value:.2f} µm" for name, one in circle.lost.items())
+    told = f"{circle.log}: circle {circle.plane}: lost where the axes turn round: {lost}; "
+    if circle.squareness is None or circle.lag is None:
+        told += ONE_DIRECTION
+    else:
+        first, second = circle.plane
+        told += f"squareness {circle.squareness.value:.2f} µm/m; "
+        told += f"{first} lags {1e3 * circle.lag.value:.4g} ms more than {second}"
+    return f"{told}; {1e3 * circle.left_rms:.2f} of {1e3 * circle.logged_rms:.2f} µm are left"
+
+
 _SCALE, _SQUARE, _LAG = 3, 4, 5
 """Columns of ``_columns``; what stands before is the circle, what comes after the backlash."""
 

@@ -20,7 +20,7 @@ from twin.calibrate.fit.solve import (
     solve,
 )
 from twin.calibrate.fit.stretch import Stretch, predict
-from twin.calibrate.fit.structure import Choice, choose_structure, leaves_less
+from twin.calibrate.fit.structure import Choice, Tried, choose_structure, leaves_less
 from twin.nc.canonical import FloatArray, IntArray
 from twin.units import AxisKind, kv_per_second, to_si
 
@@ -55,6 +55,7 @@ class AxisFit:
         undetermined: What it does not determine, and why.
         names: In the order of ``correlations``.
         correlations: Of what was fitted, shape (p, p).
+        tried: Structures that were looked at, the chosen one first; none where nothing more was asked for.
     """
 
     parameters: Parameters
@@ -63,6 +64,7 @@ class AxisFit:
     undetermined: dict[str, str]
     names: tuple[str, ...]
     correlations: FloatArray
+    tried: tuple[Tried, ...] = ()
 
 
 @on_one_thread
@@ -105,7 +107,8 @@ def fit_axis(
     }  # fmt: skip
     if any(stretch.command.is_drawn for stretch in stretches):
         fitted = _allowing_for_drawing(kind, stretches, best, fitted)
-    return _told(stretches, best, fitted, undetermined)
+    told = _told(stretches, best, fitted, undetermined)
+    return dataclasses.replace(told, tried=choice.tried)
 
 
 def _core_fits(

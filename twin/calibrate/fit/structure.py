@@ -25,6 +25,19 @@ _WHITE = 0.05
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
+class Tried:
+    """A structure that was tried.
+
+    Attributes:
+        extras: What it has besides gain, damping, friction and mass.
+        left: Root mean square of what it leaves, weighted.
+    """
+
+    extras: tuple[str, ...]
+    left: float
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
 class Choice:
     """A structure that was chosen.
 
@@ -32,11 +45,13 @@ class Choice:
         best: Its optimum.
         rivals: Optima of other structures that leave no more, for all that the log tells.
         larger: Optima with one extra more, by its name: they leave less, but by chance.
+        tried: All structures that were looked at, and the one that was chosen, which comes first.
     """
 
     best: Solution
     rivals: tuple[Solution, ...] = ()
     larger: dict[str, Solution] = dataclasses.field(default_factory=dict)
+    tried: tuple[Tried, ...] = ()
 
 
 def leaves_less(one: Solution, other: Solution) -> bool:
@@ -61,7 +76,8 @@ def choose_structure(problem: Problem, cores: Sequence[tuple[Solution, Core]]) -
             break
         other = _grown(problem, solution, core)
         if leaves_less(other.best, choice.best):
-            choice = other
+            choice, other = other, choice
+        choice = dataclasses.replace(choice, tried=(*choice.tried, *other.tried))
     return choice
 
 
@@ -89,7 +105,9 @@ def _grown(problem: Problem, start: Solution, core: Core) -> Choice:
         for extras, other in known.items()
         if own < extras and len(extras - own) == 1
     }
-    return Choice(best, _rivals(best, list(known.values()), core), larger)
+    tried = [Tried(tuple(core.extras_of(each)), each.cost) for each in (best, start)]
+    tried += [Tried(tuple(sorted(extras)), each.cost) for extras, each in known.items()]
+    return Choice(best, _rivals(best, list(known.values()), core), larger, tuple(tried))
 
 
 def _searched(problem: Problem, best: Solution, promise: Promise, core: Core) -> Solution:

@@ -1,13 +1,26 @@
 """``--report``: one self-contained page about a calibration."""
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import jinja2
 import markupsafe
 
+from twin.calibrate.fit.ball_bar import circle_line
+from twin.calibrate.fit.parameters import Parameters
 from twin.calibrate.fit.solve import Interval
+from twin.calibrate.fit.structure import Tried
+from twin.calibrate.report.loop_plots import (
+    autocorrelation,
+    bode_plot,
+    friction_plot,
+    friction_points,
+    margins,
+    whiteness,
+    whiteness_plot,
+)
 from twin.calibrate.report.plots import (
     correlation_plot,
     force_plot,
@@ -16,16 +29,28 @@ from twin.calibrate.report.plots import (
     left_plot,
     spectrum_plot,
 )
+from twin.calibrate.report.record import Record
 from twin.calibrate.result import AxisResult, Calibration, LogFigures, verdict_sentence
 from twin.compare.report.plot_style import theme_css
 from twin.version import __version__
 
+_WELL = 0.15
+"""Share of a logged force that a good model may leave."""
+_MOST_TRIED = 12
+"""Structures that the page lists."""
+_FEWEST = 2
+"""Points of friction that are no course yet."""
 _ROOMS = ("twin.calibrate.report", "twin.compare.report")
 """Where the page's template lies, and the style sheet that it shares with reports of runs."""
 
 
-def calibration_page(result: Calibration) -> str:
-    """The page, as HTML that needs no other file."""
+def calibration_page(result: Calibration, record: Record | None = None) -> str:
+    """The page, as HTML that needs no other file.
+
+    Args:
+        result: What the calibration came to.
+        record: From what it was made; None: nobody signs for it.
+    """
     environment = jinja2.Environment(
         loader=jinja2.ChoiceLoader(
             [jinja2.PackageLoader(room, "page") for room in _ROOMS]
@@ -48,6 +73,9 @@ def calibration_page(result: Calibration) -> str:
         ramps=[line for figures in result.logs if (line := figures.ramps_line)],
         unexplained=_unexplained(result.logs),
         axes=[_axis(name, axis, result.logs) for name, axis in result.axes.items()],
+        record=record,
+        forces=[line for figures in result.logs if (line := _judged_force(figures))],
+        circles=[circle_line(circle) for circle in result.ball_bars],
     )
 
 
@@ -80,13 +108,51 @@ def _axis(name: str, axis: AxisResult, logs: tuple[LogFigures, ...]) -> dict[str
         "open": list(fit.undetermined.items()),
         "limits": [(key, f"{value:.5g}") for key, value in axis.limits.reached.items()],
         "correlations": _drawing(correlation_plot(fit.names, fit.correlations)),
-        "logs": [_log(figures) for figures in logs if figures.axis == name],
+        "tried": _tried(fit.tried),
+        "bode": _drawing(bode_plot(fit.parameters, axis.kind)) if fit.fitted else "",
+        "margins": margins(fit.parameters, axis.kind),
+        "logs": [_log(figures, fit.parameters) for figures in logs if figures.axis == name],
     }  # fmt: skip
 
 
-def _log(figures: LogFigures) -> dict[str, Any]:
+def _tried(tried: Sequence[Tried]) -> list[tuple[str, str]]:
+    """Structures that competed and what each left, the least first; the chosen one is said."""
+    chosen = tried[0].extras if tried else ()
+    best: dict[tuple[str, ...], float] = {}
+    for each in tried:
+        extras = tuple(sorted(each.extras))
+        best[extras] = min(best.get(extras, math.inf), each.left)
+    rows = sorted(best.items(), key=lambda item: item[1])[:_MOST_TRIED]
+    least = rows[0][1] if rows else 1.0
+    return [
+        (
+            (", ".join(extras) or "nothing more")
+            + (" (chosen)" if extras == tuple(sorted(chosen)) else ""),
+            f"{left / least:.3f}",
+        )
+        for extras, left in rows
+    ]
+
+
+def _judged_force(figures: LogFigures) -> str:
+    """What a logged force is worth, in a sentence; empty where none is logged."""
+    name, share = f"{Path(figures.log).name}, {figures.axis}", figures.force_share
+    if share is None or not len(figures.course.logged_force):
+        return ""
+    if share <= _WELL:
+        return f"{name}: the model gives the logged force to {100 * share:.2g} %: mass and friction rest on it."
+    if not figures.force_is_unexplained:
+        return (
+            f"{name}: {100 * share:.0f} % of the logged force are left: mass and friction are of that order; "
+            "cut, cogging or a force of other axes may be in it."
+        )
+    return f"{name}: {100 * share:.0f} % of the logged force are left: mass and friction are not to be relied upon."
+
+
+def _log(figures: LogFigures, found: Parameters) -> dict[str, Any]:
     course = figures.course
     drawn = len(course.time) > 1
+    points = friction_points(figures, found.mass)[0]
     return {
         "name": Path(figures.log).name,
         "role": figures.role,
@@ -94,6 +160,11 @@ def _log(figures: LogFigures) -> dict[str, Any]:
         "left": _drawing(left_plot(figures)) if drawn else "",
         "force": _drawing(force_plot(figures)) if len(course.logged_force) else "",
         "spectrum": _drawing(spectrum_plot(figures)) if has_spectrum(course) else "",
+        "whiteness": whiteness(course),
+        "white": _drawing(whiteness_plot(figures))
+        if not course.slow and len(autocorrelation(course))
+        else "",
+        "friction": _drawing(friction_plot(figures, found)) if len(points) > _FEWEST else "",
     }
 
 

@@ -7,8 +7,10 @@ from twin.calibrate.result import Course, LogFigures
 from twin.compare.report.plot_style import BLUE, INK, LIMIT, finish, new_figure, styled
 from twin.nc.canonical import FloatArray
 
-_POINTS = 3000
+_POINTS = 600
 """Of a course so many points are drawn at most: of each group its lowest and highest."""
+_CLASSES = 240
+"""Classes of frequency that a spectrum is drawn in, even in its logarithm."""
 _SEGMENTS = 8
 """Pieces that a spectrum is averaged over."""
 _WIDE, _HIGH = 10.5, 2.7
@@ -33,7 +35,7 @@ def lag_plot(figures: LogFigures) -> str:
     axes.set_ylabel(what)
     axes.set_xlabel("time [s]")
     axes.legend(loc="upper right", frameon=False, ncols=2)
-    return _drawn(figure)
+    return drawn(figure)
 
 
 @styled
@@ -47,7 +49,7 @@ def left_plot(figures: LogFigures) -> str:
     axes.plot(time, thin, color=BLUE, linewidth=0.8, **style)
     axes.set_ylabel(f"left [{_speed(figures) if course.slow else _small(figures)}]")
     axes.set_xlabel("time [s]")
-    return _drawn(figure)
+    return drawn(figure)
 
 
 @styled
@@ -65,7 +67,7 @@ def spectrum_plot(figures: LogFigures) -> str:
     axes.set_xlabel("frequency [Hz]")
     axes.set_ylabel(f"density [{unit}/√Hz]")
     axes.legend(frameon=False)
-    return _drawn(figure)
+    return drawn(figure)
 
 
 @styled
@@ -88,13 +90,13 @@ def force_plot(figures: LogFigures) -> str:
     )
     axes.set_xlabel("sample that moves" if course.slow else "time [s]")
     axes.legend(loc="upper right", frameon=False, ncols=2)
-    return _drawn(figure)
+    return drawn(figure)
 
 
 @styled
 def correlation_plot(names: tuple[str, ...], correlations: FloatArray) -> str:
     """How alike the parameters act on the log."""
-    side = max(2.6, 0.55 * len(names) + 1.4)
+    side = max(2.8, 0.6 * len(names) + 1.4)
     figure, axes = new_figure(5.1, side)
     axes.grid(visible=False)
     places = np.arange(len(names))
@@ -102,14 +104,14 @@ def correlation_plot(names: tuple[str, ...], correlations: FloatArray) -> str:
         for column in range(len(names)):
             value = float(correlations[row, column])
             size = min(1.0, abs(value))
-            axes.scatter(column, row, s=20 + 420 * size, color=LIMIT if value < 0 else BLUE,
-                         alpha=0.1 + 0.4 * size, linewidths=0)  # fmt: skip
-            axes.text(column, row, f"{value:.2f}", ha="center", va="center", fontsize=7, color=INK)
+            axes.scatter(column, row, s=60 + 620 * size, color=LIMIT if value < 0 else BLUE,
+                         alpha=0.1 + 0.35 * size, linewidths=0)  # fmt: skip
+            axes.text(column, row, f"{value:.2f}", ha="center", va="center", fontsize=9, color=INK)
     axes.set_xticks(places, names, rotation=40, ha="right")
     axes.set_yticks(places, names)
     axes.set_xlim(-0.6, len(names) - 0.4)
     axes.set_ylim(len(names) - 0.4, -0.6)
-    return _drawn(figure)
+    return drawn(figure)
 
 
 def has_spectrum(course: Course) -> bool:
@@ -125,7 +127,8 @@ def _speed(figures: LogFigures) -> str:
     return "mm/s" if figures.kind == "linear" else "deg/s"
 
 
-def _drawn(figure: Figure) -> str:
+def drawn(figure: Figure) -> str:
+    """A figure as a drawing for the page."""
     return finish(figure, None, np.zeros((0, 2))).svg
 
 
@@ -152,4 +155,6 @@ def _spectrum(values: FloatArray, step: float) -> tuple[FloatArray, FloatArray]:
     )
     density = np.asarray(np.sqrt(2.0 * power * step / np.sum(window**2)), dtype=np.float64)
     frequency = np.asarray(np.fft.rfftfreq(size, step), dtype=np.float64)
-    return frequency[1:], density[1:]
+    borders = np.unique(np.geomspace(1, len(frequency) - 1, _CLASSES).astype(np.int64))
+    # Of every class of frequencies the highest, so that no peak is lost.
+    return frequency[borders], np.maximum.reduceat(density, borders)

@@ -40,6 +40,7 @@ class Rules:
         after_motion: Done when a block has moved.
         finish: Done when the program ends without an end code.
         must_end: A program without an end code is wrong.
+        jog: A straight move by a distance, as its language writes it.
         read_variable: Value of a variable, given its name and index.
         write_variable: Gives a variable a value, told its name, its index and the assignment; None:
             variables are written as they are named.
@@ -60,6 +61,7 @@ class Rules:
     after_motion: Callable[["Control"], None] | None = None
     finish: Callable[["Control"], None] | None = None
     must_end: bool = False
+    jog: str = "N1 G91 G1 {axis}{distance} F{feed}"
     read_variable: Callable[["Control", str, float | None], float] | None = None
     write_variable: Callable[["Control", str, float | None, float, Assignment], None] | None = None
     is_local: Callable[[str], bool] = lambda _name: False

@@ -98,7 +98,7 @@ TEXTS: tuple[Foreign, ...] = (
         "post it for one of: twin dialects",
         r"(?m)^\s*;\s*FLAVOR:|^\s*;\s*(?:generated (?:by|with) )?(?:PrusaSlicer|Cura_SteamEngine|Slic3r|Marlin)"
         r"|^\s*M(?:104|109|140|190|82|83|106|107|204|205|400|420) ?(?:S|T|P|;|$)"
-        r"|^\s*M(?:17|18|84|280|300)\b(?! *[A-RT-Z])",
+        r"|^\s*M(?:18|84|280|300)\b(?! *[A-RT-Z])",
         2,
         comments=True,
     ),

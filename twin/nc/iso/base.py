@@ -280,7 +280,8 @@ def jog_block(dialect: Dialect, axis: str, distance: float, feed: float) -> str:
     mode = dialect.codes.start_state.get("feed_mode", FeedMode.PER_MINUTE)
     end = "\nM2" if dialect.rules.must_end else ""
     of_one = feed_per_minute(1.0, mode, distance, True, 1.0, 0.0, (feed, feed))
-    return f"N1 G91 G1 {axis}{_written(distance)} F{_written(feed / of_one)}{end}"
+    number, pace = _written(distance), _written(feed / of_one)
+    return dialect.rules.jog.format(axis=axis, distance=number, feed=pace) + end
 
 
 def _written(number: float) -> str:

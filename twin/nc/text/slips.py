@@ -44,6 +44,11 @@ SLIPS: tuple[Slip, ...] = (
         "IF",
         foreign=True,
     ),
+    _slip(
+        r"\bG[ \t]*[0-9]+",
+        "Klartext has no G codes: a line is L X+10 F500; DIN/ISO of the same controls is not read",
+        "BEGIN PGM",
+    ),
     _slip(r"\$[A-Z$#]", "a command of Grbl: --dialect grbl reads it"),
     _slip(
         r"[A-Z][ \t]*=[ \t]*[-+.0-9]", "a word is its letter and its number, such as X10, without ="

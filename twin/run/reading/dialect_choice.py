@@ -31,6 +31,8 @@ _CLEARANCE = 1.0
 """How far between pecks a drill withdraws is a parameter of the control; rapids that differ by less ask nobody [mm]."""
 _NEARLY = 0.1
 """Feeds on the same path that differ by less are told, but they ask nobody: F of a helix counts its arc or its path."""
+_CRAWLS = 1.0
+"""A dialect that alone reads a program, and in which it feeds slower than this, was not meant [mm/min]."""
 _TOO_SLOW = 1.0 / 200.0
 """A dialect in which the fastest feed is less than this share of another's is not the one that was meant: a
 Haas counts F300 without a point as 0.3 mm/min, and a post for it writes F300."""
@@ -97,14 +99,17 @@ def chosen_dialect(path: Path, settings: ControlSettings, source: Source | None 
     rare = [name for name in candidates if name not in _PREFERENCE]
     trials = [_tried(path, DIALECTS[name], settings) for name in (common or rare)]
     good = [trial for trial in trials if trial.error is None]
+    refusing = [trial for trial in trials if trial.error is not None]
+    if refusing and all(0.0 < trial.fastest < _CRAWLS for trial in good):
+        good, trials = [], refusing
     if not good:
         further = [_tried(path, DIALECTS[name], settings) for name in rare] if common else []
         raise _refused(trials, [trial.name for trial in further if trial.error is None])
-    least = min(len(trial.unknown) for trial in good)
-    knowing = [trial for trial in good if len(trial.unknown) == least]
-    fastest = max(trial.fastest for trial in knowing)
-    meant = [trial for trial in knowing if trial.fastest >= fastest * _TOO_SLOW]
-    return _choice(source.name, meant, _dropped(good, knowing, meant))
+    fastest = max(trial.fastest for trial in good)
+    quick = [trial for trial in good if trial.fastest >= fastest * _TOO_SLOW]
+    least = min(len(trial.unknown) for trial in quick)
+    meant = [trial for trial in quick if len(trial.unknown) == least]
+    return _choice(source.name, meant, _dropped(good, quick, meant))
 
 
 def _refused(trials: Sequence[_Trial], others: Sequence[str]) -> ProgramError:
@@ -120,15 +125,14 @@ def _refused(trials: Sequence[_Trial], others: Sequence[str]) -> ProgramError:
     return ProgramError(dataclasses.replace(farthest, message=message, hint=hint or None))
 
 
-def _dropped(good: Sequence[_Trial], knowing: Sequence[_Trial], meant: Sequence[_Trial]) -> str:
+def _dropped(good: Sequence[_Trial], quick: Sequence[_Trial], meant: Sequence[_Trial]) -> str:
     """Why some of the dialects that read a program are not the one that was meant; empty: all may be."""
-    slow = [trial for trial in knowing if trial not in meant]
-    ignorant = [trial.name for trial in good if trial not in knowing]
+    slow = [trial for trial in good if trial not in quick]
+    ignorant = [trial.name for trial in quick if trial not in meant]
     reasons = [f"{trial.name} would feed {trial.fastest:g} mm/min at most" for trial in slow]
     if ignorant:
-        reasons.append(
-            f"{_either(ignorant, 'and')} {'lack' if len(ignorant) > 1 else 'lacks'} some of its M codes"
-        )
+        lack = "lack" if len(ignorant) > 1 else "lacks"
+        reasons.append(f"{_either(ignorant, 'and')} {lack} some of its M codes")
     return "; ".join(reasons)
 
 

@@ -23,7 +23,7 @@ GRACE_S = 120.0
 """How long a room waits for its pupil to come back, before it is ended [s]."""
 LOOKED_EVERY_S = 2.0
 """Between two looks for rooms that have been left, or have died [s]."""
-START_S = 60.0
+START_S = 120.0
 """Longest that a room takes to begin [s]; on an empty cache kernels are compiled first."""
 END_S = 5.0
 """Longest that a room takes to write its last sheet [s]; then it is killed."""

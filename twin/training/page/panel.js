@@ -14,12 +14,13 @@ import { Screen } from "./screen.js";
 import { Sheets } from "./sheets.js";
 import { Trouble } from "./trouble.js";
 
+const ASKED_AGAIN_MS = 1000;
 const VIEWS = ["front", "top", "tool", "part", "fit"];
 
 // The entry takes the token out of the address; a browser that is known already comes here with it.
 if (location.hash) history.replaceState(null, "", location.pathname + location.search);
 
-const scene = await (await fetch("scene.json")).json();
+const scene = await room_scene();
 const now = {};
 let words, told = null, tool = null, follow = "start", queued = false;
 const changed = new Set();
@@ -42,6 +43,21 @@ const score = new Score(scene, line), editor = new Editor(line), help = new Help
 const desk = new Desk(scene, line), screen = new Screen(scene, line), sheets = new Sheets(scene, line, looking, desk, screen, score, editor);
 let attempt = null;
 screen.on_choice = () => { if (now.mode !== undefined && words) sheets.show(now, words); };
+
+/** The scene, as soon as there is a room: one that is just being begun, or cannot be, says so until then. */
+async function room_scene() {
+  const element = document.getElementById("banner");
+  for (;;) {
+    const answer = await fetch("scene.json").catch(() => null);
+    if (answer?.ok) {
+      element.hidden = true;
+      return answer.json();
+    }
+    element.textContent = (await answer?.json().catch(() => null))?.failed ?? "…";
+    element.hidden = false;
+    await new Promise((resume) => setTimeout(resume, ASKED_AGAIN_MS));
+  }
+}
 
 function banner(name, detail = "") {
   told = [name, detail];

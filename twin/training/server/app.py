@@ -324,6 +324,11 @@ class RoomApp:
         except TimeoutError:
             with contextlib.suppress(RuntimeError):
                 await socket.close(1008)
+        except Exception:
+            # A page that is told nothing more must not look alive.
+            with contextlib.suppress(RuntimeError):
+                await socket.close(1011)
+            raise
 
     async def _tell(self, socket: WebSocket, page: Page) -> None:
         """Show a page the machine, no faster than it reads."""

@@ -99,6 +99,7 @@ HEIDENHAIN = Dialect(
         before_motion=take_shortest_way,
         after_motion=_after_motion,
         finish=flow.warn_of_missing_end,
+        jog="L I{axis}{distance} F{feed}",
         read_variable=parameters.read_variable,
         is_local=parameters.is_local,
         acts_on_lines=acts_on_lines,
