@@ -25,7 +25,7 @@ from twin.nc.path.paces import counts_blocks
 from twin.nc.text.arithmetic import is_whole
 from twin.nc.text.blocks import Word
 
-_BLENDING = re.compile(rb"RND|CHF|CHR", re.IGNORECASE)
+_BLENDING = re.compile(rb"[RrCc](?:[Nn][Dd]|[Hh][FfRr])")
 _BLENDS = {"RND": BlendKind.FILLET, "CHR": BlendKind.CHAMFER, "CHF": BlendKind.CHAMFER_LENGTH}
 _LARGEST_H = 99_999.0
 
