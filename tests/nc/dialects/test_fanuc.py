@@ -445,3 +445,10 @@ def test_haas_tool_variables_have_their_own_numbers() -> None:
     for variable, wanted in (("#2002", 70.0), ("#2402", 4.0)):
         made = good(f"O1\n#100={variable}\nG0 X#100\nM30", "haas", tools=tools)
         assert made.position["X"] == wanted
+
+
+@pytest.mark.parametrize("cycle", ["G81", "G81.", "G 81", "g081.0"])
+def test_a_motion_behind_a_cycle_counts_however_the_cycle_is_written(cycle: str) -> None:
+    outcome = good(f"G90 F100.\nG0 X0. Y0. Z5.\n{cycle} X10. R1. G1 Z-1.\nM30\n", "fanuc")
+    assert "cycle-overruled" in outcome.codes
+    assert outcome.position == {"X": 10.0, "Y": 0.0, "Z": -1.0, "C": 0.0}

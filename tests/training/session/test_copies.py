@@ -84,8 +84,8 @@ def step(executor: Executor) -> tuple[Any, ...] | None:
             executor.run(block)
     except ProgramError as error:
         control.ended = True
-        return told(control.path.take()), str(error)
-    return told(control.path.take())
+        return told(control.path.columns.take()), str(error)
+    return told(control.path.columns.take())
 
 
 BLOCKS = 400

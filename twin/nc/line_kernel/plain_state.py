@@ -71,7 +71,7 @@ class LineRuns:
         if self._wait > 0:
             self._wait -= 1
             return range(0)
-        room = CHUNK - len(control.path)
+        room = CHUNK - control.path.columns.count
         line = control.program_counter.fresh_line
         if line is None or room <= 0 or not may_run_lines(self._executor):
             return range(0)

@@ -141,12 +141,7 @@ def hole_of(cycle: Cycle, values: Values, axis: int, to_reference: bool) -> Hole
         axis: The axis across the plane in force.
         to_reference: It returns to the reference plane, not to the height of its call.
     """
-    fault = 0
-    for value in range(VALUES):
-        if (cycle.needed >> value) & 1 and values[value] != values[value]:
-            fault = _MISSING
-    if values[AXIS] != axis:
-        fault = _PLANE
+    fault = _fault_of_call(cycle, values, axis)
     reference, bottom = values[REFERENCE], values[BOTTOM]
     surface = reference - either(values[SURFACE], 0.0)
     peck, factor = either(values[FIRST], values[PECK]), either(values[FACTOR], 1.0)
@@ -174,12 +169,9 @@ def hole_of(cycle: Cycle, values: Values, axis: int, to_reference: bool) -> Hole
                 fault = _MANY_PECKS
     clearance = either(values[CLEARANCE], cycle.clearance)
     dwell = either(values[DWELL], 0.0) if cycle.dwells else 0.0
-    if fault == 0 and (bottom >= reference or clearance < 0.0):
-        fault = _DEPTH
-    if fault == 0 and dwell < 0.0:
-        fault = _DWELL
-    if fault == 0 and not (faster % 1.0 == 0.0 and 1.0 <= faster <= _FASTEST_RETURN):
-        fault = _FASTER
+    if fault == 0:
+        goes_down = bottom < reference and clearance >= 0.0
+        fault = _fault_of_return(dwell, faster) if goes_down else _DEPTH
     back = reference if to_reference else max(values[START], reference)
     return Hole(
         fault,
@@ -200,6 +192,22 @@ def hole_of(cycle: Cycle, values: Values, axis: int, to_reference: bool) -> Hole
         cycle.retract,
         faster,
     )
+
+
+def _fault_of_call(cycle: Cycle, values: Values, axis: int) -> int:
+    """Whether it was called in the plane in force, with all that it needs."""
+    if values[AXIS] != axis:
+        return _PLANE
+    needed = (value for value in range(VALUES) if (cycle.needed >> value) & 1)
+    return _MISSING if any(values[value] != values[value] for value in needed) else 0
+
+
+def _fault_of_return(dwell: float, faster: float) -> int:
+    """Whether it can wait at the bottom so long and come back so fast."""
+    if dwell < 0.0:
+        return _DWELL
+    whole = faster % 1.0 == 0.0 and 1.0 <= faster <= _FASTEST_RETURN
+    return 0 if whole else _FASTER
 
 
 def _fault_of_pecks(values: Values) -> int:

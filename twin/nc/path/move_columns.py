@@ -178,6 +178,10 @@ class MoveColumns:
         """Append an event after the moves so far."""
         self.events.append(dataclasses.replace(event, before=self.count))
 
+    def refusal(self, line: int) -> Refused:
+        """That the block of a line, which comes next, is refused."""
+        return Refused(self.count, len(self.events), line)
+
     def take(self, refused: "Refused | None" = None) -> Chunk:
         """All that was appended but for what a refused block did, as columns; nothing is left here."""
         self._close_lists()

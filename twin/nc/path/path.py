@@ -6,12 +6,12 @@ out, additional axes that go evenly. Each is there only while a program asks for
 
 from collections.abc import Callable
 
-from twin.nc.canonical import Axes, Chunk, Event, FloatArray, IntArray, Motion
+from twin.nc.canonical import Axes, Event, FloatArray, IntArray, Motion
 from twin.nc.geometry.planes import Plane
 from twin.nc.path.blends import Blend
 from twin.nc.path.compensation.stage import OFF, Compensation
 from twin.nc.path.loops import Loops
-from twin.nc.path.move_columns import MoveColumns, Refused, Segment, segment_of
+from twin.nc.path.move_columns import MoveColumns, Segment, segment_of
 from twin.nc.path.rounding import Rounding
 from twin.nc.path.segments import MoveReport
 from twin.nc.path.splines import Spline
@@ -44,17 +44,6 @@ class Path:
         self.defer: Callable[[Event], bool] = holds_none
         self.leads: Callable[[Segment], None] | None = None
 
-    def __len__(self) -> int:
-        return self.columns.count
-
-    def take(self, refused: Refused | None = None) -> Chunk:
-        """All that has been emitted but for what a refused block did, as columns."""
-        return self.columns.take(refused)
-
-    def refusal(self, line: int) -> Refused:
-        """That the block of a line, which comes next, is refused."""
-        return Refused(self.columns.count, len(self.columns.events), line)
-
     def finish(self) -> None:
         """Nothing follows: emit what the stages hold."""
         self.flush()
@@ -71,7 +60,7 @@ class Path:
             leads, self.leads = self.leads, None
             leads(move)
         if self._spline is not None:
-            self._end_spline(move)
+            self.end_spline(move)
         self._before = move
         if self._rounding is None:
             self._compensate(move)
@@ -105,22 +94,23 @@ class Path:
         self._spline.add(move, flat=flat)
         self._before = None
 
-    def end_spline(self) -> None:
-        """The spline's next point begins a new one."""
-        self._end_spline(None)
-
     def event(self, event: Event) -> None:
         """Something that happens between the moves so far and the next, whatever its ``before``."""
         if self.defer(event):
             return
-        self._end_spline(None)
+        self.end_spline()
         self._before = None
         if self._rounding is None:
             self.compensation.event(event)
         else:
             self._rounding.event(event)
 
-    def _end_spline(self, behind: Segment | None) -> None:
+    def end_spline(self, behind: Segment | None = None) -> None:
+        """The spline ends, and its next point begins a new one.
+
+        Args:
+            behind: The move that follows; None: no move does.
+        """
         if self._spline is not None:
             cuts = behind is not None and behind.motion is Motion.FEED
             self._spline.finish(behind if cuts else None)
@@ -149,7 +139,7 @@ class Path:
 
     def blend_always(self, blend: Blend | None) -> None:
         """Blend every corner between two moves that follow; None: no more."""
-        self._end_spline(None)
+        self.end_spline()
         if blend is not None:
             self.hold_for_blends()
         if self._rounding is not None:
@@ -160,7 +150,7 @@ class Path:
 
     def flush(self) -> None:
         """Emit what splines and blends hold."""
-        self._end_spline(None)
+        self.end_spline()
         if self._rounding is not None:
             self._rounding.flush()
 

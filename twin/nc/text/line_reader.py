@@ -2,7 +2,6 @@
 
 import re
 import string
-import unicodedata
 from typing import NoReturn
 
 from twin.nc.canonical import NO_BLOCK_NUMBER
@@ -18,16 +17,12 @@ from twin.nc.text.expressions import (
 from twin.nc.text.grammar import Grammar
 from twin.nc.text.plain_word import BLANKS
 from twin.nc.text.reporter import Reporter
-from twin.nc.text.slips import near, slip_at
+from twin.nc.text.unreadable import Unreadable
 
 LARGEST_LABEL = 4_294_967_295
 """Largest N number (32 bits, as the Fagor manual states)."""
 
-_STATEMENT = re.compile(r"[#$][A-Z]\w*", re.IGNORECASE)
-_GARBLED = re.compile(r"[-+.0-9]{1,20}")
-"""What looks like a number and was not read as one."""
 _SKIP_LEVEL = re.compile(r"[0-9](?=[ \t]*[A-Z#/:])", re.IGNORECASE)
-_LATE_SKIP = re.compile(r"(N[ \t]*[0-9]+)[ \t]*/", re.IGNORECASE)
 _NEXT_LABEL = re.compile(r"(?<=[ \t])N[ \t]*[0-9]", re.IGNORECASE)
 _BLANKS = re.compile(BLANKS)
 _EQUALS = re.compile(rf"{BLANKS}=")
@@ -36,20 +31,12 @@ _PROSE = re.compile(r"[^\W\d_]{2,}(?:[ \t,;:'-]+[^\W\d_]+)+[ \t]*[.!?:]?[ \t]*(?
 """At least two words of letters alone, up to the end of the line or the next block."""
 _NO_NUMBER = re.compile(r"\b[A-Z](?:nan|inf|infinity|null|none|undefined)\b", re.IGNORECASE)
 """Words of a post-processor that had no number to write: no prose."""
-_NAME = re.compile(r"[^\W\d_]\w+(?![\w(\[])")
-"""Letters and digits without a bracket behind, as neither a value nor a function is written."""
 
 _tuple = tuple.__new__
 _LETTERS = frozenset(string.ascii_uppercase) - {"N"}
 """Addresses of words as they are."""
 _SHORT = len(f"{LARGEST_NUMBER:.0f}")
 """Characters of words whose number is below the largest one."""
-_LOOKALIKES = str.maketrans("АВСЕНІКМОРТХУЗΑΒΕΖΗΙΚΜΝΟΡΤΥΧ", "ABCEHIKMOPTXY3ABEZHIKMNOPTYX")
-"""Cyrillic and Greek letters that look like Latin ones: a keyboard left in the wrong layout."""
-
-
-_LONE_LETTER = re.compile(r"(?<![A-Za-z#\[])[A-Za-z]$")
-"""The address of a word without a value."""
 
 
 class LineReader:
@@ -139,7 +126,7 @@ class LineReader:
         if self._named_code() or self._quoted_word():
             return True
         if not self._computed_word():
-            self._refuse(self._at)
+            self._unreadable.refuse(self._at, self._words)
         return True
 
     def _prose(self) -> bool:
@@ -282,7 +269,7 @@ class LineReader:
         if reader is None or match is None:
             return False
         begin, at = match.start(1), match.end()
-        self._refuse_late_skip(match)
+        self._unreadable.refuse_late_skip(match)
         form = self._grammar.form.match(self._line, at) if self._grammar.form is not None else None
         mark = "" if form is None else form[1].upper()
         read = reader.read_value if form is None else reader.read_operand
@@ -291,8 +278,8 @@ class LineReader:
         except ExpressionError as error:
             if self._prose():
                 return True
-            self._refuse_code()
-            self._refuse_value(begin, error)
+            self._unreadable.refuse_code(self._words)
+            self._unreadable.refuse_value(begin, error)
         name = self._grammar.name(match[1])
         if name == "N":
             self._fail("label", "a block number must be a plain number", begin)
@@ -325,57 +312,12 @@ class LineReader:
             read = reader.read if self._syntax.open_assignments else reader.read_value
             value, end = read(self._line, sign.end())
         except ExpressionError as error:
-            self._refuse_value(begin, error)
+            self._unreadable.refuse_value(begin, error)
         tree = target.tree
         assert isinstance(tree, (Variable, NumberedVariable))
         self._assignments += (assignment_of(tree, value, begin, end - begin),)
         self._at = end
         return True
-
-    def _refuse_late_skip(self, address: re.Match[str]) -> None:
-        """``N20 /X1``: the mark of block skip stands behind the number.
-
-        Raises:
-            ProgramError: It does.
-        """
-        late = _LATE_SKIP.match(self._line, address.start(1))
-        if late is not None:
-            message = f"the / of a block that can be skipped must begin its line, before {late[1]}"
-            self._fail("label", message, late.end() - 1, hint=f"write /{late[1]}")
-
-    def _refuse_code(self) -> None:
-        """Words without values may belong to a code that the dialect refuses anyway.
-
-        Raises:
-            ProgramError: They do.
-        """
-        for word in self._words:
-            if word.address == "G" and isinstance(word.value, float):
-                refusal = self._grammar.language.refusal(word.value)
-                if refusal is not None:
-                    message = f"{word.text} {refusal}"
-                    self._fail("unsupported-g", message, word.column, width=word.width)
-
-    def _refuse_value(self, begin: int, error: ExpressionError) -> NoReturn:
-        name = _NAME.match(self._line, begin)
-        if name is not None and error.code == "unknown-function":
-            message = f"'{name[0]}' is no word of {self._grammar.language.name}"
-            usual = f"a value is a number, a variable or a function; {self._comments()}"
-            hint = self._slip_at(begin) or usual
-            self._fail("unknown-word", message, begin, width=len(name[0]), hint=hint)
-        column = begin if error.column is None else min(error.column, len(self._line) - 1)
-        lone = _LONE_LETTER.search(self._line[: error.column].rstrip(" \t="))
-        if error.column is not None and lone is not None:
-            hint = self._slip_at(lone.start()) or "write a number after it"
-            self._fail("missing-value", f"'{lone[0]}' has no value", lone.start(), hint=hint)
-        slip = None
-        if error.code in ("expression", "unknown-function"):
-            slip = self._slip_at(column) or self._slip_at(begin)
-        hint = (slip or error.hint) if error.code == "unknown-function" else (error.hint or slip)
-        self._fail(error.code, str(error), column, hint=hint)
-
-    def _slip_at(self, column: int) -> str | None:
-        return slip_at(self._line, column, self._grammar.language.keywords)
 
     def _label(self, number: str, begin: int) -> None:
         value = float(number)
@@ -413,59 +355,12 @@ class LineReader:
         if self._words or self._assignments or self._number != NO_BLOCK_NUMBER or self._name:
             self._finish_block()
 
-    def _refuse(self, at: int) -> NoReturn:
-        character = self._line[at]
-        latin = character.upper().translate(_LOOKALIKES)
-        address = self._grammar.address.match(self._line, at)
-        if "\u0370" <= character <= "\u04ff":
-            alphabet = "Cyrillic" if character >= "\u0400" else "Greek"
-            message = f"'{character}' is a {alphabet} letter"
-            hint = f"write the Latin {latin}" if latin != character.upper() else self._comments()
-            self._fail("foreign-letter", message, at, hint=hint)
-        statement = _STATEMENT.match(self._line, at)
-        if statement is not None and self._grammar.statement is not None:
-            language = self._grammar.language
-            message = f"'{statement[0]}' is no statement of {language.name}"
-            hint = self._slip_at(at) or near(statement[0], language.keywords, language.name)
-            self._fail("unknown-statement", message, at, width=len(statement[0]), hint=hint)
-        if address is not None:
-            self._refuse_code()
-            self._refuse_missing_value(address)
-        if not character.isascii():
-            name = unicodedata.name(character, "no character").lower()
-            message = f"U+{ord(character):04X} ({name}) begins no word"
-            hint = "write a blank" if character.isspace() else None
-            self._fail("unreadable", message, at, hint=hint)
-        message = f"'{character}' begins no word of {self._grammar.language.name}"
-        self._fail("unreadable", message, at, hint=self._hint_for(at))
-
-    def _refuse_missing_value(self, address: re.Match[str]) -> NoReturn:
-        name, end = address[1], address.end()
-        garbled = _GARBLED.match(self._line, end)
-        if garbled is not None:
-            message = f"'{garbled[0]}' is no number"
-            hint = self._slip_at(end)
-            self._fail("missing-value", message, end, width=len(garbled[0]), hint=hint)
-        slip = "O" in (name.upper(), self._line[end : end + 1].upper())
-        hint = "the letter O is no 0" if slip else "write a number after it"
-        self._fail("missing-value", f"'{name}' has no value", address.start(1), hint=hint)
-
-    def _hint_for(self, at: int) -> str | None:
-        character = self._line[at]
-        if character == ",":
-            return "decimals begin with a point"
-        slip = self._slip_at(at)
-        if slip is not None:
-            return slip
-        return self._comments() if character in ";$\"('/" else None
-
-    def _comments(self) -> str:
-        comments = [each for each in self._syntax.comments if not each.whole_line]
-        shown = " or ".join(f"{each.opening} {each.closing}".strip() for each in comments)
-        return f"comments are written {shown}"
+    @property
+    def _unreadable(self) -> Unreadable:
+        """Says what is wrong with the line."""
+        return Unreadable(self._grammar, self._report, self._line, self._line_number)
 
     def _fail(
         self, code: str, message: str, column: int, *, width: int = 1, hint: str | None = None
     ) -> NoReturn:
-        self._report.line = self._line_number
-        self._report.fail(code, message, column, width, hint)
+        self._unreadable.fail(code, message, column, width=width, hint=hint)

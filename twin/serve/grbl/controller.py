@@ -333,6 +333,6 @@ class GrblController:
                 stream.refuse(executor, error.diagnostic)
             else:
                 stream.accept(executor)
-            executor.control.path.take()
+            executor.control.path.columns.take()
         self._out += stream.answers
         stream.answers.clear()

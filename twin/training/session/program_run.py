@@ -278,8 +278,8 @@ class ProgramRun:
         self._prepare_part(start, zero, spindle)
         while self.ending is None:
             self._interpret(self.READ_AT_ONCE)
-            if self.ending is None and not self._waiting and len(self._control.path):
-                self._finish_chunk(self._control.path.take())
+            if self.ending is None and not self._waiting and self._control.path.columns.count:
+                self._finish_chunk(self._control.path.columns.take())
             read = [chunk.moves for chunk in self._waiting]
             self._waiting.clear()
             yield from read or [Moves.empty(self._control.settings.axes)]
@@ -399,8 +399,8 @@ class ProgramRun:
         if stream is not None and self._motion is None and self.ending is None and stream.quiet:
             self._end_stream()
         long_enough = self._looks > SLICES_AT_REST and stream is None
-        if self._motion is None and long_enough and len(self._control.path):
-            self._finish_chunk(self._control.path.take())
+        if self._motion is None and long_enough and self._control.path.columns.count:
+            self._finish_chunk(self._control.path.columns.take())
         begins = (
             len(self._waiting) >= CHUNKS_AHEAD if stream is None else self._count >= STREAMED_AHEAD
         )
@@ -462,7 +462,7 @@ class ProgramRun:
         if not self._waiting and self.ending is None and self._options.stream is not None:
             self._end_stream()
         if not self._waiting and self.ending is None:
-            self._finish_chunk(self._control.path.take())
+            self._finish_chunk(self._control.path.columns.take())
             if not len(self._waiting[-1].moves) and self.ending is None:
                 self.ending = "wait"
         return self._waiting.popleft() if self._waiting else None
@@ -470,7 +470,7 @@ class ProgramRun:
     @property
     def moves_ahead(self) -> int:
         """Moves that are interpreted and not yet driven."""
-        return self._count + len(self._control.path) - self._move
+        return self._count + self._control.path.columns.count - self._move
 
     def take_streamed(self) -> None:
         """Interpret what a stream has for the run, before the next slice of time comes to it."""
@@ -481,7 +481,7 @@ class ProgramRun:
         """What has been streamed is a whole: what comes now begins another part."""
         self._control.path.finish()
         self.ending = "end"
-        self._finish_chunk(self._control.path.take())
+        self._finish_chunk(self._control.path.columns.take())
 
     def _interpret(self, most: int) -> None:
         """Interpret at most so many blocks, until there are enough moves or the part ends."""
@@ -507,16 +507,16 @@ class ProgramRun:
                 if self._searched and block.line == self._searched:
                     self._arrive(block)
                     break
-                mark = self._count + len(control.path)
-                refused = control.path.refusal(block.line)
+                mark = self._count + control.path.columns.count
+                refused = control.path.columns.refusal(block.line)
                 self._executor.run(block)
                 refused = None
                 if self._searched:
-                    self._collect(control.path.take())
+                    self._collect(control.path.columns.take())
                     continue
                 self._note(block, mark)
                 self._look_for_stop(block)
-                enough = len(control.path) >= MOVES_AT_ONCE
+                enough = control.path.columns.count >= MOVES_AT_ONCE
         except ProgramError as error:
             if stream is None:
                 self._end_by(error.diagnostic)
@@ -528,9 +528,9 @@ class ProgramRun:
         elif (
             enough
             or self.ending is not None
-            or (stream is not None and (len(control.path) or refused is not None))
+            or (stream is not None and (control.path.columns.count or refused is not None))
         ):
-            self._finish_chunk(control.path.take(refused))
+            self._finish_chunk(control.path.columns.take(refused))
 
     def _end_by(self, finding: Diagnostic) -> None:
         """The program is wrong."""
@@ -640,7 +640,7 @@ class ProgramRun:
         """The block that was searched for comes next: go to where it begins, and wait there."""
         control, self._searched, self._found = self._control, 0, block
         self.ending_line, self.optional = block.line, False
-        control.path.take()
+        control.path.columns.take()
         needed = control.tools.spindle
         if control.modal.active.get("compensation", NO_COMPENSATION) != NO_COMPENSATION:
             self.ending = "program"

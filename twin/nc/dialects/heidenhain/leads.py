@@ -137,11 +137,26 @@ def _approach(
         control.fail("contour-lead", message, statement, "end it by DEP or R0 before")
     contour = _take_target(control, polar)
 
-    def come(move: Segment) -> None:
-        _come(control, block, start, contour, lead, move, side, radius)
-
-    control.path.leads = come
+    control.path.leads = _Approach(control, block, start, contour, lead, side, radius)
     control.motion.programmed, control.motion.part = contour, control.frame.to_part(contour)
+
+
+@dataclasses.dataclass(slots=True)
+class _Approach:
+    """Waits for the first move of the contour; a control that is copied takes it along, as it could no closure."""
+
+    control: Control
+    block: Block
+    start: list[float]
+    contour: list[float]
+    lead: Lead
+    side: float
+    radius: float
+
+    def __call__(self, move: Segment) -> None:
+        _come(
+            self.control, self.block, self.start, self.contour, self.lead, move, self.side, self.radius
+        )  # fmt: skip
 
 
 def _come(

@@ -76,7 +76,7 @@ def cycles(variant: Variant) -> dict[float, GCode]:
 # --- a motion code behind that of a cycle
 
 OVERRULED_CYCLE = letter_patterns(
-    "G", rb"[ \t]*0*(?:7[346]|8[1-9])(?![0-9.])[^\r\n]*[Gg][ \t]*0*[0-3](?![0-9.])"
+    "G", rb"[ \t]*0*(?:7[346]|8[1-9])(?![0-9])[^\r\n]*[Gg][ \t]*0*[0-3](?![0-9])"
 )
 """A motion code behind that of a cycle."""
 _STRAIGHT, _ARCS = (0.0, 1.0), (2.0, 3.0)
