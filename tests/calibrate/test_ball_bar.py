@@ -100,6 +100,7 @@ def with_faults() -> Machine:
     return machine.changed("Y", backlash=0.01, dry_friction=20.0, reset_time_s=0.0)
 
 
+@pytest.mark.thorough
 def test_the_simulated_machine_s_own_circle_gives_it_back(twin: Twin, tmp_path: Path) -> None:
     machine = with_faults()
     test = circular_test(machine, 40.0, 1000.0)

@@ -85,6 +85,7 @@ def test_without_a_second_encoder_they_are_named_as_undetermined(log: MachineLog
         assert name not in fit.fitted
 
 
+@pytest.mark.thorough
 def test_a_gap_that_may_be_none_is_named_as_undetermined() -> None:
     fit = calibrate(mill(), [without(two_masses(gap=0.0, seconds=2.0), "force")]).axes["X"].fit
     assert "backlash" not in fit.fitted
@@ -98,6 +99,7 @@ def test_a_base_without_a_screw_has_neither_and_says_so(log: MachineLog) -> None
         assert name not in fit.fitted | fit.conditional
 
 
+@pytest.mark.thorough
 def test_the_machine_file_with_both_loads_and_runs(
     twin: Twin, tmp_path: Path, log: MachineLog
 ) -> None:

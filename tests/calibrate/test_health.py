@@ -50,6 +50,7 @@ def test_coarse_steps_are_told_beside_the_lag_that_they_hide() -> None:
     assert "steps of 500 µm" in findings["coarse"]
 
 
+@pytest.mark.thorough
 def test_columns_that_were_taken_at_different_times_are_told_from_lag() -> None:
     result, findings = found(log_of(Logger(late_s=0.004, current=True)))
     assert set(findings) == {"skew"}
@@ -66,6 +67,7 @@ def test_a_filtered_column_is_told_from_lag_and_from_skew() -> None:
     assert holds_the_truth(result)
 
 
+@pytest.mark.thorough
 def test_a_filter_is_seen_from_the_noise_of_positions_alone() -> None:
     """Behind a filter or behind one of the command, the motion is the same; the noise is not."""
     result, findings = found(log_of(Logger(filter_s=0.006)))

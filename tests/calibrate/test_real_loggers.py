@@ -46,6 +46,7 @@ def short() -> Iterator[None]:
     integrated_axes.SECONDS = before
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("axis", "code"),
     [
@@ -55,7 +56,6 @@ def short() -> Iterator[None]:
     ],
     ids=["uneven", "held", "clipped"],
 )
-@pytest.mark.seconds("an axis is integrated and fitted whole")
 @pytest.mark.usefixtures("short")
 def test_intervals_of_another_integrator_s_axis_hold_the_truth(axis: Axis, code: str) -> None:
     result = fitted(axis)

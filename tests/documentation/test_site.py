@@ -9,7 +9,7 @@ import pytest
 from documentation.code_pages import codes_page, exit_codes
 from documentation.command_pages import commands, commands_page
 from documentation.key_tables import job_page, machine_page, scene_page
-from documentation.python_pages import recording_page
+from documentation.recording_page import recording_page
 from documentation.repository_pages import PAGES, with_links
 
 from twin.recording.reader import open_recording
