@@ -28,10 +28,10 @@ class Answer(NamedTuple):
 
 
 class House:
-    def __init__(self) -> None:
+    def __init__(self, *, framed: bool = False) -> None:
         self.server = WebServer()
         self.doorkeeper = Doorkeeper(new_tokens(("operator", "watcher")), self.server.port)
-        self.server.start(Guard(inside, self.doorkeeper, local=True))
+        self.server.start(Guard(inside, self.doorkeeper, local=True, framed=framed))
         self.own = f"http://127.0.0.1:{self.server.port}"
 
     def ask(self, path="/operator/", method="GET", body=None, **headers):
@@ -129,6 +129,18 @@ def test_every_answer_tells_the_browser_to_trust_nobody_else(house):
         assert answer.headers.get("x-frame-options") == "DENY"
         assert answer.headers.get("x-content-type-options") == "nosniff"
         assert answer.headers.get("server") is None
+
+
+def test_pages_of_this_computer_alone_may_hold_one_that_only_shows():
+    opened = House(framed=True)
+    try:
+        headers = opened.ask(Cookie=opened.cookie()).headers
+    finally:
+        opened.server.stop()
+    policy = headers["content-security-policy"].split("; ")
+    assert "frame-ancestors http://localhost:* http://127.0.0.1:*" in policy
+    assert "default-src 'none'" in policy
+    assert "x-frame-options" not in headers
 
 
 @pytest.mark.parametrize("method", ["PUT", "DELETE", "TRACE", "OPTIONS"])

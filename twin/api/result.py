@@ -218,7 +218,7 @@ class Result:
         )
 
     def show(self) -> "OpenViewer":
-        """Open the viewer's page; its link stands in a notebook's cell. ``close()`` ends it.
+        """Open the viewer, in a notebook's cell or by its link. ``close()`` ends it.
 
         Raises:
             UsageError: Nothing moved, or a package of the extra ``train`` is missing.

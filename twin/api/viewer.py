@@ -8,11 +8,14 @@ from twin.errors import UsageError
 from twin.extras import require_extra
 from twin.run.replay import open_scene
 
+HEIGHT = 640
+"""Of the viewer in a cell [px]."""
+
 
 class OpenViewer:
     """A viewer that is open until ``close``, or until it is left as a context.
 
-    Its page cannot be put into another one (its headers forbid frames), so a cell shows its link.
+    A cell of a notebook that is read at ``localhost`` shows the page itself; elsewhere there is its link.
 
     Attributes:
         address: Of the page, for a browser on this computer.
@@ -33,7 +36,7 @@ class OpenViewer:
             if not len(scene.recording):
                 raise UsageError(f"{recording}: the recording has no samples")
             run = RecordedRun(scene, preparation.machine)
-            self.address = stack.enter_context(open_view(run))
+            self.address = stack.enter_context(open_view(run, framed=True))
             self._open = stack.pop_all()
 
     def close(self) -> None:
@@ -50,5 +53,10 @@ class OpenViewer:
         return f"<OpenViewer {self.address}>"
 
     def _repr_html_(self) -> str:
-        address = html.escape(self.address)
-        return f"<a href='{address}' target='_blank' rel='noopener'>open the viewer</a>"
+        link = html.escape(self.address)
+        # Browsers keep the page's cookie where both have the notebook's host.
+        framed = link.replace("127.0.0.1", "localhost")
+        return (
+            f"<iframe src='{framed}' style='width: 100%; height: {HEIGHT}px; border: 0'></iframe>"
+            f"<p><a href='{link}' target='_blank' rel='noopener'>open the viewer</a></p>"
+        )

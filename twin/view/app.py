@@ -69,12 +69,13 @@ def view_app(run: RecordedRun) -> Starlette:
 
 
 @contextlib.contextmanager
-def open_view(run: RecordedRun, port: int = 0) -> Iterator[str]:
+def open_view(run: RecordedRun, port: int = 0, *, framed: bool = False) -> Iterator[str]:
     """Serve a run on this computer while it is open; gives the page's address.
 
     Args:
         run: The run.
         port: 0: the first free one.
+        framed: Whether a page of this computer, such as a notebook, may hold it.
 
     Raises:
         UsageError: The port is taken, or the view's library is missing.
@@ -82,7 +83,7 @@ def open_view(run: RecordedRun, port: int = 0) -> Iterator[str]:
     require_three()
     server = WebServer(port=port)
     doorkeeper = Doorkeeper(new_tokens((ROLE,)), server.port)
-    server.start(Guard(view_app(run), doorkeeper, local=server.local))
+    server.start(Guard(view_app(run), doorkeeper, local=server.local, framed=framed))
     try:
         yield f"{server.origin}/{ROLE}/#{doorkeeper.tokens[ROLE]}"
     finally:

@@ -27,6 +27,9 @@ HEADERS = {
     "Cache-Control": "no-store",
 }
 
+IN_LOCAL_PAGES = "frame-ancestors http://localhost:* http://127.0.0.1:*"
+"""What may hold a page that only shows: pages of this computer, such as a notebook."""
+
 ENTRY = "/enter"
 """Where a page hands in its token: ``/enter/ROLE``."""
 _TOKEN_LIMIT = 200
@@ -35,14 +38,24 @@ _TOKEN_LIMIT = 200
 class Guard:
     """Lets in only requests of our own pages, from browsers that have shown a token."""
 
-    def __init__(self, app: ASGIApp, doorkeeper: Doorkeeper, *, local: bool) -> None:
+    def __init__(
+        self, app: ASGIApp, doorkeeper: Doorkeeper, *, local: bool, framed: bool = False
+    ) -> None:
         """Stand before an application.
 
         Args:
             app: What is guarded; its paths begin with ``/ROLE/``.
             doorkeeper: Knows the roles.
             local: Whether only this computer's names lead here.
+            framed: Whether pages of this computer may hold its pages in a frame.
         """
+        self._headers = dict(HEADERS)
+        if framed:
+            del self._headers["X-Frame-Options"]
+            policy = self._headers["Content-Security-Policy"]
+            self._headers["Content-Security-Policy"] = policy.replace(
+                "frame-ancestors 'none'", IN_LOCAL_PAGES
+            )
         self._app = app
         self._doorkeeper = doorkeeper
         self._local = local
@@ -54,10 +67,10 @@ class Guard:
         headers = Headers(scope=scope)
         refusal = self._refusal(scope, headers)
         if refusal is not None:
-            return await _refuse(scope, receive, send, refusal)
+            return await self._refuse(scope, receive, send, refusal)
         path = scope["path"]
         if scope["type"] == "http":
-            send = _with_headers(send)
+            send = self._with_headers(send)
             if path.startswith(f"{ENTRY}/"):
                 answer = await self._entry(path.removeprefix(f"{ENTRY}/"), scope, receive)
                 return await answer(scope, receive, send)
@@ -65,7 +78,7 @@ class Guard:
         if not self._doorkeeper.knows(role, headers.get("cookie", "")):
             if scope["type"] == "http" and path == f"/{role}/" and role in self._doorkeeper.tokens:
                 return await FileResponse(ASSETS / "enter.html")(scope, receive, send)
-            return await _refuse(scope, receive, send, 401)
+            return await self._refuse(scope, receive, send, 401)
         scope["twin_role"] = role
         return await self._app(scope, receive, send)
 
@@ -105,21 +118,19 @@ class Guard:
             return PlainTextResponse("", 429 if self._doorkeeper.braked else 401)
         return Response(status_code=204, headers={"Set-Cookie": cookie})
 
+    async def _refuse(self, scope: Scope, receive: Receive, send: Send, status: int) -> None:
+        if scope["type"] == "websocket":
+            # Before the handshake is accepted, this answers it with 403.
+            await receive()
+            return await send({"type": "websocket.close", "code": 1008})
+        return await PlainTextResponse("", status)(scope, receive, self._with_headers(send))
 
-async def _refuse(scope: Scope, receive: Receive, send: Send, status: int) -> None:
-    if scope["type"] == "websocket":
-        # Before the handshake is accepted, this answers it with 403.
-        await receive()
-        return await send({"type": "websocket.close", "code": 1008})
-    return await PlainTextResponse("", status)(scope, receive, _with_headers(send))
+    def _with_headers(self, send: Send) -> Send:
+        async def sent(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                headers = MutableHeaders(scope=message)
+                for name, value in self._headers.items():
+                    headers.setdefault(name, value)
+            await send(message)
 
-
-def _with_headers(send: Send) -> Send:
-    async def sent(message: Message) -> None:
-        if message["type"] == "http.response.start":
-            headers = MutableHeaders(scope=message)
-            for name, value in HEADERS.items():
-                headers.setdefault(name, value)
-        await send(message)
-
-    return sent
+        return sent
