@@ -96,7 +96,7 @@ def test_the_probe_names_every_item_once(port: int) -> None:
         assert status == 200
         assert root.tag == f"{DEVICES}MTConnectDevices"
         found = [item.attrib["id"] for item in root.iter(f"{DEVICES}DataItem")]
-        assert len(found) == len(set(found)) == 3 + 4 * 3 + 1 + 2 + 8
+        assert len(found) == len(set(found)) == 3 + 4 * 3 + 1 + 2 + 8 + 3
         assert [axis.attrib["name"] for axis in root.iter(f"{DEVICES}Linear")] == ["X", "Y", "Z"]
 
 
@@ -274,5 +274,5 @@ def test_a_client_that_the_buffer_passed_by_is_told() -> None:
     query = agent.query("sample", {"from": "1"})
     for number in range(100):
         agent.observe(number * PERIOD_S, {"X_position": str(number)})
-    with pytest.raises(Exception, match="the buffer holds 97 to 126"):
+    with pytest.raises(Exception, match="the buffer holds 100 to 129"):
         agent.answer(query)
