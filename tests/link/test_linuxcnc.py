@@ -21,7 +21,7 @@ from command_line import Finished, Twin
 from tests.machine.machine_fixtures import three_axis_machine
 from twin.columns import join
 from twin.files.shipped import machine_file
-from twin.link.component import is_installed, module_folder
+from twin.link.component import COMPILER, is_installed, module_folder
 from twin.link.linuxcnc import LOCK, process_name, processes_at_home
 from twin.machine.description.config import read_machine
 from twin.machine.model.model import build_spec
@@ -40,6 +40,8 @@ def cannot_run() -> str:
     modules = module_folder(Path(LINUXCNC))
     if not is_installed(modules) and not os.access(modules, os.W_OK):
         return "LinuxCNC's component of this version is not installed, which takes root"
+    if not is_installed(modules) and shutil.which(COMPILER) is None:
+        return f"{COMPILER}, which builds LinuxCNC's component, is missing: linuxcnc-uspace-dev"
     return ""
 
 
