@@ -8,6 +8,7 @@ import pytest
 import twin
 from twin.api.result import NoSuchColumnError
 from twin.errors import UsageError
+from twin.nc.text.diagnostics import ProgramError
 
 JOB = twin.Job(
     program="G90 G1 X10. Y4. F600.\nG1 Z-1. F300.\nG1 X20.\nM30",
@@ -97,3 +98,11 @@ def test_where_nothing_moved_there_is_nothing_to_show(tmp_path: Path):
             call()
     with pytest.raises(NoSuchColumnError, match="nothing moved"):
         still["time"]
+
+
+def test_a_run_that_fails_leaves_no_older_verdict(tmp_path: Path):
+    assert twin.run(JOB, out=tmp_path).ok
+    with pytest.raises(ProgramError):
+        twin.run("G1 X1. QQ5\nM30", dialect="haas", out=tmp_path)
+    assert not (tmp_path / "result.json").exists()
+    assert not (tmp_path / "report.html").exists()

@@ -15,7 +15,7 @@ from twin.run.dry_run import InterpretedProgram, interpreted
 from twin.run.progress import no_progress
 from twin.run.results import RESULT_FILES, write_results
 from twin.run.run import Run
-from twin.run.run_folder import run_folder
+from twin.run.run_folder import run_folder, without_verdict
 
 
 def interpret(program: Program, *, dialect: str | None = None, machine: str | None = None) -> Moves:
@@ -117,6 +117,7 @@ def run(
         else:
             folder = Path(out)
             folder.mkdir(parents=True, exist_ok=True)
+        unless_finished.enter_context(without_verdict(folder))
         preparation, assumptions = prepared(
             program, folder, dialect=dialect, machine=machine, assuming=True
         )
