@@ -147,7 +147,7 @@ def lattice_around(low: FloatArray, high: FloatArray, cell: float) -> Lattice:
         ConfigError: It would have more lines than ``LINE_LIMIT``.
     """
     extent = high - low
-    shape = np.maximum(1, np.ceil(extent / cell - 1e-6)).astype(np.int64)
+    shape = np.maximum(1, np.rint(extent / cell)).astype(np.int64)
     x, y, z = (int(count) for count in shape)
     lines = x * y + y * z + z * x
     if lines > LINE_LIMIT:

@@ -29,13 +29,19 @@ def packed(x: float, y: float, z: float, tool: int) -> int:
 
 
 @arithmetic_kernel
-def squared_part(skin: int, direction: int) -> float:
-    """Square of a normal's part along X, Y or Z."""
+def unpacked(skin: int) -> tuple[float, float, float]:
+    """The direction of a normal, on the octahedron: not of unit length."""
     column, row = skin & _LARGEST, skin >> _BITS & _LARGEST
     u, v = 2.0 * column / _STEPS - 1.0, 2.0 * row / _STEPS - 1.0
     z = 1.0 - abs(u) - abs(v)
     folded = max(-z, 0.0)
-    x, y = abs(u) - folded, abs(v) - folded
+    return u - math.copysign(folded, u), v - math.copysign(folded, v), z
+
+
+@arithmetic_kernel
+def squared_part(skin: int, direction: int) -> float:
+    """Square of a unit normal's part along X, Y or Z."""
+    x, y, z = unpacked(skin)
     part = z if direction == 2 else (x if direction == 0 else y)
     return part * part / (x * x + y * y + z * z)
 
