@@ -196,13 +196,6 @@ def refuse_hole(control: Control, rule: CycleRule, hole: Hole) -> NoReturn:
     control.fail("cycle-depth", message)
 
 
-def go_to_height(control: Control, height: float, *, rapid: bool = True) -> None:
-    """Go straight to a height of the axis across the plane, programmed coordinates [mm]."""
-    there = list(control.motion.programmed)
-    there[control.modal.plane.axes[2]] = height
-    control.line_to(there, rapid=rapid)
-
-
 def turn_spindle(control: Control, function: str) -> None:
     """Report that M3 or M4 turns the spindle, with the speed in force."""
     control.function(

@@ -17,12 +17,12 @@ from twin.nc.dialects.linuxcnc.offsets import refuse_in_compensation
 from twin.nc.iso.drilling import (
     NEEDED_WORDS,
     drill,
-    go_to_height,
     refuse_hole,
     repeats_of,
     take_words,
     turn_spindle,
 )
+from twin.nc.iso.plane_moves import go_to_height
 from twin.nc.path.drilling_cycle import (
     AXIS,
     BOTTOM,
