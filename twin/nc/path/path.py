@@ -126,7 +126,7 @@ class Path:
             self._rounding.add(move)
 
     def hold_for_blends(self) -> None:
-        """From now on moves are held until their successor is known."""
+        """From now on moves are kept until their successor is known."""
         if self._rounding is None:
             self._rounding = Rounding(self._compensate, self.compensation.event, self._report)
 
