@@ -39,7 +39,10 @@ def greatest_radius(solid: Solid) -> float:
 
 @arithmetic_kernel
 def crossing(solid: Solid, ray: Ray) -> tuple[float, float]:
-    """The places between which a line is within a solid; the second is below the first if nowhere."""
+    """The places between which a line is within a solid; the second is below the first if nowhere.
+
+    Of a frustum that is missed beyond its rim, they are as far from each other as there is still missing.
+    """
     if solid.rounding > 0.0:
         if solid.low_radius == 0.0:
             return _through_ball(solid.rounding, solid.low + solid.rounding, ray)
@@ -73,8 +76,6 @@ def _between(low: float, high: float, ray: Ray) -> tuple[float, float]:
 def _through_frustum(solid: Solid, ray: Ray) -> tuple[float, float]:
     """Solves |distance from the axis|² = (radius at that height)² between the ends."""
     low, high = _between(solid.low, solid.high, ray)
-    if low > high:
-        return low, high
     slope = 0.0
     if solid.high_radius != solid.low_radius:
         slope = (solid.high_radius - solid.low_radius) / (solid.high - solid.low)

@@ -388,33 +388,120 @@ def _swept(
     """Where a line is within a solid at any time of a step, and at which shares of it.
 
     Over a step that is short beside the solid both ends of the line within it move along curves of the
-    share that are nearly parabolas: through begin, middle and end, their extremes are looked for.
+    share that are nearly parabolas: through begin, middle and end, their extremes are looked for. A line
+    that a rim comes to within the step, or leaves, is within the solid for a part of it.
     """
-    a_low, a_high = within(poses, solid, step.number, 0.0, d, x, y)
-    b_low, b_high = within(poses, solid, step.number, 1.0, d, x, y)
-    low, low_share = (a_low, 0.0) if a_low < b_low else (b_low, 1.0)
-    high, high_share = (a_high, 0.0) if a_high > b_high else (b_high, 1.0)
-    if a_low >= a_high:
-        low, high, low_share, high_share = b_low, b_high, 1.0, 1.0
-    elif b_low >= b_high:
-        low, high, low_share, high_share = a_low, a_high, 0.0, 0.0
-    if step.bend < FLAT_MM:
-        return low, high, low_share, high_share
-    m_low, m_high = within(poses, solid, step.number, 0.5, d, x, y)
-    if m_low >= m_high:
-        return low, high, low_share, high_share
-    if m_low < low or low >= high:
-        low, low_share = m_low, 0.5
-    if m_high > high or low >= high:
-        high, high_share = m_high, 0.5
-    if a_low < a_high and b_low < b_high:
-        lowest, share = _extreme(-a_low, -m_low, -b_low)
-        if -lowest < low:
-            low, low_share = -lowest, share
-        highest, share = _extreme(a_high, m_high, b_high)
-        if highest > high:
-            high, high_share = highest, share
+    number = step.number
+    begin, end = 0.0, 1.0
+    a = within(poses, solid, number, begin, d, x, y)
+    b = within(poses, solid, number, end, d, x, y)
+    if a[0] >= a[1] or b[0] >= b[1]:
+        m = within(poses, solid, number, 0.5, d, x, y)
+        if solid.rounding > 0.0:
+            return _union(a, m, b, begin, end)
+        middle = _touching(poses, solid, number, (a[1] - a[0], m[1] - m[0], b[1] - b[0]), d, x, y)
+        if middle < 0.0:
+            return math.inf, -math.inf, 0.0, 0.0
+        if a[0] >= a[1]:
+            begin = _rim(poses, solid, number, middle, 0.0, d, x, y)
+            a = within(poses, solid, number, begin, d, x, y)
+        if b[0] >= b[1]:
+            end = _rim(poses, solid, number, middle, 1.0, d, x, y)
+            b = within(poses, solid, number, end, d, x, y)
+    elif step.bend < FLAT_MM:
+        return _union(a, a, b, begin, end)
+    m = within(poses, solid, number, 0.5 * (begin + end), d, x, y)
+    low, high, low_share, high_share = _union(a, m, b, begin, end)
+    lowest, share = _extreme(-a[0], -m[0], -b[0])
+    if -lowest < low:
+        low, low_share = -lowest, begin + share * (end - begin)
+    highest, share = _extreme(a[1], m[1], b[1])
+    if highest > high:
+        high, high_share = highest, begin + share * (end - begin)
     return low, high, low_share, high_share
+
+
+@arithmetic_kernel
+def _union(
+    a: tuple[float, float],
+    m: tuple[float, float],
+    b: tuple[float, float],
+    begin: float,
+    end: float,
+) -> tuple[float, float, float, float]:
+    """From the lowest to the highest place of those of three intervals that are not empty."""
+    low, high, low_share, high_share = math.inf, -math.inf, begin, begin
+    middle = 0.5 * (begin + end)
+    for each, share in ((a, begin), (m, middle), (b, end)):
+        if each[0] < each[1]:
+            if each[0] < low:
+                low, low_share = each[0], share
+            if each[1] > high:
+                high, high_share = each[1], share
+    return low, high, low_share, high_share
+
+
+_SEARCH_STEPS = 10
+"""Halvings of a share in which a rim is looked for: to a thousandth of the step."""
+
+
+@arithmetic_kernel
+def _touching(
+    poses: Poses,
+    solid: Solid,
+    number: int,
+    gap: tuple[float, float, float],
+    d: int,
+    x: float,
+    y: float,
+) -> float:
+    """A share of a step at which a line is within a frustum; negative: there is none.
+
+    How far the line is within, or is missing, is concave in the share while the axis keeps its direction: from its
+    values at begin, middle and end follows what it is at most.
+    """
+    first, middle, last = gap
+    if first > 0.0 or last > 0.0:
+        if first > 0.0 and first >= last:
+            return 0.0
+        return 1.0
+    if middle > 0.0:
+        return 0.5
+    if not middle > -math.inf or 2.0 * middle < min(first, last):
+        return -1.0
+    center, half = 0.5, 0.25
+    for _ in range(_SEARCH_STEPS):
+        best, place = middle, center
+        for share in (center - half, center + half):
+            low, high = within(poses, solid, number, share, d, x, y)
+            if high - low > best:
+                best, place = high - low, share
+        if best > 0.0:
+            return place
+        middle, center, half = best, place, 0.5 * half
+    return -1.0
+
+
+@arithmetic_kernel
+def _rim(
+    poses: Poses,
+    solid: Solid,
+    number: int,
+    inside: float,
+    outside: float,
+    d: int,
+    x: float,
+    y: float,
+) -> float:
+    """The last share towards another at which a line is within a solid."""
+    for _ in range(_SEARCH_STEPS):
+        middle = 0.5 * (inside + outside)
+        low, high = within(poses, solid, number, middle, d, x, y)
+        if low < high:
+            inside = middle
+        else:
+            outside = middle
+    return inside
 
 
 @arithmetic_kernel
