@@ -1,12 +1,13 @@
 """Bring a tool along its way through a tri-dexel stock: what each step took off, and what it met."""
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from twin.cutting.tridexel.dexels import DIRECTIONS, TriDexel
 from twin.cutting.tridexel.intervals import Node, total_worth
+from twin.cutting.tridexel.poses import in_short_steps
 from twin.cutting.tridexel.solids import Solid
 from twin.cutting.tridexel.sweep import (
     COLUMNS,
@@ -54,18 +55,16 @@ def volume(stock: TriDexel) -> float:
     )
 
 
-def cut(stock: TriDexel, poses: Poses, edge: Iterable[Solid], tool: int) -> Engagement:
+def cut(stock: TriDexel, poses: Poses, edge: Sequence[Solid], tool: int) -> Engagement:
     """Take off what a tool's edge goes through.
 
     Args:
         stock: It is cut.
-        poses: Ends of n steps; each must be short beside the tool (``poses.in_short_steps``).
+        poses: Ends of n steps.
         edge: The bodies that cut.
         tool: Number that the cut surface remembers, from 1 to ``normals.MOST_TOOLS``.
     """
-    tally = _tally(len(poses.tip) - 1)
-    for solid in edge:
-        _sweep(stock, poses, solid, tally, tool)
+    tally = _swept(stock, poses, edge, tool)
     length = tally[:, LENGTH]
     touched = length > 0.0
     some = np.where(touched, length, 1.0)
@@ -85,24 +84,27 @@ def met(stock: TriDexel, poses: Poses, solid: Solid) -> FloatArray:
     is any, and the shortest of these counts: on a face that looks along an axis it is the depth below the
     face, on one that looks between all three at most 1.73 times as much.
     """
-    tally = _tally(len(poses.tip) - 1)
-    _sweep(stock, poses, solid, tally, MEASURE)
-    longest = tally[:, LONGEST : LONGEST + 3]
+    longest = _swept(stock, poses, (solid,), MEASURE)[:, LONGEST : LONGEST + 3]
     least = np.where(longest > 0.0, longest, np.inf).min(axis=1, initial=np.inf)
     return np.where(np.isfinite(least), least, 0.0)
 
 
-def _tally(count: int) -> FloatArray:
-    tally = np.zeros((max(count, 0), COLUMNS))
+def _swept(stock: TriDexel, poses: Poses, solids: Sequence[Solid], tool: int) -> FloatArray:
+    """Bring solids along steps, in shorter ones where they are long; what each step did."""
+    short, step = in_short_steps(poses, solids)
+    tally = np.zeros((len(step), COLUMNS))
     tally[:, LOWEST], tally[:, HIGHEST] = np.inf, -np.inf
-    return tally
-
-
-def _sweep(stock: TriDexel, poses: Poses, solid: Solid, tally: FloatArray, tool: int) -> None:
-    body = Solid(*(float(value) for value in solid))
-    done = 0
-    while True:
-        done = sweep(stock.dexels, stock.lattice, poses, body, tally, tool, done)
-        if done >= len(tally):
-            return
-        stock.dexels = stock.dexels.grown()
+    for solid in solids:
+        body, done = Solid(*(float(value) for value in solid)), 0
+        while True:
+            done = sweep(stock.dexels, stock.lattice, short, body, tally, tool, done)
+            if done >= len(tally):
+                break
+            stock.dexels = stock.dexels.grown()
+    if len(tally) < len(poses.tip):
+        return tally
+    first = np.flatnonzero(np.diff(step, prepend=-1))
+    whole = np.add.reduceat(tally, first)
+    whole[:, LOWEST] = np.minimum.reduceat(tally[:, LOWEST], first)
+    whole[:, HIGHEST:] = np.maximum.reduceat(tally[:, HIGHEST:], first)
+    return whole

@@ -388,8 +388,8 @@ def _swept(
     """Where a line is within a solid at any time of a step, and at which shares of it.
 
     Over a step that is short beside the solid both ends of the line within it move along curves of the
-    share that are nearly parabolas: through begin, middle and end, their extremes are looked for. A line
-    that a rim comes to within the step, or leaves, is within the solid for a part of it.
+    share that are nearly parabolas: through begin, middle and end, it is looked where they are extreme, and the
+    line there taken as it is. A line that a rim comes to within the step, or leaves, is within the solid for a part of it.
     """
     number = step.number
     begin, end = 0.0, 1.0
@@ -412,12 +412,16 @@ def _swept(
         return _union(a, a, b, begin, end)
     m = within(poses, solid, number, 0.5 * (begin + end), d, x, y)
     low, high, low_share, high_share = _union(a, m, b, begin, end)
-    lowest, share = _extreme(-a[0], -m[0], -b[0])
-    if -lowest < low:
-        low, low_share = -lowest, begin + share * (end - begin)
-    highest, share = _extreme(a[1], m[1], b[1])
-    if highest > high:
-        high, high_share = highest, begin + share * (end - begin)
+    share = begin + _extreme(-a[0], -m[0], -b[0]) * (end - begin)
+    if begin < share < end:
+        lowest = within(poses, solid, number, share, d, x, y)
+        if lowest[0] < min(low, lowest[1]):
+            low, low_share = lowest[0], share
+    share = begin + _extreme(a[1], m[1], b[1]) * (end - begin)
+    if begin < share < end:
+        highest = within(poses, solid, number, share, d, x, y)
+        if highest[1] > max(high, highest[0]):
+            high, high_share = highest[1], share
     return low, high, low_share, high_share
 
 
@@ -505,14 +509,13 @@ def _rim(
 
 
 @arithmetic_kernel
-def _extreme(first: float, middle: float, last: float) -> tuple[float, float]:
-    """The greatest value of a parabola through three evenly spaced places, and the share of it."""
+def _extreme(first: float, middle: float, last: float) -> float:
+    """The share at which a parabola through three evenly spaced places is greatest; 0: not between them."""
     bend = 2.0 * (first + last - 2.0 * middle)
     slope = 4.0 * middle - 3.0 * first - last
     if bend >= 0.0 or slope <= 0.0 or slope >= -2.0 * bend:
-        return (first, 0.0) if first > last else (last, 1.0)
-    share = -0.5 * slope / bend
-    return first + 0.5 * slope * share, share
+        return 0.0
+    return -0.5 * slope / bend
 
 
 @arithmetic_kernel
