@@ -7,7 +7,7 @@ the source line that caused it.
 Conventions, once for all rooms:
 
 * Positions are the part's (program zero of the job), in mm and degrees, continuous: a table that
-  turned twice stands at 720.
+  turned twice is at 720.
 * The first three axes are always X, Y, Z. Any further axes follow, linear or rotary.
 * An arc's ``sweep`` is signed: positive is counter-clockwise about ``normal``, and it counts every
   turn. With u from 0 to 1 the tool is at

@@ -40,7 +40,7 @@ class Interpretation:
     Attributes:
         source: The program.
         dialect: The language it is read in.
-        settings: What the control was told of the machine and the job.
+        settings: What the control was given of the machine and the job.
         coverage: The lines that were run.
         length_calls: Calls of tool lengths by the number of a tool, by source line.
         compensated: Source lines that were run under radius compensation: their moves are the tool centre's.
@@ -59,7 +59,7 @@ class Interpretation:
         Args:
             source: The program.
             dialect: The language it is read in.
-            settings: What the control is told of the machine and the job.
+            settings: What the control is given of the machine and the job.
             kernel: What runs plain lines, given how many lines the program has; None: Python alone.
         """
         self.source = source
@@ -84,7 +84,7 @@ class Interpretation:
 
     @property
     def position(self) -> FloatArray:
-        """Where the axes stand in part coordinates, shape (k,) [mm or deg]."""
+        """Where the axes are in part coordinates, shape (k,) [mm or deg]."""
         return np.array(self._control.path.position)
 
     @property

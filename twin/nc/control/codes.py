@@ -14,7 +14,7 @@ Action = Callable[[Control], None]
 WordAction = Callable[[Control, Word], None]
 StatementAction = Callable[[Control, Statement], None]
 
-Ground = Literal["seed", "manual", "decision"]
+Basis = Literal["control page", "manual", "decision"]
 """On what a code's meaning rests: the control's own page, its manuals, or this project."""
 
 
@@ -24,7 +24,7 @@ class Interpolation(MotionMode):
 
     Attributes:
         perform: Takes the block's words and moves.
-        without_words: Done where its code stands in a block without words of a motion; None: nothing.
+        without_words: Done where its code is in a block without words of a motion; None: nothing.
     """
 
     perform: Action
@@ -41,13 +41,13 @@ class GCode:
         sets: What it puts into force.
         action: Done before the block moves.
         perform: Done in place of a move.
-        takes: Addresses that the code wants although they have a meaning of their own elsewhere.
-        after: Done when the block has moved.
-        once: What it sets holds for its block only.
-        alone: No other word may stand in its block.
-        yields: Another code of its group in the block takes its place.
+        consumes: Addresses that the code wants although they have a meaning of their own elsewhere.
+        after_motion: Done when the block has moved.
+        non_modal: What it sets holds for its block only.
+        exclusive: No other word may are in its block.
+        weak: Another code of its group in the block takes its place.
         refused: Why the twin refuses a code that the control knows; empty: it does not.
-        ground: On what the meaning rests.
+        basis: On what the meaning rests.
     """
 
     meaning: str
@@ -55,13 +55,13 @@ class GCode:
     sets: ModalChanges = dataclasses.field(default_factory=ModalChanges)
     action: Action | None = None
     perform: Action | None = None
-    takes: str = ""
-    after: Action | None = None
-    once: bool = False
-    alone: bool = False
-    yields: bool = False
+    consumes: str = ""
+    after_motion: Action | None = None
+    non_modal: bool = False
+    exclusive: bool = False
+    weak: bool = False
     refused: str = ""
-    ground: Ground = "decision"
+    basis: Basis = "decision"
 
     @property
     def refusal(self) -> str:
@@ -81,22 +81,22 @@ class MCode:
     Attributes:
         meaning: For people.
         group: Codes of one group exclude each other in a block; empty: it has none.
-        late: Takes effect when the block has moved.
+        after_motion: Takes effect when the block has moved.
         ends: Ends the program.
         action: What it does besides being reported as a function.
         silent: It is not reported.
         dwell: How long the program waits for it [s].
-        ground: On what the meaning rests.
+        basis: On what the meaning rests.
     """
 
     meaning: str
     group: str = ""
-    late: bool = False
+    after_motion: bool = False
     ends: bool = False
     silent: bool = False
     dwell: float = 0.0
     action: Action | None = None
-    ground: Ground = "decision"
+    basis: Basis = "decision"
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
@@ -109,7 +109,7 @@ class Codes:
         m: M codes by number.
         start: G codes in force when a program starts.
         start_state: Fields of ``Modal`` that no G code sets.
-        instead: What to write in place of G codes that other controls have, by number.
+        replacements: What to write in place of G codes that other controls have, by number.
         any_m: M codes outside the table are functions too.
         last_of_group_counts: Of several G codes of a modal group in a block the last one counts; else they
             are refused.
@@ -122,7 +122,7 @@ class Codes:
     m: Mapping[int, MCode]
     start: tuple[float, ...]
     start_state: ModalChanges = dataclasses.field(default_factory=ModalChanges)
-    instead: Mapping[float, str] = dataclasses.field(default_factory=dict)
+    replacements: Mapping[float, str] = dataclasses.field(default_factory=dict)
     any_m: bool = False
     last_of_group_counts: bool = False
     statements: Mapping[str, StatementAction] = dataclasses.field(default_factory=dict)

@@ -1,4 +1,4 @@
-"""Conditions and loops of a program whose keywords stand on lines of their own."""
+"""Conditions and loops of a program whose keywords are on lines of their own."""
 
 import dataclasses
 from collections.abc import Mapping

@@ -16,8 +16,8 @@ from twin.nc.control.tools import Tools
 from twin.nc.control.variables import Variables
 from twin.nc.geometry.arcs import Point
 from twin.nc.path.drilling_cycle import START, no_values
+from twin.nc.path.feed_rates import PATH_COUNTS, STANDING, WITHOUT_SPEED, FeedRule
 from twin.nc.path.moves import LARGEST_COORDINATE, axis_target
-from twin.nc.path.paces import PATH_COUNTS, STANDING, WITHOUT_SPEED, FeedRule
 from twin.nc.text.blocks import Assignment, Block, Location, Statement, Word
 from twin.nc.text.expressions import Expression, ExpressionError
 from twin.nc.text.lexer import Lexer
@@ -36,18 +36,18 @@ class Rules:
     Attributes:
         memory: Makes the object that holds what only this dialect remembers.
         prepare: Done before the first block.
-        before_motion: Done before every motion block, told whether it is rapid.
+        before_motion: Done before every motion block, given whether it is rapid.
         after_motion: Done when a block has moved.
         finish: Done when the program ends without an end code.
         must_end: A program without an end code is wrong.
         jog: A straight move by a distance, as its language writes it.
         read_variable: Value of a variable, given its name and index.
-        write_variable: Gives a variable a value, told its name, its index and the assignment; None:
+        write_variable: Gives a variable a value, given its name, its index and the assignment; None:
             variables are written as they are named.
-        is_local: Whether calls with variables of their own have a variable of this name anew.
+        is_local: Whether calls with variables of their own have a variable of this name again.
         given_variable: The value of a variable among those of the job, or None.
-        place_switches: Reports the block's switch points, told the length of its move.
-        pointless: Addresses whose numbers without a decimal point ``count`` must look at.
+        place_switches: Reports the block's switch points, given the length of its move.
+        without_point: Addresses whose numbers without a decimal point ``count`` must look at.
         count: Gives words without a decimal point their value in the units of the others.
         feed_rule: Which part of a move F counts, by the parameters of the control.
         length_by_code: Nothing but a code puts a tool's length into force; else the tool change may.
@@ -69,7 +69,7 @@ class Rules:
         given.get(name)
     )
     place_switches: Callable[["Control", float], None] | None = None
-    pointless: Callable[[ControlSettings], frozenset[str]] = lambda _settings: frozenset()
+    without_point: Callable[[ControlSettings], frozenset[str]] = lambda _settings: frozenset()
     count: Callable[["Control", Block], Block] = lambda _control, block: block
     feed_rule: Callable[[ControlSettings], FeedRule] = lambda _settings: PATH_COUNTS
     length_by_code: bool = False
@@ -85,7 +85,7 @@ class HasGroup(Protocol):
         ...
 
     @property
-    def yields(self) -> bool:
+    def weak(self) -> bool:
         """Another code of its group in the block takes its place."""
         ...
 
@@ -94,11 +94,11 @@ class Control:
     """One control while it runs one program.
 
     Attributes:
-        settings: What it was told of the machine and the job.
+        settings: What it was given of the machine and the job.
         report: Where its diagnostics go.
         modal: What stays in force.
         memory: What only this dialect remembers.
-        motion: Where it stands and how fast it goes.
+        motion: Where it is and how fast it goes.
         frame: From programmed to part coordinates.
         path: Where moves and events go.
         tools: The tools in use.
@@ -113,7 +113,7 @@ class Control:
         words: Its words that nothing has taken yet.
         codes: Its G codes.
         series: Its words for switch points, in order.
-        run: Runs one block, also one that stands within a statement.
+        run: Runs one block, also one that is within a statement.
         ended: An end code was run.
     """
 
@@ -134,7 +134,7 @@ class Control:
         self.memory = rules.memory()
         self._rules = rules
         feed_rule = rules.feed_rule(settings)
-        self.motion = Motion(settings, modal, self.report, self._blame_feed, feed_rule)
+        self.motion = Motion(settings, modal, self.report, self._refuse_feed, feed_rule)
         if rules.place_switches is not None:
             self.motion.before_move = functools.partial(rules.place_switches, self)
         self.frame = self.motion.frame
@@ -204,8 +204,8 @@ class Control:
         """Where the block writes a G code, for diagnostics."""
         return next((word for word, _ in self.codes if number_of(word) == number), None)
 
-    def _blame_feed(self, finding: int) -> None:
-        """Say what is wrong with the pace of a move.
+    def _refuse_feed(self, finding: int) -> None:
+        """Report what is wrong with the feed rate of a move.
 
         Raises:
             ProgramError: It has none.
@@ -294,7 +294,7 @@ class Control:
     # --- moves and events
 
     def line_to(self, target: list[float], *, rapid: bool) -> None:
-        """Move straight to a programmed position; nothing when it stands there already."""
+        """Move straight to a programmed position; nothing when it is there already."""
         self.motion.move_to(target, self.block, rapid=rapid)
 
     def arc_to(self, target: list[float], center: Point, sweep: float) -> None:
@@ -333,7 +333,7 @@ class Control:
         self,
         first: Location,
         deepest: int,
-        blamed: Word | Statement,
+        error_at: Word | Statement,
         values: Iterable[tuple[str, float]] | None = None,
         *,
         restores: bool = False,
@@ -345,7 +345,7 @@ class Control:
         Args:
             first: Where it begins.
             deepest: Parts that may call each other.
-            blamed: What asks for it.
+            error_at: What asks for it.
             values: Of its own variables by name; None: it has the caller's.
             restores: Its end puts back into force what is in force now.
             times: How often it runs.
@@ -356,9 +356,9 @@ class Control:
         """
         counter = self.program_counter
         if counter.depth >= min(deepest, MOST_CALLS):
-            self.fail("call-depth", f"more than {deepest} calls within calls", blamed)
+            self.fail("call-depth", f"more than {deepest} calls within calls", error_at)
         if not times >= 1.0 or times != math.floor(times):
-            self.fail("repeat-range", "the range or the number of runs is none", blamed)
+            self.fail("repeat-range", "the range or the number of runs is none", error_at)
         call = Call(counter.location, first, int(times) - 1, last)
         counter.calls.append(call)
         self.jump(first)
@@ -370,22 +370,22 @@ class Control:
             for name, value in values:
                 self.variables.write(name, value)
 
-    def require_caller(self, blamed: Word | Statement | None = None) -> None:
+    def require_caller(self, error_at: Word | Statement | None = None) -> None:
         """A part must be being run that a word ends.
 
         Raises:
             ProgramError: None is.
         """
         if all(call.last is not None for call in self.program_counter.calls):
-            self.fail("return-outside", "there is no subroutine to return from", blamed)
+            self.fail("return-outside", "there is no subroutine to return from", error_at)
 
-    def go_back(self, blamed: Word | Statement | None = None) -> None:
+    def go_back(self, error_at: Word | Statement | None = None) -> None:
         """The end of a subroutine: back behind its call, or to its beginning again.
 
         Raises:
             ProgramError: There is no subroutine.
         """
-        self.require_caller(blamed)
+        self.require_caller(error_at)
         ended = self.program_counter.end_call()
         if ended is not None:
             if ended.owns_variables:

@@ -8,7 +8,7 @@ from typing import Self, TypedDict
 from twin.nc.canonical import Corner
 from twin.nc.control.interpolation import MotionMode
 from twin.nc.geometry.planes import XY, Plane
-from twin.nc.path.paces import FeedMode
+from twin.nc.path.feed_rates import FeedMode
 
 
 class ModalChanges(TypedDict, total=False):
@@ -63,10 +63,10 @@ class Modal:
     Attributes:
         active: The code in force in each modal group.
         interpolation: How axis words become a move; None before a motion code.
-        cycle: A canned cycle; while it is in force it stands in the place of the interpolation.
+        cycle: A canned cycle; while it is in force it replaces the interpolation.
         return_to_reference: Cycles end at their reference plane, not at the height of their call.
         plane: The working plane.
-        incremental: Axis words count from where the tool stands.
+        incremental: Axis words count from where the tool is.
         center_absolute: The words of a centre count from part zero.
         unit: Of programmed lengths [mm].
         feed_mode: What F counts.

@@ -33,7 +33,7 @@ class Call:
     Attributes:
         back: Where the caller goes on.
         first: Where the part begins.
-        again: How often it still runs anew before that.
+        again: How often it still runs again before that.
         last: Its last block, where it ends by its location; None: a word ends it.
         owns_variables: It has variables of its own, which its end forgets.
         restores: What its end puts back into force; None: nothing.
@@ -151,7 +151,7 @@ class ProgramCounter:
         return call
 
     def _run_out(self) -> None:
-        """The last line has been passed; what is to be said of that stands at the last text."""
+        """The last line has been passed; what is to be said of that is at the last text."""
         written = (line for line in range(len(self.lines), 0, -1) if self.lines[line - 1].strip())
         self._report.line = next(written, 0)
 

@@ -35,6 +35,6 @@ class Tools:
         """What a tool measures; None where the table lacks it."""
         return None if number is None else self.table.get(number, self.any)
 
-    def longer(self, tool: ToolData) -> float:
+    def length_difference(self, tool: ToolData) -> float:
         """How much longer a tool is than the one that the part zero was taken with [mm]."""
         return tool.length - self._reference

@@ -33,7 +33,7 @@ class Reading(NamedTuple):
     """What a program tells of its dialect.
 
     Attributes:
-        candidates: Dialects that it may be written in; one: it is told.
+        candidates: Dialects that it may be written in; one: it is given.
         reason: What tells it.
     """
 

@@ -111,7 +111,7 @@ def composed(
 
 
 def moved_shift(shift: float, part: float, there: float) -> float:
-    """A shift of an axis that gives the place where it stands other programmed coordinates.
+    """A shift of an axis that gives the place where it is other programmed coordinates.
 
     Args:
         shift: As it was.

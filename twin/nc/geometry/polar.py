@@ -26,7 +26,7 @@ def changed(
 
     Args:
         seen: 1 where it has R, 2 with Q, 3 with both.
-        old: R and Q of where the tool stands [mm, deg].
+        old: R and Q of where the tool is [mm, deg].
         words: The values of both words [mm, deg].
         relative: Whether they count from there.
     """
@@ -39,7 +39,7 @@ def changed(
 
 
 def point_at(origin: Point, here: Point, radius: float, angle: float) -> Point:
-    """Where R and Q lead [mm]: to where the tool stands already, if that is the same but for rounding."""
+    """Where R and Q lead [mm]: to where the tool is already, if that is the same but for rounding."""
     cosine, sine = direction(angle)
     end = (origin[0] + radius * cosine, origin[1] + radius * sine)
     return here if distance(here, end) < SAME_POINT / 1000.0 else end

@@ -131,7 +131,7 @@ _FINDINGS = {
 def refuse_arc(
     control: Control, finding: int, word: Word | None, first: float = 0.0, second: float = 0.0
 ) -> NoReturn:
-    """Say what is wrong: of a centre with its distances, of a radius with itself and half the chord.
+    """Report what is wrong: of a centre with its distances, of a radius with itself and half the chord.
 
     Raises:
         ProgramError: Always.

@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable
 from typing import NamedTuple, NoReturn
 
-from twin.nc.control.codes import GCode, Ground, Interpolation
+from twin.nc.control.codes import Basis, GCode, Interpolation
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import CycleRule
 from twin.nc.path.drilling_cycle import (
@@ -36,13 +36,13 @@ class Holes(NamedTuple):
 
     Attributes:
         target: Takes the words that name the hole; its programmed position, shape (k,).
-        ground: On what the meaning rests.
+        basis: On what the meaning rests.
         repeats: Address that says how often a block drills, each hole as far from the last as the
             block's increments say; 0: its words are taken and nothing is drilled. Empty: none.
     """
 
     target: Callable[[Control], list[float]] = Control.target
-    ground: Ground = "decision"
+    basis: Basis = "decision"
     repeats: str = ""
 
 
@@ -72,7 +72,7 @@ def cycle_code(rule: CycleRule, meaning: str, holes: Holes = ONE_HOLE) -> GCode:
         group="cycle",
         sets={"cycle": Interpolation(perform, rule=rule)},
         action=call,
-        ground=holes.ground,
+        basis=holes.basis,
     )
 
 
@@ -144,7 +144,7 @@ NEEDED_WORDS = {
 
 
 def refuse_hole(control: Control, rule: CycleRule, hole: Hole) -> NoReturn:
-    """Say what is wrong with the words of a cycle.
+    """Report what is wrong with the words of a cycle.
 
     Raises:
         ProgramError: Always.
@@ -194,13 +194,6 @@ def refuse_hole(control: Control, rule: CycleRule, hole: Hole) -> NoReturn:
         control.fail("cycle-depth", f"{name} needs pecks above 0")
     message = f"{name} must drill downwards, not from {hole.reference:g} to {hole.bottom:g}"
     control.fail("cycle-depth", message)
-
-
-def go_to_height(control: Control, height: float, *, rapid: bool = True) -> None:
-    """Go straight to a height of the axis across the plane, programmed coordinates [mm]."""
-    there = list(control.motion.programmed)
-    there[control.modal.plane.axes[2]] = height
-    control.line_to(there, rapid=rapid)
 
 
 def turn_spindle(control: Control, function: str) -> None:

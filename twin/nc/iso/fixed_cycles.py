@@ -2,8 +2,8 @@
 
 X and Y name the hole, Z its bottom, R the reference plane, P the seconds at the bottom, Q the depth
 of one peck. All but X and Y stay in force, and every block that names a hole drills it, until G80
-or a motion code. Decisions: with G91, R counts from where the tool stands and Z from R; a cycle
-block without a hole drills where the tool stands; the tool returns to the height at which the cycle
+or a motion code. Decisions: with G91, R counts from where the tool is and Z from R; a cycle
+block without a hole drills where the tool is; the tool returns to the height at which the cycle
 was called, or with G99 to the reference plane; the plane cannot change before the cycle has ended.
 """
 
@@ -36,7 +36,7 @@ class Drill(NamedTuple):
         pecking: How it goes down; by pecks or passes of Q, if not at once.
         lift: How far it withdraws between them [mm]; 0: to the reference plane.
         retract: How it leaves the hole.
-        reduces: Its pecks may become less deep: I the first, J less each time, K the least, in the place of Q.
+        reduces: Its pecks may become less deep: I the first, J less each time, K the least, in place of Q.
         faster: J says how many times as fast a tap comes back.
     """
 

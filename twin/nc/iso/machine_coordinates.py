@@ -37,7 +37,7 @@ def enter_machine_frame(
         zero: Part coordinates of another zero of the machine's builder; None: machine zero.
 
     Raises:
-        ProgramError: Nobody said where machine zero is.
+        ProgramError: The job does not say where machine zero is.
     """
     zero, frame = machine_zero(control, code) if zero is None else zero, control.frame
     kept, names = PartFrame(frame.shifts, frame.matrix), control.settings.axes.names
@@ -62,7 +62,7 @@ def machine_frame(
     """As ``enter_machine_frame``, within.
 
     Raises:
-        ProgramError: Nobody said where machine zero is, or compensation is in force.
+        ProgramError: The job does not say where machine zero is, or compensation is in force.
     """
     if control.path.compensation.in_force:
         message = "machine coordinates know no radius compensation"

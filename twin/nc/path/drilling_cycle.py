@@ -118,7 +118,7 @@ class CycleBlock(NamedTuple):
     Attributes:
         calls: It calls the cycle.
         axis: The axis across the plane in force.
-        height: Where the tool stands on that [mm].
+        height: Where the tool is on that [mm].
         unit: Of programmed lengths [mm].
         relative: Whether the reference plane counts from the height of the call, and whether the
             bottom counts from the reference plane.

@@ -259,7 +259,7 @@ def most_acts(stops: int) -> int:
 def next_place(
     act: float, amount: float, hole: Hole, over: Values, goal: Values, axis: int
 ) -> float:
-    """How an act moves; the goal, where the tool stands before, becomes its end.
+    """How an act moves; the goal, where the tool is before, becomes its end.
 
     Args:
         act: An ``Act``.
@@ -288,7 +288,7 @@ def write_acts(hole: Hole, height: float, acts: Values, amounts: Values) -> int:
 
     Args:
         hole: The hole.
-        height: Where the tool stands [mm].
+        height: Where the tool is [mm].
         acts: Filled with ``Act``.
         amounts: Filled with heights [mm] and seconds.
     """

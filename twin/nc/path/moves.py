@@ -28,7 +28,7 @@ def axis_target(value: float, unit: float, linear: bool, incremental: bool, here
         value: Of the word.
         unit: Of programmed lengths [mm].
         linear: The axis is a linear one.
-        incremental: The value counts from where it stands.
+        incremental: The value counts from where it is.
         here: Where that is.
     """
     target = value * unit if linear else value

@@ -7,7 +7,7 @@ from twin.nc.text.expressions import Expression, NumberedVariable, Variable
 
 
 class Location(NamedTuple):
-    """Where a block stands in a program: its line, from 0, and its part of the line, from 0."""
+    """Where a block is in a program: its line, from 0, and its part of the line, from 0."""
 
     line: int
     part: int
@@ -22,7 +22,7 @@ class Word(NamedTuple):
         column: First character in the line, from 0.
         width: Characters from the address to the end of the value.
         incremental: The word alone is incremental (``X20I``).
-        pointless: A number without a decimal point.
+        without_point: A number without a decimal point.
         mark: What the program writes besides address and value: how the value counts (``IC``), the name of
             a code, or a text in quotes.
     """
@@ -32,7 +32,7 @@ class Word(NamedTuple):
     column: int
     width: int
     incremental: bool = False
-    pointless: bool = False
+    without_point: bool = False
     mark: str = ""
 
     @property

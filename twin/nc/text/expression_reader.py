@@ -256,7 +256,7 @@ class _Reading:
         self.at += 1
 
     def _hint_of_equal(self) -> str | None:
-        """How two values are compared, where a single = stands in the place of an operator."""
+        """How two values are compared, where a single = replaces an operator."""
         operators = {name.upper() for name in self._syntax.operators}
         spelling = next((each for each in ("EQ", "==") if each in operators), None)
         if spelling is None or self._text[self.at : self.at + 1] != "=":

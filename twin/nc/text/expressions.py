@@ -112,7 +112,7 @@ class ExpressionSyntax:
 
     Attributes:
         operators: By symbol or word.
-        functions: By name; a function's arguments stand in ``brackets``.
+        functions: By name; a function's arguments are in ``brackets``.
         constants: By name.
         variable: Regular expression of a variable's name.
         indexed: Names that may be followed by an index in brackets, such as ``P``.
@@ -127,7 +127,7 @@ class ExpressionSyntax:
             there is none.
         quotients: Functions of two values, each in brackets, with a slash between them.
         one_sign: No sign follows a sign, unless a bracket stands between them.
-        bracketed: Operators stand within brackets only, so that a word's value is one operand.
+        bracketed: Operators are within brackets only, so that a word's value is one operand.
         vacant: A variable without a value counts as 0 where something is computed of it; alone it
             leaves its word out.
         of_vacant: Operators that see that a variable has no value.

@@ -104,7 +104,7 @@ class Grammar:
 
 
 def _unfinished(expressions: ExpressionSyntax) -> re.Pattern[str]:
-    """Operators, names of functions and prefixes, and what stands before a value."""
+    """Operators, names of functions and prefixes, and what is before a value."""
     names = "|".join([*expressions.functions, *expressions.prefixes])
     operators = "|".join(map(operator_pattern, expressions.operators))
     return _compiled(rf"(?:[=,]|{operators}|\b(?:{names})){BLANKS}\Z")

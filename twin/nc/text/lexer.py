@@ -84,5 +84,5 @@ class Lexer:
 
 
 def _closed_up(number: re.Match[str]) -> str:
-    """A number without its blanks, which follow it, so that the next word stays where it stands."""
+    """A number without its blanks, which follow it, so that the next word stays where it is."""
     return re.sub(r"[ \t]", "", number[0]).ljust(len(number[0]))

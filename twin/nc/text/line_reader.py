@@ -200,7 +200,7 @@ class LineReader:
         return True
 
     def _named_code(self) -> bool:
-        """A code that has a name in the place of a number."""
+        """A code that has a name in place of a number."""
         pattern = self._grammar.code
         match = pattern.match(self._line, self._at) if pattern is not None else None
         if match is None:

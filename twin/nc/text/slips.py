@@ -61,7 +61,7 @@ SLIPS: tuple[Slip, ...] = (
 
 
 def slip_at(line: str, at: int, statements: Iterable[str] = ()) -> str | None:
-    """What to write in place of what stands at a place of a line; None: it is no known slip.
+    """What to write in place of what is at a place of a line; None: it is no known slip.
 
     Args:
         line: The line.

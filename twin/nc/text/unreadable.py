@@ -67,7 +67,7 @@ class Unreadable:
         self.fail(error.code, str(error), column, hint=hint)
 
     def refuse_late_skip(self, address: re.Match[str]) -> None:
-        """``N20 /X1``: the mark of block skip stands behind the number.
+        """``N20 /X1``: the mark of block skip is behind the number.
 
         Raises:
             ProgramError: It does.

@@ -18,7 +18,7 @@ from twin.nc.control.dialect import Dialect
 from twin.nc.control.executor import Executor
 from twin.nc.control.settings import ControlSettings
 from twin.nc.functions import OPTIONAL_STOP, PROGRAM_STOPS, TOOL_CHANGE, SpindleState
-from twin.nc.path.paces import FEED_FACTORS
+from twin.nc.path.feed_rates import FEED_FACTORS
 from twin.nc.text.blocks import Block
 from twin.nc.text.diagnostics import Diagnostic, ProgramError
 from twin.nc.text.source import Source

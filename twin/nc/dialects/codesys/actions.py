@@ -155,7 +155,7 @@ def axis_named(control: Control, letter: str, word: Word) -> int:
 def length_vector(control: Control) -> None:
     """G43 I J K: the tool's vector is added to every position; 0 0 0 is off.
 
-    The next move leads into it or out of it: from where the axes stand to its end with the vector
+    The next move leads into it or out of it: from where the axes are to its end with the vector
     (page of the preprocessor), also where it names another axis.
     """
     vector = [control.length(control.take(letter)) for letter in "IJK"]
@@ -217,7 +217,7 @@ def shift_relatively(control: Control) -> None:
 
 
 def set_reference(control: Control) -> None:
-    """G56: the place where the machine stands gets the given coordinates.
+    """G56: the place where the machine is gets the given coordinates.
 
     Decision: the manual's page is not fully known; this is what its title says.
     """

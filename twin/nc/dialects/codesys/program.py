@@ -179,7 +179,7 @@ def assign(control: Control, statement: Statement) -> None:
     control.variables.write(name, value)
 
 
-def _require_declared(control: Control, name: str, blamed: Statement | None = None) -> None:
+def _require_declared(control: Control, name: str, error_at: Statement | None = None) -> None:
     """A local variable must have been declared.
 
     Raises:
@@ -187,7 +187,7 @@ def _require_declared(control: Control, name: str, blamed: Statement | None = No
     """
     if name.startswith("#") and control.variables.read(name) is None:
         hint = f"write LET {name} : LREAL"
-        control.fail("unknown-variable", f"{name} is not declared", blamed, hint)
+        control.fail("unknown-variable", f"{name} is not declared", error_at, hint)
 
 
 def _reference(control: Control, word: Word | None) -> str:

@@ -92,9 +92,9 @@ def _computed(control: Control, word: Word) -> Word:
     return word
 
 
-def _run(control: Control, asked: ModalCall, blamed: Word | Statement) -> None:
+def _run(control: Control, asked: ModalCall, error_at: Word | Statement) -> None:
     deepest, values = memory_of(control).variant.deepest_call, asked.values.items()
-    control.call(Location(asked.line, 0), deepest, blamed, values, times=float(asked.often))
+    control.call(Location(asked.line, 0), deepest, error_at, values, times=float(asked.often))
 
 
 def call_modally(control: Control, statement: Statement) -> None:

@@ -9,7 +9,7 @@ from twin.nc.control.constructs import Structure
 from twin.nc.control.control import Control
 from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.planes import Vector
-from twin.nc.path.paces import FeedMode
+from twin.nc.path.feed_rates import FeedMode
 from twin.nc.text.blocks import Word
 from twin.nc.text.lines import Lines
 

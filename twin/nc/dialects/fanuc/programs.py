@@ -174,7 +174,7 @@ def run_part(control: Control, first: Location, count: int, word: Word) -> None:
 def return_(control: Control) -> None:
     """M99: back behind the call; with P at the block of that number.
 
-    In the main program M99 P jumps, and M99 alone, by which a control begins anew for ever, ends.
+    In the main program M99 P jumps, and M99 alone, by which a control begins again for ever, ends.
     """
     target, counter = control.take("P"), control.program_counter
     if counter.is_calling:

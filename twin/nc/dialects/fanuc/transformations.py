@@ -82,7 +82,7 @@ def end(name: str) -> Action:
 
 
 def rotate(control: Control) -> None:
-    """G68 X Y R: turn by R in the working plane about a point, or about where the tool stands."""
+    """G68 X Y R: turn by R in the working plane about a point, or about where the tool is."""
     angle = control.take("R")
     if angle is None:
         control.fail("rotation-angle", "G68 needs its angle R", None, "G68 X0 Y0 R45.")

@@ -81,7 +81,7 @@ LINUXCNC = Dialect(
     codes=Codes(
         groups=GROUPS,
         g=CODES,
-        instead={
+        replacements={
             15: "polar coordinates are @ and ^",
             16: "polar coordinates are @ and ^",
             50: "write G92.1, or scale by parameters",

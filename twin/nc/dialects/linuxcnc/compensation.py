@@ -2,7 +2,7 @@
 
 The entry ends beside the programmed point, square to the entry itself. At a convex corner the tool
 turns around the contour's point; at a concave one the move before ends where the two offset paths meet,
-for which it is held until its successor is known. Behind G40 a straight move leads out of where it is.
+for which it is kept until its successor is known. Behind G40 a straight move leads out of where it is.
 """
 
 import dataclasses

@@ -17,12 +17,12 @@ from twin.nc.dialects.linuxcnc.offsets import refuse_in_compensation
 from twin.nc.iso.drilling import (
     NEEDED_WORDS,
     drill,
-    go_to_height,
     refuse_hole,
     repeats_of,
     take_words,
     turn_spindle,
 )
+from twin.nc.iso.plane_moves import go_to_height
 from twin.nc.path.drilling_cycle import (
     AXIS,
     BOTTOM,
@@ -35,8 +35,8 @@ from twin.nc.path.drilling_cycle import (
     Retract,
     Values,
 )
+from twin.nc.path.feed_rates import FeedMode
 from twin.nc.path.hole import Fault, hole_of
-from twin.nc.path.paces import FeedMode
 
 CLEARANCE = 0.254
 """A rapid return ends this far above the bottom of the last peck [mm]: a hundredth of an inch."""
@@ -309,7 +309,7 @@ def _code(kind: Kind) -> GCode:
         meaning=kind.meaning,
         group="motion",
         sets={"cycle": mode, "interpolation": None},
-        ground="manual",
+        basis="manual",
     )
 
 

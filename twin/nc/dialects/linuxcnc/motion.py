@@ -11,7 +11,7 @@ from twin.nc.dialects.linuxcnc.offsets import refuse_changed_unit, refuse_in_com
 from twin.nc.geometry.planes import XY
 from twin.nc.iso import base
 from twin.nc.iso.offsets import machine_zero
-from twin.nc.path.paces import FeedMode
+from twin.nc.path.feed_rates import FeedMode
 from twin.nc.text.blocks import Word
 
 
@@ -146,7 +146,7 @@ def go_home(place: int) -> Action:
 
 
 def store_home(place: int) -> Action:
-    """G28.1, G30.1: where the axes stand is the stored position from now on."""
+    """G28.1, G30.1: where the axes are is the stored position from now on."""
 
     def action(control: Control) -> None:
         zero = machine_zero(control, ("G28.1", "G30.1")[place])

@@ -65,7 +65,7 @@ def _put_back(control: Control, state: SavedState) -> None:
         modal.active.put(group, active.get(group))
     now.restore(modal)
     control.motion.spindle = state.spindle
-    if state.feed != written_feed(control):  # else nothing is written anew (``rs274``)
+    if state.feed != written_feed(control):  # else nothing is written again (``rs274``)
         control.motion.feed, memory_of(control).converted_feed = state.feed, None
     system = f"G{control.modal.active.get('offset', 54):g}"
     memory_of(control).system = SYSTEMS.index(system) + 1

@@ -77,9 +77,9 @@ class Compensation:
         self._events: list[list[Event]] = []
         """What happens behind each of them."""
         self._contour, self._parallel = _NO_CURVE, _NO_CURVE
-        """The held move in the plane, and the path beside it; while it leads out, the contour's last element."""
+        """The kept move in the plane, and the path beside it; while it leads out, the contour's last element."""
         self._start: Point = (0.0, 0.0)
-        """Where the compensated path of the held move begins in the plane [mm]."""
+        """Where the compensated path of the kept move begins in the plane [mm]."""
         self._here: list[float] | None = None
         """Where the compensated path has come to, shape (k,); None: nothing has been driven."""
         self._passed = Passed()
@@ -145,7 +145,7 @@ class Compensation:
             self._happen(event)
 
     def end(self, *, led: bool = False) -> None:
-        """Let go of what is held, square to itself, and wait for the line that leads out, if nothing else does."""
+        """Let go of what is kept, square to itself, and wait for the line that leads out, if nothing else does."""
         before = self._parallel if self.stage is FOLLOWING else self._contour
         if self.stage is LEADING_IN:
             self._let_go(before, before, before[2])
@@ -193,7 +193,7 @@ class Compensation:
             self._take_next_offset(move, curve, self._next_offset)
 
     def _take_next_offset(self, move: Segment, curve: Curve, offset: float) -> None:
-        """The held move ends beside the contour by another radius than it began with."""
+        """The kept move ends beside the contour by another radius than it began with."""
         if curve[0]:
             message = "the radius changes along a straight move, and this is an arc"
             self._report.refuse(move, "compensation-change", message)
@@ -203,7 +203,7 @@ class Compensation:
     # --- from move to move
 
     def _go_along_normal(self, move: Segment) -> None:
-        """A move that does not go in the plane: at once before the lead-in, else behind the held move."""
+        """A move that does not go in the plane: at once before the lead-in, else behind the kept move."""
         if self.stage is STARTED and self._led:
             message = "the contour must begin behind its approach with a move in the plane"
             self._report.refuse(move, "compensation-start", message)
@@ -247,10 +247,10 @@ class Compensation:
         self._contour, self._start = curve, start
 
     def _let_go(self, before: Curve, part: Curve, at: Point) -> None:
-        """Drive the held move up to a point, then what waits for its end.
+        """Drive the kept move up to a point, then what waits for its end.
 
         Args:
-            before: The path beside the held move.
+            before: The path beside the kept move.
             part: What is left of that.
             at: Where it ends.
         """
@@ -270,7 +270,7 @@ class Compensation:
         self._held, self._events = [], []
 
     def _go_around(self, move: Segment, corner: Curve) -> None:
-        """Go around a corner where the path has come to, as a held move goes."""
+        """Go around a corner where the path has come to, as a kept move goes."""
         assert self._here is not None
         arc = self._level_arc(move, corner, self._here)
         arc.corner = Corner.EXACT_PATH

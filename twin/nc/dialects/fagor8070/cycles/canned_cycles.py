@@ -15,7 +15,7 @@ B that break the chip, back by H, or without it to the reference plane.
 import dataclasses
 from collections.abc import Mapping
 
-from twin.nc.control.codes import GCode, Ground, Interpolation
+from twin.nc.control.codes import Basis, GCode, Interpolation
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import CycleRule
 from twin.nc.dialects.fagor8070.cycles.pockets import call_pocket, mill_pocket
@@ -61,12 +61,12 @@ def _drilling(
     words: Mapping[str, int],
     cycle: Cycle = _PLAIN,
     *,
-    ground: Ground = "decision",
+    basis: Basis = "decision",
     options: Mapping[str, tuple[float, ...]] = _NO_OPTIONS,
 ) -> GCode:
     """A cycle that drills, by its words besides Z and I; ``options`` change nothing of its path."""
     rule = CycleRule(f"G{number}", cycle, {**words, "I": BOTTOM}, options)
-    return cycle_code(rule, f"{meaning}: Z I {' '.join(words)}", Holes(_hole, ground))
+    return cycle_code(rule, f"{meaning}: Z I {' '.join(words)}", Holes(_hole, basis))
 
 
 def _hole(control: Control) -> list[float]:
@@ -104,8 +104,8 @@ def _pocket(
         group="cycle",
         sets={"cycle": mill},
         action=lambda control: call_pocket(control, words, lengths),
-        takes="" if circular else "M",
-        ground="manual",
+        consumes="" if circular else "M",
+        basis="manual",
     )
 
 
@@ -116,8 +116,8 @@ _RIGID = {"R": (0.0, 1.0), "J": (1.0,)}
 """R: 0 with a tapping chuck, 1 rigid: one path. J: how much faster the way back is."""
 
 CYCLES = {
-    80: GCode(meaning="cycles off", group="cycle", sets={"cycle": None}, ground="manual"),
-    81: _drilling(81, "drilling", _DWELL, ground="manual", options=_SPINDLE),
+    80: GCode(meaning="cycles off", group="cycle", sets={"cycle": None}, basis="manual"),
+    81: _drilling(81, "drilling", _DWELL, basis="manual", options=_SPINDLE),
     82: _drilling(
         82,
         "drilling in variable pecks",

@@ -12,7 +12,8 @@ from twin.nc.control.interpolation import CycleRule
 from twin.nc.dialects.fanuc.memory import Variant, memory_of
 from twin.nc.dialects.fanuc.motion import holes_of, target
 from twin.nc.dialects.fanuc.transformations import refuse_scaled_pecks
-from twin.nc.iso.drilling import cycle_code, go_to_height, refuse_hole, take_words, turn_spindle
+from twin.nc.iso.drilling import cycle_code, refuse_hole, take_words, turn_spindle
+from twin.nc.iso.plane_moves import go_to_height
 from twin.nc.path.drilling_cycle import BOTTOM, DWELL, PECK, REFERENCE, START, Cycle
 from twin.nc.path.hole import Fault, hole_of
 

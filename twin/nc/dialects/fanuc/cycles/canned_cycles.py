@@ -69,7 +69,7 @@ def cycles(variant: Variant) -> dict[float, GCode]:
         **base.by_manual({80: CYCLES[80]}),
         76: boring_code(76, "fine boring, out with the tool shifted", variant),
         87: boring_code(87, "back boring, from below", variant),
-        88: GCode(meaning="boring by hand", group="cycle", refused=BY_HAND, ground="manual"),
+        88: GCode(meaning="boring by hand", group="cycle", refused=BY_HAND, basis="manual"),
     }
 
 
@@ -94,7 +94,7 @@ def _without_overruled_cycle(control: Control, block: Block) -> Block:
     """Of a cycle and a straight motion in a block the last counts; a motion leaves R P Q K L out (manual).
 
     Raises:
-        ProgramError: An arc stands behind a cycle, whose R would be ambiguous; or a motion on a control of
+        ProgramError: An arc is behind a cycle, whose R would be ambiguous; or a motion on a control of
             which it is not known what counts.
     """
     codes = [word for word in block.words if word.address == "G"]
