@@ -5,8 +5,7 @@ from collections.abc import Callable, Mapping
 from typing import Literal
 
 from twin.nc.control.control import Control
-from twin.nc.control.interpolation import MotionMode
-from twin.nc.control.modal import ActiveCodes, Modal, ModalChanges
+from twin.nc.control.modal import ActiveCodes, Modal, ModalChanges, MotionMode
 from twin.nc.control.settings import MachineFunction
 from twin.nc.text.blocks import Statement, Word
 

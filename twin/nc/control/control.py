@@ -15,7 +15,6 @@ from twin.nc.control.statements import StatementReader
 from twin.nc.control.tools import Tools
 from twin.nc.control.variables import Variables
 from twin.nc.geometry.arcs import Point
-from twin.nc.path.drilling_cycle import START, no_values
 from twin.nc.path.feed_rates import PATH_COUNTS, STANDING, WITHOUT_SPEED, FeedRule
 from twin.nc.path.moves import LARGEST_COORDINATE, axis_target
 from twin.nc.text.blocks import Assignment, Block, Location, Statement, Word
@@ -107,8 +106,7 @@ class Control:
         statements: Reads what statements hold.
         axis_letters: Addresses that name axes.
         axis_index: Columns of the axes by name.
-        cycle_values: What the words of a milling cycle were last, by address.
-        cycle_state: What a drilling cycle remembers, as ``drilling_cycle`` counts it.
+        cycle_values: What the cycle in force remembers, by name.
         block: The block that is being run.
         words: Its words that nothing has taken yet.
         codes: Its G codes.
@@ -160,7 +158,6 @@ class Control:
         self._columns = {word: columns[word] for word in columns if word in axis_letters}
         self._axes_that_lack = axis_letters - self._columns.keys()
         self.cycle_values: dict[str, float] = {}
-        self.cycle_state = no_values()
         self.block = Block(0, 0)
         self.words: dict[str, Word] = {}
         self.codes: Sequence[tuple[Word, HasGroup]] = ()
@@ -317,9 +314,8 @@ class Control:
 
     def forget_cycle(self) -> None:
         """No cycle is in force any more, and its words hold no longer."""
-        if self.cycle_values or self.cycle_state[START] == self.cycle_state[START]:
+        if self.cycle_values:
             self.cycle_values = {}
-            self.cycle_state = no_values()
 
     # --- jumps and calls
 

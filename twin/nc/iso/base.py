@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from twin.nc.control.codes import Action, GCode, Interpolation, MCode
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Dialect
-from twin.nc.control.interpolation import ArcRule, LineRule
+from twin.nc.control.modal import ArcRule, LineRule
 from twin.nc.functions import starts_spindle
 from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.planes import XY, YZ, ZX

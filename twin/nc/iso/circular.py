@@ -8,7 +8,7 @@ from typing import NoReturn
 
 from twin.nc.control.codes import Action, Interpolation
 from twin.nc.control.control import Control
-from twin.nc.control.interpolation import ArcRule
+from twin.nc.control.modal import ArcRule
 from twin.nc.geometry import arcs
 from twin.nc.geometry.arcs import (
     ArcWords,

@@ -11,7 +11,7 @@ from twin.nc.dialects.heidenhain.cycle_values import Parameters
 from twin.nc.dialects.heidenhain.cycles.holes import heights
 from twin.nc.dialects.heidenhain.tools import compensation_radius
 from twin.nc.geometry.arcs import Point
-from twin.nc.iso.drilling import go_to_height
+from twin.nc.iso.hole import go_to_height
 
 _MOST_TURNS = 10_000.0
 

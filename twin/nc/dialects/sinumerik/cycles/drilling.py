@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from twin.nc.control.control import Control
 from twin.nc.dialects.sinumerik.cycles.calls import CycleCall, CycleForm, require_no_compensation
-from twin.nc.iso.drilling import go_to_height, turn_spindle
+from twin.nc.iso.hole import go_to_height, turn_spindle
 
 _HEIGHTS = ("RTP", "RFP", "SDIS", "DP", "DPR")
 NEW_MODES = ("_GMODE", "_DMODE", "_AMODE")

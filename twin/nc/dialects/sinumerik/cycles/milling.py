@@ -11,7 +11,7 @@ from twin.nc.control.control import Control
 from twin.nc.dialects.sinumerik.cycles.calls import CycleCall, CycleForm
 from twin.nc.dialects.sinumerik.cycles.drilling import NEW_MODES, Heights, heights_of
 from twin.nc.geometry.arcs import Point, direction, turned
-from twin.nc.iso.drilling import go_to_height
+from twin.nc.iso.hole import go_to_height
 from twin.nc.iso.pockets import (
     DIAGONAL,
     Corner,
