@@ -21,7 +21,6 @@ class ArcRule:
     """A block of plain axis words with I, J, K of the plane or R is an arc.
 
     Attributes:
-        clockwise: Its sense.
         bounds: Beyond them an arc is refused or warned of.
         signed_radius: A negative radius asks for the larger arc; else it is not plain.
         fits_radius: A centre found by its radius is fitted to both points like a given one.
@@ -100,11 +99,9 @@ class Modal:
         interpolation: How axis words become a move; None before a motion code.
         cycle: A canned cycle; while it is in force it replaces the interpolation.
         return_to_reference: Cycles end at their reference plane, not at the height of their call.
-        plane: The working plane.
         incremental: Axis words count from where the tool is.
         center_absolute: The words of a centre count from part zero.
         unit: Of programmed lengths [mm].
-        feed_mode: What F counts.
         corner: How the ends of moves are passed.
         corner_tolerance: [mm]; NaN: the machine's.
         square_corners: Compensation extends lines at outside corners instead of rolling around them.

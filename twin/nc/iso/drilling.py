@@ -44,7 +44,6 @@ class Cycle:
     the ``first`` peck where each next one is less deep by a ``reduction``; how many times ``faster`` a tap comes back.
 
     Attributes:
-        name: The cycle's code.
         words: Which value each word gives, besides that of the axis across the plane.
         across: The value that the latter gives.
         needed: Values that must be there.
@@ -81,7 +80,6 @@ class Holes(NamedTuple):
 
     Attributes:
         target: Takes the words that name the hole; its programmed position, shape (k,).
-        basis: On what the meaning rests.
         repeats: Address that says how often a block drills, each hole as far from the last as the
             block's increments say; 0: its words are taken and nothing is drilled. Empty: none.
     """
@@ -122,11 +120,7 @@ def cycle_code(cycle: Cycle, meaning: str, holes: Holes = ONE_HOLE) -> GCode:
 
 
 def repeats_of(control: Control, address: str, least: int = 0) -> int:
-    """How often the block drills, ``least`` times or more; takes the word that says it.
-
-    Raises:
-        ProgramError: It is no count, or too large a one.
-    """
+    """How often the block drills, ``least`` times or more; takes the word that says it."""
     word = control.take(address) if address else None
     if word is None:
         return 1
@@ -212,11 +206,7 @@ def refuse_missing(control: Control, name: str, missing: list[str]) -> NoReturn:
 
 
 def _hole_in_force(control: Control, cycle: Cycle) -> Hole:
-    """What the cycle does at a hole.
-
-    Raises:
-        ProgramError: A word is missing or wrong.
-    """
+    """What the cycle does at a hole."""
     require_words(control, cycle)
     if cycle.pecking is Pecking.TO_BOTTOM and "peck" not in cycle.needed:
         _require_peck_words(control, cycle)

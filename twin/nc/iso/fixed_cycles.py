@@ -18,11 +18,9 @@ class Drill(NamedTuple):
     """What a cycle does at its hole; its words besides Z, R, and the place follow from that.
 
     Attributes:
-        meaning: For people.
         dwell: It waits at the bottom, P.
         pecking: How it goes down; by pecks or passes of Q, if not at once.
         lift: How far it withdraws between them [mm]; 0: to the reference plane.
-        retract: How it leaves the hole.
         reduces: Its pecks may become less deep: I the first, J less each time, K the least, in place of Q.
         faster: J says how many times as fast a tap comes back.
     """

@@ -103,13 +103,7 @@ def turn_spindle(control: Control, function: str) -> None:
 
 
 def drill(control: Control, hole: Hole, target: list[float] | None = None) -> None:
-    """Go over the hole, drill it, return.
-
-    Args:
-        control: The control.
-        hole: What is done there.
-        target: Programmed position of the hole, shape (k,); its height is not used. None: the tool is over it.
-    """
+    """Go over the hole, drill it, return; without a target, whose height is not used, the tool is over it."""
     axis = control.modal.plane.axes[2]
     over = max(control.motion.programmed[axis], hole.reference)
     go_to_height(control, over)

@@ -34,7 +34,6 @@ class Corner:
     """The corners of a rectangular pocket.
 
     Attributes:
-        kind: What they are.
         size: Radius, or distance of the chamfer's ends from the corner, at the wall [mm].
         radius: Of the tool [mm].
     """
@@ -62,8 +61,6 @@ class Pocket:
         length: Half its length less the tool's radius, or the radius of the tool's widest circle [mm].
         width: Half its width less the tool's radius; None for a circular pocket [mm].
         angle: Of its length against the abscissa [deg].
-        clockwise: Direction of machining.
-        corner: Of a rectangle.
     """
 
     center: Point
@@ -115,14 +112,9 @@ def levels_between(surface: float, bottom: float, depth: float) -> tuple[float, 
 
 
 def insets_of(pocket: Pocket, step: float, stock: float) -> tuple[float, ...]:
-    """How far the rings of a pocket lie from the tool's path along the wall, from inside to outside [mm].
+    """How far the rings of a pocket, at most a step apart, lie from the tool's path along the wall, from inside to outside [mm].
 
     The innermost ring of a rectangle is the line along its middle; a circle begins with the plunge.
-
-    Args:
-        pocket: The pocket.
-        step: How far they lie apart at most [mm].
-        stock: What they leave at the wall [mm].
     """
     inner = pocket.length if pocket.width is None else min(pocket.length, pocket.width)
     room = inner - stock
@@ -142,11 +134,7 @@ def require_room(
     step: float,
     radius: float,
 ) -> None:
-    """The tool must fit into a pocket, in as many passes as make sense.
-
-    Raises:
-        ProgramError: It does not.
-    """
+    """The tool must fit into a pocket, in as many passes as make sense."""
     least = pocket.length if pocket.width is None else min(pocket.length, pocket.width)
     if least - stock < 0.0:
         message = f"the tool's radius {radius:g} and the stock leave no room in the pocket"

@@ -51,8 +51,6 @@ class Kind(NamedTuple):
     """What is peculiar to one cycle.
 
     Attributes:
-        number: Of its code.
-        meaning: For people.
         words: Its own words besides R and the axes.
         needed: Those that it must have when it is called.
         work: What happens at the hole, from R on: a function, or fields of ``Cycle``.
@@ -149,11 +147,7 @@ def _across(control: Control, over: list[float]) -> None:
 
 
 def _take_words(control: Control, kind: Kind) -> None:
-    """Take the cycle's words; they stay in ``cycle_values`` as they are written.
-
-    Raises:
-        ProgramError: One is missing.
-    """
+    """Take the cycle's words; they stay in ``cycle_values`` as they are written."""
     values, memory, axis = control.cycle_values, memory_of(control), control.modal.plane.axes[2]
     if "start" not in values:
         memory.cycle = 0
