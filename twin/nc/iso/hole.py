@@ -5,6 +5,7 @@ import math
 from typing import NamedTuple
 
 from twin.nc.control.control import Control
+from twin.nc.iso.plane_moves import at_feed, go_to_height
 
 CHIP_CLEARANCE = 0.5
 """Deep drilling stops its rapid return this far above where it was [mm]."""
@@ -88,13 +89,6 @@ def count_passes(surface: float, bottom: float, depth: float) -> int:
     return math.ceil(max(min((surface - bottom) / depth, MOST_PECKS + 1.0) - 1e-9, 1.0))
 
 
-def go_to_height(control: Control, height: float, *, rapid: bool = True) -> None:
-    """Go straight to a height of the axis across the plane, programmed coordinates [mm]."""
-    there = list(control.motion.programmed)
-    there[control.modal.plane.axes[2]] = height
-    control.line_to(there, rapid=rapid)
-
-
 def turn_spindle(control: Control, function: str) -> None:
     """Report that M3 or M4 turns the spindle, with the speed in force."""
     control.function(
@@ -154,7 +148,5 @@ def _come_back_reversed(control: Control, hole: Hole, height: float) -> None:
 def _come_back(control: Control, hole: Hole, height: float) -> None:
     """Go to a height with the feed, as many times as fast as the hole says."""
     feed = control.motion.feed
-    if feed is not None:
-        control.motion.feed = feed * hole.faster
-    go_to_height(control, height, rapid=False)
-    control.motion.feed = feed
+    with at_feed(control, None if feed is None else feed * hole.faster):
+        go_to_height(control, height, rapid=False)

@@ -25,8 +25,8 @@ class Path:
     Attributes:
         position: Where the emitted path has come to, shape (k,) [mm or deg].
         defer: Takes an event that happens behind moves which a dialect holds back; False: it holds none.
-        leads: Makes the moves that lead to the next one, told it; None: nothing does. The next move begins
-            where they end on the contour, not where the path has come to.
+        leads: Makes the moves that lead to the next one, told it, and says whether that is to be made; None: nothing
+            does. The next move begins where they end on the contour, not where the path has come to.
     """
 
     def __init__(self, axes: Axes, start: list[float], report: Reporter) -> None:
@@ -40,7 +40,7 @@ class Path:
         self._synchronous: SynchronousAxes | None = None
         self.position = start
         self.defer: Callable[[Event], bool] = holds_none
-        self.leads: Callable[[Segment], None] | None = None
+        self.leads: Callable[[Segment], bool] | None = None
 
     def finish(self) -> None:
         """Nothing follows: emit what the stages hold."""
@@ -56,7 +56,8 @@ class Path:
         """The next programmed move."""
         if self.leads is not None:
             leads, self.leads = self.leads, None
-            leads(move)
+            if not leads(move):
+                return
         if self._spline is not None:
             self.end_spline(move)
         self._before = move

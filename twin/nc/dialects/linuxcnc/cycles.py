@@ -21,7 +21,8 @@ from twin.nc.iso.drilling import (
     repeats_of,
     take_words,
 )
-from twin.nc.iso.hole import Retract, drill, go_to_height, turn_spindle
+from twin.nc.iso.hole import Retract, drill, turn_spindle
+from twin.nc.iso.plane_moves import go_to_height
 from twin.nc.path.feed_rates import FeedMode
 
 CLEARANCE = 0.254

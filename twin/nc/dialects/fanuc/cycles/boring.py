@@ -12,7 +12,8 @@ from twin.nc.dialects.fanuc.memory import Variant, memory_of
 from twin.nc.dialects.fanuc.motion import holes_of, target
 from twin.nc.dialects.fanuc.transformations import refuse_scaled_pecks
 from twin.nc.iso.drilling import Cycle, cycle_code, require_words, take_words
-from twin.nc.iso.hole import go_to_height, turn_spindle
+from twin.nc.iso.hole import turn_spindle
+from twin.nc.iso.plane_moves import go_to_height
 
 _WORDS = {"R": "reference", "P": "dwell", "Q": "peck"}
 _NEEDED = ("reference", "bottom", "peck")

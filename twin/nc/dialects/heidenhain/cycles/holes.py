@@ -6,15 +6,8 @@ Decisions, since the manuals leave them open or the twin does not follow them: t
 
 from twin.nc.control.control import Control
 from twin.nc.dialects.heidenhain.cycle_values import Parameters
-from twin.nc.iso.hole import (
-    MOST_PECKS,
-    Hole,
-    Retract,
-    count_passes,
-    drill,
-    go_to_height,
-    turn_spindle,
-)
+from twin.nc.iso.hole import MOST_PECKS, Hole, Retract, count_passes, drill, turn_spindle
+from twin.nc.iso.plane_moves import at_feed, descend, go, go_to_height
 
 ADVANCE = 0.2
 """How far above its last depth a rapid return ends [mm]."""
@@ -65,18 +58,23 @@ def _pecked(
 
 
 def _drill(control: Control, hole: Hole, feed: float | None) -> None:
-    """Drill with a feed, which the program's own survives; None: rapidly, which no hole is drilled.
+    """Drill with a feed, which the program's own survives."""
+    mode = control.modal.feed_mode
+    with at_feed(control, _drilling_feed(control, feed)):
+        drill(control, hole)
+    control.modal.feed_mode = mode
+
+
+def _drilling_feed(control: Control, feed: float | None) -> float:
+    """A feed that a hole is drilled with.
 
     Raises:
-        ProgramError: There is no feed.
+        ProgramError: It is none.
     """
     if feed is None or feed <= 0.0:
         message = "a hole is drilled with a feed above 0"
         control.fail("feed-range", message, hint="Q206=+150")
-    kept, mode = control.motion.feed, control.modal.feed_mode
-    control.motion.feed = feed
-    drill(control, hole)
-    control.motion.feed, control.modal.feed_mode = kept, mode
+    return feed
 
 
 def drilling(control: Control, given: Parameters) -> None:
@@ -123,16 +121,11 @@ def universal_pecking(control: Control, given: Parameters) -> None:
 
 def _break_chips(control: Control, given: Parameters, hole: Hole, breaking: float) -> None:
     """Deep drilling whose pecks are made of shorter ones."""
-    lift, feed, depth, peck = (
-        given.length(256) or ADVANCE,
-        control.motion.feed,
-        hole.surface,
-        hole.peck,
-    )
+    lift, depth, peck = given.length(256) or ADVANCE, hole.surface, hole.peck
     if (hole.surface - hole.bottom) / breaking > MOST_PECKS:
         message = f"the hole would need more than {MOST_PECKS} chips"
         control.fail("cycle-depth", message, hint="write a larger Q257")
-    control.motion.feed = given.feed(206)
+    feed = _drilling_feed(control, given.feed(206))
     go_to_height(control, hole.reference)
     while depth > hole.bottom:
         if depth < hole.surface:
@@ -140,14 +133,13 @@ def _break_chips(control: Control, given: Parameters, hole: Hole, breaking: floa
         goal = max(depth - peck, hole.bottom)
         while depth > goal:
             depth = max(depth - breaking, goal)
-            go_to_height(control, depth, rapid=False)
+            descend(control, depth, feed)
             if depth > goal:
                 go_to_height(control, depth + lift)
         if depth == hole.bottom and hole.dwell > 0.0:
             control.dwell(hole.dwell)
         go_to_height(control, hole.back if depth == hole.bottom else hole.reference)
         peck = max(peck - hole.reduction, hole.least)
-    control.motion.feed = feed
 
 
 def boring(control: Control, given: Parameters) -> None:
@@ -157,22 +149,19 @@ def boring(control: Control, given: Parameters) -> None:
     if way is None:
         control.fail("cycle-word", f"Q214 is 0 to 4, not {given.number(214):g}")
     _, reference, bottom, back = heights(control, given)
-    feed, place = control.motion.feed, list(control.motion.programmed)
+    x, y = control.modal.plane.point(control.motion.programmed)
+    down, up = _drilling_feed(control, given.feed(206)), given.feed(208)
     go_to_height(control, reference)
-    control.motion.feed = given.feed(206)
-    go_to_height(control, bottom, rapid=False)
+    descend(control, bottom, down)
     if (seconds := _seconds(control, given, 211)) > 0.0:
         control.dwell(seconds)
     control.function("M5", {})
-    leave = list(control.motion.programmed)
-    leave[0], leave[1] = leave[0] + ADVANCE * way[0], leave[1] + ADVANCE * way[1]
-    control.line_to(leave, rapid=False)
-    control.motion.feed = given.feed(208) or given.feed(206)
-    go_to_height(control, reference, rapid=given.feed(208) is None)
+    with at_feed(control, down):
+        go(control, (x + ADVANCE * way[0], y + ADVANCE * way[1]))
+    descend(control, reference, up if up is None else up or down)
     go_to_height(control, back)
     turn_spindle(control, "M3")
-    control.line_to([*place[:2], *control.motion.programmed[2:]], rapid=True)
-    control.motion.feed = feed
+    go(control, (x, y), rapid=True)
 
 
 def tapping(control: Control, given: Parameters) -> None:
@@ -234,26 +223,21 @@ def centring(control: Control, given: Parameters) -> None:
 def single_lip_drilling(control: Control, given: Parameters) -> None:
     """241: slowly to the deepened start Q379, with Q253; there the speed Q428, and drilled; back with Q208."""
     surface, reference, bottom, back = heights(control, given)
-    feed, start = control.motion.feed, surface - given.length(379)
     if 0.0 < given.length(202) < surface - bottom:
         message = "the twin drills a hole of cycle 241 at once"
         control.fail("cycle-word", message, hint="write Q202 as large as the hole is deep")
+    down, up = _drilling_feed(control, given.feed(206)), given.feed(208)
     go_to_height(control, reference)
     before = control.motion.spindle
     control.motion.spindle = given.number(427) or before
     turn_spindle(control, {4: "M4"}.get(int(given.number(426)), "M3"))
-    control.motion.feed = given.feed(253)
-    go_to_height(control, start, rapid=control.motion.feed is None)
+    descend(control, surface - given.length(379), given.feed(253))
     control.motion.spindle = given.number(428) or before
     control.function("S", {"S": control.motion.spindle or 0.0})
-    control.motion.feed = given.feed(206)
-    go_to_height(control, bottom, rapid=False)
+    descend(control, bottom, down)
     if (seconds := _seconds(control, given, 211)) > 0.0:
         control.dwell(seconds)
-    control.motion.feed = given.feed(208) or (
-        given.feed(206) if given.feed(208) is not None else None
-    )
-    go_to_height(control, reference, rapid=control.motion.feed is None)
+    descend(control, reference, up if up is None else up or down)
     go_to_height(control, back)
-    control.motion.spindle, control.motion.feed = before, feed
+    control.motion.spindle = before
     turn_spindle(control, "M3")
