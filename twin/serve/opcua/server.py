@@ -118,6 +118,8 @@ async def opcua_server(place: Place, content: Content) -> AsyncIterator[MachineT
     """
     logging.getLogger("asyncua").setLevel(logging.CRITICAL)
     server = Server(user_manager=_Readers())
+    # Clients that come later ask for what stands (ConditionRefresh).
+    server.iserver.bind_condition_methods = 1
     await server.init()
     server.iserver.max_connections = _MOST_CONNECTIONS
     server.iserver.max_pending_activation_seconds = _PATIENCE_S
