@@ -35,6 +35,8 @@ _TICKS_AT_ONCE = 100
 """Ticks that are due and are observed before clients are answered again: many clients slow the
 machine's clock down by nothing as long as one round of answers takes less than this machine time."""
 _PERCENT = 100.0
+_AT_REST = {"path_feedrate": "0", "coolant_state": "INACTIVE"}
+"""Behind a program's end, and behind an alarm, which closes the coolant too."""
 
 
 class Production(NamedTuple):
@@ -101,6 +103,7 @@ def _parts(production: Production, recording: Recording | None) -> Iterator[Tick
         now,
         {
             "availability": "AVAILABLE",
+            "coolant_state": "INACTIVE",
             "door_state": DOOR_CLOSED,
             "emergency_stop": "ARMED",
             "mode": "AUTOMATIC",
@@ -125,12 +128,12 @@ def _parts(production: Production, recording: Recording | None) -> Iterator[Tick
             alarm = production.alarms[0]
             now = max(now, began + alarm.time_s)
             fault = Condition("Fault", alarm.code, alarm.message)
-            yield Tick(now, {"system": fault, "execution": "STOPPED", "path_feedrate": "0"})
+            yield Tick(now, {"system": fault, "execution": "STOPPED", **_AT_REST})
             now += STANDSTILL_S
         else:
             parts += 1
             now += TICK_S
-            yield Tick(now, {"execution": "PROGRAM_COMPLETED", "path_feedrate": "0"})
+            yield Tick(now, {"execution": "PROGRAM_COMPLETED", **_AT_REST})
             now += TICK_S
 
 

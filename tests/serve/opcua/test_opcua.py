@@ -10,6 +10,7 @@ from typing import Any
 import asyncua.ua
 import pytest
 from asyncua.client.client import Client
+from asyncua.common.events import get_filter_from_event_type
 
 from twin.errors import UsageError
 from twin.files.shipped import machine_file
@@ -251,6 +252,27 @@ async def test_who_comes_later_asks_for_the_condition_that_stands(one: Served) -
     assert [first.EventType.Identifier, last.EventType.Identifier] == [start, end]
     assert (standing.ErrorCode, standing.Retain) == ("soft-limit", True)
     assert kinds == [start, end], "nothing stands any more"
+
+
+@on_a_server
+async def test_a_filter_by_a_type_holds_its_subtypes(one: Served) -> None:
+    """As node-opcua's and UaExpert's: all that can be acknowledged, or no alarm at all."""
+    told: dict[int, Events] = {}
+    asked = ua.ObjectIds.AcknowledgeableConditionType, ua.ObjectIds.DialogConditionType
+    for kind in asked:
+        found = await get_filter_from_event_type([one.client.get_node(kind)])
+        is_of = ua.ContentFilterElement(
+            ua.FilterOperator.OfType, [ua.LiteralOperand(ua.Variant(ua.NodeId(kind)))]
+        )
+        found.WhereClause = ua.ContentFilter([is_of])
+        told[kind] = Events()
+        subscription = await one.client.create_subscription(50, told[kind])
+        await subscription.subscribe_events(one.client.nodes.server, evfilter=found)
+    one.agent.observe(20.0, {"system": FAULT})
+    await told[asked[0]].after(1)
+    one.agent.observe(21.0, {"system": NORMAL})
+    await told[asked[0]].after(2)
+    assert told[asked[1]].seen == []
 
 
 @on_a_server
