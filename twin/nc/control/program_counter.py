@@ -33,7 +33,7 @@ class Call:
     Attributes:
         back: Where the caller goes on.
         first: Where the part begins.
-        again: How often it still runs anew before that.
+        again: How often it still runs again before that.
         last: Its last block, where it ends by its location; None: a word ends it.
         owns_variables: It has variables of its own, which its end forgets.
         restores: What its end puts back into force; None: nothing.
@@ -51,8 +51,6 @@ class ProgramCounter:
     """The program counter.
 
     Attributes:
-        lines: The program's text.
-        lexer: Reads the program's lines.
         calls: The parts that are being run for a caller, the innermost last.
     """
 
@@ -151,7 +149,7 @@ class ProgramCounter:
         return call
 
     def _run_out(self) -> None:
-        """The last line has been passed; what is to be said of that stands at the last text."""
+        """The last line has been passed; what is to be said of that is at the last text."""
         written = (line for line in range(len(self.lines), 0, -1) if self.lines[line - 1].strip())
         self._report.line = next(written, 0)
 
@@ -207,13 +205,7 @@ class ProgramCounter:
         word: str,
         within: Container[int] | None = None,
     ) -> Location:
-        """Where the block with an N number or a name stands.
-
-        Args:
-            label: The number or the name.
-            fail_at: Column and width of the word that asks for it, for the diagnostic.
-            word: That word's meaning, for the diagnostic.
-            within: The lines, from 0, that may have it; None: all.
+        """Where the block with an N number or a name stands, among these lines, from 0, or all; a word at ``fail_at`` asks for it.
 
         Raises:
             ProgramError: No block or more than one has it.

@@ -32,7 +32,7 @@ class WordSorter:
             Its G codes, in the order in which they take effect; its M functions, in the order of the text.
 
         Raises:
-            ProgramError: Some of them cannot stand in one block.
+            ProgramError: Some of them cannot be in one block.
         """
         control, dialect = self._control, self._dialect
         codes: list[tuple[Word, GCode]] = []
@@ -88,7 +88,7 @@ class WordSorter:
         """Whether M is a word of one of the block's G codes, and no machine function."""
         numbers = (word.value for word in block if word.address == "G")
         codes = (self._dialect.codes.g.get(n) for n in numbers if isinstance(n, float))
-        return any(code is not None and "M" in code.takes for code in codes)
+        return any(code is not None and "M" in code.consumes for code in codes)
 
     def _has_switch(self, block: Sequence[Word]) -> bool:
         return any(word.address == self._dialect.words.series[0] for word in block)
@@ -102,7 +102,8 @@ class WordSorter:
                 "unknown-g",
                 f"{word.text} is unknown to {self._dialect.name}",
                 word,
-                hint=codes.instead.get(number) or near(f"G{number:g}", known, self._dialect.name),
+                hint=codes.replacements.get(number)
+                or near(f"G{number:g}", known, self._dialect.name),
             )
         if code.refused:
             self._control.fail("unsupported-g", f"{word.text} {code.refusal}", word)
@@ -121,11 +122,7 @@ class WordSorter:
         return code
 
     def _refuse_conflict(self, conflict: "Conflict | None") -> None:
-        """Say which codes cannot share a block.
-
-        Raises:
-            ProgramError: There are two.
-        """
+        """Say which codes cannot share a block."""
         if conflict is None:
             return
         both = f"{conflict.first.text} and {conflict.second.text}"
@@ -148,15 +145,15 @@ def codes_that_count(codes: Codes, *, last_of_group: bool) -> list[tuple[Word, G
 
     Args:
         codes: As they are written.
-        last_of_group: The last one overrules all others; else each overrules those that yield.
+        last_of_group: The last one overrules all others; else each overrules those that are weak.
     """
-    strong = {code.group for _, code in codes if not code.yields}
+    strong = {code.group for _, code in codes if not code.weak}
     last = {code.group: word for word, code in codes}
 
     def counts(word: Word, code: GCode) -> bool:
-        if code.yields and code.group in strong:
+        if code.weak and code.group in strong:
             return False
-        return last[code.group] is word or not (code.yields or last_of_group)
+        return last[code.group] is word or not (code.weak or last_of_group)
 
     return [(word, code) for word, code in codes if not code.group or counts(word, code)]
 
@@ -165,10 +162,8 @@ class Conflict(NamedTuple):
     """Two codes that cannot share a block.
 
     Attributes:
-        first: One of them.
-        second: The other.
         group: Their modal group, or empty.
-        performs: Both want to stand in the motion's place.
+        performs: Both want to replace the motion.
     """
 
     first: Word

@@ -6,8 +6,8 @@ import numpy as np
 
 from twin.nc.canonical import NO_BLOCK_NUMBER, Corner, FloatArray, Motion, Moves
 from twin.nc.control.control import Control
+from twin.nc.path.feed_rates import FEED_FACTORS
 from twin.nc.path.move_columns import NAN, MoveColumns, Segment
-from twin.nc.path.paces import FEED_FACTORS
 
 Z = 2
 SHORTEST = 1e-6

@@ -40,7 +40,7 @@ from twin.nc.functions import (
     SpindleState,
 )
 from twin.nc.geometry.frame import SHIFTS
-from twin.nc.path.paces import FEED_FACTORS
+from twin.nc.path.feed_rates import FEED_FACTORS
 from twin.nc.text.blocks import Block
 from twin.nc.text.diagnostics import Diagnostic, ProgramError
 from twin.nc.text.source import Source

@@ -4,7 +4,7 @@ from twin.nc.control.codes import Codes, MCode, WordAction, Words
 from twin.nc.control.control import Control, Rules
 from twin.nc.control.dialect import Dialect
 from twin.nc.dialects.sinumerik import frames, statements, subprograms, variables, words
-from twin.nc.dialects.sinumerik.codes import CODES, INSTEAD, NUMBERS
+from twin.nc.dialects.sinumerik.codes import CODES, NUMBERS, REPLACEMENTS
 from twin.nc.dialects.sinumerik.decisions import DECISIONS
 from twin.nc.dialects.sinumerik.memory import SinumerikMemory, acts_on_lines
 from twin.nc.iso import base, shared_marks
@@ -78,7 +78,7 @@ SINUMERIK = Dialect(
             "motion",
         ),
         g=CODES,
-        instead=INSTEAD,
+        replacements=REPLACEMENTS,
         start=(1, 17, 40, 60, 71, 90, 94, 97, 290, 450, 460, 601, NUMBERS["NORM"]),
         m={
             **base.M_CODES,
@@ -90,10 +90,10 @@ SINUMERIK = Dialect(
                     (30, "end of program, or of a subprogram"),
                 )
             },
-            6: MCode(meaning="tool change", action=words.change_tool, ground="manual"),
-            19: MCode(meaning="spindle positioning", ground="manual"),
-            70: MCode(meaning="spindle as an axis", ground="manual"),
-            **{number: MCode(meaning="spindle gear", ground="manual") for number in range(40, 46)},
+            6: MCode(meaning="tool change", action=words.change_tool, basis="manual"),
+            19: MCode(meaning="spindle positioning", basis="manual"),
+            70: MCode(meaning="spindle as an axis", basis="manual"),
+            **{number: MCode(meaning="spindle gear", basis="manual") for number in range(40, 46)},
         },
         statements=statements.STATEMENTS,
         other_statement=statements.other_statement,

@@ -274,13 +274,13 @@ def _enter(
     memory.calls.append(frame)
 
 
-def go_back(control: Control, blamed: Statement | None = None) -> None:
+def go_back(control: Control, error_at: Statement | None = None) -> None:
     """M17, RET, or the last line of a subprogram: back behind its call, or to its beginning again."""
-    control.require_caller(blamed)
+    control.require_caller(error_at)
     memory = memory_of(control)
     frame = memory.calls[-1]
     results = [(to, control.variables.read(name)) for name, to in frame.references.items()]
-    control.go_back(blamed)
+    control.go_back(error_at)
     if control.program_counter.depth >= frame.depth:  # it runs again
         return
     memory.calls.pop()
@@ -289,7 +289,7 @@ def go_back(control: Control, blamed: Statement | None = None) -> None:
             try:
                 write_variable(control, name, None, value)
             except ExpressionError as error:
-                control.fail(error.code, str(error), blamed, error.hint)
+                control.fail(error.code, str(error), error_at, error.hint)
     if frame.programmable is not None and frame.programmable != (memory.matrix, memory.translation):
         put_programmable(control, *frame.programmable)
 

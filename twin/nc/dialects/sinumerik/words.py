@@ -21,7 +21,7 @@ from twin.nc.iso.declared import keep_compensated_plane
 from twin.nc.iso.tool_change import go_to_change_height
 from twin.nc.iso.tool_compensation import radius_in_spindle, set_length
 from twin.nc.path.blends import Blend, BlendKind
-from twin.nc.path.paces import counts_blocks
+from twin.nc.path.feed_rates import counts_blocks
 from twin.nc.text.arithmetic import is_whole
 from twin.nc.text.blocks import Word
 
@@ -106,7 +106,7 @@ def _apply_offset(control: Control, *, on: bool) -> None:
     memory_of(control).tool_on = on
     tool = control.tools.data(control.tools.spindle) if on else None
     before = frame_changes(control)
-    set_length(control, 0.0 if tool is None else control.tools.longer(tool))
+    set_length(control, 0.0 if tool is None else control.tools.length_difference(tool))
     frame_changed(control, before)
 
 

@@ -27,14 +27,14 @@ _PER_SECOND, _PER_REVOLUTION = int(FeedMode.PER_SECOND), int(FeedMode.PER_REVOLU
 _SECONDS_PER_BLOCK = int(FeedMode.SECONDS_PER_BLOCK)
 _BLOCKS_PER_MINUTE = int(FeedMode.BLOCKS_PER_MINUTE)
 
-PACED, WITHOUT_FEED, WITHOUT_SPEED, STANDING = range(4)
-"""What is wrong with the pace of a move: nothing; no F is programmed; F counts per revolution, and no S is
+KNOWN_FEED, WITHOUT_FEED, WITHOUT_SPEED, STANDING = range(4)
+"""What is wrong with the feed rate of a move: nothing; no F is programmed; F counts per revolution, and no S is
 programmed; or the spindle stands."""
 
 
 @inlined
 def finding_of_feed(feed: float, mode: int, speed: float, turns: float) -> int:
-    """What is wrong with the pace of a move.
+    """What is wrong with the feed rate of a move.
 
     Args:
         feed: F, or NaN where none is programmed.
@@ -45,10 +45,10 @@ def finding_of_feed(feed: float, mode: int, speed: float, turns: float) -> int:
     if feed != feed:
         return WITHOUT_FEED
     if mode != _PER_REVOLUTION:
-        return PACED
+        return KNOWN_FEED
     if speed != speed or speed == 0.0:
         return WITHOUT_SPEED
-    return STANDING if turns == 0.0 else PACED
+    return STANDING if turns == 0.0 else KNOWN_FEED
 
 
 @inlined
@@ -124,27 +124,19 @@ class Displacement(NamedTuple):
     radius: float = 0.0
 
 
-def pace_by_rule(rule: FeedRule, pace: float, move: Displacement, mode: int, unit: float) -> float:
-    """Pace along the path of a move whose F counts another length [mm/min or deg/min].
-
-    Args:
-        rule: What F counts.
-        pace: As ``feed_per_minute`` has it, where F counts the path.
-        move: How far it goes.
-        mode: What F counts, as ``FeedMode`` numbers it.
-        unit: Of programmed lengths [mm].
-    """
+def feed_by_rule(rule: FeedRule, feed: float, move: Displacement, mode: int, unit: float) -> float:
+    """Feed along the path of a move whose F counts another length [mm/min or deg/min]."""
     by_time = counts_blocks(mode)
     if by_time and not (rule.arc_by_radius and move.around):
-        return pace
+        return feed
     if move.turning:
-        return pace * (unit / rule.degree) if rule.surface else pace
+        return feed * (unit / rule.degree) if rule.surface else feed
     if move.around and rule.helix_by_arc:
         counted = move.around
     else:
         degree = rule.degree if rule.surface else rule.degree * unit
         counted = math.hypot(move.length, move.turned * degree)
-    return pace * ((move.radius if by_time else move.length) / counted)
+    return feed * ((move.radius if by_time else move.length) / counted)
 
 
 FEED_FACTORS: Mapping[FeedMode, float] = {FeedMode.PER_MINUTE: 1.0, FeedMode.PER_SECOND: 60.0}
@@ -159,7 +151,7 @@ def needs_own_feed(mode: int) -> bool:
 
 @inlined
 def counts_blocks(mode: int) -> bool:
-    """Whether F counts blocks, so that the pace of a move follows from its length."""
+    """Whether F counts blocks, so that the feed rate of a move follows from its length."""
     return mode >= _SECONDS_PER_BLOCK
 
 
