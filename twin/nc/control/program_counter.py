@@ -53,8 +53,6 @@ class ProgramCounter:
     """The program counter.
 
     Attributes:
-        lines: The program's text.
-        lexer: Reads the program's lines.
         calls: The parts that are being run for a caller, the innermost last.
     """
 
@@ -213,13 +211,7 @@ class ProgramCounter:
         word: str,
         within: Container[int] | None = None,
     ) -> Location:
-        """Where the block with an N number or a name stands.
-
-        Args:
-            label: The number or the name.
-            fail_at: Column and width of the word that asks for it, for the diagnostic.
-            word: That word's meaning, for the diagnostic.
-            within: The lines, from 0, that may have it; None: all.
+        """Where the block with an N number or a name stands, among these lines, from 0, or all; a word at ``fail_at`` asks for it.
 
         Raises:
             ProgramError: No block or more than one has it.

@@ -136,11 +136,7 @@ class WordSorter:
         return code
 
     def _refuse_conflict(self, conflict: "Conflict | None") -> None:
-        """Say which codes cannot share a block.
-
-        Raises:
-            ProgramError: There are two.
-        """
+        """Say which codes cannot share a block."""
         if conflict is None:
             return
         both = f"{conflict.first.text} and {conflict.second.text}"
@@ -180,10 +176,8 @@ class Conflict(NamedTuple):
     """Two codes that cannot share a block.
 
     Attributes:
-        first: One of them.
-        second: The other.
         group: Their modal group, or empty.
-        performs: Both want to are in the motion's place.
+        performs: Both want to replace the motion.
     """
 
     first: Word
