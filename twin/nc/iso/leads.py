@@ -204,6 +204,13 @@ def approach(control: Control, lead: Lead, contour: list[float] | None) -> None:
         _stand(control, contour)
 
 
+def stand_at_height(control: Control, height: float) -> None:
+    """Let the next move, which tells where the contour begins, end at a height [mm]."""
+    target = list(control.motion.programmed)
+    target[control.modal.plane.axes[2]] = height
+    _stand(control, target)
+
+
 def depart(control: Control, lead: Lead, target: list[float] | None) -> None:
     """The contour ends where the tool stands; it leaves, and compensation has ended.
 
