@@ -13,7 +13,7 @@ from asyncua.client.client import Client
 
 from twin.errors import UsageError
 from twin.files.shipped import machine_file
-from twin.machine.description.config import read_machine
+from twin.machine.load import read_machine
 from twin.serve.agent import Agent
 from twin.serve.buffer import NORMAL, Condition
 from twin.serve.clock import Clock

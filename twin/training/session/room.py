@@ -14,7 +14,6 @@ import numpy as np
 from twin.cutting.tools import default_cell
 from twin.errors import TwinError, UsageError
 from twin.job.job_file import StockTable
-from twin.machine.model.model import spindle_over_table_mm
 from twin.machine.simulation.growth import Growth
 from twin.machine.simulation.live import STANDSTILL, LiveMachine
 from twin.machine.watching.alarms import Alarm, AlarmCode, AlarmStandsError
@@ -33,7 +32,7 @@ from twin.nc.iso.base import jog_block
 from twin.nc.text.diagnostics import ProgramError
 from twin.nc.text.source import Source, source_from_text
 from twin.recording.reader import Samples
-from twin.run.placement import part_zero, start_position, with_blank
+from twin.run.layout import lay_out, start_position
 from twin.training.scene.fault_table import FaultTable
 from twin.training.scene.scene_file import Mode, Scene
 from twin.training.session.block_walk import ModalState
@@ -163,8 +162,8 @@ class Room:
         preparation, file = scene.preparation, scene.file
         machine, job = preparation.machine, preparation.job.file
         self.scene = scene
-        over_table = spindle_over_table_mm(machine)
-        zero = part_zero(job, machine, over_table)
+        layout = lay_out(job, machine)
+        zero = layout.part_zero
         self.tables = Tables(zero, job.tools, _offsets(scene))
         for axis, error in file.start.zero_error.items():
             self.tables.zero[machine.axes.index(axis)] += error
@@ -172,8 +171,8 @@ class Room:
         stand = start_position(job, machine) + zero
         for axis, value in file.start.position.items():
             stand[machine.axes.index(axis)] = value
-        self.machine = LiveMachine(with_blank(machine, job, zero, over_table), job.tools[0], stand)
-        self.part_frame = machine.part_frame.at(zero)
+        self.machine = LiveMachine(machine, job.tools[0], stand, layout.blank)
+        self.part_frame = layout.part_frame
         self.cut = LiveCut(self.machine, job, self.part_frame, self.tables.true_zero)
         self.work = self._clamped_blank()
         self._growth = Growth(self.machine.machine, self.cut.told_speed)
