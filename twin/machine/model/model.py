@@ -385,9 +385,12 @@ def spindle_over_table_mm(machine: Machine) -> float:
     Raises:
         ConfigError: The model cannot be read, or lacks one of both.
     """
-    spec = _read(machine)
-    nose, table = (_place(spec, spec.site(name)) for name in (SPINDLE_NOSE, TABLE_TOP))
-    return float((nose[2] - table[2]) / MM)
+    return height_between(_read(machine), TABLE_TOP, SPINDLE_NOSE) / MM
+
+
+def height_between(spec: mujoco.MjSpec, low: str, high: str) -> float:
+    """How much higher one site lies than another with all joints at rest [m]."""
+    return float(_place(spec, spec.site(high))[2] - _place(spec, spec.site(low))[2])
 
 
 def _place(spec: mujoco.MjSpec, site: mujoco.MjsSite) -> FloatArray:
