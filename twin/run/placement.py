@@ -10,6 +10,7 @@ from twin.job.job_file import JobFile
 from twin.machine.description.config import Blank, Machine
 from twin.nc.canonical import FloatArray
 
+_Z = 2
 WORK_HOLDING_HEIGHT = 40.0
 """Height of the jaws or parallels between the rotary table and the stock [mm]."""
 
@@ -19,7 +20,8 @@ def part_zero(job: JobFile, machine: Machine, spindle_over_table: float) -> Floa
 
     An axis that the job's ``part_zero`` names is taken at its word. Otherwise program zero lies on
     the table's centre line, at the height of the top face of the stock on its work holding;
-    without a stock in the middle of the Z travel.
+    without a stock in the middle of the Z travel. Where the table does not turn about Z, its
+    work-holding surface is no floor: program zero lies in the middle of that.
 
     Args:
         job: The job file.
@@ -32,11 +34,16 @@ def part_zero(job: JobFile, machine: Machine, spindle_over_table: float) -> Floa
     Raises:
         ConfigError: An axis does not exist, or the stock would lie below the table.
     """
-    zero = np.zeros(len(machine.axes))
-    zero[:2] = machine.part_frame.center
-    zero[2] = _default_height(job, machine, spindle_over_table)
+    frame = machine.part_frame
+    zero = frame.rotary_zero(len(machine.axes))
+    lies = frame.table_about(_Z) is not None or frame.chain is None
+    if frame.chain is not None:
+        zero[:3] = frame.chain.table + job.tools[0].length * frame.chain.tool
+    if lies:
+        zero[2] = _default_height(job, machine, spindle_over_table)
     _write_axes(zero, job.part_zero, machine, "part_zero")
-    _require_stock_above_table(job, float(zero[2]), spindle_over_table)
+    if lies:
+        _require_stock_above_table(job, float(zero[2]), spindle_over_table)
     return zero
 
 
@@ -57,8 +64,12 @@ def with_blank(
     if job.stock is None:
         return machine
     size = job.stock.extent
-    x, y, z = np.array(job.stock.position) + zero[:3] - np.array([*machine.part_frame.center, 0.0])
-    top = z + spindle_over_table - job.tools[0].length
+    length = job.tools[0].length
+    frame = machine.part_frame.at(zero, length)
+    x, y, z = np.array(job.stock.position) + frame.program_zero(zero)
+    top = z + spindle_over_table - length
+    if frame.chain is not None:
+        x, y, top = frame.chain.table_axes.T @ (np.array([x, y, z]) - frame.chain.table)
     weight = blank_weight(job.stock)
     return machine.with_blank(
         Blank(

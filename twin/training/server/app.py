@@ -249,7 +249,7 @@ class RoomApp:
         drawn = drawn_machine(
             scene.machine,
             room.tables.tools[number],
-            room.part_frame.turn_zero,
+            room.part_frame,
             scene.job.file.stock,
             room.tables.true_zero,
         )

@@ -173,7 +173,7 @@ class Room:
         for axis, value in file.start.position.items():
             stand[machine.axes.index(axis)] = value
         self.machine = LiveMachine(with_blank(machine, job, zero, over_table), job.tools[0], stand)
-        self.part_frame = machine.part_frame.at(zero)
+        self.part_frame = machine.part_frame.at(zero, job.tools[0].length)
         self.cut = LiveCut(self.machine, job, self.part_frame, self.tables.true_zero)
         self.work = self._clamped_blank()
         self._growth = Growth(self.machine.machine, self.cut.told_speed)
