@@ -7,6 +7,7 @@ from twin.nc.control.codes import Action
 from twin.nc.control.compensation import compensate, tool_named, tool_numbered
 from twin.nc.control.control import Control
 from twin.nc.dialects.sinumerik import frames
+from twin.nc.dialects.sinumerik.leads import is_led
 from twin.nc.dialects.sinumerik.memory import memory_of
 from twin.nc.dialects.sinumerik.subprograms import call_after_motion
 from twin.nc.dialects.sinumerik.targets import (
@@ -116,9 +117,16 @@ def compensation(side: float) -> Action:
     def action(control: Control) -> None:
         memory = memory_of(control)
         radius = radius_in_spindle(control) if memory.tool_on else 0.0
-        compensate(control, side, radius + memory.allowance)
+        if not is_led(control):
+            compensate(control, side, radius + memory.allowance)
 
     return action
+
+
+def end_compensation(control: Control) -> None:
+    """G40: the next line leads out, but for a lead of the block."""
+    if not is_led(control):
+        control.path.end_compensation()
 
 
 def set_allowance(control: Control, word: Word) -> None:
