@@ -5,19 +5,17 @@ import pytest
 
 from tests.training.session.commanding import do
 from twin.motion import corner_trials
-from twin.nc.text.source import source_from_text
+from twin.training.program.block_walk import FORGOTTEN_AT_ONCE
+from twin.training.program.program_run import MOVES_AT_ONCE, PLANNED_AT_REST
 from twin.training.scene.scene_file import read_scene, scene_path
-from twin.training.session.block_walk import FORGOTTEN_AT_ONCE
-from twin.training.session.program_run import MOVES_AT_ONCE, PLANNED_AT_REST
 from twin.training.session.session import Session
 
 
 def session_of(program: str) -> Session:
     """The first LinuxCNC scene with another program, without its blank."""
     session = Session(read_scene(scene_path("linuxcnc_round_corners")))
-    session.room.work = None
-    session.room.program = source_from_text(program, "long")
-    session.room.lines = tuple(session.room.program.lines)
+    session.room.setup.remove_blank()
+    session.room.program.load(program)
     return session
 
 
@@ -29,14 +27,14 @@ def contour():
     session = session_of("G64 P0.05\nG1 F3000 X3 Y0 Z50\n" + "\n".join(points) + "\nM2\n")
     do(session, "cycle_start")
     speeds, remembered = [], []
-    while session.room.running:
+    while session.room.slot.running:
         session.advance()
         velocity = session.room.samples.joint_velocity[:, :2]
         speeds.append(60.0 * float(np.hypot(*velocity.T).min()))
-        run, move = session.room.run, int(session.room.machine.setpoint.move[0])
+        run, move = session.room.slot.run, int(session.room.machine.setpoint.move[0])
         if run is not None and move > 5900:
-            remembered.append((len(run._walk.blocks), sum(map(len, run._moves))))
-            state, target = run.modal(move), run.target(move)
+            remembered.append((len(run.reader.walk.blocks), sum(map(len, run.reader.moves._moves))))
+            state, target = run.modal(move), run.reader.moves.target(move)
             assert state is not None
             assert target is not None
             assert state.line == session.room.line
@@ -92,7 +90,7 @@ def test_single_block_and_going_back_find_their_way_in_an_endless_program(endles
     lines = []
     for _ in range(6):
         endless.advance(100)
-        assert endless.room.held
+        assert endless.room.slot.held
         lines.append(endless.room.line)
         do(endless, "cycle_start")
     after = {2: 3, 3: 4, 4: 5, 5: 2}

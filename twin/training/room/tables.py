@@ -64,8 +64,20 @@ class Tables:
         """How much higher the head stands than with the first tool, shape (k,) [mm]."""
         return self._along_z(self.tool.length - self._reference)
 
+    def mount(self, number: int) -> None:
+        """Another tool is in the spindle."""
+        self.spindle = number
+
+    def set_zero(self, column: int, value: float) -> None:
+        """Write part zero of an axis, machine coordinates [mm or deg]."""
+        self.zero[column] = value
+
+    def shift_zero(self, column: int, value: float) -> None:
+        """Move part zero of an axis [mm or deg]."""
+        self.zero[column] += value
+
     def set_tool(self, number: int, length: float | None, radius: float | None) -> None:
-        """Write a tool's length and radius [mm]; None leaves what stands there.
+        """Write a tool's length and radius [mm]; None keeps the value.
 
         Raises:
             UsageError: There is no such tool.

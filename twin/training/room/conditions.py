@@ -6,8 +6,8 @@ from typing import Literal
 
 import numpy as np
 
+from twin.training.room.observed import Observed
 from twin.training.scene.tasks import TaskTable
-from twin.training.session.observed import Observed
 
 State = Literal["open", "done", "failed"]
 
@@ -44,9 +44,13 @@ class Evidence:
 def _reached(evidence: Evidence, room: Observed, task: TaskTable, _number: int) -> State:
     goal = task.reached
     assert goal is not None
-    if room.moving or (goal.by_program and not evidence.brought):
+    if room.machine.moving or (goal.by_program and not evidence.brought):
         return "open"
-    zero = room.tables.tip_zero if goal.frame == "part" else np.zeros(len(room.tables.zero))
+    zero = (
+        room.setup.tables.tip_zero
+        if goal.frame == "part"
+        else np.zeros(len(room.setup.tables.zero))
+    )
     names = room.machine.machine.axes.names
     stands = room.machine.position - zero
     off = [abs(stands[names.index(axis)] - value) for axis, value in goal.at.items()]
@@ -57,7 +61,7 @@ def _stayed(_evidence: Evidence, room: Observed, task: TaskTable, _number: int) 
     limits = task.stayed
     assert limits is not None
     column = room.machine.machine.axes.names.index(limits.axis)
-    places = room.samples.joint_position[:, column] - room.tables.tip_zero[column]
+    places = room.samples.joint_position[:, column] - room.setup.tables.tip_zero[column]
     inside = bool(((places >= limits.low) & (places <= limits.high)).all())
     return "open" if inside else "failed"
 
@@ -66,13 +70,13 @@ def _zero(_evidence: Evidence, room: Observed, task: TaskTable, _number: int) ->
     goal = task.zero
     assert goal is not None
     names = room.machine.machine.axes.names
-    off = np.abs(room.tables.zero - room.tables.true_zero)
+    off = np.abs(room.setup.tables.zero - room.setup.tables.true_zero)
     worst = max(float(off[names.index(axis)]) for axis in goal.axes)
     return "done" if worst <= goal.tolerance else "open"
 
 
 def _tool_length(_evidence: Evidence, room: Observed, task: TaskTable, _number: int) -> State:
-    tables = room.tables
+    tables = room.setup.tables
     off = abs(tables.lengths[tables.spindle] - tables.tool.length)
     return "done" if task.tool_length and off <= task.tool_length else "open"
 
@@ -110,10 +114,10 @@ def _blanks(evidence: Evidence, _room: Observed, task: TaskTable, _number: int) 
 
 def _removed(evidence: Evidence, room: Observed, task: TaskTable, _number: int) -> State:
     assert task.removed_mm3 is not None
-    if not evidence.ended_well or room.work is None:
+    if not evidence.ended_well or room.setup.work is None:
         return "open"
     low, high = task.removed_mm3
-    return "done" if low <= room.work.removed <= high else "failed"
+    return "done" if low <= room.setup.work.removed <= high else "failed"
 
 
 def _question(evidence: Evidence, _room: Observed, task: TaskTable, number: int) -> State:

@@ -2,8 +2,8 @@
 
 import pytest
 
+from twin.training.room.room import SLICE
 from twin.training.scene.scene_file import read_scene, scene_path
-from twin.training.session.room import SLICE
 from twin.training.session.session import Session
 
 
@@ -36,7 +36,7 @@ def test_a_spindle_that_turns_and_a_program_that_is_held_do_not_rest(session):
     session.advance(300)
     session.submit({"do": "feed_hold"})
     session.advance(300)
-    assert session.room.held
+    assert session.room.slot.held
     assert not session.room.rest.lasts
     session.submit({"do": "reset"})
     session.advance(300)

@@ -49,7 +49,7 @@ def do(session: Session, what: str, /, **arguments: object) -> None:
 
 
 def finish(session: Session) -> None:
-    while session.room.run is not None or session.room.moving:
+    while session.room.slot.run is not None or session.room.machine.moving:
         session.advance()
         assert session.room.time_s < 60.0
 
@@ -79,7 +79,7 @@ def test_a_cut_loads_tool_and_spindle_and_air_does_not(tmp_path):
 def test_the_axes_wait_for_the_spindle(tmp_path):
     session = session_of(tmp_path, 600)
     do(session, "cycle_start")
-    while not session.room.moving:
+    while not session.room.machine.moving:
         session.advance()
     assert session.snapshot().loads.spindle_speed == pytest.approx(4000, rel=0.01)
 
@@ -101,16 +101,16 @@ def test_a_broken_tool_is_told_and_goes_on_until_it_is_changed(tmp_path):
     assert (notice.code, notice.line, notice.block) == ("tool-broken", 4, "N30")
     assert "chip of" in notice.message
     assert room.alarm is None
-    assert room.alarms[-1] == notice
-    assert room.moments[-1].text.startswith("N30")
+    assert room.alarms.history[-1] == notice
+    assert room.alarms.moments[-1].text.startswith("N30")
     assert room.judge.evidence.alarms == ["tool-broken"]
     # It went to its end without an edge: most of the slot is not there.
-    assert room.work is not None
-    cut, whole = room.work.removed, 2.0 * (8.0 * 50.0 + 0.5 * math.pi * 4.0**2)
+    assert room.setup.work is not None
+    cut, whole = room.setup.work.removed, 2.0 * (8.0 * 50.0 + 0.5 * math.pi * 4.0**2)
     assert cut < 0.2 * whole
     run_to_end(session)
-    assert room.work.removed == cut
-    assert len(room.alarms) == 1
+    assert room.setup.work.removed == cut
+    assert len(room.alarms.history) == 1
 
     do(session, "mode", mode="jog")
     do(session, "new_blank")
@@ -121,7 +121,7 @@ def test_a_broken_tool_is_told_and_goes_on_until_it_is_changed(tmp_path):
     do(session, "mode", mode="auto")
     run_to_end(session)
     assert session.snapshot().broken is None
-    assert room.work.removed == pytest.approx(whole, rel=0.05)
+    assert room.setup.work.removed == pytest.approx(whole, rel=0.05)
 
 
 def test_a_rapid_of_a_broken_tool_into_the_stock_is_an_alarm(tmp_path):
@@ -130,11 +130,11 @@ def test_a_rapid_of_a_broken_tool_into_the_stock_is_an_alarm(tmp_path):
     session = session_of(tmp_path, 6000, slot=back)
     run_to_end(session)
     room = session.room
-    assert room.broken[1].line == 4
+    assert room.alarms.broken[1].line == 4
     assert room.alarm is not None
     assert (room.alarm.code, room.alarm.line) == ("rapid-into-stock", 8)
-    assert room.work is not None
-    assert room.work.height_at(0.0, 0.0) == 0.0
+    assert room.setup.work is not None
+    assert room.setup.work.height_at(0.0, 0.0) == 0.0
 
 
 def test_going_back_mends_a_tool_that_broke_since(tmp_path):
@@ -143,7 +143,7 @@ def test_going_back_mends_a_tool_that_broke_since(tmp_path):
     assert session.snapshot().broken is not None
     session.rewind(session.room.time_s - 0.5)
     assert session.snapshot().broken is None
-    assert not session.room.alarms
+    assert not session.room.alarms.history
     finish(session)
     assert session.snapshot().broken is not None
 
@@ -160,7 +160,7 @@ def test_the_spindle_stalls_before_the_teeth_break_on_the_pages_fine_grid_too(ce
     scene = dataclasses.replace(read_scene(scene_path("mefi_stall")), cells_across=cells_across)
     session = Session(scene)
     assert session.submit({"do": "cycle_start"})
-    while session.room.running and session.room.alarm is None:
+    while session.room.slot.running and session.room.alarm is None:
         session.advance(10)
     assert session.room.alarm is not None
     assert session.room.alarm.code == "spindle-stall"

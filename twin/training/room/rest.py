@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from twin.training.session.observed import Observed
+from twin.training.room.observed import Observed
 
 SETTLED_S = 1.0
 """Machine time without any motion after which a machine counts as resting [s]."""
@@ -42,8 +42,8 @@ class Rest:
             Whether it rests from now on.
         """
         still = (
-            room.run is None
-            and not room.spindle.turns
+            room.slot.run is None
+            and not room.auxiliaries.spindle.turns
             and not room.machine.machine.file.thermal
             and float(np.abs(room.samples.joint_velocity).max()) < STILL
         )

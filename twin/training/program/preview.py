@@ -1,6 +1,6 @@
 """The way of a program, before it is run: what the room's own interpreter makes of it, drawn and not driven.
 
-A program is read through all its parts as ``ProgramRun`` would read it, from the place and with the
+A program is read through all its parts as ``ProgramReader`` would read it, from the place and with the
 tables of the moment in which it was asked for, also behind a search. Nothing is planned and nothing
 of the machine is touched, so that this can be done beside the machine's thread.
 """
@@ -22,7 +22,8 @@ from twin.nc.text.diagnostics import Diagnostic, ProgramError
 from twin.nc.text.source import Source
 from twin.toolpath.geometry import geometry
 from twin.toolpath.part_frame import PartFrame
-from twin.training.session.program_run import ProgramRun, RunOptions
+from twin.training.program.program_reader import READ_AT_ONCE, ProgramReader
+from twin.training.program.run_options import RunOptions
 
 MOST_MOVES = 20_000
 """Moves that are drawn; of a longer program its beginning."""
@@ -103,7 +104,7 @@ class PathToCome:
         """Read the program and draw it; a program that is wrong is not drawn at all."""
         drawing = _Drawing(self.frame, self.zero)
         try:
-            run = ProgramRun(
+            reader = ProgramReader(
                 self.source,
                 self.dialect,
                 self.settings,
@@ -113,28 +114,28 @@ class PathToCome:
             tool, stand = self.tool, self.stand
             while True:
                 zero = self._zero_with(tool)
-                self._draw_part(run, stand, zero, drawing)
-                if run.ending not in ("stop", "tool"):
+                self._draw_part(reader, stand, zero, drawing)
+                if reader.ending not in ("stop", "tool"):
                     break
-                if run.ending == "tool":
-                    tool = self._changed(run)
+                if reader.ending == "tool":
+                    tool = self._changed(reader)
                 stand = drawing.last + zero
         except ProgramError as error:
             return drawing.refused(error.diagnostic)
         except TwinError as error:
             return dataclasses.replace(drawing.preview(), message=str(error))
-        if run.finding is not None:
-            return drawing.refused(run.finding)
+        if reader.finding is not None:
+            return drawing.refused(reader.finding)
         found = drawing.preview()
-        if run.ending == "end":
+        if reader.ending == "end":
             return dataclasses.replace(found, complete=True)
-        return dataclasses.replace(found, message=run.message, line=run.ending_line)
+        return dataclasses.replace(found, message=reader.message, line=reader.ending_line)
 
     def _draw_part(
-        self, run: ProgramRun, stand: FloatArray, zero: FloatArray, drawing: "_Drawing"
+        self, reader: ProgramReader, stand: FloatArray, zero: FloatArray, drawing: "_Drawing"
     ) -> None:
         began = time.perf_counter()
-        for moves in run.read(stand, zero, self.spindle):
+        for moves in reader.read(stand, zero, self.spindle):
             drawing.add(moves)
             if drawing.full:
                 return
@@ -146,10 +147,10 @@ class PathToCome:
         zero[2] += self.longer.get(tool or 0, 0.0)
         return zero
 
-    def _changed(self, run: ProgramRun) -> int | None:
-        if run.tool not in self.longer:
-            raise TwinError(f"no tool {run.tool}")
-        return run.tool
+    def _changed(self, reader: ProgramReader) -> int | None:
+        if reader.tool not in self.longer:
+            raise TwinError(f"no tool {reader.tool}")
+        return reader.tool
 
 
 class _Drawing:
@@ -168,7 +169,7 @@ class _Drawing:
     def full(self) -> bool:
         """Whether nothing more is drawn."""
         most = self.moves >= MOST_MOVES or self._count >= MOST_POINTS
-        return most or self._readings * ProgramRun.READ_AT_ONCE >= MOST_BLOCKS
+        return most or self._readings * READ_AT_ONCE >= MOST_BLOCKS
 
     def add(self, moves: Moves) -> None:
         """Draw moves behind the last ones."""

@@ -3,9 +3,10 @@
 import dataclasses
 
 from twin.errors import UsageError
-from twin.training.session.conditions import CHECKS, Evidence, State
-from twin.training.session.inspection import part_is_right
-from twin.training.session.observed import Observed
+from twin.training.room.conditions import CHECKS, Evidence, State
+from twin.training.room.inspection import part_is_right
+from twin.training.room.observed import Observed
+from twin.training.scene.scene_file import Scene
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -31,8 +32,8 @@ class Judge:
         evidence: What has happened that tasks ask for.
     """
 
-    def __init__(self, room: Observed) -> None:
-        self._file = room.scene.file
+    def __init__(self, scene: Scene) -> None:
+        self._file = scene.file
         self.verdicts: list[Verdict] = [Verdict() for _ in self._file.tasks]
         self.hints = 0
         self.over = False
@@ -40,7 +41,7 @@ class Judge:
         self._trouble = False
         self._hold_line = 0
         self._by_program: dict[tuple[str, ...], tuple[set[int], set[int]]] = {}
-        self._trusted = {tuple(room.scene.preparation.source.lines)}
+        self._trusted = {tuple(scene.preparation.source.lines)}
         self._touched_s: float | None = None
 
     @property
@@ -88,7 +89,7 @@ class Judge:
         self.evidence.ended_well = self.evidence.brought = well
         self.evidence.made |= well
         if well:
-            self._trusted.add(room.lines)
+            self._trusted.add(room.program.lines)
             self._believe(room)
 
     def note_blank(self) -> None:
@@ -97,22 +98,22 @@ class Judge:
 
     def note_singly(self, room: Observed) -> None:
         """Lines of the program were run in single block, from one stop to the next."""
-        if room.run is not None and room.running == "program":
-            self.noted(room)[0].update(room.run.singly)
+        if room.slot.run is not None and room.slot.running == "program":
+            self.noted(room)[0].update(room.slot.run.singly)
             self._believe(room)
 
     def note_hold(self, room: Observed) -> None:
         """The operator has asked for a feed hold."""
-        if room.running == "program":
+        if room.slot.running == "program":
             self._hold_line = int(room.machine.setpoint.line[0])
 
     def noted(self, room: Observed) -> tuple[set[int], set[int]]:
         """Lines of the program as it is written now: run in single block, and held in."""
-        return self._by_program.setdefault(room.lines, (set(), set()))
+        return self._by_program.setdefault(room.program.lines, (set(), set()))
 
     def _believe(self, room: Observed) -> None:
         """Lines count of the scene's own program, and of another one that has made the part."""
-        if room.lines in self._trusted:
+        if room.program.lines in self._trusted:
             single, held = self.noted(room)
             self.evidence.single |= single
             self.evidence.held |= held
@@ -175,11 +176,11 @@ class Judge:
         if self.over:
             return
         self.evidence.since_touch_s = self.time_s(room)
-        if room.run is not None:
+        if room.slot.run is not None:
             self.evidence.brought = False
-        if room.run is not None and room.running == "program" and room.run.held:
+        if room.slot.run is not None and room.slot.running == "program" and room.slot.run.held:
             self.note_singly(room)
-            if self._hold_line and not room.moving:
+            if self._hold_line and not room.machine.moving:
                 self.noted(room)[1].add(self._hold_line)
                 self._hold_line = 0
                 self._believe(room)

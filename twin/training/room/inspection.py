@@ -8,10 +8,9 @@ from typing import NamedTuple
 import numpy as np
 from PIL import Image, ImageDraw
 
-from twin.cutting.height_map import HeightMap
 from twin.job.job_file import ToolTable
 from twin.nc.canonical import FloatArray
-from twin.training.session.observed import Notice, Observed
+from twin.training.room.observed import Notice, Observed
 
 FINEST = 240
 """Cells along a side of the kept stock, at most."""
@@ -90,16 +89,19 @@ class Moment:
         draw.rectangle((x - radius, top, x + radius, tip), outline=_TOOL, width=3)
 
 
-def moment_of(
-    alarm: Notice, text: str, tip: FloatArray, tool: ToolTable, stock: HeightMap | None
-) -> Moment:
-    """Keep what there is to see, in so few cells that it costs the machine nothing."""
-    if stock is None:
-        return Moment(alarm, text, tip, tool, np.zeros((0, 0)), (0.0, 0.0), 1.0, (0.0, 0.0))
+def moment_of(room: Observed, alarm: Notice) -> Moment:
+    """How the tool stands in the part, in so few cells that it costs the machine nothing."""
+    setup, lines = room.setup, room.program.lines
+    running = room.slot.run is not None and room.slot.running == "program"
+    text = lines[alarm.line - 1].strip() if running and 0 < alarm.line <= len(lines) else ""
+    tool = setup.tables.tool
+    if setup.work is None:
+        return Moment(alarm, text, setup.tip, tool, np.zeros((0, 0)), (0.0, 0.0), 1.0, (0.0, 0.0))
+    stock = setup.work.map
     every = max(1, -(-max(stock.heights.shape) // FINEST))
     heights = stock.heights[::every, ::every].copy()
     ends = stock.bottom, stock.top
-    return Moment(alarm, text, tip, tool, heights, stock.origin, stock.cell * every, ends)
+    return Moment(alarm, text, setup.tip, tool, heights, stock.origin, stock.cell * every, ends)
 
 
 class MeasuredPlace(NamedTuple):
@@ -138,7 +140,7 @@ class Inspection(NamedTuple):
 
 def part_is_right(room: Observed) -> bool:
     """Whether the part on the table is the one that the scene asks for."""
-    part, work = room.scene.file.part, room.work
+    part, work = room.scene.file.part, room.setup.work
     if part is None:
         return True
     if work is None or not part.removed_mm3[0] <= work.removed <= part.removed_mm3[1]:
@@ -148,7 +150,7 @@ def part_is_right(room: Observed) -> bool:
 
 def measured_places(room: Observed) -> tuple[MeasuredPlace, ...]:
     """Measure the part on the table where the scene asks for it."""
-    part, work = room.scene.file.part, room.work
+    part, work = room.scene.file.part, room.setup.work
     if part is None or work is None:
         return ()
     found = []
@@ -161,7 +163,7 @@ def measured_places(room: Observed) -> tuple[MeasuredPlace, ...]:
 
 def inspect_part(room: Observed, moment: Moment) -> Inspection:
     """Measure what is handed in."""
-    part, work = room.scene.file.part, room.work
+    part, work = room.scene.file.part, room.setup.work
     if part is None or work is None:
         return Inspection(moment)
     return Inspection(moment, measured_places(room), work.removed, part.removed_mm3)

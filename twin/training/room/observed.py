@@ -5,18 +5,18 @@ from typing import Protocol
 
 from twin.machine.simulation.live import LiveMachine
 from twin.nc.canonical import NO_BLOCK_NUMBER
-from twin.nc.functions import SpindleState
 from twin.nc.text.diagnostics import Diagnostic, ProgramError
 from twin.nc.text.lexer import Lexer
 from twin.nc.text.reporter import Reporter
 from twin.nc.text.source import Source
 from twin.nc.text.syntax import Language
 from twin.recording.reader import Samples
-from twin.training.scene.fault_table import FaultTable
-from twin.training.scene.scene_file import Mode, Scene
-from twin.training.session.program_run import ProgramRun
-from twin.training.session.tables import Tables
-from twin.training.session.workpiece import Workpiece
+from twin.training.room.auxiliaries import Auxiliaries
+from twin.training.room.panel import Panel
+from twin.training.room.program_memory import ProgramMemory
+from twin.training.room.program_slot import ProgramSlot
+from twin.training.room.setup import Setup
+from twin.training.scene.scene_file import Scene
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -68,21 +68,30 @@ def block_number(language: Language, program: Source, line: int) -> str:
     return ""
 
 
+class ObservedJudge(Protocol):
+    """What the alarm log tells the judge."""
+
+    def note_alarm(self, code: str) -> None:
+        """An alarm has come."""
+        ...
+
+
 class Observed(Protocol):
     """A running machine from outside; ``Room`` documents each attribute."""
 
     scene: Scene
     machine: LiveMachine
-    tables: Tables
-    work: Workpiece | None
-    lines: tuple[str, ...]
-    mode: Mode
-    run: ProgramRun | None
-    running: str
-    alarm: Notice | None
+    setup: Setup
+    panel: Panel
+    program: ProgramMemory
+    slot: ProgramSlot
+    auxiliaries: Auxiliaries
     samples: Samples
-    spindle: SpindleState
-    faults: list[FaultTable]
+
+    @property
+    def judge(self) -> ObservedJudge:
+        """Looks after the tasks."""
+        ...
 
     @property
     def time_s(self) -> float:
@@ -90,15 +99,10 @@ class Observed(Protocol):
         ...
 
     @property
-    def line(self) -> int:
-        """Source line of the program that runs; 0: none."""
-        ...
-
-    @property
-    def moving(self) -> bool:
-        """Whether any axis moves."""
+    def alarm(self) -> Notice | None:
+        """The alarm that has not been cleared."""
         ...
 
     def raise_alarm(self, notice: Notice) -> None:
-        """The control stops everything and says why."""
+        """The control stops everything and gives the reason."""
         ...

@@ -5,10 +5,10 @@ import pytest
 
 from tests.training.session.commanding import do
 from twin.nc.canonical import FloatArray
-from twin.nc.text.source import source_from_text
+from twin.training.program import preview as module
+from twin.training.program.preview import Preview
+from twin.training.room.run_settings import path_to_come
 from twin.training.scene.scene_file import read_scene, scene_path
-from twin.training.session import preview as module
-from twin.training.session.preview import Preview
 from twin.training.session.session import Session
 
 
@@ -18,12 +18,11 @@ def session() -> Session:
 
 
 def load(session: Session, text: str) -> None:
-    session.room.program = source_from_text(text, "test")
-    session.room.lines = tuple(text.split("\n"))
+    session.room.program.load(text)
 
 
 def drawn(session: Session) -> Preview:
-    return session.room.path_to_come().drawn()
+    return path_to_come(session.room).drawn()
 
 
 def driven(session: Session) -> FloatArray:
@@ -32,10 +31,10 @@ def driven(session: Session) -> FloatArray:
     do(session, "cycle_start")
     for _ in range(6000):
         session.advance()
-        found.append(room.standing_setpoint - room.tables.longer)
-        if room.run is None:
-            return room.part_frame.position(np.array(found))
-        if room.held:
+        found.append(room.standing_setpoint - room.setup.tables.longer)
+        if room.slot.run is None:
+            return room.setup.part_frame.position(np.array(found))
+        if room.slot.held:
             do(session, "cycle_start")
     raise AssertionError(f"it never ended: {room.alarm}")
 
