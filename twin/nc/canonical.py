@@ -222,8 +222,6 @@ class Dwell:
 
     Attributes:
         before: Index of the move of the same chunk that comes next; the chunk's length at its end.
-        line: Source line.
-        seconds: How long [s].
     """
 
     before: int
@@ -237,7 +235,6 @@ class Function:
 
     Attributes:
         before: As in ``Dwell``.
-        line: Source line.
         word: The word without leading zeros, such as ``M3``.
         arguments: Further words that belong to it, such as S.
         at: How much of the next move's path lies behind when it happens, 0 to 1; above 0 only for

@@ -56,7 +56,6 @@ class SpindleState:
     and the program goes on (SINUMERIK 840D sl, "Axes and spindles", maximum speed of the gear stage).
 
     Attributes:
-        started: Whether it has been started.
         counter_clockwise: Which way it turns, or turned last.
         speed: Its last speed [1/min]; None where nobody has given.
         tool_speed: What the job says of the tool in it [1/min], or None.

@@ -41,22 +41,14 @@ def records(interpretation: Interpretation) -> Iterator[Record]:
 
 
 def text_lines(interpretation: Interpretation) -> Iterator[str]:
-    """The records for a person, one a line, but for the diagnostics, which have a form of their own.
-
-    Raises:
-        ProgramError: As in ``records``.
-    """
+    """The records for a person, one a line, but for the diagnostics, which have a form of their own."""
     for record in records(interpretation):
         if record["type"] in _TEXT:
             yield _TEXT[record["type"]](record)
 
 
 def json_lines(interpretation: Interpretation) -> Iterator[str]:
-    """The records as JSON, one object a line: moves told by the chunk, the rest record by record.
-
-    Raises:
-        ProgramError: As in ``records``.
-    """
+    """The records as JSON, one object a line: moves told by the chunk, the rest record by record."""
     axes = interpretation.settings.axes
     count, length, turn, told = 0, 0.0, 0.0, 0
     try:

@@ -5,8 +5,7 @@ from collections.abc import Callable, Mapping
 from typing import Literal
 
 from twin.nc.control.control import Control
-from twin.nc.control.interpolation import MotionMode
-from twin.nc.control.modal import ActiveCodes, Modal, ModalChanges
+from twin.nc.control.modal import ActiveCodes, Modal, ModalChanges, MotionMode
 from twin.nc.control.settings import MachineFunction
 from twin.nc.text.blocks import Statement, Word
 
@@ -23,7 +22,6 @@ class Interpolation(MotionMode):
     """How axis words become a move.
 
     Attributes:
-        perform: Takes the block's words and moves.
         without_words: Done where its code is in a block without words of a motion; None: nothing.
     """
 
@@ -36,18 +34,15 @@ class GCode:
     """One G code.
 
     Attributes:
-        meaning: For people, in a few words.
         group: Modal group; codes of one group exclude each other in a block. Empty: not modal.
-        sets: What it puts into force.
         action: Done before the block moves.
         perform: Done in place of a move.
         consumes: Addresses that the code wants although they have a meaning of their own elsewhere.
         after_motion: Done when the block has moved.
         non_modal: What it sets holds for its block only.
-        exclusive: No other word may are in its block.
+        exclusive: No other word may be in its block.
         weak: Another code of its group in the block takes its place.
         refused: Why the twin refuses a code that the control knows; empty: it does not.
-        basis: On what the meaning rests.
     """
 
     meaning: str
@@ -79,14 +74,10 @@ class MCode:
     """One M code.
 
     Attributes:
-        meaning: For people.
         group: Codes of one group exclude each other in a block; empty: it has none.
         after_motion: Takes effect when the block has moved.
-        ends: Ends the program.
         action: What it does besides being reported as a function.
-        silent: It is not reported.
         dwell: How long the program waits for it [s].
-        basis: On what the meaning rests.
     """
 
     meaning: str
@@ -106,8 +97,6 @@ class Codes:
     Attributes:
         groups: Modal groups in the order in which they take effect.
         g: G codes by number, such as 54 or 54.1.
-        m: M codes by number.
-        start: G codes in force when a program starts.
         start_state: Fields of ``Modal`` that no G code sets.
         replacements: What to write in place of G codes that other controls have, by number.
         any_m: M codes outside the table are functions too.
@@ -156,17 +145,16 @@ class Words:
         actions: Addresses with a modal meaning, and what they do.
         before_codes: F, S, T and early M functions take effect before what G codes do besides the
             modal state that they set.
-        axes: Addresses that name axes.
         motion: Addresses that make a block move, the axes among them.
         of_functions: Addresses that belong to an M function of their block.
         of_declared: Addresses that belong to an M function that the job or the machine declares.
         references: Addresses whose value names a variable and is not computed.
         repeat: Address that says how often its block runs, or empty.
         signed: Addresses that are two words, one above and one below 0.
+        indexed: The axis that a word names whose address ends with an index, such as AX[A]; None: none does.
         series: Addresses that may stand several times in a block with a switch point, in order.
         feed: Address that sets the feed and does no more; empty: there is none.
         spindle: Address that sets the spindle's speed; empty: there is none, the drive is set.
-        meanings: What the addresses mean, for people.
     """
 
     actions: Mapping[str, WordAction]
@@ -178,6 +166,7 @@ class Words:
     references: str = ""
     repeat: str = ""
     signed: tuple[str, ...] = ()
+    indexed: Callable[[Control, Word], str] | None = None
     series: str = ""
     feed: str = "F"
     spindle: str = "S"

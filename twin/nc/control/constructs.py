@@ -19,10 +19,8 @@ class Construct:
     """A condition or a loop.
 
     Attributes:
-        keyword: That begins it.
         begin: Its first line, from 0.
         depth: Constructs around it, and itself.
-        branches: Further ones, in order.
         end: Its last line; None where it has none.
         name: Its label; empty where it has none.
     """

@@ -15,7 +15,6 @@ from twin.nc.control.statements import StatementReader
 from twin.nc.control.tools import Tools
 from twin.nc.control.variables import Variables
 from twin.nc.geometry.arcs import Point
-from twin.nc.path.drilling_cycle import START, no_values
 from twin.nc.path.feed_rates import PATH_COUNTS, STANDING, WITHOUT_SPEED, FeedRule
 from twin.nc.path.moves import LARGEST_COORDINATE, axis_target
 from twin.nc.text.blocks import Assignment, Block, Location, Statement, Word
@@ -35,11 +34,8 @@ class Rules:
 
     Attributes:
         memory: Makes the object that holds what only this dialect remembers.
-        prepare: Done before the first block.
         before_motion: Done before every motion block, given whether it is rapid.
-        after_motion: Done when a block has moved.
         finish: Done when the program ends without an end code.
-        must_end: A program without an end code is wrong.
         jog: A straight move by a distance, as its language writes it.
         read_variable: Value of a variable, given its name and index.
         write_variable: Gives a variable a value, given its name, its index and the assignment; None:
@@ -94,27 +90,14 @@ class Control:
     """One control while it runs one program.
 
     Attributes:
-        settings: What it was given of the machine and the job.
-        report: Where its diagnostics go.
-        modal: What stays in force.
         memory: What only this dialect remembers.
-        motion: Where it is and how fast it goes.
         frame: From programmed to part coordinates.
-        path: Where moves and events go.
-        tools: The tools in use.
-        variables: What the program computes with.
-        program_counter: Which block comes next.
-        statements: Reads what statements hold.
-        axis_letters: Addresses that name axes.
         axis_index: Columns of the axes by name.
-        cycle_values: What the words of a milling cycle were last, by address.
-        cycle_state: What a drilling cycle remembers, as ``drilling_cycle`` counts it.
-        block: The block that is being run.
+        cycle_values: What the cycle in force remembers, by name.
         words: Its words that nothing has taken yet.
         codes: Its G codes.
         series: Its words for switch points, in order.
         run: Runs one block, also one that is within a statement.
-        ended: An end code was run.
     """
 
     def __init__(
@@ -160,7 +143,6 @@ class Control:
         self._columns = {word: columns[word] for word in columns if word in axis_letters}
         self._axes_that_lack = axis_letters - self._columns.keys()
         self.cycle_values: dict[str, float] = {}
-        self.cycle_state = no_values()
         self.block = Block(0, 0)
         self.words: dict[str, Word] = {}
         self.codes: Sequence[tuple[Word, HasGroup]] = ()
@@ -177,11 +159,7 @@ class Control:
         word: Word | Statement | None = None,
         hint: str | None = None,
     ) -> NoReturn:
-        """Refuse the block; the caret stands under a word, a statement's keyword or the last code.
-
-        Raises:
-            ProgramError: Always.
-        """
+        """Refuse the block; the caret stands under a word, a statement's keyword or the last code."""
         self.report.fail(code, message, *self.span_of(word), hint)
 
     def warn(
@@ -205,11 +183,7 @@ class Control:
         return next((word for word, _ in self.codes if number_of(word) == number), None)
 
     def _refuse_feed(self, finding: int) -> None:
-        """Report what is wrong with the feed rate of a move.
-
-        Raises:
-            ProgramError: It has none.
-        """
+        """Report what is wrong with the feed rate of a move."""
         if finding == WITHOUT_SPEED:
             self.fail("feed-per-revolution", "a feed per revolution needs a spindle speed S")
         if finding == STANDING:
@@ -246,11 +220,7 @@ class Control:
         return number_of(word) * self.motion.unit_of(index)
 
     def take_axis_words(self) -> list[tuple[int, Word]]:
-        """Take the words that name axes; pairs of column and word.
-
-        Raises:
-            ProgramError: The machine lacks an axis.
-        """
+        """Take the words that name axes; pairs of column and word."""
         words, columns = self.words, self._columns
         if not self._axes_that_lack.isdisjoint(words):
             for name in [each for each in words if each in self._axes_that_lack]:
@@ -298,13 +268,7 @@ class Control:
         self.motion.move_to(target, self.block, rapid=rapid)
 
     def arc_to(self, target: list[float], center: Point, sweep: float) -> None:
-        """Move on an arc about the plane's normal.
-
-        Args:
-            target: Programmed position of its end, shape (k,).
-            center: Abscissa and ordinate of its programmed centre [mm].
-            sweep: Signed angle with all turns [deg].
-        """
+        """Move on an arc about the plane's normal; centre and sweep as for ``Motion.arc``."""
         self.motion.move_to(target, self.block, arc=self.motion.arc(center, sweep))
 
     def dwell(self, seconds: float) -> None:
@@ -317,9 +281,8 @@ class Control:
 
     def forget_cycle(self) -> None:
         """No cycle is in force any more, and its words hold no longer."""
-        if self.cycle_values or self.cycle_state[START] == self.cycle_state[START]:
+        if self.cycle_values:
             self.cycle_values = {}
-            self.cycle_state = no_values()
 
     # --- jumps and calls
 
@@ -371,20 +334,12 @@ class Control:
                 self.variables.write(name, value)
 
     def require_caller(self, error_at: Word | Statement | None = None) -> None:
-        """A part must be being run that a word ends.
-
-        Raises:
-            ProgramError: None is.
-        """
+        """A part must be being run that a word ends."""
         if all(call.last is not None for call in self.program_counter.calls):
             self.fail("return-outside", "there is no subroutine to return from", error_at)
 
     def go_back(self, error_at: Word | Statement | None = None) -> None:
-        """The end of a subroutine: back behind its call, or to its beginning again.
-
-        Raises:
-            ProgramError: There is no subroutine.
-        """
+        """The end of a subroutine: back behind its call, or to its beginning again."""
         self.require_caller(error_at)
         ended = self.program_counter.end_call()
         if ended is not None:
@@ -408,11 +363,7 @@ def integer_of(value: float) -> int:
 
 
 def refuse_axis(control: Control, word: Word) -> NoReturn:
-    """The machine lacks the axis that a word names.
-
-    Raises:
-        ProgramError: Always.
-    """
+    """The machine lacks the axis that a word names."""
     axes = control.settings.axes
     rotary = next(
         (name for name, line in zip(axes.names, control.motion.linear, strict=True) if not line), ""

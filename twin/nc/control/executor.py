@@ -20,12 +20,7 @@ from twin.nc.text.source import Source
 
 
 class Executor:
-    """Runs blocks of a dialect on a control.
-
-    Attributes:
-        dialect: The language it reads.
-        control: What it runs them on.
-    """
+    """Runs blocks of a dialect on a control."""
 
     def __init__(self, dialect: Dialect, settings: ControlSettings, source: Source) -> None:
         """A control that is before the first block of a program."""
@@ -68,11 +63,7 @@ class Executor:
         control.path.finish()
 
     def run(self, block: Block) -> None:
-        """Run one block.
-
-        Raises:
-            ProgramError: It is wrong.
-        """
+        """Run one block."""
         control = self.control
         control.block = block
         control.report.line = block.line

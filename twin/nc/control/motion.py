@@ -42,15 +42,11 @@ class Motion:
     """Where a control stands and how fast it goes.
 
     Attributes:
-        modal: What stays in force.
-        path: Where its moves go.
-        linear: Whether each axis is a linear one.
         frame: From programmed to part coordinates.
         programmed: Where it is, as its screen shows it, shape (k,) [mm or deg].
         part: Where it is in part coordinates, shape (k,) [mm or deg].
         last: The last move, as it was programmed; None before one.
         feed: F as programmed, or None.
-        feed_rule: Which part of a move F counts.
         spindle: S as programmed, or None [1/min].
         spindle_turns: M3 or M4 of the program is in force; what a cycle does at a hole ends with the hole.
         acceleration: [mm/s²]; NaN: the machine's.
@@ -73,15 +69,7 @@ class Motion:
         refuse_feed: Callable[[int], None],
         feed_rule: FeedRule,
     ) -> None:
-        """Stand where the program begins.
-
-        Args:
-            settings: What the control was given of the machine.
-            modal: What stays in force.
-            report: Where diagnostics of moves go.
-            refuse_feed: Given what ``finding_of_feed`` found wrong with the block that runs.
-            feed_rule: Which part of a move F counts.
-        """
+        """Stand where the program begins."""
         self.modal = modal
         self._refuse_feed = refuse_feed
         self._default_feeds = (settings.default_feed, settings.default_rotary_feed)
@@ -179,13 +167,7 @@ class Motion:
         self.part = end
 
     def take_rows(self, rows: Iterable[Any], programmed: list[float], part: list[float]) -> None:
-        """Moves that were made elsewhere lead to these positions, shape (k,).
-
-        Args:
-            rows: As ``Path.add_rows`` takes them.
-            programmed: Programmed position [mm or deg].
-            part: Part position [mm or deg].
-        """
+        """Moves that were made elsewhere, rows as ``Path.add_rows`` takes them, lead to these positions, shape (k,)."""
         last = self.path.add_rows(*rows)
         self.programmed, self.part = programmed, part
         if last is not None:

@@ -28,7 +28,6 @@ class MachineFunction:
     """An M code that the machine's builder has made.
 
     Attributes:
-        meaning: For people.
         dwell: How long the program waits for it [s].
     """
 

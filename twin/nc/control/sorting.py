@@ -24,6 +24,7 @@ class WordSorter:
         self._special = frozenset(("G", "M", *words.signed, *words.series))
         expressions = dialect.syntax.expressions
         self._vacant = expressions is not None and expressions.vacant
+        self._indexed = words.indexed
 
     def sort(self, block: Sequence[Word]) -> tuple[Codes, Functions]:
         """Sort the words of a block; those that are no codes become the control's ``words`` and ``series``.
@@ -78,11 +79,24 @@ class WordSorter:
                 )
             else:
                 words[address] = word
+        if self._indexed is not None and any(address[-1] == "]" for address in words):
+            self._resolve_indices(words)
         if len(codes) > 1 or len(functions) > 1:
             codes = codes_that_count(codes, last_of_group=dialect.codes.last_of_group_counts)
             self._refuse_conflict(conflict_of(codes, functions))
             control.codes = codes = in_order(codes, dialect.codes.groups)
         return codes, functions
+
+    def _resolve_indices(self, words: dict[str, Word]) -> None:
+        """Give words with an index in their address the axis that it names."""
+        assert self._indexed is not None
+        for address in [each for each in words if each[-1] == "]"]:
+            word = words.pop(address)
+            axis = self._indexed(self._control, word)
+            if axis in words:
+                message = f"'{axis}' stands twice in the block"
+                self._control.fail("duplicate-word", message, word, "write two blocks")
+            words[axis] = word._replace(address=axis)
 
     def _takes_m(self, block: Sequence[Word]) -> bool:
         """Whether M is a word of one of the block's G codes, and no machine function."""
@@ -122,11 +136,7 @@ class WordSorter:
         return code
 
     def _refuse_conflict(self, conflict: "Conflict | None") -> None:
-        """Say which codes cannot share a block.
-
-        Raises:
-            ProgramError: There are two.
-        """
+        """Say which codes cannot share a block."""
         if conflict is None:
             return
         both = f"{conflict.first.text} and {conflict.second.text}"
@@ -166,10 +176,8 @@ class Conflict(NamedTuple):
     """Two codes that cannot share a block.
 
     Attributes:
-        first: One of them.
-        second: The other.
         group: Their modal group, or empty.
-        performs: Both want to are in the motion's place.
+        performs: Both want to replace the motion.
     """
 
     first: Word

@@ -9,7 +9,6 @@ class Tools:
     """The tool table with its state.
 
     Attributes:
-        table: Tools by number.
         any: The tool that every other number means; None: there is none.
         names: Numbers of tools that the program has called by names which the job does not give.
         spindle: Number of the tool in the spindle.

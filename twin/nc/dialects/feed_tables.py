@@ -21,10 +21,8 @@ class FeedRow(NamedTuple):
     """What F counts in one kind of move.
 
     Attributes:
-        kind: Of move.
         rate: What F counts as a rate, per minute, second or revolution.
         inverse: What F of G93 says; empty where the control has no such feed.
-        basis: Source or decision.
     """
 
     kind: str

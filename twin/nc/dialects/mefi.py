@@ -8,7 +8,7 @@ import dataclasses
 from twin.nc.control.codes import Codes, GCode, Words
 from twin.nc.control.control import Control, Rules
 from twin.nc.control.dialect import Decision, Dialect
-from twin.nc.control.interpolation import ArcRule
+from twin.nc.control.modal import ArcRule
 from twin.nc.geometry.arcs import sweep_between
 from twin.nc.iso import base, shared_decisions, shared_marks
 from twin.nc.iso.circular import BOUNDS, arc_center, both_senses, start_and_end

@@ -34,7 +34,6 @@ class Reading(NamedTuple):
 
     Attributes:
         candidates: Dialects that it may be written in; one: it is given.
-        reason: What tells it.
     """
 
     candidates: tuple[str, ...]

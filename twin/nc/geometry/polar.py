@@ -4,14 +4,7 @@ from twin.nc.geometry.arcs import SAME_POINT, Point, angle_of, direction, distan
 
 
 def seen_from(origin: Point, here: Point, radius: float, angle: float) -> tuple[float, float]:
-    """R and Q of a point: as programmed last, else measured.
-
-    Args:
-        origin: The polar origin [mm].
-        here: The point [mm].
-        radius: R as programmed last, or NaN [mm].
-        angle: Q as programmed last, or NaN [deg].
-    """
+    """R and Q of a point: as programmed last, else (NaN) measured from the origin [mm, deg]."""
     if radius != radius:
         radius = distance(origin, here)
     if angle != angle:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from twin.nc.control.codes import Action, GCode, Interpolation, MCode
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Dialect
-from twin.nc.control.interpolation import ArcRule, LineRule
+from twin.nc.control.modal import ArcRule, LineRule
 from twin.nc.functions import starts_spindle
 from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.planes import XY, YZ, ZX
@@ -118,11 +118,7 @@ def dwell(letters: str, message: str, hint: str) -> Action:
 
 
 def wait(control: Control, seconds: float, error_at: Word | Statement) -> None:
-    """Wait.
-
-    Raises:
-        ProgramError: For less than no time.
-    """
+    """Wait."""
     if not seconds >= 0.0:
         control.fail("dwell", "a dwell cannot be negative", error_at)
     control.dwell(seconds)
@@ -253,11 +249,7 @@ WORD_MEANINGS = {
 
 
 def require_feed_of_block(control: Control) -> None:
-    """G93: an F holds for its block alone.
-
-    Raises:
-        ProgramError: The block has none.
-    """
+    """G93: an F holds for its block alone."""
     if needs_own_feed(control.modal.feed_mode) and not any(
         word.address == "F" for word in control.block.words
     ):
@@ -271,14 +263,7 @@ def by_manual(codes: Mapping[float, GCode]) -> dict[float, GCode]:
 
 
 def jog_block(dialect: Dialect, axis: str, distance: float, feed: float) -> str:
-    """One straight move by a distance, in a control's own language.
-
-    Args:
-        dialect: The control's.
-        axis: Name of the axis.
-        distance: How far, and which way [mm or deg].
-        feed: [mm/min or deg/min]
-    """
+    """One straight move by a distance [mm or deg] with a feed per minute, in a control's own language."""
     mode = dialect.codes.start_state.get("feed_mode", FeedMode.PER_MINUTE)
     end = "\nM2" if dialect.rules.must_end else ""
     of_one = feed_per_minute(1.0, mode, distance, True, 1.0, 0.0, (feed, feed))

@@ -61,11 +61,7 @@ def keep_compensated_plane(control: Control) -> None:
 
 
 def refuse_compensated_plane(control: Control) -> None:
-    """The plane is about to change.
-
-    Raises:
-        ProgramError: Compensation is in force.
-    """
+    """The plane is about to change."""
     if control.path.compensation.in_force:
         message = "the plane cannot change while compensation is in force"
         control.fail("compensation-plane", message, hint="end it by G40 first")

@@ -29,12 +29,7 @@ class PartFrame(NamedTuple):
 def enter_machine_frame(
     control: Control, code: str, zero: Mapping[str, float] | None = None
 ) -> PartFrame:
-    """Let programmed coordinates be those of the machine; ``code`` asks for it.
-
-    Args:
-        control: The control.
-        code: As messages call it.
-        zero: Part coordinates of another zero of the machine's builder; None: machine zero.
+    """Let programmed coordinates count from machine zero, or from another zero of the builder's; ``code`` asks for it.
 
     Raises:
         ProgramError: The job does not say where machine zero is.

@@ -13,20 +13,12 @@ from twin.nc.text.blocks import Word
 
 
 def select_offset(control: Control, name: str, word: Word | None) -> None:
-    """Put a work offset of the job into force.
-
-    Raises:
-        ProgramError: The job gives it no values.
-    """
+    """Put a work offset of the job into force."""
     shift_by(control, offset_of_job(control, name, word))
 
 
 def offset_of_job(control: Control, name: str, word: Word | None) -> Mapping[str, float]:
-    """The values that the job gives a work offset; a word asks for it.
-
-    Raises:
-        ProgramError: It gives it none.
-    """
+    """The values that the job gives a work offset; a word asks for it."""
     values = control.settings.offsets.get(name)
     if values is None and name != "G54":
         known = ", ".join(sorted(control.settings.offsets)) or "none"

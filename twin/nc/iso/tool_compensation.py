@@ -22,11 +22,7 @@ def _compensation_by_table(side: float) -> Action:
 
 
 def radius_in_spindle(control: Control) -> float:
-    """Radius of the tool in the spindle [mm].
-
-    Raises:
-        ProgramError: There is no tool.
-    """
+    """Radius of the tool in the spindle [mm]."""
     tool = control.tools.data(control.tools.spindle)
     if tool is None:
         message = "compensation needs a tool, and the job has none"

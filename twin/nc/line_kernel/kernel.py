@@ -116,7 +116,6 @@ class PlainState(NamedTuple):
         turned: That is not the identity.
         plane: Abscissa, ordinate and normal.
         plane_axes: Their columns.
-        unit: Of programmed lengths [mm].
         incremental: Axis words count from where the tool is.
         center_absolute: The words of a centre count from part zero.
         feed_mode: What F counts, as ``FeedMode`` numbers it.
@@ -124,7 +123,6 @@ class PlainState(NamedTuple):
         spindle: S, NaN for none [1/min].
         spindle_turns: 0 where the spindle stands.
         rapid_feed: As ``feed_rates.rapid_feed`` has it.
-        corner: How the ends of moves are passed.
         limits: Corner tolerance [mm], acceleration and deceleration [mm/s²].
     """
 
@@ -187,16 +185,7 @@ def run_lines(page: PageColumns, rules: PlainRules, state: PlainState, rows: Mov
 def _run_line(
     line: int, seen: int, rules: PlainRules, state: PlainState, rows: MoveRows, row: int
 ) -> int:
-    """Run one line; how many moves it has made, or ``NOT_PLAIN`` with the state as it was.
-
-    Args:
-        line: Its number, from 1.
-        seen: Its roles, as bits.
-        rules: What codes mean.
-        state: Holds the values of the roles.
-        rows: Room for the move.
-        row: Its place there.
-    """
+    """Run one line; how many moves it has made, or ``NOT_PLAIN`` with the state as it was."""
     kind, feed, values = int(state.kind[0]), float(state.feed[0]), state.values
     if seen & 1 << CODE:
         if not is_whole(values[CODE], len(rules.kinds) - 1.0):

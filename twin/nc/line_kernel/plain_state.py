@@ -8,7 +8,7 @@ import numpy as np
 
 from twin.nc.control.codes import GCode
 from twin.nc.control.executor import Executor
-from twin.nc.control.interpolation import ArcRule, LineRule, MotionMode
+from twin.nc.control.modal import ArcRule, LineRule, MotionMode
 from twin.nc.geometry.arcs import Bounds
 from twin.nc.geometry.planes import PLANE_ORDER
 from twin.nc.line_kernel.kernel import (
@@ -155,8 +155,6 @@ def kind_of(mode: MotionMode | None) -> int:
         return NO_MOTION
     if isinstance(mode.rule, LineRule):
         return RAPID_LINE if mode.rapid else FEED_LINE
-    if not isinstance(mode.rule, ArcRule):
-        return NO_MOTION
     return CLOCKWISE if mode.rule.clockwise else COUNTER_CLOCKWISE
 
 

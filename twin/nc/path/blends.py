@@ -38,7 +38,6 @@ class Blend:
     """A blend to be made.
 
     Attributes:
-        kind: Its shape.
         size: Radius of a fillet; length of a ``CHAMFER_LENGTH``; distance from the corner of the others [mm].
         plane: In which it lies, part coordinates.
         halves: At most half of each move is given up, so that the size adapts to short moves.

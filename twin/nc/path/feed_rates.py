@@ -125,15 +125,7 @@ class Displacement(NamedTuple):
 
 
 def feed_by_rule(rule: FeedRule, feed: float, move: Displacement, mode: int, unit: float) -> float:
-    """Pace along the path of a move whose F counts another length [mm/min or deg/min].
-
-    Args:
-        rule: What F counts.
-        feed: As ``feed_per_minute`` has it, where F counts the path.
-        move: How far it goes.
-        mode: What F counts, as ``FeedMode`` numbers it.
-        unit: Of programmed lengths [mm].
-    """
+    """Feed along the path of a move whose F counts another length [mm/min or deg/min]."""
     by_time = counts_blocks(mode)
     if by_time and not (rule.arc_by_radius and move.around):
         return feed

@@ -23,9 +23,7 @@ class Path:
     """Takes moves and events in program order.
 
     Attributes:
-        columns: What has been emitted.
         position: Where the emitted path has come to, shape (k,) [mm or deg].
-        compensation: Radius compensation of what it takes.
         defer: Takes an event that happens behind moves which a dialect holds back; False: it holds none.
         leads: Makes the moves that lead to the next one, told it, and says whether that is to be made; None: nothing
             does. The next move begins where they end on the contour, not where the path has come to.
@@ -107,11 +105,7 @@ class Path:
             self._rounding.event(event)
 
     def end_spline(self, behind: Segment | None = None) -> None:
-        """The spline ends, and its next point begins a new one.
-
-        Args:
-            behind: The move that follows; None: no move does.
-        """
+        """The spline ends, before the move that follows, if one does; its next point begins a new one."""
         if self._spline is not None:
             cuts = behind is not None and behind.motion is Motion.FEED
             self._spline.finish(behind if cuts else None)

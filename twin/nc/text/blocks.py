@@ -66,8 +66,6 @@ class Assignment(NamedTuple):
     """A variable that a block gives a value.
 
     Attributes:
-        target: Which one.
-        value: What it becomes.
         column: Where the variable begins, from 0.
         width: Characters up to the end of the value.
         number: That of the variable, where it is computed.
@@ -96,7 +94,6 @@ class Block(NamedTuple):
         part: Which of the line's blocks it is, from 0.
         number: Its N number or ``NO_BLOCK_NUMBER``.
         words: Its words without N, in the order of the text.
-        statement: What it says besides words, or None.
         skippable: It begins with a slash.
         name: Its label in brackets, or empty.
         assignments: Variables that get new values when all words have been read.

@@ -30,15 +30,7 @@ _MOST_KEPT = 4096
 
 
 class ExpressionReader:
-    """Reads the expressions of one dialect.
-
-    Attributes:
-        operator: An operator; as the others, where it begins.
-        number: A number.
-        variable: A variable.
-        name: The name of a function, a constant or a variable with an index.
-        quotient: A slash before a bracket.
-    """
+    """Reads the expressions of one dialect."""
 
     def __init__(self, syntax: ExpressionSyntax) -> None:
         self._syntax = syntax

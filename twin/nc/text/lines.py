@@ -68,11 +68,7 @@ class Page:
 
 
 class Lines(Sequence[str]):
-    """The lines of a program without their ends.
-
-    Attributes:
-        size: Bytes that were read.
-    """
+    """The lines of a program without their ends."""
 
     def __init__(self, pieces: Iterable[bytes], encodings: Sequence[str] = ()) -> None:
         """Take the text in.

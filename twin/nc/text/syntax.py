@@ -15,7 +15,6 @@ class Comment:
     """A kind of comment.
 
     Attributes:
-        opening: What begins it.
         closing: What ends it; empty: the end of the line.
         whole_line: It can only begin its line, such as a program's heading.
         holds_opening: Its own opening may be in it, as a character like any other.
@@ -36,8 +35,6 @@ class Syntax:
     """How a dialect writes its blocks.
 
     Attributes:
-        address: Regular expression of an address.
-        comments: Kinds of comments.
         expressions: How values are computed; None where only numbers are written.
         statement: Regular expression of what begins a statement; its group 1 is the keyword.
         trailing_prose: Words of prose behind a block's words are left out with a warning.

@@ -5,7 +5,7 @@ import math
 from twin.nc.control.codes import Action
 from twin.nc.control.compensation import compensate
 from twin.nc.control.control import Control, refuse_axis
-from twin.nc.control.interpolation import LineRule
+from twin.nc.control.modal import LineRule
 from twin.nc.dialects.codesys.program import variables
 from twin.nc.geometry.planes import XY, plane_with_normal
 from twin.nc.iso import offsets

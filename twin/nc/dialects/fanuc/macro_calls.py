@@ -122,11 +122,7 @@ def call_after_motion(control: Control) -> None:
 
 
 def refuse_late_call(control: Control) -> None:
-    """G65 or G66 behind other words.
-
-    Raises:
-        ProgramError: Always.
-    """
+    """G65 or G66 behind other words."""
     word = control.codes[-1][0]
     message = f"{word.text} must stand before the other words of its block"
     control.fail("call-values", message, word, "write the other codes in a block before it")

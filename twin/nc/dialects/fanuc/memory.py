@@ -140,7 +140,6 @@ class ModalCall(NamedTuple):
 
     Attributes:
         line: First line of the program, from 0.
-        often: How many times it runs.
         values: Its arguments by their variables.
         word: That names the program.
     """
@@ -173,7 +172,6 @@ class FanucMemory:
     """Programs, offsets, transformations.
 
     Attributes:
-        variant: Which control of the family it is.
         programs: Line behind the heading of each program by its number, from 0.
         headings: Lines of all headings, from 0, in order.
         main: Line of the heading of the program that runs first, or None.

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import TypeVar
 
 from twin.nc.control.control import Control
-from twin.nc.control.interpolation import ArcRule
+from twin.nc.control.modal import ArcRule
 from twin.nc.dialects.fanuc import cylinder
 from twin.nc.dialects.fanuc.memory import Variant, memory_of
 from twin.nc.dialects.fanuc.transformations import refuse_uneven_arc

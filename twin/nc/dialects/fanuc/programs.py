@@ -100,11 +100,7 @@ def lines_around(control: Control, line: int | None = None) -> range:
 
 
 def whole(control: Control, word: Word, code: str, meaning: str) -> int:
-    """The value of a word that must be a whole number from 0.
-
-    Raises:
-        ProgramError: It is none.
-    """
+    """The value of a word that must be a whole number from 0."""
     value = control.number(word)
     if value < 0.0 or value != int(value):
         control.fail(code, f"{word.text} is no {meaning}", word)

@@ -4,7 +4,7 @@ from twin.nc.canonical import Corner
 from twin.nc.control.codes import Action, Codes, GCode, MCode, Words
 from twin.nc.control.control import Control, Rules
 from twin.nc.control.dialect import Dialect
-from twin.nc.control.interpolation import ArcRule
+from twin.nc.control.modal import ArcRule
 from twin.nc.dialects.grbl import coordinates
 from twin.nc.dialects.grbl.decisions import DECISIONS
 from twin.nc.dialects.grbl.memory import SYSTEMS, GrblMemory

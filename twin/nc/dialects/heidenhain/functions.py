@@ -9,7 +9,7 @@ from twin.nc.dialects.heidenhain.cycles.calls import call_from_now_on, call_last
 from twin.nc.dialects.heidenhain.flow import refuse_end_of_called
 from twin.nc.dialects.heidenhain.memory import memory_of
 from twin.nc.iso import base
-from twin.nc.iso.drilling import turn_spindle
+from twin.nc.iso.hole import turn_spindle
 from twin.nc.iso.machine_coordinates import machine_frame
 
 _HEIGHT = 2

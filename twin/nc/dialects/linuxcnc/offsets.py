@@ -91,11 +91,7 @@ def select_system(number: int) -> Action:
 
 
 def known_system(control: Control, number: int) -> CoordinateSystem:
-    """A coordinate system that the job or the program has given values.
-
-    Raises:
-        ProgramError: Neither has.
-    """
+    """A coordinate system that the job or the program has given values."""
     memory, name = memory_of(control), SYSTEMS[number - 1]
     if number not in memory.systems:
         known = ", ".join(SYSTEMS[each - 1] for each in sorted(memory.systems))
@@ -107,11 +103,7 @@ def known_system(control: Control, number: int) -> CoordinateSystem:
 
 
 def refuse_in_compensation(control: Control, what: str = "coordinates cannot change") -> None:
-    """What cannot be done while the tool's radius is compensated.
-
-    Raises:
-        ProgramError: It is.
-    """
+    """What cannot be done while the tool's radius is compensated."""
     if memory_of(control).compensation is not None:
         message = f"{what} while radius compensation is in force"
         control.fail("compensation-change", message, hint="end it by G40 first")

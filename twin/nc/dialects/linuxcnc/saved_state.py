@@ -28,11 +28,7 @@ def forget(control: Control) -> None:
 
 
 def restore(control: Control) -> None:
-    """M72.
-
-    Raises:
-        ProgramError: Nothing was put aside here, or the block would move.
-    """
+    """M72: put back into force what M70 or M73 has put aside here; the block may not move."""
     saved = memory_of(control).saved.get(control.program_counter.depth)
     if saved is None:
         control.fail("code-words", "M72 puts back what M70 or M73 has put aside, and none has")

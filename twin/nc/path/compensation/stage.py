@@ -127,11 +127,7 @@ class Compensation:
         self._passed.clear()
 
     def change(self, signed_offset: float) -> None:
-        """Another radius on the same side, from the next move's end on: that line leads from the one to the other.
-
-        Args:
-            signed_offset: The tool's radius, positive left of the contour [mm].
-        """
+        """Another radius, signed likewise, from the next move's end on: that line leads from the one to the other."""
         if self.stage is STARTED:
             self._signed_offset = signed_offset
         else:
@@ -247,13 +243,7 @@ class Compensation:
         self._contour, self._start = curve, start
 
     def _let_go(self, before: Curve, part: Curve, at: Point) -> None:
-        """Drive the kept move up to a point, then what waits for its end.
-
-        Args:
-            before: The path beside the kept move.
-            part: What is left of that.
-            at: Where it ends.
-        """
+        """Drive the kept move up to a point on what is left of its parallel, then what waits for its end."""
         plane, here = self.plane, self._here
         for number, (move, events) in enumerate(zip(self._held, self._events, strict=True)):
             start, end = move.start if here is None else here, list(move.end)
@@ -345,12 +335,7 @@ class Compensation:
         self._report.refuse(move, code, message)
 
     def _pass(self, element: Curve, own: Curve | None) -> None:
-        """Pass an element of the path; refuse one that crosses another that was passed.
-
-        Args:
-            element: A part of the parallel, or the way around a corner.
-            own: The element of the contour that it belongs to, or None.
-        """
+        """Pass an element of the path; refuse one that crosses another that was passed."""
         line = self._passed.add(element, own, self._held[0].line)
         if line is not None:
             where = f"between this element and that of line {line}: the path crosses itself"

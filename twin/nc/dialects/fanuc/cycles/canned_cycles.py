@@ -17,8 +17,9 @@ from twin.nc.dialects.fanuc.memory import Variant, letter_patterns, memory_of
 from twin.nc.dialects.fanuc.motion import holes_of
 from twin.nc.dialects.fanuc.transformations import refuse_scaled_pecks
 from twin.nc.iso import base
+from twin.nc.iso.drilling import Pecking
 from twin.nc.iso.fixed_cycles import BY_HAND, CYCLES, DRILLS, drilling_code
-from twin.nc.path.drilling_cycle import CHIP_CLEARANCE, PECK, Pecking, Retract
+from twin.nc.iso.hole import CHIP_CLEARANCE, Retract
 from twin.nc.text.blocks import Block
 
 _TAPS = {
@@ -48,7 +49,11 @@ def _unscaled(number: int, code: GCode) -> GCode:
     assert action is not None
 
     def call(control: Control) -> None:
-        if number not in _TAPS or "Q" in control.words or control.cycle_state[PECK] > 0.0:
+        if (
+            number not in _TAPS
+            or "Q" in control.words
+            or control.cycle_values.get("peck", 0.0) > 0.0
+        ):
             refuse_scaled_pecks(control, f"G{number}")
         action(control)
 

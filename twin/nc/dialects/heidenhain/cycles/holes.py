@@ -6,10 +6,8 @@ Decisions, since the manuals leave them open or the twin does not follow them: t
 
 from twin.nc.control.control import Control
 from twin.nc.dialects.heidenhain.cycle_values import Parameters
-from twin.nc.iso.drilling import drill, turn_spindle
+from twin.nc.iso.hole import MOST_PECKS, Hole, Retract, count_passes, drill, turn_spindle
 from twin.nc.iso.plane_moves import at_feed, descend, go, go_to_height
-from twin.nc.path.drilling_cycle import Retract
-from twin.nc.path.hole import MOST_PECKS, Fault, Hole, count_passes, count_stops
 
 ADVANCE = 0.2
 """How far above its last depth a rapid return ends [mm]."""
@@ -32,26 +30,8 @@ def heights(control: Control, given: Parameters) -> tuple[float, float, float, f
 def _hole(control: Control, given: Parameters, **changes: object) -> Hole:
     """A hole that is drilled at once; changes are fields of it."""
     surface, reference, bottom, back = heights(control, given)
-    plain = Hole(
-        fault=int(Fault.NONE),
-        reference=reference,
-        bottom=bottom,
-        back=back,
-        dwell=_seconds(control, given, 211),
-        surface=surface,
-        stops=0,
-        passes=False,
-        peck=0.0,
-        factor=1.0,
-        reduction=0.0,
-        least=0.0,
-        lift=0.0,
-        full_every=1,
-        clearance=ADVANCE,
-        retract=int(Retract.RAPID),
-        faster=1.0,
-        rest=0.0,
-    )
+    dwell = _seconds(control, given, 211)
+    plain = Hole(reference, bottom, back, dwell, surface, clearance=ADVANCE)
     return plain._replace(**changes)
 
 
@@ -70,18 +50,18 @@ def _pecked(
     if peck <= 0.0 or reduction < 0.0 or (reduction > 0.0 and least <= 0.0):
         message = f"{given.name} needs Q202 above 0, and with Q212 also Q205"
         control.fail("cycle-depth", message, hint="Q202=+5")
-    stops = count_stops(hole.surface, hole.bottom, peck, (1.0, reduction, least))
-    if stops > MOST_PECKS:
+    hole = hole._replace(peck=peck, reduction=reduction, least=least).with_stops()
+    if hole.stops > MOST_PECKS:
         message = f"the hole would need more than {MOST_PECKS} pecks"
         control.fail("cycle-depth", message, hint="write a larger Q202")
-    return hole._replace(peck=peck, reduction=reduction, least=least, stops=stops)
+    return hole
 
 
 def _drill(control: Control, hole: Hole, feed: float | None) -> None:
     """Drill with a feed, which the program's own survives."""
     mode = control.modal.feed_mode
     with at_feed(control, _drilling_feed(control, feed)):
-        drill(control, hole, None)
+        drill(control, hole)
     control.modal.feed_mode = mode
 
 
@@ -108,7 +88,7 @@ def reaming(control: Control, given: Parameters) -> None:
     down, back = given.feed(206), given.feed(208)
     retract = Retract.RAPID if back is None else Retract.FEED
     faster = back / down if back and down else 1.0
-    _drill(control, _hole(control, given, retract=int(retract), faster=faster), down)
+    _drill(control, _hole(control, given, retract=retract, faster=faster), down)
 
 
 def universal_drilling(control: Control, given: Parameters) -> None:
@@ -121,7 +101,7 @@ def universal_drilling(control: Control, given: Parameters) -> None:
         hole = hole._replace(lift=lift, full_every=breaks + 1, clearance=ADVANCE)
     down, back = given.feed(206), given.feed(208)
     if back:
-        hole = hole._replace(retract=int(Retract.FEED), faster=back / (down or back))
+        hole = hole._replace(retract=Retract.FEED, faster=back / (down or back))
     _drill(control, hole, down)
 
 
@@ -186,7 +166,7 @@ def boring(control: Control, given: Parameters) -> None:
 
 def tapping(control: Control, given: Parameters) -> None:
     """206: with a floating chuck, at the feed Q206."""
-    _drill(control, _hole(control, given, retract=int(Retract.REVERSED)), given.feed(206))
+    _drill(control, _hole(control, given, retract=Retract.REVERSED), given.feed(206))
 
 
 def rigid_tapping(control: Control, given: Parameters) -> None:
@@ -223,7 +203,7 @@ def _tap(control: Control, given: Parameters, hole: Hole) -> None:
     retract = Retract.REVERSED if pitch > 0.0 else Retract.REVERSED_LEFT
     feed = abs(pitch) * speed / control.modal.unit
     turn_spindle(control, "M3" if pitch > 0.0 else "M4")
-    _drill(control, hole._replace(retract=int(retract)), feed)
+    _drill(control, hole._replace(retract=retract), feed)
 
 
 def centring(control: Control, given: Parameters) -> None:
