@@ -69,8 +69,11 @@ def ball_on_five_axes(size: float) -> Case:
     slant = math.hypot(24.0 * size, 1.0) / (24.0 * size)
     angle = math.acos((radius - deep) / radius)
     section = radius**2 * angle - (radius - deep) * math.sqrt(radius**2 - (radius - deep) ** 2)
-    return block, tool("ball", 2.0 * radius), Poses(middle - radius * axis, axis), (
-        section * 16.0 * size * slant
+    return (
+        block,
+        tool("ball", 2.0 * radius),
+        Poses(middle - radius * axis, axis),
+        (section * 16.0 * size * slant),
     )
 
 
@@ -79,7 +82,9 @@ def indexed_flat(size: float) -> Case:
     radius, depth = 5.0 * size, 1.2 * size
     bar = round_bar(np.zeros(3), 0, radius, 12.0 * size, CELL_MM)
     angle = math.radians(30.0)
-    way = straight((-14.0 * size, 0.0, 0.0), (14.0 * size, 0.0, 0.0), tuple(directions(np.array([angle]))[0]))
+    way = straight(
+        (-14.0 * size, 0.0, 0.0), (14.0 * size, 0.0, 0.0), tuple(directions(np.array([angle]))[0])
+    )
     poses = Poses(way.tip + (radius - depth) * way.axis, way.axis)
     half = math.acos((radius - depth) / radius)
     section = radius**2 * (half - math.sin(2.0 * half) / 2.0)

@@ -28,7 +28,10 @@ def revolved(tool: ToolTable) -> trimesh.Trimesh:
     edge = profile(tool)
     corner = np.linspace(0.0, math.pi / 2.0, 65)
     if edge.corner:
-        radius, height = edge.flat + edge.corner * np.sin(corner), edge.corner * (1.0 - np.cos(corner))
+        radius, height = (
+            edge.flat + edge.corner * np.sin(corner),
+            edge.corner * (1.0 - np.cos(corner)),
+        )
     else:
         radius = np.array([edge.flat, edge.radius])
         height = edge.slope * (radius - edge.flat)
@@ -67,7 +70,9 @@ def test_indexed_cuts(seed: int) -> None:
         end = start + random.uniform(1.0, 8.0) * way
         poses = Poses(np.array([start, end]), np.array([axis, axis]))
         cut(part, poses, cutting_edge(profile(tool), FLUTE_MM), number)
-        other = trimesh.boolean.difference([other, swept(tool, start, end, axis)], engine="manifold")
+        other = trimesh.boolean.difference(
+            [other, swept(tool, start, end, axis)], engine="manifold"
+        )
     removed, other_removed = before - volume(part), other_before - other.volume
     assert removed == pytest.approx(other_removed, rel=1e-3)
     mesh = part_mesh(part)

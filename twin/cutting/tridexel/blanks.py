@@ -115,16 +115,16 @@ def _fill(dexels: Dexels, lattice: Lattice, poses: Poses, solid: Solid) -> None:
                 dexels.count[line] = 1
                 dexels.ends[place, 0], dexels.ends[place, 1] = low, high
                 for end, t in enumerate((low, high)):
-                    dexels.skin[place, end] = surface(
-                        poses, solid, (d, t, x, y), 0, 0.0, 1.0, OWN
-                    )
+                    dexels.skin[place, end] = surface(poses, solid, (d, t, x, y), 0, 0.0, 1.0, OWN)
 
 
 def _from_stl(path: Path, top: FloatArray, cell: float) -> TriDexel:
     """The shape of an STL file, the middle of whose box's top face is at a place, shape (3,) [mm]."""
     mesh = read_stl(path)
     if not mesh.is_watertight:
-        raise ConfigError(f"{path}: its surface is not closed, which a part cut from any side needs")
+        raise ConfigError(
+            f"{path}: its surface is not closed, which a part cut from any side needs"
+        )
     low, high = mesh.bounds
     shift = top - [*(0.5 * (low + high))[:2], high[2]]
     triangles = np.ascontiguousarray(mesh.triangles + shift, np.float64)

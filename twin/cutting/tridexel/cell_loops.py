@@ -64,9 +64,7 @@ def _faces() -> list[list[int]]:
     return faces
 
 
-def _join(
-    inside: int, face: list[int], edge: dict[frozenset[int], int], following: Table
-) -> None:
+def _join(inside: int, face: list[int], edge: dict[frozenset[int], int], following: Table) -> None:
     """Join the crossings of one face: where a run of inside corners ends with where it begins."""
     for place in range(4):
         corner, after = face[place], face[(place + 1) % 4]

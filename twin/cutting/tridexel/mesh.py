@@ -56,9 +56,7 @@ def surface(stock: TriDexel, crossings: int = MESH_CROSSINGS) -> Surface:
         np.zeros((4 * count, 3), np.int32),
         np.zeros((5, *inside.shape[1:]), np.int32),
     )
-    patches = find_surface(
-        stock.dexels, stock.lattice, coarse, inside, cell_loops(), found, count
-    )
+    patches = find_surface(stock.dexels, stock.lattice, coarse, inside, cell_loops(), found, count)
     vertices = count + patches
     return Surface(found.point[:vertices], found.skin[:vertices], _faces(found.segment))
 
@@ -68,9 +66,7 @@ def _marked(stock: TriDexel, coarse: Coarse) -> tuple[np.ndarray, int]:
     shape = -(-(stock.lattice.shape - coarse.first) // coarse.step) + 2
     inside = np.zeros(tuple(shape), np.uint8)
     mark_inside(stock.dexels, stock.lattice, coarse, inside)
-    count = sum(
-        int(np.count_nonzero(np.diff(inside, axis=axis))) for axis in range(inside.ndim)
-    )
+    count = sum(int(np.count_nonzero(np.diff(inside, axis=axis))) for axis in range(inside.ndim))
     return inside, count
 
 

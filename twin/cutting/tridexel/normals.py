@@ -23,8 +23,8 @@ def packed(x: float, y: float, z: float, tool: int) -> int:
     u, v = x * scale, y * scale
     if z < 0.0:
         u, v = (1.0 - abs(v)) * math.copysign(1.0, u), (1.0 - abs(u)) * math.copysign(1.0, v)
-    column = int(math.floor((u + 1.0) * 0.5 * _STEPS + 0.5))
-    row = int(math.floor((v + 1.0) * 0.5 * _STEPS + 0.5))
+    column = math.floor((u + 1.0) * 0.5 * _STEPS + 0.5)
+    row = math.floor((v + 1.0) * 0.5 * _STEPS + 0.5)
     return column | row << _BITS | tool << 2 * _BITS
 
 

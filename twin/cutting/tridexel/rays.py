@@ -122,9 +122,7 @@ def _towards(solid: Solid, ray: Ray, t: float, side: float) -> float:
     """From outside to the rounding's surface, up along the line or down; infinite if it is missed."""
     center = solid.low + solid.rounding
     for _ in range(_NEWTON_STEPS):
-        distance = math.sqrt(
-            max(ray.squared + t * (2.0 * ray.half_slope + t * ray.across), 1e-30)
-        )
+        distance = math.sqrt(max(ray.squared + t * (2.0 * ray.half_slope + t * ray.across), 1e-30))
         beyond, off = distance - solid.low_radius, ray.height + t * ray.rise - center
         growth = (ray.half_slope + t * ray.across) / distance
         if beyond <= 0.0:

@@ -101,7 +101,16 @@ def find_surface(
                 layer[0, j, k] = -1
                 layer[1, j, k], layer[2, j, k] = layer[3, j, k], layer[4, j, k]
                 if inside[i, j, k] != inside[i + 1, j, k]:
-                    _cross(dexels, lattice, coarse, (i - 1, j - 1, k - 1), 0, inside[i, j, k], found, number)
+                    _cross(
+                        dexels,
+                        lattice,
+                        coarse,
+                        (i - 1, j - 1, k - 1),
+                        0,
+                        inside[i, j, k],
+                        found,
+                        number,
+                    )
                     layer[0, j, k] = number
                     number += 1
         number = _cross_layer(dexels, lattice, coarse, inside, i + 1, found, number)
@@ -114,14 +123,26 @@ def find_surface(
                 if corners not in (0, 255):
                     low = (i - 1, j - 1, k - 1)
                     patches, segments = _patch(
-                        lattice, coarse, loops, found, (corners, j, k), low, (crossings, patches, segments)
+                        lattice,
+                        coarse,
+                        loops,
+                        found,
+                        (corners, j, k),
+                        low,
+                        (crossings, patches, segments),
                     )
     return patches
 
 
 @arithmetic_kernel
 def _cross_layer(
-    dexels: Dexels, lattice: Lattice, coarse: Coarse, inside: Flags, i: int, found: Crossings, number: int
+    dexels: Dexels,
+    lattice: Lattice,
+    coarse: Coarse,
+    inside: Flags,
+    i: int,
+    found: Crossings,
+    number: int,
 ) -> int:
     """Find the crossings of the edges along Y and Z of one layer of nodes; returns the next number."""
     for j in range(inside.shape[1]):
@@ -178,7 +199,9 @@ def _cross(
 def _edge(loops: CellLoops, found: Crossings, edge: int, j: int, k: int) -> int:
     """Number of the crossing on an edge of the cube between the layers that are at hand."""
     corner, axis = loops.ends[edge, 0], loops.axis[edge]
-    return found.layer[axis + 2 * (corner & 1) if axis else 0, j + (corner >> 1 & 1), k + (corner >> 2)]
+    return found.layer[
+        axis + 2 * (corner & 1) if axis else 0, j + (corner >> 1 & 1), k + (corner >> 2)
+    ]
 
 
 @arithmetic_kernel

@@ -7,7 +7,14 @@ from twin.compilation.compilable import inlined
 from twin.compilation.kernel import arithmetic_kernel
 from twin.cutting.kernels.sweep import chord
 from twin.cutting.tridexel.dexels import Dexels, Lattice
-from twin.cutting.tridexel.intervals import BEGINS_ABOVE, ENDS_BELOW, Node, meeting, overlap, subtract
+from twin.cutting.tridexel.intervals import (
+    BEGINS_ABOVE,
+    ENDS_BELOW,
+    Node,
+    meeting,
+    overlap,
+    subtract,
+)
 from twin.cutting.tridexel.normals import packed
 from twin.cutting.tridexel.rays import Ray, crossing, greatest_radius, outwards
 from twin.cutting.tridexel.solids import Solid
@@ -105,9 +112,7 @@ def _bend(poses: Poses, solid: Solid, number: int) -> float:
 
 
 @arithmetic_kernel
-def _within_box(
-    lattice: Lattice, poses: Poses, solid: Solid, number: int
-) -> tuple[float, float]:
+def _within_box(lattice: Lattice, poses: Poses, solid: Solid, number: int) -> tuple[float, float]:
     """Lowest and highest place on the axis about which the solid may be in the blank's box; or none [mm]."""
     begin, end = solid.low, solid.high
     if _is_ball(solid):
@@ -159,9 +164,7 @@ def _sweep_lines(
         _point(poses, a + 1, high, u, v, d),
     )
     # Discs stand upright on the axis: along a direction they reach as far as they are across it.
-    slant = math.sqrt(
-        max(1.0 - min(poses.axis[a, d] ** 2, poses.axis[a + 1, d] ** 2), 0.0)
-    )
+    slant = math.sqrt(max(1.0 - min(poses.axis[a, d] ** 2, poses.axis[a + 1, d] ** 2), 0.0))
     deep = step.bend + (reach if solid.rounding > 0.0 else reach * slant)
     bottom = min(corner[0][2], corner[1][2], corner[2][2], corner[3][2]) - deep
     top = max(corner[0][2], corner[1][2], corner[2][2], corner[3][2]) + deep
@@ -336,14 +339,14 @@ def _swept_ball(
     low_share = min(max(nearest - shift, first), last)
     high_share = min(max(nearest + shift, first), last)
     low = az + low_share * dz - math.sqrt(max(inside - squared * (low_share - nearest) ** 2, 0.0))
-    high = az + high_share * dz + math.sqrt(max(inside - squared * (high_share - nearest) ** 2, 0.0))
+    high = (
+        az + high_share * dz + math.sqrt(max(inside - squared * (high_share - nearest) ** 2, 0.0))
+    )
     return low, high, low_share, high_share
 
 
 @arithmetic_kernel
-def _pose(
-    poses: Poses, a: int, share: float
-) -> tuple[float, float, float, float, float, float]:
+def _pose(poses: Poses, a: int, share: float) -> tuple[float, float, float, float, float, float]:
     """Tip and direction at a share of a step."""
     tip, axis = poses.tip, poses.axis
     b, rest = a + 1, 1.0 - share
