@@ -21,6 +21,7 @@ from twin.cutting.forces.load_log import LoadLog
 from twin.cutting.inspection import Inspection
 from twin.cutting.nominal import NominalGouge
 from twin.cutting.program_summary import ProgramSummary
+from twin.cutting.tools import ToolPlan
 from twin.errors import ConfigError
 from twin.job.job_file import ToleranceTable
 from twin.machine.description.motion_limits import motion_limits
@@ -130,7 +131,7 @@ class Run:
             ConfigError: A tolerance limits the force of the cut, and nothing simulates that.
             SimulationError: The simulation failed; the recording is not kept.
         """
-        comparison, machining = self._comparison(), self._machining(dry_run)
+        comparison, machining = self._comparison(dry_run.summary.tools), self._machining(dry_run)
         self._process = None
         reached = _Reached(self.part_zero, dry_run.program.start)
         alarm, near_miss = dry_run.alarm or self._overspeed(dry_run), None
@@ -139,7 +140,7 @@ class Run:
             with self._recording(out) as writer:
                 if motion is None:
                     setpoints = self._setpoints(dry_run.program, comparison)
-                    motion = self._simulation(setpoints, dry_run.summary)
+                    motion = self._simulation(setpoints, dry_run)
                 else:
                     _expect_all(dry_run.program, comparison)
                 if self._process is None or not speeds_are_known(dry_run.summary):
@@ -251,7 +252,7 @@ class Run:
         job, watch = self.preparation.job.file, dry_run.watch
         if cut is not None:
             yield from cut_notices(job, watch, machining, cut)
-        elif watch.spindle_line and watch.first_feed:
+        elif watch.spindle_line and watch.first_feed and job.stock is None:
             message = "the spindle turns, and the job has no [stock]: nothing that is cut is judged"
             yield Notice("no-stock", watch.spindle_line, message)
         floats = what_carries(self.model)
@@ -316,22 +317,26 @@ class Run:
 
         return self.clock.watch("plan", settle(planned(), period))
 
-    def _simulation(self, setpoints: Iterator[Setpoints], summary: ProgramSummary) -> Simulation:
+    def _simulation(self, setpoints: Iterator[Setpoints], dry_run: DryRun) -> Simulation:
+        summary = dry_run.summary
         machine, job = self.machine, self.preparation.job.file
         load = None
-        self._process = program_process(job, machine, summary, self.part_frame, self.part_zero)
+        self._process = None
+        if self.part_frame.chain is None:
+            self._process = program_process(job, machine, summary, self.part_frame, self.part_zero)
         if job.cutting_load and self._process is None:
-            if job.stock is None:
-                raise ConfigError("cutting_load needs a [stock] to cut")
+            if job.stock is None or dry_run.tilts:
+                raise ConfigError("cutting_load needs a [stock] that is cut from one side")
             load = AxisLoad(job.stock, summary, self.part_frame, self.part_zero)
         return simulate(machine, self.model, setpoints, summary.tools, load, self._process)
 
-    def _comparison(self) -> Comparison:
+    def _comparison(self, tools: ToolPlan) -> Comparison:
         return Comparison(
             self.preparation.machine.axes,
             self.part_frame,
             self.part_zero,
             apart=[part.lines for part in self.preparation.job.file.tolerance.blocks],
+            lower=tools.lower,
         )
 
     def _machining(self, dry_run: DryRun) -> Machining:
@@ -342,6 +347,7 @@ class Run:
             self.part_frame,
             self.part_zero,
             dry_run.watch.stops,
+            tilts=dry_run.tilts,
         )
 
     def _recording(self, out: Path | None) -> AbstractContextManager[RecordingWriter | None]:
