@@ -22,7 +22,7 @@ def bar() -> TriDexel:
 
 
 def material(part: TriDexel) -> list[tuple[float, float]]:
-    first, count = int(part.dexels.first[LINE]), int(part.dexels.count[LINE])
+    first, count = int(part.dexels.first[LINE]), int(part.dexels.filled[LINE])
     return [(float(low), float(high)) for low, high in part.dexels.ends[first : first + count]]
 
 

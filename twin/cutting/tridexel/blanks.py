@@ -56,12 +56,13 @@ def box(low: FloatArray, high: FloatArray, cell: float) -> TriDexel:
     """
     lattice = lattice_around(low, high, cell)
     dexels = no_material(lattice, np.ones(lattice.lines, np.int16))
-    dexels.count[:] = 1
+    dexels.filled[:] = 1
     ends = [*lattice.base.tolist(), lattice.lines]
     for d in range(3):
-        lines, sides = slice(ends[d], ends[d + 1]), np.eye(3)[d]
+        lines = slice(ends[d], ends[d + 1])
+        x, y, z = (float(part) for part in np.eye(3)[d])
         dexels.ends[lines] = low[d], high[d]
-        dexels.skin[lines] = packed(*-sides, OWN), packed(*sides, OWN)
+        dexels.skin[lines] = packed(-x, -y, -z, OWN), packed(x, y, z, OWN)
     return TriDexel(lattice, dexels, np.array([low, high]))
 
 
@@ -112,7 +113,7 @@ def _fill(dexels: Dexels, lattice: Lattice, poses: Poses, solid: Solid) -> None:
                     continue
                 line = lattice.base[d] + row * lattice.shape[u] + column
                 place = dexels.first[line]
-                dexels.count[line] = 1
+                dexels.filled[line] = 1
                 dexels.ends[place, 0], dexels.ends[place, 1] = low, high
                 for end, t in enumerate((low, high)):
                     dexels.skin[place, end] = surface(poses, solid, (d, t, x, y), 0, 0.0, 1.0, OWN)

@@ -117,4 +117,4 @@ def _join(
                     dexels.ends[kept, side] = places[place]
                     dexels.skin[kept, side] = packed(normal[0], normal[1], normal[2], 0)
                 kept += 1
-        dexels.count[line] = kept - dexels.first[line]
+        dexels.filled[line] = kept - dexels.first[line]

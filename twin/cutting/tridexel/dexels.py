@@ -59,7 +59,7 @@ class Dexels(NamedTuple):
 
     Attributes:
         first: Place of each line's first interval, shape (n,).
-        count: Intervals of each line, shape (n,).
+        filled: Intervals of each line, shape (n,).
         capacity: Intervals that each line has memory for, shape (n,).
         ends: Where material begins and ends, rising along a line, shape (m, 2) [mm].
         skin: Normal and tool of the surface there (``normals``), shape (m, 2).
@@ -67,7 +67,7 @@ class Dexels(NamedTuple):
     """
 
     first: IntArray
-    count: npt.NDArray[np.int16]
+    filled: npt.NDArray[np.int16]
     capacity: npt.NDArray[np.int16]
     ends: FloatArray
     skin: SkinArray
@@ -75,7 +75,14 @@ class Dexels(NamedTuple):
 
     def copy(self) -> "Dexels":
         """Dexels that can be cut without touching these."""
-        return Dexels(*(column.copy() for column in self))
+        return Dexels(
+            self.first.copy(),
+            self.filled.copy(),
+            self.capacity.copy(),
+            self.ends.copy(),
+            self.skin.copy(),
+            self.used.copy(),
+        )
 
     def grown(self) -> "Dexels":
         """The same with more memory, and without gaps in it."""
@@ -83,7 +90,7 @@ class Dexels(NamedTuple):
         total = int(capacity.sum())
         larger = Dexels(
             np.cumsum(capacity) - capacity,
-            self.count,
+            self.filled,
             self.capacity,
             np.zeros((LEAST_INTERVALS + round(SPARE_INTERVALS * total), 2)),
             np.zeros((LEAST_INTERVALS + round(SPARE_INTERVALS * total), 2), np.int32),
@@ -95,7 +102,7 @@ class Dexels(NamedTuple):
 
     def places(self) -> tuple[IntArray, IntArray]:
         """Line and place in memory of every interval, line by line, shapes (k,)."""
-        count = self.count.astype(np.int64)
+        count = self.filled.astype(np.int64)
         line = np.repeat(np.arange(len(count)), count)
         within = np.arange(len(line)) - np.repeat(np.cumsum(count) - count, count)
         return line, self.first[line] + within

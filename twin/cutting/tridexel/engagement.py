@@ -21,7 +21,7 @@ from twin.cutting.tridexel.sweep import (
     Poses,
     sweep,
 )
-from twin.nc.canonical import FloatArray
+from twin.nc.canonical import BoolArray, FloatArray
 
 
 class Engagement(NamedTuple):
@@ -37,7 +37,7 @@ class Engagement(NamedTuple):
     """
 
     volume: FloatArray
-    touched: FloatArray
+    touched: BoolArray
     depth: FloatArray
     middle: FloatArray
     longest: FloatArray

@@ -67,7 +67,7 @@ def total_worth(dexels: Dexels, line: int, end: int, node: Node) -> float:
     """What the material of some lines of one direction is worth in volume, over the area of a cell [mm]."""
     total = 0.0
     for each in range(line, end):
-        for place in range(dexels.first[each], dexels.first[each] + dexels.count[each]):
+        for place in range(dexels.first[each], dexels.first[each] + dexels.filled[each]):
             total += worth(dexels.ends[place, 1], dexels.skin[place, 1], node)
             total -= worth(dexels.ends[place, 0], dexels.skin[place, 0], node)
     return total
@@ -83,7 +83,7 @@ def meeting(dexels: Dexels, line: int, low: float, high: float) -> int:
     """What a line has between two places."""
     found = 0
     first = dexels.first[line]
-    for place in range(first, first + dexels.count[line]):
+    for place in range(first, first + dexels.filled[line]):
         begin, end = dexels.ends[place, 0], dexels.ends[place, 1]
         if begin < high and end > low + LEAST_MM:
             found |= MEETS
@@ -99,7 +99,7 @@ def overlap(dexels: Dexels, line: int, low: float, high: float) -> float:
     """The longest material of a line between two places [mm]."""
     longest = 0.0
     first = dexels.first[line]
-    for place in range(first, first + dexels.count[line]):
+    for place in range(first, first + dexels.filled[line]):
         begin, end = max(dexels.ends[place, 0], low), min(dexels.ends[place, 1], high)
         longest = max(longest, end - begin)
     return longest
@@ -126,7 +126,7 @@ def subtract(
     length, volume, moment, longest = 0.0, 0.0, 0.0, 0.0
     lowest, highest = math.inf, -math.inf
     place = dexels.first[line]
-    end = place + dexels.count[line]
+    end = place + dexels.filled[line]
     kept = place
     while place < end:
         begin, stop = dexels.ends[place, 0], dexels.ends[place, 1]
@@ -138,11 +138,11 @@ def subtract(
             place += 1
             continue
         below, above = a - begin > LEAST_MM, stop - b > LEAST_MM
-        if below and above and dexels.count[line] == dexels.capacity[line]:
+        if below and above and dexels.filled[line] == dexels.capacity[line]:
             # The interval that is split is the only one that is cut: nothing was taken yet.
             if not _move_to_end(dexels, line):
                 return Piece(-1.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-            shift = dexels.first[line] - (end - dexels.count[line])
+            shift = dexels.first[line] - (end - dexels.filled[line])
             place, kept, end = place + shift, kept + shift, end + shift
         length += b - a
         volume += worth(b, skin[1] if above else dexels.skin[place, 1], node)
@@ -155,7 +155,7 @@ def subtract(
                 _move(dexels, other - 1, other)
             dexels.ends[place, 1], dexels.skin[place, 1] = a, skin[0]
             dexels.ends[place + 1, 0], dexels.skin[place + 1, 0] = b, skin[1]
-            dexels.count[line] += 1
+            dexels.filled[line] += 1
             return Piece(length, volume, moment, lowest, highest, longest)
         if below:
             dexels.ends[place, 1], dexels.skin[place, 1] = a, skin[0]
@@ -166,7 +166,7 @@ def subtract(
                 _move(dexels, place, kept)
             kept += 1
         place += 1
-    dexels.count[line] = kept - dexels.first[line]
+    dexels.filled[line] = kept - dexels.first[line]
     return Piece(length, volume, moment, lowest, highest, longest)
 
 
@@ -185,7 +185,7 @@ def _move_to_end(dexels: Dexels, line: int) -> bool:
     if target + capacity > len(dexels.ends):
         return False
     first = dexels.first[line]
-    for i in range(dexels.count[line]):
+    for i in range(dexels.filled[line]):
         _move(dexels, first + i, target + i)
     dexels.first[line] = target
     dexels.capacity[line] = capacity

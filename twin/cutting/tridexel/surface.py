@@ -59,7 +59,7 @@ def mark_inside(dexels: Dexels, lattice: Lattice, coarse: Coarse, inside: Flags)
             column, row = first + (i - 1) * step, first + (j - 1) * step
             line = lattice.base[2] + row * lattice.shape[0] + column
             start = dexels.first[line]
-            for place in range(start, start + dexels.count[line]):
+            for place in range(start, start + dexels.filled[line]):
                 low = (dexels.ends[place, 0] - lattice.origin[2]) / lattice.cell - first
                 high = (dexels.ends[place, 1] - lattice.origin[2]) / lattice.cell - first
                 begin = max(0, math.ceil(low / step))
@@ -183,7 +183,7 @@ def _cross(
     low = lattice.origin[d] + cell * (first + node[d] * step)
     length = cell * step
     best, nearest, skin = math.inf, low + 0.5 * length, 0
-    for place in range(dexels.first[line], dexels.first[line] + dexels.count[line]):
+    for place in range(dexels.first[line], dexels.first[line] + dexels.filled[line]):
         t = dexels.ends[place, ends]
         off = max(low - t, t - low - length, 0.0)
         if off < best:
