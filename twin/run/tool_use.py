@@ -8,6 +8,7 @@ from twin.cutting.cut import CutResult
 from twin.cutting.tools import ToolPlan
 from twin.job.job_file import ToolTable
 from twin.recording.form import Samples
+from twin.run.observers import Observer
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -36,19 +37,22 @@ class ToolUse:
         }
 
 
-class ToolTimes:
+class ToolTimes(Observer):
     """Counts the time of each tool along a run."""
+
+    stage = "compare"
 
     def __init__(self, plan: ToolPlan, period_s: float) -> None:
         self._plan, self._period_s = plan, period_s
         self._seconds: defaultdict[int, float] = defaultdict(float)
 
-    def add(self, samples: Samples) -> None:
-        """Take in the next chunk."""
+    def add(self, samples: Samples) -> Samples:
+        """Take in the next chunk; see ``Observer``."""
         for run, tool in self._plan.runs(samples.setpoint.move):
             self._seconds[tool.number] += (run.stop - run.start) * self._period_s
+        return samples
 
-    def result(self, cut: CutResult | None) -> tuple[ToolUse, ...]:
+    def result(self, cut: CutResult | None = None) -> tuple[ToolUse, ...]:
         """The tools in the order in which they come into the spindle."""
         tools = {tool.number: tool for tool in self._plan.tools}
         return tuple(
