@@ -23,11 +23,10 @@ from twin.run.cut_notices import (
 )
 from twin.run.dry_run import DryRun
 from twin.run.machining import Machining
-from twin.run.notices import Notice, shown
-from twin.run.observers import Reached
+from twin.run.messages import Notice, shown
+from twin.run.observers import Reached, ToolUse
 from twin.run.preparation import Preparation
 from twin.run.scope import Scope, nothing_judged, scope_of
-from twin.run.tool_use import ToolUse
 from twin.units import UM_PER_MM
 
 

@@ -23,15 +23,14 @@ from twin.run.observers import (
     Observer,
     Reached,
     Recorded,
+    ToolTimes,
     Traced,
     observed,
 )
 from twin.run.outcome import Findings, Outcome, outcome_of, refuse_unjudged_loads
 from twin.run.pipeline import Motion, ProgramMotion, cutting_forces, grown, planned
 from twin.run.preparation import Preparation
-from twin.run.progress import Progress
-from twin.run.stages import StageClock
-from twin.run.tool_use import ToolTimes
+from twin.run.progress import Progress, StageClock
 from twin.version import __version__
 
 
