@@ -221,9 +221,8 @@ def later_motion(run: Run, dry_run: DryRun) -> ProgramMotion:
         run: The prepared job.
         dry_run: What its dry run found.
     """
-    job, machine, summary = run.preparation.job.file, run.machine, dry_run.summary
-    forces = cutting_forces(job, machine, summary, run.layout)
-    return ProgramMotion(_aslant(run, dry_run.program), run.model, summary, forces)
+    forces = cutting_forces(run.preparation.job.file, run.machine, dry_run, run.layout)
+    return ProgramMotion(_aslant(run, dry_run.program), run.model, dry_run.summary, forces)
 
 
 def _aslant(run: Run, program: InterpretedProgram) -> Iterator[Setpoints]:

@@ -78,7 +78,7 @@ def print_circle(
         name: A shipped machine's name, or a machine file.
         radius: [mm].
         feed: [mm/min].
-        plane: ``XY``, ``ZX``, ``YZ`` or ``XYC``.
+        plane: ``XY``, ``ZX``, ``YZ``, or with the table ``XYC``, ``ZXB``, ``YZA``.
         form: ``text`` or ``json``.
         plot: Where the picture goes; its suffix tells the kind.
 

@@ -43,6 +43,8 @@ class Machining(Observer):
         part_frame: PartFrame,
         part_zero: FloatArray,
         stops: Sequence[Stop] = (),
+        *,
+        tilts: bool = False,
     ) -> None:
         """Lay the blank on the table.
 
@@ -53,17 +55,18 @@ class Machining(Observer):
             part_frame: How the part turns under the tool.
             part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
             stops: Where the program stops spindle or tool, in order.
+            tilts: The tool stands off the part's Z, where no height map can be cut: nothing is.
         """
         self.stopped: list[Stop] = []
         self.ended_in_cut = False
         self._stops = list(stops)
         self._summary = summary
-        self._zero = part_zero[:3] - np.array([*part_frame.center, 0.0])
+        self._zero = part_frame.program_zero(part_zero)
         self._cutter: Cutter | None = None
         self._nominal: NominalWatch | None = None
         self._gouge_um = None if job.nominal is None else job.nominal.gouge_um
         self._gouge_stops = job.nominal is not None and job.nominal.gouge == "alarm"
-        if job.stock is not None:
+        if job.stock is not None and not tilts:
             head = HeadShape(model).above_tip
             self._cutter = Cutter(
                 job.stock, summary.tools, part_frame, part_zero, halts=True, head=head

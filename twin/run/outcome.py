@@ -182,7 +182,7 @@ def _notices(preparation: Preparation, dry_run: DryRun, found: Findings) -> Iter
     job, watch = preparation.job.file, dry_run.watch
     if found.cut is not None:
         yield from cut_notices(job, watch, found.machining, found.cut)
-    elif watch.spindle_line and watch.first_feed:
+    elif watch.spindle_line and watch.first_feed and job.stock is None:
         message = "the spindle turns, and the job has no [stock]: nothing that is cut is judged"
         yield Notice("no-stock", watch.spindle_line, message)
     if found.floats is not None:

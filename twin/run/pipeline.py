@@ -21,7 +21,7 @@ from twin.motion.setpoints.setpoints import Setpoints
 from twin.motion.setpoints.settle import settle
 from twin.nc.canonical import Chunk, FloatArray, Moves
 from twin.recording.reader import Samples
-from twin.run.dry_run import InterpretedProgram
+from twin.run.dry_run import DryRun, InterpretedProgram
 from twin.run.layout import Layout
 
 
@@ -143,20 +143,20 @@ def planned(
     )
 
 
-def cutting_forces(
-    job: JobFile, machine: Machine, summary: ProgramSummary, layout: Layout
-) -> Forces:
+def cutting_forces(job: JobFile, machine: Machine, dry_run: DryRun, layout: Layout) -> Forces:
     """What the cut of a job pushes the axes with.
 
     Raises:
         ConfigError: The job wants a force that cannot be computed.
     """
-    process = program_process(job, machine, summary, layout.part_frame, layout.part_zero)
+    process, summary, frame = None, dry_run.summary, layout.part_frame
+    if frame.chain is None:
+        process = program_process(job, machine, summary, frame, layout.part_zero)
     if process is not None or not job.cutting_load:
         return Forces(process)
-    if job.stock is None:
-        raise ConfigError("cutting_load needs a [stock] to cut")
-    return Forces(load=AxisLoad(job.stock, summary, layout.part_frame, layout.part_zero))
+    if job.stock is None or dry_run.tilts:
+        raise ConfigError("cutting_load needs a [stock] that is cut from one side")
+    return Forces(load=AxisLoad(job.stock, summary, frame, layout.part_zero))
 
 
 def grown(

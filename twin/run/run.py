@@ -129,10 +129,18 @@ class Run:
     def _followers(self, dry_run: DryRun) -> "Followers":
         job, machine, summary = self.preparation.job.file, self.machine, dry_run.summary
         apart = [part.lines for part in job.tolerance.blocks]
-        comparison = Comparison(machine.axes, self.part_frame, self.part_zero, apart)
+        comparison = Comparison(
+            machine.axes, self.part_frame, self.part_zero, apart, lower=summary.tools.lower
+        )
         return Followers(
             machining=Machining(
-                self.model, job, summary, self.part_frame, self.part_zero, dry_run.watch.stops
+                self.model,
+                job,
+                summary,
+                self.part_frame,
+                self.part_zero,
+                dry_run.watch.stops,
+                tilts=dry_run.tilts,
             ),
             reached=Reached(self.part_zero, dry_run.program.start),
             loads=Loads(),
@@ -147,7 +155,7 @@ class Run:
         expect = followers.compared.comparison.expect
         if given is None:
             setpoints = planned(program, self.machine, self.part_zero, expect)
-            forces = cutting_forces(job, self.machine, summary, self.layout)
+            forces = cutting_forces(job, self.machine, dry_run, self.layout)
             watched = self.clock.watch("plan", setpoints)
             motion = ProgramMotion(watched, self.model, summary, forces)
         else:

@@ -249,7 +249,7 @@ class RoomApp:
         drawn = drawn_machine(
             scene.machine,
             room.setup.tables.tools[number],
-            room.setup.part_frame.turn_zero,
+            room.setup.part_frame,
             scene.job.file.stock,
             room.setup.tables.true_zero,
         )
