@@ -7,7 +7,7 @@ import numpy as np
 from twin.columns import join
 from twin.cutting.cut import Cutter
 from twin.cutting.height_map import BoolArray, HeightMap
-from twin.cutting.stock_contact import Head
+from twin.cutting.material import Head
 from twin.cutting.sweeping import Rectangle, union
 from twin.job.job_file import StockTable, ToolTable
 from twin.machine.watching.alarms import Alarm
