@@ -296,7 +296,7 @@ def _set_tool(room: Room, command: c.SetTool) -> None:
 
 
 def _sign(_room: Room, _command: c.Sign) -> None:
-    """Only the sheet wants to know."""
+    """Only the score sheet needs it."""
 
 
 def _answer(room: Room, command: c.Answer) -> None:
