@@ -214,6 +214,15 @@ def test_the_machine_is_worked_by_hand_from_the_sheets(room, chromium_context):
     page.fill("[data-key='radius 1']", "2.5")
     page.press("[data-key='radius 1']", "Tab")
     player.until(lambda: machine.setup.tables.radii[1] == 2.5, "the radius")
+    page.fill("#new-tool-number", "12")
+    page.select_option("#new-tool-kind", "drill")
+    page.fill("#new-tool-diameter", "8.5")
+    page.fill("#new-tool-length", "80")
+    player.press("add tool", "add_tool")
+    player.until(lambda: 12 in machine.setup.tables.tools, "the row")
+    player.press("change tool 12", "change_tool")
+    player.until(lambda: machine.setup.tables.spindle == 12, "the tool")
+    assert machine.setup.tables.tool.kind == "drill"
 
 
 def test_a_handwheel_that_is_spun_is_heard_to_its_last_click(room, context):
