@@ -14,7 +14,7 @@ from twin.job.job_file import ToolTable
 from twin.machine.description.config import Blank, Machine
 from twin.machine.load import read_machine
 from twin.machine.model.clamping import refuse_overlaps
-from twin.machine.model.model import ROTARY_TABLE, MachineModel, clearance_model
+from twin.machine.model.model import MachineModel, clearance_model
 from twin.machine.model.tool_shape import COLLISION_GROUP, TOOL_SIDE
 from twin.machine.watching.clearance import Clearance
 from twin.units import MM
@@ -139,4 +139,4 @@ def test_a_jaw_that_touches_the_stock_is_none() -> None:
     jaw = FixtureTable(name="jaw", size=(40.0, 20.0, 45.0), position=(0.0, -30.0, 0.0))
     model = clamped("mill4", jaw)
     refuse_overlaps(model)
-    assert ROTARY_TABLE in [body.name for body in model.spec.bodies]
+    assert "jaw" in [geom.name for geom in model.spec.geoms]
