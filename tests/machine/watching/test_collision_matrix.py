@@ -57,12 +57,13 @@ def built_to_pass(model: mujoco.MjModel, one: int, two: int) -> bool:
     return not names.intersection(CLAMPED) and (not any(tool) or gantry)
 
 
-PAIRS = [*all_pairs("mill4"), *all_pairs("mill4_light")]
+MACHINES = ("mill4", "mill4_light", "mill3", "mill4a", "mill5")
+PAIRS = [pair for name in MACHINES for pair in all_pairs(name)]
 
 
 @pytest.fixture(scope="module")
 def machines() -> dict[str, tuple[Machine, mujoco.MjSpec]]:
-    models = {name: clamped(name) for name in ("mill4", "mill4_light")}
+    models = {name: clamped(name) for name in MACHINES}
     return {name: (model.machine, model.spec) for name, model in models.items()}
 
 
@@ -114,7 +115,7 @@ def _half_height(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> float
 
 def test_every_body_of_the_machine_is_in_the_matrix() -> None:
     named = {solid for _, one, two in PAIRS for solid in (one, two)}
-    for name in ("mill4", "mill4_light"):
+    for name in MACHINES:
         for geom in clamped(name).spec.geoms:
             assert geom.group != COLLISION_GROUP or geom.name in named, geom.name
 
