@@ -15,18 +15,19 @@ from twin.cutting.forces.mean_force import cutting_load, cutting_width
 from twin.cutting.height_map import BoolArray, HeightMap, blank
 from twin.cutting.height_map_material import HeightMapMaterial
 from twin.cutting.kernels.sweep import Removal
-from twin.cutting.material import EDGE, Head, Material, Points
+from twin.cutting.material import AIR_MM, EDGE, Head, Material, Points
 from twin.cutting.sweeping import Rectangle
 from twin.cutting.tools import Profile, ToolPlan, default_cell, profile
 from twin.cutting.tridexel import blanks
 from twin.cutting.tridexel.material import TriDexelMaterial
+from twin.errors import ConfigError
 from twin.job.job_file import StockTable, ToolTable
 from twin.nc.canonical import FloatArray, IntArray
 from twin.recording.reader import Samples
 from twin.toolpath.part_frame import PartFrame
 
-AIR_MM = 1e-3
-"""A stretch that takes less than this off one cell cuts air [mm]."""
+HEIGHT_MAP, TRI_DEXEL = "height map", "tri-dexel"
+"""What describes the material."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,8 +38,10 @@ class CutResult:
     """Material taken off [mm³]."""
     removed_by_tool_mm3: Mapping[int, float]
     """What each tool took off, by its number, in the order of use [mm³]."""
+    stock: str
+    """What described the material: ``HEIGHT_MAP`` where the tool kept to the part's Z, else ``TRI_DEXEL``."""
     cell_mm: float
-    """Side of a cell of the height map [mm]."""
+    """Side of a cell of it [mm]."""
     air_share: float
     """Share of the cutting feed's path that met no material."""
     gouges: tuple[CutEvent, ...]
@@ -205,10 +208,6 @@ class Cutter:
         """
         return self._of_height_map.map
 
-    @map.setter
-    def map(self, other: HeightMap) -> None:
-        self._of_height_map.map = other
-
     @property
     def marks(self) -> FloatArray:
         """Way of the tool at which each cell was last cut, shape (ny, nx) [mm]; of no size unless asked for."""
@@ -243,6 +242,7 @@ class Cutter:
         return CutResult(
             removed_mm3=sum(self._removed.values()),
             removed_by_tool_mm3=dict(self._removed),
+            stock=TRI_DEXEL if self.tilts else HEIGHT_MAP,
             cell_mm=self.material.cell,
             air_share=self._air_path / self._feed_path if self._feed_path else 0.0,
             gouges=self._gouges.events(),

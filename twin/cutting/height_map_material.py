@@ -74,6 +74,7 @@ class HeightMapMaterial:
         self, points: Points, tool: ToolTable, edge: Profile, travelled: FloatArray, *, stood: bool
     ) -> Removal:
         """Cut what a tool meets, and note the walls that it leaves."""
+        del tool
         material, way = self.map, points.tip
         found = sweep_lines(material, way, edge, Marks(self.marks, travelled), stood=stood)
         self.changed = union(self.changed, found.changed)

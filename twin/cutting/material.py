@@ -25,6 +25,9 @@ cutting is told from air."""
 MOST_JOINED = 64
 """Samples that one stretch may stand for."""
 
+AIR_MM = 1e-3
+"""A stretch that takes less than this off one cell cuts air [mm]."""
+
 EDGE = "edge"
 """The cutting edge, which may be in the material in a feed alone."""
 

@@ -2,7 +2,7 @@
 
 import bisect
 import dataclasses
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Generic, TypeVar
 
 import numpy as np
@@ -61,12 +61,14 @@ class ProgramSummary:
             is held to it from its first move on.
         shown: What the control's screen adds to the axes' positions, shape (k,) each [mm or deg];
             none: nothing ever.
+        tilts: Whether the tool ever stands off the part's Z.
     """
 
     tools: ToolPlan
     rapid: BoolArray = dataclasses.field(default_factory=lambda: np.zeros(0, np.bool_))
     spindle: Steps[float | None] = Steps((0,), (None,))
     shown: Steps[FloatArray] | None = None
+    tilts: bool = False
 
     def is_rapid(self, move: IntArray) -> BoolArray:
         """Which samples belong to rapids, by their move numbers, shape (n,); -1 does not."""
@@ -79,12 +81,19 @@ class ProgramSummary:
 class SummaryBuilder:
     """Reads a program along, chunk by chunk."""
 
-    def __init__(self, job: JobFile, spindle: SpindleState | None = None) -> None:
+    def __init__(
+        self,
+        job: JobFile,
+        spindle: SpindleState | None = None,
+        tilts: Callable[[FloatArray], bool] | None = None,
+    ) -> None:
         """Begin with the job's first tool in a spindle of which nothing was said.
 
         Args:
             job: Its tools are those that the program may bring.
             spindle: As the machine and the control have it; None: without a limit.
+            tilts: Whether the tool stands off the part's Z anywhere at program coordinates, shape (n, k);
+                None: it never does.
         """
         self._tools = {tool.number: tool for tool in job.tools}
         # Without a list of tools every number means the default tool, as in a run without one.
@@ -99,6 +108,7 @@ class SummaryBuilder:
         self._spindle: list[tuple[float, float | None]] = [(0.0, self._tool.speed)]
         self._shown: list[tuple[int, FloatArray]] = []
         self._rapid = bytearray()
+        self._stands_off, self._tilts = tilts, False
 
     def add(self, chunk: Chunk) -> None:
         """Take note of moves and functions that follow the last ones.
@@ -113,6 +123,9 @@ class SummaryBuilder:
                 self._function(event, before + event.before)
         if not len(moves):
             return
+        if self._stands_off is not None and not self._tilts:
+            within = moves.start + _WITHIN * (moves.end - moves.start)
+            self._tilts = self._stands_off(np.concatenate([moves.start, within, moves.end]))
         added = moves.display - moves.end
         last = self._shown[-1][1] if self._shown else np.zeros(added.shape[1])
         steps = np.abs(np.diff(added, axis=0, prepend=last[None])).max(axis=1) > _SHOWN_STEP
@@ -132,6 +145,7 @@ class SummaryBuilder:
             rapid=np.frombuffer(bytes(self._rapid), np.bool_),
             spindle=_steps(self._spindle),
             shown=shown,
+            tilts=self._tilts,
         )
 
     def _function(self, event: Function, move: int) -> None:
@@ -171,6 +185,8 @@ class SummaryBuilder:
         self._plan.append((move, self._tool.model_copy(update={"speed": speed})))
 
 
+_WITHIN = 0.382
+"""Where within a move it is looked at too, as a share of it: a full turn begins and ends alike."""
 _SHOWN_STEP = 1e-9
 """Changes of what the screen adds that are the arithmetic's doing [mm or deg]."""
 

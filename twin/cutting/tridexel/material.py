@@ -11,6 +11,7 @@ from twin.cutting.kernels.overlap import Overlap
 from twin.cutting.kernels.sweep import Removal
 from twin.cutting.kernels.thin import thin_poses
 from twin.cutting.material import (
+    AIR_MM,
     EDGE,
     LONGEST_SHARE,
     MOST_JOINED,
@@ -45,6 +46,7 @@ class TriDexelMaterial:
 
     def __init__(self, stock: TriDexel) -> None:
         self.stock = stock
+        self._scraped = 0.0
         self.changed = False
 
     @property
@@ -93,8 +95,14 @@ class TriDexelMaterial:
         length = np.linalg.norm(left, axis=1)
         middle = found.middle - 0.5 * (poses.tip[1:] + poses.tip[:-1])
         aside = (middle * left).sum(axis=1) / np.where(length > 0.0, length, 1.0)
-        seen = found.touched & (length > 0.0)
-        return Removal(found.volume, found.depth, np.where(seen, aside, 0.0))
+        # A hair's breadth about a node counts for a part of its cell: it is added to the next real cut.
+        cuts = found.longest > AIR_MM
+        scraped = self._scraped + np.cumsum(np.where(cuts, 0.0, found.volume))
+        volume = np.where(cuts, found.volume, 0.0)
+        volume[cuts] += np.diff(scraped[cuts], prepend=0.0)
+        self._scraped = float(scraped[-1] - volume[cuts].sum() + found.volume[cuts].sum())
+        seen = cuts & (length > 0.0)
+        return Removal(volume, np.where(cuts, found.depth, 0.0), np.where(seen, aside, 0.0))
 
     def write_stl(self, path: Path, zero: ArrayLike) -> None:
         """Write the part as binary STL."""

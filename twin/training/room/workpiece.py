@@ -66,11 +66,12 @@ class Workpiece:
     def mount(self, tool: ToolTable) -> None:
         """Go on with another tool."""
         self._uncut = []
-        before = self._cutter.map
+        before = self._cutter.material
         self._cutter = Cutter(
             self._stock, tool, self._frame, self._zero, halts=True, head=self._head
         )
-        self._cutter.map = before
+        before.begin_chunk()
+        self._cutter.material = before
 
     def cut(
         self, tips: Samples, rapid: BoolArray, standing: BoolArray, *, at_once: bool
