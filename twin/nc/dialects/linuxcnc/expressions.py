@@ -5,11 +5,14 @@ logical operators, all from left to right. Angles are degrees.
 """
 
 import math
+import operator
 import re
 
 from twin.nc.text import arithmetic
-from twin.nc.text.expressions import ExpressionSyntax, FunctionOf, Operator
+from twin.nc.text.expressions import IN_DEGREES, ExpressionSyntax, FunctionOf, Operator
 
+_SAME_NUMBER = 0.0001
+"""Numbers that differ by less are equal for EQ and NE (LinuxCNC)."""
 _VARIABLE = r"#[ \t]*(?:[0-9]+(?![0-9.])|<[^<>#]*>)"
 
 
@@ -22,34 +25,26 @@ def spelled(name: str) -> str:
 EXPRESSIONS = ExpressionSyntax(
     operators={
         "**": Operator(6, math.pow),
-        "*": Operator(5, arithmetic.multiply),
-        "/": Operator(5, arithmetic.divide),
+        "*": Operator(5, operator.mul),
+        "/": Operator(5, operator.truediv),
         "MOD": Operator(5, arithmetic.positive_remainder),
-        "+": Operator(4, arithmetic.add),
-        "-": Operator(4, arithmetic.subtract),
-        "EQ": Operator(3, arithmetic.nearly_equal),
-        "NE": Operator(3, arithmetic.not_nearly_equal),
-        "GT": Operator(3, arithmetic.greater),
-        "GE": Operator(3, arithmetic.at_least),
-        "LT": Operator(3, arithmetic.less),
-        "LE": Operator(3, arithmetic.at_most),
+        "+": Operator(4, operator.add),
+        "-": Operator(4, operator.sub),
+        "EQ": Operator(3, lambda a, b: abs(a - b) < _SAME_NUMBER),
+        "NE": Operator(3, lambda a, b: not abs(a - b) < _SAME_NUMBER),
+        "GT": Operator(3, operator.gt),
+        "GE": Operator(3, operator.ge),
+        "LT": Operator(3, operator.lt),
+        "LE": Operator(3, operator.le),
         "AND": Operator(2, arithmetic.both),
         "OR": Operator(2, arithmetic.either),
         "XOR": Operator(2, arithmetic.one_alone),
     },
     functions={
-        "ABS": FunctionOf(math.fabs),
-        "ACOS": FunctionOf(arithmetic.arc_cosine_in_degrees),
-        "ASIN": FunctionOf(arithmetic.arc_sine_in_degrees),
-        "COS": FunctionOf(arithmetic.cosine_of_degrees),
-        "EXP": FunctionOf(math.exp),
-        "FIX": FunctionOf(arithmetic.whole_below),
-        "FUP": FunctionOf(arithmetic.next_whole),
-        "LN": FunctionOf(math.log),
+        **{name: each for name, each in IN_DEGREES.items() if name != "ATAN"},
+        "FIX": FunctionOf(math.floor),
+        "FUP": FunctionOf(math.ceil),
         "ROUND": FunctionOf(arithmetic.nearest_whole_away),
-        "SIN": FunctionOf(arithmetic.sine_of_degrees),
-        "SQRT": FunctionOf(math.sqrt),
-        "TAN": FunctionOf(arithmetic.tangent_of_degrees),
     },
     constants={},
     variable=_VARIABLE,
