@@ -1,7 +1,12 @@
-"""The controls, one module or folder each."""
+"""The controls, one module or folder each, and those that other packages bring.
+
+Entry points of the group ``twin.dialects`` name a ``Dialect`` each; ``tests/nc/dialects/test_outside.py`` shows a package
+of twenty lines.
+"""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
+from importlib.metadata import EntryPoint, entry_points
 
 from twin.errors import UsageError
 from twin.nc.control.dialect import Dialect
@@ -13,9 +18,45 @@ from twin.nc.dialects.grbl import GRBL
 from twin.nc.dialects.heidenhain import HEIDENHAIN
 from twin.nc.dialects.linuxcnc import LINUXCNC
 from twin.nc.dialects.mefi import MEFI
-from twin.nc.dialects.outside import dialects_from_outside
 from twin.nc.dialects.sinumerik import SINUMERIK
 from twin.nc.text.source import Source
+
+GROUP = "twin.dialects"
+
+
+def dialects_from_outside(
+    taken: Container[str],
+) -> tuple[dict[str, Dialect], dict[str, str]]:
+    """Load them; those of this package, which are ``taken``, none may replace.
+
+    Returns:
+        Those that could be loaded, by name, and why the others could not.
+    """
+    found: dict[str, Dialect] = {}
+    failed: dict[str, str] = {}
+    for point in entry_points(group=GROUP):
+        reason = _load(point, taken, found)
+        if reason:
+            failed[point.name] = reason
+    return found, failed
+
+
+def _load(point: EntryPoint, taken: Container[str], found: dict[str, Dialect]) -> str:
+    """Load one; why that fails, or nothing."""
+    package = point.dist.name if point.dist is not None else point.value
+    try:
+        dialect = point.load()
+    except Exception as error:  # noqa: BLE001 (a foreign package may raise anything)
+        return f"{point.value} of {package} cannot be loaded: {type(error).__name__}: {error}"
+    if not isinstance(dialect, Dialect):
+        return f"{point.value} of {package} is a {type(dialect).__name__}, not a Dialect"
+    if dialect.name != point.name:
+        return f"{point.value} of {package} is called '{dialect.name}'"
+    if point.name in taken or point.name in found:
+        return f"{point.value} of {package} has the name of another dialect"
+    found[point.name] = dialect
+    return ""
+
 
 OWN: Mapping[str, Dialect] = {
     dialect.name: dialect
