@@ -10,7 +10,7 @@ from trimesh.transformations import rotation_matrix
 
 from twin.files.shipped import machine_file
 from twin.job.job_file import StockTable, ToolTable
-from twin.machine.description.config import read_machine
+from twin.machine.load import read_machine
 from twin.render.machine_glb import COLLISION_PREFIX, drawn_machine
 from twin.render.scene.placement import Joints, tip_position
 
@@ -22,7 +22,9 @@ def drawn(request):
     machine = read_machine(machine_file(request.param))
     stock = StockTable(shape="box", size=(120.0, 80.0, 30.0))
     zero = np.array([0.0, 0.0, -300.0, 0.0])
-    return drawn_machine(machine, ToolTable(number=1, diameter=10.0), 0.0, stock, zero)
+    return drawn_machine(
+        machine, ToolTable(number=1, diameter=10.0), machine.part_frame, stock, zero
+    )
 
 
 def moved(drawn) -> trimesh.Scene:

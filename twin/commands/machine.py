@@ -11,7 +11,8 @@ from twin.machine.check import check_machine
 from twin.machine.circle.circle_plot import write_circle_plot
 from twin.machine.circle.circular_test import CircularTest, circular_test
 from twin.machine.describe import MachineFacts, describe, shipped_machines
-from twin.machine.description.config import Machine, read_machine
+from twin.machine.description.config import Machine
+from twin.machine.load import read_machine
 
 FORMATS = ("text", "json")
 PLOTS = (".svg", ".png", ".pdf")
@@ -77,7 +78,7 @@ def print_circle(
         name: A shipped machine's name, or a machine file.
         radius: [mm].
         feed: [mm/min].
-        plane: ``XY``, ``ZX``, ``YZ`` or ``XYC``.
+        plane: ``XY``, ``ZX``, ``YZ``, or with the table ``XYC``, ``ZXB``, ``YZA``.
         form: ``text`` or ``json``.
         plot: Where the picture goes; its suffix tells the kind.
 

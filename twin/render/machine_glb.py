@@ -18,6 +18,7 @@ from twin.nc.canonical import FloatArray
 from twin.render.scene.placement import ROTARY_TABLE, SPINDLE_NOSE, Placement, place
 from twin.render.scene.tool_body import PREFIX, ToolBodies
 from twin.render.scene.work_holding import add_work_holding
+from twin.toolpath.part_frame import PartFrame
 from twin.units import MM
 
 COLLISION_PREFIX = "collision "
@@ -128,7 +129,7 @@ class DrawnMachine:
 def drawn_machine(
     machine: Machine,
     tool: ToolTable,
-    turn_zero: float,
+    part_frame: PartFrame,
     stock: StockTable | None = None,
     true_zero: FloatArray | None = None,
 ) -> DrawnMachine:
@@ -137,7 +138,7 @@ def drawn_machine(
     Args:
         machine: The machine file.
         tool: What is in the spindle.
-        turn_zero: Rotary value at which the part's frame is parallel to the machine's [deg].
+        part_frame: How the part turns under the tool.
         stock: The blank, for the parallels below it.
         true_zero: Machine coordinates of the part's zero, shape (k,) [mm or deg].
 
@@ -145,9 +146,9 @@ def drawn_machine(
         ConfigError: The model cannot be completed.
     """
     spec = build_spec(machine, tool)
-    placement = place(machine, spec.compile(), tool.length, turn_zero)
+    placement = place(machine, spec.compile(), tool.length, part_frame)
     if stock is not None and true_zero is not None:
-        corner = true_zero[:3] - np.array([*machine.part_frame.center, 0.0])
+        corner = part_frame.program_zero(true_zero)
         add_work_holding(spec, stock, placement, corner)
     ToolBodies(ToolPlan((tool,)), machine.file.spindle.flange_diameter).add_to(spec)
     return DrawnMachine(spec.compile(), machine, placement, tool)

@@ -15,8 +15,8 @@ from twin.cutting.part_picture import part_picture
 from twin.cutting.program_summary import ProgramSummary
 from twin.cutting.spindle import standing
 from twin.job.job_file import JobFile, ToolTable
-from twin.machine.description.config import Machine
-from twin.machine.model.head_shape import head_shape
+from twin.machine.model.head_shape import HeadShape
+from twin.machine.model.model import MachineModel
 from twin.machine.simulation.tool_changes import REMEDY
 from twin.machine.watching.alarms import Alarm
 from twin.nc.canonical import FloatArray
@@ -36,35 +36,38 @@ class Machining:
 
     def __init__(
         self,
-        machine: Machine,
+        model: MachineModel,
         job: JobFile,
         summary: ProgramSummary,
         part_frame: PartFrame,
         part_zero: FloatArray,
         stops: Sequence[Stop] = (),
+        *,
+        tilts: bool = False,
     ) -> None:
         """Lay the blank on the table.
 
         Args:
-            machine: What is above the tool is its.
+            model: What is above the tool is its.
             job: Its blank, without which nothing is cut, and its nominal part, if it names one.
             summary: What is in the spindle when, and which moves are rapids.
             part_frame: How the part turns under the tool.
             part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
             stops: Where the program stops spindle or tool, in order.
+            tilts: The tool stands off the part's Z, where no height map can be cut: nothing is.
         """
         self.stopped: list[Stop] = []
         self.ended_in_cut = False
         self._stops = list(stops)
         self._summary = summary
         self.loads = LoadLog()
-        self._zero = part_zero[:3] - np.array([*part_frame.center, 0.0])
+        self._zero = part_frame.program_zero(part_zero)
         self._cutter: Cutter | None = None
         self._nominal: NominalWatch | None = None
         self._gouge_um = None if job.nominal is None else job.nominal.gouge_um
         self._gouge_stops = job.nominal is not None and job.nominal.gouge == "alarm"
-        if job.stock is not None:
-            head = head_shape(machine).above_tip
+        if job.stock is not None and not tilts:
+            head = HeadShape(model).above_tip
             self._cutter = Cutter(
                 job.stock, summary.tools, part_frame, part_zero, halts=True, head=head
             )

@@ -21,11 +21,12 @@ from twin.cutting.forces.load_log import LoadLog
 from twin.cutting.inspection import Inspection
 from twin.cutting.nominal import NominalGouge
 from twin.cutting.program_summary import ProgramSummary
+from twin.cutting.tools import ToolPlan
 from twin.errors import ConfigError
 from twin.job.job_file import ToleranceTable
 from twin.machine.description.motion_limits import motion_limits
 from twin.machine.model.clamping import refuse_overlaps, what_carries
-from twin.machine.model.model import build_spec, spindle_over_table_mm
+from twin.machine.model.model import MachineModel
 from twin.machine.simulation.growth import Growth
 from twin.machine.simulation.simulate import Simulation, simulate
 from twin.machine.watching.alarms import Alarm, NearMiss
@@ -42,16 +43,15 @@ from twin.run.cut_notices import (
     unjudged_limit_notices,
 )
 from twin.run.dry_run import DryRun, InterpretedProgram, interpret_all
+from twin.run.layout import bore_of, lay_out
 from twin.run.machining import Machining
 from twin.run.notices import Notice, shown
 from twin.run.outcome import Outcome
-from twin.run.placement import bore_of, part_zero, with_blank
 from twin.run.preparation import Preparation
 from twin.run.progress import Progress
 from twin.run.scope import nothing_judged, scope_of
 from twin.run.stages import StageClock
 from twin.run.tool_use import ToolTimes
-from twin.toolpath.part_frame import PartFrame
 from twin.units import UM_PER_MM
 from twin.version import __version__
 
@@ -77,10 +77,10 @@ class Run:
 
     Attributes:
         preparation: The job made concrete.
-        machine: Its machine with all that is clamped on the table.
+        machine: Its machine.
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
         part_frame: How the part turns under the tool.
-        spec: The model of the machine with the job's first tool in the spindle.
+        model: The machine's, with the blank on its table and the job's first tool in the spindle.
         clock: How long each stage took; a film's goes on it too.
         trace: The run thinned for plots.
     """
@@ -96,12 +96,10 @@ class Run:
         """
         machine, job = preparation.machine, preparation.job.file
         self.preparation = preparation
-        over_table = spindle_over_table_mm(machine)
-        self.part_zero = part_zero(job, machine, over_table)
-        self.machine = with_blank(machine, job, self.part_zero, over_table)
-        self.spec: mujoco.MjSpec = build_spec(self.machine, job.tools[0])
-        refuse_overlaps(self.machine, self.spec, bore_of(job))
-        self.part_frame: PartFrame = machine.part_frame.at(self.part_zero)
+        self.part_zero, self.part_frame, blank = lay_out(job, machine)
+        self.machine = machine
+        self.model = MachineModel(machine, job.tools[0], blank)
+        refuse_overlaps(self.model, bore_of(job))
         self.clock = StageClock()
         self.trace = Trace(machine.axes, self.part_frame, self.part_zero)
         self._planned_s = 0.0
@@ -133,7 +131,7 @@ class Run:
             ConfigError: A tolerance limits the force of the cut, and nothing simulates that.
             SimulationError: The simulation failed; the recording is not kept.
         """
-        comparison, machining = self._comparison(), self._machining(dry_run)
+        comparison, machining = self._comparison(dry_run.summary.tools), self._machining(dry_run)
         self._process = None
         reached = _Reached(self.part_zero, dry_run.program.start)
         alarm, near_miss = dry_run.alarm or self._overspeed(dry_run), None
@@ -142,7 +140,7 @@ class Run:
             with self._recording(out) as writer:
                 if motion is None:
                     setpoints = self._setpoints(dry_run.program, comparison)
-                    motion = self._simulation(setpoints, dry_run.summary)
+                    motion = self._simulation(setpoints, dry_run)
                 else:
                     _expect_all(dry_run.program, comparison)
                 if self._process is None or not speeds_are_known(dry_run.summary):
@@ -254,10 +252,10 @@ class Run:
         job, watch = self.preparation.job.file, dry_run.watch
         if cut is not None:
             yield from cut_notices(job, watch, machining, cut)
-        elif watch.spindle_line and watch.first_feed:
+        elif watch.spindle_line and watch.first_feed and job.stock is None:
             message = "the spindle turns, and the job has no [stock]: nothing that is cut is judged"
             yield Notice("no-stock", watch.spindle_line, message)
-        floats = what_carries(self.machine, self.spec)
+        floats = what_carries(self.model)
         if floats is not None:
             yield Notice("stock-floats", 0, f"nothing carries the stock: {floats}")
         yield from tolerance_notices(job.tolerance, len(self.preparation.source.lines))
@@ -319,32 +317,37 @@ class Run:
 
         return self.clock.watch("plan", settle(planned(), period))
 
-    def _simulation(self, setpoints: Iterator[Setpoints], summary: ProgramSummary) -> Simulation:
+    def _simulation(self, setpoints: Iterator[Setpoints], dry_run: DryRun) -> Simulation:
+        summary = dry_run.summary
         machine, job = self.machine, self.preparation.job.file
         load = None
-        self._process = program_process(job, machine, summary, self.part_frame, self.part_zero)
+        self._process = None
+        if self.part_frame.chain is None:
+            self._process = program_process(job, machine, summary, self.part_frame, self.part_zero)
         if job.cutting_load and self._process is None:
-            if job.stock is None:
-                raise ConfigError("cutting_load needs a [stock] to cut")
+            if job.stock is None or dry_run.tilts:
+                raise ConfigError("cutting_load needs a [stock] that is cut from one side")
             load = AxisLoad(job.stock, summary, self.part_frame, self.part_zero)
-        return simulate(machine, self.spec, setpoints, summary.tools, load, self._process)
+        return simulate(machine, self.model, setpoints, summary.tools, load, self._process)
 
-    def _comparison(self) -> Comparison:
+    def _comparison(self, tools: ToolPlan) -> Comparison:
         return Comparison(
             self.preparation.machine.axes,
             self.part_frame,
             self.part_zero,
             apart=[part.lines for part in self.preparation.job.file.tolerance.blocks],
+            lower=tools.lower,
         )
 
     def _machining(self, dry_run: DryRun) -> Machining:
         return Machining(
-            self.preparation.machine,
+            self.model,
             self.preparation.job.file,
             dry_run.summary,
             self.part_frame,
             self.part_zero,
             dry_run.watch.stops,
+            tilts=dry_run.tilts,
         )
 
     def _recording(self, out: Path | None) -> AbstractContextManager[RecordingWriter | None]:

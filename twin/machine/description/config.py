@@ -1,7 +1,6 @@
 """The machine file ``machine.toml``: axes, drives, feeds, as data."""
 
 import functools
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple
 
@@ -10,15 +9,11 @@ import pydantic
 from pydantic import Field
 
 from twin.errors import ConfigError
-from twin.files.overrides import Change, changed
-from twin.files.toml import Data, Table, checked, read_toml
-from twin.job.fixture import FixtureTable
-from twin.job.machine_functions import MachineFunctions
-from twin.job.tool_change import ToolChangeTable
-from twin.job.weight import Weight
-from twin.kinematics import Kinematics
+from twin.files.toml import Table, checked
+from twin.job.builder import MachineFunctions, ToolChangeTable
+from twin.job.fixture import FixtureTable, Weight
+from twin.kinematics import Kinematics, is_turntable
 from twin.machine.description.geometry import GeometryTable
-from twin.machine.description.variant import on_base
 from twin.nc.canonical import SPATIAL_AXES, Axes, FloatArray
 from twin.toolpath.part_frame import PartFrame
 from twin.units import AxisKind, to_si
@@ -29,6 +24,10 @@ Share = Annotated[float, Field(ge=0, le=1, strict=True)]
 Coordinate = Annotated[float, Field(strict=True)]
 Lateness = Annotated[float, Field(ge=0, le=0.1, strict=True)]
 ServoPeriod = Annotated[float, Field(ge=1e-4, le=0.02, strict=True)]
+
+
+_CENTER_MM = 1e-3
+"""How far the centre of a table in a machine file may be from that of the model [mm]."""
 
 
 class LuGreTable(Table):
@@ -161,10 +160,10 @@ class PathTable(Table):
 
 
 class TableTable(Table):
-    """The rotary table that carries the part."""
+    """What the model must say of the table that carries the part; not needed, and checked."""
 
     axis: str
-    """Name of the rotary axis that turns the part about +Z."""
+    """Name of the rotary axis that turns the part."""
     center: tuple[Coordinate, Coordinate] = (0.0, 0.0)
     """Machine X and Y at which the tool stands over the axis of rotation [mm]."""
 
@@ -291,7 +290,7 @@ class MachineFile(Table):
             raise ValueError(f"table.axis '{self.table.axis}' is not an axis")
         if self.table is not None and self.axes[self.table.axis].kind != "rotary":
             raise ValueError(f"table.axis '{self.table.axis}' is not rotary")
-        self.geometry.of(self.ordered_axes(), None if self.table is None else self.table.axis)
+        self.geometry.of(self.ordered_axes())
         for name, growth in self.thermal.items():
             if growth.source not in ("spindle", *self.axes):
                 known = ", ".join(("spindle", *self.axes))
@@ -329,45 +328,19 @@ class Blank(NamedTuple):
 
 
 class Machine:
-    """A machine file that was read, with what other rooms need of it.
+    """A machine file that was read, with what other packages need of it.
 
     Attributes:
         path: Where the machine file lies.
         file: Its checked content.
         axes: Names and kinds in the order of every column.
-        part_frame: How the part turns under the tool.
-        blank: What is clamped on the table to be cut, if anything.
     """
 
-    def __init__(self, path: Path, file: MachineFile, blank: Blank | None = None) -> None:
+    def __init__(self, path: Path, file: MachineFile) -> None:
         fixtures = tuple(fixture.in_folder(path.parent) for fixture in file.fixtures)
         self.path = path
         self.file = file.model_copy(update={"fixtures": fixtures}) if fixtures else file
-        self.blank = blank
         self.axes = file.ordered_axes()
-        turning = None if file.table is None else file.table.axis
-        self.part_frame = PartFrame(
-            rotary=None if turning is None else self.axes.index(turning),
-            center=(0.0, 0.0) if file.table is None else file.table.center,
-            geometry=file.geometry.of(self.axes, turning),
-        )
-
-    def with_fixtures(self, fixtures: tuple[FixtureTable, ...]) -> "Machine":
-        """This machine with more on its table.
-
-        Raises:
-            ConfigError: One has the name of another.
-        """
-        both = (*self.file.fixtures, *fixtures)
-        names = [fixture.name for fixture in both]
-        twice = sorted({name for name in names if names.count(name) > 1})
-        if twice:
-            raise ConfigError(f"fixture '{twice[0]}' is named twice")
-        return Machine(self.path, self.file.model_copy(update={"fixtures": both}), self.blank)
-
-    def with_blank(self, blank: Blank) -> "Machine":
-        """This machine with stock on its table."""
-        return Machine(self.path, self.file, blank)
 
     @property
     def model_path(self) -> Path:
@@ -386,6 +359,38 @@ class Machine:
         axes = [self.file.axes[name] for name in self.axes.names]
         joints = [Joint(axis.joint, axis.direction) for axis in axes]
         return read_kinematics(self.model_path, self.axes, joints)
+
+    @functools.cached_property
+    def part_frame(self) -> PartFrame:
+        """How the part turns under the tool.
+
+        Raises:
+            ConfigError: The model is no mill, or its table is not where the machine file says.
+        """
+        chain, geometry = self.kinematics, self.file.geometry.of(self.axes)
+        turning = chain.rotary & ~chain.on_tool
+        names = [self.axes.names[column] for column in chain.column[turning].tolist()]
+        innermost = chain.anchor[turning][-1] if names else np.zeros(3)
+        table = self.file.table
+        if table is not None and (
+            table.axis not in names[-1:] or np.abs(innermost[:2] - table.center).max() > _CENTER_MM
+        ):
+            found = (
+                f"{names[-1]} about X {innermost[0]:g} Y {innermost[1]:g}" if names else "nothing"
+            )
+            raise ConfigError(
+                f"{self.path}: [table] does not fit the model, where {found} turns the part"
+            )
+        if geometry.has_table and not (names and is_turntable(chain)):
+            raise ConfigError(
+                f"{self.path}: geometry.table: no rotary table turns the part about Z alone"
+            )
+        if not is_turntable(chain):
+            return PartFrame(None, (0.0, 0.0), geometry=geometry, chain=chain)
+        if not names:
+            return PartFrame(None, (0.0, 0.0), geometry=geometry)
+        center = (float(innermost[0]), float(innermost[1]))
+        return PartFrame(self.axes.index(names[0]), center, geometry=geometry)
 
     @property
     def joint_scale(self) -> FloatArray:
@@ -411,24 +416,4 @@ class Machine:
             raise ConfigError(f"{self.file.name} has the axes {', '.join(self.axes.names)}")
         data = self.file.model_dump(by_alias=True)
         data["axes"][axis].update(fields)
-        return Machine(self.path, checked(data, MachineFile, self.file.name), self.blank)
-
-
-def read_machine(path: Path, changes: Sequence[Change] = ()) -> Machine:
-    """Read a machine file, over the one that its key ``base`` names, if any.
-
-    Args:
-        path: The file.
-        changes: Values under ``machine.`` to change.
-
-    Raises:
-        ConfigError: The file or the model that it names is missing or wrong.
-    """
-
-    def prepare(data: Data) -> Data:
-        return changed(on_base(data, path), "machine", changes)
-
-    machine = Machine(path, read_toml(path, MachineFile, prepare=prepare))
-    if not machine.model_path.is_file():
-        raise ConfigError(f"{path}: model '{machine.file.model}' does not exist")
-    return machine
+        return Machine(self.path, checked(data, MachineFile, self.file.name))

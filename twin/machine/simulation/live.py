@@ -5,15 +5,15 @@ from typing import Any
 import numpy as np
 
 from twin.errors import ConfigError
-from twin.machine.description.config import Machine
+from twin.machine.description.config import Blank, Machine
 from twin.machine.model.head_shape import HeadShape
-from twin.machine.model.model import build_spec, clearance_model, physics_model
+from twin.machine.model.model import MachineModel
 from twin.machine.model.tool_shape import ToolShape
 from twin.machine.simulation.process import Process
 from twin.machine.simulation.servo import Servo
 from twin.machine.watching.alarms import Alarm, AlarmCode, AlarmStandsError, NearMiss
 from twin.machine.watching.clearance import Clearance
-from twin.machine.watching.watch import Watch
+from twin.machine.watching.watch import Watch, limit_switches
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
 from twin.recording.reader import Samples
@@ -35,7 +35,7 @@ class LiveMachine:
     axis may then be driven off its limit switch, and a holder out of the vise, but not further in.
 
     Example:
-        >>> from twin.machine.description.config import read_machine
+        >>> from twin.machine.load import read_machine
         >>> from twin.files.shipped import machine_file
         >>> live = LiveMachine(read_machine(machine_file("mill4")))
         >>> samples = live.hold(100)
@@ -54,7 +54,11 @@ class LiveMachine:
     """
 
     def __init__(
-        self, machine: Machine, tool: ToolShape | None = None, position: FloatArray | None = None
+        self,
+        machine: Machine,
+        tool: ToolShape | None = None,
+        position: FloatArray | None = None,
+        blank: Blank | None = None,
     ) -> None:
         """Switch a machine on.
 
@@ -63,6 +67,7 @@ class LiveMachine:
             tool: What the spindle holds; a 10 mm end mill by default.
             position: Where the axes stand, machine coordinates, shape (k,) [mm or deg]; at zero by
                 default.
+            blank: The uncut stock on its table.
 
         Raises:
             ConfigError: The model is wrong.
@@ -70,11 +75,11 @@ class LiveMachine:
         self.machine = machine
         self.alarm: Alarm | None = None
         self._sound = machine
-        spec = build_spec(machine, tool)
-        solids = clearance_model(machine, spec)
-        self._clearance = Clearance(machine, solids)
-        self.head = HeadShape(machine, solids)
-        self._servo = Servo(machine, physics_model(machine, spec))
+        self._blank = blank
+        model = MachineModel(machine, tool, blank)
+        self._clearance = Clearance(machine, model.solids)
+        self.head = HeadShape(model)
+        self._servo = Servo(machine, model.physics)
         self._watch = Watch(machine)
         stand = np.zeros(len(machine.axes)) if position is None else np.asarray(position, float)
         self._stand = self._servo.follow(_standing(stand))
@@ -93,6 +98,20 @@ class LiveMachine:
     def velocity(self) -> FloatArray:
         """How fast they move, shape (k,) [mm/s or deg/s]."""
         return self._stand.joint_velocity[-1].copy()
+
+    @property
+    def moving(self) -> bool:
+        """Whether any axis moves."""
+        return moving(self._stand)
+
+    @property
+    def on_limit_switch(self) -> str:
+        """Name of an axis that is on its limit switch; empty: none is."""
+        for name, place in zip(self.machine.axes.names, self.position, strict=True):
+            low, high = limit_switches(self.machine.axis(name))
+            if not low < place < high:
+                return name
+        return ""
 
     @property
     def near_miss(self) -> NearMiss | None:
@@ -223,11 +242,11 @@ class LiveMachine:
 
     def mount(self, tool: ToolShape) -> None:
         """Put another tool into the spindle, as far as collisions are concerned."""
-        spec = build_spec(self.machine, tool)
-        self._clearance = Clearance(self.machine, clearance_model(self.machine, spec))
+        model = MachineModel(self.machine, tool, self._blank)
+        self._clearance = Clearance(self.machine, model.solids)
 
     def _rebuild(self, machine: Machine) -> None:
-        servo = Servo(machine, physics_model(machine, build_spec(machine)))
+        servo = Servo(machine, MachineModel(machine, None, self._blank).physics)
         servo.take_over(self._servo)
         self.machine, self._servo = machine, servo
         self._watch = Watch(machine)
@@ -255,6 +274,11 @@ class LiveMachine:
             way * (speed - limit * slowing),
             np.where(time < speed / limit, -way * limit, 0.0),
         )
+
+
+def moving(samples: Samples) -> bool:
+    """Whether any axis moves at the last of some samples."""
+    return bool(np.abs(samples.joint_velocity[-1]).max() > STANDSTILL)
 
 
 def _standing(position: FloatArray) -> Setpoints:

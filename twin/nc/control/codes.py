@@ -151,6 +151,7 @@ class Words:
         references: Addresses whose value names a variable and is not computed.
         repeat: Address that says how often its block runs, or empty.
         signed: Addresses that are two words, one above and one below 0.
+        indexed: The axis that a word names whose address ends with an index, such as AX[A]; None: none does.
         series: Addresses that may stand several times in a block with a switch point, in order.
         feed: Address that sets the feed and does no more; empty: there is none.
         spindle: Address that sets the spindle's speed; empty: there is none, the drive is set.
@@ -165,6 +166,7 @@ class Words:
     references: str = ""
     repeat: str = ""
     signed: tuple[str, ...] = ()
+    indexed: Callable[[Control, Word], str] | None = None
     series: str = ""
     feed: str = "F"
     spindle: str = "S"

@@ -37,6 +37,7 @@ class Call:
         last: Its last block, where it ends by its location; None: a word ends it.
         owns_variables: It has variables of its own, which its end forgets.
         restores: What its end puts back into force; None: nothing.
+        then: Done when it has ended, before the block behind it; None: nothing.
     """
 
     back: Location
@@ -45,6 +46,7 @@ class Call:
     last: Location | None = None
     owns_variables: bool = False
     restores: Modal | None = None
+    then: Callable[[], None] | None = None
 
 
 class ProgramCounter:
@@ -65,6 +67,7 @@ class ProgramCounter:
         self._furthest = Location(-1, 0)
         self._budget = step_limit
         self.calls: list[Call] = []
+        self._ended: Call | None = None
         self._labels: FoundInText[int | str, list[Location]] | None = None
         self._cache = FoundInText[int, tuple[Block, ...]]()
         self._parsed = FoundInText[Hashable, object]()
@@ -100,6 +103,9 @@ class ProgramCounter:
         """
         if self.calls:
             self._end_passed()
+        if self._ended is not None and self._ended.then is not None:
+            then, self._ended = self._ended.then, None
+            then()
         line, part = self._line, self._part
         if line == self._here_line and part >= len(self._here):
             line, part = line + 1, 0
@@ -128,7 +134,7 @@ class ProgramCounter:
                 call.again -= 1
                 self.go(call.first)
             else:
-                self.calls.pop()
+                self._ended = self.calls.pop()
                 self.go(call.back)
 
     def end_call(self) -> Call | None:
@@ -144,7 +150,7 @@ class ProgramCounter:
             call.again -= 1
             self.go(call.first)
             return None
-        self.calls.pop()
+        self._ended = self.calls.pop()
         self.go(call.back)
         return call
 

@@ -24,6 +24,7 @@ class WordSorter:
         self._special = frozenset(("G", "M", *words.signed, *words.series))
         expressions = dialect.syntax.expressions
         self._vacant = expressions is not None and expressions.vacant
+        self._indexed = words.indexed
 
     def sort(self, block: Sequence[Word]) -> tuple[Codes, Functions]:
         """Sort the words of a block; those that are no codes become the control's ``words`` and ``series``.
@@ -78,11 +79,24 @@ class WordSorter:
                 )
             else:
                 words[address] = word
+        if self._indexed is not None and any(address[-1] == "]" for address in words):
+            self._resolve_indices(words)
         if len(codes) > 1 or len(functions) > 1:
             codes = codes_that_count(codes, last_of_group=dialect.codes.last_of_group_counts)
             self._refuse_conflict(conflict_of(codes, functions))
             control.codes = codes = in_order(codes, dialect.codes.groups)
         return codes, functions
+
+    def _resolve_indices(self, words: dict[str, Word]) -> None:
+        """Give words with an index in their address the axis that it names."""
+        assert self._indexed is not None
+        for address in [each for each in words if each[-1] == "]"]:
+            word = words.pop(address)
+            axis = self._indexed(self._control, word)
+            if axis in words:
+                message = f"'{axis}' stands twice in the block"
+                self._control.fail("duplicate-word", message, word, "write two blocks")
+            words[axis] = word._replace(address=axis)
 
     def _takes_m(self, block: Sequence[Word]) -> bool:
         """Whether M is a word of one of the block's G codes, and no machine function."""

@@ -7,6 +7,7 @@ from twin.nc.control.control import Control
 from twin.nc.control.settings import ToolData
 from twin.nc.dialects.heidenhain.cycle_values import Parameters
 from twin.nc.geometry.planes import Plane, Vector
+from twin.nc.path.move_columns import Segment
 
 Cycle = Callable[[Control, Parameters], None]
 
@@ -54,6 +55,7 @@ class KlartextMemory:
         rotation: Of cycle 10 [deg].
         scale: Of cycle 11.
         order: In which of these the program has put them into force.
+        chamfered: The move whose end CHF cuts off, or None.
         shortest: M126: rotary axes go the shorter way.
     """
 
@@ -82,6 +84,7 @@ class KlartextMemory:
     rotation: float = 0.0
     scale: float = 1.0
     order: list[str] = dataclasses.field(default_factory=list)
+    chamfered: Segment | None = None
     shortest: bool = False
 
 

@@ -7,11 +7,12 @@ from twin.nc.control.codes import Action, GCode
 from twin.nc.control.control import Control
 from twin.nc.dialects.sinumerik import arcs, frames, words
 from twin.nc.dialects.sinumerik.known import PASSED_CODES, REFUSED_CODES
+from twin.nc.dialects.sinumerik.leads import LEADS
 from twin.nc.dialects.sinumerik.reference_points import to_reference
 from twin.nc.dialects.sinumerik.targets import set_pole
 from twin.nc.geometry.planes import XY, YZ, ZX
 from twin.nc.iso.declared import modal, motion_code, plane_code, refused, replacement
-from twin.nc.iso.tool_compensation import LEFT, RIGHT, end_compensation
+from twin.nc.iso.tool_compensation import LEFT, RIGHT
 from twin.nc.path.feed_rates import FeedMode
 
 _ACTING = (
@@ -70,7 +71,6 @@ def _pole(number: int, from_where: str) -> GCode:
 
 _ROUND = "rounds corners as far as the machine file's tolerance, or ADIS="
 _SPINDLE = "the twin's spindle has no angle; CYCLE84 and CYCLE840 tap"
-_LEADS = "smooth leads are not simulated; write the lead as a line or an arc"
 _UNITS: Action = words.keep_feed
 
 CODES: dict[float, GCode] = {
@@ -88,7 +88,7 @@ CODES: dict[float, GCode] = {
         "limits of the working area or of the spindle", "they are the machine file's", 25, 26
     ),
     **refused("threading", _SPINDLE, 33, 34, 35),
-    40: modal("radius compensation off", "compensation", end_compensation),
+    40: modal("radius compensation off", "compensation", words.end_compensation),
     41: modal("compensation, tool left", "compensation", words.compensation(LEFT)),
     42: modal("compensation, tool right", "compensation", words.compensation(RIGHT)),
     53: _machine_code("G53"),
@@ -115,8 +115,11 @@ CODES: dict[float, GCode] = {
     110: _pole(110, "where the tool stands"),
     111: _pole(111, "zero"),
     112: _pole(112, "the pole before"),
-    **refused("direction of smooth leads", _LEADS, 140, 141, 142, 143),
-    **refused("smooth lead to or from the contour", _LEADS, 147, 148, 247, 248, 347, 348, 340, 341),
+    140: modal("smooth leads come from the side of the tool", "lead side"),
+    **refused("direction of smooth leads", "they come from the side of the tool", 141, 142, 143),
+    340: modal("smooth leads fall and rise in space", "leads"),
+    341: modal("smooth leads lie in the plane", "leads"),
+    **LEADS,
     153: _machine_code("G153"),
     290: modal("the control's own language", "language"),
     **refused(

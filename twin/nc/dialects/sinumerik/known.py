@@ -90,6 +90,7 @@ REFUSED_STATEMENTS = each_name(
     {
         "TRAORI, TRACON, TRAANG": _NO_TILT,
         "TRANSMIT, TRACYL": "write the rotary axis itself",
+        "DEFINE": "macros of texts are not followed; write the words that they stand for",
         "G291": "the ISO language of this control is another one",
         "MEAS, MEAW, MEASA, MEAWA, MEAC, CYCLE971, CYCLE976, CYCLE977, CYCLE978, CYCLE979, CYCLE982, CYCLE996, CYCLE998, CYCLE961, CYCLE997, CYCLE995, CYCLE9960": _PROBE,
         "TANG, TANGON, TLIFT, TRAILON, COUPDEF, COUPON, LEADON, CTABDEF, CTABEND, MASLON, EGDEF, EGON, CPON, CPLON": _COUPLING,
@@ -112,7 +113,6 @@ REFUSED_STATEMENTS = each_name(
         "CYCLE76, CYCLE77": "spigots are not simulated; write their contour with G41 or G42",
         "CYCLE78": "drilling and thread milling in one is not simulated",
         "CYCLE79": "polygons are not simulated; write their contour with G41 or G42",
-        "CYCLE72": "milling along a contour that is a program of its own is not simulated; call it between G41 and G40",
         "CYCLE73, CYCLE74, CYCLE75": "pockets of any contour are not simulated; post their paths",
         "CYCLE802": "it drills a list of places; write MCALL and the places",
         "CYCLE899": "open slots are not simulated; write their path",

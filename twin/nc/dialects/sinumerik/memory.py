@@ -84,7 +84,10 @@ class SinumerikMemory:
         tool_on: The tool in the spindle has its offset D.
         unit: Of lengths, as it was before the block [mm].
         allowance: OFFN [mm].
+        lead_side: Of the contour that the last lead has come to.
+        lead_offset: How far beside it the tool's centre goes [mm].
         rounding: RNDM [mm].
+        ends_rounding: RNDM=0: it ends behind the next move.
         modal_feed: F that an FB of the block has put aside, or None.
         subprograms: By name.
         main: Lines of the main program.
@@ -110,7 +113,10 @@ class SinumerikMemory:
     tool_on: bool = True
     unit: float = 1.0
     allowance: float = 0.0
+    lead_side: float = 0.0
+    lead_offset: float = 0.0
     rounding: float = 0.0
+    ends_rounding: bool = False
     modal_feed: float | None = None
     subprograms: dict[str, Subprogram] = dataclasses.field(default_factory=dict)
     main: range = range(0)

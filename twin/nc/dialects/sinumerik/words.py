@@ -7,6 +7,7 @@ from twin.nc.control.codes import Action
 from twin.nc.control.compensation import compensate, tool_named, tool_numbered
 from twin.nc.control.control import Control
 from twin.nc.dialects.sinumerik import frames
+from twin.nc.dialects.sinumerik.leads import is_led
 from twin.nc.dialects.sinumerik.memory import memory_of
 from twin.nc.dialects.sinumerik.subprograms import call_after_motion
 from twin.nc.dialects.sinumerik.targets import (
@@ -116,9 +117,16 @@ def compensation(side: float) -> Action:
     def action(control: Control) -> None:
         memory = memory_of(control)
         radius = radius_in_spindle(control) if memory.tool_on else 0.0
-        compensate(control, side, radius + memory.allowance)
+        if not is_led(control):
+            compensate(control, side, radius + memory.allowance)
 
     return action
+
+
+def end_compensation(control: Control) -> None:
+    """G40: the next line leads out, but for a lead of the block."""
+    if not is_led(control):
+        control.path.end_compensation()
 
 
 def set_allowance(control: Control, word: Word) -> None:
@@ -193,14 +201,14 @@ def prepare_corners(control: Control) -> None:
 
 
 def modal_rounding(control: Control, word: Word) -> None:
-    """RNDM=: every corner of the contour that follows is rounded; 0 ends it."""
-    radius = control.length(word)
+    """RNDM=: the corner behind this block and all further ones are rounded; 0: none behind this block is."""
+    radius, memory = control.length(word), memory_of(control)
     if radius < 0.0:
         control.fail("blend", f"the radius {word.text} is below 0", word)
-    memory_of(control).rounding = radius
-    blend = Blend(BlendKind.FILLET, radius, control.motion.part_plane) if radius > 0.0 else None
-    control.path.blend_always(blend)
-    control.path.hold_for_blends()
+    memory.ends_rounding = radius == 0.0
+    if radius > 0.0:
+        memory.rounding = radius
+        control.path.blend_always(Blend(BlendKind.FILLET, radius, control.motion.part_plane))
 
 
 def before_motion(control: Control, _rapid: bool) -> None:
@@ -211,8 +219,12 @@ def before_motion(control: Control, _rapid: bool) -> None:
 def after_motion(control: Control) -> None:
     """What a block does when it has moved: angles within a turn, its corner, its own feed."""
     shows_within_turn(control)
-    _blend(control)
     memory = memory_of(control)
+    if memory.ends_rounding:
+        memory.ends_rounding, memory.rounding = False, 0.0
+        control.path.blend_always(None)
+        control.path.hold_for_blends()
+    _blend(control)
     if memory.modal_feed is not None:
         control.motion.feed = None if math.isnan(memory.modal_feed) else memory.modal_feed
         memory.modal_feed = None

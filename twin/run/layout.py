@@ -1,0 +1,126 @@
+"""Where a job lies on its machine: program zero, the blank on the table, the part's frame."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from twin.cutting.blank_weight import blank_weight
+from twin.errors import ConfigError
+from twin.job.job_file import JobFile
+from twin.machine.description.config import Blank, Machine
+from twin.machine.model.model import spindle_over_table_mm
+from twin.nc.canonical import FloatArray
+from twin.toolpath.part_frame import PartFrame
+
+_Z = 2
+WORK_HOLDING_HEIGHT = 40.0
+"""Height of the jaws or parallels between the rotary table and the stock [mm]."""
+
+
+class Layout(NamedTuple):
+    """A job on its machine.
+
+    Attributes:
+        part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
+        part_frame: How the part turns under the tool.
+        blank: The uncut stock on the table; None without one.
+    """
+
+    part_zero: FloatArray
+    part_frame: PartFrame
+    blank: Blank | None
+
+
+def lay_out(job: JobFile, machine: Machine) -> Layout:
+    """Lay a job out on its machine.
+
+    An axis that the job's ``part_zero`` names is where that says. Otherwise program zero lies on
+    the table's centre line, at the height of the top face of the stock on its work holding;
+    without a stock in the middle of the Z travel. Where the table does not turn about Z, its
+    work-holding surface is no floor: program zero lies in the middle of that.
+
+    Raises:
+        ConfigError: An axis does not exist, the stock would lie below the table, or its material is not
+            known.
+    """
+    over_table, length = spindle_over_table_mm(machine), job.tools[0].length
+    frame = machine.part_frame
+    zero = frame.rotary_zero(len(machine.axes))
+    lies = frame.table_about(_Z) is not None or frame.chain is None
+    if frame.chain is not None:
+        zero[:3] = frame.chain.table + length * frame.chain.tool
+    if lies:
+        zero[2] = _default_height(job, machine, over_table)
+    _write_axes(zero, job.part_zero, machine, "part_zero")
+    if lies:
+        _require_stock_above_table(job, float(zero[2]), over_table)
+    frame = frame.at(zero, length)
+    return Layout(zero, frame, _blank(job, frame, zero, over_table))
+
+
+def _blank(job: JobFile, frame: PartFrame, zero: FloatArray, over_table: float) -> Blank | None:
+    if job.stock is None:
+        return None
+    size = job.stock.extent
+    x, y, z = np.array(job.stock.position) + frame.program_zero(zero)
+    top = z + over_table - job.tools[0].length
+    if frame.chain is not None:
+        x, y, top = frame.chain.table_axes.T @ (np.array([x, y, z]) - frame.chain.table)
+    weight = blank_weight(job.stock)
+    return Blank(
+        size,
+        (float(x), float(y), float(top) - size[2] / 2.0),
+        round=job.stock.shape in ("cylinder", "tube"),
+        weight=None if weight is None else weight.moved((float(x), float(y), float(top))),
+        on_post=job.stock.shape != "box",
+    )
+
+
+def bore_of(job: JobFile) -> float | None:
+    """How wide the stock's hole is, in which a fixture may stand [mm]; None: it has none.
+
+    Of a stock from an STL file the box around it is known alone, in which a fixture may stand anywhere.
+    """
+    if job.stock is None:
+        return None
+    return math.inf if job.stock.shape == "stl" else job.stock.bore
+
+
+def start_position(job: JobFile, machine: Machine) -> FloatArray:
+    """Where the axes stand when the program starts, program coordinates, shape (k,) [mm or deg].
+
+    Raises:
+        ConfigError: An axis does not exist.
+    """
+    start = np.zeros(len(machine.axes))
+    _write_axes(start, job.start, machine, "start")
+    return start
+
+
+def _write_axes(row: FloatArray, values: dict[str, float], machine: Machine, key: str) -> None:
+    for name, value in values.items():
+        if name not in machine.axes.names:
+            known = ", ".join(machine.axes.names)
+            raise ConfigError(f"job key '{key}.{name}': {machine.file.name} has the axes {known}")
+        row[machine.axes.index(name)] = value
+
+
+def _default_height(job: JobFile, machine: Machine, over_table: float) -> float:
+    if job.stock is not None:
+        top = WORK_HOLDING_HEIGHT + job.stock.extent[2] - job.stock.position[2]
+        return top + job.tools[0].length - over_table
+    travel = machine.axis("Z").travel
+    return 0.0 if travel is None else (travel[0] + travel[1]) / 2.0
+
+
+def _require_stock_above_table(job: JobFile, zero_z: float, over_table: float) -> None:
+    if job.stock is None:
+        return
+    zero_over_table = over_table + zero_z - job.tools[0].length
+    bottom = zero_over_table + job.stock.position[2] - job.stock.extent[2]
+    if bottom < 0.0:
+        raise ConfigError(
+            f"the stock would reach {-bottom:.3f} mm below the table: raise part_zero.Z "
+            f"to {zero_z - bottom:.3f} or more, or make the stock less high"
+        )
