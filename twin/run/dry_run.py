@@ -16,11 +16,10 @@ from twin.machine.watching.travel import soft_limit_alarm
 from twin.nc.canonical import Chunk, FloatArray, Function
 from twin.nc.text.diagnostics import Diagnostic
 from twin.run.layout import start_position
-from twin.run.messages import speed_notice
-from twin.run.notices import shown
+from twin.run.messages import shown, speed_notice
 from twin.run.preparation import Preparation
 from twin.run.program_watch import ProgramWatch
-from twin.run.stages import StageClock
+from twin.run.progress import StageClock
 from twin.run.waits import with_waits
 
 MOVES_IN_MEMORY = 200_000
