@@ -174,6 +174,7 @@ def plain_rules(executor: Executor) -> PlainRules:
         getattr(dialect.codes.g[number].sets.get("interpolation"), "rule", None) for number in plain
     ]
     arc = next((rule for rule in rules if isinstance(rule, ArcRule)), _NO_ARC)
+    rotary = sum(1 << (AXIS + axis) for axis, linear in enumerate(motion.linear) if not linear)
     return PlainRules(
         form=line_format(executor),
         kinds=by_number,
@@ -181,8 +182,8 @@ def plain_rules(executor: Executor) -> PlainRules:
         signed_radius=arc.signed_radius,
         fits_radius=arc.fits_radius,
         linear=np.array(motion.linear),
-        rotary=sum(1 << (AXIS + axis) for axis, linear in enumerate(motion.linear) if not linear),
-        path_counts=motion.feed_rule is PATH_COUNTS,
+        rotary=0 if motion.feed_rule is PATH_COUNTS else rotary,
+        feed_rule=motion.feed_rule,
         default_feed=settings.default_feed,
         default_rotary_feed=settings.default_rotary_feed,
     )
