@@ -12,10 +12,11 @@ from trimesh.visual.material import PBRMaterial
 from twin.cutting.tools import ToolPlan
 from twin.job.job_file import StockTable, ToolTable
 from twin.machine.description.config import Machine
+from twin.machine.description.kinematics import SPINDLE_NOSE, part_carrier
 from twin.machine.model.model import build_spec
 from twin.machine.model.tool_shape import COLLISION_GROUP, VISUAL_GROUP
 from twin.nc.canonical import FloatArray
-from twin.render.scene.placement import ROTARY_TABLE, SPINDLE_NOSE, Placement, place
+from twin.render.scene.placement import Placement, place
 from twin.render.scene.tool_body import PREFIX, ToolBodies
 from twin.render.scene.work_holding import add_work_holding
 from twin.toolpath.part_frame import PartFrame
@@ -114,7 +115,10 @@ class DrawnMachine:
         carrier = int(model.site_bodyid[int(nose.id)])
         return {
             "joints": joints,
-            "part": {"body": ROTARY_TABLE, "matrix": part.T.ravel().tolist()},
+            "part": {
+                "body": model.body(part_carrier(model)).name,
+                "matrix": part.T.ravel().tolist(),
+            },
             "tip": {"body": model.body(carrier).name, "matrix": tip.T.ravel().tolist()},
             "cutter": f"{PREFIX}{self.tool.number}",
             "tool": {

@@ -162,7 +162,6 @@ def test_a_wrong_file_is_refused_with_place_and_hint(tmp_path, old, new, message
     [
         ('<motor name="W" joint="jw"/>', "", "has no actuator 'W'; it has X, Y, Z, A, B"),
         ('<site name="table_top"/>', "", "has no site 'table_top'; it has spindle_nose"),
-        ("rotary_table", "turner", "has no body 'rotary_table'"),
         ('mass="5"', 'mass="0"', "mass and inertia of moving bodies"),
         ('type="box"', 'type="mesh" mesh="cast"', "mesh 'cast' not found"),
         ("<worldbody>", '<asset><mesh name="c" file="c.stl"/></asset><worldbody>', "c.stl'"),

@@ -8,7 +8,7 @@ import pytest
 
 from tests.render.conftest import MODEL, TOOL
 from twin.machine.description.config import Machine
-from twin.render.scene.placement import ROTARY_TABLE, Joints, place, tip_position
+from twin.render.scene.placement import Joints, place, tip_position
 
 reach = st.floats(-200.0, 200.0)
 
@@ -43,7 +43,7 @@ def test_tool_point_is_drawn_where_the_part_frame_says(
     data = mujoco.MjData(model)
     Joints(moved, model).set(data, position)
     mujoco.mj_kinematics(model, data)
-    body = data.body(ROTARY_TABLE)
+    body = data.body("rotary_table")
     seen = placement.points(frame.position(position[None]))[0]
     world = body.xpos + body.xmat.reshape(3, 3) @ seen
     np.testing.assert_allclose(world, tip_position(model, data, TOOL.length), atol=1e-9)

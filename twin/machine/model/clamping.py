@@ -7,8 +7,9 @@ import mujoco
 import numpy as np
 
 from twin.errors import ConfigError
+from twin.machine.description.kinematics import part_carrier
 from twin.machine.model.fixture_shape import fixture_of
-from twin.machine.model.model import BLANK, ROTARY_TABLE, MachineModel
+from twin.machine.model.model import BLANK, MachineModel
 from twin.machine.model.tool_shape import COLLISION_GROUP
 from twin.machine.model.work_holding import PARALLELS, POST
 from twin.nc.canonical import FloatArray
@@ -35,7 +36,7 @@ def refuse_overlaps(clamped: MachineModel, bore: float | None = None) -> None:
     model = clamped.solids
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
-    table = int(model.body(ROTARY_TABLE).id)
+    table = part_carrier(model)
     solids = [
         geom
         for geom in range(model.ngeom)
@@ -99,7 +100,7 @@ def what_carries(clamped: MachineModel) -> str | None:
     model = clamped.solids
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
-    stock, table = int(model.geom(BLANK).id), int(model.body(ROTARY_TABLE).id)
+    stock, table = int(model.geom(BLANK).id), part_carrier(model)
     fixtures = {fixture.name for fixture in clamped.machine.file.fixtures}
     below = np.inf
     for geom in range(model.ngeom):

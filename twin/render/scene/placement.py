@@ -6,14 +6,10 @@ import mujoco
 import numpy as np
 
 from twin.machine.description.config import Machine
+from twin.machine.description.kinematics import SPINDLE_NOSE, part_carrier
 from twin.nc.canonical import FloatArray
 from twin.toolpath.part_frame import PartFrame
 from twin.units import MM
-
-ROTARY_TABLE = "rotary_table"
-"""Body of the model that carries the part."""
-SPINDLE_NOSE = "spindle_nose"
-"""Site of the model from which the tool's length counts."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -93,7 +89,7 @@ def place(
         ways = [(tip_from(body, direction) - origin) / MM for direction in np.eye(3)]
         return origin, np.stack(ways, axis=1)
 
-    table = int(model.body(ROTARY_TABLE).id)
+    table = part_carrier(model)
     return Placement(*frame(table), Frame(*frame(int(model.body_parentid[table]))))
 
 

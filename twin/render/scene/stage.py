@@ -11,13 +11,14 @@ import numpy as np
 from twin.cutting.colours import Colours
 from twin.cutting.cut import Cutter
 from twin.cutting.sweeping import Rectangle, union
+from twin.machine.description.kinematics import part_carrier
 from twin.nc.canonical import FloatArray
 from twin.recording.reader import Samples
 from twin.render.drawing.canvas import Canvas, Focus, Pixels, Quality
 from twin.render.drawing.chips import Chips, chips
 from twin.render.drawing.renderer import Renderer, open_canvas, prepare
 from twin.render.scene.cameras import PART_CAMERAS, SMALLEST_MM, add_part_cameras, framed
-from twin.render.scene.placement import ROTARY_TABLE, Joints, Placement, place, tip_position
+from twin.render.scene.placement import Joints, Placement, place, tip_position
 from twin.render.scene.scene import Scene
 from twin.render.scene.skin import Skin
 from twin.render.scene.stock_surface import StockSurface
@@ -187,7 +188,7 @@ class Stage:
         if camera not in PART_CAMERAS:
             stat = self.model.stat
             return Focus(stat.center.copy(), SHADOWS_OVER_MACHINE * float(stat.extent))
-        table = self.data.body(ROTARY_TABLE)
+        table = self.data.body(part_carrier(self.model))
         middle, radius = self._seen
         center = table.xpos + table.xmat.reshape(3, 3) @ self.placement.points(middle[None])[0]
         return Focus(center, SHADOWS_OVER_PART * MM * max(radius, SMALLEST_MM))
