@@ -439,8 +439,16 @@ class _Way:
     standing: BoolArray
 
     def __getitem__(self, run: slice) -> "_Way":
-        columns = (getattr(self, field.name) for field in dataclasses.fields(self))
-        return _Way(*(None if column is None else column[run] for column in columns))
+        return _Way(
+            self.points[run],
+            self.turn[run],
+            None if self.axis is None else self.axis[run],
+            self.lag[run],
+            self.time[run],
+            self.line[run],
+            self.rapid[run],
+            self.standing[run],
+        )
 
     @property
     def ends(self) -> Points:

@@ -124,8 +124,8 @@ class SummaryBuilder:
         if not len(moves):
             return
         if self._stands_off is not None and not self._tilts:
-            within = moves.start + _WITHIN * (moves.end - moves.start)
-            self._tilts = self._stands_off(np.concatenate([moves.start, within, moves.end]))
+            way = moves.end - moves.start
+            self._tilts = any(self._stands_off(moves.start + share * way) for share in _WITHIN)
         added = moves.display - moves.end
         last = self._shown[-1][1] if self._shown else np.zeros(added.shape[1])
         steps = np.abs(np.diff(added, axis=0, prepend=last[None])).max(axis=1) > _SHOWN_STEP
@@ -185,8 +185,8 @@ class SummaryBuilder:
         self._plan.append((move, self._tool.model_copy(update={"speed": speed})))
 
 
-_WITHIN = 0.382
-"""Where within a move it is looked at too, as a share of it: a full turn begins and ends alike."""
+_WITHIN = (0.0, 0.381966, 1.0)
+"""Fractions of a move at which the direction of the tool is looked at: whole turns come back to where they began."""
 _SHOWN_STEP = 1e-9
 """Changes of what the screen adds that are the arithmetic's doing [mm or deg]."""
 

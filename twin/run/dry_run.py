@@ -23,6 +23,7 @@ from twin.run.waits import with_waits
 MOVES_IN_MEMORY = 200_000
 """Of a longer program the further moves lie in a file, at some 200 bytes each: memory stays bounded."""
 
+
 NOTICES_KEPT = 100
 """Lines whose speed of the spindle was limited that are told."""
 

@@ -63,6 +63,5 @@ def tool_force(
     force = np.column_stack([(1.0 - plunging)[:, None] * pushed, upwards]) * tangential[:, None]
     if stretches.axis is None:
         return force
-    return sum(
-        part[:, None] * each for part, each in zip(force.T, tool_frame(stretches.axis), strict=True)
-    )
+    along_x, along_y, along_z = tool_frame(stretches.axis)
+    return force[:, :1] * along_x + force[:, 1:2] * along_y + force[:, 2:] * along_z

@@ -1,11 +1,14 @@
 """When a control may let plain lines run in the kernel, what it tells it, and what it takes back."""
 
+import functools
 import math
 import string
+import sys
 from collections.abc import Callable
 
 import numpy as np
 
+from twin.compilation.speed import Speed, usual_speed
 from twin.nc.control.codes import GCode
 from twin.nc.control.executor import Executor
 from twin.nc.control.modal import ArcRule, LineRule, MotionMode
@@ -21,6 +24,7 @@ from twin.nc.line_kernel.kernel import (
     PageColumns,
     PlainRules,
     PlainState,
+    run_lines,
 )
 from twin.nc.line_kernel.reading import (
     AXIS,
@@ -75,6 +79,8 @@ class LineRuns:
         line = control.program_counter.fresh_line
         if line is None or room <= 0 or not may_run_lines(self._executor):
             return range(0)
+        if self._goes_on(line):
+            return range(0)
         page = control.program_counter.lines.page_of(line)
         columns = PageColumns(page.data, page.starts, page.ends, page.lines.start)
         state = self._state(line)
@@ -88,6 +94,14 @@ class LineRuns:
         if came_to > line:
             self._take_back(state, came_to, self._rows.first(made))
         return range(line, came_to)
+
+    def _goes_on(self, line: int) -> bool:
+        """Whether a line goes on with the block of the one before it."""
+        continued, lines = (
+            self._executor.dialect.syntax.continued,
+            self._control.program_counter.lines,
+        )
+        return bool(continued) and line > 0 and lines[line - 1].rstrip().endswith(continued)
 
     def _state(self, line: int) -> PlainState:
         control, motion = self._control, self._control.motion
@@ -170,6 +184,7 @@ def plain_rules(executor: Executor) -> PlainRules:
         getattr(dialect.codes.g[number].sets.get("interpolation"), "rule", None) for number in plain
     ]
     arc = next((rule for rule in rules if isinstance(rule, ArcRule)), _NO_ARC)
+    rotary = sum(1 << (AXIS + axis) for axis, linear in enumerate(motion.linear) if not linear)
     return PlainRules(
         form=line_format(executor),
         kinds=by_number,
@@ -177,8 +192,8 @@ def plain_rules(executor: Executor) -> PlainRules:
         signed_radius=arc.signed_radius,
         fits_radius=arc.fits_radius,
         linear=np.array(motion.linear),
-        rotary=sum(1 << (AXIS + axis) for axis, linear in enumerate(motion.linear) if not linear),
-        path_counts=motion.feed_rule is PATH_COUNTS,
+        rotary=0 if motion.feed_rule is PATH_COUNTS else rotary,
+        feed_rule=motion.feed_rule,
         default_feed=settings.default_feed,
         default_rotary_feed=settings.default_rotary_feed,
     )
@@ -202,12 +217,15 @@ def _kind_of_code(code: GCode) -> int:
 def line_format(executor: Executor) -> LineFormat:
     """How plain lines are written: letters that a dialect uses otherwise as well have no role."""
     dialect, control = executor.dialect, executor.control
-    letters = {"R": RADIUS, **{letter: CENTER + index for index, letter in enumerate("IJK")}}
-    letters |= {
+    letters = {
         name: AXIS + index
         for name, index in control.axis_index.items()
         if name in dialect.words.axes
     }
+    codes: dict[str, int] = {}
+    if not dialect.syntax.worded:
+        letters |= {"R": RADIUS, **{each: CENTER + index for index, each in enumerate("IJK")}}
+        codes = {"N": NUMBER, "G": CODE}
     taken = {
         *dialect.words.actions,
         *dialect.words.references,
@@ -215,11 +233,55 @@ def line_format(executor: Executor) -> LineFormat:
         *dialect.words.series,
     }
     roles = {each: role for each, role in letters.items() if each in dialect.words.motion - taken}
-    roles |= {**dict.fromkeys(dialect.words.feed, FEED), "N": NUMBER, "G": CODE}
+    roles |= {**dict.fromkeys(dialect.words.feed, FEED), **codes}
     pointed = dialect.rules.without_point(control.settings)
     return LineFormat(
         np.array([roles.get(letter, OTHER) for letter in string.ascii_uppercase]),
         np.array([letter in pointed for letter in string.ascii_uppercase]),
         comment_marks(dialect.syntax.comments).columns,
         dialect.syntax.longest_line,
+        string.ascii_uppercase.find(dialect.syntax.line_keyword or " "),
+        ord(dialect.syntax.continued or "\0"),
     )
+
+
+LONG_PROGRAM = 50_000
+"""Lines of a program for which it pays to load the compiler, which takes about a second."""
+PAYS_LOADED = 500
+"""The same where the compiler is loaded already."""
+PAYS_COMPILED = 500_000
+"""The same to compile the kernel where it was not: Python would take longer."""
+_COMPILER = "twin.compilation.kernel"
+
+
+@functools.cache
+def compiled_kernel() -> LineKernel:
+    """The compiled form; the first call loads the compiler, the first run compiles or loads the kernel."""
+    from twin.compilation.kernel import branching_kernel
+
+    return branching_kernel(run_lines)
+
+
+def usual_kernel(lines: int) -> LineKernel | None:
+    """The compiled form for a program of so many lines, where it pays; it runs nothing where it is not there."""
+    if lines < (PAYS_LOADED if _COMPILER in sys.modules else LONG_PROGRAM):
+        return None
+    if usual_speed() is Speed.HOT or lines >= PAYS_COMPILED:
+        return compiled_kernel()
+    return _WhereCompiled()
+
+
+class _WhereCompiled:
+    """The compiled form, if it was compiled before; else no line is plain."""
+
+    def __init__(self) -> None:
+        self._is_there: bool | None = None
+
+    def __call__(
+        self, page: PageColumns, rules: PlainRules, state: PlainState, rows: MoveRows
+    ) -> int:
+        if self._is_there is None:
+            from twin.compilation.cache import is_compiled
+
+            self._is_there = is_compiled(compiled_kernel(), (page, rules, state, rows))
+        return compiled_kernel()(page, rules, state, rows) if self._is_there else 0
