@@ -16,8 +16,7 @@ from twin.cutting.material import (
     Head,
     Points,
 )
-from twin.cutting.part import write_stl
-from twin.cutting.part_picture import part_picture
+from twin.cutting.part import part_picture, write_stl
 from twin.cutting.stock_contact import StockContact
 from twin.cutting.sweeping import Rectangle, sweep_lines, union
 from twin.cutting.tools import Profile

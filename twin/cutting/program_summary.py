@@ -11,6 +11,7 @@ import numpy.typing as npt
 from twin.cutting.tools import EMPTY_SPINDLE, ToolChange, ToolPlan
 from twin.errors import ConfigError
 from twin.job.job_file import JobFile, ToolTable
+from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Chunk, FloatArray, Function, IntArray, Motion
 from twin.nc.functions import (
     PROGRAM_ENDS,
@@ -26,6 +27,8 @@ ValueT = TypeVar("ValueT")
 
 _OF_SPINDLE = SPINDLE_STARTS | SPINDLE_STOPS | {SPINDLE_SPEED}
 """Words of a program that speaks of the spindle."""
+_BEFORE_THE_NEXT = 1.0 - 1e-12
+"""The end of a move's path still belongs to it: a function between two moves is not yet in effect."""
 _ENDS_SPINDLE = PROGRAM_ENDS | {TOOL_CHANGE}
 """Words that stop a spindle that was spoken of."""
 
@@ -76,6 +79,13 @@ class ProgramSummary:
         result = np.zeros(len(move), np.bool_)
         result[known] = self.rapid[move[known]]
         return result
+
+    def standing(self, setpoint: Setpoints) -> BoolArray:
+        """During which setpoints the spindle is off, shape (n,)."""
+        place = setpoint.move + np.clip(setpoint.fraction, 0.0, _BEFORE_THE_NEXT)
+        off = np.array([speed == 0.0 for speed in self.spindle.values])
+        step = np.searchsorted(self.spindle.first_move, place, side="right") - 1
+        return off[np.maximum(step, 0)]
 
 
 class SummaryBuilder:

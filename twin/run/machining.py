@@ -10,7 +10,6 @@ from twin.cutting.events import CutEvent
 from twin.cutting.inspection import Inspection, inspect
 from twin.cutting.nominal import NominalGouge, NominalWatch
 from twin.cutting.program_summary import ProgramSummary
-from twin.cutting.spindle import standing
 from twin.job.job_file import JobFile, ToolTable
 from twin.machine.model.head_shape import HeadShape
 from twin.machine.model.model import MachineModel
@@ -93,7 +92,7 @@ class Machining(Observer):
             return samples
         move = samples.setpoint.move
         rapid = self._summary.is_rapid(move)
-        cutter.add(samples, rapid, standing(self._summary, samples.setpoint))
+        cutter.add(samples, rapid, self._summary.standing(samples.setpoint))
         self._look_at_stops(samples)
         found = None if self._nominal is None else self._nominal.look(samples)
         if found is not None and self._gouge_stops:
