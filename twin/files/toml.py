@@ -15,9 +15,7 @@ from twin.errors import ConfigError, UsageError
 class Table(pydantic.BaseModel):
     """A TOML table: unknown keys are errors, values do not change after reading."""
 
-    model_config = pydantic.ConfigDict(
-        extra="forbid", frozen=True, allow_inf_nan=False, use_attribute_docstrings=True
-    )
+    model_config = pydantic.ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
 
 TableT = TypeVar("TableT", bound=Table)
