@@ -221,18 +221,18 @@ def test_the_report_leads_to_its_places_in_the_viewer(recorded, report):
 @pytest.mark.skipif(not THREE.is_dir(), reason="three.js is missing: run scripts/fetch_three.py")
 def test_a_machine_that_makes_the_run_again_is_followed_until_somebody_scrubs(recorded):
     run, _ = recorded
-    place = [0.2]
+    place = [0.2005]
     with open_view(run, now=lambda: place[0]) as address, browser() as opened:
         page = opened.new_page(viewport={"width": 1100, "height": 800})
         page.goto(address)
         page.wait_for_selector("body[data-ready=yes]")
         page.wait_for_selector("#time[aria-valuetext^='0.200 s']")
-        place[0] = 0.4
+        place[0] = 0.4005
         page.wait_for_selector("#time[aria-valuetext^='0.400 s']")
         page.click("#back")
         assert page.get_attribute("#live", "aria-pressed") == "false"
         before = page.evaluate("document.getElementById('time').value")
-        place[0] = 0.6
+        place[0] = 0.6005
         page.wait_for_timeout(200)
         assert page.evaluate("document.getElementById('time').value") == before
         page.click("#live")

@@ -173,7 +173,7 @@ def _grbl_line(source: Source) -> "Iterator[socket.socket | int]":
         UsageError: Nobody can or may listen there.
     """
     from twin.serve.grbl.server import PSEUDO_TERMINAL, pseudo_terminal
-    from twin.web.guard import LOCAL_NAMES
+    from twin.web.origin_check import LOCAL_NAMES
 
     if source.grbl == PSEUDO_TERMINAL:
         with pseudo_terminal() as (master, path):
@@ -349,7 +349,7 @@ def _served(
     import uvicorn
 
     from twin.serve.http_server import application, without_broken_requests
-    from twin.web.guard import LOCAL_NAMES
+    from twin.web.origin_check import LOCAL_NAMES
 
     failures: list[Exception] = []
 

@@ -1,4 +1,4 @@
-"""The pages of a recorded run, behind the guard."""
+"""The pages of a recorded run, behind the origin check."""
 
 import asyncio
 import contextlib
@@ -16,8 +16,8 @@ from starlette.staticfiles import StaticFiles
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from twin.view.recorded_run import RecordedRun
-from twin.web.doorkeeper import Doorkeeper, new_tokens
-from twin.web.guard import ASSETS, Guard
+from twin.web.authentication import Authentication, new_tokens
+from twin.web.origin_check import ASSETS, OriginCheck
 from twin.web.server import WebServer, require_three
 
 ROLE = "viewer"
@@ -130,9 +130,11 @@ def open_view(
     """
     require_three()
     server = WebServer(port=port)
-    doorkeeper = Doorkeeper(new_tokens((ROLE,)), server.port)
-    server.start(Guard(view_app(run, report, now), doorkeeper, local=server.local, framed=framed))
+    authentication = Authentication(new_tokens((ROLE,)), server.port)
+    server.start(
+        OriginCheck(view_app(run, report, now), authentication, local=server.local, framed=framed)
+    )
     try:
-        yield f"{server.origin}/{ROLE}/#{doorkeeper.tokens[ROLE]}"
+        yield f"{server.origin}/{ROLE}/#{authentication.tokens[ROLE]}"
     finally:
         server.stop()

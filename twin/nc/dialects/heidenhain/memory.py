@@ -7,6 +7,7 @@ from twin.nc.control.control import Control
 from twin.nc.control.settings import ToolData
 from twin.nc.dialects.heidenhain.cycle_values import Parameters
 from twin.nc.geometry.planes import Plane, Vector
+from twin.nc.path.feed_rates import FeedMode
 from twin.nc.path.move_columns import Segment
 
 Cycle = Callable[[Control, Parameters], None]
@@ -95,6 +96,13 @@ def memory_of(control: Control) -> KlartextMemory:
 
 
 def acts_on_lines(control: Control) -> bool:
-    """A cycle behind every move, or the shorter way of rotary axes."""
-    memory = memory_of(control)
-    return memory.calls_always or memory.shortest
+    """A cycle behind every move, the shorter way of rotary axes, feeds that are none per minute, FMAX before."""
+    memory, modal = memory_of(control), control.modal
+    counts_otherwise = modal.unit != 1.0 or modal.feed_mode != FeedMode.PER_MINUTE
+    return (
+        memory.calls_always
+        or memory.shortest
+        or memory.was_rapid
+        or memory.per_revolution
+        or counts_otherwise
+    )

@@ -1,4 +1,4 @@
-"""Who sits where: many pages, one panel. It is asked for and given, and never taken."""
+"""Open pages and the panel: many pages, one panel. It is asked for and given, and never taken."""
 
 import dataclasses
 import itertools
@@ -8,7 +8,7 @@ from typing import Any
 MOST_PAGES = 40
 """Pages that may be open at a time."""
 KEPT_FREE = 8
-"""Of them those that no watcher takes: whoever acts finds a seat."""
+"""Of them those that no watcher takes, so that operators and trainers can always connect."""
 MESSAGES, MESSAGES_PER_S = 150.0, 75.0
 """How many messages a page may send at once, and how many it may send in the long run."""
 
@@ -27,8 +27,8 @@ class Page:
     _left: float = MESSAGES
     _heard: float = dataclasses.field(default_factory=time.monotonic)
 
-    def may_speak(self) -> bool:
-        """Whether it has not said too much of late."""
+    def within_rate_limit(self) -> bool:
+        """Rate limit not exceeded; counts one message."""
         now = time.monotonic()
         self._left = min(MESSAGES, self._left + MESSAGES_PER_S * (now - self._heard))
         self._heard = now
@@ -36,7 +36,7 @@ class Page:
         return self._left >= 0.0
 
 
-class Seats:
+class Connections:
     """The pages that are open, and which of the operators' has the panel."""
 
     def __init__(self) -> None:
@@ -45,7 +45,7 @@ class Seats:
         self._holder: int | None = None
         self._asking: list[int] = []
 
-    def sit(self, role: str) -> Page | None:
+    def open(self, role: str) -> Page | None:
         """A page is opened; None where there are too many."""
         most = MOST_PAGES - (KEPT_FREE if role == "watcher" else 0)
         if len(self._pages) >= most:
@@ -56,7 +56,7 @@ class Seats:
             self._holder = page.number
         return page
 
-    def leave(self, page: Page) -> None:
+    def close(self, page: Page) -> None:
         """A page is closed; the panel goes to who asked for it first, else to any operator."""
         self._pages.pop(page.number, None)
         self._asking = [number for number in self._asking if number != page.number]
@@ -64,7 +64,7 @@ class Seats:
             operators = [one.number for one in self._pages.values() if one.role == "operator"]
             self._give(next(iter(self._asking or operators), None))
 
-    def may(self, page: Page, command: Any) -> bool:
+    def allows(self, page: Page, command: Any) -> bool:
         """Whether a page may give a command: the emergency stop may be pressed by all who act."""
         if page.role == "trainer" or page.number == self._holder:
             return True
@@ -93,7 +93,7 @@ class Seats:
         return sum(page.role == role for page in tuple(self._pages.values()))
 
     def words(self, page: Page) -> dict[str, Any]:
-        """What a page shows of it."""
+        """What a page shows of the connections."""
         roles = [one.role for one in self._pages.values()]
         return {
             "role": page.role,

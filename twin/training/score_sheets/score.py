@@ -156,7 +156,7 @@ def score_page(
     return template.render(sheet=sheet, words=labels, pictures=shown[:-1], part=shown[-1])
 
 
-class SheetWriter:
+class ScoreSheetWriter:
     """Keeps the log and the score sheet of a session on disk, on a thread of its own."""
 
     def __init__(self, session: Session, words: Words, out: Path | None) -> None:

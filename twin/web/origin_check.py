@@ -1,4 +1,4 @@
-"""What stands before every page: hosts, origins and cookies are looked at, and headers are set."""
+"""Origin check: host, origin and cookie of every request, and the security headers of every response."""
 
 import urllib.parse
 from pathlib import Path
@@ -7,7 +7,7 @@ from starlette.datastructures import Headers, MutableHeaders
 from starlette.responses import FileResponse, PlainTextResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from twin.web.doorkeeper import Doorkeeper
+from twin.web.authentication import Authentication
 
 ASSETS = Path(__file__).resolve().parent / "assets"
 """Files of the entry and of the view."""
@@ -35,17 +35,17 @@ ENTRY = "/enter"
 _TOKEN_LIMIT = 200
 
 
-class Guard:
-    """Lets in only requests of our own pages, from browsers that have shown a token."""
+class OriginCheck:
+    """Passes on requests of our own pages alone, from browsers that have shown a token."""
 
     def __init__(
-        self, app: ASGIApp, doorkeeper: Doorkeeper, *, local: bool, framed: bool = False
+        self, app: ASGIApp, authentication: Authentication, *, local: bool, framed: bool = False
     ) -> None:
-        """Stand before an application.
+        """Wrap an application.
 
         Args:
-            app: What is guarded; its paths begin with ``/ROLE/``.
-            doorkeeper: Knows the roles.
+            app: What is wrapped; its paths begin with ``/ROLE/``.
+            authentication: Checks tokens and cookies.
             local: Whether only this computer's names lead here.
             framed: Whether pages of this computer may hold its pages in a frame.
         """
@@ -57,7 +57,7 @@ class Guard:
                 "frame-ancestors 'none'", IN_LOCAL_PAGES
             )
         self._app = app
-        self._doorkeeper = doorkeeper
+        self._doorkeeper = authentication
         self._local = local
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -115,7 +115,7 @@ class Guard:
         token = body[:_TOKEN_LIMIT].decode("ascii", "replace")
         cookie = self._doorkeeper.admit(what, token)
         if cookie is None:
-            return PlainTextResponse("", 429 if self._doorkeeper.braked else 401)
+            return PlainTextResponse("", 429 if self._doorkeeper.rate_limited else 401)
         return Response(status_code=204, headers={"Set-Cookie": cookie})
 
     async def _refuse(self, scope: Scope, receive: Receive, send: Send, status: int) -> None:

@@ -8,8 +8,7 @@ from PIL import Image
 
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.scene.vocabulary import LANGUAGES, Words, vocabulary
-from twin.training.session.session import Session
-from twin.training.sheets.course import (
+from twin.training.score_sheets.course import (
     CourseRow,
     Trainee,
     course_of,
@@ -17,7 +16,8 @@ from twin.training.sheets.course import (
     language_of,
     trainees,
 )
-from twin.training.sheets.score import SheetWriter, score_page, score_sheet
+from twin.training.score_sheets.score import ScoreSheetWriter, score_page, score_sheet
+from twin.training.session.session import Session
 
 
 @pytest.fixture(scope="module")
@@ -74,7 +74,7 @@ def test_a_program_that_only_ends_has_finished_nothing():
 
 
 def test_a_course_lists_the_sheets_of_a_folder(tmp_path, wrecked):
-    writer = SheetWriter(wrecked, Words("en", "fagor8070"), tmp_path)
+    writer = ScoreSheetWriter(wrecked, Words("en", "fagor8070"), tmp_path)
     writer.close()
     (tmp_path / "other").mkdir()
     (tmp_path / "other" / "score.json").write_text("{", encoding="utf-8")
@@ -103,7 +103,7 @@ def test_a_course_is_in_the_language_of_most_sheets_and_counts_the_best_of_each_
 
 def test_a_sheet_that_was_handed_in_is_kept_when_a_trainer_goes_back(tmp_path):
     session = Session(read_scene(scene_path("fagor_first_steps")))
-    writer = SheetWriter(session, Words("en", "fagor8070"), tmp_path)
+    writer = ScoreSheetWriter(session, Words("en", "fagor8070"), tmp_path)
     session.submit({"do": "sign", "name": "Eva"})
     session.advance(20)
     session.submit({"do": "finish"})

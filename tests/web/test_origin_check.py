@@ -9,9 +9,9 @@ import pytest
 from starlette.responses import PlainTextResponse
 
 from twin.errors import UsageError
-from twin.web import doorkeeper
-from twin.web.doorkeeper import Doorkeeper, new_tokens
-from twin.web.guard import Guard
+from twin.web import authentication
+from twin.web.authentication import Authentication, new_tokens
+from twin.web.origin_check import OriginCheck
 from twin.web.server import WebServer
 
 GUESS = "guess"
@@ -30,8 +30,8 @@ class Answer(NamedTuple):
 class House:
     def __init__(self, *, framed: bool = False) -> None:
         self.server = WebServer()
-        self.doorkeeper = Doorkeeper(new_tokens(("operator", "watcher")), self.server.port)
-        self.server.start(Guard(inside, self.doorkeeper, local=True, framed=framed))
+        self.authentication = Authentication(new_tokens(("operator", "watcher")), self.server.port)
+        self.server.start(OriginCheck(inside, self.authentication, local=True, framed=framed))
         self.own = f"http://127.0.0.1:{self.server.port}"
 
     def ask(self, path="/operator/", method="GET", body=None, **headers):
@@ -46,7 +46,7 @@ class House:
             )
 
     def enter(self, role="operator", token=None, **headers):
-        token = self.doorkeeper.tokens[role] if token is None else token
+        token = self.authentication.tokens[role] if token is None else token
         return self.ask(f"/enter/{role}", "POST", token, **({"Origin": self.own} | headers))
 
     def cookie(self, role="operator") -> str:
@@ -61,10 +61,10 @@ def house():
 
 
 def test_a_token_of_128_bits_is_made_anew_for_each_role_and_session(house):
-    tokens = list(house.doorkeeper.tokens.values())
+    tokens = list(house.authentication.tokens.values())
     assert len(set(tokens)) == 2
     assert all(re.fullmatch(r"[\w-]{22}", token) for token in tokens)
-    again = Doorkeeper(new_tokens(("operator", "watcher")), house.server.port)
+    again = Authentication(new_tokens(("operator", "watcher")), house.server.port)
     assert not set(tokens) & set(again.tokens.values())
 
 
@@ -81,7 +81,7 @@ def test_a_token_is_handed_in_once_and_kept_where_no_script_reads_it(house):
     answer = house.enter()
     assert answer.status == 204
     kept = answer.headers["set-cookie"]
-    assert house.doorkeeper.tokens["operator"] not in kept
+    assert house.authentication.tokens["operator"] not in kept
     for word in ("HttpOnly", "SameSite=Strict", "Path=/operator"):
         assert word in kept
     cookie = kept.split(";")[0]
@@ -110,13 +110,13 @@ def test_a_name_that_is_not_this_computers_is_refused(house):
 
 def test_guesses_are_braked_and_keep_nobody_out_who_has_the_token(house, monkeypatch):
     cookie = house.cookie()
-    for _ in range(doorkeeper.GUESSES):
+    for _ in range(authentication.GUESSES):
         assert house.enter(token=GUESS).status in (401, 429)
     assert house.enter(token=GUESS).status == 429
     assert house.enter().status == 204
     assert house.enter(token=GUESS).status == 429
     assert house.ask(Cookie=cookie).status == 200
-    monkeypatch.setattr(doorkeeper, "GUESSES_S", 0.0)
+    monkeypatch.setattr(authentication, "GUESSES_S", 0.0)
     assert house.enter(token=GUESS).status == 401
 
 
@@ -160,8 +160,8 @@ def test_a_taken_port_is_refused(house):
 
 @pytest.mark.parametrize("encrypted", [False, True])
 def test_a_cookie_is_secure_where_the_line_is(encrypted):
-    doorkeeper = Doorkeeper(new_tokens(("operator",)), 1, encrypted=encrypted)
-    cookie = doorkeeper.admit("operator", doorkeeper.tokens["operator"])
+    authentication = Authentication(new_tokens(("operator",)), 1, encrypted=encrypted)
+    cookie = authentication.admit("operator", authentication.tokens["operator"])
     assert cookie is not None
     # Safari drops a Secure cookie that came over http, also from this computer.
     assert ("; Secure" in cookie) == encrypted

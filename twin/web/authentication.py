@@ -1,4 +1,4 @@
-"""Who may come in: a token of its own for each role, kept as a cookie; a brake on guesses.
+"""Authentication: a token for each role, kept as a cookie; guesses are rate limited.
 
 A token stands behind the ``#`` of an address, which browsers tell no server: so it is in no log and
 in no referrer. The page hands it in once and gets a cookie that no script can read: a pass that is
@@ -20,7 +20,7 @@ from collections.abc import Iterable, Mapping
 TOKEN_BYTES = 16
 """128 bits."""
 GUESSES = 10
-"""Wrong tokens within ``GUESSES_S`` that are told to be wrong; then all are told to wait."""
+"""Wrong tokens within ``GUESSES_S`` that are answered as wrong; further ones have to wait."""
 GUESSES_S = 60.0
 
 
@@ -29,8 +29,8 @@ def new_tokens(roles: Iterable[str]) -> dict[str, str]:
     return {role: secrets.token_urlsafe(TOKEN_BYTES) for role in roles}
 
 
-class Doorkeeper:
-    """Knows the roles and who has which.
+class Authentication:
+    """Checks tokens and cookies of roles.
 
     Attributes:
         tokens: By role.
@@ -52,8 +52,8 @@ class Doorkeeper:
         self._wrong: deque[float] = deque(maxlen=GUESSES)
 
     @property
-    def braked(self) -> bool:
-        """Whether too many wrong tokens have come of late."""
+    def rate_limited(self) -> bool:
+        """Too many wrong tokens within ``GUESSES_S``."""
         return len(self._wrong) == GUESSES and time.monotonic() - self._wrong[0] < GUESSES_S
 
     def admit(self, role: str, token: str) -> str | None:
@@ -63,7 +63,7 @@ class Doorkeeper:
             The cookie's header where it is right, else None.
         """
         if not _same(self.tokens.get(role, ""), token):
-            if not self.braked:
+            if not self.rate_limited:
                 self._wrong.append(time.monotonic())
             return None
         known = self._passes[role]

@@ -1,4 +1,4 @@
-// The desk: modes, start and stop, jog keys, dials, spindle and coolant, the emergency stop.
+// The control desk: modes, start and stop, jog keys, dials, spindle and coolant, the emergency stop.
 
 import { act_on, key, label_key, light, make, write } from "./parts.js";
 
@@ -11,7 +11,7 @@ const UNHEARD_MS = 600;
 const WHEEL_MS = 50;
 const MOST_CLICKS = 100;
 
-export class Desk {
+export class ControlDesk {
   constructor(scene, line) {
     Object.assign(this, { scene, line, step: 1, hand: { feed: null, rapid: false, axis: "", jog_step: "0.1" }, keys: {}, turned: {}, pressing: "", pointer: null, clicks: 0, wheel: null, now: null });
     const command = (name) => () => line.say({ do: name });
@@ -188,7 +188,7 @@ export class Desk {
     light(this.keys.coolant, now.coolant);
     this.show_dials();
     const acts = now.role === "trainer" || now.has_panel;
-    for (const box of document.querySelectorAll("#desk fieldset")) box.disabled = !acts;
+    for (const box of document.querySelectorAll("#control-desk fieldset")) box.disabled = !acts;
     this.emergency.disabled = now.role === "watcher";
     this.emergency.classList.toggle("pressed", now.pressed);
     this.emergency.setAttribute("aria-pressed", now.pressed);
