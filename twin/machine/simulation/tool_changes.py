@@ -71,7 +71,7 @@ class ToolClearances:
         return None
 
     def _with(self, tool: ToolTable) -> Clearance:
-        """The clearance of a tool; a tool that was not in the spindle is looked at anew."""
+        """The clearance of a tool; a tool that was not in the spindle is looked at again."""
         clearance = self._of(tool)
         if clearance is not self._current:
             clearance.begin()
