@@ -4,10 +4,10 @@ from twin.nc.canonical import Corner
 from twin.nc.control.codes import Action, GCode
 from twin.nc.control.control import Control
 from twin.nc.dialects.linuxcnc import compensation, curves, motion, offsets
-from twin.nc.dialects.linuxcnc.arcs import CLOCKWISE, COUNTER_CLOCKWISE
 from twin.nc.dialects.linuxcnc.compensation import begin_by_diameter, begin_by_table
 from twin.nc.dialects.linuxcnc.cycles import CYCLES
 from twin.nc.dialects.linuxcnc.memory import SYSTEMS, memory_of
+from twin.nc.dialects.linuxcnc.motion import CLOCKWISE, COUNTER_CLOCKWISE
 from twin.nc.geometry.planes import XY, YZ, ZX
 from twin.nc.iso import base
 from twin.nc.iso.declared import modal, motion_code, plane_code, refused, replacement
