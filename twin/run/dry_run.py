@@ -1,4 +1,4 @@
-"""The dry run: the whole program interpreted once, before anything moves, and read by all who follow it."""
+"""The dry run: the whole program interpreted once, before anything moves, and read by all that follows."""
 
 import dataclasses
 import pickle
@@ -7,8 +7,6 @@ import weakref
 from collections.abc import Iterable, Iterator
 from itertools import islice
 from typing import IO
-
-import numpy as np
 
 from twin.cutting.program_summary import ProgramSummary, SummaryBuilder
 from twin.machine.watching.alarms import Alarm
@@ -25,8 +23,11 @@ from twin.run.waits import with_waits
 MOVES_IN_MEMORY = 200_000
 """Of a longer program the further moves lie in a file, at some 200 bytes each: memory stays bounded."""
 
+_WITHIN = (0.0, 0.381966, 1.0)
+"""Fractions of a move at which the direction of the tool is looked at: whole turns come back to where they began."""
+
 NOTICES_KEPT = 100
-"""Lines whose speed of the spindle was limited that are told."""
+"""Lines whose speed of the spindle was limited that are reported."""
 
 
 class InterpretedProgram:
@@ -103,8 +104,8 @@ class DryRun:
         program: Its moves and events.
         warnings: What the interpreter and the spindle had to say.
         alarm: The soft-limit alarm of the first move that leaves the travel, if any.
-        summary: What the program says beside its moves.
-        watch: What it tells that no axis feels.
+        summary: Its tools, speeds of the spindle and rapids.
+        watch: Mistakes of its functions that no axis shows.
         lines_never_run: How many lines with motion it never came to.
         tilts: Whether the tool ever stands off the part's Z.
     """
@@ -149,9 +150,9 @@ def interpret_all(preparation: Preparation, part_zero: FloatArray, clock: StageC
         for event in chunk.events:
             if isinstance(event, Function) and (said := preparation.spindle.limited_by(event)):
                 limited.setdefault(event.line, said)
-        tilts = tilts or frame.tilts(
-            np.concatenate([chunk.moves.start, chunk.moves.end]) + part_zero
-        )
+        if frame.chain is not None and not tilts:
+            start, end = chunk.moves.start + part_zero, chunk.moves.end + part_zero
+            tilts = any(frame.tilts(start + u * (end - start)) for u in _WITHIN)
         if alarm is None:
             alarm = soft_limit_alarm(preparation.machine, chunk.moves, part_zero)
     return DryRun(

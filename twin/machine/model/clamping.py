@@ -57,6 +57,7 @@ def refuse_overlaps(clamped: MachineModel, bore: float | None = None) -> None:
             )
 
 
+_Z = 2
 _CARRIES = (*PARALLELS, POST)
 """What the twin puts under the stock gives way to a fixture there."""
 
@@ -95,7 +96,8 @@ def what_carries(clamped: MachineModel) -> str | None:
     Args:
         clamped: The machine with all that is clamped on it.
     """
-    if clamped.blank is None:
+    frame = clamped.machine.part_frame
+    if clamped.blank is None or (frame.chain is not None and frame.table_about(_Z) is None):
         return None
     model = clamped.solids
     data = mujoco.MjData(model)
