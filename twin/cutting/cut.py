@@ -17,7 +17,7 @@ from twin.cutting.height_map_material import HeightMapMaterial
 from twin.cutting.kernels.sweep import Removal
 from twin.cutting.material import AIR_MM, EDGE, Head, Material, Points
 from twin.cutting.sweeping import Rectangle
-from twin.cutting.tools import Profile, ToolPlan, default_cell, profile
+from twin.cutting.tools import Profile, default_cell, profile
 from twin.cutting.tridexel import blanks
 from twin.cutting.tridexel.material import TriDexelMaterial
 from twin.errors import ConfigError
@@ -25,6 +25,7 @@ from twin.job.job_file import StockTable, ToolTable
 from twin.nc.canonical import FloatArray, IntArray
 from twin.recording.reader import Samples
 from twin.toolpath.part_frame import PartFrame
+from twin.toolpath.tool_plan import ToolPlan
 
 HEIGHT_MAP, TRI_DEXEL = "height map", "tri-dexel"
 """What describes the material."""

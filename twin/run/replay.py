@@ -18,7 +18,7 @@ first alarm, the first rapid into stock, the first gouge by flutes, shank or hol
 
 
 def summary_of(preparation: Preparation, header: RecordingHeader) -> ProgramSummary:
-    """What the program of a recording says beside its moves.
+    """Tools, speeds of the spindle and rapids of the program of a recording.
 
     Raises:
         ProgramError: The program is wrong.
