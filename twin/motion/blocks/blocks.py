@@ -14,10 +14,12 @@ from twin.nc.canonical import (
     Corner,
     Dwell,
     Event,
+    FeedUnit,
     FloatArray,
     IntArray,
     Motion,
     Moves,
+    Shape,
 )
 from twin.toolpath.geometry import Geometry, geometry
 from twin.units import SECONDS_PER_MINUTE
@@ -136,6 +138,10 @@ def _of_moves(moves: Moves, first: int, corner: int, tolerance: float) -> tuple[
     at_border[1:][rapid] = Corner.EXACT_STOP
     shapes = geometry(kept)
     scale = length / np.maximum(moves.length, 1e-12)
+    turns = (linear[rows] == 0.0) & (shapes.angle == 0.0)
+    if kept.curve is not None:
+        # Its linear axes follow the rotary ones while the tip rests.
+        turns |= (kept.shape == Shape.CURVE) & (kept.feed_unit == FeedUnit.DEG_PER_MIN)
     blocks = Blocks(
         move=first + rows,
         line=kept.line,
@@ -145,7 +151,7 @@ def _of_moves(moves: Moves, first: int, corner: int, tolerance: float) -> tuple[
         feed=np.where(np.isnan(kept.feed), np.inf, kept.feed / SECONDS_PER_MINUTE),
         acceleration=np.where(np.isnan(kept.acceleration), np.inf, kept.acceleration),
         deceleration=np.where(np.isnan(kept.deceleration), np.inf, kept.deceleration),
-        rotary_alone=(linear[rows] == 0.0) & (shapes.angle == 0.0),
+        rotary_alone=turns,
         corner=at_border[:-1],
         tolerance=tolerances[rows],
         pause=np.zeros(len(rows)),
@@ -160,6 +166,7 @@ def _of_dwell(dwell: Dwell, move: int, position: FloatArray) -> Blocks:
     still = Geometry(
         base=position[None],
         drift=np.zeros_like(position)[None],
+        bend=np.zeros((1, len(position), 4)),
         cosine=np.zeros((1, 3)),
         sine=np.zeros((1, 3)),
         angle=zero,
