@@ -218,7 +218,7 @@ class Player:
         elif name == "switch":
             page.click("#tab-run")
             page.set_checked(f"[data-key='switch {give['name']}']", give["on"])
-            self.until(lambda: getattr(self.machine.switches, give["name"]) == give["on"], name)
+            self.until(lambda: getattr(self.machine.panel, give["name"]) == give["on"], name)
         elif name == "search":
             page.click("#tab-run")
             page.click(f"#line{give['line']}")
@@ -227,7 +227,11 @@ class Player:
             page.click("#tab-tools")
             self.press(f"change tool {give['number']}", "change_tool")
         elif name in ("spindle", "coolant"):
-            stands = self.machine.spindle.started if name == "spindle" else self.machine.coolant
+            stands = (
+                self.machine.auxiliaries.spindle.started
+                if name == "spindle"
+                else self.machine.auxiliaries.coolant
+            )
             if stands != give["on"]:
                 self.press(name, name)
         else:
@@ -251,23 +255,30 @@ class Player:
         assert left is not None
         for step in STEPS:
             self.page.click(f'[data-key="step {step:g}"]')
-            while left > step - 1e-6 and not (feels and self.machine.touches):
+            while left > step - 1e-6 and not (
+                feels and self.machine.setup.touches(self.machine.auxiliaries.spindle)
+            ):
                 self.press(name, "jog")
-                self.until(lambda: self.machine.run is None and not self.machine.moving, "rest")
+                self.until(
+                    lambda: self.machine.slot.run is None and not self.machine.machine.moving,
+                    "rest",
+                )
                 left -= step
-        while feels and not self.machine.touches:
+        while feels and not self.machine.setup.touches(self.machine.auxiliaries.spindle):
             self.press(name, "jog")
-            self.until(lambda: self.machine.run is None and not self.machine.moving, "rest")
+            self.until(
+                lambda: self.machine.slot.run is None and not self.machine.machine.moving, "rest"
+            )
 
     def _free_way(self, axis: str, direction: int) -> float:
         """What an eye sees: about how far the tool is from the blank."""
         room = self.machine
-        work, column = room.work, room.machine.machine.axes.names.index(axis)
+        work, column = room.setup.work, room.machine.machine.axes.names.index(axis)
         assert work is not None
         low, high = 0.0, 200.0
         for _ in range(40):
             middle = 0.5 * (low + high)
-            place = room.machine.position - room.tables.longer
+            place = room.machine.position - room.setup.tables.longer
             place[column] += direction * middle
             low, high = (low, middle) if work.touches(place) else (middle, high)
         return max(0.0, low - 0.005)
@@ -276,11 +287,11 @@ class Player:
         room = self.machine
         begin = room.time_s
         come = {
-            "rest": lambda: not room.moving and (room.run is None or room.held),
-            "moving": lambda: room.moving,
-            "alarm": lambda: room.alarm is not None and not room.moving,
+            "rest": lambda: not room.machine.moving and (room.slot.run is None or room.slot.held),
+            "moving": lambda: room.machine.moving,
+            "alarm": lambda: room.alarm is not None and not room.machine.moving,
             "line": lambda: int(room.machine.setpoint.line[0]) == step.value,
-            "end": lambda: room.run is None and not room.moving,
+            "end": lambda: room.slot.run is None and not room.machine.moving,
             "seconds": lambda: room.time_s >= begin + step.value,
         }[step.wait or "rest"]
         self.until(come, f"{step.wait} {step.value:g}")

@@ -17,7 +17,6 @@ from benches.training_room import SCENE, RoomProcess, room_process
 from browsers import CHROMIUM
 from panel_player import browser, without_view
 
-from twin.nc.text.source import source_from_text
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.session.checkpoints import checkpoint
 from twin.training.session.session import Session
@@ -84,8 +83,8 @@ def _going_back() -> Iterator[Row]:
     """How long copies take for going back, and going back, in a program without an end."""
     session = Session(read_scene(scene_path("linuxcnc_round_corners")))
     room = session.room
-    room.work, room.program = None, source_from_text(ENDLESS, "endless")
-    room.lines = tuple(room.program.lines)
+    room.setup.remove_blank()
+    room.program.load(ENDLESS)
     session.submit({"do": "cycle_start"})
     for minutes in LENGTHS_MIN:
         while session.room.time_s < 60.0 * minutes:

@@ -46,7 +46,7 @@ class MeasuredRoom:
         self._slowest_steady = 0.0
         self._braked = threading.Event()
         self._braked_at = 0.0
-        room.session.room.feed_override = OVERRIDE
+        room.session.room.panel.turn_dial("feed", OVERRIDE)
 
     def _note_ask(self, command: Any, who: Who, page: int) -> None:
         self._asked = time.time()
@@ -99,7 +99,7 @@ class MeasuredRoom:
             percent: Feed override.
         """
         room = self._room.session.room
-        if room.running or room.moving:
+        if room.slot.running or room.machine.moving:
             return False
         for command in (
             {"do": "reset"},
@@ -111,7 +111,7 @@ class MeasuredRoom:
             {"do": "cycle_start"},
         ):
             self._room.driver.ask(command, "operator", 0)
-        wait_until(lambda: bool(self._room.session.room.running))
+        wait_until(lambda: bool(self._room.session.room.slot.running))
         return True
 
     def run_steadily(self) -> None:
@@ -119,7 +119,7 @@ class MeasuredRoom:
         end = time.perf_counter() + PATIENCE_S
         while not self._steady():
             room = self._room.session.room
-            if room.held and not room.moving:
+            if room.slot.held and not room.machine.moving:
                 self._room.driver.ask({"do": "cycle_start"}, "operator", 0)
             else:
                 self.keep_busy(OVERRIDE)

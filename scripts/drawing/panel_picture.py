@@ -48,7 +48,7 @@ def take_panel(
             time.sleep(0.8)
             # Frozen in the midst of it: whoever draws slowly shows what it was.
             room.driver.ask({"do": "override", "dial": "feed", "percent": 0}, "operator", 0)
-            _until(lambda: not machine.moving)
+            _until(lambda: not machine.machine.moving)
         page.click('[data-key="view part"]')
         time.sleep(SETTLED_S)
         before = _pictures(page)

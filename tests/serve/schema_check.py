@@ -7,7 +7,7 @@ import xmlschema
 
 from twin.serve.documents import VERSION
 
-KINDS = ("Devices", "Streams", "Error")
+KINDS = ("Devices", "Streams", "Assets", "Error")
 
 
 class Schemas:

@@ -13,8 +13,9 @@ from itertools import count, pairwise
 
 import pytest
 
+from twin.job.job_file import ToolTable
 from twin.nc.canonical import Axes
-from twin.serve.agent import Agent
+from twin.serve.agent import Agent, RequestError
 from twin.serve.buffer import NORMAL, Condition
 from twin.serve.clock import Clock
 from twin.serve.device import device_of
@@ -29,6 +30,7 @@ from twin.serve.http_server import (  # noqa: E402 (it needs that web server)
 AXES = Axes(("X", "Y", "Z", "C"), ("linear", "linear", "linear", "rotary"))
 STREAMS = "{urn:mtconnect.org:MTConnectStreams:2.0}"
 DEVICES = "{urn:mtconnect.org:MTConnectDevices:2.0}"
+ASSETS = "{urn:mtconnect.org:MTConnectAssets:2.0}"
 ERROR = "{urn:mtconnect.org:MTConnectError:2.0}"
 FAULT = Condition("Fault", "hard-limit", "X < -300 & stays \x01 there")
 HOSTILE_BLOCK = 'N5 "]]> <X> & \x00 \ud800'
@@ -63,7 +65,9 @@ def served(agent: Agent, ticks: Iterator[Tick]) -> Iterator[int]:
 @pytest.fixture
 def port() -> Iterator[int]:
     """Where an agent of this machine listens; its buffer holds five seconds."""
-    with served(Agent(device_of("mill", AXES), Clock(), "made up", size=500), machine()) as port:
+    tools = [ToolTable(number=1), ToolTable(number=7, kind="drill", diameter=6.0)]
+    agent = Agent(device_of("mill", AXES), Clock(), "made up", 500, tools)
+    with served(agent, machine()) as port:
         yield port
 
 
@@ -96,8 +100,30 @@ def test_the_probe_names_every_item_once(port: int) -> None:
         assert status == 200
         assert root.tag == f"{DEVICES}MTConnectDevices"
         found = [item.attrib["id"] for item in root.iter(f"{DEVICES}DataItem")]
-        assert len(found) == len(set(found)) == 3 + 4 * 3 + 1 + 2 + 8 + 3
+        assert len(found) == len(set(found)) == 3 + 4 * 3 + 1 + 2 + 8 + 6
         assert [axis.attrib["name"] for axis in root.iter(f"{DEVICES}Linear")] == ["X", "Y", "Z"]
+
+
+def test_the_tools_are_assets(port: int) -> None:
+    status, root = ask(port, "/assets?type=CuttingTool&count=1")
+    (last,) = root.iter(f"{ASSETS}CuttingTool")
+    assert (status, last.attrib["toolId"]) == (200, "drill")
+    _, root = ask(port, "/assets")
+    identifiers = [each.attrib["assetId"] for each in root.iter(f"{ASSETS}CuttingTool")]
+    status, root = ask(port, f"/asset/{identifiers[1]};{identifiers[0]}")
+    diameters = [each.text for each in root.iter(f"{ASSETS}CuttingDiameterMax")]
+    assert (status, diameters) == (200, ["10", "6"])
+    _, root = ask(port, "/current?path=//DataItem[@type='ASSET_CHANGED']")
+    (changed,) = root.iter(f"{STREAMS}AssetChanged")
+    assert (changed.text, changed.attrib["assetType"]) == (identifiers[0], "CuttingTool")
+    for target, code, expected in (
+        ("/asset/mill.T2", "ASSET_NOT_FOUND", 404),
+        ("/assets?count=0", "OUT_OF_RANGE", 404),
+        ("/lathe/assets", "NO_DEVICE", 404),
+    ):
+        status, root = ask(port, target)
+        (error,) = root.iter(f"{ERROR}Error")
+        assert (status, error.attrib["errorCode"]) == (expected, code)
 
 
 def test_current_tells_faults_and_hostile_texts(port: int) -> None:
@@ -180,7 +206,7 @@ def positions(root: ET.Element) -> list[float]:
         ("/current?path=" + "/" * 2000, 400, "INVALID_XPATH"),
         ("/current?path=", 400, "INVALID_XPATH"),
         ("/lathe/current", 404, "NO_DEVICE"),
-        ("/assets", 404, "INVALID_URI"),
+        ("/fixtures", 404, "INVALID_URI"),
         ("/probe/", 404, "INVALID_URI"),
         ("/%00%ff/probe", 404, "NO_DEVICE"),
     ],
@@ -274,5 +300,6 @@ def test_a_client_that_the_buffer_passed_by_is_told() -> None:
     query = agent.query("sample", {"from": "1"})
     for number in range(100):
         agent.observe(number * PERIOD_S, {"X_position": str(number)})
-    with pytest.raises(Exception, match="the buffer holds 100 to 129"):
+    last = agent.buffer.next_sequence - 1
+    with pytest.raises(RequestError, match=f"the buffer holds {last - 29} to {last}"):
         agent.answer(query)

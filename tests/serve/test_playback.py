@@ -23,7 +23,7 @@ from twin.serve.agent import Agent
 from twin.serve.buffer import Condition
 from twin.serve.clock import Clock
 from twin.serve.device import device_of
-from twin.serve.playback import BEFORE_START_S, TICK_S, Production, Tick, feed, ticks
+from twin.serve.playback import BEFORE_START_S, TICK_S, Production, Tick, coolant_of, feed, ticks
 
 PROGRAM = """N1 X0 Y0 Z0 C0 G00
 N2 G01 F1500
@@ -86,6 +86,22 @@ def test_feed_and_block_are_those_of_the_program(production: Production):
     assert {values["block"] for values in circle} == {"N4 G02 X0 Y5 I-10 J0"}
     middle = circle[len(circle) // 2]
     assert float(str(middle["path_feedrate"])) == pytest.approx(1500.0 / 60.0, rel=0.001)
+
+
+def test_coolant_flows_from_its_word_to_the_end(tmp_path: Path):
+    program = tmp_path / "wet.nc"
+    program.write_text("N1 G01 X1 F600\nN2 M8\nN3 X2\nN4 X3\nN5 M9\nN6 X4\nN7 M7\nN8 X5\nN9 M30\n")
+    run = Run(prepare(program, dialect="gost"))
+    coolant = coolant_of(run.dry_run().program.chunks())
+    assert [coolant.at(move) for move in range(-1, 6)] == [
+        False,
+        False,
+        True,
+        True,
+        False,
+        True,
+        False,
+    ]
 
 
 def test_an_alarm_is_a_fault_until_somebody_resets_it(production: Production):

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.serve.schema_check import Schemas
+from twin.job.job_file import ToolTable
 from twin.nc.canonical import Axes
 from twin.serve.agent import Agent, RequestError
 from twin.serve.buffer import NORMAL, Condition, Value
@@ -23,6 +24,7 @@ AXES = Axes(("X", "Y", "Z", "C"), ("linear", "linear", "linear", "rotary"))
 MOVING: dict[str, Value] = {
     "X_position": "-12.345678", "X_position_commanded": "-12.300000", "X_load": "3.25",
     "C_position": "721.5", "C_position_commanded": "721.5", "C_load": "0.00",
+    "coolant_state": "ACTIVE", "door_state": "CLOSED", "spindle_load": "31.50",
     "path_feedrate": "50.0000", "spindle_speed": "8000", "feed_override": "80", "rapid_override": "50", "spindle_override": "110", "line": "12", "block": "N12 <G1> & X3",
     "tool_number": "3", "part_count": "7", "program": "part.nc",
 }  # fmt: skip
@@ -41,6 +43,12 @@ STATES: dict[str, dict[str, Value]] = {
 """What comes to be observed, state by state."""
 
 
+TOOLS = (
+    ToolTable(number=1),
+    ToolTable(number=7, name="DRILL <6> & co", kind="drill", diameter=6.0, teeth=1, speed=4000.0),
+)
+
+
 @pytest.fixture(scope="module")
 def schemas() -> Schemas:
     return Schemas(Path(__file__).with_name("schemas"))
@@ -48,7 +56,7 @@ def schemas() -> Schemas:
 
 def agent_in(state: str) -> Agent:
     """An agent of a machine that went through the states up to this one."""
-    agent = Agent(device_of("mill & co", AXES), Clock(10.0), "made up", size=200)
+    agent = Agent(device_of("mill & co", AXES), Clock(10.0), "made up", 200, TOOLS)
     for number, (name, values) in enumerate(STATES.items()):
         agent.observe(0.5 * number, values)
         if name == state:
@@ -70,7 +78,13 @@ def documents(agent: Agent) -> dict[str, bytes]:
         name: agent.answer(agent.query(request, parameters))[0]
         for name, (request, parameters) in asked.items()
     }
-    return {name: XML.written(each) for name, each in (found | {"probe": agent.probe()}).items()}
+    found |= {
+        "probe": agent.probe(),
+        "assets": agent.assets({}),
+        "the last asset": agent.assets({"count": "1"}),
+        "assets of another kind": agent.assets({"type": "Fixture"}),
+    }
+    return {name: XML.written(each) for name, each in found.items()}
 
 
 @pytest.mark.parametrize("state", STATES)
@@ -115,7 +129,7 @@ def test_only_the_code_of_a_wrong_path_is_the_models_and_not_the_schemas(schemas
         (rb"<Samples>", b"<Samples><Normal></Normal>"),
         (rb' timestamp="(\d+)-', rb' timestamp="\1/'),
         (rb">-12.345678<", b">12,3<"),
-        (rb' assetType=""', b""),
+        (rb' assetType="CuttingTool"', b""),
         (rb' uuid="[^"]*"', b""),
         (rb' type="SYSTEM"', b""),
         (rb' subType="ABSOLUTE"', b' subType="absolute"'),

@@ -85,7 +85,8 @@ def serve_job(path: Path, source: Source) -> ExitCode:
         machine = run.preparation.machine
         device = device_of(machine.file.name, machine.axes)
         description = _description(source.speed)
-        agent = Agent(device, Clock(source.speed), description, source.buffer)
+        job_tools = run.preparation.job.file.tools
+        agent = Agent(device, Clock(source.speed), description, source.buffer, job_tools)
         stop = threading.Event()
         tools = _tools(run.preparation.job.file)
         named = (machine, production.program, tools)
@@ -197,7 +198,8 @@ def _serve_room(
 
     machine = scene.preparation.machine
     device = device_of(machine.file.name, machine.axes)
-    agent = Agent(device, Clock(source.speed), description, source.buffer)
+    job_tools = scene.preparation.job.file.tools
+    agent = Agent(device, Clock(source.speed), description, source.buffer, job_tools)
     observer = RoomObserver(scene.preparation.source.name)
     out = Path("out") / "training" if line is None else None
     with open_room(scene, out=out, promptly=True) as room:
@@ -275,7 +277,7 @@ async def _with_opcua(
 
 def _produce(run: Run, folder: Path) -> "Production":
     """Run a job once and keep its recording in a folder."""
-    from twin.serve.playback import Production
+    from twin.serve.playback import Production, coolant_of
 
     dry_run = run.dry_run()
     with shown_progress() as progress:
@@ -288,6 +290,7 @@ def _produce(run: Run, folder: Path) -> "Production":
         summary=dry_run.summary,
         recording=recording if recording.is_file() else None,
         alarms=outcome.alarms,
+        coolant=coolant_of(dry_run.program.chunks()),
     )
 
 

@@ -7,7 +7,7 @@ the source line that caused it.
 Conventions, once for all rooms:
 
 * Positions are the part's (program zero of the job), in mm and degrees, continuous: a table that
-  turned twice stands at 720.
+  turned twice is at 720.
 * The first three axes are always X, Y, Z. Any further axes follow, linear or rotary.
 * An arc's ``sweep`` is signed: positive is counter-clockwise about ``normal``, and it counts every
   turn. With u from 0 to 1 the tool is at
@@ -244,8 +244,6 @@ class Dwell:
 
     Attributes:
         before: Index of the move of the same chunk that comes next; the chunk's length at its end.
-        line: Source line.
-        seconds: How long [s].
     """
 
     before: int
@@ -259,7 +257,6 @@ class Function:
 
     Attributes:
         before: As in ``Dwell``.
-        line: Source line.
         word: The word without leading zeros, such as ``M3``.
         arguments: Further words that belong to it, such as S.
         at: How much of the next move's path lies behind when it happens, 0 to 1; above 0 only for

@@ -6,7 +6,7 @@ from twin.nc.canonical import Function
 
 SPINDLE_COUNTER_CLOCKWISE = "M4"
 _STARTS, _STOPS = (3, 4), (5, 6)
-"""M codes behind which the spindle turns, and behind which it stands until it is started anew, whichever
+"""M codes behind which the spindle turns, and behind which it stands until it is started again, whichever
 tool M6 has brought (LinuxCNC, "M6 Tool Change": when the change is complete the spindle is stopped)."""
 SPINDLE_STARTS = frozenset(f"M{number}" for number in _STARTS)
 SPINDLE_STOPS = frozenset({"M5", "M19"})
@@ -38,7 +38,7 @@ def starts_spindle(function: float) -> bool:
 def turns_behind(function: int, turned: float) -> float:
     """Whether the spindle turns behind an M code, where it did as told before; 0 or 1.
 
-    M19 is no stop here: whether a feed per revolution may follow it, no seed says.
+    M19 is no stop here: whether a feed per revolution may follow it, no control page says.
     """
     if starts_spindle(function):
         return 1.0
@@ -56,9 +56,8 @@ class SpindleState:
     and the program goes on (SINUMERIK 840D sl, "Axes and spindles", maximum speed of the gear stage).
 
     Attributes:
-        started: Whether it has been started.
         counter_clockwise: Which way it turns, or turned last.
-        speed: Its last speed [1/min]; None where nobody has said.
+        speed: Its last speed [1/min]; None where nobody has given.
         tool_speed: What the job says of the tool in it [1/min], or None.
         has_word: The control has a word for the speed.
         fastest: The machine's greatest speed [1/min]; None: not limited.

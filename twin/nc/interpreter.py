@@ -38,10 +38,6 @@ class Interpretation:
     """One run of a program on one control.
 
     Attributes:
-        source: The program.
-        dialect: The language it is read in.
-        settings: What the control was told of the machine and the job.
-        coverage: The lines that were run.
         length_calls: Calls of tool lengths by the number of a tool, by source line.
         compensated: Source lines that were run under radius compensation: their moves are the tool centre's.
     """
@@ -54,14 +50,7 @@ class Interpretation:
         *,
         kernel: Callable[[int], LineKernel | None] = usual_kernel,
     ) -> None:
-        """Take a program.
-
-        Args:
-            source: The program.
-            dialect: The language it is read in.
-            settings: What the control is told of the machine and the job.
-            kernel: What runs plain lines, given how many lines the program has; None: Python alone.
-        """
+        """Take a program; ``kernel``: what runs plain lines, given how many lines it has; None: Python alone."""
         self.source = source
         self.dialect = dialect
         self.settings = settings
@@ -84,7 +73,7 @@ class Interpretation:
 
     @property
     def position(self) -> FloatArray:
-        """Where the axes stand in part coordinates, shape (k,) [mm or deg]."""
+        """Where the axes are in part coordinates, shape (k,) [mm or deg]."""
         return np.array(self._control.path.position)
 
     @property

@@ -41,22 +41,14 @@ def records(interpretation: Interpretation) -> Iterator[Record]:
 
 
 def text_lines(interpretation: Interpretation) -> Iterator[str]:
-    """The records for a person, one a line, but for the diagnostics, which have a form of their own.
-
-    Raises:
-        ProgramError: As in ``records``.
-    """
+    """The records for a person, one a line, but for the diagnostics, which have a form of their own."""
     for record in records(interpretation):
         if record["type"] in _TEXT:
             yield _TEXT[record["type"]](record)
 
 
 def json_lines(interpretation: Interpretation) -> Iterator[str]:
-    """The records as JSON, one object a line: moves told by the chunk, the rest record by record.
-
-    Raises:
-        ProgramError: As in ``records``.
-    """
+    """The records as JSON, one object a line: moves told by the chunk, the rest record by record."""
     axes = interpretation.settings.axes
     count, length, turn, told = 0, 0.0, 0.0, 0
     try:
@@ -140,7 +132,7 @@ def _move_lines(moves: Moves, compensated: Container[int]) -> Iterator[str]:
     )
     for row, (motion, shape, line, block, start, end, length, feed, unit) in enumerate(rows):
         label = "null" if block == NO_BLOCK_NUMBER else f'"N{block}"'
-        pace = "null" if feed != feed else repr(feed)
+        rate = "null" if feed != feed else repr(feed)
         arc = f', "arc": {json.dumps(_arc(moves, row))}' if shape == Shape.ARC else ""
         further = f', "display": {places % tuple(shown[row])}' if others[row] else ""
         if line in compensated:
@@ -148,7 +140,7 @@ def _move_lines(moves: Moves, compensated: Container[int]) -> Iterator[str]:
         yield (
             f'{motions[motion]}{_SHAPES[shape]}, "line": {line}, "block": {label}, '
             f'"start": {places % start}, "end": {places % end}, "length": {length!r}, '
-            f'"feed": {pace}, "feed_unit": {_FEED_UNITS[unit]}{arc}{further}}}'
+            f'"feed": {rate}, "feed_unit": {_FEED_UNITS[unit]}{arc}{further}}}'
         )
 
 
@@ -185,14 +177,14 @@ def _named(values: dict[str, float]) -> str:
 
 def _move_text(record: Record) -> str:
     line, feed = f"{record['line']:6d}", record["feed"]
-    pace = [] if record["motion"] == "feed" else ["rapid"]
+    rate = [] if record["motion"] == "feed" else ["rapid"]
     if feed is not None:
-        pace.append(f"F{feed:.10g} {record['feed_unit']}")
+        rate.append(f"F{feed:.10g} {record['feed_unit']}")
     arc = record.get("arc")
     bend = "" if arc is None else f"  R{arc['radius']:.10g} sweep {arc['sweep']:.10g}"
     center = "  tool centre" if "tool_center" in record else ""
     shown = _named(record.get("display", record["end"]))
-    return f"{line}  {record['shape']:4s}  {shown}  {' '.join(pace)}{bend}{center}"
+    return f"{line}  {record['shape']:4s}  {shown}  {' '.join(rate)}{bend}{center}"
 
 
 def _function_text(record: Record) -> str:

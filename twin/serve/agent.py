@@ -5,13 +5,16 @@ import re
 import time
 import uuid
 import xml.etree.ElementTree as ET  # only searches in what was made here
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
+from twin.job.job_file import ToolTable
+from twin.serve.assets import chosen_assets, tool_assets
 from twin.serve.buffer import BUFFER_SIZE, Observation, ObservationBuffer, OutOfRangeError, Value
 from twin.serve.clock import Clock
 from twin.serve.device import Component
 from twin.serve.documents import (
     Header,
+    assets_document,
     device_element,
     devices_document,
     error_document,
@@ -20,7 +23,7 @@ from twin.serve.documents import (
     streams_document,
 )
 
-REQUESTS = ("probe", "current", "sample")
+REQUESTS = ("probe", "current", "sample", "assets")
 COUNT = 100
 """Observations of one answer, where the request does not say."""
 HEARTBEAT_MS = 10_000
@@ -76,7 +79,12 @@ class Agent:
     """
 
     def __init__(
-        self, device: Component, clock: Clock, description: str, size: int = BUFFER_SIZE
+        self,
+        device: Component,
+        clock: Clock,
+        description: str,
+        size: int = BUFFER_SIZE,
+        tools: Iterable[ToolTable] = (),
     ) -> None:
         """Start with nothing observed.
 
@@ -85,6 +93,7 @@ class Agent:
             clock: The twin's.
             description: Of the device, for people.
             size: How many observations are remembered.
+            tools: Of the device, which are its assets.
         """
         self.device = device
         self.clock = clock
@@ -95,6 +104,9 @@ class Agent:
         self._instance = int(time.time())
         self._began = clock.at(0.0)
         self._element = device_element(device, self._uuid, description)
+        self._assets = tool_assets(self._uuid, tools, self._began)
+        for asset in self._assets:
+            self.buffer.add("asset_changed", self._began, asset.attrib["assetId"])
 
     def observe(self, elapsed_s: float, values: Mapping[str, Value]) -> None:
         """Remember what changed.
@@ -120,7 +132,26 @@ class Agent:
 
     def probe(self) -> ET.Element:
         """The document that describes the device."""
-        return devices_document(self._header(), self._element)
+        return devices_document(self._header(), self._element, len(self._assets))
+
+    def assets(self, parameters: Mapping[str, str], identifiers: str | None = None) -> ET.Element:
+        """The document of the tools.
+
+        Args:
+            parameters: Of ``assets``: ``type`` and ``count``.
+            identifiers: Of those that are asked for, joined by ``;``; None: all.
+
+        Raises:
+            RequestError: One is unknown, or a parameter wrong.
+        """
+        asked = None if identifiers is None else identifiers.split(";")
+        count = _number(parameters, "count", 1)
+        try:
+            found = chosen_assets(self._assets, asked, parameters.get("type"), count)
+        except LookupError as error:
+            message = f"no asset '{str(error.args[0])[:_LONGEST_PATH]}': /assets lists them all"
+            raise RequestError("ASSET_NOT_FOUND", message, 404) from None
+        return assets_document(self._header(), found, len(self._assets))
 
     def query(self, request: str, parameters: Mapping[str, str]) -> Query:
         """Read the parameters of ``current`` or ``sample``.

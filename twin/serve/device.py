@@ -8,6 +8,8 @@ from twin.nc.canonical import Axes
 
 Category = Literal["SAMPLE", "EVENT", "CONDITION"]
 UNAVAILABLE = "UNAVAILABLE"
+DOOR_CLOSED = "CLOSED"
+"""``DOOR_STATE`` of a machine without a door."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -63,7 +65,8 @@ def device_of(name: str, axes: Axes) -> Component:
     """The device that a machine is to a monitor.
 
     Identifiers begin with what they are about: ``X_position``, ``X_position_commanded``, ``X_load``,
-    ``path_feedrate``, ``system``.
+    ``path_feedrate``, ``system``. The twin has no door: what observes a machine says ``DOOR_CLOSED``, since a
+    program only runs behind a closed one.
 
     Args:
         name: Of the machine.
@@ -77,6 +80,7 @@ def device_of(name: str, axes: Axes) -> Component:
         (
             DataItem("spindle_speed", "SAMPLE", "ROTARY_VELOCITY", "REVOLUTION/MINUTE", "ACTUAL"),
             DataItem("spindle_override", "EVENT", "ROTARY_VELOCITY_OVERRIDE"),
+            DataItem("spindle_load", "SAMPLE", "LOAD", "PERCENT"),
         ),
     )
     path = Component(
@@ -106,6 +110,9 @@ def device_of(name: str, axes: Axes) -> Component:
         ),
         (path,),
     )
+    coolant = Component(
+        "Coolant", "coolant", "coolant", (DataItem("coolant_state", "EVENT", "ACTUATOR_STATE"),)
+    )
     return Component(
         "Device",
         "device",
@@ -118,6 +125,8 @@ def device_of(name: str, axes: Axes) -> Component:
         (
             Component("Axes", "axes", "base", (), (*(_axis(*pair) for pair in pairs), spindle)),
             controller,
+            Component("Systems", "systems", "systems", (), (coolant,)),
+            Component("Door", "door", "door", (DataItem("door_state", "EVENT", "DOOR_STATE"),)),
         ),
     )
 

@@ -1,9 +1,10 @@
-"""The documents of MTConnect 2.0: Devices, Streams and Error, as trees."""
+"""The documents of MTConnect 2.0: Devices, Streams, Assets and Error, as trees."""
 
 import dataclasses
 import xml.etree.ElementTree as ET  # only writes; nothing from outside is parsed
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
+from twin.serve.assets import CUTTING_TOOL
 from twin.serve.buffer import Condition, Observation
 from twin.serve.device import UNAVAILABLE, Component, DataItem
 from twin.version import __version__
@@ -85,13 +86,27 @@ def _item_attributes(item: DataItem) -> dict[str, str]:
     return attributes
 
 
-def devices_document(header: Header, device: ET.Element) -> ET.Element:
-    """The answer to ``probe``."""
+def devices_document(header: Header, device: ET.Element, assets: int) -> ET.Element:
+    """The answer to ``probe``; ``assets`` are kept."""
     root = _root("Devices")
-    counts = {"assetBufferSize": "1", "assetCount": "0"}
-    ET.SubElement(root, "Header", header.of_device() | counts)
+    ET.SubElement(root, "Header", header.of_device() | _asset_counts(assets))
     ET.SubElement(root, "Devices").append(device)
     return root
+
+
+def assets_document(header: Header, found: Iterable[ET.Element], assets: int) -> ET.Element:
+    """The answer to ``assets`` and ``asset``: some that were found of ``assets`` that are kept."""
+    root = _root("Assets")
+    attributes = header.of_device() | _asset_counts(assets)
+    del attributes["bufferSize"]
+    ET.SubElement(root, "Header", attributes)
+    ET.SubElement(root, "Assets").extend(found)
+    return root
+
+
+def _asset_counts(assets: int) -> dict[str, str]:
+    """Assets are those of the job, no more and no fewer; a buffer has one place at least."""
+    return {"assetBufferSize": str(max(1, assets)), "assetCount": str(assets)}
 
 
 def streams_document(
@@ -187,7 +202,7 @@ def _observation_element(item: DataItem, observation: Observation) -> ET.Element
     if item.sub_type:
         element.set("subType", item.sub_type)
     if item.type in ("ASSET_CHANGED", "ASSET_REMOVED"):
-        element.set("assetType", "")
+        element.set("assetType", "" if value == UNAVAILABLE else CUTTING_TOOL)
     element.text = UNAVAILABLE if isinstance(value, Condition) else _legal(value)
     return element
 

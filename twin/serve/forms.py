@@ -19,7 +19,8 @@ _JSON_VERSION = 2
 _SINGLE = frozenset(
     {
         "Header", "Description", "Devices", "Components", "DataItems", "Streams", "Samples",
-        "Events", "Condition", "Errors",
+        "Events", "Condition", "Errors", "Assets", "CuttingToolLifeCycle", "CutterStatus", "Measurements",
+        "CuttingItems", "ProgramToolNumber", "ProcessSpindleSpeed",
     }
 )  # fmt: skip
 """Elements that stand once at most in their parent."""

@@ -51,6 +51,11 @@ def application(
         _admit(agent, request, local=local)
         return _response(request, agent.probe())
 
+    async def assets(request: Request) -> Response:
+        _admit(agent, request, local=local)
+        identifiers = request.path_params.get("identifiers")
+        return _response(request, agent.assets(dict(request.query_params), identifiers))
+
     async def observations(request: Request) -> Response:
         _admit(agent, request, local=local)
         query = agent.query(request.url.path.rpartition("/")[2], dict(request.query_params))
@@ -73,9 +78,14 @@ def application(
         assert isinstance(error, RequestError)
         return _response(request, agent.error(error), error.status)
 
-    routes = [Route("/", probe, methods=["GET"])]
+    routes = [
+        Route("/", probe, methods=["GET"]),
+        Route("/asset/{identifiers}", assets, methods=["GET"]),
+        Route("/assets/{identifiers}", assets, methods=["GET"]),
+    ]
+    endpoints = {"probe": probe, "assets": assets}
     for name in REQUESTS:
-        endpoint = probe if name == "probe" else observations
+        endpoint = endpoints.get(name, observations)
         routes += [
             Route(f"/{name}", endpoint, methods=["GET"]),
             Route(f"/{{device}}/{name}", endpoint, methods=["GET"]),

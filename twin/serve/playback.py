@@ -5,20 +5,22 @@ its recording is gone through again and again. Nobody who reads can change a bit
 """
 
 import asyncio
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from twin.cutting.program_summary import ProgramSummary
+from twin.cutting.program_summary import ProgramSummary, Steps
 from twin.machine.description.config import Machine
 from twin.machine.watching.alarms import Alarm
-from twin.nc.canonical import FloatArray
+from twin.nc.canonical import Chunk, FloatArray, Function
+from twin.nc.functions import COOLANT_OFF, COOLANT_ON, PROGRAM_ENDS
 from twin.recording.form import Samples
 from twin.recording.reader import Recording, open_recording
 from twin.serve.agent import Agent
 from twin.serve.buffer import NORMAL, Condition, Value
+from twin.serve.device import DOOR_CLOSED
 from twin.toolpath.part_frame import PartFrame
 
 TICK_S = 0.01
@@ -33,6 +35,8 @@ _TICKS_AT_ONCE = 100
 """Ticks that are due and are observed before clients are answered again: many clients slow the
 machine's clock down by nothing as long as one round of answers takes less than this machine time."""
 _PERCENT = 100.0
+_AT_REST = {"path_feedrate": "0", "coolant_state": "INACTIVE"}
+"""Behind a program's end, and behind an alarm, which closes the coolant too."""
 
 
 class Production(NamedTuple):
@@ -45,6 +49,7 @@ class Production(NamedTuple):
         summary: What is in the spindle when, and how fast it turns.
         recording: Of the run; None where nothing moved.
         alarms: Of the run, in order.
+        coolant: Whether it flows, by the number of the move.
     """
 
     machine: Machine
@@ -53,6 +58,7 @@ class Production(NamedTuple):
     summary: ProgramSummary
     recording: Path | None
     alarms: tuple[Alarm, ...]
+    coolant: Steps[bool] = Steps((0,), (False,))
 
 
 class Tick(NamedTuple):
@@ -60,6 +66,25 @@ class Tick(NamedTuple):
 
     elapsed_s: float
     values: Mapping[str, Value]
+
+
+def coolant_of(chunks: Iterable[Chunk]) -> Steps[bool]:
+    """Whether coolant flows, by the number of the move; it ends with the program.
+
+    Args:
+        chunks: The whole program.
+    """
+    first_move, flows, moves = [0], [False], 0
+    for chunk in chunks:
+        for event in chunk.events:
+            if (
+                isinstance(event, Function)
+                and event.word in COOLANT_ON | COOLANT_OFF | PROGRAM_ENDS
+            ):
+                first_move.append(moves + event.before)
+                flows.append(event.word in COOLANT_ON)
+        moves += len(chunk.moves)
+    return Steps(tuple(first_move), tuple(flows))
 
 
 def ticks(production: Production) -> Iterator[Tick]:
@@ -78,6 +103,8 @@ def _parts(production: Production, recording: Recording | None) -> Iterator[Tick
         now,
         {
             "availability": "AVAILABLE",
+            "coolant_state": "INACTIVE",
+            "door_state": DOOR_CLOSED,
             "emergency_stop": "ARMED",
             "mode": "AUTOMATIC",
             # Nobody turns them in a job.
@@ -101,12 +128,12 @@ def _parts(production: Production, recording: Recording | None) -> Iterator[Tick
             alarm = production.alarms[0]
             now = max(now, began + alarm.time_s)
             fault = Condition("Fault", alarm.code, alarm.message)
-            yield Tick(now, {"system": fault, "execution": "STOPPED", "path_feedrate": "0"})
+            yield Tick(now, {"system": fault, "execution": "STOPPED", **_AT_REST})
             now += STANDSTILL_S
         else:
             parts += 1
             now += TICK_S
-            yield Tick(now, {"execution": "PROGRAM_COMPLETED", "path_feedrate": "0"})
+            yield Tick(now, {"execution": "PROGRAM_COMPLETED", **_AT_REST})
             now += TICK_S
 
 
@@ -143,6 +170,9 @@ def _ticks_of(
         if 0 < line <= len(production.source):
             values["block"] = production.source[line - 1].strip()
         values["tool_number"] = str(production.summary.tools.at(move).number)
+        values["coolant_state"] = "ACTIVE" if production.coolant.at(move) else "INACTIVE"
+        if samples.tool is not None:
+            values["spindle_load"] = f"{_PERCENT * samples.tool.spindle_load[row]:.2f}"
         spindle = production.summary.spindle.at(move)
         if spindle is not None:
             values["spindle_speed"] = f"{spindle:g}"

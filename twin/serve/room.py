@@ -1,11 +1,13 @@
 """An open training room as a machine for the agent to observe; nobody who reads can touch it."""
 
 import asyncio
+import math
 from collections.abc import Callable, Mapping
 from typing import Literal
 
 from twin.serve.agent import Agent
 from twin.serve.buffer import NORMAL, Condition, Value
+from twin.serve.device import DOOR_CLOSED
 from twin.training.scene.fault_table import FaultTable
 from twin.training.session.snapshot import Snapshot
 from twin.units import SECONDS_PER_MINUTE
@@ -47,6 +49,8 @@ class RoomObserver:
         self._was_running = running
         values: dict[str, Value] = {
             "availability": "AVAILABLE",
+            "coolant_state": "ACTIVE" if now.coolant else "INACTIVE",
+            "door_state": DOOR_CLOSED,
             "emergency_stop": "TRIGGERED" if now.pressed else "ARMED",
             "execution": _execution(now),
             "feed_override": str(now.feed_override),
@@ -61,6 +65,8 @@ class RoomObserver:
             "system": _condition(now),
             "tool_number": str(now.tool),
         }
+        if math.isfinite(now.loads.spindle):
+            values["spindle_load"] = f"{_PERCENT * now.loads.spindle:.2f}"
         if 0 < now.line <= len(now.program):
             values["block"] = now.program[now.line - 1].strip()
         rows = zip(now.axes, now.machine_position, now.following_error, now.load, strict=True)

@@ -98,7 +98,7 @@ REFUSED: dict[str, tuple[str, str]] = {
     "more values than PROC has": ("SUB(1,2)\nM30\n%_N_SUB_SPF\nPROC SUB(REAL AA)\nM17", "call-values"),
     "a number for a VAR": ("SUB(1)\nM30\n%_N_SUB_SPF\nPROC SUB(VAR REAL AA)\nM17", "call-values"),
     "a cycle that would go up": ("CYCLE81(10,0,2,5)", "cycle-depth"),
-    "CYCLE72": ('CYCLE72("CONTOUR",10,0,2,-5)', "unsupported-statement"),
+    "CYCLE63": ('CYCLE63("CONTOUR",10,0,2,-5)', "unsupported-statement"),
     "a synchronised action": ("WHEN TRUE DO M8", "unsupported-statement"),
     "two spindles": ("S2=500", "expression"),
 }  # fmt: skip

@@ -9,8 +9,8 @@ from twin.files.shipped import resource_root
 from twin.run.preparation import prepare
 from twin.serve.grbl import stream
 from twin.serve.grbl.controller import GrblController
+from twin.training.room.room import Room
 from twin.training.scene.scene_file import Scene, scene_of_job
-from twin.training.session.room import Room
 
 WELCOME = "Grbl 1.1h ['$' for help]"
 START_Z = -445.0
@@ -42,7 +42,7 @@ class Bench:
         lines: list[str] = []
         for _ in range(3000):
             lines += self.send(b"", 1)
-            if self.room.run is None and not self.room.moving and self.state != "Home":
+            if self.room.slot.run is None and not self.room.machine.moving and self.state != "Home":
                 return lines
         raise AssertionError("the machine never stands")
 
@@ -194,9 +194,9 @@ def test_the_end_of_a_program_puts_back_and_a_stop_waits(bench: Bench) -> None:
 def test_overrides_change_at_once(bench: Bench) -> None:
     bench.send(b"G1 X100 F3000\n", 60)
     bench.send(b"\x92" * 5, 60)
-    assert bench.room.feed_override == 50
+    assert bench.room.panel.feed_override == 50
     bench.send(b"\x90\x97")
-    assert (bench.room.feed_override, bench.room.rapid_override) == (100, 25)
+    assert (bench.room.panel.feed_override, bench.room.panel.rapid_override) == (100, 25)
 
 
 @pytest.mark.seconds("hundreds of lines go to a machine that runs")

@@ -10,6 +10,7 @@ from typing import Any
 import asyncua.ua
 import pytest
 from asyncua.client.client import Client
+from asyncua.common.events import get_filter_from_event_type
 
 from twin.errors import UsageError
 from twin.files.shipped import machine_file
@@ -116,13 +117,18 @@ def on_a_server(test: Callable[[Served], Coroutine[Any, Any, None]]) -> Callable
 async def test_the_specifications_parts_follow_what_the_agent_observed(one: Served) -> None:
     one.agent.observe(1.0, {
         "execution": "ACTIVE", "part_count": "3", "X_position": "12.5", "spindle_speed": "6000",
-        "path_feedrate": "20", "line": "4",
+        "path_feedrate": "20", "line": "4", "mode": "AUTOMATIC", "feed_override": "80",
+        "rapid_override": "50", "spindle_override": "110",
     })  # fmt: skip
     channel = ("t:Monitoring", "o:Channel1")
     await one.until("4", *channel, "o:Line")
     await one.until(12.5, "t:Monitoring", "o:Axes", "o:X", "o:ActualPosition")
     assert await one.value(*channel, "t:ChannelState") == 0
-    assert await one.value(*channel, "t:FeedOverride") == 100.0
+    await one.until(80.0, *channel, "t:FeedOverride")
+    assert await one.value("t:Monitoring", "t:MachineTool", "t:FeedOverride") == 80.0
+    assert await one.value(*channel, "t:RapidOverride") == 50.0
+    assert await one.value("t:Monitoring", "o:Spindle", "t:Override") == 110.0
+    assert await one.value(*channel, "t:ChannelMode") == 0
     assert await one.value("t:Monitoring", "o:Spindle", "t:IsRotating") is True
     job = ("t:Production", "t:ProductionPlan", "o:part.nc")
     assert await one.value(*job, "t:RunsCompleted") == 3
@@ -130,6 +136,12 @@ async def test_the_specifications_parts_follow_what_the_agent_observed(one: Serv
     assert state.Text == "Running"
     tool = ("t:Equipment", "t:Tools", "o:T7")
     assert await one.value(*tool, "t:ControlIdentifier1") == 7
+    one.agent.observe(1.5, {"execution": "FEED_HOLD", "mode": "MANUAL"})
+    await one.until(1, *channel, "t:ChannelState")
+    await one.until(2, *channel, "t:ChannelMode")
+    assert await one.value("t:Monitoring", "t:MachineTool", "t:OperationMode") == 0
+    state = await one.value("t:Production", "t:ActiveProgram", "t:State", "0:CurrentState")
+    assert state.Text == "Interrupted"
     one.agent.observe(2.0, {"execution": "PROGRAM_COMPLETED", "spindle_speed": "0"})
     await one.until(2, *channel, "t:ChannelState")
     await one.until(False, "t:Monitoring", "o:Spindle", "t:IsRotating")
@@ -168,35 +180,111 @@ async def test_every_mandatory_node_of_its_types_is_there(one: Served) -> None:
     assert seen > 20
 
 
+class Events:
+    """What a subscription is told."""
+
+    def __init__(self) -> None:
+        self.seen: list[Any] = []
+
+    def event_notification(self, event: Any) -> None:
+        self.seen.append(event)
+
+    async def after(self, count: int) -> list[Any]:
+        for _ in range(100):
+            if len(self.seen) >= count:
+                return self.seen
+            await asyncio.sleep(0.05)
+        raise AssertionError(f"{len(self.seen)} of {count} events")
+
+
+FAULT = Condition("Fault", "soft-limit", "X would go to 500 mm")
+
+
+@contextlib.asynccontextmanager
+async def alerts(one: Served, *more: int) -> AsyncIterator[tuple[Events, Any]]:
+    """A subscription of alerts, and of other events by their identifiers."""
+    events = Events()
+    space = await one.client.get_namespace_index(MACHINE_TOOL)
+    subscription = await one.client.create_subscription(50, events)
+    kinds = [
+        one.client.get_node(ua.NodeId(39, space)),
+        *map(one.client.get_node, map(ua.NodeId, more)),
+    ]
+    await subscription.subscribe_events(one.client.nodes.server, kinds)
+    yield events, subscription
+    await subscription.delete()
+
+
 @on_a_server
-async def test_an_alarm_is_an_alert_that_ends(one: Served) -> None:
-    events: list[Any] = []
-
-    class Handler:
-        def event_notification(self, event: Any) -> None:
-            events.append(event)
-
-    alerts = await one.client.get_namespace_index(MACHINE_TOOL)
-    subscription = await one.client.create_subscription(50, Handler())
-    await subscription.subscribe_events(
-        one.client.nodes.server, one.client.get_node(ua.NodeId(39, alerts))
-    )
-    one.agent.observe(1.0, {"system": NORMAL})
-    one.agent.observe(2.0, {"system": Condition("Fault", "soft-limit", "X would go to 500 mm")})
-    for _ in range(100):
-        if events:
-            break
-        await asyncio.sleep(0.05)
-    one.agent.observe(3.0, {"system": NORMAL})
-    for _ in range(100):
-        if len(events) > 1:
-            break
-        await asyncio.sleep(0.05)
-    began, ended = events
+async def test_an_alarm_is_a_condition_that_ends(one: Served) -> None:
+    async with alerts(one) as (events, _):
+        one.agent.observe(1.0, {"system": NORMAL})
+        one.agent.observe(2.0, {"system": FAULT})
+        await events.after(1)
+        condition = ("t:Notification", "t:Messages", "o:System")
+        assert await one.value(*condition, "0:ActiveState", "0:Id") is True
+        assert await one.value(*condition, "t:ErrorCode") == "soft-limit"
+        one.agent.observe(3.0, {"system": NORMAL})
+        began, ended = await events.after(2)
     assert (began.ErrorCode, began.Message.Text) == ("soft-limit", "X would go to 500 mm")
     assert (began.Severity, began.Retain) == (800, True)
     assert (began.ActiveState.Text, ended.ActiveState.Text) == ("Active", "Inactive")
-    assert ended.ErrorCode == "soft-limit"
+    assert (ended.ErrorCode, ended.Retain) == ("soft-limit", False)
+    node = await one.node(*condition)
+    assert began.NodeId == ended.NodeId == node.nodeid
+    await one.until(False, *condition, "0:ActiveState", "0:Id")
+
+
+@on_a_server
+async def test_who_comes_later_asks_for_the_condition_that_stands(one: Served) -> None:
+    start, end = ua.ObjectIds.RefreshStartEventType, ua.ObjectIds.RefreshEndEventType
+    one.agent.observe(4.0, {"system": FAULT})
+    await one.until(True, "t:Notification", "t:Messages", "o:System", "0:ActiveState", "0:Id")
+    async with alerts(one, start, end) as (events, subscription):
+        conditions = one.client.get_node(ua.ObjectIds.ConditionType)
+        number = ua.Variant(subscription.subscription_id, ua.VariantType.UInt32)
+        await conditions.call_method("0:ConditionRefresh", number)
+        first, standing, last = await events.after(3)
+        one.agent.observe(5.0, {"system": NORMAL})
+        await events.after(4)
+        await conditions.call_method("0:ConditionRefresh", number)
+        kinds = [each.EventType.Identifier for each in (await events.after(6))[4:]]
+    assert [first.EventType.Identifier, last.EventType.Identifier] == [start, end]
+    assert (standing.ErrorCode, standing.Retain) == ("soft-limit", True)
+    assert kinds == [start, end], "nothing stands any more"
+
+
+@on_a_server
+async def test_a_filter_by_a_type_holds_its_subtypes(one: Served) -> None:
+    """As node-opcua's and UaExpert's: all that can be acknowledged, or no alarm at all."""
+    told: dict[int, Events] = {}
+    asked = ua.ObjectIds.AcknowledgeableConditionType, ua.ObjectIds.DialogConditionType
+    for kind in asked:
+        found = await get_filter_from_event_type([one.client.get_node(kind)])
+        is_of = ua.ContentFilterElement(
+            ua.FilterOperator.OfType, [ua.LiteralOperand(ua.Variant(ua.NodeId(kind)))]
+        )
+        found.WhereClause = ua.ContentFilter([is_of])
+        told[kind] = Events()
+        subscription = await one.client.create_subscription(50, told[kind])
+        await subscription.subscribe_events(one.client.nodes.server, evfilter=found)
+    one.agent.observe(20.0, {"system": FAULT})
+    await told[asked[0]].after(1)
+    one.agent.observe(21.0, {"system": NORMAL})
+    await told[asked[0]].after(2)
+    assert told[asked[1]].seen == []
+
+
+@on_a_server
+async def test_a_trainers_fault_is_a_condition_of_less_weight(one: Served) -> None:
+    async with alerts(one) as (events, _):
+        warning = Condition("Warning", "friction", "of X, 900")
+        for number, condition in enumerate((warning, FAULT, warning, NORMAL), 1):
+            one.agent.observe(5.0 + number, {"system": condition})
+            await events.after(number)
+    told = [(each.ErrorCode, each.Severity, each.Retain) for each in events.seen]
+    alarm, less = ("soft-limit", 800, True), ("friction", 400, True)
+    assert told == [less, alarm, less, ("friction", 1, False)]
 
 
 @on_a_server

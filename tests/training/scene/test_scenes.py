@@ -7,10 +7,10 @@ from typing import Literal, NamedTuple
 import pytest
 
 from twin.errors import ConfigError
+from twin.training.room.observed import Notice
 from twin.training.scene.phrases import translated
 from twin.training.scene.scene_file import Scene, read_scene, scene_names, scene_path
 from twin.training.scene.vocabulary import LANGUAGES
-from twin.training.session.observed import Notice
 from twin.training.session.script import ScriptError, play, rehearse
 from twin.training.session.session import Session
 

@@ -22,7 +22,7 @@ def settle(session: Session) -> None:
     room = session.room
     for _ in range(MOST_SLICES):
         session.advance()
-        if room.run is None and not room.moving:
+        if room.slot.run is None and not room.machine.moving:
             return
     raise AssertionError("the axes never came to rest")
 
@@ -35,7 +35,7 @@ def states(session: Session) -> list[str]:
 def test_a_program_that_only_ends_earns_nothing(name):
     session = opened(name)
     ends = "M5" if session.scene.preparation.dialect.name == "codesys" else "M30"
-    for _ in session.room.lines[1:]:
+    for _ in session.room.program.lines[1:]:
         assert give(session, "edit", line=2)
     assert give(session, "edit", line=1, text=ends)
     give(session, "cycle_start")
@@ -53,7 +53,9 @@ def test_no_value_of_a_table_is_found_by_trying():
     give(session, "finish")
     assert states(session)[0] == "failed"
     session = opened("mefi_handwheel")
-    assert give(session, "set_offset", axis="Z", value=float(session.room.tables.true_zero[2]))
+    assert give(
+        session, "set_offset", axis="Z", value=float(session.room.setup.tables.true_zero[2])
+    )
     session.advance()
     assert states(session)[0] == "open"
 
@@ -75,13 +77,13 @@ def test_lines_of_mdi_are_no_lines_of_the_program():
     session.advance(100)
     assert give(session, "feed_hold")
     session.advance(30)
-    assert not session.room.moving
+    assert not session.room.machine.moving
     give(session, "reset")
     settle(session)
     give(session, "mode", mode="single")
     assert give(session, "cycle_start")
     session.advance(100)
-    assert session.room.held
+    assert session.room.slot.held
     assert session.room.judge.evidence.held == set()
 
 

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from twin.nc.control.executor import Executor
+from twin.training.program import program_run
+from twin.training.program.program_run import BLOCKS_AT_REST, BLOCKS_FOR_PLANNER
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.scene.vocabulary import Words
 from twin.training.server.driver import CAUGHT_UP_AT_ONCE_S, HELD_S, MOST_BEHIND_S, Driver
-from twin.training.session import program_run
 from twin.training.session.log import Who
-from twin.training.session.program_run import BLOCKS_AT_REST, BLOCKS_FOR_PLANNER
 from twin.training.session.session import Session
 from twin.training.sheets.score import score_sheet
 
@@ -41,14 +41,14 @@ def test_a_held_key_moves_while_its_page_speaks_and_stops_when_it_falls_silent(d
     for _ in range(30):
         driver.beat(PAGE)
         run_for(driver, 0.01)
-    assert room.running == "jog"
-    assert room.moving
+    assert room.slot.running == "jog"
+    assert room.machine.moving
     time.sleep(HELD_S)
     run_for(driver, 0.01)
     assert driver.session.log[-1].command == {"do": "jog_stop"}
     run_for(driver, 0.5)
-    assert not room.moving
-    assert room.running == ""
+    assert not room.machine.moving
+    assert room.slot.running == ""
 
 
 def test_a_page_that_is_gone_holds_no_key(driver):
@@ -74,7 +74,7 @@ def test_time_that_the_computer_was_busy_with_others_is_caught_up_and_presses_do
     driver._step(0.9)
     assert driver.session.room.time_s <= CAUGHT_UP_AT_ONCE_S + 0.011
     ask(driver, "feed_hold")
-    assert driver.session.room.run.held
+    assert driver.session.room.slot.run.held
     for _ in range(20):
         driver._step(0.0)
     assert driver.session.room.time_s == pytest.approx(0.9, abs=0.011)
@@ -131,7 +131,7 @@ def test_whatever_goes_wrong_becomes_an_alarm_and_time_goes_on(driver, monkeypat
         raise ZeroDivisionError("of no use")
 
     with monkeypatch.context() as patch:
-        patch.setattr(room, "_setpoints", broken)
+        patch.setattr(room, "_step", broken)
         run_for(driver, 0.02)
     assert room.alarm is not None
     assert room.alarm.code == "internal"
@@ -160,7 +160,7 @@ def test_a_program_that_loops_for_ever_keeps_neither_time_nor_the_emergency_stop
     driver, monkeypatch, before, moves
 ):
     session = driver.session
-    for line in range(len(session.room.lines), 1, -1):
+    for line in range(len(session.room.program.lines), 1, -1):
         ask(driver, "edit", line=line)
     ask(driver, "edit", line=1, text=f"%LOOP\n{before}\nN1 $GOTO N2\nN2 $GOTO N1")
     blocks, start = [], session.room.machine.position[0]
@@ -172,7 +172,7 @@ def test_a_program_that_loops_for_ever_keeps_neither_time_nor_the_emergency_stop
         assert len(blocks) <= (slices + 1) * (BLOCKS_AT_REST + BLOCKS_FOR_PLANNER)
     assert moves == (session.room.machine.position[0] != start)
     assert session.room.time_s == pytest.approx(0.99)
-    assert session.room.running == "program"
+    assert session.room.slot.running == "program"
     ask(driver, "emergency_stop")
     assert session.room.alarm is not None
 
@@ -188,7 +188,7 @@ def counted(run, blocks: list):
 def test_axes_that_have_caught_up_with_a_computing_program_rest_and_go_on(driver, monkeypatch):
     monkeypatch.setattr(program_run, "SLICES_AT_REST", 3)
     room = driver.session.room
-    for line in range(len(room.lines), 1, -1):
+    for line in range(len(room.program.lines), 1, -1):
         ask(driver, "edit", line=line)
     computing = "$FOR P1=0,2000,1\nP2=P1*2\n$ENDFOR"
     ask(driver, "edit", line=1, text=f"%WAIT\nG91 G1 X1 F3000\n{computing}\nG1 X2\nM30")
@@ -197,15 +197,15 @@ def test_axes_that_have_caught_up_with_a_computing_program_rest_and_go_on(driver
     for _ in range(600):
         run_for(driver, 0.01)
         at = room.machine.position[0] - start
-        stood |= abs(at - 1.0) < 1e-3 and not room.moving
+        stood |= abs(at - 1.0) < 1e-3 and not room.machine.moving
     assert room.alarm is None
-    assert room.running == ""
+    assert room.slot.running == ""
     assert stood
     assert at == pytest.approx(3.0, abs=1e-3)
 
 
 def test_only_the_trainer_breaks_things_and_repair_takes_everything_back(driver):
-    tables = driver.session.room.tables
+    tables = driver.session.room.setup.tables
     zero = tables.zero.copy()
     ask(driver, "inject", fault={"kind": "backlash", "axis": "X", "value": 0.2})
     assert "only the trainer" in driver.session.refusal
@@ -216,7 +216,7 @@ def test_only_the_trainer_breaks_things_and_repair_takes_everything_back(driver)
         {"kind": "lost_offset", "axis": "X", "value": 2.0},
     ):
         ask(driver, "inject", "trainer", fault=fault)
-    shown = [(fault.kind, fault.value) for fault in driver.session.room.faults]
+    shown = [(fault.kind, fault.value) for fault in driver.session.room.faults.active]
     assert shown == [("backlash", 0.3), ("dull_drive", 0.5), ("lost_offset", 2.0)]
     ask(driver, "repair", "trainer")
     machine = driver.session.room.machine.machine
@@ -225,7 +225,7 @@ def test_only_the_trainer_breaks_things_and_repair_takes_everything_back(driver)
         sound.axis(n) for n in sound.axes.names
     ]
     assert np.array_equal(tables.zero, zero)
-    assert not driver.session.room.faults
+    assert not driver.session.room.faults.active
 
 
 def test_the_log_keeps_what_was_taken_back_and_names_who(driver):
@@ -255,7 +255,7 @@ def test_what_is_asked_interrupts_catching_up(driver):
     driver._step(CAUGHT_UP_AT_ONCE_S)
     assert slices == [1, 1]
     driver._step(0.0)
-    assert room.running == "program"
+    assert room.slot.running == "program"
     run_for(driver, 0.0)
     assert room.time_s == pytest.approx(CAUGHT_UP_AT_ONCE_S)
     assert driver.lost_s == 0.0

@@ -8,6 +8,8 @@ import zlib
 import numpy as np
 
 from twin.cutting.patches import LEVELS
+from twin.training.room.live_cut import Loads
+from twin.training.room.run_settings import path_to_come
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.server.app import RoomApp
 from twin.training.server.attempts import CELLS_ACROSS
@@ -21,7 +23,6 @@ from twin.training.server.frames import (
     state_message,
 )
 from twin.training.server.seats import MESSAGES, MOST_PAGES, Seats
-from twin.training.session.live_cut import Loads
 from twin.training.session.session import Session
 
 
@@ -47,8 +48,8 @@ def test_a_page_that_follows_has_the_stock_as_it_is_cut():
     )
     session = Session(scene)
     room, feed = session.room, StockFeed()
-    assert room.work is not None
-    shown = np.zeros(room.work.map.heights.shape)
+    assert room.setup.work is not None
+    shown = np.zeros(room.setup.work.map.heights.shape)
     assert min(shown.shape) >= 400
     session.submit({"do": "cycle_start"})
     epoch = version = -1
@@ -61,14 +62,14 @@ def test_a_page_that_follows_has_the_stock_as_it_is_cut():
             rows, columns, levels = heights(message)
             shown[rows, columns] = levels / LEVELS
             sizes.append(len(message))
-    stock = room.work.map
+    stock = room.setup.work.map
     there = (stock.heights - stock.bottom) / (stock.top - stock.bottom)
-    assert room.work.removed > 0.0
+    assert room.setup.work.removed > 0.0
     assert np.abs(shown - there).max() <= 0.51 / LEVELS
     assert max(sizes[1:]) < 20_000
     # A page that comes late, and one that sees the machine taken back, get the whole stock.
     assert heights(feed.patch(-1, -1)[0] or b"")[2].shape == shown.shape
-    assert tools(feed.patch(-1, -1)[0]) == {0, room.tables.spindle}
+    assert tools(feed.patch(-1, -1)[0]) == {0, room.setup.tables.spindle}
     session.rewind(100.0)
     feed.note(session.room)
     assert tools(feed.patch(-1, -1)[0]) == {0}
@@ -148,7 +149,7 @@ def test_there_is_an_end_to_pages_and_to_what_one_may_say():
 
 def test_a_path_is_a_head_and_then_its_points():
     session = Session(read_scene(scene_path("fagor_first_steps")))
-    preview = session.room.path_to_come().drawn()
+    preview = path_to_come(session.room).drawn()
     message = path_message(preview, {"en": "a word", "cs": "slovíčko"})
     (length,) = struct.unpack("<I", message[:4])
     head = json.loads(message[4 : 4 + length])

@@ -149,7 +149,7 @@ def test_the_emergency_stop_works_from_every_field_and_for_all_who_act(room, con
     player.until(lambda: player.machine.alarm is not None, "the alarm")
     page.wait_for_selector("#emergency.pressed")
     page.click("#emergency")
-    player.until(lambda: not player.machine.pressed, "the button turned free")
+    player.until(lambda: not player.machine.panel.stop_pressed, "the button turned free")
     player.press("reset", "reset")
     second = open_page(room, context)
     assert second.is_disabled("[data-key=cycle_start]")
@@ -176,13 +176,13 @@ def test_a_held_key_stops_when_it_is_let_go_or_its_page_freezes(room, context):
     for lost in (False, True):
         page.hover('[data-key="jog X+"]')
         page.mouse.down()
-        player.until(lambda: machine.moving, "the jog")
+        player.until(lambda: machine.machine.moving, "the jog")
         if lost:
             # A page that hangs says nothing more, and cannot say so.
             page.evaluate("() => setTimeout(() => { const end = Date.now() + 1500; while (Date.now() < end); }, 0)")  # fmt: skip
         else:
             page.mouse.up()
-        player.until(lambda: machine.run is None and not machine.moving, "rest")
+        player.until(lambda: machine.slot.run is None and not machine.machine.moving, "rest")
         assert room.session.log[-1].command == {"do": "jog_stop"}
         page.mouse.up()
 
@@ -205,15 +205,15 @@ def test_the_machine_is_worked_by_hand_from_the_sheets(room, chromium_context):
     page.hover("#wheel")
     page.mouse.wheel(0, -100)
     player.until(lambda: abs(machine.machine.position[0] - before - 0.2) < 2e-3, "its way")
-    player.until(lambda: machine.run is None and not machine.moving, "rest")
+    player.until(lambda: machine.slot.run is None and not machine.machine.moving, "rest")
     player.press("reference", "reference")
     player.until(lambda: abs(machine.machine.position).max() < 2e-3, "the reference point")
-    player.until(lambda: machine.run is None and not machine.moving, "rest")
+    player.until(lambda: machine.slot.run is None and not machine.machine.moving, "rest")
     player.press("new_blank", "new_blank")
     page.click("#tab-tools")
     page.fill("[data-key='radius 1']", "2.5")
     page.press("[data-key='radius 1']", "Tab")
-    player.until(lambda: machine.tables.radii[1] == 2.5, "the radius")
+    player.until(lambda: machine.setup.tables.radii[1] == 2.5, "the radius")
 
 
 def test_a_handwheel_that_is_spun_is_heard_to_its_last_click(room, context):
@@ -239,10 +239,10 @@ def test_what_the_machine_refuses_is_said_and_taken_back_on_the_page(room, chrom
         page.press("[data-key='length 1']", "Tab")
         page.wait_for_selector("#message.refusal")
         player.until(lambda: page.input_value("[data-key='length 1']") == length, "the length")
-    assert machine.tables.lengths[1] == float(length)
+    assert machine.setup.tables.lengths[1] == float(length)
     page.fill("[data-key='length 1']", "61,5")
     page.press("[data-key='length 1']", "Tab")
-    player.until(lambda: machine.tables.lengths[1] == 61.5, "the length")
+    player.until(lambda: machine.setup.tables.lengths[1] == 61.5, "the length")
     page.click("#tab-run")
     player.press("cycle_start", "cycle_start")
     for _ in range(2):
@@ -269,11 +269,11 @@ def test_what_is_typed_counts_though_its_sheet_is_drawn_anew(room, context):
         room.driver.ask({"do": "set_tool", "number": 1, "radius": other}, "trainer", 0)
         player.until(lambda want=other: float(page.input_value(radius)) == want, "the other value")
         assert not before.evaluate("(one) => one.isConnected")
-        assert machine.tables.lengths[1] != expected
+        assert machine.setup.tables.lengths[1] != expected
         if leave == "Enter":
             page.keyboard.type(".")
         page.keyboard.press(leave)
-        player.until(lambda want=expected: machine.tables.lengths[1] == want, "the length")
+        player.until(lambda want=expected: machine.setup.tables.lengths[1] == want, "the length")
 
 
 def test_a_program_is_begun_in_its_midst_and_held_and_left_and_found_again(room, chromium_context):
@@ -281,26 +281,31 @@ def test_a_program_is_begun_in_its_midst_and_held_and_left_and_found_again(room,
     page, machine = player.page, player.machine
     page.click("#tab-run")
     page.check("[data-key='switch optional_stop']")
-    player.until(lambda: machine.switches.optional_stop, "the switch")
+    player.until(lambda: machine.panel.optional_stop, "the switch")
     page.click("#line5")
     player.press("search", "search")
     player.press("cycle_start", "cycle_start")
-    player.until(lambda: machine.waiting, "the block's beginning")
+    player.until(lambda: machine.slot.waiting, "the block's beginning")
     player.press("cycle_start", "cycle_start")
-    player.until(lambda: machine.line == 5 and machine.moving, "the block")
+    player.until(lambda: machine.line == 5 and machine.machine.moving, "the block")
     player.press("feed_hold", "feed_hold")
-    player.until(lambda: machine.held and not machine.moving, "the hold")
+    player.until(lambda: machine.slot.held and not machine.machine.moving, "the hold")
     player.press("mode_jog", "mode")
     player.press("jog Z+", "jog")
-    player.until(lambda: machine.run is None and not machine.moving, "rest")
+    player.until(lambda: machine.slot.run is None and not machine.machine.moving, "rest")
     page.click("#tab-manual")
     player.press("return_to_path", "return_to_path")
     player.until(
-        lambda: machine.run is None and not machine.moving and not machine.legs, "the path"
+        lambda: (
+            machine.slot.run is None and not machine.machine.moving and not machine.manual.moves
+        ),
+        "the path",
     )
     player.press("mode_auto", "mode")
     player.press("cycle_start", "cycle_start")
-    player.until(lambda: machine.running == "program" and machine.moving, "the program")
+    player.until(
+        lambda: machine.slot.running == "program" and machine.machine.moving, "the program"
+    )
 
 
 def test_the_panel_is_handed_over_and_the_trainer_acts_beside_it(room, chromium_context):
@@ -328,10 +333,10 @@ def test_a_lost_page_stops_nothing_and_the_next_one_finds_it(room, chromium_cont
     player.press("cycle_start", "cycle_start")
     player.page.close()
     time.sleep(0.2)
-    assert player.machine.running == "program"
+    assert player.machine.slot.running == "program"
     again = Player(room, open_page(room, chromium_context))
     again.press("feed_hold", "feed_hold")
-    again.until(lambda: again.machine.held, "the hold")
+    again.until(lambda: again.machine.slot.held, "the hold")
 
 
 FINGERS = """
@@ -414,15 +419,15 @@ def test_a_jog_key_under_a_finger_stops_with_it(touched, room, end):
     touched.click('[data-key="step held"]')
     fingers = Fingers(touched)
     fingers.put(1, *middle(touched, '[data-key="jog X+"]'))
-    player.until(lambda: machine.moving, "the jog")
+    player.until(lambda: machine.machine.moving, "the jog")
     if end == "second finger":
         fingers.put(2, *middle(touched, '[data-key="jog Y+"]'))
     else:
         fingers.end("touchEnd" if end == "lifted" else "touchCancel")
-    player.until(lambda: machine.run is None and not machine.moving, "rest")
+    player.until(lambda: machine.slot.run is None and not machine.machine.moving, "rest")
     place = machine.machine.position[1]
     touched.wait_for_timeout(200)
-    assert not machine.moving
+    assert not machine.machine.moving
     assert machine.machine.position[1] == pytest.approx(place, abs=1e-4)
     assert room.session.log[-1].command == {"do": "jog_stop"}
 

@@ -7,12 +7,12 @@ from pathlib import Path
 import pytest
 
 from twin.errors import UsageError
+from twin.training.room.room import Room
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.scene.vocabulary import Language
 from twin.training.server.driver import Driver
 from twin.training.server.program_check import ProgramCheck
 from twin.training.server.scene_maker import scene_of, write_scene
-from twin.training.session.room import Room
 from twin.training.session.session import Session
 
 GROOVE = "N10 G0 X0 Y0 Z10\nN20 M3 S1000\nN30 G1 Z-1 F200\nN40 G1 X-5\nN50 G0 Z20\nN60 M30\n"
@@ -35,7 +35,7 @@ def test_what_the_teacher_has_cut_is_what_the_pupil_must_cut(session, tmp_path):
     session.submit({"do": "override", "dial": "feed", "percent": 80})
     session.submit({"do": "cycle_start"})
     session.advance(900)
-    assert session.room.running == ""
+    assert session.room.slot.running == ""
     path = made(session.room, "cs", 'Drážka: "5 mm"', tmp_path / "scenes")
     again = made(session.room, "cs", 'Drážka: "5 mm"', tmp_path / "scenes")
     assert (path.name, again.name) == ("drazka_5_mm.toml", "drazka_5_mm_2.toml")
@@ -44,9 +44,11 @@ def test_what_the_teacher_has_cut_is_what_the_pupil_must_cut(session, tmp_path):
     assert scene.file.part is not None
     assert scene.file.part.points
     played = Session(scene)
-    assert played.room.lines == tuple(GROOVE.splitlines())
-    assert played.room.tables.zero.tolist() == pytest.approx(session.room.tables.zero.tolist())
-    assert played.room.feed_override == 80
+    assert played.room.program.lines == tuple(GROOVE.splitlines())
+    assert played.room.setup.tables.zero.tolist() == pytest.approx(
+        session.room.setup.tables.zero.tolist()
+    )
+    assert played.room.panel.feed_override == 80
     played.submit({"do": "cycle_start"})
     played.advance(1200)
     played.submit({"do": "finish"})
@@ -79,7 +81,7 @@ def test_a_program_with_what_cannot_be_seen_is_refused(session):
     assert not session.submit({"do": "load", "text": "x" * 60_001})
     assert session.submit({"do": "load", "text": "N10 G0\tX1 (žluťoučký)\n"})
     session.submit({"do": "undo"})
-    assert session.room.lines == tuple(session.scene.preparation.source.lines)
+    assert session.room.program.lines == tuple(session.scene.preparation.source.lines)
 
 
 def test_what_is_typed_is_read_as_the_control_reads_it(session):
@@ -97,4 +99,4 @@ def test_what_is_typed_is_read_as_the_control_reads_it(session):
     finally:
         driver.stop()
         thread.join()
-    assert session.room.lines == tuple(session.scene.preparation.source.lines)
+    assert session.room.program.lines == tuple(session.scene.preparation.source.lines)

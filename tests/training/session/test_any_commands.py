@@ -12,8 +12,8 @@ import pytest
 from examples import examples
 from hypothesis import Phase, given, settings
 
+from twin.training.room.room import Room
 from twin.training.scene.scene_file import Scene, read_scene, scene_path
-from twin.training.session.room import Room
 from twin.training.session.session import Session
 from twin.training.session.snapshot import take_snapshot
 
@@ -71,13 +71,13 @@ def state(room: Room) -> list[Any]:
     """All that a command could change."""
     evidence = dataclasses.asdict(room.judge.evidence)
     return copy.deepcopy([
-        take_snapshot(room), tuple(room.legs), room.inherited, room.edits, evidence, room.tick,
-        room.judge._touched_s, room.judge._trouble, room.judge._hold_line, room.running_down,
-        room.machine.alarm, [room.machine.machine.axis(name) for name in room.machine.machine.axes.names], room.tables.zero.tolist(), room.tables.offsets,
-        room.cut._operation.tool.number, None if room.work is None else id(room.work.map),
-        None if room.run is None else (id(room.run), room.run.held, room.run._hold_asked, room.run.dropped),
-        None if room.suspended is None else (id(room.suspended.run), room.suspended.place.tolist()),
-        room.waiting, dataclasses.asdict(room.switches),
+        take_snapshot(room), tuple(room.manual.moves), room.slot.inherited, room.program.edits, evidence, room.tick,
+        room.judge._touched_s, room.judge._trouble, room.judge._hold_line, room.auxiliaries.running_down,
+        room.machine.alarm, [room.machine.machine.axis(name) for name in room.machine.machine.axes.names], room.setup.tables.zero.tolist(), room.setup.tables.offsets,
+        room.setup.cut._operation.tool.number, None if room.setup.work is None else id(room.setup.work.map),
+        None if room.slot.run is None else (id(room.slot.run), room.slot.run.held, room.slot.run._hold_asked, room.slot.run.dropped),
+        None if room.slot.suspended is None else (id(room.slot.suspended.run), room.slot.suspended.place.tolist()),
+        room.slot.waiting, dataclasses.asdict(room.panel),
     ])  # fmt: skip
 
 
@@ -90,7 +90,7 @@ def live(session: Session, what: dict[str, Any], slices: int, who: Any) -> None:
     session.advance(slices)
     room = session.room
     assert np.isfinite(room.machine.position).all()
-    assert bool(room.legs) <= (room.running == "jog")
+    assert bool(room.manual.moves) <= (room.slot.running == "jog")
     assert room.alarm is None or room.alarm.code != "internal"
 
 
@@ -132,11 +132,11 @@ def recover(session: Session) -> None:
     if room.alarm is not None:
         assert room.alarm.code == "hard-limit"
         return
-    assert (room.run, room.suspended, room.moving) == (None, None, False)
+    assert (room.slot.run, room.slot.suspended, room.machine.moving) == (None, None, False)
     for what in (
         {"do": "mode", "mode": "jog"},
         {"do": "jog", "axis": "Z", "direction": 1, "step": 0.5},
     ):
         assert session.submit(what), session.refusal
     session.advance(200)
-    assert room.run is None
+    assert room.slot.run is None

@@ -24,7 +24,7 @@ def rest(session: Session) -> None:
     """Until nothing runs and nothing moves."""
     for _ in range(MOST_SLICES):
         session.advance()
-        if session.room.run is None and not session.room.moving:
+        if session.room.slot.run is None and not session.room.machine.moving:
             return
     raise AssertionError("the axes never came to rest")
 
@@ -36,7 +36,7 @@ def held(session: Session) -> None:
     while session.room.line < 5:
         session.advance()
     do(session, "feed_hold")
-    while session.room.moving:
+    while session.room.machine.moving:
         session.advance()
     do(session, "mode", mode="jog")
 
@@ -46,8 +46,8 @@ def test_between_the_ways_to_the_reference_point_nothing_else_begins(session):
     do(session, "jog", axis="X", direction=1, step=20.0)
     rest(session)
     do(session, "reference")
-    while session.room.legs:
-        assert session.room.running == "jog"
+    while session.room.manual.moves:
+        assert session.room.slot.running == "jog"
         for what, given in (
             ("cycle_start", {}),
             ("mode", {"mode": "auto"}),
@@ -66,14 +66,14 @@ def test_a_hold_ends_what_is_driven_by_hand(session):
     session.advance(5)
     do(session, "feed_hold")
     rest(session)
-    assert not session.room.legs
+    assert not session.room.manual.moves
     assert abs(session.room.machine.position).max() > 1.0
-    assert not session.room.held
+    assert not session.room.slot.held
 
 
 def test_a_held_program_keeps_its_tool_its_blank_and_its_line(session):
     held(session)
-    assert session.room.suspended is not None
+    assert session.room.slot.suspended is not None
     assert session.snapshot().line == 5
     do(session, "spindle", on=False)
     assert "while something runs" in refused(session, "change_tool", number=1)
@@ -101,7 +101,7 @@ def test_a_handwheel_that_is_turned_back_turns_the_axis_back_at_once(session):
     for _ in range(MOST_SLICES):
         session.advance()
         farthest = max(farthest, session.room.standing_setpoint[0])
-        if session.room.run is None:
+        if session.room.slot.run is None:
             break
     assert farthest - there < 2.0
     assert session.room.standing_setpoint[0] == pytest.approx(before, abs=WRITTEN)
@@ -133,4 +133,4 @@ def test_a_reset_stops_a_way_off_the_switch_and_leaves_the_alarm():
     do(session, "reset")
     rest(session)
     assert session.room.alarm is not None
-    assert not session.room.legs
+    assert not session.room.manual.moves

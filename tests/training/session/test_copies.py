@@ -20,13 +20,13 @@ from twin.nc.canonical import Chunk
 from twin.nc.control.executor import Executor
 from twin.nc.dialects import DIALECTS, dialect_named
 from twin.nc.text.diagnostics import ProgramError
-from twin.nc.text.source import read_source, source_from_text
+from twin.nc.text.source import read_source
+from twin.training.room.room import Room
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.session import checkpoints
 from twin.training.session.actions import carry_out
 from twin.training.session.checkpoints import never_changes
 from twin.training.session.commands import command_from
-from twin.training.session.room import Room
 
 _CHANGELESS = (*_LEAVES, type(None), np.generic, tuple, frozenset, enum.Enum, re.Pattern, range)
 
@@ -158,10 +158,10 @@ def lived(room: Room, acts: list[tuple[int, dict[str, Any]]]) -> list[tuple[Any,
     for slices, asked in acts:
         for _ in range(slices):
             room.advance()
-            setpoint, run = room.machine.setpoint, room.run
+            setpoint, run = room.machine.setpoint, room.slot.run
             columns = [getattr(setpoint, each.name).tobytes() for each in fields(setpoint)]
             modal = None if run is None else run.modal(int(setpoint.move[0]))
-            seen.append((*columns, room.line, room.held, room.spindle, modal))
+            seen.append((*columns, room.line, room.slot.held, room.auxiliaries.spindle, modal))
         with contextlib.suppress(TwinError):
             carry_out(room, command_from(asked))
     return seen
@@ -171,9 +171,8 @@ def lived(room: Room, acts: list[tuple[int, dict[str, Any]]]) -> list[tuple[Any,
 @pytest.mark.parametrize("name", ENDLESS)
 def test_going_back_in_an_endless_program_is_the_same_to_the_last_bit(name):
     room = Room(read_scene(scene_path(SCENES[name])))
-    room.work = None
-    room.program = source_from_text(ENDLESS[name], "endless")
-    room.lines = tuple(room.program.lines)
+    room.setup.remove_blank()
+    room.program.load(ENDLESS[name])
     start = [(1, {"do": "cycle_start"})]
     lived(room, start + hands(name))
     kept = checkpoints.checkpoint(room, 0, ())

@@ -9,10 +9,10 @@ from tests.training.session.commanding import do, refused
 from twin.nc.control.settings import ToolData
 from twin.nc.dialects.linuxcnc import LINUXCNC
 from twin.nc.text.source import source_from_text
+from twin.training.program.program_run import ProgramRun, RunOptions
+from twin.training.room.observed import block_number
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.session import checkpoints
-from twin.training.session.observed import block_number
-from twin.training.session.program_run import ProgramRun, RunOptions
 from twin.training.session.session import Session
 
 pytestmark = pytest.mark.seconds("programs are run at a panel")
@@ -29,22 +29,21 @@ def rest(session: Session) -> None:
     for _ in range(4000):
         session.advance()
         room = session.room
-        waits = room.run is None or room.held
-        still = still + 1 if waits and not room.moving else 0
+        waits = room.slot.run is None or room.slot.held
+        still = still + 1 if waits and not room.machine.moving else 0
         if still > 3:
             return
     raise AssertionError(f"the axes never came to rest: {session.room.alarm}")
 
 
 def load(session: Session, text: str) -> None:
-    session.room.program = source_from_text(text, "test")
-    session.room.lines = tuple(text.split("\n"))
+    session.room.program.load(text)
 
 
 def at(session: Session) -> tuple[float, ...]:
     """The tip, part coordinates [mm]."""
     room = session.room
-    return tuple(np.round(room.machine.position - room.tables.zero, 2)[:3])
+    return tuple(np.round(room.machine.position - room.setup.tables.zero, 2)[:3])
 
 
 def seconds(session: Session, text: str) -> float:
@@ -58,8 +57,10 @@ def seconds(session: Session, text: str) -> float:
 
 def second_tool(session: Session) -> float:
     """Give the scene a second tool; how long its change takes [s]."""
-    session.room.tables.tools[2] = session.room.tables.tool.model_copy(update={"number": 2})
-    session.room.tables.lengths[2], session.room.tables.radii[2] = 60.0, 4.0
+    session.room.setup.tables.tools[2] = session.room.setup.tables.tool.model_copy(
+        update={"number": 2}
+    )
+    session.room.setup.tables.lengths[2], session.room.setup.tables.radii[2] = 60.0, 4.0
     change_s = session.room.machine.machine.file.spindle.tool_change_s
     assert change_s > 1.0
     return change_s
@@ -70,18 +71,18 @@ def test_a_tool_change_takes_the_time_that_the_machine_file_says(session):
     change_s = second_tool(session)
     same = seconds(session, "N10 T1 M6\nN20 G90 G1 F500 X1\nN30 M30")
     other = seconds(session, "N10 T2 M6\nN20 G90 G1 F500 X2\nN30 M30")
-    assert session.room.tables.spindle == 2
+    assert session.room.setup.tables.spindle == 2
     assert other - same == pytest.approx(change_s, abs=0.05)
 
 
 def test_a_tool_that_was_selected_before_a_stop_takes_its_time_too(session):
     change_s = second_tool(session)
     seconds(session, "N10 T2\nN20 M0\nN30 M6\nN40 M30")
-    assert (session.room.held, session.room.tables.spindle) == (True, 1)
+    assert (session.room.slot.held, session.room.setup.tables.spindle) == (True, 1)
     do(session, "cycle_start")
     began = session.room.time_s
     rest(session)
-    assert session.room.tables.spindle == 2
+    assert session.room.setup.tables.spindle == 2
     assert session.room.time_s - began == pytest.approx(change_s, abs=0.1)
 
 
@@ -100,9 +101,14 @@ def test_functions_wait_for_those_before_them(session):
     do(session, "cycle_start")
     room = session.room
     seen = []
-    while not room.moving:
+    while not room.machine.moving:
         session.advance()
-        now = (room.line, room.spindle.speed, room.coolant, room.spindle.counter_clockwise)
+        now = (
+            room.line,
+            room.auxiliaries.spindle.speed,
+            room.auxiliaries.coolant,
+            room.auxiliaries.spindle.counter_clockwise,
+        )
         if now not in seen:
             seen.append(now)
     assert [one for one in seen if one[0]] == [
@@ -122,7 +128,9 @@ def test_single_block_stops_behind_blocks_that_move_nothing(session):
         do(session, "cycle_start")
         rest(session)
         room = session.room
-        seen.append((room.line, room.spindle.turns, room.coolant, at(session)[0]))
+        seen.append(
+            (room.line, room.auxiliaries.spindle.turns, room.auxiliaries.coolant, at(session)[0])
+        )
     start = seen[0][3]
     assert seen[:5] == [
         (1, False, False, start),
@@ -131,7 +139,7 @@ def test_single_block_stops_behind_blocks_that_move_nothing(session):
         (4, True, True, 0.0),
         (5, True, True, 5.0),
     ]
-    assert session.room.run is None
+    assert session.room.slot.run is None
     assert session.room.judge.noted(session.room)[0] == {1, 2, 3, 4, 5, 6}
     # It is not the scene's program, and has not made the part.
     assert session.room.judge.evidence.single == set()
@@ -170,7 +178,7 @@ def test_the_optional_stop_stops_where_its_switch_says_so(session, on):
     do(session, "switch", name="optional_stop", on=on)
     do(session, "cycle_start")
     rest(session)
-    assert session.room.waiting == on
+    assert session.room.slot.waiting == on
     assert at(session)[0] == (-5.0 if on else 5.0)
 
 
@@ -207,16 +215,16 @@ def test_a_search_goes_up_over_and_down_and_waits(session):
     do(session, "cycle_start")
     rest(session)
     room = session.room
-    assert room.waiting
+    assert room.slot.waiting
     assert at(session) == (-40.0, -20.0, -2.0)
-    assert room.spindle.turns
+    assert room.auxiliaries.spindle.turns
     assert room.alarm is None
     do(session, "cycle_start")
     while room.line < 6:
         session.advance()
-    assert room.modal is None or "G1" in room.modal.codes
+    assert room.slot.modal is None or "G1" in room.slot.modal.codes
     rest(session)
-    assert room.run is None
+    assert room.slot.run is None
     assert room.judge.evidence.ended_well
 
 
@@ -232,12 +240,12 @@ def test_a_search_lifts_a_tool_that_stands_in_the_part_before_it_travels(session
     do(session, "search", line=8)
     do(session, "cycle_start")
     highest = -2.0
-    while not session.room.waiting and session.room.alarm is None:
+    while not session.room.slot.waiting and session.room.alarm is None:
         session.advance()
         highest = max(highest, at(session)[2])
     assert session.room.alarm is None
     assert highest == pytest.approx(5.0, abs=0.01)
-    assert session.room.spindle.turns
+    assert session.room.auxiliaries.spindle.turns
 
 
 def test_a_search_behind_a_side_leaves_the_part_unfinished(session):
@@ -246,7 +254,7 @@ def test_a_search_behind_a_side_leaves_the_part_unfinished(session):
     rest(session)
     do(session, "cycle_start")
     rest(session)
-    assert session.room.run is None
+    assert session.room.slot.run is None
     assert session.room.alarm is None
     assert not session.room.judge.evidence.ended_well
 
@@ -272,9 +280,9 @@ def test_a_search_does_not_begin_within_a_compensated_contour(session, code, end
     begin = dict(zip(machine.axes.names, (0.0,) * len(machine.axes), strict=True))
     settings = dataclasses.replace(given, start=begin, tools={1: ToolData(radius=1.0, length=60.0)})
     run = ProgramRun(source_from_text(text, "test"), LINUXCNC, settings, machine, options)
-    where = room.standing_setpoint, room.tables.program_zero
-    run.begin(*where, room.spindle)
-    assert (run.ending, "compensated" in run.message) == (end or "stop", bool(end))
+    where = room.standing_setpoint, room.setup.tables.program_zero
+    run.begin(*where, room.auxiliaries.spindle)
+    assert (run.reader.ending, "compensated" in run.reader.message) == (end or "stop", bool(end))
 
 
 def test_jog_during_a_hold_and_the_way_back_to_the_path(session):
@@ -316,7 +324,7 @@ def test_going_back_into_a_hold_with_jogged_axes(session):
     do(session, "jog", axis="Z", direction=1, step=5.0)
     rest(session)
     session.rewind(0.5)
-    assert session.room.suspended is not None
+    assert session.room.slot.suspended is not None
     do(session, "return_to_path")
     rest(session)
     do(session, "mode", mode="auto")
@@ -366,7 +374,7 @@ def test_mdi_keeps_what_a_block_left_in_force_until_reset(session):
     assert at(session)[0] == 10.0
     assert stands != 10.0
     do(session, "reset")
-    assert session.room.inherited is None
+    assert session.room.slot.inherited is None
 
 
 def test_an_mdi_block_keeps_the_work_offset(session):
@@ -397,50 +405,50 @@ def test_going_back_into_a_run_takes_the_offsets_that_it_began_with(session):
     do(session, "cycle_start")
     for _ in range(45):
         session.advance(10)
-    assert session.room.run is not None
+    assert session.room.slot.run is not None
     there, then = at(session)[0], session.room.time_s
     rest(session)
     do(session, "set_offset", axis="X", value=50.0, name="G55")
     session.rewind(session.room.time_s - then)
-    assert session.room.run is not None
+    assert session.room.slot.run is not None
     assert at(session)[0] == there
     rest(session)
     assert at(session)[0] == -3.0
 
 
 def test_typed_tool_data_reach_the_control(session):
-    number = session.room.tables.spindle
+    number = session.room.setup.tables.spindle
     do(session, "set_tool", number=number, radius=4.0)
     row = next(tool for tool in session.snapshot().tools if tool.number == number)
     assert row.radius == 4.0
     length = row.length
     do(session, "set_tool", number=number, length=length + 1.0)
-    assert session.room.tables.lengths[number] == length + 1.0
-    assert session.room.tables.radii[number] == 4.0
+    assert session.room.setup.tables.lengths[number] == length + 1.0
+    assert session.room.setup.tables.radii[number] == 4.0
 
 
 def test_the_program_can_be_taken_back_and_loaded_anew(session):
-    lines = session.room.lines
+    lines = session.room.program.lines
     assert refused(session, "undo") == "the program has not been changed"
     do(session, "edit", line=5, text="N40 X30 F1200")
     do(session, "edit", line=6, text="N50 Y10")
     do(session, "undo")
-    assert session.room.lines[5] == lines[5]
-    assert session.room.lines[4] == "N40 X30 F1200"
+    assert session.room.program.lines[5] == lines[5]
+    assert session.room.program.lines[4] == "N40 X30 F1200"
     do(session, "reload")
-    assert session.room.lines == lines
+    assert session.room.program.lines == lines
     do(session, "undo")
-    assert session.room.lines[4] == "N40 X30 F1200"
+    assert session.room.program.lines[4] == "N40 X30 F1200"
 
 
 def test_a_new_blank_has_not_been_cut(session):
     do(session, "cycle_start")
     rest(session)
-    assert session.room.work.removed > 0.0
+    assert session.room.setup.work.removed > 0.0
     do(session, "mode", mode="jog")
     do(session, "new_blank")
-    assert session.room.work.removed == 0.0
-    assert not session.room.work.map.machined().any()
+    assert session.room.setup.work.removed == 0.0
+    assert not session.room.setup.work.map.machined().any()
 
 
 def test_the_spindle_needs_a_speed_and_the_tool_a_standing_spindle(session):
@@ -458,8 +466,8 @@ def test_a_start_without_a_speed_turns_nothing(session):
     load(session, "N10 M3\nN20 G90 G1 X5 F100\nN30 M30")
     do(session, "cycle_start")
     session.advance(20)
-    assert session.room.spindle.started
-    assert not session.room.spindle.turns
+    assert session.room.auxiliaries.spindle.started
+    assert not session.room.auxiliaries.spindle.turns
 
 
 def test_more_speed_than_the_spindle_gives_is_limited_told_once_and_stops_nothing(session):
@@ -474,7 +482,7 @@ def test_more_speed_than_the_spindle_gives_is_limited_told_once_and_stops_nothin
 def test_coolant_closes_with_an_alarm_and_stays_closed(session):
     do(session, "coolant", on=True)
     do(session, "emergency_stop")
-    assert not session.room.coolant
+    assert not session.room.auxiliaries.coolant
     assert "emergency-stop" in refused(session, "coolant", on=True)
 
 
@@ -490,7 +498,7 @@ def test_the_limit_alarm_stands_until_the_axis_has_left_its_switch():
     assert session.room.alarm is not None
     do(session, "reset")
     assert session.room.alarm is None
-    assert [notice.code for notice in session.room.alarms] == ["hard-limit"]
+    assert [notice.code for notice in session.room.alarms.history] == ["hard-limit"]
 
 
 def test_an_alarm_names_the_block_by_its_number(session):
@@ -521,7 +529,7 @@ def test_a_jog_changes_nothing_that_is_in_force(session):
     do(session, "mode", mode="jog")
     do(session, "jog", axis="X", direction=1, step=10.0)
     session.advance(5)
-    assert session.room.running == "jog"
+    assert session.room.slot.running == "jog"
     assert session.snapshot().modal == before
 
 
@@ -545,7 +553,7 @@ def test_at_a_program_stop_the_axes_can_be_jogged_and_come_back(session):
     do(session, "cycle_start")
     rest(session)
     room = session.room
-    assert (room.waiting, room.line, at(session)[0]) == (True, 2, 1.0)
+    assert (room.slot.waiting, room.line, at(session)[0]) == (True, 2, 1.0)
     assert "reset first" in refused(session, "mode", mode="mdi")
     do(session, "mode", mode="jog")
     do(session, "jog", axis="X", direction=1, step=5.0)
@@ -560,7 +568,7 @@ def test_at_a_program_stop_the_axes_can_be_jogged_and_come_back(session):
     do(session, "cycle_start")
     rest(session)
     assert at(session)[0] == 3.0
-    assert room.run is None
+    assert room.slot.run is None
 
 
 def test_going_back_to_a_program_stop_with_jogged_axes(session, monkeypatch):
@@ -584,13 +592,13 @@ def test_while_a_program_moves_the_spindle_is_stopped_by_hand_and_not_started(se
     do(session, "cycle_start")
     session.advance(20)
     assert "hold it" in refused(session, "spindle", on=True, counter_clockwise=True)
-    assert not session.room.spindle.counter_clockwise
+    assert not session.room.auxiliaries.spindle.counter_clockwise
     do(session, "spindle", on=False)
-    assert not session.room.spindle.turns
+    assert not session.room.auxiliaries.spindle.turns
     do(session, "feed_hold")
     rest(session)
     do(session, "spindle", on=True)
-    assert session.room.spindle.turning == 2000.0
+    assert session.room.auxiliaries.spindle.turning == 2000.0
 
 
 def test_what_stood_before_the_axes_at_a_reset_does_not_happen(session):
@@ -599,10 +607,10 @@ def test_what_stood_before_the_axes_at_a_reset_does_not_happen(session):
     session.advance(5)
     do(session, "reset")
     rest(session)
-    assert session.room.run is None
+    assert session.room.slot.run is None
     assert at(session)[0] > -1.0
-    assert not session.room.spindle.turns
-    assert not session.room.coolant
+    assert not session.room.auxiliaries.spindle.turns
+    assert not session.room.auxiliaries.coolant
 
 
 @pytest.mark.parametrize("state", ["standing", "running", "held", "stopped", "jogged"])
@@ -621,19 +629,24 @@ def test_a_reset_stops_spindle_and_coolant_in_every_state(session, state):
         session.advance(5)
     if state == "stopped":
         rest(session)
-        assert session.room.waiting
+        assert session.room.slot.waiting
     do(session, "reset")
     for _ in range(400):
         session.advance()
-        if session.room.run is None and not session.room.moving:
+        if session.room.slot.run is None and not session.room.machine.moving:
             break
     room = session.room
-    assert (room.run, room.suspended, room.waiting, room.alarm) == (None, None, False, None)
-    assert not room.spindle.turns
-    assert not room.coolant
+    assert (room.slot.run, room.slot.suspended, room.slot.waiting, room.alarm) == (
+        None,
+        None,
+        False,
+        None,
+    )
+    assert not room.auxiliaries.spindle.turns
+    assert not room.auxiliaries.coolant
     do(session, "mode", mode="auto")
     do(session, "cycle_start")
-    assert room.running == "program"
+    assert room.slot.running == "program"
 
 
 @pytest.mark.parametrize(
@@ -658,5 +671,5 @@ def test_a_search_comes_to_where_its_block_begins(text, line, begins, ends):
     assert at(session)[:2] == pytest.approx(begins)
     do(session, "cycle_start")
     rest(session)
-    assert session.room.run is None
+    assert session.room.slot.run is None
     assert at(session)[:2] == pytest.approx(ends)

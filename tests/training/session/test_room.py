@@ -9,12 +9,12 @@ from examples import examples
 from hypothesis import given, settings
 
 from twin.errors import UsageError
+from twin.training.room.room import Room
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.session import checkpoints
 from twin.training.session import session as session_module
 from twin.training.session.commands import command_from
 from twin.training.session.log import relive
-from twin.training.session.room import Room
 from twin.training.session.session import Session
 
 
@@ -39,7 +39,7 @@ def rest(session: Session) -> None:
     session.advance(5)
     for _ in range(2000):
         session.advance()
-        if not session.room.moving:
+        if not session.room.machine.moving:
             return
     raise AssertionError("the axes never came to rest")
 
@@ -62,7 +62,7 @@ def test_override_turns_the_feed(session):
     assert speed(session) == pytest.approx(1440.0, rel=1e-3)
     do(session, "override", dial="feed", percent=0)
     rest(session)
-    assert session.room.running == "program"
+    assert session.room.slot.running == "program"
 
 
 def test_hold_stops_on_the_path_and_start_goes_on(session):
@@ -71,7 +71,7 @@ def test_hold_stops_on_the_path_and_start_goes_on(session):
     session.advance(50)
     do(session, "feed_hold")
     rest(session)
-    stands = session.room.machine.position - session.room.tables.zero
+    stands = session.room.machine.position - session.room.setup.tables.zero
     assert session.snapshot().held
     assert stands[1:3] == pytest.approx([-20.0, -2.0], abs=2e-3)
     do(session, "cycle_start")
@@ -99,7 +99,7 @@ def test_emergency_stop_latches_until_it_is_turned_free_and_reset(session):
     rest(session)
     assert session.room.alarm is not None
     assert session.room.alarm.code == "emergency-stop"
-    assert not session.room.spindle.turns
+    assert not session.room.auxiliaries.spindle.turns
     assert not session.submit({"do": "reset"})
     assert "turn it free" in session.refusal
     assert not session.submit({"do": "cycle_start"})
@@ -115,8 +115,8 @@ def test_reset_comes_to_rest_on_the_path_and_drops_the_program(session):
     do(session, "reset")
     rest(session)
     session.advance()
-    assert session.room.running == ""
-    stands = session.room.machine.position - session.room.tables.zero
+    assert session.room.slot.running == ""
+    stands = session.room.machine.position - session.room.setup.tables.zero
     assert stands[1:3] == pytest.approx([-20.0, -2.0], abs=2e-3)
     assert session.room.judge.verdicts[3].state == "open"
 
@@ -161,9 +161,9 @@ def test_jog_stops_when_let_go_and_at_the_end_of_the_travel(session):
 
 def test_an_edited_program_is_what_runs(session):
     do(session, "edit", line=5, text="N40 X20 F1200\nN45 X25")
-    assert len(session.room.lines) == 11
+    assert len(session.room.program.lines) == 11
     do(session, "edit", line=6)
-    assert session.room.lines[4] == "N40 X20 F1200"
+    assert session.room.program.lines[4] == "N40 X20 F1200"
     assert not session.submit({"do": "edit", "line": 99, "text": "M30"})
 
 
@@ -211,9 +211,9 @@ def test_living_it_again_is_the_same_to_the_last_bit(session):
     room = session.room
     again = relive(Room(session.scene), session.log, room.tick)
     assert np.array_equal(again.machine.position, room.machine.position)
-    assert again.work is not None
-    assert room.work is not None
-    assert np.array_equal(again.work.map.heights, room.work.map.heights)
+    assert again.setup.work is not None
+    assert room.setup.work is not None
+    assert np.array_equal(again.setup.work.map.heights, room.setup.work.map.heights)
     session.rewind(1.5)
     assert session.room.tick == room.tick - 1500
     session.advance(150)
@@ -298,13 +298,13 @@ def test_a_spindle_starts_at_its_last_speed_and_without_one_not_at_all(session):
     ):  # fmt: skip
         do(session, "mdi", text=text)
         do(session, "cycle_start")
-        while room.run is not None:
+        while room.slot.run is not None:
             session.advance()
-        assert (room.spindle.turns, room.spindle.speed) == (turns, speed)
+        assert (room.auxiliaries.spindle.turns, room.auxiliaries.spindle.speed) == (turns, speed)
     do(session, "spindle", on=False)
-    assert not room.spindle.turns
+    assert not room.auxiliaries.spindle.turns
     do(session, "spindle", on=True)
-    assert room.spindle.turning == 1500.0
+    assert room.auxiliaries.spindle.turning == 1500.0
 
 
 def test_going_back_from_a_copy_is_the_same_to_the_last_bit(session, monkeypatch):
@@ -319,27 +319,27 @@ def test_going_back_from_a_copy_is_the_same_to_the_last_bit(session, monkeypatch
     do(session, "cycle_start")
     session.advance(30)
     room = session.room
-    assert room.work is not None
-    place, removed = room.machine.position, room.work.removed
-    heights = room.work.map.heights.copy()
-    assert room.cut.process is not None
-    felt_from = room.cut.process.material.heights.copy()
-    walls = room.cut.process.walls.copy()
+    assert room.setup.work is not None
+    place, removed = room.machine.position, room.setup.work.removed
+    heights = room.setup.work.map.heights.copy()
+    assert room.setup.cut.process is not None
+    felt_from = room.setup.cut.process.material.heights.copy()
+    walls = room.setup.cut.process.walls.copy()
     later = []
     for _ in range(2):
         session.advance(80)
         later.append(session.room.machine.position)
         session.rewind(0.8)
         back = session.room
-        assert back.run is not None
-        assert back.run.modal(0) is not None
+        assert back.slot.run is not None
+        assert back.slot.run.modal(0) is not None
         assert np.array_equal(back.machine.position, place)
-        assert back.work is not None
-        assert back.work.removed == removed
-        assert np.array_equal(back.work.map.heights, heights)
-        assert back.cut.process is not None
-        assert np.array_equal(back.cut.process.material.heights, felt_from)
-        assert np.array_equal(back.cut.process.walls, walls)
+        assert back.setup.work is not None
+        assert back.setup.work.removed == removed
+        assert np.array_equal(back.setup.work.map.heights, heights)
+        assert back.setup.cut.process is not None
+        assert np.array_equal(back.setup.cut.process.material.heights, felt_from)
+        assert np.array_equal(back.setup.cut.process.walls, walls)
     assert np.array_equal(later[0], later[1])
     assert len(session.log) == 4
 
@@ -351,12 +351,12 @@ def test_a_copy_holds_no_map_of_its_own(session):
     assert len(after.maps) == 3
     for old, new in zip(before.maps, after.maps, strict=True):
         assert all(a is b for a, b in zip(old.tiles, new.tiles, strict=True))
-    work, process = after.room.work, after.room.cut.process
+    work, process = after.room.setup.work, after.room.setup.cut.process
     assert work is not None
     assert process is not None
     cut = work.map.heights, process.material.heights, process.walls
     assert all(a is b for a, b in zip(after.maps, cut, strict=True))
-    assert process.material.uncut is session.room.cut.process.material.uncut
+    assert process.material.uncut is session.room.setup.cut.process.material.uncut
 
 
 def test_of_the_stock_a_copy_keeps_only_the_tiles_that_were_cut():
@@ -399,11 +399,11 @@ def test_copies_are_bounded_in_number_and_the_beginning_is_kept(session, monkeyp
 
 def test_a_reset_in_the_midst_of_a_cut_is_no_cut_without_rotation(session):
     do(session, "cycle_start")
-    while session.room.machine.setpoint.line[0] < 5 or not session.room.moving:
+    while session.room.machine.setpoint.line[0] < 5 or not session.room.machine.moving:
         session.advance()
     session.advance(20)
     do(session, "reset")
     session.advance(100)
     assert session.room.alarm is None
-    assert not session.room.moving
-    assert not session.room.spindle.turns
+    assert not session.room.machine.moving
+    assert not session.room.auxiliaries.spindle.turns

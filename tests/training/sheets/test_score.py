@@ -6,7 +6,6 @@ import io
 import pytest
 from PIL import Image
 
-from twin.nc.text.source import source_from_text
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.scene.vocabulary import LANGUAGES, Words, vocabulary
 from twin.training.session.session import Session
@@ -27,10 +26,7 @@ def wrecked() -> Session:
     session = Session(read_scene(scene_path("fagor_first_steps")))
     session.submit({"do": "sign", "name": " Jan Novák "})
     text = "%X\nN10 G90 S3000 M3\nN20 G0 X0 Y0 Z-5\nN30 M30"
-    session.room.program, session.room.lines = (
-        source_from_text(text, "test"),
-        tuple(text.split("\n")),
-    )
+    session.room.program.load(text)
     session.submit({"do": "cycle_start"})
     while session.room.alarm is None:
         session.advance()
@@ -49,13 +45,13 @@ def test_what_went_wrong_is_told_with_its_block(wrecked, language):
     )  # fmt: skip
     told = words.alarm("rapid-into-stock")
     assert (wrong["why"], wrong["right"]) == (told.why, told.advice)
-    page = score_page(sheet, words, [one.picture() for one in wrecked.room.moments])
+    page = score_page(sheet, words, [one.picture() for one in wrecked.room.alarms.moments])
     assert told.why in html.unescape(page)
     assert "data:image/png;base64," in page
 
 
 def test_the_picture_shows_tool_and_part(wrecked):
-    png = wrecked.room.moments[0].picture()
+    png = wrecked.room.alarms.moments[0].picture()
     assert png is not None
     picture = Image.open(io.BytesIO(png)).convert("RGB")
     colours = {colour for _, colour in picture.getcolors(1 << 20) or ()}
@@ -73,7 +69,7 @@ def test_a_program_that_only_ends_has_finished_nothing():
     session.submit({"do": "edit", "line": 2, "text": "N90 M30"})
     session.submit({"do": "cycle_start"})
     session.advance(50)
-    assert session.room.run is None
+    assert session.room.slot.run is None
     assert not session.room.judge.evidence.ended_well
 
 

@@ -1,5 +1,6 @@
 """The machine file ``machine.toml``: axes, drives, feeds, as data."""
 
+import functools
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple
@@ -15,6 +16,7 @@ from twin.job.fixture import FixtureTable
 from twin.job.machine_functions import MachineFunctions
 from twin.job.tool_change import ToolChangeTable
 from twin.job.weight import Weight
+from twin.kinematics import Kinematics
 from twin.machine.description.geometry import GeometryTable
 from twin.machine.description.variant import on_base
 from twin.nc.canonical import SPATIAL_AXES, Axes, FloatArray
@@ -371,6 +373,19 @@ class Machine:
     def model_path(self) -> Path:
         """The MJCF file."""
         return self.path.parent / self.file.model
+
+    @functools.cached_property
+    def kinematics(self) -> Kinematics:
+        """How the axes carry the tool against the part, as the model has it.
+
+        Raises:
+            ConfigError: The model is no mill; the message says why.
+        """
+        from twin.machine.description.kinematics import Joint, read_kinematics
+
+        axes = [self.file.axes[name] for name in self.axes.names]
+        joints = [Joint(axis.joint, axis.direction) for axis in axes]
+        return read_kinematics(self.model_path, self.axes, joints)
 
     @property
     def joint_scale(self) -> FloatArray:

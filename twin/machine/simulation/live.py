@@ -13,7 +13,7 @@ from twin.machine.simulation.process import Process
 from twin.machine.simulation.servo import Servo
 from twin.machine.watching.alarms import Alarm, AlarmCode, AlarmStandsError, NearMiss
 from twin.machine.watching.clearance import Clearance
-from twin.machine.watching.watch import Watch
+from twin.machine.watching.watch import Watch, limit_switches
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
 from twin.recording.reader import Samples
@@ -93,6 +93,20 @@ class LiveMachine:
     def velocity(self) -> FloatArray:
         """How fast they move, shape (k,) [mm/s or deg/s]."""
         return self._stand.joint_velocity[-1].copy()
+
+    @property
+    def moving(self) -> bool:
+        """Whether any axis moves."""
+        return moving(self._stand)
+
+    @property
+    def on_limit_switch(self) -> str:
+        """Name of an axis that is on its limit switch; empty: none is."""
+        for name, place in zip(self.machine.axes.names, self.position, strict=True):
+            low, high = limit_switches(self.machine.axis(name))
+            if not low < place < high:
+                return name
+        return ""
 
     @property
     def near_miss(self) -> NearMiss | None:
@@ -255,6 +269,11 @@ class LiveMachine:
             way * (speed - limit * slowing),
             np.where(time < speed / limit, -way * limit, 0.0),
         )
+
+
+def moving(samples: Samples) -> bool:
+    """Whether any axis moves at the last of some samples."""
+    return bool(np.abs(samples.joint_velocity[-1]).max() > STANDSTILL)
 
 
 def _standing(position: FloatArray) -> Setpoints:

@@ -5,8 +5,7 @@ from collections.abc import Callable, Mapping
 from typing import Literal
 
 from twin.nc.control.control import Control
-from twin.nc.control.interpolation import MotionMode
-from twin.nc.control.modal import ActiveCodes, Modal, ModalChanges
+from twin.nc.control.modal import ActiveCodes, Modal, ModalChanges, MotionMode
 from twin.nc.control.settings import MachineFunction
 from twin.nc.text.blocks import Statement, Word
 
@@ -14,7 +13,7 @@ Action = Callable[[Control], None]
 WordAction = Callable[[Control, Word], None]
 StatementAction = Callable[[Control, Statement], None]
 
-Ground = Literal["seed", "manual", "decision"]
+Basis = Literal["control page", "manual", "decision"]
 """On what a code's meaning rests: the control's own page, its manuals, or this project."""
 
 
@@ -23,8 +22,7 @@ class Interpolation(MotionMode):
     """How axis words become a move.
 
     Attributes:
-        perform: Takes the block's words and moves.
-        without_words: Done where its code stands in a block without words of a motion; None: nothing.
+        without_words: Done where its code is in a block without words of a motion; None: nothing.
     """
 
     perform: Action
@@ -36,18 +34,15 @@ class GCode:
     """One G code.
 
     Attributes:
-        meaning: For people, in a few words.
         group: Modal group; codes of one group exclude each other in a block. Empty: not modal.
-        sets: What it puts into force.
         action: Done before the block moves.
         perform: Done in place of a move.
-        takes: Addresses that the code wants although they have a meaning of their own elsewhere.
-        after: Done when the block has moved.
-        once: What it sets holds for its block only.
-        alone: No other word may stand in its block.
-        yields: Another code of its group in the block takes its place.
+        consumes: Addresses that the code wants although they have a meaning of their own elsewhere.
+        after_motion: Done when the block has moved.
+        non_modal: What it sets holds for its block only.
+        exclusive: No other word may be in its block.
+        weak: Another code of its group in the block takes its place.
         refused: Why the twin refuses a code that the control knows; empty: it does not.
-        ground: On what the meaning rests.
     """
 
     meaning: str
@@ -55,13 +50,13 @@ class GCode:
     sets: ModalChanges = dataclasses.field(default_factory=ModalChanges)
     action: Action | None = None
     perform: Action | None = None
-    takes: str = ""
-    after: Action | None = None
-    once: bool = False
-    alone: bool = False
-    yields: bool = False
+    consumes: str = ""
+    after_motion: Action | None = None
+    non_modal: bool = False
+    exclusive: bool = False
+    weak: bool = False
     refused: str = ""
-    ground: Ground = "decision"
+    basis: Basis = "decision"
 
     @property
     def refusal(self) -> str:
@@ -79,24 +74,20 @@ class MCode:
     """One M code.
 
     Attributes:
-        meaning: For people.
         group: Codes of one group exclude each other in a block; empty: it has none.
-        late: Takes effect when the block has moved.
-        ends: Ends the program.
+        after_motion: Takes effect when the block has moved.
         action: What it does besides being reported as a function.
-        silent: It is not reported.
         dwell: How long the program waits for it [s].
-        ground: On what the meaning rests.
     """
 
     meaning: str
     group: str = ""
-    late: bool = False
+    after_motion: bool = False
     ends: bool = False
     silent: bool = False
     dwell: float = 0.0
     action: Action | None = None
-    ground: Ground = "decision"
+    basis: Basis = "decision"
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
@@ -106,10 +97,8 @@ class Codes:
     Attributes:
         groups: Modal groups in the order in which they take effect.
         g: G codes by number, such as 54 or 54.1.
-        m: M codes by number.
-        start: G codes in force when a program starts.
         start_state: Fields of ``Modal`` that no G code sets.
-        instead: What to write in place of G codes that other controls have, by number.
+        replacements: What to write in place of G codes that other controls have, by number.
         any_m: M codes outside the table are functions too.
         last_of_group_counts: Of several G codes of a modal group in a block the last one counts; else they
             are refused.
@@ -122,7 +111,7 @@ class Codes:
     m: Mapping[int, MCode]
     start: tuple[float, ...]
     start_state: ModalChanges = dataclasses.field(default_factory=ModalChanges)
-    instead: Mapping[float, str] = dataclasses.field(default_factory=dict)
+    replacements: Mapping[float, str] = dataclasses.field(default_factory=dict)
     any_m: bool = False
     last_of_group_counts: bool = False
     statements: Mapping[str, StatementAction] = dataclasses.field(default_factory=dict)
@@ -156,17 +145,16 @@ class Words:
         actions: Addresses with a modal meaning, and what they do.
         before_codes: F, S, T and early M functions take effect before what G codes do besides the
             modal state that they set.
-        axes: Addresses that name axes.
         motion: Addresses that make a block move, the axes among them.
         of_functions: Addresses that belong to an M function of their block.
         of_declared: Addresses that belong to an M function that the job or the machine declares.
         references: Addresses whose value names a variable and is not computed.
         repeat: Address that says how often its block runs, or empty.
         signed: Addresses that are two words, one above and one below 0.
+        indexed: The axis that a word names whose address ends with an index, such as AX[A]; None: none does.
         series: Addresses that may stand several times in a block with a switch point, in order.
         feed: Address that sets the feed and does no more; empty: there is none.
         spindle: Address that sets the spindle's speed; empty: there is none, the drive is set.
-        meanings: What the addresses mean, for people.
     """
 
     actions: Mapping[str, WordAction]
@@ -178,6 +166,7 @@ class Words:
     references: str = ""
     repeat: str = ""
     signed: tuple[str, ...] = ()
+    indexed: Callable[[Control, Word], str] | None = None
     series: str = ""
     feed: str = "F"
     spindle: str = "S"

@@ -12,11 +12,7 @@ NEEDS_TOOL = "give the job a tool with its radius and length: [[tools]]"
 
 
 def tool_numbered(control: Control, word: Word) -> int:
-    """The tool that a word names.
-
-    Raises:
-        ProgramError: The job has no such tool.
-    """
+    """The tool that a word names."""
     number = integer_of(control.number(word))
     tool = control.tools.data(number)
     if tool is None or number < 0:
@@ -34,9 +30,6 @@ def tool_named(control: Control, name: str, word: Word) -> int:
     """The number of the tool that a word calls by name, whose case does not count.
 
     Decision: where no tool of the job has a name they are called in the job's order.
-
-    Raises:
-        ProgramError: The job has no such tool.
     """
     tools, name = control.tools, name.upper()
     named = {tool.name.upper(): number for number, tool in tools.table.items() if tool.name}
@@ -67,11 +60,7 @@ def side_in_force(control: Control) -> float:
 
 
 def change_radius(control: Control, radius: float, word: Word) -> None:
-    """Another radius of the compensation that is in force, on the same side [mm].
-
-    Raises:
-        ProgramError: There is none.
-    """
+    """Another radius of the compensation that is in force, on the same side [mm]."""
     if not radius > 0.0:
         message = f"compensation that is in force cannot take the radius {radius:g}"
         control.fail("compensation-change", message, word, "end it by G40")

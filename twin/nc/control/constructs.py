@@ -1,4 +1,4 @@
-"""Conditions and loops of a program whose keywords stand on lines of their own."""
+"""Conditions and loops of a program whose keywords are on lines of their own."""
 
 import dataclasses
 from collections.abc import Mapping
@@ -19,10 +19,8 @@ class Construct:
     """A condition or a loop.
 
     Attributes:
-        keyword: That begins it.
         begin: Its first line, from 0.
         depth: Constructs around it, and itself.
-        branches: Further ones, in order.
         end: Its last line; None where it has none.
         name: Its label; empty where it has none.
     """

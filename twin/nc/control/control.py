@@ -15,9 +15,8 @@ from twin.nc.control.statements import StatementReader
 from twin.nc.control.tools import Tools
 from twin.nc.control.variables import Variables
 from twin.nc.geometry.arcs import Point
-from twin.nc.path.drilling_cycle import START, no_values
+from twin.nc.path.feed_rates import PATH_COUNTS, STANDING, WITHOUT_SPEED, FeedRule
 from twin.nc.path.moves import LARGEST_COORDINATE, axis_target
-from twin.nc.path.paces import PATH_COUNTS, STANDING, WITHOUT_SPEED, FeedRule
 from twin.nc.text.blocks import Assignment, Block, Location, Statement, Word
 from twin.nc.text.expressions import Expression, ExpressionError
 from twin.nc.text.lexer import Lexer
@@ -35,19 +34,16 @@ class Rules:
 
     Attributes:
         memory: Makes the object that holds what only this dialect remembers.
-        prepare: Done before the first block.
-        before_motion: Done before every motion block, told whether it is rapid.
-        after_motion: Done when a block has moved.
+        before_motion: Done before every motion block, given whether it is rapid.
         finish: Done when the program ends without an end code.
-        must_end: A program without an end code is wrong.
         jog: A straight move by a distance, as its language writes it.
         read_variable: Value of a variable, given its name and index.
-        write_variable: Gives a variable a value, told its name, its index and the assignment; None:
+        write_variable: Gives a variable a value, given its name, its index and the assignment; None:
             variables are written as they are named.
-        is_local: Whether calls with variables of their own have a variable of this name anew.
+        is_local: Whether calls with variables of their own have a variable of this name again.
         given_variable: The value of a variable among those of the job, or None.
-        place_switches: Reports the block's switch points, told the length of its move.
-        pointless: Addresses whose numbers without a decimal point ``count`` must look at.
+        place_switches: Reports the block's switch points, given the length of its move.
+        without_point: Addresses whose numbers without a decimal point ``count`` must look at.
         count: Gives words without a decimal point their value in the units of the others.
         feed_rule: Which part of a move F counts, by the parameters of the control.
         length_by_code: Nothing but a code puts a tool's length into force; else the tool change may.
@@ -69,7 +65,7 @@ class Rules:
         given.get(name)
     )
     place_switches: Callable[["Control", float], None] | None = None
-    pointless: Callable[[ControlSettings], frozenset[str]] = lambda _settings: frozenset()
+    without_point: Callable[[ControlSettings], frozenset[str]] = lambda _settings: frozenset()
     count: Callable[["Control", Block], Block] = lambda _control, block: block
     feed_rule: Callable[[ControlSettings], FeedRule] = lambda _settings: PATH_COUNTS
     length_by_code: bool = False
@@ -85,7 +81,7 @@ class HasGroup(Protocol):
         ...
 
     @property
-    def yields(self) -> bool:
+    def weak(self) -> bool:
         """Another code of its group in the block takes its place."""
         ...
 
@@ -94,27 +90,14 @@ class Control:
     """One control while it runs one program.
 
     Attributes:
-        settings: What it was told of the machine and the job.
-        report: Where its diagnostics go.
-        modal: What stays in force.
         memory: What only this dialect remembers.
-        motion: Where it stands and how fast it goes.
         frame: From programmed to part coordinates.
-        path: Where moves and events go.
-        tools: The tools in use.
-        variables: What the program computes with.
-        program_counter: Which block comes next.
-        statements: Reads what statements hold.
-        axis_letters: Addresses that name axes.
         axis_index: Columns of the axes by name.
-        cycle_values: What the words of a milling cycle were last, by address.
-        cycle_state: What a drilling cycle remembers, as ``drilling_cycle`` counts it.
-        block: The block that is being run.
+        cycle_values: What the cycle in force remembers, by name.
         words: Its words that nothing has taken yet.
         codes: Its G codes.
         series: Its words for switch points, in order.
-        run: Runs one block, also one that stands within a statement.
-        ended: An end code was run.
+        run: Runs one block, also one that is within a statement.
     """
 
     def __init__(
@@ -134,7 +117,7 @@ class Control:
         self.memory = rules.memory()
         self._rules = rules
         feed_rule = rules.feed_rule(settings)
-        self.motion = Motion(settings, modal, self.report, self._blame_feed, feed_rule)
+        self.motion = Motion(settings, modal, self.report, self._refuse_feed, feed_rule)
         if rules.place_switches is not None:
             self.motion.before_move = functools.partial(rules.place_switches, self)
         self.frame = self.motion.frame
@@ -160,7 +143,6 @@ class Control:
         self._columns = {word: columns[word] for word in columns if word in axis_letters}
         self._axes_that_lack = axis_letters - self._columns.keys()
         self.cycle_values: dict[str, float] = {}
-        self.cycle_state = no_values()
         self.block = Block(0, 0)
         self.words: dict[str, Word] = {}
         self.codes: Sequence[tuple[Word, HasGroup]] = ()
@@ -177,11 +159,7 @@ class Control:
         word: Word | Statement | None = None,
         hint: str | None = None,
     ) -> NoReturn:
-        """Refuse the block; the caret stands under a word, a statement's keyword or the last code.
-
-        Raises:
-            ProgramError: Always.
-        """
+        """Refuse the block; the caret stands under a word, a statement's keyword or the last code."""
         self.report.fail(code, message, *self.span_of(word), hint)
 
     def warn(
@@ -204,12 +182,8 @@ class Control:
         """Where the block writes a G code, for diagnostics."""
         return next((word for word, _ in self.codes if number_of(word) == number), None)
 
-    def _blame_feed(self, finding: int) -> None:
-        """Say what is wrong with the pace of a move.
-
-        Raises:
-            ProgramError: It has none.
-        """
+    def _refuse_feed(self, finding: int) -> None:
+        """Report what is wrong with the feed rate of a move."""
         if finding == WITHOUT_SPEED:
             self.fail("feed-per-revolution", "a feed per revolution needs a spindle speed S")
         if finding == STANDING:
@@ -246,11 +220,7 @@ class Control:
         return number_of(word) * self.motion.unit_of(index)
 
     def take_axis_words(self) -> list[tuple[int, Word]]:
-        """Take the words that name axes; pairs of column and word.
-
-        Raises:
-            ProgramError: The machine lacks an axis.
-        """
+        """Take the words that name axes; pairs of column and word."""
         words, columns = self.words, self._columns
         if not self._axes_that_lack.isdisjoint(words):
             for name in [each for each in words if each in self._axes_that_lack]:
@@ -294,17 +264,11 @@ class Control:
     # --- moves and events
 
     def line_to(self, target: list[float], *, rapid: bool) -> None:
-        """Move straight to a programmed position; nothing when it stands there already."""
+        """Move straight to a programmed position; nothing when it is there already."""
         self.motion.move_to(target, self.block, rapid=rapid)
 
     def arc_to(self, target: list[float], center: Point, sweep: float) -> None:
-        """Move on an arc about the plane's normal.
-
-        Args:
-            target: Programmed position of its end, shape (k,).
-            center: Abscissa and ordinate of its programmed centre [mm].
-            sweep: Signed angle with all turns [deg].
-        """
+        """Move on an arc about the plane's normal; centre and sweep as for ``Motion.arc``."""
         self.motion.move_to(target, self.block, arc=self.motion.arc(center, sweep))
 
     def dwell(self, seconds: float) -> None:
@@ -317,9 +281,8 @@ class Control:
 
     def forget_cycle(self) -> None:
         """No cycle is in force any more, and its words hold no longer."""
-        if self.cycle_values or self.cycle_state[START] == self.cycle_state[START]:
+        if self.cycle_values:
             self.cycle_values = {}
-            self.cycle_state = no_values()
 
     # --- jumps and calls
 
@@ -333,7 +296,7 @@ class Control:
         self,
         first: Location,
         deepest: int,
-        blamed: Word | Statement,
+        error_at: Word | Statement,
         values: Iterable[tuple[str, float]] | None = None,
         *,
         restores: bool = False,
@@ -345,7 +308,7 @@ class Control:
         Args:
             first: Where it begins.
             deepest: Parts that may call each other.
-            blamed: What asks for it.
+            error_at: What asks for it.
             values: Of its own variables by name; None: it has the caller's.
             restores: Its end puts back into force what is in force now.
             times: How often it runs.
@@ -356,9 +319,9 @@ class Control:
         """
         counter = self.program_counter
         if counter.depth >= min(deepest, MOST_CALLS):
-            self.fail("call-depth", f"more than {deepest} calls within calls", blamed)
+            self.fail("call-depth", f"more than {deepest} calls within calls", error_at)
         if not times >= 1.0 or times != math.floor(times):
-            self.fail("repeat-range", "the range or the number of runs is none", blamed)
+            self.fail("repeat-range", "the range or the number of runs is none", error_at)
         call = Call(counter.location, first, int(times) - 1, last)
         counter.calls.append(call)
         self.jump(first)
@@ -370,22 +333,14 @@ class Control:
             for name, value in values:
                 self.variables.write(name, value)
 
-    def require_caller(self, blamed: Word | Statement | None = None) -> None:
-        """A part must be being run that a word ends.
-
-        Raises:
-            ProgramError: None is.
-        """
+    def require_caller(self, error_at: Word | Statement | None = None) -> None:
+        """A part must be being run that a word ends."""
         if all(call.last is not None for call in self.program_counter.calls):
-            self.fail("return-outside", "there is no subroutine to return from", blamed)
+            self.fail("return-outside", "there is no subroutine to return from", error_at)
 
-    def go_back(self, blamed: Word | Statement | None = None) -> None:
-        """The end of a subroutine: back behind its call, or to its beginning again.
-
-        Raises:
-            ProgramError: There is no subroutine.
-        """
-        self.require_caller(blamed)
+    def go_back(self, error_at: Word | Statement | None = None) -> None:
+        """The end of a subroutine: back behind its call, or to its beginning again."""
+        self.require_caller(error_at)
         ended = self.program_counter.end_call()
         if ended is not None:
             if ended.owns_variables:
@@ -408,11 +363,7 @@ def integer_of(value: float) -> int:
 
 
 def refuse_axis(control: Control, word: Word) -> NoReturn:
-    """The machine lacks the axis that a word names.
-
-    Raises:
-        ProgramError: Always.
-    """
+    """The machine lacks the axis that a word names."""
     axes = control.settings.axes
     rotary = next(
         (name for name, line in zip(axes.names, control.motion.linear, strict=True) if not line), ""

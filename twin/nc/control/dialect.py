@@ -15,9 +15,6 @@ class Decision:
     """What the project decided where the control's documents are silent.
 
     Attributes:
-        question: What they leave open.
-        answer: What the twin does.
-        reason: Why.
         example: Name of the program that shows it, among the tests' golden files.
     """
 
@@ -33,15 +30,8 @@ class Dialect:
 
     Attributes:
         name: As given on the command line.
-        title: The control.
         code_page: Legacy code page of its programs, such as ``cp1252``.
-        syntax: How blocks are written.
-        codes: What G and M codes and statements do.
-        words: What all other words do.
-        rules: What it does besides.
         units: Units of lengths and feeds, for people.
-        decisions: Every decision taken for it.
-        marks: What tells its programs from others.
         suffixes: Ends of the names of files that hold its programs alone, lower case.
         tables: Further tables of its page: what is named, and what it is, by title.
         library: Adds files that the program calls, looked for in the folder of the program and read as the

@@ -1,7 +1,7 @@
 """Runs the blocks of a program, whatever its dialect.
 
 Modal codes take effect by group, then set-up actions, modal words (F, S, T), early M functions, the motion or
-what stands in its place, late M functions, jumps. In some dialects the words come before the actions. Every
+what is in its place, late M functions, jumps. In some dialects the words come before the actions. Every
 word must be used by something; a word that nothing wants is an error, because ignoring it would be a guess.
 """
 
@@ -20,15 +20,10 @@ from twin.nc.text.source import Source
 
 
 class Executor:
-    """Runs blocks of a dialect on a control.
-
-    Attributes:
-        dialect: The language it reads.
-        control: What it runs them on.
-    """
+    """Runs blocks of a dialect on a control."""
 
     def __init__(self, dialect: Dialect, settings: ControlSettings, source: Source) -> None:
-        """A control that stands before the first block of a program."""
+        """A control that is before the first block of a program."""
         self.dialect = dialect
         modal, letters = dialect.codes.new_modal(), dialect.words.axes
         self.control = control = Control(
@@ -36,7 +31,7 @@ class Executor:
         )
         self._sorter = WordSorter(control, dialect)
         self._repeats = dialect.words.repeat != ""
-        self._pointless = dialect.rules.pointless(settings)
+        self._without_point = dialect.rules.without_point(settings)
         modal.put(dialect.codes.start_state)
         for number in dialect.codes.start:
             self.put_into_force(number, dialect.codes.g[number])
@@ -68,17 +63,13 @@ class Executor:
         control.path.finish()
 
     def run(self, block: Block) -> None:
-        """Run one block.
-
-        Raises:
-            ProgramError: It is wrong.
-        """
+        """Run one block."""
         control = self.control
         control.block = block
         control.report.line = block.line
         if block.skippable and control.settings.skips(block):
             return
-        if self._pointless:
+        if self._without_point:
             block = control.block = self.dialect.rules.count(control, block)
         if self._repeats:
             block = self._repeated(block)
@@ -98,29 +89,29 @@ class Executor:
     def _run_in_order(self, codes: Codes, functions: Functions) -> None:
         """All that a block does, when its modal codes are in force."""
         control, before_codes = self.control, self.dialect.words.before_codes
-        instead = None
+        performing = None
         for _, code in codes:
             if code.action is not None and not before_codes:
                 code.action(control)
             if code.perform is not None:
-                instead = code
-        self._run_modal_words("" if instead is None else instead.takes)
+                performing = code
+        self._run_modal_words("" if performing is None else performing.consumes)
         for word, function in functions:
-            if not function.late:
+            if not function.after_motion:
                 self._run_function(word, function)
         if before_codes:
             for _, code in codes:
                 if code.action is not None:
                     code.action(control)
-        if instead is not None and instead.perform is not None:
-            instead.perform(control)
+        if performing is not None and performing.perform is not None:
+            performing.perform(control)
         else:
             self._move(codes)
         for _, code in codes:
-            if code.after is not None:
-                code.after(control)
+            if code.after_motion is not None:
+                code.after_motion(control)
         for word, function in functions:
-            if function.late:
+            if function.after_motion:
                 self._run_function(word, function)
 
     def _run_statement(self, statement: Statement) -> None:
@@ -176,9 +167,9 @@ class Executor:
         control = self.control
         restore: list[ModalChanges] = []
         for word, code in codes:
-            if code.once:
+            if code.non_modal:
                 restore.append(control.modal.values_of(code.sets))
-            if code.alone and len(control.block.words) > 1:
+            if code.exclusive and len(control.block.words) > 1:
                 control.fail("alone", f"{word.text} must stand alone in its block", word)
             self.put_into_force(number_of(word), code)
         return restore
@@ -252,7 +243,7 @@ class Executor:
                 mode.without_words(self.control)
 
     def _refuse_motion(self) -> NoReturn:
-        """Words of a motion stand in the block, and no motion code is in force."""
+        """Words of a motion are in the block, and no motion code is in force."""
         control, known = self.control, self.dialect.words
         word = next(each for each in control.words.values() if each.address in known.motion)
         if word.address not in known.axes:

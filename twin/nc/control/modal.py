@@ -6,9 +6,43 @@ from collections.abc import Iterable
 from typing import Self, TypedDict
 
 from twin.nc.canonical import Corner
-from twin.nc.control.interpolation import MotionMode
+from twin.nc.geometry.arcs import Bounds
 from twin.nc.geometry.planes import XY, Plane
-from twin.nc.path.paces import FeedMode
+from twin.nc.path.feed_rates import FeedMode
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class LineRule:
+    """A block of plain axis words goes straight to their target."""
+
+
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class ArcRule:
+    """A block of plain axis words with I, J, K of the plane or R is an arc.
+
+    Attributes:
+        bounds: Beyond them an arc is refused or warned of.
+        signed_radius: A negative radius asks for the larger arc; else it is not plain.
+        fits_radius: A centre found by its radius is fitted to both points like a given one.
+    """
+
+    clockwise: bool = True
+    bounds: Bounds
+    signed_radius: bool = True
+    fits_radius: bool = False
+
+
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class MotionMode:
+    """How axis words become a move, as far as the kernel of plain lines must know it.
+
+    Attributes:
+        rapid: At the machine's own speed.
+        rule: What it does in a block of plain words; None: it is Python's.
+    """
+
+    rapid: bool = False
+    rule: LineRule | ArcRule | None = None
 
 
 class ModalChanges(TypedDict, total=False):
@@ -63,13 +97,11 @@ class Modal:
     Attributes:
         active: The code in force in each modal group.
         interpolation: How axis words become a move; None before a motion code.
-        cycle: A canned cycle; while it is in force it stands in the place of the interpolation.
+        cycle: A canned cycle; while it is in force it replaces the interpolation.
         return_to_reference: Cycles end at their reference plane, not at the height of their call.
-        plane: The working plane.
-        incremental: Axis words count from where the tool stands.
+        incremental: Axis words count from where the tool is.
         center_absolute: The words of a centre count from part zero.
         unit: Of programmed lengths [mm].
-        feed_mode: What F counts.
         corner: How the ends of moves are passed.
         corner_tolerance: [mm]; NaN: the machine's.
         square_corners: Compensation extends lines at outside corners instead of rolling around them.

@@ -1,4 +1,4 @@
-"""The motion of a control: where it stands, how fast it goes, and what becomes of programmed targets."""
+"""The motion of a control: where it is, how fast it goes, and what becomes of programmed targets."""
 
 import functools
 import math
@@ -10,6 +10,16 @@ from twin.nc.control.settings import ControlSettings
 from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.frame import Arc, Frame, arc_about, moved_shift
 from twin.nc.geometry.planes import Plane, Vector
+from twin.nc.path.feed_rates import (
+    KNOWN_FEED,
+    PATH_COUNTS,
+    Displacement,
+    FeedRule,
+    feed_by_rule,
+    feed_per_minute,
+    finding_of_feed,
+    rapid_feed,
+)
 from twin.nc.path.move_columns import FEED, NAN, RAPID, Segment
 from twin.nc.path.moves import (
     RAPIDS_END,
@@ -18,16 +28,6 @@ from twin.nc.path.moves import (
     arc_radius,
     line_length,
     only_turns,
-)
-from twin.nc.path.paces import (
-    PACED,
-    PATH_COUNTS,
-    Displacement,
-    FeedRule,
-    feed_per_minute,
-    finding_of_feed,
-    pace_by_rule,
-    rapid_feed,
 )
 from twin.nc.path.path import Path
 from twin.nc.path.segments import direction_of
@@ -42,27 +42,23 @@ class Motion:
     """Where a control stands and how fast it goes.
 
     Attributes:
-        modal: What stays in force.
-        path: Where its moves go.
-        linear: Whether each axis is a linear one.
         frame: From programmed to part coordinates.
-        programmed: Where it stands, as its screen shows it, shape (k,) [mm or deg].
-        part: Where it stands in part coordinates, shape (k,) [mm or deg].
+        programmed: Where it is, as its screen shows it, shape (k,) [mm or deg].
+        part: Where it is in part coordinates, shape (k,) [mm or deg].
         last: The last move, as it was programmed; None before one.
         feed: F as programmed, or None.
-        feed_rule: Which part of a move F counts.
         spindle: S as programmed, or None [1/min].
         spindle_turns: M3 or M4 of the program is in force; what a cycle does at a hole ends with the hole.
         acceleration: [mm/s²]; NaN: the machine's.
         deceleration: [mm/s²]; NaN: the machine's.
-        rapid_feed: Feed per second of rapids [mm/s]; 0: they follow F; NaN: they have the machine's pace.
+        rapid_feed: Feed per second of rapids [mm/s]; 0: they follow F; NaN: they have the machine's velocity.
         rapid_acceleration: Acceleration of rapids where the program sets their own [mm/s²]; NaN:
             that of the path.
         rapid_deceleration: Deceleration of rapids, likewise [mm/s²].
         axis_limits: Largest velocity of single axes, by column [mm/min or deg/min].
         axis_accelerations: Their largest acceleration [mm/s² or deg/s²].
         axis_decelerations: Their largest deceleration [mm/s² or deg/s²].
-        before_move: Told the length of each move of the block before it goes to the path; None: nobody is.
+        before_move: Given the length of each move of the block before it goes to the path.
     """
 
     def __init__(
@@ -70,20 +66,12 @@ class Motion:
         settings: ControlSettings,
         modal: Modal,
         report: Reporter,
-        blame_feed: Callable[[int], None],
+        refuse_feed: Callable[[int], None],
         feed_rule: FeedRule,
     ) -> None:
-        """Stand where the program begins.
-
-        Args:
-            settings: What the control was told of the machine.
-            modal: What stays in force.
-            report: Where diagnostics of moves go.
-            blame_feed: Told what ``finding_of_feed`` found wrong with the block that runs.
-            feed_rule: Which part of a move F counts.
-        """
+        """Stand where the program begins."""
         self.modal = modal
-        self._blame_feed = blame_feed
+        self._refuse_feed = refuse_feed
         self._default_feeds = (settings.default_feed, settings.default_rotary_feed)
         self.linear = tuple(kind == "linear" for kind in settings.axes.kinds)
         self.programmed = [settings.start.get(name, 0.0) for name in settings.axes.names]
@@ -133,7 +121,7 @@ class Motion:
         arc: Arc | None = None,
         add: Callable[[Segment], None] | None = None,
     ) -> None:
-        """Move to a programmed position; nothing when it stands there already.
+        """Move to a programmed position; nothing when it is there already.
 
         Args:
             target: The position, shape (k,).
@@ -179,13 +167,7 @@ class Motion:
         self.part = end
 
     def take_rows(self, rows: Iterable[Any], programmed: list[float], part: list[float]) -> None:
-        """Moves that were made elsewhere lead to these positions, shape (k,).
-
-        Args:
-            rows: As ``Path.add_rows`` takes them.
-            programmed: Programmed position [mm or deg].
-            part: Part position [mm or deg].
-        """
+        """Moves that were made elsewhere, rows as ``Path.add_rows`` takes them, lead to these positions, shape (k,)."""
         last = self.path.add_rows(*rows)
         self.programmed, self.part = programmed, part
         if last is not None:
@@ -211,7 +193,7 @@ class Motion:
         else:
             feed = self._feed_per_minute(end, length, arc is not None)
             if self.feed_rule is not PATH_COUNTS and (arc is not None or self.feed_rule.degree):
-                feed = self._pace_by_rule(feed, end, length, arc)
+                feed = self._feed_by_rule(feed, end, length, arc)
         if not (self.axis_limits or self.axis_accelerations or self.axis_decelerations):
             return feed, acceleration, deceleration
         share = self._axis_shares(end, length, arc is not None)
@@ -231,15 +213,15 @@ class Motion:
         feed = NAN if self.feed is None else self.feed
         speed = NAN if self.spindle is None else self.spindle
         finding = finding_of_feed(feed, modal.feed_mode, speed, float(self.spindle_turns))
-        if finding != PACED:
-            self._blame_feed(finding)
+        if finding != KNOWN_FEED:
+            self._refuse_feed(finding)
         turning = not is_arc and only_turns(self.part, end, self.linear)
         return feed_per_minute(
             feed, modal.feed_mode, length, turning, modal.unit, speed, self._default_feeds
         )
 
-    def _pace_by_rule(self, pace: float, end: list[float], length: float, arc: Arc | None) -> float:
-        """The pace of a move whose F counts another length than that of its path [mm/min or deg/min]."""
+    def _feed_by_rule(self, rate: float, end: list[float], length: float, arc: Arc | None) -> float:
+        """The feed rate of a move whose F counts another length than that of its path [mm/min or deg/min]."""
         ways = (new - old for new, old in zip(end, self.part, strict=True))
         turned = math.hypot(*(way for way, line in zip(ways, self.linear, strict=True) if not line))
         turning = arc is None and only_turns(self.part, end, self.linear)
@@ -247,7 +229,7 @@ class Motion:
         if arc is not None:
             radius = arc_radius(self.part, arc.center)
             move = move._replace(radius=radius, around=radius * math.radians(abs(arc.sweep)))
-        return pace_by_rule(self.feed_rule, pace, move, self.modal.feed_mode, self.modal.unit)
+        return feed_by_rule(self.feed_rule, rate, move, self.modal.feed_mode, self.modal.unit)
 
     # --- coordinates
 
@@ -266,14 +248,14 @@ class Motion:
         self.part = self.path.position = self.frame.to_part(programmed)
 
     def set_position(self, programmed: list[float], shift: str) -> None:
-        """Give the place where it stands other programmed coordinates; nothing moves."""
+        """Give the place where it is other programmed coordinates; nothing moves."""
         here = self.frame.to_part(programmed)
         values = self.frame.shift(shift)
         self.frame.set_shift(shift, list(map(moved_shift, values, self.part, here)))
         self.programmed = programmed
 
     def reframed(self) -> None:
-        """The frame has changed: see where it stands now."""
+        """The frame has changed: see where it is now."""
         self.programmed = self.frame.to_programmed(self.part)
 
 

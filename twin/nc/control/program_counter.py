@@ -33,10 +33,11 @@ class Call:
     Attributes:
         back: Where the caller goes on.
         first: Where the part begins.
-        again: How often it still runs anew before that.
+        again: How often it still runs again before that.
         last: Its last block, where it ends by its location; None: a word ends it.
         owns_variables: It has variables of its own, which its end forgets.
         restores: What its end puts back into force; None: nothing.
+        then: Done when it has ended, before the block behind it; None: nothing.
     """
 
     back: Location
@@ -45,14 +46,13 @@ class Call:
     last: Location | None = None
     owns_variables: bool = False
     restores: Modal | None = None
+    then: Callable[[], None] | None = None
 
 
 class ProgramCounter:
     """The program counter.
 
     Attributes:
-        lines: The program's text.
-        lexer: Reads the program's lines.
         calls: The parts that are being run for a caller, the innermost last.
     """
 
@@ -67,6 +67,7 @@ class ProgramCounter:
         self._furthest = Location(-1, 0)
         self._budget = step_limit
         self.calls: list[Call] = []
+        self._ended: Call | None = None
         self._labels: FoundInText[int | str, list[Location]] | None = None
         self._cache = FoundInText[int, tuple[Block, ...]]()
         self._parsed = FoundInText[Hashable, object]()
@@ -102,6 +103,9 @@ class ProgramCounter:
         """
         if self.calls:
             self._end_passed()
+        if self._ended is not None and self._ended.then is not None:
+            then, self._ended = self._ended.then, None
+            then()
         line, part = self._line, self._part
         if line == self._here_line and part >= len(self._here):
             line, part = line + 1, 0
@@ -130,7 +134,7 @@ class ProgramCounter:
                 call.again -= 1
                 self.go(call.first)
             else:
-                self.calls.pop()
+                self._ended = self.calls.pop()
                 self.go(call.back)
 
     def end_call(self) -> Call | None:
@@ -146,12 +150,12 @@ class ProgramCounter:
             call.again -= 1
             self.go(call.first)
             return None
-        self.calls.pop()
+        self._ended = self.calls.pop()
         self.go(call.back)
         return call
 
     def _run_out(self) -> None:
-        """The last line has been passed; what is to be said of that stands at the last text."""
+        """The last line has been passed; what is to be said of that is at the last text."""
         written = (line for line in range(len(self.lines), 0, -1) if self.lines[line - 1].strip())
         self._report.line = next(written, 0)
 
@@ -207,13 +211,7 @@ class ProgramCounter:
         word: str,
         within: Container[int] | None = None,
     ) -> Location:
-        """Where the block with an N number or a name stands.
-
-        Args:
-            label: The number or the name.
-            fail_at: Column and width of the word that asks for it, for the diagnostic.
-            word: That word's meaning, for the diagnostic.
-            within: The lines, from 0, that may have it; None: all.
+        """Where the block with an N number or a name stands, among these lines, from 0, or all; a word at ``fail_at`` asks for it.
 
         Raises:
             ProgramError: No block or more than one has it.

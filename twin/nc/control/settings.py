@@ -1,4 +1,4 @@
-"""What the interpreter must be told about the machine and the job, without knowing either."""
+"""What the interpreter must be given about the machine and the job, without knowing either."""
 
 import dataclasses
 from collections.abc import Mapping
@@ -28,7 +28,6 @@ class MachineFunction:
     """An M code that the machine's builder has made.
 
     Attributes:
-        meaning: For people.
         dwell: How long the program waits for it [s].
     """
 
@@ -53,7 +52,7 @@ class ControlSettings:
     """Feed of moves of rotary axes alone in a program that sets none [deg/min]."""
 
     start: Mapping[str, float] = dataclasses.field(default_factory=dict)
-    """Where the axes stand when the program starts, part coordinates [mm or deg]; missing is 0."""
+    """Where the axes are when the program starts, part coordinates [mm or deg]; missing is 0."""
 
     recalculate_on_rapid: bool = False
     """``gost``: G102 also relabels the start of G0 blocks (dialects.md: decision, default off)."""
@@ -80,7 +79,7 @@ class ControlSettings:
     """``fagor8070``: the sign of an absolute rotary target is the direction of rotation."""
 
     axis_words: Mapping[str, str | None] = dataclasses.field(default_factory=dict)
-    """Words of axes that the machine lacks: the axis that each stands for, or None where it is left out while it
+    """Words of axes that the machine lacks: the axis that each is for, or None where it is left out while it
     stays at 0."""
 
     helical_feed: Literal["arc", "path"] | None = None

@@ -24,6 +24,7 @@ class WordSorter:
         self._special = frozenset(("G", "M", *words.signed, *words.series))
         expressions = dialect.syntax.expressions
         self._vacant = expressions is not None and expressions.vacant
+        self._indexed = words.indexed
 
     def sort(self, block: Sequence[Word]) -> tuple[Codes, Functions]:
         """Sort the words of a block; those that are no codes become the control's ``words`` and ``series``.
@@ -32,7 +33,7 @@ class WordSorter:
             Its G codes, in the order in which they take effect; its M functions, in the order of the text.
 
         Raises:
-            ProgramError: Some of them cannot stand in one block.
+            ProgramError: Some of them cannot be in one block.
         """
         control, dialect = self._control, self._dialect
         codes: list[tuple[Word, GCode]] = []
@@ -78,17 +79,30 @@ class WordSorter:
                 )
             else:
                 words[address] = word
+        if self._indexed is not None and any(address[-1] == "]" for address in words):
+            self._resolve_indices(words)
         if len(codes) > 1 or len(functions) > 1:
             codes = codes_that_count(codes, last_of_group=dialect.codes.last_of_group_counts)
             self._refuse_conflict(conflict_of(codes, functions))
             control.codes = codes = in_order(codes, dialect.codes.groups)
         return codes, functions
 
+    def _resolve_indices(self, words: dict[str, Word]) -> None:
+        """Give words with an index in their address the axis that it names."""
+        assert self._indexed is not None
+        for address in [each for each in words if each[-1] == "]"]:
+            word = words.pop(address)
+            axis = self._indexed(self._control, word)
+            if axis in words:
+                message = f"'{axis}' stands twice in the block"
+                self._control.fail("duplicate-word", message, word, "write two blocks")
+            words[axis] = word._replace(address=axis)
+
     def _takes_m(self, block: Sequence[Word]) -> bool:
         """Whether M is a word of one of the block's G codes, and no machine function."""
         numbers = (word.value for word in block if word.address == "G")
         codes = (self._dialect.codes.g.get(n) for n in numbers if isinstance(n, float))
-        return any(code is not None and "M" in code.takes for code in codes)
+        return any(code is not None and "M" in code.consumes for code in codes)
 
     def _has_switch(self, block: Sequence[Word]) -> bool:
         return any(word.address == self._dialect.words.series[0] for word in block)
@@ -102,7 +116,8 @@ class WordSorter:
                 "unknown-g",
                 f"{word.text} is unknown to {self._dialect.name}",
                 word,
-                hint=codes.instead.get(number) or near(f"G{number:g}", known, self._dialect.name),
+                hint=codes.replacements.get(number)
+                or near(f"G{number:g}", known, self._dialect.name),
             )
         if code.refused:
             self._control.fail("unsupported-g", f"{word.text} {code.refusal}", word)
@@ -121,11 +136,7 @@ class WordSorter:
         return code
 
     def _refuse_conflict(self, conflict: "Conflict | None") -> None:
-        """Say which codes cannot share a block.
-
-        Raises:
-            ProgramError: There are two.
-        """
+        """Say which codes cannot share a block."""
         if conflict is None:
             return
         both = f"{conflict.first.text} and {conflict.second.text}"
@@ -148,15 +159,15 @@ def codes_that_count(codes: Codes, *, last_of_group: bool) -> list[tuple[Word, G
 
     Args:
         codes: As they are written.
-        last_of_group: The last one overrules all others; else each overrules those that yield.
+        last_of_group: The last one overrules all others; else each overrules those that are weak.
     """
-    strong = {code.group for _, code in codes if not code.yields}
+    strong = {code.group for _, code in codes if not code.weak}
     last = {code.group: word for word, code in codes}
 
     def counts(word: Word, code: GCode) -> bool:
-        if code.yields and code.group in strong:
+        if code.weak and code.group in strong:
             return False
-        return last[code.group] is word or not (code.yields or last_of_group)
+        return last[code.group] is word or not (code.weak or last_of_group)
 
     return [(word, code) for word, code in codes if not code.group or counts(word, code)]
 
@@ -165,10 +176,8 @@ class Conflict(NamedTuple):
     """Two codes that cannot share a block.
 
     Attributes:
-        first: One of them.
-        second: The other.
         group: Their modal group, or empty.
-        performs: Both want to stand in the motion's place.
+        performs: Both want to replace the motion.
     """
 
     first: Word

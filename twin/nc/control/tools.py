@@ -9,7 +9,6 @@ class Tools:
     """The tool table with its state.
 
     Attributes:
-        table: Tools by number.
         any: The tool that every other number means; None: there is none.
         names: Numbers of tools that the program has called by names which the job does not give.
         spindle: Number of the tool in the spindle.
@@ -35,6 +34,6 @@ class Tools:
         """What a tool measures; None where the table lacks it."""
         return None if number is None else self.table.get(number, self.any)
 
-    def longer(self, tool: ToolData) -> float:
+    def length_difference(self, tool: ToolData) -> float:
         """How much longer a tool is than the one that the part zero was taken with [mm]."""
         return tool.length - self._reference

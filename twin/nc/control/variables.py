@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 
 class Variables:
-    """Values by name; NaN stands for one that a program has taken away."""
+    """Values by name; NaN: a program has taken it away."""
 
     def __init__(
         self,

@@ -56,7 +56,7 @@ def recognise(source: Source) -> Dialect:
     """Tell a program's dialect by its own words.
 
     Raises:
-        UsageError: No dialect's own words stand in it, or those of several, none of which has all.
+        UsageError: No dialect's own words are in it, or those of several, none of which has all.
     """
     found = marks_found(source)
     fitting = [name for name, marks in found.items() if marks]
@@ -88,7 +88,7 @@ def _listed(words: Mapping[str, list[str]]) -> str:
 
 
 def marks_found(source: Source) -> dict[str, list[str]]:
-    """The marks of each dialect that stand in a program."""
+    """The marks of each dialect that are in a program."""
     patterns = {
         (dialect.name, mark.shown): re.compile(mark.pattern, re.IGNORECASE)
         for dialect in DIALECTS.values()

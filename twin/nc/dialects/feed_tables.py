@@ -1,6 +1,6 @@
 """What F counts in every kind of move, as a table of each dialect's page.
 
-``path/paces`` computes it; ``tests/golden/<dialect>/feeds`` has a program with its time for every cell.
+``path/feed_rates`` computes it; ``tests/golden/<dialect>/feeds`` has a program with its time for every cell.
 """
 
 from collections.abc import Mapping
@@ -21,16 +21,14 @@ class FeedRow(NamedTuple):
     """What F counts in one kind of move.
 
     Attributes:
-        kind: Of move.
         rate: What F counts as a rate, per minute, second or revolution.
         inverse: What F of G93 says; empty where the control has no such feed.
-        ground: Source or decision.
     """
 
     kind: str
     rate: str
     inverse: str
-    ground: str
+    basis: str
 
 
 _PATH = "the path in X Y Z"
@@ -38,23 +36,23 @@ _FOLLOWS = "the path in X Y Z; the rotary axis arrives with it"
 _DEGREES = "degrees"
 
 
-def _rows(ground: str, *cells: tuple[str, str] | tuple[str, str, str]) -> tuple[FeedRow, ...]:
-    """Rows in the order of ``KINDS``: rate, inverse time, and a ground where it is another."""
+def _rows(basis: str, *cells: tuple[str, str] | tuple[str, str, str]) -> tuple[FeedRow, ...]:
+    """Rows in the order of ``KINDS``: rate, inverse time, and a basis where it is another."""
     return tuple(
-        FeedRow(kind, cell[0], cell[1], cell[2] if len(cell) > 2 else ground)
+        FeedRow(kind, cell[0], cell[1], cell[2] if len(cell) > 2 else basis)
         for kind, cell in zip(KINDS, cells, strict=True)
     )
 
 
-def _path_counts(inverse: str, ground: str, helix: str = "") -> tuple[FeedRow, ...]:
+def _path_counts(inverse: str, basis: str, helix: str = "") -> tuple[FeedRow, ...]:
     """Of a control whose F counts X, Y and Z, the rotary axes where these rest."""
     return _rows(
-        ground,
+        basis,
         (_PATH, inverse),
         (_FOLLOWS, inverse),
         (_DEGREES, inverse),
         (_PATH, inverse),
-        ("the helix", inverse, helix or ground),
+        ("the helix", inverse, helix or basis),
         (_FOLLOWS, inverse),
     )
 

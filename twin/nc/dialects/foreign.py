@@ -12,8 +12,6 @@ class Foreign(NamedTuple):
     """One kind of file.
 
     Attributes:
-        name: What it is, for people.
-        advice: What to do.
         pattern: What its bytes or lines hold; several lines may match.
         least: How many matches there must be.
         comments: Comments are looked at too.

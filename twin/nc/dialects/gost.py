@@ -1,6 +1,6 @@
 """A Russian control with G102, the recalculation of periodic rotary axes.
 
-Its own page (seed) says all about G102; the rest is the base of ISO 6983-1 and GOST 20999-83.
+The control's page says all about G102; the rest is the base of ISO 6983-1 and GOST 20999-83.
 """
 
 import math
@@ -11,7 +11,7 @@ from twin.nc.control.codes import Codes, Words
 from twin.nc.control.control import Control, Rules
 from twin.nc.control.dialect import Decision, Dialect
 from twin.nc.iso import base, fixed_cycles, shared_decisions, shared_marks
-from twin.nc.iso.declared import instead, modal
+from twin.nc.iso.declared import modal, replacement
 from twin.nc.text.syntax import HEADING, Comment, Mark, Syntax
 
 RESOLUTION = 9
@@ -75,9 +75,9 @@ def switch_recalculation(control: Control) -> None:
 def recalculate_start(control: Control, rapid: bool) -> None:
     """Give every recalculated axis the remainder of its start point; the table stands still.
 
-    The remainder keeps the sign of the start point (seed, example 7), as C's ``fmod`` does.
-    Decision: in blocks of interpolation only, as the seed says, unless the machine's
-    ``recalculate_on_rapid`` is set; and in blocks without the axis too, since the seed speaks of
+    The remainder keeps the sign of the start point (control page, example 7), as C's ``fmod`` does.
+    Decision: in blocks of interpolation only, as the page says, unless the machine's
+    ``recalculate_on_rapid`` is set; and in blocks without the axis too, since the page speaks of
     the block's start point.
     """
     periods = _periods(control)
@@ -172,17 +172,20 @@ GOST = Dialect(
             **base.CODES,
             **fixed_cycles.RETURN,
             9: modal(
-                "exact stop in this block", once=True, ground="decision", corner=Corner.EXACT_STOP
+                "exact stop in this block",
+                non_modal=True,
+                basis="decision",
+                corner=Corner.EXACT_STOP,
             ),
-            61: modal("exact stop mode", "corner", ground="decision", corner=Corner.EXACT_STOP),
-            64: modal("exact path mode", "corner", ground="decision", corner=Corner.EXACT_PATH),
-            102: instead(
+            61: modal("exact stop mode", "corner", basis="decision", corner=Corner.EXACT_STOP),
+            64: modal("exact path mode", "corner", basis="decision", corner=Corner.EXACT_PATH),
+            102: replacement(
                 "recalculation of a periodic axis: C360 on, C0 off",
                 switch_recalculation,
-                ground="seed",
+                basis="control page",
             ),
         },
-        instead=base.INSTEAD,
+        replacements=base.REPLACEMENTS,
         start=(*base.START, 64, 98),
         m=base.M_CODES,
     ),

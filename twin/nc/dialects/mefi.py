@@ -1,6 +1,6 @@
 """MEFI CNC8x6: axes dragged by circular motion, and jumps with repeat.
 
-Its own page (seed) says all about G09, G10, G73 and G98; the rest is the base of ISO 6983-1.
+The control's page says all about G09, G10, G73 and G98; the rest is the base of ISO 6983-1.
 """
 
 import dataclasses
@@ -8,11 +8,11 @@ import dataclasses
 from twin.nc.control.codes import Codes, GCode, Words
 from twin.nc.control.control import Control, Rules
 from twin.nc.control.dialect import Decision, Dialect
-from twin.nc.control.interpolation import ArcRule
+from twin.nc.control.modal import ArcRule
 from twin.nc.geometry.arcs import sweep_between
 from twin.nc.iso import base, shared_decisions, shared_marks
 from twin.nc.iso.circular import BOUNDS, arc_center, both_senses, start_and_end
-from twin.nc.iso.declared import instead, modal, motion_code
+from twin.nc.iso.declared import modal, motion_code, replacement
 from twin.nc.text.syntax import HEADING, Comment, Mark, Syntax
 
 
@@ -64,7 +64,7 @@ def switch_off(control: Control) -> None:
 
 
 def jump_with_repeat(control: Control) -> None:
-    """G73: after the block's own motion go on at block L, Q times; the counter begins anew behind that."""
+    """G73: after the block's own motion go on at block L, Q times; the counter begins again behind that."""
     target, count = control.take("L"), control.take("Q")
     if target is None:
         numbers = ", ".join(f"N{label}" for label in list(control.program_counter.labels())[:12])
@@ -179,17 +179,25 @@ MEFI = Dialect(
         groups=(*base.GROUPS, "helix"),
         g={
             **base.CODES,
-            2: motion_code("arc clockwise", CLOCKWISE, "seed"),
+            2: motion_code("arc clockwise", CLOCKWISE, "control page"),
             3: motion_code("arc counter-clockwise", COUNTER_CLOCKWISE, "decision"),
-            9: modal("helix on", "helix", switch_on, ground="seed"),
-            10: instead("lead of the dragged axis", store_leads, ground="seed"),
-            73: GCode(meaning="jump with repeat: L, Q", after=jump_with_repeat, ground="seed"),
+            9: modal("helix on", "helix", switch_on, basis="control page"),
+            10: replacement("lead of the dragged axis", store_leads, basis="control page"),
+            73: GCode(
+                meaning="jump with repeat: L, Q",
+                after_motion=jump_with_repeat,
+                basis="control page",
+            ),
             98: GCode(
-                meaning="helix off", group="helix", action=switch_off, alone=True, ground="seed"
+                meaning="helix off",
+                group="helix",
+                action=switch_off,
+                exclusive=True,
+                basis="control page",
             ),
         },
-        instead={
-            **base.INSTEAD,
+        replacements={
+            **base.REPLACEMENTS,
             99: "cycles return to the height of their call; G98 ends a helix here",
         },
         start=base.START,

@@ -14,10 +14,7 @@ GROUP = "twin.dialects"
 def dialects_from_outside(
     taken: Container[str],
 ) -> tuple[dict[str, Dialect], dict[str, str]]:
-    """Load them.
-
-    Args:
-        taken: Names of the dialects of this package, which none may replace.
+    """Load them; those of this package, which are ``taken``, none may replace.
 
     Returns:
         Those that could be loaded, by name, and why the others could not.

@@ -12,8 +12,8 @@ from twin.nc.control.dialect import Dialect
 from twin.nc.dialects import DIALECTS, OWN
 from twin.nc.dialects.feed_tables import feed_rows
 
-_GROUND = {
-    "seed": "the control's own page",
+_BASIS = {
+    "control page": "the control's own page",
     "manual": "the control's manuals",
     "decision": "decided here",
 }
@@ -98,8 +98,8 @@ def _g_table(dialect: Dialect, codes: dict[float, GCode]) -> str:
         (
             dialect.code_name(number),
             code.meaning,
-            code.group or ("this block" if code.once else ""),
-            _GROUND[code.ground],
+            code.group or ("this block" if code.non_modal else ""),
+            _BASIS[code.basis],
         )
         for number, code in sorted(codes.items())
     ]
@@ -108,7 +108,11 @@ def _g_table(dialect: Dialect, codes: dict[float, GCode]) -> str:
 
 def _m_table(dialect: Dialect) -> str:
     rows = [
-        (f"M{number}", code.meaning, "after the motion" if code.late else "before the motion")
+        (
+            f"M{number}",
+            code.meaning,
+            "after the motion" if code.after_motion else "before the motion",
+        )
         for number, code in sorted(dialect.codes.m.items())
     ]
     if dialect.codes.any_m:
@@ -130,7 +134,7 @@ def _feed_sections(dialect: Dialect) -> list[str]:
         return []
     rows, timed = feed_rows(dialect.name), 93 in dialect.codes.g
     head = ("move", "F as a rate", *(("F of G93",) if timed else ()), "known from")
-    cells = [(r.kind, r.rate, *((r.inverse,) if timed else ()), r.ground) for r in rows]
+    cells = [(r.kind, r.rate, *((r.inverse,) if timed else ()), r.basis) for r in rows]
     return [
         "## What F counts",
         f"Each cell is shown, with its time, by a program of `tests/golden/{dialect.name}/feeds`.",
@@ -190,7 +194,7 @@ def page_of(dialect: Dialect) -> Path:
 
 
 def write_pages() -> None:
-    """Write every page anew."""
+    """Write every page again."""
     for dialect in OWN.values():
         write_text(page_of(dialect), describe(dialect))
 

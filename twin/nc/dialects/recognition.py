@@ -33,8 +33,7 @@ class Reading(NamedTuple):
     """What a program tells of its dialect.
 
     Attributes:
-        candidates: Dialects that it may be written in; one: it is told.
-        reason: What tells it.
+        candidates: Dialects that it may be written in; one: it is given.
     """
 
     candidates: tuple[str, ...]

@@ -147,16 +147,7 @@ class Sense(NamedTuple):
 def center_of_words(
     start: Point, end: Point, words: ArcWords, absolute: bool, sense: Sense, bounds: Bounds
 ) -> tuple[int, Point]:
-    """What is wrong with the words of an arc, and its centre.
-
-    Args:
-        start: First point.
-        end: Last point.
-        words: Those of the arc.
-        absolute: The centre counts from the plane's zero, not from the start.
-        sense: What a radius means.
-        bounds: How badly a centre may fit.
-    """
+    """What is wrong with the words of an arc, and its centre."""
     has_center = words.first == words.first or words.second == words.second
     center = programmed_center(start, words.first, words.second, absolute)
     if words.radius == words.radius:
@@ -182,15 +173,7 @@ def programmed_center(start: Point, first: float, second: float, absolute: bool)
 def center_of_radius(
     start: Point, end: Point, radius: float, clockwise: bool, signed: bool
 ) -> tuple[int, Point]:
-    """What is wrong with the radius of an arc, and its centre.
-
-    Args:
-        start: First point.
-        end: Last point.
-        radius: Negative for the arc beyond 180° of the two that fit [mm].
-        clockwise: Sense of the arc.
-        signed: A negative radius means that.
-    """
+    """What is wrong with the radius of an arc, and its centre; ``signed``: a negative one means the arc beyond 180° [mm]."""
     if distance(start, end) < SAME_POINT:
         return SAME_ENDS, start
     if radius < 0.0 and not signed:
@@ -211,15 +194,7 @@ def reaches(start: Point, end: Point, radius: float) -> bool:
 def center_at_radius(
     start: Point, end: Point, radius: float, clockwise: bool, larger: bool
 ) -> Point:
-    """Centre of the arc of a radius that reaches.
-
-    Args:
-        start: First point.
-        end: Last point, not the same.
-        radius: Positive [mm].
-        clockwise: Sense of the arc.
-        larger: The arc beyond 180° of the two that fit.
-    """
+    """Centre of the arc of a positive radius that reaches [mm]; ``larger``: beyond 180° of the two that fit."""
     chord = distance(start, end)
     middle = ((start[0] + end[0]) / 2.0, (start[1] + end[1]) / 2.0)
     height = math.sqrt(max(0.0, radius * radius - chord * chord / 4.0))

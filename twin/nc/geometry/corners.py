@@ -24,15 +24,7 @@ ends, and where that on the next begins."""
 def corner_of(
     before: Before, behind: Behind, turn: float, signed_offset: float, square: bool
 ) -> Passage:
-    """How a tool passes the corner between two elements of a contour.
-
-    Args:
-        before: The element that ends there.
-        behind: The element that begins there.
-        turn: From one to the other, positive to the left [deg].
-        signed_offset: The tool's radius, positive left of the contour [mm].
-        square: Outside corners between lines are extended instead of rolled around.
-    """
+    """How a tool passes the corner between two elements of a contour; turn and offset are positive to the left [deg, mm]."""
     contour, parallel, _begin = before
     following, beside = behind
     if abs(turn) < STRAIGHT_ON:

@@ -194,7 +194,7 @@ def meetings(first: Curve, second: Curve) -> Meetings:
 
 
 def crossing_of(older: Curve, younger: Curve) -> tuple[bool, float, float]:
-    """Whether two curves cross, and where, as shares of their ways: the first place on the older."""
+    """Whether two curves cross, and where, as shares of their paths: the first place on the older."""
     count, first, second = meetings(older, younger)
     found, left, right = False, 0.0, 0.0
     for number in range(count):

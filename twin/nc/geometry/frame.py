@@ -69,14 +69,7 @@ def arc_about(plane: Directions, start: Values, center: Point, sweep: float) -> 
 
 @inlined
 def arc_of_part(arc: Arc, matrix: Matrix, total: Values, turned: bool) -> Arc:
-    """A programmed arc as the part sees it; a mirror reverses the sense.
-
-    Args:
-        arc: As programmed.
-        matrix: Mirror, scale and rotation.
-        total: The sum of all shifts, shape (k,) [mm or deg].
-        turned: The matrix is not the identity.
-    """
+    """A programmed arc as the part sees it; a mirror reverses the sense."""
     if turned:
         return _turned_arc(arc, matrix, total)
     x, y, z = arc.center
@@ -111,7 +104,7 @@ def composed(
 
 
 def moved_shift(shift: float, part: float, there: float) -> float:
-    """A shift of an axis that gives the place where it stands other programmed coordinates.
+    """A shift of an axis that gives the place where it is other programmed coordinates.
 
     Args:
         shift: As it was.

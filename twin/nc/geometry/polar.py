@@ -4,14 +4,7 @@ from twin.nc.geometry.arcs import SAME_POINT, Point, angle_of, direction, distan
 
 
 def seen_from(origin: Point, here: Point, radius: float, angle: float) -> tuple[float, float]:
-    """R and Q of a point: as programmed last, else measured.
-
-    Args:
-        origin: The polar origin [mm].
-        here: The point [mm].
-        radius: R as programmed last, or NaN [mm].
-        angle: Q as programmed last, or NaN [deg].
-    """
+    """R and Q of a point: as programmed last, else (NaN) measured from the origin [mm, deg]."""
     if radius != radius:
         radius = distance(origin, here)
     if angle != angle:
@@ -26,7 +19,7 @@ def changed(
 
     Args:
         seen: 1 where it has R, 2 with Q, 3 with both.
-        old: R and Q of where the tool stands [mm, deg].
+        old: R and Q of where the tool is [mm, deg].
         words: The values of both words [mm, deg].
         relative: Whether they count from there.
     """
@@ -39,7 +32,7 @@ def changed(
 
 
 def point_at(origin: Point, here: Point, radius: float, angle: float) -> Point:
-    """Where R and Q lead [mm]: to where the tool stands already, if that is the same but for rounding."""
+    """Where R and Q lead [mm]: to where the tool is already, if that is the same but for rounding."""
     cosine, sine = direction(angle)
     end = (origin[0] + radius * cosine, origin[1] + radius * sine)
     return here if distance(here, end) < SAME_POINT / 1000.0 else end

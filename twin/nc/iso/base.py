@@ -7,17 +7,17 @@ from collections.abc import Callable, Mapping
 from twin.nc.control.codes import Action, GCode, Interpolation, MCode
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Dialect
-from twin.nc.control.interpolation import ArcRule, LineRule
+from twin.nc.control.modal import ArcRule, LineRule
 from twin.nc.functions import starts_spindle
 from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.planes import XY, YZ, ZX
 from twin.nc.iso.circular import BOUNDS, both_senses, iso_arc
-from twin.nc.iso.declared import instead, modal, motion_code, plane_code
+from twin.nc.iso.declared import modal, motion_code, plane_code, replacement
 from twin.nc.iso.fixed_cycles import CYCLES
 from twin.nc.iso.offsets import OFFSETS, PRESET
 from twin.nc.iso.tool_change import change_tool_at
 from twin.nc.iso.tool_compensation import COMPENSATION, LENGTH
-from twin.nc.path.paces import FeedMode, feed_per_minute, needs_own_feed
+from twin.nc.path.feed_rates import FeedMode, feed_per_minute, needs_own_feed
 from twin.nc.path.splines import MOST_CHORDS
 from twin.nc.text.arithmetic import is_whole
 from twin.nc.text.blocks import Statement, Word
@@ -30,7 +30,7 @@ def straight(
     """G0, at the machine's own speed, and G1, with the feed.
 
     Args:
-        go: Takes the words of a block and moves, told whether rapidly.
+        go: Takes the words of a block and moves, given whether rapidly.
         without_words: Of G1, as ``Interpolation`` has it.
     """
     return (
@@ -106,7 +106,7 @@ def next_tool(control: Control, word: Word) -> None:
 
 
 def dwell(letters: str, message: str, hint: str) -> Action:
-    """A dwell whose seconds stand in one of these words; the message where there is none or more."""
+    """A dwell whose seconds are in one of these words; the message where there is none or more."""
 
     def action(control: Control) -> None:
         words = [control.words.pop(letter) for letter in letters if letter in control.words]
@@ -117,29 +117,25 @@ def dwell(letters: str, message: str, hint: str) -> Action:
     return action
 
 
-def wait(control: Control, seconds: float, blamed: Word | Statement) -> None:
-    """Wait.
-
-    Raises:
-        ProgramError: For less than no time.
-    """
+def wait(control: Control, seconds: float, error_at: Word | Statement) -> None:
+    """Wait."""
     if not seconds >= 0.0:
-        control.fail("dwell", "a dwell cannot be negative", blamed)
+        control.fail("dwell", "a dwell cannot be negative", error_at)
     control.dwell(seconds)
 
 
 PLANES: dict[float, GCode] = {
-    17: plane_code("plane X Y", XY, ground="decision"),
-    18: plane_code("plane Z X", ZX, ground="decision"),
-    19: plane_code("plane Y Z", YZ, ground="decision"),
+    17: plane_code("plane X Y", XY, basis="decision"),
+    18: plane_code("plane Z X", ZX, basis="decision"),
+    19: plane_code("plane Y Z", YZ, basis="decision"),
 }
 DISTANCE: dict[float, GCode] = {
-    90: modal("absolute coordinates", "distance", ground="decision", incremental=False),
-    91: modal("incremental coordinates", "distance", ground="decision", incremental=True),
+    90: modal("absolute coordinates", "distance", basis="decision", incremental=False),
+    91: modal("incremental coordinates", "distance", basis="decision", incremental=True),
 }
 UNITS = {
-    70: modal("inches", "units", ground="decision", unit=25.4),
-    71: modal("millimetres", "units", ground="decision", unit=1.0),
+    70: modal("inches", "units", basis="decision", unit=25.4),
+    71: modal("millimetres", "units", basis="decision", unit=1.0),
 }
 MOTION = {
     0: motion_code("rapid positioning", RAPID, "decision"),
@@ -148,24 +144,24 @@ MOTION = {
     3: motion_code("arc counter-clockwise", COUNTER_CLOCKWISE, "decision"),
 }
 DWELL = {
-    4: instead(
+    4: replacement(
         "dwell, seconds in P, X or F",
         dwell("PXF", "G4 needs its time", "write G4 P and the seconds"),
-        takes="F",
-        ground="decision",
+        consumes="F",
+        basis="decision",
     )
 }
 FEEDS = {
-    94: modal("feed per minute", "feed", ground="decision", feed_mode=FeedMode.PER_MINUTE),
+    94: modal("feed per minute", "feed", basis="decision", feed_mode=FeedMode.PER_MINUTE),
     95: modal(
         "feed per revolution of the spindle",
         "feed",
-        ground="decision",
+        basis="decision",
         feed_mode=FeedMode.PER_REVOLUTION,
     ),
 }
 
-INSTEAD: dict[float, str] = {
+REPLACEMENTS: dict[float, str] = {
     20: "inches are G70",
     21: "millimetres are G71",
     28: "write G53 and the axes",
@@ -208,17 +204,19 @@ GROUPS = (
 )
 
 M_CODES = {
-    0: MCode(meaning="program stop", group="stop", late=True),
-    1: MCode(meaning="optional stop", group="stop", late=True),
-    2: MCode(meaning="end of program", group="stop", late=True, ends=True),
+    0: MCode(meaning="program stop", group="stop", after_motion=True),
+    1: MCode(meaning="optional stop", group="stop", after_motion=True),
+    2: MCode(meaning="end of program", group="stop", after_motion=True, ends=True),
     3: MCode(meaning="spindle clockwise", group="spindle"),
     4: MCode(meaning="spindle counter-clockwise", group="spindle"),
-    5: MCode(meaning="spindle stop", group="spindle", late=True),
+    5: MCode(meaning="spindle stop", group="spindle", after_motion=True),
     6: MCode(meaning="tool change", action=change_tool_at(None)),
     7: MCode(meaning="mist on"),
     8: MCode(meaning="coolant on", group="coolant"),
-    9: MCode(meaning="coolant off", group="coolant", late=True),
-    30: MCode(meaning="end of program and back to its start", group="stop", late=True, ends=True),
+    9: MCode(meaning="coolant off", group="coolant", after_motion=True),
+    30: MCode(
+        meaning="end of program and back to its start", group="stop", after_motion=True, ends=True
+    ),
 }
 
 WORDS = {"F": set_feed, "S": spindle_speed, "T": next_tool}
@@ -251,11 +249,7 @@ WORD_MEANINGS = {
 
 
 def require_feed_of_block(control: Control) -> None:
-    """G93: an F holds for its block alone.
-
-    Raises:
-        ProgramError: The block has none.
-    """
+    """G93: an F holds for its block alone."""
     if needs_own_feed(control.modal.feed_mode) and not any(
         word.address == "F" for word in control.block.words
     ):
@@ -265,23 +259,16 @@ def require_feed_of_block(control: Control) -> None:
 
 def by_manual(codes: Mapping[float, GCode]) -> dict[float, GCode]:
     """Codes of the base whose meaning the manual of a control gives as well."""
-    return {number: dataclasses.replace(code, ground="manual") for number, code in codes.items()}
+    return {number: dataclasses.replace(code, basis="manual") for number, code in codes.items()}
 
 
 def jog_block(dialect: Dialect, axis: str, distance: float, feed: float) -> str:
-    """One straight move by a distance, in a control's own language.
-
-    Args:
-        dialect: The control's.
-        axis: Name of the axis.
-        distance: How far, and which way [mm or deg].
-        feed: [mm/min or deg/min]
-    """
+    """One straight move by a distance [mm or deg] with a feed per minute, in a control's own language."""
     mode = dialect.codes.start_state.get("feed_mode", FeedMode.PER_MINUTE)
     end = "\nM2" if dialect.rules.must_end else ""
     of_one = feed_per_minute(1.0, mode, distance, True, 1.0, 0.0, (feed, feed))
-    number, pace = _written(distance), _written(feed / of_one)
-    return dialect.rules.jog.format(axis=axis, distance=number, feed=pace) + end
+    number, rate = _written(distance), _written(feed / of_one)
+    return dialect.rules.jog.format(axis=axis, distance=number, feed=rate) + end
 
 
 def _written(number: float) -> str:

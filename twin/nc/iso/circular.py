@@ -8,7 +8,7 @@ from typing import NoReturn
 
 from twin.nc.control.codes import Action, Interpolation
 from twin.nc.control.control import Control
-from twin.nc.control.interpolation import ArcRule
+from twin.nc.control.modal import ArcRule
 from twin.nc.geometry import arcs
 from twin.nc.geometry.arcs import (
     ArcWords,
@@ -36,7 +36,6 @@ class CenterWords:
     """The words I, J, K of a block.
 
     Attributes:
-        words: Those that were written.
         vector: Their values along X, Y, Z, missing ones 0 [mm].
     """
 
@@ -85,11 +84,7 @@ def center_of_radius(
     *,
     clockwise: bool,
 ) -> Point:
-    """Centre of an arc given by a radius [mm]; a negative one asks for the larger arc.
-
-    Raises:
-        ProgramError: The radius does not fit.
-    """
+    """Centre of an arc given by a radius [mm]; a negative one asks for the larger arc."""
     finding, center = arcs.center_of_radius(start, end, value, clockwise, signed=True)
     if finding != arcs.FITS:
         refuse_arc(control, finding, word, abs(value), distance(start, end) / 2.0)
@@ -131,11 +126,7 @@ _FINDINGS = {
 def refuse_arc(
     control: Control, finding: int, word: Word | None, first: float = 0.0, second: float = 0.0
 ) -> NoReturn:
-    """Say what is wrong: of a centre with its distances, of a radius with itself and half the chord.
-
-    Raises:
-        ProgramError: Always.
-    """
+    """Report what is wrong: of a centre with its distances, of a radius with itself and half the chord."""
     code, message, hint = _FINDINGS[finding]
     measured = (first, second, abs(first - second))
     control.fail(code, message.format(*measured), word, hint and hint.format(*measured))
@@ -149,15 +140,7 @@ def sweep_arc(
     clockwise: bool,
     turns: int = 0,
 ) -> None:
-    """Move on the arc in the working plane from here to the target.
-
-    Args:
-        control: The control, standing at the start.
-        target: Programmed position of the end, shape (k,).
-        center: In the plane's coordinates [mm].
-        clockwise: Seen against the plane's normal.
-        turns: Whole turns besides the part from start to end.
-    """
+    """Move on the arc in the working plane from here to the target, about a centre in the plane's coordinates [mm]."""
     sweep = sweep_between(*start_and_end(control, target), center, clockwise=clockwise)
     sweep += -360.0 * turns if clockwise else 360.0 * turns
     control.arc_to(target, center, sweep)
@@ -196,11 +179,7 @@ def arc_center(control: Control, target: list[float], rule: ArcRule) -> Point:
 
 
 def refuse_missing_center(control: Control) -> NoReturn:
-    """An arc has no word that says where its centre lies.
-
-    Raises:
-        ProgramError: Always.
-    """
+    """An arc has no word that says where its centre lies."""
     letters = ", ".join(plane_center_letters(control))
     control.fail(
         "arc-without-center",
@@ -242,13 +221,7 @@ def both_senses(
     rule: ArcRule,
     without_words: Action | None = None,
 ) -> tuple[Interpolation, Interpolation]:
-    """Arcs clockwise and counter-clockwise.
-
-    Args:
-        perform: Takes the words of a block and moves, by the rule of its sense.
-        rule: What both senses have alike.
-        without_words: As ``Interpolation`` has it.
-    """
+    """Arcs clockwise and counter-clockwise, by a rule that both have alike but for the sense."""
 
     def sense(rule: ArcRule) -> Interpolation:
         return Interpolation(lambda control: perform(control, rule), without_words, rule=rule)

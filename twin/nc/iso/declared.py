@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Unpack
 
-from twin.nc.control.codes import Action, GCode, Ground, Interpolation, MCode
+from twin.nc.control.codes import Action, Basis, GCode, Interpolation, MCode
 from twin.nc.control.control import Control
 from twin.nc.control.modal import ModalChanges
 from twin.nc.geometry.planes import Plane
@@ -14,8 +14,8 @@ def modal(
     group: str = "",
     action: Action | None = None,
     *,
-    once: bool = False,
-    ground: Ground = "manual",
+    non_modal: bool = False,
+    basis: Basis = "manual",
     **sets: Unpack[ModalChanges],
 ) -> GCode:
     """A code that puts something into force, or does something before the block moves."""
@@ -24,28 +24,28 @@ def modal(
         group=group,
         sets=sets,
         action=action,
-        once=once,
-        ground=ground,
+        non_modal=non_modal,
+        basis=basis,
     )
 
 
-def instead(
-    meaning: str, perform: Action, group: str = "", *, takes: str = "", ground: Ground = "manual"
+def replacement(
+    meaning: str, perform: Action, group: str = "", *, consumes: str = "", basis: Basis = "manual"
 ) -> GCode:
-    """A code that stands in the place of a move."""
-    return GCode(meaning=meaning, group=group, perform=perform, takes=takes, ground=ground)
+    """A code that replaces a move."""
+    return GCode(meaning=meaning, group=group, perform=perform, consumes=consumes, basis=basis)
 
 
-def motion_code(meaning: str, interpolation: Interpolation, ground: Ground = "manual") -> GCode:
+def motion_code(meaning: str, interpolation: Interpolation, basis: Basis = "manual") -> GCode:
     """A code by which axis words become a move; it ends a cycle."""
-    return modal(meaning, "motion", ground=ground, interpolation=interpolation, cycle=None)
+    return modal(meaning, "motion", basis=basis, interpolation=interpolation, cycle=None)
 
 
 def plane_code(
-    meaning: str, plane: Plane, action: Action | None = None, ground: Ground = "manual"
+    meaning: str, plane: Plane, action: Action | None = None, basis: Basis = "manual"
 ) -> GCode:
     """A code of a working plane; ``action``: done instead of refusing it while compensation is in force."""
-    return modal(meaning, "plane", action or keep_compensated_plane, ground=ground, plane=plane)
+    return modal(meaning, "plane", action or keep_compensated_plane, basis=basis, plane=plane)
 
 
 def keep_compensated_plane(control: Control) -> None:
@@ -61,11 +61,7 @@ def keep_compensated_plane(control: Control) -> None:
 
 
 def refuse_compensated_plane(control: Control) -> None:
-    """The plane is about to change.
-
-    Raises:
-        ProgramError: Compensation is in force.
-    """
+    """The plane is about to change."""
     if control.path.compensation.in_force:
         message = "the plane cannot change while compensation is in force"
         control.fail("compensation-plane", message, hint="end it by G40 first")
@@ -73,12 +69,12 @@ def refuse_compensated_plane(control: Control) -> None:
 
 def refused(meaning: str, reason: str, *numbers: float, group: str = "") -> Mapping[float, GCode]:
     """Codes that the control knows and the twin does not follow."""
-    code = GCode(meaning=meaning, group=group, refused=reason, ground="manual")
+    code = GCode(meaning=meaning, group=group, refused=reason, basis="manual")
     return dict.fromkeys(numbers, code)
 
 
 def flow_function(meaning: str, action: Action, group: str = "") -> MCode:
     """An M code of the program's flow: it acts when the block has moved, and the machine hears nothing of it."""
     return MCode(
-        meaning=meaning, group=group, late=True, action=action, silent=True, ground="manual"
+        meaning=meaning, group=group, after_motion=True, action=action, silent=True, basis="manual"
     )

@@ -1,34 +1,78 @@
-"""Drilling cycles: the codes that call them, their words, and what happens at a hole, in every dialect."""
+"""Drilling cycles: the codes that call them, their words, and what these say of a hole, in every dialect."""
 
+import dataclasses
+import enum
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import NamedTuple, NoReturn
 
-from twin.nc.control.codes import GCode, Ground, Interpolation
+from twin.nc.control.codes import Basis, GCode, Interpolation
 from twin.nc.control.control import Control
-from twin.nc.control.interpolation import CycleRule
-from twin.nc.path.drilling_cycle import (
-    BOTTOM,
-    EVERY,
-    FACTOR,
-    LIFT,
-    PECK,
-    REFERENCE,
-    CycleBlock,
-    no_values,
-    read_words,
+from twin.nc.iso.hole import CHIP_CLEARANCE, MOST_PECKS, Hole, Retract, count_passes, drill
+
+_FASTEST_RETURN = 9.0
+_LENGTHS = frozenset(
+    ("reference", "bottom", "surface", "peck", "least", "lift", "clearance", "first", "reduction")
 )
-from twin.nc.path.hole import (
-    MOST_PECKS,
-    NO_MOVE,
-    Act,
-    Fault,
-    Hole,
-    hole_of,
-    most_acts,
-    next_place,
-    write_acts,
-)
+"""Values whose words count in the unit in force."""
+
+
+class Pecking(enum.IntEnum):
+    """How a cycle goes down."""
+
+    NONE = 0
+    TO_BOTTOM = 1
+    """By pecks, from the first on, as far as the bottom."""
+    COUNTED = 2
+    """By so many equal pecks."""
+    PASSES = 3
+    """By passes of a tap, which breaks the chip in its thread: all of them are made with the feed, and out with
+    the spindle reversed. At once where nothing says how deep they are."""
+    UNSIGNED_PASSES = 4
+    """As ``PASSES``; their depth may be written with either sign."""
+
+
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class Cycle:
+    """What is peculiar to one drilling cycle.
+
+    What it remembers is in ``Control.cycle_values``: the height of its call, ``start``; the axis across its plane,
+    ``axis``; and what its words have given: heights of the ``reference`` plane and of the ``bottom``, with ``depth``
+    as the latter was written; seconds of the ``dwell``; how far the ``surface`` lies below the reference plane; the
+    first ``peck``, the ``factor`` of each next one, the ``least``; how far the tool ``lift``s, and after ``every`` how
+    many pecks it clears; the ``count`` of pecks; the ``clearance`` above its last height at which a rapid return ends;
+    the ``first`` peck where each next one is less deep by a ``reduction``; how many times ``faster`` a tap comes back.
+
+    Attributes:
+        words: Which value each word gives, besides that of the axis across the plane.
+        across: The value that the latter gives.
+        needed: Values that must be there.
+        options: Other words of its call, and those of their values that change nothing of the path.
+        lasting: Its words stay in force from cycle to cycle, and every hole may change them; else
+            its first block says all.
+        clearance: Where its words give none [mm].
+        lift: Likewise; 0: to the reference plane [mm].
+        as_written: It remembers heights as they are written, and at each hole they count from what is in
+            force there.
+    """
+
+    name: str
+    words: Mapping[str, str]
+    across: str = "bottom"
+    needed: tuple[str, ...] = ("reference", "bottom")
+    options: Mapping[str, tuple[float, ...]] = dataclasses.field(default_factory=dict)
+    lasting: bool = True
+    pecking: Pecking = Pecking.NONE
+    dwells: bool = True
+    clearance: float = CHIP_CLEARANCE
+    retract: Retract = Retract.RAPID
+    lift: float = 0.0
+    as_written: bool = False
+
+    def addresses(self, control: Control) -> dict[str, str]:
+        """Which value each word gives, also that of the axis across the plane."""
+        across = control.settings.axes.names[control.modal.plane.axes[2]]
+        return {**self.words, across: self.across}
 
 
 class Holes(NamedTuple):
@@ -36,13 +80,12 @@ class Holes(NamedTuple):
 
     Attributes:
         target: Takes the words that name the hole; its programmed position, shape (k,).
-        ground: On what the meaning rests.
         repeats: Address that says how often a block drills, each hole as far from the last as the
             block's increments say; 0: its words are taken and nothing is drilled. Empty: none.
     """
 
     target: Callable[[Control], list[float]] = Control.target
-    ground: Ground = "decision"
+    basis: Basis = "decision"
     repeats: str = ""
 
 
@@ -50,38 +93,34 @@ ONE_HOLE = Holes()
 """Axis words name one hole."""
 
 
-def cycle_code(rule: CycleRule, meaning: str, holes: Holes = ONE_HOLE) -> GCode:
-    """The code that calls a cycle with its words, told to people by its meaning."""
+def cycle_code(cycle: Cycle, meaning: str, holes: Holes = ONE_HOLE) -> GCode:
+    """The code that calls a cycle with its words."""
 
     def call(control: Control) -> None:
-        _take_options(control, rule)
-        take_words(control, rule, calls=True)
+        _take_options(control, cycle)
+        take_words(control, cycle, calls=True)
 
     def perform(control: Control) -> None:
         count = repeats_of(control, holes.repeats)
-        take_words(control, rule)
+        take_words(control, cycle)
         given = dict(control.words)
         if count == 0:
             control.take_axis_words()
         for _ in range(count):
             control.words = dict(given)
-            drill(control, hole_in_force(control, rule), holes.target(control))
+            drill(control, _hole_in_force(control, cycle), holes.target(control))
 
     return GCode(
         meaning=meaning,
         group="cycle",
-        sets={"cycle": Interpolation(perform, rule=rule)},
+        sets={"cycle": Interpolation(perform)},
         action=call,
-        ground=holes.ground,
+        basis=holes.basis,
     )
 
 
 def repeats_of(control: Control, address: str, least: int = 0) -> int:
-    """How often the block drills, ``least`` times or more; takes the word that says it.
-
-    Raises:
-        ProgramError: It is no count, or too large a one.
-    """
+    """How often the block drills, ``least`` times or more; takes the word that says it."""
     word = control.take(address) if address else None
     if word is None:
         return 1
@@ -92,156 +131,172 @@ def repeats_of(control: Control, address: str, least: int = 0) -> int:
     return int(given)
 
 
-def take_words(control: Control, rule: CycleRule, *, calls: bool = False) -> None:
+def take_words(control: Control, cycle: Cycle, *, calls: bool = False) -> None:
     """Take the words of a block that calls a cycle, or of its hole; which of both it is, the cycle says."""
-    modal, given = control.modal, no_values()
-    axis, incremental = modal.plane.axes[2], modal.incremental and not rule.cycle.as_written
-    relative = dict.fromkeys((REFERENCE, BOTTOM), incremental)
-    if calls != rule.cycle.lasting:
-        for address, value in rule.addresses(control.settings.axes.names[axis]).items():
-            word = control.take(address)
-            if word is not None:
-                given[value] = control.number(word)
-                relative[value] = incremental or word.incremental
-    from_where = relative[REFERENCE], relative[BOTTOM]
-    block = CycleBlock(calls, axis, control.motion.programmed[axis], modal.unit, from_where)
-    read_words(rule.cycle, control.cycle_state, given, block)
+    modal, values = control.modal, control.cycle_values
+    axis, incremental = modal.plane.axes[2], modal.incremental and not cycle.as_written
+    if calls and not (cycle.lasting and "start" in values):
+        values.clear()
+        values |= {"start": control.motion.programmed[axis], "axis": axis}
+    if calls == cycle.lasting:
+        return
+    given: dict[str, float] = {}
+    relative: dict[str, bool] = dict.fromkeys(("reference", "bottom"), incremental)
+    for address, value in cycle.addresses(control).items():
+        if (word := control.take(address)) is not None:
+            given[value] = control.length(word) if value in _LENGTHS else control.number(word)
+            relative[value] = incremental or word.incremental
+    if "reference" in given:
+        given["reference"] += values["start"] if relative["reference"] else 0.0
+    elif not cycle.lasting:
+        given["reference"] = values["start"]
+    values |= given
+    if "bottom" in given:
+        above = values.get("reference", 0.0) if relative["bottom"] else 0.0
+        values |= {"bottom": given["bottom"] + above, "depth": given["bottom"]}
 
 
-def _take_options(control: Control, rule: CycleRule) -> None:
+def _take_options(control: Control, cycle: Cycle) -> None:
     """Take words of the call that change nothing of the path.
 
     Raises:
         ProgramError: One has another value than those that are known to do so.
     """
-    for letter, known in rule.options.items():
+    for letter, known in cycle.options.items():
         word = control.take(letter)
         if word is not None and control.number(word) not in known:
             values = " or ".join(f"{letter}{value:g}" for value in known)
             control.fail("unsupported-word", f"only {values} is followed here", word)
 
 
-def hole_in_force(control: Control, rule: CycleRule) -> Hole:
-    """What the cycle does at a hole.
+def require_words(control: Control, cycle: Cycle) -> None:
+    """What a cycle needs at a hole must be there.
 
     Raises:
-        ProgramError: A word is missing or wrong.
+        ProgramError: A word is missing, or another plane is in force than that of its call.
     """
-    axis, to_reference = control.modal.plane.axes[2], control.modal.return_to_reference
-    hole = hole_of(rule.cycle, control.cycle_state, axis, to_reference)
-    if hole.fault != Fault.NONE:
-        refuse_hole(control, rule, hole)
-    return hole
+    values = control.cycle_values
+    if values.get("axis") != control.modal.plane.axes[2]:
+        refuse_other_plane(control, cycle.name)
+    letters = {value: letter for letter, value in cycle.addresses(control).items()}
+    missing = [letters[value] for value in cycle.needed if value not in values]
+    if missing:
+        refuse_missing(control, cycle.name, missing)
 
 
-NEEDED_WORDS = {
+def refuse_other_plane(control: Control, name: str) -> NoReturn:
+    """Refuse a hole in another plane than that of the cycle's call."""
+    message = f"{name} was called in another plane"
+    control.fail("cycle-plane", message, hint="end it by G80 before the plane changes")
+
+
+_NEEDED_WORDS = {
     "R": "the height where the feed begins, such as R2.",
     "Z": "the depth of the hole, such as Z-10.",
     "Q": "the depth of a peck, such as Q2.",
     "F": "the feed, such as F100.",
 }
-"""What the words of a drilling cycle are, for hints."""
 
 
-def refuse_hole(control: Control, rule: CycleRule, hole: Hole) -> NoReturn:
-    """Say what is wrong with the words of a cycle.
+def refuse_missing(control: Control, name: str, missing: list[str]) -> NoReturn:
+    """Refuse a hole of a cycle that lacks words, by their addresses."""
+    hints = [f"{each}: {_NEEDED_WORDS[each]}" for each in missing if each in _NEEDED_WORDS]
+    message = f"{name} needs {' and '.join(missing)}"
+    control.fail("cycle-word", message, hint="; ".join(hints) or None)
+
+
+def _hole_in_force(control: Control, cycle: Cycle) -> Hole:
+    """What the cycle does at a hole."""
+    require_words(control, cycle)
+    if cycle.pecking is Pecking.TO_BOTTOM and "peck" not in cycle.needed:
+        _require_peck_words(control, cycle)
+    hole = hole_of(control, cycle)
+    if not (hole.bottom < hole.reference and hole.clearance >= 0.0):
+        message = (
+            f"{cycle.name} must drill downwards, not from {hole.reference:g} to {hole.bottom:g}"
+        )
+        control.fail("cycle-depth", message)
+    if hole.dwell < 0.0:
+        control.fail("dwell", f"{cycle.name} cannot wait {hole.dwell:g} seconds")
+    if hole.faster % 1.0 != 0.0 or not 1.0 <= hole.faster <= _FASTEST_RETURN:
+        message = f"{cycle.name} comes back 1 to 9 times as fast, a whole number, not {hole.faster:g} times"
+        control.fail("cycle-word", message)
+    return hole
+
+
+def _require_peck_words(control: Control, cycle: Cycle) -> None:
+    """Either the depth of all pecks must be there, or the first, the reduction and the least."""
+    values = control.cycle_values
+    fading = {"first", "reduction", "least"}
+    there = fading & values.keys()
+    if there if "peck" in values else there != fading:
+        message = f"{cycle.name} needs Q, the depth of each peck, or I, J and K: the first, less each time, the least"
+        control.fail("cycle-word", message, hint="write one or the other, and G80 between both")
+    if there and (values["reduction"] < 0.0 or values["least"] <= 0.0):
+        control.fail("cycle-depth", f"{cycle.name} needs pecks above 0")
+
+
+def hole_of(control: Control, cycle: Cycle, values: Mapping[str, float] | None = None) -> Hole:
+    """What a cycle does at a hole, by what it remembers; nothing but its pecks is checked.
 
     Raises:
-        ProgramError: Always.
+        ProgramError: The pecks are too many, or none.
     """
-    name = rule.name
-    across = control.settings.axes.names[control.modal.plane.axes[2]]
-    addresses = {value: address for address, value in rule.addresses(across).items()}
-    if hole.fault == Fault.MISSING:
-        missing = [
-            address
-            for value, address in sorted(addresses.items())
-            if (rule.cycle.needed >> value) & 1 and math.isnan(control.cycle_state[value])
-        ]
-        hint = "; ".join(
-            f"{each}: {NEEDED_WORDS[each]}" for each in missing if each in NEEDED_WORDS
-        )
-        control.fail("cycle-word", f"{name} needs {' and '.join(missing)}", hint=hint or None)
-    if hole.fault == Fault.PLANE:
-        message = f"{name} was called in another plane"
-        control.fail("cycle-plane", message, hint="end it by G80 before the plane changes")
-    if hole.passes and hole.fault == Fault.MANY_PECKS:
-        message = f"the hole would need more than {MOST_PECKS} passes"
-        control.fail("cycle-depth", message, hint=f"write a larger {addresses[PECK]}")
-    if hole.passes and hole.fault == Fault.PECKS:
-        needed = f"passes {addresses[PECK]} above 0"
-        if LIFT in addresses:
-            needed = f"{addresses[PECK]} above 0, and {addresses[LIFT]} not below 0"
-        control.fail("cycle-depth", f"{name} needs {needed}")
-    if hole.fault == Fault.MANY_PECKS:
-        message = f"the hole would need more than {MOST_PECKS} pecks"
-        control.fail("cycle-depth", message, hint="write deeper pecks")
-    if hole.fault == Fault.DWELL:
-        control.fail("dwell", f"{name} cannot wait {hole.dwell:g} seconds")
-    if hole.fault == Fault.PECK_WORDS:
-        message = f"{name} needs Q, the depth of each peck, or I, J and K: the first, less each time, the least"
-        control.fail("cycle-word", message, hint="write one or the other, and G80 between both")
-    if hole.fault == Fault.FASTER:
-        message = (
-            f"{name} comes back 1 to 9 times as fast, a whole number, not {hole.faster:g} times"
-        )
-        control.fail("cycle-word", message)
-    if hole.fault == Fault.PECKS and FACTOR in addresses:
-        above = f"{addresses[PECK]} and {addresses[FACTOR]} above 0"
-        others = f"{addresses[LIFT]} not below 0, and {addresses[EVERY]} a count"
-        control.fail("cycle-depth", f"{name} needs {above}, {others}")
-    if hole.fault == Fault.PECKS:
-        control.fail("cycle-depth", f"{name} needs pecks above 0")
-    message = f"{name} must drill downwards, not from {hole.reference:g} to {hole.bottom:g}"
-    control.fail("cycle-depth", message)
-
-
-def go_to_height(control: Control, height: float, *, rapid: bool = True) -> None:
-    """Go straight to a height of the axis across the plane, programmed coordinates [mm]."""
-    there = list(control.motion.programmed)
-    there[control.modal.plane.axes[2]] = height
-    control.line_to(there, rapid=rapid)
-
-
-def turn_spindle(control: Control, function: str) -> None:
-    """Report that M3 or M4 turns the spindle, with the speed in force."""
-    control.function(
-        function, {} if control.motion.spindle is None else {"S": control.motion.spindle}
+    values = control.cycle_values if values is None else values
+    reference, get = values["reference"], values.get
+    dwell = get("dwell", 0.0) if cycle.dwells else 0.0
+    to_reference = control.modal.return_to_reference
+    back = reference if to_reference else max(values["start"], reference)
+    surface, bottom = reference - get("surface", 0.0), values["bottom"]
+    peck = get("first", get("peck", math.nan))
+    if cycle.pecking is Pecking.COUNTED:
+        peck = abs(values["depth"])
+        bottom = surface - peck * values["count"]
+    if cycle.pecking is Pecking.UNSIGNED_PASSES:
+        peck = abs(peck)
+    passes = cycle.pecking in (Pecking.PASSES, Pecking.UNSIGNED_PASSES)
+    hole = Hole(reference, bottom, back, dwell, surface, passes=passes)
+    hole = hole._replace(
+        peck=peck,
+        factor=get("factor", 1.0),
+        reduction=get("reduction", 0.0),
+        least=get("least", 0.0),
+        lift=get("lift", cycle.lift),
+        clearance=get("clearance", cycle.clearance),
+        retract=cycle.retract,
+        faster=get("faster", 1.0),
     )
-
-
-def drill(control: Control, hole: Hole, target: list[float] | None) -> None:
-    """Go over the hole, drill it, return.
-
-    Args:
-        control: The control.
-        hole: What is done there.
-        target: Programmed position of the hole, shape (k,); its height is not used. None: the tool
-            stands over it at the reference plane.
-    """
-    axis = control.modal.plane.axes[2]
-    room = most_acts(hole.stops)
-    acts, amounts = [0.0] * room, [0.0] * room
-    goal = list(control.motion.programmed)
-    over = goal if target is None else target
-    for number in range(write_acts(hole, goal[axis], acts, amounts)):
-        act, amount = int(acts[number]), amounts[number]
-        speed = next_place(act, amount, hole, over, goal, axis)
-        if speed != NO_MOVE:
-            feed = control.motion.feed
-            if feed is not None and speed > 0.0:
-                control.motion.feed = feed * speed
-            control.line_to(list(goal), rapid=speed == 0.0)
-            control.motion.feed = feed
-        else:
-            _report(control, Act(act), amount)
-
-
-def _report(control: Control, act: Act, amount: float) -> None:
-    """What happens at a hole and is no move: a dwell [s], or an M function of the spindle."""
-    if act is Act.DWELL:
-        control.dwell(amount)
-    elif act is Act.M5:
-        control.function(act.name, {})
+    every = get("every", 0.0)
+    if cycle.pecking is Pecking.NONE or (passes and math.isnan(peck)):
+        return hole
+    if peck <= 0.0 or hole.factor <= 0.0 or hole.lift < 0.0 or every < 0.0 or every % 1.0 != 0.0:
+        _refuse_pecks(control, cycle)
+    hole = hole._replace(full_every=1 if hole.lift == 0.0 else int(every))
+    if passes:
+        hole = hole._replace(stops=count_passes(surface, bottom, peck) - 1)
     else:
-        turn_spindle(control, act.name)
+        hole = hole.with_stops()
+    if hole.stops + passes > MOST_PECKS:
+        _refuse_many_pecks(control, cycle)
+    return hole
+
+
+def _refuse_many_pecks(control: Control, cycle: Cycle) -> NoReturn:
+    kind, hint = "pecks", "write deeper pecks"
+    if cycle.pecking in (Pecking.PASSES, Pecking.UNSIGNED_PASSES):
+        address = next(letter for letter, value in cycle.words.items() if value == "peck")
+        kind, hint = "passes", f"write a larger {address}"
+    control.fail("cycle-depth", f"the hole would need more than {MOST_PECKS} {kind}", hint=hint)
+
+
+def _refuse_pecks(control: Control, cycle: Cycle) -> NoReturn:
+    letters = {value: letter for letter, value in cycle.words.items()}
+    needed = "pecks above 0"
+    if cycle.pecking in (Pecking.PASSES, Pecking.UNSIGNED_PASSES):
+        needed = f"passes {letters['peck']} above 0"
+        if "lift" in letters:
+            needed = f"{letters['peck']} above 0, and {letters['lift']} not below 0"
+    elif "factor" in letters:
+        above = f"{letters['peck']} and {letters['factor']} above 0"
+        needed = f"{above}, {letters['lift']} not below 0, and {letters['every']} a count"
+    control.fail("cycle-depth", f"{cycle.name} needs {needed}")

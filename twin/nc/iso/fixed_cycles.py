@@ -2,41 +2,26 @@
 
 X and Y name the hole, Z its bottom, R the reference plane, P the seconds at the bottom, Q the depth
 of one peck. All but X and Y stay in force, and every block that names a hole drills it, until G80
-or a motion code. Decisions: with G91, R counts from where the tool stands and Z from R; a cycle
-block without a hole drills where the tool stands; the tool returns to the height at which the cycle
+or a motion code. Decisions: with G91, R counts from where the tool is and Z from R; a cycle
+block without a hole drills where the tool is; the tool returns to the height at which the cycle
 was called, or with G99 to the reference plane; the plane cannot change before the cycle has ended.
 """
 
 from typing import NamedTuple
 
 from twin.nc.control.codes import GCode
-from twin.nc.control.interpolation import CycleRule
-from twin.nc.iso.drilling import ONE_HOLE, Holes, cycle_code
-from twin.nc.path.drilling_cycle import (
-    BOTTOM,
-    DWELL,
-    FASTER,
-    FIRST,
-    LEAST,
-    PECK,
-    REDUCTION,
-    REFERENCE,
-    Cycle,
-    Pecking,
-    Retract,
-)
+from twin.nc.iso.drilling import ONE_HOLE, Cycle, Holes, Pecking, cycle_code
+from twin.nc.iso.hole import Retract
 
 
 class Drill(NamedTuple):
     """What a cycle does at its hole; its words besides Z, R, and the place follow from that.
 
     Attributes:
-        meaning: For people.
         dwell: It waits at the bottom, P.
         pecking: How it goes down; by pecks or passes of Q, if not at once.
         lift: How far it withdraws between them [mm]; 0: to the reference plane.
-        retract: How it leaves the hole.
-        reduces: Its pecks may become less deep: I the first, J less each time, K the least, in the place of Q.
+        reduces: Its pecks may become less deep: I the first, J less each time, K the least, in place of Q.
         faster: J says how many times as fast a tap comes back.
     """
 
@@ -62,27 +47,27 @@ DRILLS = {
 
 def drilling_code(number: int, drill: Drill, holes: Holes = ONE_HOLE) -> GCode:
     """The code of a cycle."""
-    words = {"R": REFERENCE}
+    words = {"R": "reference"}
     if drill.dwell:
-        words["P"] = DWELL
+        words["P"] = "dwell"
     if drill.pecking:
-        words["Q"] = PECK
+        words["Q"] = "peck"
     if drill.reduces:
-        words |= {"I": FIRST, "J": REDUCTION, "K": LEAST}
+        words |= {"I": "first", "J": "reduction", "K": "least"}
     if drill.faster:
-        words["J"] = FASTER
-    pecks = drill.pecking == Pecking.TO_BOTTOM and not drill.reduces
+        words["J"] = "faster"
+    pecks = drill.pecking is Pecking.TO_BOTTOM and not drill.reduces
     cycle = Cycle(
-        lasting=True,
-        across=BOTTOM,
-        needed=1 << REFERENCE | 1 << BOTTOM | pecks << PECK,
+        name=f"G{number}",
+        words=words,
+        needed=("reference", "bottom", *(("peck",) if pecks else ())),
         pecking=drill.pecking,
         dwells=drill.dwell,
         retract=drill.retract,
         lift=drill.lift,
     )
     meaning = " ".join([f"{drill.meaning}: X Y Z", *words, *holes.repeats])
-    return cycle_code(CycleRule(f"G{number}", cycle, words), meaning, holes)
+    return cycle_code(cycle, meaning, holes)
 
 
 BY_HAND = "the operator moves the axes by hand in it"

@@ -29,15 +29,10 @@ class PartFrame(NamedTuple):
 def enter_machine_frame(
     control: Control, code: str, zero: Mapping[str, float] | None = None
 ) -> PartFrame:
-    """Let programmed coordinates be those of the machine; ``code`` asks for it.
-
-    Args:
-        control: The control.
-        code: As messages call it.
-        zero: Part coordinates of another zero of the machine's builder; None: machine zero.
+    """Let programmed coordinates count from machine zero, or from another zero of the builder's; ``code`` asks for it.
 
     Raises:
-        ProgramError: Nobody said where machine zero is.
+        ProgramError: The job does not say where machine zero is.
     """
     zero, frame = machine_zero(control, code) if zero is None else zero, control.frame
     kept, names = PartFrame(frame.shifts, frame.matrix), control.settings.axes.names
@@ -62,7 +57,7 @@ def machine_frame(
     """As ``enter_machine_frame``, within.
 
     Raises:
-        ProgramError: Nobody said where machine zero is, or compensation is in force.
+        ProgramError: The job does not say where machine zero is, or compensation is in force.
     """
     if control.path.compensation.in_force:
         message = "machine coordinates know no radius compensation"

@@ -13,20 +13,12 @@ from twin.nc.text.blocks import Word
 
 
 def select_offset(control: Control, name: str, word: Word | None) -> None:
-    """Put a work offset of the job into force.
-
-    Raises:
-        ProgramError: The job gives it no values.
-    """
+    """Put a work offset of the job into force."""
     shift_by(control, offset_of_job(control, name, word))
 
 
 def offset_of_job(control: Control, name: str, word: Word | None) -> Mapping[str, float]:
-    """The values that the job gives a work offset; a word asks for it.
-
-    Raises:
-        ProgramError: It gives it none.
-    """
+    """The values that the job gives a work offset; a word asks for it."""
     values = control.settings.offsets.get(name)
     if values is None and name != "G54":
         known = ", ".join(sorted(control.settings.offsets)) or "none"
@@ -41,7 +33,7 @@ def cancel_offset(control: Control) -> None:
     """G53: coordinates count from machine zero.
 
     Raises:
-        ProgramError: Nobody said where machine zero is.
+        ProgramError: The job does not say where machine zero is.
     """
     shift_by(control, machine_zero(control, "G53"))
 
@@ -50,7 +42,7 @@ def machine_zero(control: Control, code: str) -> Mapping[str, float]:
     """Part coordinates of machine zero by axis [mm or deg], for a code that counts from there.
 
     Raises:
-        ProgramError: Nobody said where it is.
+        ProgramError: The job does not say where it is.
     """
     zero = control.settings.machine_zero
     if zero is None:
@@ -79,7 +71,7 @@ def programmed_shift(control: Control, name: str) -> None:
 
 
 def preset(control: Control) -> None:
-    """G92: the place where the machine stands gets the coordinates of the block."""
+    """G92: the place where the machine is gets the coordinates of the block."""
     words = control.take_axis_words()
     if not words:
         control.fail("preset", "G92 needs the coordinates that this place shall have")
@@ -87,7 +79,7 @@ def preset(control: Control) -> None:
 
 
 def set_position(control: Control, words: Iterable[tuple[int, Word]], shift: str) -> None:
-    """Words of axes give the place where the machine stands other coordinates, by a shift."""
+    """Words of axes give the place where the machine is other coordinates, by a shift."""
     programmed = list(control.motion.programmed)
     for index, word in words:
         programmed[index] = control.axis_value(index, word)

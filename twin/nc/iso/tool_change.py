@@ -16,7 +16,7 @@ def change_tool_at(usual: float | None) -> Action:
 
     Args:
         usual: Height that the control goes to of its own accord, machine coordinates [mm]; None: it changes
-            the tool where it stands.
+            the tool where it is.
     """
 
     def action(control: Control) -> None:

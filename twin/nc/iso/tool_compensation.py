@@ -22,11 +22,7 @@ def _compensation_by_table(side: float) -> Action:
 
 
 def radius_in_spindle(control: Control) -> float:
-    """Radius of the tool in the spindle [mm].
-
-    Raises:
-        ProgramError: There is no tool.
-    """
+    """Radius of the tool in the spindle [mm]."""
     tool = control.tools.data(control.tools.spindle)
     if tool is None:
         message = "compensation needs a tool, and the job has none"
@@ -50,15 +46,15 @@ def _length_by_table(sign: float) -> Action:
         if tool is None:
             message = "tool length needs a tool, and the job has none"
             control.fail("no-such-tool", message, None, NEEDS_TOOL)
-        set_length(control, sign * control.tools.longer(tool))
+        set_length(control, sign * control.tools.length_difference(tool))
 
     return action
 
 
-def set_length(control: Control, longer: float) -> None:
-    """Move Z by what the tool is longer than the first [mm]."""
+def set_length(control: Control, difference: float) -> None:
+    """Move Z by what the tool is difference than the first [mm]."""
     axes = range(len(control.settings.axes))
-    control.frame.set_shift("length", [longer if axis == 2 else 0.0 for axis in axes])
+    control.frame.set_shift("length", [difference if axis == 2 else 0.0 for axis in axes])
     control.motion.reframed()
 
 

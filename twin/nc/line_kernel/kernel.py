@@ -2,7 +2,7 @@
 
 A line is plain that holds nothing but axis words, G0 to G3 with the words of its centre or radius, F, N and
 comments. The run stops before a line that is not, and before one that something is wrong with or that a rule
-other than those of ``path.moves``, ``path.paces``, ``geometry.arcs`` and ``geometry.frame`` acts on.
+other than those of ``path.moves``, ``path.feed_rates``, ``geometry.arcs`` and ``geometry.frame`` acts on.
 """
 
 from typing import NamedTuple
@@ -29,6 +29,15 @@ from twin.nc.line_kernel.reading import (
     read_line,
 )
 from twin.nc.path import move_columns
+from twin.nc.path.feed_rates import (
+    KNOWN_FEED,
+    WITHOUT_FEED,
+    counts_blocks,
+    feed_per_minute,
+    finding_of_feed,
+    needs_own_feed,
+    rapid_feed,
+)
 from twin.nc.path.moves import (
     LARGEST_COORDINATE,
     RAPIDS_END,
@@ -37,15 +46,6 @@ from twin.nc.path.moves import (
     axis_target,
     line_length,
     only_turns,
-)
-from twin.nc.path.paces import (
-    PACED,
-    WITHOUT_FEED,
-    counts_blocks,
-    feed_per_minute,
-    finding_of_feed,
-    needs_own_feed,
-    rapid_feed,
 )
 from twin.nc.text.arithmetic import is_whole
 from twin.nc.text.line_reader import LARGEST_LABEL
@@ -116,15 +116,13 @@ class PlainState(NamedTuple):
         turned: That is not the identity.
         plane: Abscissa, ordinate and normal.
         plane_axes: Their columns.
-        unit: Of programmed lengths [mm].
-        incremental: Axis words count from where the tool stands.
+        incremental: Axis words count from where the tool is.
         center_absolute: The words of a centre count from part zero.
         feed_mode: What F counts, as ``FeedMode`` numbers it.
         feed_may_lack: It was warned of a missing feed already.
         spindle: S, NaN for none [1/min].
         spindle_turns: 0 where the spindle stands.
-        rapid_feed: As ``paces.rapid_feed`` has it.
-        corner: How the ends of moves are passed.
+        rapid_feed: As ``feed_rates.rapid_feed`` has it.
         limits: Corner tolerance [mm], acceleration and deceleration [mm/s²].
     """
 
@@ -187,16 +185,7 @@ def run_lines(page: PageColumns, rules: PlainRules, state: PlainState, rows: Mov
 def _run_line(
     line: int, seen: int, rules: PlainRules, state: PlainState, rows: MoveRows, row: int
 ) -> int:
-    """Run one line; how many moves it has made, or ``NOT_PLAIN`` with the state as it was.
-
-    Args:
-        line: Its number, from 1.
-        seen: Its roles, as bits.
-        rules: What codes mean.
-        state: Holds the values of the roles.
-        rows: Room for the move.
-        row: Its place there.
-    """
+    """Run one line; how many moves it has made, or ``NOT_PLAIN`` with the state as it was."""
     kind, feed, values = int(state.kind[0]), float(state.feed[0]), state.values
     if seen & 1 << CODE:
         if not is_whole(values[CODE], len(rules.kinds) - 1.0):
@@ -206,9 +195,9 @@ def _run_line(
         feed = float(values[FEED])
     moves = seen >> RADIUS != 0
     fits = not seen & 1 << NUMBER or is_whole(values[NUMBER], LARGEST_LABEL)
-    paced = not seen & 1 << FEED or 0.0 < feed <= LARGEST_COORDINATE
+    fed = not seen & 1 << FEED or 0.0 < feed <= LARGEST_COORDINATE
     is_arc = kind >= CLOCKWISE
-    if not fits or not paced or (not moves and seen & 1 << CODE):
+    if not fits or not fed or (not moves and seen & 1 << CODE):
         return NOT_PLAIN
     made = 0
     if moves:
@@ -240,7 +229,7 @@ def _has_pace(seen: int, feed: float, state: PlainState) -> bool:
     if needs_own_feed(state.feed_mode) and not seen & 1 << FEED:
         return False
     finding = finding_of_feed(feed, state.feed_mode, state.spindle, state.spindle_turns)
-    return finding == PACED or (finding == WITHOUT_FEED and state.feed_may_lack)
+    return finding == KNOWN_FEED or (finding == WITHOUT_FEED and state.feed_may_lack)
 
 
 @inlined

@@ -8,7 +8,7 @@ import numpy as np
 
 from twin.nc.control.codes import GCode
 from twin.nc.control.executor import Executor
-from twin.nc.control.interpolation import ArcRule, LineRule, MotionMode
+from twin.nc.control.modal import ArcRule, LineRule, MotionMode
 from twin.nc.geometry.arcs import Bounds
 from twin.nc.geometry.planes import PLANE_ORDER
 from twin.nc.line_kernel.kernel import (
@@ -32,8 +32,8 @@ from twin.nc.line_kernel.reading import (
     RADIUS,
     LineFormat,
 )
+from twin.nc.path.feed_rates import PATH_COUNTS
 from twin.nc.path.move_columns import CHUNK
-from twin.nc.path.paces import PATH_COUNTS
 from twin.nc.text.comments import comment_marks
 
 LineKernel = Callable[[PageColumns, PlainRules, PlainState, MoveRows], int]
@@ -155,8 +155,6 @@ def kind_of(mode: MotionMode | None) -> int:
         return NO_MOTION
     if isinstance(mode.rule, LineRule):
         return RAPID_LINE if mode.rapid else FEED_LINE
-    if not isinstance(mode.rule, ArcRule):
-        return NO_MOTION
     return CLOCKWISE if mode.rule.clockwise else COUNTER_CLOCKWISE
 
 
@@ -188,7 +186,14 @@ def plain_rules(executor: Executor) -> PlainRules:
 
 def _kind_of_code(code: GCode) -> int:
     """How a G code moves that does nothing but that; ``NO_MOTION`` for all others."""
-    does = (code.action, code.perform, code.after, code.once, code.alone, code.refused)
+    does = (
+        code.action,
+        code.perform,
+        code.after_motion,
+        code.non_modal,
+        code.exclusive,
+        code.refused,
+    )
     if any(does) or code.sets.keys() != {"interpolation", "cycle"} or code.sets.get("cycle"):
         return NO_MOTION
     return kind_of(code.sets.get("interpolation"))
@@ -211,7 +216,7 @@ def line_format(executor: Executor) -> LineFormat:
     }
     roles = {each: role for each, role in letters.items() if each in dialect.words.motion - taken}
     roles |= {**dict.fromkeys(dialect.words.feed, FEED), "N": NUMBER, "G": CODE}
-    pointed = dialect.rules.pointless(control.settings)
+    pointed = dialect.rules.without_point(control.settings)
     return LineFormat(
         np.array([roles.get(letter, OTHER) for letter in string.ascii_uppercase]),
         np.array([letter in pointed for letter in string.ascii_uppercase]),

@@ -19,8 +19,8 @@ from twin.nc.text.plain_word import (
     FRACTION,
     IS_DIGIT,
     IS_WORD,
+    SCAN_TABLE,
     SIGNED,
-    WALK,
 )
 
 ByteArray = npt.NDArray[np.uint8]
@@ -98,11 +98,11 @@ def _read_word(data: ByteArray, at: int, end: int) -> tuple[int, int, float, int
     follow from its digits and its point: a loop that went by them from byte to byte would wait for each.
     """
     at = _stay(data, at, end, BEGIN)
-    if at == end or WALK[BEGIN << 8 | int(data[at])] == END:
+    if at == end or SCAN_TABLE[BEGIN << 8 | int(data[at])] == END:
         return BEGIN, 0, 0.0, at
     letter = (int(data[at]) & _TO_UPPER) - _LETTER_A
     at = _stay(data, at + 1, end, ADDRESS)
-    signed = at < end and WALK[ADDRESS << 8 | int(data[at])] == SIGNED
+    signed = at < end and SCAN_TABLE[ADDRESS << 8 | int(data[at])] == SIGNED
     negative = at < end and data[at] == _MINUS
     stage = SIGNED if signed else ADDRESS
     at += signed
@@ -121,11 +121,11 @@ def _read_word(data: ByteArray, at: int, end: int) -> tuple[int, int, float, int
             break
         at += 1
     if digits > decimals:  # further digits stay at the stage of the first
-        stage = int(WALK[stage << 8 | _DIGIT_0])
+        stage = int(SCAN_TABLE[stage << 8 | _DIGIT_0])
     if pointed:
-        stage = int(WALK[stage << 8 | _POINT])
+        stage = int(SCAN_TABLE[stage << 8 | _POINT])
     if decimals > 0:
-        stage = int(WALK[stage << 8 | _DIGIT_0])
+        stage = int(SCAN_TABLE[stage << 8 | _DIGIT_0])
     if not IS_WORD[stage] or decimals >= len(_POWERS):
         return stage, letter, 0.0, NOT_PLAIN
     value = mantissa / _POWERS[decimals]
@@ -135,6 +135,6 @@ def _read_word(data: ByteArray, at: int, end: int) -> tuple[int, int, float, int
 @inlined
 def _stay(data: ByteArray, at: int, end: int, stage: int) -> int:
     """The first place from ``at`` on whose byte leads on from a stage, or ``end``."""
-    while at < end and WALK[stage << 8 | int(data[at])] == stage:
+    while at < end and SCAN_TABLE[stage << 8 | int(data[at])] == stage:
         at += 1
     return at

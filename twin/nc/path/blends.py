@@ -38,7 +38,6 @@ class Blend:
     """A blend to be made.
 
     Attributes:
-        kind: Its shape.
         size: Radius of a fillet; length of a ``CHAMFER_LENGTH``; distance from the corner of the others [mm].
         plane: In which it lies, part coordinates.
         halves: At most half of each move is given up, so that the size adapts to short moves.
@@ -89,20 +88,20 @@ def blend_corner(
     begin, end = curves.point_at(before, left), curves.point_at(behind, right)
     head = part_of(first, before, plane, 0.0, left)
     tail = part_of(second, behind, plane, right, 1.0)
-    paced = head if math.isnan(blend.feed) else dataclasses.replace(head, feed=blend.feed)
+    with_feed = head if math.isnan(blend.feed) else dataclasses.replace(head, feed=blend.feed)
     if blend.kind is BlendKind.CHAMFER:
-        return head, [line_between(paced, head.end, tail.start)], tail
+        return head, [line_between(with_feed, head.end, tail.start)], tail
     if blend.kind is BlendKind.SPLINE:
         return head, _spline(head, tail, curves.length_of(before) * (1.0 - left)), tail
     if blend.kind is BlendKind.FILLET:
         sweep = sweep_between(begin, end, center, clockwise=turn < 0.0)
-        return head, _arcs(paced, tail, plane, [curves.arc(begin, end, center, sweep)]), tail
+        return head, _arcs(with_feed, tail, plane, [curves.arc(begin, end, center, sweep)]), tail
     leaving, arriving = curves.tangent_at(before, left), curves.tangent_at(behind, right)
     return head, _arcs(head, tail, plane, _biarc(begin, end, leaving, arriving)), tail
 
 
 def _cut(before: Curve, behind: Curve, blend: Blend) -> tuple[float, float]:
-    """Where both moves are cut, as shares of their ways."""
+    """Where both moves are cut, as shares of their paths."""
     size, lengths = blend.size, (curves.length_of(before), curves.length_of(behind))
     shorter = min(lengths)
     if blend.halves:
@@ -125,7 +124,7 @@ def _plane_of(first: Segment, second: Segment, blend: Blend) -> Plane:
 
 
 def _fillet(before: Curve, behind: Curve, turn: float, radius: float) -> tuple[float, float, Point]:
-    """Where a fillet touches both moves, as shares of their ways, and its centre."""
+    """Where a fillet touches both moves, as shares of their paths, and its centre."""
     side = math.copysign(radius, turn)
     if not (curves.leaves_room(before, side) and curves.leaves_room(behind, side)):
         raise NoBlendError(f"the radius {radius:g} does not fit into the arc beside the corner")

@@ -53,14 +53,11 @@ class Segment:
     """One move in part coordinates, before it becomes a row.
 
     Attributes:
-        motion: Rapid or feed.
-        line: Source line.
         block: N number or ``NO_BLOCK_NUMBER``.
         start: Shape (k,) [mm or deg].
         end: Shape (k,) [mm or deg].
         display: What the screen shows at the end, shape (k,).
         feed: [mm/min or deg/min]; NaN for rapids.
-        corner: How the end is passed.
         corner_tolerance: [mm]; NaN: the machine's.
         acceleration: [mm/s²]; NaN: the machine's.
         deceleration: [mm/s²]; NaN: the machine's.
@@ -95,7 +92,6 @@ class Refused(NamedTuple):
     Attributes:
         moves: How many moves there were before it.
         events: How many events there were before it.
-        line: Its line.
     """
 
     moves: int
@@ -127,7 +123,6 @@ class MoveColumns:
     """The moves and events since the last ``take``.
 
     Attributes:
-        count: How many moves.
         events: Each with its place among the moves.
     """
 

@@ -22,15 +22,7 @@ SMALLEST_MOVE = 1e-9
 
 @inlined
 def axis_target(value: float, unit: float, linear: bool, incremental: bool, here: float) -> float:
-    """Where a word wants an axis, programmed coordinates [mm or deg].
-
-    Args:
-        value: Of the word.
-        unit: Of programmed lengths [mm].
-        linear: The axis is a linear one.
-        incremental: The value counts from where it stands.
-        here: Where that is.
-    """
+    """Where a word wants an axis, programmed coordinates [mm or deg]."""
     target = value * unit if linear else value
     return target + here if incremental else target
 

@@ -23,12 +23,10 @@ class Path:
     """Takes moves and events in program order.
 
     Attributes:
-        columns: What has been emitted.
         position: Where the emitted path has come to, shape (k,) [mm or deg].
-        compensation: Radius compensation of what it takes.
         defer: Takes an event that happens behind moves which a dialect holds back; False: it holds none.
-        leads: Makes the moves that lead to the next one, told it; None: nothing does. The next move begins
-            where they end on the contour, not where the path has come to.
+        leads: Makes the moves that lead to the next one, told it, and says whether that is to be made; None: nothing
+            does. The next move begins where they end on the contour, not where the path has come to.
     """
 
     def __init__(self, axes: Axes, start: list[float], report: Reporter) -> None:
@@ -42,7 +40,7 @@ class Path:
         self._synchronous: SynchronousAxes | None = None
         self.position = start
         self.defer: Callable[[Event], bool] = holds_none
-        self.leads: Callable[[Segment], None] | None = None
+        self.leads: Callable[[Segment], bool] | None = None
 
     def finish(self) -> None:
         """Nothing follows: emit what the stages hold."""
@@ -58,7 +56,8 @@ class Path:
         """The next programmed move."""
         if self.leads is not None:
             leads, self.leads = self.leads, None
-            leads(move)
+            if not leads(move):
+                return
         if self._spline is not None:
             self.end_spline(move)
         self._before = move
@@ -106,11 +105,7 @@ class Path:
             self._rounding.event(event)
 
     def end_spline(self, behind: Segment | None = None) -> None:
-        """The spline ends, and its next point begins a new one.
-
-        Args:
-            behind: The move that follows; None: no move does.
-        """
+        """The spline ends, before the move that follows, if one does; its next point begins a new one."""
         if self._spline is not None:
             cuts = behind is not None and behind.motion is Motion.FEED
             self._spline.finish(behind if cuts else None)
@@ -125,7 +120,7 @@ class Path:
             self._rounding.add(move)
 
     def hold_for_blends(self) -> None:
-        """From now on moves are held until their successor is known."""
+        """From now on moves are kept until their successor is known."""
         if self._rounding is None:
             self._rounding = Rounding(self._compensate, self.compensation.event, self._report)
 

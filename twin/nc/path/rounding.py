@@ -9,7 +9,7 @@ from twin.nc.path.segments import MoveReport
 
 
 class Rounding:
-    """Blends the corners that it is told to.
+    """Blends the corners that it is given to.
 
     Attributes:
         always: Blend of every corner between two moves that it holds for, or None.

@@ -24,11 +24,7 @@ class MoveReport:
         self._report = report
 
     def refuse(self, move: Segment, code: str, message: str) -> NoReturn:
-        """Refuse a move.
-
-        Raises:
-            ProgramError: Always.
-        """
+        """Refuse a move."""
         self._report.line = move.line
         self._report.fail(code, message, *self._span_of(move))
 
@@ -88,15 +84,7 @@ def element_of(move: Segment, plane: Plane) -> Curve | None:
 
 
 def part_of(move: Segment, element: Curve, plane: Plane, first: float, last: float) -> Segment:
-    """The part of a move between two shares of its way; what else moves goes along.
-
-    Args:
-        move: The whole move.
-        element: What ``element_of`` gave.
-        plane: The plane of the element.
-        first: Where the part begins, 0 to 1.
-        last: Where it ends.
-    """
+    """The part of a move between two shares of its element's path, 0 to 1; what else moves goes along."""
     start, end = (
         whole if share == exact else _at(move, plane, curves.point_at(element, share), share)
         for share, exact, whole in ((first, 0.0, move.start), (last, 1.0, move.end))

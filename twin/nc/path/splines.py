@@ -47,13 +47,13 @@ class Spline:
         self._held = (move, flat)
 
     def finish(self, behind: Segment | None) -> None:
-        """Draw what is held; the spline ends with the tangent of the element behind it."""
+        """Draw what is kept; the spline ends with the tangent of the element behind it."""
         if self._held is not None:
             self._draw(_tangent_of(behind, self._held[0], at_end=False))
         self._held = None
 
     def _draw(self, end_tangent: Vector | None) -> None:
-        """Draw the held piece; without a tangent its chord counts."""
+        """Draw the kept piece; without a tangent its chord counts."""
         assert self._held is not None
         move, flat = self._held
         chord = _difference(move.end, move.start)
@@ -103,7 +103,7 @@ def _bend(chord: Vector, first: Vector, last: Vector) -> float:
 
 
 def chords(move: Segment, at: Callable[[float], Vector], bend: float) -> list[Segment]:
-    """A curve in the place of a straight move, as chords that leave it by ``CHORD_ERROR`` at most.
+    """A curve in place of a straight move, as chords that leave it by ``CHORD_ERROR`` at most.
 
     Args:
         move: From the curve's first point to its last; further axes go linearly.

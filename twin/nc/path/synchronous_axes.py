@@ -1,7 +1,7 @@
 """Additional axes that go evenly over several moves (CODESYS SoftMotion's G71 and G70).
 
 From G71 to G70 such an axis keeps one slope over the length of the path, wherever between them the
-program names it (the library's page on SMC_SmoothAddAxes). So the moves are held until G70.
+program names it (the library's page on SMC_SmoothAddAxes). So the moves are kept until G70.
 """
 
 import dataclasses
@@ -26,7 +26,7 @@ class SynchronousAxes:
 
     @property
     def idle(self) -> bool:
-        """No axis goes evenly, and nothing is held."""
+        """No axis goes evenly, and nothing is kept."""
         return not self._begins
 
     def begin(self, axis: int) -> None:

@@ -116,7 +116,7 @@ def _digits_elsewhere(a: float, old: float, new: float) -> float:
 
 
 def from_binary_decimal(a: float) -> float:
-    """The number whose decimal digits stand in four bits each."""
+    """The number whose decimal digits are in four bits each."""
     return _defined(_digits_elsewhere(a, 16.0, 10.0))
 
 
@@ -234,12 +234,12 @@ def power_of_ten(a: float) -> float:
 
 
 def whole_part(a: float) -> float:
-    """What stands before the point."""
+    """What is before the point."""
     return float(math.trunc(a))
 
 
 def fraction(a: float) -> float:
-    """What stands behind the point."""
+    """What is behind the point."""
     return a - math.trunc(a)
 
 

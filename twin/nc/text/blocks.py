@@ -7,7 +7,7 @@ from twin.nc.text.expressions import Expression, NumberedVariable, Variable
 
 
 class Location(NamedTuple):
-    """Where a block stands in a program: its line, from 0, and its part of the line, from 0."""
+    """Where a block is in a program: its line, from 0, and its part of the line, from 0."""
 
     line: int
     part: int
@@ -22,7 +22,7 @@ class Word(NamedTuple):
         column: First character in the line, from 0.
         width: Characters from the address to the end of the value.
         incremental: The word alone is incremental (``X20I``).
-        pointless: A number without a decimal point.
+        without_point: A number without a decimal point.
         mark: What the program writes besides address and value: how the value counts (``IC``), the name of
             a code, or a text in quotes.
     """
@@ -32,7 +32,7 @@ class Word(NamedTuple):
     column: int
     width: int
     incremental: bool = False
-    pointless: bool = False
+    without_point: bool = False
     mark: str = ""
 
     @property
@@ -66,8 +66,6 @@ class Assignment(NamedTuple):
     """A variable that a block gives a value.
 
     Attributes:
-        target: Which one.
-        value: What it becomes.
         column: Where the variable begins, from 0.
         width: Characters up to the end of the value.
         number: That of the variable, where it is computed.
@@ -96,7 +94,6 @@ class Block(NamedTuple):
         part: Which of the line's blocks it is, from 0.
         number: Its N number or ``NO_BLOCK_NUMBER``.
         words: Its words without N, in the order of the text.
-        statement: What it says besides words, or None.
         skippable: It begins with a slash.
         name: Its label in brackets, or empty.
         assignments: Variables that get new values when all words have been read.

@@ -27,7 +27,7 @@ class CommentMarks(NamedTuple):
         openings: What begins each kind, one or two characters, 0 where there is none, shape (c, 2).
         closings: What ends it; 0, 0: the end of the line.
         whole_line: It can only begin its line, shape (c,).
-        holds_opening: Its own opening may stand in it, shape (c,).
+        holds_opening: Its own opening may be in it, shape (c,).
     """
 
     openings: Marks
@@ -168,7 +168,7 @@ def comments_of(line: str, marks: CommentMarks) -> Iterator[tuple[int, int]]:
 
 
 def without_comments(line: str, marks: CommentMarks) -> tuple[str, int]:
-    """A line with blanks in the place of its comments.
+    """A line with blanks in place of its comments.
 
     Returns:
         The line, and where the comment begins that is wrong; ``NO_COMMENT`` where none is.

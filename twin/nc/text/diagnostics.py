@@ -15,12 +15,10 @@ class Diagnostic:
     Attributes:
         severity: ``error`` stops the program, ``warning`` does not.
         code: Stable, searchable name of the finding, such as ``unknown-word``.
-        message: What is wrong, in one sentence.
         file: Name of the program as the user gave it.
         line: Source line, from 1.
         column: Column of the first character in question, from 1.
         width: How many characters are in question.
-        source: The text of the line.
         hint: What would have worked, or None.
     """
 

@@ -30,15 +30,7 @@ _MOST_KEPT = 4096
 
 
 class ExpressionReader:
-    """Reads the expressions of one dialect.
-
-    Attributes:
-        operator: An operator; as the others, where it begins.
-        number: A number.
-        variable: A variable.
-        name: The name of a function, a constant or a variable with an index.
-        quotient: A slash before a bracket.
-    """
+    """Reads the expressions of one dialect."""
 
     def __init__(self, syntax: ExpressionSyntax) -> None:
         self._syntax = syntax
@@ -256,7 +248,7 @@ class _Reading:
         self.at += 1
 
     def _hint_of_equal(self) -> str | None:
-        """How two values are compared, where a single = stands in the place of an operator."""
+        """How two values are compared, where a single = replaces an operator."""
         operators = {name.upper() for name in self._syntax.operators}
         spelling = next((each for each in ("EQ", "==") if each in operators), None)
         if spelling is None or self._text[self.at : self.at + 1] != "=":

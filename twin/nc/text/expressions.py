@@ -62,8 +62,6 @@ class Expression:
     """A computed value.
 
     Attributes:
-        text: As the program writes it.
-        tree: What it is made of.
         compute: Its value in a scope; raises ``ExpressionError`` where it has none.
         functions: What its operators and functions compute.
     """
@@ -86,7 +84,6 @@ class Operator:
 
     Attributes:
         precedence: Higher binds tighter.
-        compute: What it does.
     """
 
     precedence: int
@@ -95,12 +92,7 @@ class Operator:
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class FunctionOf:
-    """A function of expressions.
-
-    Attributes:
-        compute: What it does.
-        arguments: How many it takes.
-    """
+    """A function of expressions."""
 
     compute: Callable[..., float]
     arguments: int = 1
@@ -112,8 +104,7 @@ class ExpressionSyntax:
 
     Attributes:
         operators: By symbol or word.
-        functions: By name; a function's arguments stand in ``brackets``.
-        constants: By name.
+        functions: By name; a function's arguments are in ``brackets``.
         variable: Regular expression of a variable's name.
         indexed: Names that may be followed by an index in brackets, such as ``P``.
         brackets: Opening and closing character.
@@ -127,7 +118,7 @@ class ExpressionSyntax:
             there is none.
         quotients: Functions of two values, each in brackets, with a slash between them.
         one_sign: No sign follows a sign, unless a bracket stands between them.
-        bracketed: Operators stand within brackets only, so that a word's value is one operand.
+        bracketed: Operators are within brackets only, so that a word's value is one operand.
         vacant: A variable without a value counts as 0 where something is computed of it; alone it
             leaves its word out.
         of_vacant: Operators that see that a variable has no value.

@@ -21,20 +21,13 @@ class Grammar:
     """What reading a line needs, made once per dialect and program.
 
     Attributes:
-        language: Whose syntax it is.
-        syntax: Its declaration.
         comment: A comment that is closed, unless it can only begin its line.
         comment_openings: The characters that comments may begin with.
         words: Blanks, and an address with a plain number and, where the dialect has it, the incremental
             suffix: blanks, all of the word, address, number and suffix; behind the last, with none of
             these, what is left of the line.
-        address: An address alone.
-        suffix: The incremental suffix alone.
-        label: The name of a block, or None where blocks have none.
         form: A name before a bracket that says how a value counts, or None.
-        code: The name of a code, or None.
         statement: The keyword of a statement, or None where the dialect has none.
-        flag: A word without a value, or None likewise.
         reader: Reads computed values, or None.
         unfinished: The end of a text that a bracket must follow as a value, or None.
     """
@@ -104,7 +97,7 @@ class Grammar:
 
 
 def _unfinished(expressions: ExpressionSyntax) -> re.Pattern[str]:
-    """Operators, names of functions and prefixes, and what stands before a value."""
+    """Operators, names of functions and prefixes, and what is before a value."""
     names = "|".join([*expressions.functions, *expressions.prefixes])
     operators = "|".join(map(operator_pattern, expressions.operators))
     return _compiled(rf"(?:[=,]|{operators}|\b(?:{names})){BLANKS}\Z")

@@ -18,7 +18,7 @@ class KeywordLine(LineReader):
     _keyword: Statement | None = None
 
     def _begin(self) -> None:
-        """The block's number, without an address before it; the slash may stand on both sides of it."""
+        """The block's number, without an address before it; the slash may be on both sides of it."""
         for _ in range(2):
             if (slash := _SKIP.match(self._line, self._at)) is not None and not self._skippable:
                 self._skippable, self._at = True, slash.end()

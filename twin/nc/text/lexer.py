@@ -40,16 +40,7 @@ class Lexer:
     def blocks(
         self, line: str, number: int, previous: Callable[[int], str] = lambda _number: ""
     ) -> tuple[Block, ...]:
-        """Read a line; a line without words gives no block.
-
-        Args:
-            line: Its text.
-            number: Its number, from 1.
-            previous: Gives the text of the line before this one, told this one's number.
-
-        Raises:
-            ProgramError: It cannot be read.
-        """
+        """Read a line by its number, from 1; one without words gives no block. ``previous``: the text before it."""
         if not line or line.isspace():
             return ()
         self._report.line = number
@@ -84,5 +75,5 @@ class Lexer:
 
 
 def _closed_up(number: re.Match[str]) -> str:
-    """A number without its blanks, which follow it, so that the next word stays where it stands."""
+    """A number without its blanks, which follow it, so that the next word stays where it is."""
     return re.sub(r"[ \t]", "", number[0]).ljust(len(number[0]))

@@ -19,7 +19,6 @@ class Library:
     """Which files the programs of a dialect can call.
 
     Attributes:
-        calls: Names that a text calls.
         mark: Begins the line before each file, in front of its name.
         suffixes: Of the files, lower case; a file with an earlier one comes first.
         name_of: The name that calls a file, given its own in upper case without the suffix; None: none does.

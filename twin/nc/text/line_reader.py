@@ -59,11 +59,7 @@ class LineReader:
         self._words: list[Word] = []
 
     def blocks(self) -> tuple[Block, ...]:
-        """The line's blocks.
-
-        Raises:
-            ProgramError: It cannot be read.
-        """
+        """The line's blocks."""
         has_statements = self._grammar.statement is not None
         end = len(self._line)
         self._begin()
@@ -153,11 +149,7 @@ class LineReader:
         return True
 
     def _refuse_open_comment(self, text: str, at: int) -> NoReturn:
-        """A comment that begins a text, at a column, is not closed, or holds another one.
-
-        Raises:
-            ProgramError: Always.
-        """
+        """A comment that begins a text, at a column, is not closed, or holds another one."""
         begun = next(each for each in self._syntax.comments if text.startswith(each.opening))
         again = text.find(begun.opening, len(begun.opening))
         if not begun.holds_opening and 0 <= again < text.find(begun.closing):
@@ -200,7 +192,7 @@ class LineReader:
         return True
 
     def _named_code(self) -> bool:
-        """A code that has a name in the place of a number."""
+        """A code that has a name in place of a number."""
         pattern = self._grammar.code
         match = pattern.match(self._line, self._at) if pattern is not None else None
         if match is None:

@@ -68,11 +68,7 @@ class Page:
 
 
 class Lines(Sequence[str]):
-    """The lines of a program without their ends.
-
-    Attributes:
-        size: Bytes that were read.
-    """
+    """The lines of a program without their ends."""
 
     def __init__(self, pieces: Iterable[bytes], encodings: Sequence[str] = ()) -> None:
         """Take the text in.
@@ -124,7 +120,7 @@ class Lines(Sequence[str]):
         return (page.line(line) for page in self.pages() for line in page.lines)
 
     def page_of(self, line: int) -> Page:
-        """The page that a line, from 0, stands on."""
+        """The page that a line, from 0, is on."""
         if line in self._latest.lines:
             return self._latest
         number = bisect.bisect_right(self._firsts, line) - 1

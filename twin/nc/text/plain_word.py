@@ -60,26 +60,26 @@ def _onward(stage: int, ends: Collection[int]) -> str:
 
 
 BLANKS, BLANKS_BETWEEN = _repeated(BEGIN), _repeated(ADDRESS)
-"""What may stand before an address, and behind it; as all others, for regular expressions."""
+"""What may be before an address, and behind it; as all others, for regular expressions."""
 NUMBER, SIGNED_NUMBER = _onward(SIGNED, _ENDS), _onward(ADDRESS, _ENDS)
 """A number without a sign, and a word's, which may have one."""
 SIGNED_POINTED_NUMBER = _onward(ADDRESS, (FRACTION,))
 """That of a word, with a decimal point."""
 
 
-def _walk() -> np.ndarray[tuple[int], np.dtype[np.uint8]]:
-    walk = np.full((len(_STEPS), 256), END, np.uint8)
+def _scan_table() -> np.ndarray[tuple[int], np.dtype[np.uint8]]:
+    table = np.full((len(_STEPS), 256), END, np.uint8)
     for stage, steps in _STEPS.items():
         for kind, to in steps.items():
-            walk[stage, list(_CHARACTERS[kind].encode())] = to
-    return walk.ravel()
+            table[stage, list(_CHARACTERS[kind].encode())] = to
+    return table.ravel()
 
 
-WALK = _walk()
+SCAN_TABLE = _scan_table()
 """The stage that a byte of UTF-8 leads to: 256 for each stage, shape (1792,)."""
-IS_BLANK = WALK[:256] == BEGIN
+IS_BLANK = SCAN_TABLE[:256] == BEGIN
 """Whether a byte is a blank, shape (256,)."""
-IS_DIGIT = WALK[FRACTION << 8 : (FRACTION + 1) << 8] == FRACTION
+IS_DIGIT = SCAN_TABLE[FRACTION << 8 : (FRACTION + 1) << 8] == FRACTION
 """Whether a byte is a digit, shape (256,)."""
 IS_WORD = np.isin(np.arange(len(_STEPS)), _ENDS)
 """Whether what has come to a stage is a whole word, shape (7,)."""

@@ -20,7 +20,6 @@ class Reporter:
 
     Attributes:
         line: Source line that is being read or run, from 1.
-        warnings: The warnings so far.
     """
 
     def __init__(self, source: Source, *, strict: bool) -> None:
@@ -51,9 +50,6 @@ class Reporter:
             column: First character in question, from 0.
             width: How many characters.
             hint: What would have worked.
-
-        Raises:
-            ProgramError: Always.
         """
         raise ProgramError(self._diagnostic("error", code, message, column, width, hint))
 
@@ -75,15 +71,9 @@ class Reporter:
             self.warn(code, message, column, width, hint)
 
     def notice(self, of: str, message: str, column: int = 0, width: int = 1) -> None:
-        """Tell once of something that is passed over and changes nothing of the path.
+        """Tell once of something that is passed over, and why nothing of the path is lost.
 
         It is no reason to refuse a program, also when warnings count as errors.
-
-        Args:
-            of: What is passed over.
-            message: Why nothing is lost.
-            column: First character in question, from 0.
-            width: How many characters.
         """
         if of not in self._said and len(self.warnings) < _MOST_WARNINGS:
             self._said.add(of)

@@ -13,7 +13,6 @@ class Slip(NamedTuple):
 
     Attributes:
         pattern: What a line holds at the place that cannot be read.
-        hint: What to write.
         statement: Of a dialect that it is looked for in; empty: of any.
         foreign: It is looked for where the dialect lacks that statement.
     """
@@ -61,13 +60,7 @@ SLIPS: tuple[Slip, ...] = (
 
 
 def slip_at(line: str, at: int, statements: Iterable[str] = ()) -> str | None:
-    """What to write in place of what stands at a place of a line; None: it is no known slip.
-
-    Args:
-        line: The line.
-        at: The place, from 0.
-        statements: Keywords that the dialect knows.
-    """
+    """What to write in place of what is at a place of a line, from 0, in a dialect with these statements; None: no known slip."""
     known = set(statements)
     for slip in SLIPS:
         if slip.statement and (slip.statement in known) == slip.foreign:

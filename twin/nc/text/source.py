@@ -17,7 +17,6 @@ class Source:
 
     Attributes:
         name: The file as the user named it.
-        lines: Its lines without their ends.
         sha256: Digest of its bytes, without those of further files.
         parts: Further files whose lines follow: number of the first line, from 1, and name.
     """
@@ -59,15 +58,7 @@ class Source:
 
 
 def read_source(path: Path, dialect: Language | None = None) -> Source:
-    """Read a program as UTF-8, else in the dialect's legacy code page, else byte by byte.
-
-    Args:
-        path: The file.
-        dialect: Whose legacy code page it may be in; None when that is not known.
-
-    Raises:
-        UsageError: The file cannot be read.
-    """
+    """Read a program as UTF-8, else in the legacy code page of its dialect, if that is known, else byte by byte."""
     try:
         with path.open("rb") as file:
             return _source_of(iter(lambda: file.read(PAGE), b""), str(path), dialect)

@@ -15,10 +15,9 @@ class Comment:
     """A kind of comment.
 
     Attributes:
-        opening: What begins it.
         closing: What ends it; empty: the end of the line.
         whole_line: It can only begin its line, such as a program's heading.
-        holds_opening: Its own opening may stand in it, as a character like any other.
+        holds_opening: Its own opening may be in it, as a character like any other.
     """
 
     opening: str
@@ -36,8 +35,6 @@ class Syntax:
     """How a dialect writes its blocks.
 
     Attributes:
-        address: Regular expression of an address.
-        comments: Kinds of comments.
         expressions: How values are computed; None where only numbers are written.
         statement: Regular expression of what begins a statement; its group 1 is the keyword.
         trailing_prose: Words of prose behind a block's words are left out with a warning.
@@ -45,7 +42,7 @@ class Syntax:
         label: Regular expression of a block's name at its begin, the name as its group 1; empty: blocks
             have none.
         fractional_labels: The number of a block may have a fraction, which does not count.
-        skip_levels: Digits that may stand behind the slash of a block that can be skipped; a slash alone
+        skip_levels: Digits that may be behind the slash of a block that can be skipped; a slash alone
             means the first.
         block_end: Character that may end a line and says no more, such as ``;`` for the end of a block.
         inner_comments: Comments in brackets may stand anywhere within a statement.
@@ -136,7 +133,7 @@ class Mark:
     Attributes:
         pattern: Regular expression, searched line by line without regard to case.
         shown: How a person would say it.
-        decides: Where it stands, nothing that other dialects know counts.
+        decides: Where it is, nothing that other dialects know counts.
     """
 
     pattern: str

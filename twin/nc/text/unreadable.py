@@ -35,20 +35,12 @@ class Unreadable:
     def fail(
         self, code: str, message: str, column: int, *, width: int = 1, hint: str | None = None
     ) -> NoReturn:
-        """Refuse the line; arguments as for ``Reporter.fail``.
-
-        Raises:
-            ProgramError: Always.
-        """
+        """Refuse the line; arguments as for ``Reporter.fail``."""
         self._report.line = self._number
         self._report.fail(code, message, column, width, hint)
 
     def refuse_value(self, begin: int, error: ExpressionError) -> NoReturn:
-        """The value of a word or an assignment that begins at a column cannot be read.
-
-        Raises:
-            ProgramError: Always.
-        """
+        """The value of a word or an assignment that begins at a column cannot be read."""
         name = _NAME.match(self._line, begin)
         if name is not None and error.code == "unknown-function":
             message = f"'{name[0]}' is no word of {self._grammar.language.name}"
@@ -67,22 +59,14 @@ class Unreadable:
         self.fail(error.code, str(error), column, hint=hint)
 
     def refuse_late_skip(self, address: re.Match[str]) -> None:
-        """``N20 /X1``: the mark of block skip stands behind the number.
-
-        Raises:
-            ProgramError: It does.
-        """
+        """``N20 /X1``: the mark of block skip is behind the number."""
         late = _LATE_SKIP.match(self._line, address.start(1))
         if late is not None:
             message = f"the / of a block that can be skipped must begin its line, before {late[1]}"
             self.fail("label", message, late.end() - 1, hint=f"write /{late[1]}")
 
     def refuse_code(self, words: Sequence[Word]) -> None:
-        """Words without values may belong to a code that the dialect refuses anyway.
-
-        Raises:
-            ProgramError: They do.
-        """
+        """Words without values may belong to a code that the dialect refuses anyway."""
         for word in words:
             if word.address == "G" and isinstance(word.value, float):
                 refusal = self._grammar.language.refusal(word.value)
@@ -91,11 +75,7 @@ class Unreadable:
                     self.fail("unsupported-g", message, word.column, width=word.width)
 
     def refuse(self, at: int, words: Sequence[Word]) -> NoReturn:
-        """Nothing that the dialect knows begins at a column, behind these words.
-
-        Raises:
-            ProgramError: Always.
-        """
+        """Nothing that the dialect knows begins at a column, behind these words."""
         character = self._line[at]
         latin = character.upper().translate(_LOOKALIKES)
         address = self._grammar.address.match(self._line, at)

@@ -18,10 +18,13 @@ from twin.serve.grbl.reports import BUILD, HELP, WELCOME, ParserState, Reporter,
 from twin.serve.grbl.serial_buffer import SerialBuffer, cleaned
 from twin.serve.grbl.settings import GrblSettings
 from twin.serve.grbl.stream import MOST_AHEAD, GrblStream
+from twin.training.program.inherited import Inherited
+from twin.training.program.program_run import ProgramRun
+from twin.training.program.run_options import RunOptions
+from twin.training.room.room import Room
+from twin.training.room.run_settings import run_settings
 from twin.training.session import commands as c
 from twin.training.session.actions import carry_out
-from twin.training.session.program_run import Inherited, ProgramRun, RunOptions
-from twin.training.session.room import Room
 
 NO_PROGRAM = source_from_text("", "grbl")
 """What a run of streamed blocks has for a source."""
@@ -82,7 +85,7 @@ class GrblController:
         self._look(room)
         if not self._halted:
             self._run_lines(room)
-        if self._run is not None and room.run is self._run and not room.held:
+        if self._run is not None and room.slot.run is self._run and not room.slot.held:
             # Not with the next slice of time: senders wait for each answer.
             self._run.take_streamed()
             self._look(room)
@@ -115,11 +118,11 @@ class GrblController:
             return "Home"
         if self._checking is not None:
             return "Check"
-        if room.run is None and not room.moving:
+        if room.slot.run is None and not room.machine.moving:
             return "Idle"
-        if room.held:
+        if room.slot.held:
             kind = "Door" if self._door else "Hold"
-            return f"{kind}:{int(room.moving)}"
+            return f"{kind}:{int(room.machine.moving)}"
         return "Jog" if self._jogs else "Run"
 
     def _status(self, room: Room) -> str:
@@ -144,7 +147,7 @@ class GrblController:
         )
 
     def _new_control(self, room: Room) -> Executor:
-        executor = Executor(room.scene.preparation.dialect, room.settings_here(), NO_PROGRAM)
+        executor = Executor(room.scene.preparation.dialect, run_settings(room), NO_PROGRAM)
         executor.prepare()
         return executor
 
@@ -164,23 +167,28 @@ class GrblController:
         if self._stream is not None:
             self._out += self._stream.answers
             self._stream.answers.clear()
-            if room.run is not self._run:
+            if room.slot.run is not self._run:
                 assert self._run is not None
-                self._left = self._run.left()
+                self._left = self._run.reader.left()
                 self._stream = self._run = None
         if room.alarm is not None and not self._locked and not self._halted:
             self._out.append(f"ALARM:{alarm_of(room.alarm.code):d}")
             self._tell(f"{room.alarm.code}: {room.alarm.message}")
             self._tell("Reset to continue")
             self._halted, self._homing = True, False
-        if self._homing and room.run is None and not room.legs and not room.moving:
+        if (
+            self._homing
+            and room.slot.run is None
+            and not room.manual.moves
+            and not room.machine.moving
+        ):
             self._homing = False
             self._answer(None)
 
     def _reset(self, room: Room) -> None:
         """Ctrl-X: while axes move that is an alarm, since steps are lost."""
         memory = self._parser.memory
-        if room.moving and room.alarm is None:
+        if room.machine.moving and room.alarm is None:
             room.stop_all("emergency-stop", "reset while the axes moved")
             self._out.append(f"ALARM:{alarm_of('emergency-stop'):d}")
         self._locked = room.alarm is not None
@@ -220,7 +228,7 @@ class GrblController:
         assert self._stream is not None
         self.serial.pop()
         self._answer(Error.NOT_IDLE)
-        return room.run is not None
+        return room.slot.run is not None
 
     def _begin_or_refuse(self, room: Room, *, jogging: bool) -> bool:
         """Begin a run for the next line, or refuse it; False: it waits for its turn."""
@@ -234,14 +242,14 @@ class GrblController:
             self.serial.pop()
             self._answer(Error.NOT_IDLE)
             return True
-        if room.run is not None or room.moving:
+        if room.slot.run is not None or room.machine.moving:
             return False
         stream = GrblStream(self.serial, room.machine.machine, jogging=jogging)
-        room.mode = "mdi"
+        room.panel.select("mdi")
         options = RunOptions(inherited=self._left, stream=stream, soft_limits=not jogging)
         room.start_run(NO_PROGRAM, "mdi", options)
-        if room.run is not None:
-            self._stream, self._run = stream, room.run
+        if room.slot.run is not None:
+            self._stream, self._run = stream, room.slot.run
         return False
 
     def _command(self, room: Room, text: str) -> None:
@@ -252,7 +260,11 @@ class GrblController:
             self._out += simple[text]()
             self._answer(None)
         elif text == "$G":
-            self._out.append(parser_state(self._parser, room.spindle, coolant=room.coolant))
+            self._out.append(
+                parser_state(
+                    self._parser, room.auxiliaries.spindle, coolant=room.auxiliaries.coolant
+                )
+            )
             self._answer(None)
         elif text == "$#":
             self._out += self._reporter.parameters(room, self._parser.memory)
@@ -275,13 +287,13 @@ class GrblController:
             try:
                 room.clear()
             except AlarmStandsError as error:
-                if not room.on_switch:
+                if not room.machine.on_limit_switch:
                     self._tell(str(error))
                     self._answer(Error.NOT_IDLE)
                     return
                 # As in Grbl, the axis is jogged off its switch then.
                 room.machine.clear()
-                room.alarm = None
+                room.alarms.clear()
             self._locked = False
             self._tell("Caution: Unlocked")
         self._answer(None)
@@ -293,7 +305,7 @@ class GrblController:
             if self._locked:
                 self._out.append(f"error:{Error.NOT_IDLE:d}")
                 return
-        room.mode = "jog"
+        room.panel.select("jog")
         try:
             carry_out(room, c.Reference())
         except TwinError as error:

@@ -3,10 +3,10 @@
 from typing import Literal
 
 from twin.errors import TwinError
+from twin.training.room.room import Room
 from twin.training.scene.scene_file import FEED_OVERRIDES, SPINDLE_OVERRIDES
 from twin.training.session import commands as c
 from twin.training.session.actions import carry_out
-from twin.training.session.room import Room
 
 STATUS, HOLD, START, RESET = b"?!~\x18"
 DOOR, CANCEL_JOG = 0x84, 0x85
@@ -46,37 +46,37 @@ def obey(room: Room, command: int, *, jogging: bool) -> None:
             carry_out(room, c.Override(dial=dial, percent=percent))
         elif command in _CHANGE:
             _change(room, *_CHANGE[command])
-        elif command == _SPINDLE_STOP and room.held and not room.moving:
-            room.turn_spindle(room.spindle.stopped())
+        elif command == _SPINDLE_STOP and room.slot.held and not room.machine.moving:
+            room.turn_spindle(room.auxiliaries.spindle.stopped())
         elif command in (_FLOOD, _MIST) and room.alarm is None:
-            room.coolant = not room.coolant
+            room.auxiliaries.switch_coolant(on=not room.auxiliaries.coolant)
     except TwinError:
         return
 
 
 def stop_all(room: Room) -> None:
     """What a reset does to spindle, coolant and overrides."""
-    room.turn_spindle(room.spindle.stopped())
-    room.coolant = False
-    room.feed_override = room.rapid_override = room.spindle_override = _FULL
+    room.turn_spindle(room.auxiliaries.spindle.stopped())
+    room.auxiliaries.switch_coolant(on=False)
+    room.panel.reset_dials()
 
 
 def _hold(room: Room, command: int, *, jogging: bool) -> None:
     """Hold a program; a jog is cancelled."""
-    if room.run is None:
+    if room.slot.run is None:
         return
     if jogging:
-        room.run.drop()
+        room.slot.run.drop()
     elif command != CANCEL_JOG:
         carry_out(room, c.FeedHold())
 
 
 def _start(room: Room) -> None:
-    if room.run is not None and room.held:
+    if room.slot.run is not None and room.slot.held:
         carry_out(room, c.CycleStart())
 
 
 def _change(room: Room, dial: _Dial, change: int) -> None:
-    now = room.feed_override if dial == "feed" else room.spindle_override
+    now = room.panel.feed_override if dial == "feed" else room.panel.spindle_override
     least, most = (_LEAST_FEED, FEED_OVERRIDES[1]) if dial == "feed" else SPINDLE_OVERRIDES
     carry_out(room, c.Override(dial=dial, percent=min(max(now + change, least), most)))

@@ -10,7 +10,7 @@ from twin.nc.functions import SpindleState
 from twin.serve.grbl.serial_buffer import BUFFER_SIZE
 from twin.serve.grbl.settings import IN_INCHES, REPORT, GrblSettings
 from twin.serve.grbl.stream import MOST_AHEAD
-from twin.training.session.room import Room
+from twin.training.room.room import Room
 from twin.units import SECONDS_PER_MINUTE
 
 WELCOME = "\r\nGrbl 1.1h ['$' for help]"
@@ -67,7 +67,7 @@ class Reporter:
 
     def parameters(self, room: Room, memory: GrblMemory) -> list[str]:
         """The answer to $#; coordinate systems that nobody gave are at machine zero, as in Grbl."""
-        zero = room.tables.program_zero
+        zero = room.setup.tables.program_zero
         lines = []
         for number, name in enumerate(SYSTEMS, 1):
             system = memory.systems.get(number)
@@ -104,8 +104,8 @@ class Reporter:
         if mask & 2:
             fields.append(f"Bf:{free[0]},{free[1]}")
         feed = math.hypot(*room.machine.velocity[:3]) * SECONDS_PER_MINUTE / self._unit
-        fields.append(f"FS:{feed:.0f},{abs(room.spindle.turning or 0.0):.0f}")
-        pins = "".join(axis for axis in "XYZ" if room.on_switch == axis)
+        fields.append(f"FS:{feed:.0f},{abs(room.auxiliaries.spindle.turning or 0.0):.0f}")
+        pins = "".join(axis for axis in "XYZ" if room.machine.on_limit_switch == axis)
         if pins:
             fields.append(f"Pn:{pins}")
         fields += self._now_and_then(room, offset)
@@ -118,13 +118,23 @@ class Reporter:
         if offset != self._offset or self._since_offset >= _OFFSET_EVERY:
             self._offset, self._since_offset = offset, 0
             return [f"WCO:{self._lengths(offset)}"]
-        overrides = (room.feed_override, room.rapid_override, room.spindle_override)
+        overrides = (
+            room.panel.feed_override,
+            room.panel.rapid_override,
+            room.panel.spindle_override,
+        )
         if overrides == self._overrides and self._since_overrides < _OVERRIDES_EVERY:
             return []
         self._overrides, self._since_overrides = overrides, 0
         fields = [f"Ov:{','.join(map(str, overrides))}"]
-        turning = "" if not room.spindle.turns else "C" if room.spindle.counter_clockwise else "S"
-        accessories = turning + ("F" if room.coolant else "")
+        turning = (
+            ""
+            if not room.auxiliaries.spindle.turns
+            else "C"
+            if room.auxiliaries.spindle.counter_clockwise
+            else "S"
+        )
+        accessories = turning + ("F" if room.auxiliaries.coolant else "")
         return [*fields, f"A:{accessories}"] if accessories else fields
 
     @property
@@ -140,7 +150,7 @@ class Reporter:
 
 def work_offset(room: Room, memory: GrblMemory) -> list[float]:
     """Machine coordinates of the programmed zero, X, Y and Z [mm]."""
-    zero, system = room.tables.program_zero, memory.systems[memory.system]
+    zero, system = room.setup.tables.program_zero, memory.systems[memory.system]
     offset = [float(zero[axis]) + system[axis] + memory.preset[axis] for axis in range(3)]
     offset[2] += memory.length
     return offset

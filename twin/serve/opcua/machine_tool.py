@@ -15,24 +15,30 @@ from asyncua.server.server import Server
 from twin.machine.description.config import Machine
 from twin.serve.buffer import Condition, Observation
 from twin.serve.device import UNAVAILABLE
+from twin.serve.opcua.alarm import Alarm
 from twin.serve.opcua.node_sets import DI, MACHINE_TOOL, MACHINERY
 
 ua: Any = asyncua.ua
 """Its declared types are narrower than what its own calls take."""
 NAMESPACE = "urn:mill-twin:machine"
 MANUFACTURER = "mill-twin"
-_CHANNEL_AUTOMATIC, _MODE_AUTOMATIC = 0, 1
-_CHANNEL_STATES = {"ACTIVE": 0, "STOPPED": 1, "INTERRUPTED": 1}
+_CHANNEL_MODES = {
+    "AUTOMATIC": 0, "SEMI_AUTOMATIC": 0, "MANUAL_DATA_INPUT": 1, "MANUAL": 2,
+}  # fmt: skip
+"""``ChannelMode`` by MTConnect's ``CONTROLLER_MODE``."""
+_OPERATION_MODES = {mode: int(channel == 0) for mode, channel in _CHANNEL_MODES.items()}
+"""``MachineOperationMode``: 0 by hand, 1 automatic."""
+_CHANNEL_STATES = {"ACTIVE": 0, "FEED_HOLD": 1, "STOPPED": 1}
 _CHANNEL_RESET = 2
 _PROGRAM_STATES = {
-    "READY": "Initializing", "ACTIVE": "Running", "INTERRUPTED": "Interrupted", "STOPPED": "Aborted",
+    "READY": "Initializing", "ACTIVE": "Running", "FEED_HOLD": "Interrupted", "STOPPED": "Aborted",
     "PROGRAM_COMPLETED": "Ended",
 }  # fmt: skip
 """States of ``ProductionStateMachineType`` by MTConnect's ``EXECUTION``."""
 _NUMBER_BASED, _NEVER_LOCKED = 0, 0
 """``ToolManagement`` and ``ToolLocked``: the twin locks no tool."""
-_FULL = 100.0
-_SEVERITY = 800
+_LARGEST_OVERRIDE = 120.0
+"""That the dials of the twin's panel give [%]."""
 _UNECE = "http://www.opcfoundation.org/UA/units/un/cefact"
 _UNITS = {
     "mm": (5066068, "mm", "millimetre"),
@@ -68,6 +74,10 @@ def _count(text: str) -> Any:
     return ua.Variant(int(text), ua.VariantType.UInt32)
 
 
+def _number_in(table: Mapping[str, int]) -> Callable[[str], Any]:
+    return lambda text: ua.Variant(table[text], ua.VariantType.Int32)
+
+
 class MachineTool:
     """A machine in a server's address space."""
 
@@ -83,8 +93,7 @@ class MachineTool:
         self._states: dict[str, Any] = {}
         self._programs: list[tuple[Node, Node]] = []
         self._channel_state: Node | None = None
-        self._alarm: Any = None
-        self._fault = Condition("Normal")
+        self._alarm = Alarm(server)
         self._rotating: Node | None = None
 
     async def build(self, program: str, tools: Mapping[int, str]) -> None:
@@ -115,7 +124,7 @@ class MachineTool:
         """Take over what the agent observed."""
         value, when = observation.value, dt.datetime.fromisoformat(observation.time)
         if isinstance(value, Condition):
-            await self._condition(value)
+            await self._alarm.observe(value, when)
             return
         for item in self._items.get(observation.item, ()):
             known = value != UNAVAILABLE
@@ -175,21 +184,16 @@ class MachineTool:
         )
 
     async def _monitor(self, monitoring: Node) -> None:
-        full = ua.Variant(_FULL, ua.VariantType.Double)
         whole = await self._child(monitoring, "MachineTool")
         mode = await self._child(whole, "OperationMode")
-        await mode.write_value(ua.Variant(_MODE_AUTOMATIC, ua.VariantType.Int32))
-        await self._variable(whole, "FeedOverride", full)
+        self._follow("mode", mode, _number_in(_OPERATION_MODES))
+        await self._override(whole, "FeedOverride", "feed_override")
         channel = await self._object(monitoring, self._own, "Channel1", "ChannelMonitoringType")
         await (await self._child(channel, "Name")).write_value("Channel1")
-        automatic = ua.Variant(_CHANNEL_AUTOMATIC, ua.VariantType.Int32)
-        await (await self._child(channel, "ChannelMode")).write_value(automatic)
-        override = await self._child(channel, "FeedOverride")
-        await override.write_value(full)
-        await (await override.get_child(["0:EngineeringUnits"])).write_value(_unit("%"))
-        whole_range = ua.Range(0.0, _FULL)
-        await (await override.get_child(["0:EURange"])).write_value(whole_range)
-        await self._variable(channel, "RapidOverride", full)
+        mode = await self._child(channel, "ChannelMode")
+        self._follow("mode", mode, _number_in(_CHANNEL_MODES))
+        await self._override(channel, "FeedOverride", "feed_override")
+        await self._override(channel, "RapidOverride", "rapid_override")
         self._channel_state = await self._child(channel, "ChannelState")
         feed = await self._analogue(channel, "PathFeedrate", "mm/s")
         self._follow("path_feedrate", feed, _double)
@@ -199,10 +203,33 @@ class MachineTool:
             self._follow(item, node, _string)
         spindle = await self._object(monitoring, self._own, "Spindle", "SpindleMonitoringType")
         await (await self._child(spindle, "Name")).write_value("S")
-        await self._variable(spindle, "Override", full)
-        self._rotating = await self._child(spindle, "IsRotating")
-        await self._rotating.write_value(False)
+        await self._override(spindle, "Override", "spindle_override")
+        self._rotating = rotating = await self._child(spindle, "IsRotating")
+        await rotating.write_value(False)
         self._follow("spindle_speed", await self._analogue(spindle, "Speed", "rpm"), _double)
+        self._follow("spindle_load", await self._analogue(spindle, "Load", "%"), _double)
+
+    async def _override(self, parent: Node, name: str, item: str) -> None:
+        """An override, with its unit and range; an optional one is made."""
+        try:
+            node = await self._child(parent, name)
+            unit = await node.get_child(["0:EngineeringUnits"])
+            limits = await node.get_child(["0:EURange"])
+        except ua.UaError:
+            empty = ua.Variant(0.0, ua.VariantType.Double)
+            node = await parent.add_variable(
+                ua.NodeId(NamespaceIndex=self._own), ua.QualifiedName(name, self._mt), empty,
+                datatype=ua.NodeId(ua.ObjectIds.Double),
+            )  # fmt: skip
+            place = ua.NodeId(NamespaceIndex=self._own)
+            unit = await node.add_property(
+                place, ua.QualifiedName("EngineeringUnits", 0), _unit("%")
+            )
+            whole = ua.Range(0.0, _LARGEST_OVERRIDE)
+            limits = await node.add_property(place, ua.QualifiedName("EURange", 0), whole)
+        await unit.write_value(_unit("%"))
+        await limits.write_value(ua.Range(0.0, _LARGEST_OVERRIDE))
+        self._follow(item, node, _double)
 
     async def _axes(self, monitoring: Node) -> None:
         folder = await monitoring.add_folder(self._own, "Axes")
@@ -272,11 +299,7 @@ class MachineTool:
     async def _notify(self, notification: Node) -> None:
         messages = await self._object(notification, self._mt, "Messages", "MessagesType")
         kind = self._server.get_node(await self._type("AlertType"))
-        self._alarm = await self._server.get_event_generator(kind, self._server.nodes.server.nodeid)
-        event = self._alarm.event
-        event.SourceNode, event.SourceName = messages.nodeid, "Messages"
-        event.ConditionName, event.BranchId = "system", ua.NodeId()
-        event.InputNode, event.Retain = ua.NodeId(), False
+        await self._alarm.build(messages, kind, self._own)
 
     async def _execution(self, value: str) -> None:
         state = _PROGRAM_STATES[value]
@@ -286,21 +309,3 @@ class MachineTool:
         if self._channel_state is not None:
             number = _CHANNEL_STATES.get(value, _CHANNEL_RESET)
             await self._channel_state.write_value(ua.Variant(number, ua.VariantType.Int32))
-
-    async def _condition(self, value: Condition) -> None:
-        """Raise an alert where a fault begins, and end it where the fault does."""
-        if self._alarm is None or value == self._fault or value.level == "Unavailable":
-            return
-        active = value.level == "Fault"
-        told = value if active else self._fault
-        event = self._alarm.event
-        event.add_property("ErrorCode", told.code, ua.VariantType.String)
-        event.Message = ua.LocalizedText(told.text)
-        event.Severity = _SEVERITY if active else 1
-        event.Retain = active
-        event.ActiveState = ua.LocalizedText("Active" if active else "Inactive")
-        event.add_property("ActiveState/Id", active, ua.VariantType.Boolean)
-        event.EnabledState = ua.LocalizedText("Enabled")
-        event.add_property("EnabledState/Id", True, ua.VariantType.Boolean)
-        self._fault = value
-        await self._alarm.trigger()

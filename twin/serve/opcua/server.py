@@ -22,6 +22,7 @@ from cryptography.x509.oid import ExtendedKeyUsageOID
 from twin.errors import UsageError
 from twin.machine.description.config import Machine
 from twin.serve.agent import Agent
+from twin.serve.opcua.event_filter import filter_by_subtypes
 from twin.serve.opcua.machine_tool import MachineTool
 from twin.serve.opcua.node_sets import import_node_sets
 
@@ -118,6 +119,9 @@ async def opcua_server(place: Place, content: Content) -> AsyncIterator[MachineT
     """
     logging.getLogger("asyncua").setLevel(logging.CRITICAL)
     server = Server(user_manager=_Readers())
+    # Clients that come later ask for what stands (ConditionRefresh).
+    server.iserver.bind_condition_methods = 1
+    filter_by_subtypes()
     await server.init()
     server.iserver.max_connections = _MOST_CONNECTIONS
     server.iserver.max_pending_activation_seconds = _PATIENCE_S

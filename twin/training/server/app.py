@@ -22,6 +22,8 @@ from twin.errors import TwinError
 from twin.nc.iso.base import jog_block
 from twin.nc.text.diagnostics import Diagnostic
 from twin.render.machine_glb import DrawnMachine, drawn_machine
+from twin.training.program.preview import Preview
+from twin.training.room.run_settings import path_to_come
 from twin.training.scene.fault_table import FAULT_DEFAULTS
 from twin.training.scene.phrases import finding_in, translated
 from twin.training.scene.scene_file import (
@@ -45,8 +47,6 @@ from twin.training.server.program_check import ProgramCheck
 from twin.training.server.scene_maker import scene_of, write_scene
 from twin.training.server.seats import Page, Seats
 from twin.training.session.commands import LONGEST_TEXT
-from twin.training.session.preview import Preview
-from twin.training.session.room import Room
 from twin.web.guard import ASSETS
 
 ROLES = ("operator", "trainer", "watcher")
@@ -214,7 +214,7 @@ class RoomApp:
         if drawn is None:
             return Response(status_code=404)
         described = drawn[0].description()
-        work = self._driver.session.room.work
+        work = self._driver.session.room.setup.work
         if work is not None:
             described["stock"] = grid_of(work.map)
         return JSONResponse(described)
@@ -227,7 +227,7 @@ class RoomApp:
 
     async def _path(self, _request: Request) -> Response:
         """The program's way, drawn beside the machine's thread; one at a time."""
-        path = await asyncio.wrap_future(self._driver.inquire(Room.path_to_come))
+        path = await asyncio.wrap_future(self._driver.inquire(path_to_come))
         async with self._one_path:
             key, message = self._last_path
             if key != path.key:
@@ -237,7 +237,7 @@ class RoomApp:
         return Response(message, media_type="application/octet-stream")
 
     async def _drawing(self, request: Request) -> tuple[DrawnMachine, bytes] | None:
-        tools = self._driver.session.room.tables.tools
+        tools = self._driver.session.room.setup.tables.tools
         number = request.query_params.get("tool", "")
         if not number.isdecimal() or int(number) not in tools:
             return None
@@ -248,10 +248,10 @@ class RoomApp:
         scene = room.scene.preparation
         drawn = drawn_machine(
             scene.machine,
-            room.tables.tools[number],
-            room.part_frame.turn_zero,
+            room.setup.tables.tools[number],
+            room.setup.part_frame.turn_zero,
             scene.job.file.stock,
-            room.tables.true_zero,
+            room.setup.tables.true_zero,
         )
         return drawn, drawn.glb()
 

@@ -12,8 +12,8 @@ from typing import Any, TypeVar
 
 from twin.errors import TwinError
 from twin.processor import give_way, take_precedence
+from twin.training.room.room import Room
 from twin.training.session.log import Who
-from twin.training.session.room import Room
 from twin.training.session.session import Session
 from twin.training.session.snapshot import Snapshot
 
@@ -233,7 +233,7 @@ class Driver:
         if self._holder is None:
             return
         heard = self._beats.get(self._holder, -1.0)
-        if self.session.room.running != "jog":
+        if self.session.room.slot.running != "jog":
             self._holder = None
         elif time.perf_counter() - heard > HELD_S:
             self._holder = None

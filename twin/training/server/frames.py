@@ -12,9 +12,9 @@ import numpy as np
 from twin.cutting.height_map import HeightMap
 from twin.cutting.patches import patch_message
 from twin.cutting.sweeping import Rectangle, union
+from twin.training.program.preview import Preview
+from twin.training.room.room import Room
 from twin.training.server.driver import Look
-from twin.training.session.preview import Preview
-from twin.training.session.room import Room
 from twin.training.session.snapshot import Snapshot
 
 STATE = 1
@@ -146,7 +146,7 @@ class StockFeed:
 
     def note(self, room: Room) -> None:
         """Look at the stock of the room that is seen."""
-        work = room.work
+        work = room.setup.work
         if work is None:
             return
         with self._lock:
@@ -160,7 +160,7 @@ class StockFeed:
             if changed[0] < changed[1]:
                 self.version += 1
                 self._changes.append((self.version, changed))
-                self._note_tool(work.map, changed, room.tables.spindle)
+                self._note_tool(work.map, changed, room.setup.tables.spindle)
 
     def _begin_tools(self, stock: HeightMap) -> None:
         """Of a stock as it was earlier, what is cut was cut by whom it is known of."""

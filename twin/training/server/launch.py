@@ -154,7 +154,7 @@ def prompt_threads() -> Iterator[None]:
 def warm_up(scene: Scene) -> None:
     """Work a machine that nobody sees, so that nothing is compiled or loaded when a key is pressed."""
     session = Session(scene)
-    middle = len(session.room.lines) // 2
+    middle = len(session.room.program.lines) // 2
     search: tuple[Who, dict[str, object]] = ("operator", {"do": "search", "line": middle})
     session.submit({"do": "mode", "mode": "auto"})
     session.submit({"do": "cycle_start"})

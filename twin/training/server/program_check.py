@@ -13,12 +13,13 @@ from starlette.websockets import WebSocketDisconnect
 
 from twin.nc.text.diagnostics import Diagnostic
 from twin.nc.text.source import source_from_text
+from twin.training.program.preview import PathToCome
+from twin.training.room.room import Room
+from twin.training.room.run_settings import path_to_come
 from twin.training.scene.phrases import finding_in, translated
 from twin.training.scene.vocabulary import LANGUAGES
 from twin.training.server.driver import Driver
 from twin.training.session.commands import Load
-from twin.training.session.preview import PathToCome
-from twin.training.session.room import Room
 
 
 class ProgramCheck:
@@ -68,8 +69,8 @@ class ProgramCheck:
         program = Load(text=text).text
 
         def asked(room: Room) -> PathToCome:
-            source = source_from_text(program, room.program.name)
-            return dataclasses.replace(room.path_to_come(), source=source, search=0)
+            source = source_from_text(program, room.program.source.name)
+            return dataclasses.replace(path_to_come(room), source=source, search=0)
 
         async with self._one:
             path = await asyncio.wrap_future(self._driver.inquire(asked))

@@ -11,10 +11,10 @@ import numpy as np
 
 from twin.errors import TwinError, UsageError
 from twin.files.atomic import write_text
+from twin.training.room.room import Room
+from twin.training.room.workpiece import Workpiece
 from twin.training.scene.scene_file import read_scene
 from twin.training.scene.vocabulary import Language, vocabulary
-from twin.training.session.room import Room
-from twin.training.session.workpiece import Workpiece
 
 SLACK = 0.03
 """Share by which the material that is cut off may differ from that of the teacher's part."""
@@ -52,7 +52,7 @@ def scene_of(room: Room, language: Language, title: str, story: str) -> SceneTex
     Raises:
         UsageError: The room cannot be written down as a scene.
     """
-    tables, file = room.tables, room.scene.file
+    tables, file = room.setup.tables, room.scene.file
     if not title.strip():
         raise UsageError("a scene needs a title")
     first = next(iter(tables.tools))
@@ -66,15 +66,17 @@ def scene_of(room: Room, language: Language, title: str, story: str) -> SceneTex
         "story": {language: story.strip() or title.strip()},
         "job": file.job.model_dump(mode="json", exclude_unset=True),
         "start": _start(room),
-        "faults": [fault.model_dump(mode="json", exclude_unset=True) for fault in room.faults],
+        "faults": [
+            fault.model_dump(mode="json", exclude_unset=True) for fault in room.faults.active
+        ],
         "tasks": [
             {"text": {language: words["task_finished"]}, "points": _FINISHED, "finished": True},
             {"text": {language: words["task_no_alarm"]}, "points": _NO_ALARM, "no_alarm": ["any"]},
         ],
     }
-    if room.work is not None and room.work.removed > 0.0:
-        content["part"] = _part(room.work)
-    return SceneText(content, "\n".join(room.lines) + "\n")
+    if room.setup.work is not None and room.setup.work.removed > 0.0:
+        content["part"] = _part(room.setup.work)
+    return SceneText(content, "\n".join(room.program.lines) + "\n")
 
 
 def write_scene(scene: SceneText, folder: Path) -> Path:
@@ -105,11 +107,11 @@ def write_scene(scene: SceneText, folder: Path) -> Path:
 
 def _start(room: Room) -> dict[str, Any]:
     """How the machine and its control stand."""
-    names, tables = room.machine.machine.axes.names, room.tables
+    names, tables = room.machine.machine.axes.names, room.setup.tables
     off = tables.zero - tables.true_zero
     longer = tables.lengths[tables.spindle] - tables.tool.length
     start: dict[str, Any] = {
-        "mode": room.mode,
+        "mode": room.panel.mode,
         "position": {
             name: round(float(value), 3)
             for name, value in zip(names, room.standing_setpoint, strict=True)
@@ -118,11 +120,11 @@ def _start(room: Room) -> dict[str, Any]:
             name: round(float(value), 4) for name, value in zip(names, off, strict=True) if value
         },
         "tool_length_error": round(longer, 4),
-        "feed_override": room.feed_override,
-        "rapid_override": room.rapid_override,
+        "feed_override": room.panel.feed_override,
+        "rapid_override": room.panel.rapid_override,
     }
-    if room.spindle.speed is not None:
-        start["speed"] = room.spindle.speed
+    if room.auxiliaries.spindle.speed is not None:
+        start["speed"] = room.auxiliaries.spindle.speed
     return start
 
 

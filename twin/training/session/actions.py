@@ -1,15 +1,15 @@
 """What each command does at the machine, and why it may be refused."""
 
 import dataclasses
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from typing import Any
 
 from twin.errors import UsageError
 from twin.nc.text.source import source_from_text
+from twin.training.program.run_options import RunOptions
+from twin.training.room.manual_motion import SHORTEST_MOVE, JogMove, within_travel
+from twin.training.room.room import Room
 from twin.training.session import commands as c
-from twin.training.session.faults import forget_offset, inject, repair
-from twin.training.session.program_run import RunOptions
-from twin.training.session.room import SHORTEST_WAY, Leg, Room
 from twin.units import SECONDS_PER_MINUTE
 
 DRY_RUN_FEED = 3000.0
@@ -22,15 +22,13 @@ ENDLESS = 3600.0
 """How far a jog goes at most that lasts while its key is held [mm or deg]."""
 REFERENCE = 0.0
 """Machine coordinate of the reference point of every axis."""
-EDITS_KEPT = 100
-"""Changes of the program that can be taken back."""
 
 
 def carry_out(room: Room, command: c.Command) -> None:
     """Do what a command asks for.
 
     Raises:
-        TwinError: The machine refuses; the message says why. Nothing has changed then.
+        TwinError: The machine refuses, for the reason in the message. Nothing has changed then.
     """
     _ACTIONS[type(command)](room, command)
     room.rest.wake()
@@ -39,216 +37,205 @@ def carry_out(room: Room, command: c.Command) -> None:
 
 
 def _mode(room: Room, command: c.SelectMode) -> None:
-    within = {"auto", "single"}
-    if room.run is not None and not {room.mode, command.mode} <= within:
-        held = room.running == "program" and (room.run.held or room.waiting) and not room.moving
-        if command.mode != "jog" or not held:
+    within, slot = {"auto", "single"}, room.slot
+    if slot.run is not None and not {room.panel.mode, command.mode} <= within:
+        held = slot.running == "program" and (slot.run.held or slot.waiting)
+        if command.mode != "jog" or not held or room.machine.moving:
             raise UsageError("the mode cannot change while something runs: reset first")
-        room.suspend()
-    if room.suspended is not None and command.mode == "mdi":
+        slot.suspend(room.machine.setpoint)
+    if slot.suspended is not None and command.mode == "mdi":
         raise UsageError("a program is held: reset first")
-    room.mode = command.mode
+    room.panel.select(command.mode)
 
 
 def _cycle_start(room: Room, _command: c.CycleStart) -> None:
     _require_no_alarm(room)
-    if room.suspended is not None and room.run is None and room.mode != "jog":
-        room.resume()
-    if room.waiting:
+    slot, mode = room.slot, room.panel.mode
+    if slot.suspended is not None and slot.run is None and mode != "jog":
+        slot.resume(room.machine.setpoint)
+    if slot.waiting:
         room.go_on()
-    elif room.run is not None and room.running != "jog":
-        room.run.start()
-    elif room.mode == "jog":
+    elif slot.run is not None and slot.running != "jog":
+        slot.run.start()
+    elif mode == "jog":
         raise UsageError("cycle start does nothing in manual jog")
-    elif room.mode == "mdi":
-        if not room.entered.strip():
+    elif mode == "mdi":
+        if not room.panel.entered.strip():
             raise UsageError("the MDI line is empty")
-        options = RunOptions(inherited=room.inherited)
-        room.start_run(source_from_text(room.entered, "MDI"), "mdi", options)
+        options = RunOptions(inherited=slot.inherited)
+        room.start_run(source_from_text(room.panel.entered, "MDI"), "mdi", options)
     else:
         _start_program(room)
 
 
 def _start_program(room: Room) -> None:
-    dry = DRY_RUN_FEED if room.switches.dry_run else None
+    dry = DRY_RUN_FEED if room.panel.dry_run else None
+    searched = room.program.searched
     # Where the part tells, it is no matter from which block on it was made.
-    whole = dry is None and (room.searched == 0 or room.scene.file.part is not None)
-    options = RunOptions(dry_feed=dry, search=room.searched)
-    room.start_run(room.program, "program", options)
-    if room.run is not None:
+    whole = dry is None and (searched == 0 or room.scene.file.part is not None)
+    options = RunOptions(dry_feed=dry, search=searched)
+    room.start_run(room.program.source, "program", options)
+    if room.slot.run is not None:
         room.judge.note_start(whole=whole)
-    room.searched = 0
+    room.program.begin_at(0)
 
 
 def _search(room: Room, command: c.Search) -> None:
     _require_no_run(room, "a search begins while nothing runs: reset first")
-    if command.line > len(room.lines):
-        raise UsageError(f"the program has {len(room.lines)} lines")
-    room.searched = command.line
+    room.program.begin_at(command.line)
 
 
 def _switch(room: Room, command: c.Switch) -> None:
     # A program is read ahead of the axes: what changes how it is read cannot change any more.
     if command.name != "optional_stop":
         _require_no_run(room, "that switch cannot change while something runs: reset first")
-    setattr(room.switches, command.name, command.on)
+    room.panel.turn_switch(command.name, on=command.on)
 
 
 def _feed_hold(room: Room, _command: c.FeedHold) -> None:
-    if room.run is None:
+    if room.slot.run is None:
         raise UsageError("nothing runs")
-    if room.running == "jog":
-        room.stop_driving_by_hand()
+    if room.slot.running == "jog":
+        _stop_jog(room)
         return
-    room.run.hold()
+    room.slot.run.hold()
     room.judge.note_hold(room)
 
 
 def _reset(room: Room, _command: c.Reset) -> None:
-    if room.run is None and room.alarm is not None:
+    slot = room.slot
+    if slot.run is None and room.alarm is not None:
         room.clear()
-    room.legs.clear()
-    room.suspended = None
-    room.searched = 0
-    room.inherited = None
-    if room.waiting:
-        room.drop_run()
-    elif room.run is not None:
-        room.run.drop()
-    room.running_down = room.spindle.turns and room.moving
-    room.spindle = room.spindle.stopped()
-    # LinuxCNC closes the coolant with every abort (iocontrol, EMC_TOOL_ABORT).
-    room.coolant = False
+    room.manual.clear()
+    slot.forget_suspended()
+    room.program.begin_at(0)
+    slot.forget_inherited()
+    if slot.waiting:
+        slot.drop(room.machine.setpoint)
+    elif slot.run is not None:
+        slot.run.drop()
+    room.auxiliaries.reset(axes_move=room.machine.moving)
 
 
 def _emergency_stop(room: Room, command: c.EmergencyStop) -> None:
-    room.pressed = command.pressed
+    room.panel.press_stop(pressed=command.pressed)
     if command.pressed:
         room.stop_all("emergency-stop", "the emergency stop button was pressed")
-        room.coolant = False
+        room.auxiliaries.switch_coolant(on=False)
 
 
 def _override(room: Room, command: c.Override) -> None:
-    if command.dial == "feed":
-        room.feed_override = command.percent
-    elif command.dial == "spindle":
-        room.spindle_override = command.percent
-    else:
-        room.rapid_override = command.percent
+    room.panel.turn_dial(command.dial, command.percent)
 
 
 def _jog(room: Room, command: c.Jog) -> None:
     _require_jog(room, command.axis)
-    if room.run is not None:
+    if room.slot.run is not None:
         raise UsageError("an axis is being jogged already")
-    place = _stands(room, command.axis)
-    way = command.direction * (command.step if command.step is not None else ENDLESS)
-    target = room.within_travel(command.axis, place + way)
-    if abs(target - place) < SHORTEST_WAY:
+    place = _position(room, command.axis)
+    distance = command.direction * (command.step if command.step is not None else ENDLESS)
+    move = _jog_move(room, command.axis, place + distance, command.feed)
+    if abs(move.target - place) < SHORTEST_MOVE:
         raise UsageError(f"{command.axis} stands at the end of its travel")
-    room.drive_by_hand([Leg(command.axis, target, _feed(room, command.axis, command.feed))])
+    room.drive_by_hand([move])
 
 
 def _handwheel(room: Room, command: c.Handwheel) -> None:
     _require_jog(room, command.axis)
-    axis, follows = command.axis, bool(room.legs) and room.legs[-1].wheel
-    if room.run is not None and not (follows and room.legs[-1].axis == axis):
+    axis, last, run = command.axis, room.manual.wheel_move, room.slot.run
+    if run is not None and not (last is not None and last.axis == axis):
         raise UsageError("an axis is being jogged already")
-    begin = room.legs[-1].target if follows else _stands(room, axis)
-    target = room.within_travel(axis, begin + command.clicks * command.step)
-    leg = Leg(axis, target, _feed(room, axis, HAND_FEED), wheel=True)
-    if follows:
-        room.follow_wheel(leg)
+    place = _position(room, axis)
+    begin = place if last is None else last.target
+    move = _jog_move(room, axis, begin + command.clicks * command.step)._replace(wheel=True)
+    if run is not None:
+        room.manual.follow_wheel(move, run, place)
     else:
-        room.drive_by_hand([leg])
+        room.drive_by_hand([move])
 
 
 def _reference(room: Room, _command: c.Reference) -> None:
     _require_still(room)
     names = room.machine.machine.axes.names
     order = sorted(names, key=lambda name: name != "Z")
-    room.drive_by_hand(
-        Leg(name, room.within_travel(name, REFERENCE), _feed(room, name, HAND_FEED))
-        for name in order
-    )
+    room.drive_by_hand(_jog_move(room, name, REFERENCE) for name in order)
 
 
 def _return_to_path(room: Room, _command: c.ReturnToPath) -> None:
-    if room.suspended is None:
+    suspended = room.slot.suspended
+    if suspended is None:
         raise UsageError("no program is held")
     _require_still(room)
     names = room.machine.machine.axes.names
-    goal = room.suspended.place
+    goal = dict(zip(names, map(float, suspended.place), strict=True))
     # Up first, down last: the tool goes over what it may meet.
-    up = goal[names.index("Z")] > _stands(room, "Z")
+    up = goal["Z"] > _position(room, "Z")
     order = sorted(names, key=lambda name: (name == "Z") != up)
-    room.drive_by_hand(
-        Leg(name, float(goal[names.index(name)]), _feed(room, name, HAND_FEED)) for name in order
-    )
+    room.drive_by_hand(JogMove(name, goal[name], _feed(room, name)) for name in order)
 
 
-def _stands(room: Room, axis: str) -> float:
+def _position(room: Room, axis: str) -> float:
     return float(room.standing_setpoint[_column(room, axis)])
 
 
-def _feed(room: Room, axis: str, feed: float) -> float:
+def _jog_move(room: Room, axis: str, target: float, feed: float = HAND_FEED) -> JogMove:
+    """A move by hand that ends within the travel, no faster than the axis goes."""
+    within = within_travel(room.machine.machine, axis, _position(room, axis), target)
+    return JogMove(axis, within, _feed(room, axis, feed))
+
+
+def _feed(room: Room, axis: str, feed: float = HAND_FEED) -> float:
     return min(feed, SECONDS_PER_MINUTE * room.machine.machine.axis(axis).velocity)
 
 
 def _jog_stop(room: Room, _command: c.JogStop) -> None:
-    room.stop_driving_by_hand()
+    _stop_jog(room)
+
+
+def _stop_jog(room: Room) -> None:
+    """Come to rest on a move by hand, and forget the others."""
+    room.manual.clear()
+    room.slot.stop_jog()
 
 
 def _enter(room: Room, command: c.Enter) -> None:
-    if room.mode != "mdi":
+    if room.panel.mode != "mdi":
         raise UsageError("a block is typed in the mode MDI")
-    room.entered = command.text
+    room.panel.enter(command.text)
 
 
 def _edit(room: Room, command: c.Edit) -> None:
-    _require_no_run(room, "a program cannot be edited while something runs: reset first")
-    lines = list(room.lines)
-    if command.line > len(lines) + 1:
-        raise UsageError(f"the program has {len(lines)} lines")
-    new = [] if command.text is None else command.text.split("\n")
-    lines[command.line - 1 : command.line] = new
-    room.edits = [*room.edits, room.lines][-EDITS_KEPT:]
-    _load(room, lines)
+    _require_editable(room)
+    room.program.edit(command.line, command.text)
 
 
 def _load_program(room: Room, command: c.Load) -> None:
-    _require_no_run(room, "a program cannot be edited while something runs: reset first")
-    room.edits = [*room.edits, room.lines][-EDITS_KEPT:]
-    _load(room, command.text.rstrip("\n").split("\n"))
+    _require_editable(room)
+    room.program.load(command.text)
 
 
 def _undo(room: Room, _command: c.Undo) -> None:
-    _require_no_run(room, "a program cannot be edited while something runs: reset first")
-    if not room.edits:
-        raise UsageError("the program has not been changed")
-    *room.edits, lines = room.edits
-    _load(room, lines)
+    _require_editable(room)
+    room.program.undo()
 
 
 def _reload(room: Room, _command: c.Reload) -> None:
+    _require_editable(room)
+    room.program.reload()
+
+
+def _require_editable(room: Room) -> None:
     _require_no_run(room, "a program cannot be edited while something runs: reset first")
-    room.edits = [*room.edits, room.lines][-EDITS_KEPT:]
-    _load(room, room.scene.preparation.source.lines)
-
-
-def _load(room: Room, lines: Iterable[str]) -> None:
-    room.lines = tuple(lines)
-    room.program = source_from_text("\n".join(room.lines), room.program.name)
-    room.searched = 0
 
 
 def _spindle(room: Room, command: c.Spindle) -> None:
-    state = dataclasses.replace(room.spindle, started=command.on)
+    state = dataclasses.replace(room.auxiliaries.spindle, started=command.on)
     if command.speed is not None:
         state = dataclasses.replace(state, speed=command.speed)
     if command.on:
         _require_no_alarm(room)
-        if room.run is not None and room.running != "jog" and not room.held:
+        slot = room.slot
+        if slot.run is not None and slot.running != "jog" and not slot.held:
             # AXIS: the spindle is started by hand only where nothing runs; stopped, always.
             raise UsageError("a program runs: hold it before the spindle is started by hand")
         if not state.asked:
@@ -260,50 +247,52 @@ def _spindle(room: Room, command: c.Spindle) -> None:
 def _coolant(room: Room, command: c.Coolant) -> None:
     if command.on:
         _require_no_alarm(room)
-    room.coolant = command.on
+    room.auxiliaries.switch_coolant(on=command.on)
 
 
 def _change_tool(room: Room, command: c.ChangeTool) -> None:
     _require_no_run(room, "the tool cannot change while something runs: reset first")
     _require_still(room)
-    if room.spindle.turns:
+    if room.auxiliaries.spindle.turns:
         raise UsageError("the spindle turns: stop it before the tool is changed")
     room.mount(command.number)
-    room.renew_tool(command.number)
+    room.setup.cut.renew(command.number)
+    room.alarms.renew_tool(command.number)
 
 
 def _new_blank(room: Room, _command: c.NewBlank) -> None:
     _require_no_run(room, "the blank cannot change while something runs: reset first")
     _require_still(room)
-    if room.spindle.turns:
+    if room.auxiliaries.spindle.turns:
         raise UsageError("the spindle turns: stop it before the blank is changed")
-    room.new_blank()
+    room.judge.note_blank()
+    room.setup.new_blank()
 
 
 def _set_zero(room: Room, command: c.SetZero) -> None:
     column = _column(room, command.axis)
     _require_no_run(room)
-    stands = float(room.machine.position[column])
-    longer = float((room.tables.program_zero - room.tables.zero)[column])
-    room.tables.zero[column] = stands - command.reading - longer
-    forget_offset(room, command.axis)
+    tables = room.setup.tables
+    place = float(room.machine.position[column])
+    longer = float((tables.program_zero - tables.zero)[column])
+    tables.set_zero(column, place - command.reading - longer)
+    room.faults.forget_offset(command.axis)
 
 
 def _set_offset(room: Room, command: c.SetOffset) -> None:
     _require_no_run(room)
-    column = _column(room, command.axis)
+    column, tables = _column(room, command.axis), room.setup.tables
     if command.name is not None:
-        moved = room.tables.set_offset(command.name, command.axis, command.value)
-        if room.inherited is not None:
-            room.inherited = room.inherited.after_offset(command.name, column, moved)
+        moved = tables.set_offset(command.name, command.axis, command.value)
+        room.slot.shift_offset(command.name, column, moved)
         return
-    room.tables.zero[column] = command.value
-    forget_offset(room, command.axis)
+    tables.set_zero(column, command.value)
+    room.faults.forget_offset(command.axis)
 
 
 def _set_tool(room: Room, command: c.SetTool) -> None:
     _require_no_run(room)
-    room.tables.set_tool(command.number, command.length, command.radius)
+    room.setup.tables.set_tool(command.number, command.length, command.radius)
 
 
 def _sign(_room: Room, _command: c.Sign) -> None:
@@ -323,11 +312,11 @@ def _finish(room: Room, _command: c.Finish) -> None:
 
 
 def _inject(room: Room, command: c.Inject) -> None:
-    inject(room, command.fault)
+    room.faults.inject(room, command.fault)
 
 
 def _repair(room: Room, _command: c.Repair) -> None:
-    repair(room)
+    room.faults.repair(room)
 
 
 def _require_no_alarm(room: Room) -> None:
@@ -338,27 +327,29 @@ def _require_no_alarm(room: Room) -> None:
 def _require_no_run(
     room: Room, why: str = "the tables cannot change while something runs: reset first"
 ) -> None:
-    if room.run is not None or room.suspended is not None:
+    if not room.slot.empty:
         raise UsageError(why)
 
 
 def _require_jog(room: Room, axis: str) -> None:
     """An axis may be jogged; off its limit switch also while that alarm stands."""
-    if room.mode != "jog":
+    if room.panel.mode != "jog":
         raise UsageError("jogging needs the mode manual jog")
     _column(room, axis)
-    if room.alarm is None or room.alarm.code != "hard-limit" or room.pressed:
+    if room.alarm is None or room.alarm.code != "hard-limit" or room.panel.stop_pressed:
         _require_no_alarm(room)
-    elif room.on_switch not in ("", axis):
-        raise UsageError(f"{room.on_switch} stands on its limit switch: jog it back first")
+    elif room.machine.on_limit_switch not in ("", axis):
+        raise UsageError(
+            f"{room.machine.on_limit_switch} stands on its limit switch: jog it back first"
+        )
 
 
 def _require_still(room: Room) -> None:
     """Nothing runs, and no alarm stands."""
     _require_no_alarm(room)
-    if room.mode != "jog":
+    if room.panel.mode != "jog":
         raise UsageError("that is done in the mode manual jog")
-    if room.run is not None or room.moving:
+    if room.slot.run is not None or room.machine.moving:
         raise UsageError("the axes still move")
 
 

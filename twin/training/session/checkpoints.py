@@ -26,7 +26,7 @@ from twin.nc.control.constructs import Structure
 from twin.nc.control.program_counter import FoundInText
 from twin.nc.text.grammar import Grammar
 from twin.nc.text.lines import Lines
-from twin.training.session.room import SLICE, Room
+from twin.training.room.room import SLICE, Room
 
 APART_S = 4.0
 """Machine time between two copies [s]."""
@@ -192,15 +192,15 @@ def checkpoint(room: Room, done: int, before: tuple[KeptMap, ...]) -> Checkpoint
 
 def _stocks(room: Room) -> Iterator[HeightMap]:
     """What is cut: the part, and what the force of the cut is felt from."""
-    if room.work is not None:
-        yield room.work.map
-    if room.cut.process is not None:
-        yield room.cut.process.material
+    if room.setup.work is not None:
+        yield room.setup.work.map
+    if room.setup.cut.process is not None:
+        yield room.setup.cut.process.material
 
 
 def _maps(room: Room) -> Iterator[Cells]:
     """What cutting changes of them."""
     for stock in _stocks(room):
         yield stock.heights
-    if room.cut.process is not None:
-        yield room.cut.process.walls
+    if room.setup.cut.process is not None:
+        yield room.setup.cut.process.walls

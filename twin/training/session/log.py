@@ -4,9 +4,9 @@ import dataclasses
 from collections.abc import Sequence
 from typing import Any, Literal
 
+from twin.training.room.room import SLICE, Room
 from twin.training.session.actions import carry_out
 from twin.training.session.commands import command_from
-from twin.training.session.room import SLICE, Room
 
 Who = Literal["operator", "trainer"]
 

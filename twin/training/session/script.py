@@ -4,8 +4,8 @@ import dataclasses
 from collections.abc import Iterable
 
 from twin.errors import TwinError
+from twin.training.room.room import Room
 from twin.training.scene.scene_file import Scene, StepTable
-from twin.training.session.room import Room
 from twin.training.session.session import Session
 
 PATIENCE_S = 600.0
@@ -97,13 +97,13 @@ def _wait(session: Session, step: StepTable, number: int) -> None:
 
 
 def _has_come(room: Room, step: StepTable, end: float) -> bool:
-    stands = not room.moving and (room.run is None or room.held)
+    stands = not room.machine.moving and (room.slot.run is None or room.slot.held)
     return {
         "rest": stands,
-        "moving": room.moving,
-        "alarm": room.alarm is not None and not room.moving,
+        "moving": room.machine.moving,
+        "alarm": room.alarm is not None and not room.machine.moving,
         "line": int(room.machine.setpoint.line[0]) == step.value,
-        "end": room.run is None and not room.moving,
-        "contact": room.touches,
+        "end": room.slot.run is None and not room.machine.moving,
+        "contact": room.setup.touches(room.auxiliaries.spindle),
         "seconds": room.time_s >= end,
     }[step.wait or "rest"]

@@ -8,6 +8,7 @@ import dataclasses
 from typing import Any, get_args
 
 from twin.errors import TwinError
+from twin.training.room.room import SLICE, Room
 from twin.training.scene.scene_file import Scene
 from twin.training.session.actions import carry_out
 from twin.training.session.checkpoints import Checkpoints
@@ -29,7 +30,6 @@ from twin.training.session.commands import (
     command_from,
 )
 from twin.training.session.log import Entry, Replay, Who, relive
-from twin.training.session.room import SLICE, Room
 from twin.training.session.snapshot import Snapshot, take_snapshot
 
 LIVED_AGAIN_S = 4.0

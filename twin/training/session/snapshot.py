@@ -6,13 +6,13 @@ import numpy as np
 
 from twin.nc.canonical import FloatArray
 from twin.nc.functions import SpindleState
+from twin.training.program.block_walk import ModalState
+from twin.training.room.judge import Verdict
+from twin.training.room.live_cut import Loads
+from twin.training.room.observed import Notice
+from twin.training.room.room import Room
 from twin.training.scene.fault_table import FaultTable
 from twin.training.scene.scene_file import Mode
-from twin.training.session.block_walk import ModalState
-from twin.training.session.judge import Verdict
-from twin.training.session.live_cut import Loads
-from twin.training.session.observed import Notice
-from twin.training.session.room import Room
 from twin.units import SECONDS_PER_MINUTE
 
 Row = tuple[float, ...]
@@ -118,84 +118,84 @@ def take_snapshot(room: Room) -> Snapshot:
     now = room.samples[-1:]
     setpoint = now.setpoint
     position = now.joint_position[0]
-    zero = room.tables.program_zero
+    zero = room.setup.tables.program_zero
     to_go, modal = _from_run(room, zero)
     limits = np.array([machine.axis(name).force_limit or np.inf for name in machine.axes.names])
-    tip = room.part_frame.position((position - room.tables.longer)[None])[0]
+    tip = room.setup.part_frame.position((position - room.setup.tables.longer)[None])[0]
     return Snapshot(
         time_s=room.time_s,
         axes=machine.axes.names,
         units=tuple("mm" if kind == "linear" else "deg" for kind in machine.axes.kinds),
-        mode=room.mode,
-        running=room.running,
-        held=room.held,
-        moving=room.moving,
+        mode=room.panel.mode,
+        running=room.slot.running,
+        held=room.slot.held,
+        moving=room.machine.moving,
         alarm=room.alarm,
-        broken=room.broken.get(room.tables.spindle),
-        loads=room.cut.loads(room.samples.tool),
-        pressed=room.pressed,
-        position=_row(position - zero + room.label),
+        broken=room.alarms.broken.get(room.setup.tables.spindle),
+        loads=room.setup.cut.loads(room.samples.tool),
+        pressed=room.panel.stop_pressed,
+        position=_row(position - zero + room.slot.label),
         machine_position=_row(position),
         distance_to_go=_row(to_go),
         following_error=_row(setpoint.position[0] - position),
         load=_row(np.abs(now.drive_force[0]) / limits),
         feed=_feed(now.joint_velocity[0]),
         modal=modal,
-        feed_override=room.feed_override,
-        rapid_override=room.rapid_override,
-        spindle=room.spindle,
-        spindle_turning=room.spindle.turning,
-        spindle_override=room.spindle_override,
-        counter_clockwise=room.spindle.counter_clockwise,
-        coolant=room.coolant,
-        optional_stop=room.switches.optional_stop,
-        block_skip=room.switches.block_skip,
-        dry_run=room.switches.dry_run,
-        searched=room.searched,
-        suspended=room.suspended is not None,
-        changed=bool(room.edits),
-        alarms=tuple(room.alarms),
+        feed_override=room.panel.feed_override,
+        rapid_override=room.panel.rapid_override,
+        spindle=room.auxiliaries.spindle,
+        spindle_turning=room.auxiliaries.spindle.turning,
+        spindle_override=room.panel.spindle_override,
+        counter_clockwise=room.auxiliaries.spindle.counter_clockwise,
+        coolant=room.auxiliaries.coolant,
+        optional_stop=room.panel.optional_stop,
+        block_skip=room.panel.block_skip,
+        dry_run=room.panel.dry_run,
+        searched=room.program.searched,
+        suspended=room.slot.suspended is not None,
+        changed=bool(room.program.edits),
+        alarms=tuple(room.alarms.history),
         offsets=tuple(
             (name, tuple(float(values.get(axis, 0.0)) for axis in machine.axes.names))
-            for name, values in room.tables.offsets.items()
+            for name, values in room.setup.tables.offsets.items()
         ),
-        program=room.lines,
+        program=room.program.lines,
         line=room.line,
-        entered=room.entered,
-        tool=room.tables.spindle,
+        entered=room.panel.entered,
+        tool=room.setup.tables.spindle,
         tools=tuple(
             ToolRow(
                 number,
                 tool.kind,
                 tool.diameter,
-                room.tables.lengths[number],
-                room.tables.radii[number],
+                room.setup.tables.lengths[number],
+                room.setup.tables.radii[number],
             )
-            for number, tool in room.tables.tools.items()
+            for number, tool in room.setup.tables.tools.items()
         ),
-        zero=_row(room.tables.zero),
-        origin=_row(room.part_frame.position(zero[None])[0]),
-        touches=room.touches,
+        zero=_row(room.setup.tables.zero),
+        origin=_row(room.setup.part_frame.position(zero[None])[0]),
+        touches=room.setup.touches(room.auxiliaries.spindle),
         verdicts=tuple(room.judge.verdicts),
         answers=tuple(room.judge.evidence.answers.items()),
         hints=room.judge.hints,
         score=room.judge.score,
         over=room.judge.over,
-        faults=tuple(room.faults),
+        faults=tuple(room.faults.active),
         trail=_row(tip),
     )
 
 
 def _from_run(room: Room, zero: FloatArray) -> tuple[FloatArray, ModalState | None]:
     """Distance to go, and what is in force."""
-    if room.run is None:
-        return np.zeros(len(zero)), room.modal
+    if room.slot.run is None:
+        return np.zeros(len(zero)), room.slot.modal
     setpoint = room.machine.setpoint
     move = int(setpoint.move[0])
-    target = room.run.target(move)
+    target = room.slot.run.reader.moves.target(move)
     to_go = np.zeros(len(zero)) if target is None else target[0] + zero - setpoint.position[0]
     # A jog has codes of its own, which are nobody's business.
-    return to_go, room.modal if room.running == "jog" else room.run.modal(move)
+    return to_go, room.slot.modal if room.slot.running == "jog" else room.slot.run.modal(move)
 
 
 def _feed(velocity: FloatArray) -> float:

@@ -12,10 +12,10 @@ from typing import Any
 import jinja2
 
 from twin.files.atomic import write_text
+from twin.training.room.inspection import Inspection, Moment
 from twin.training.scene.phrases import finding_in, translated
 from twin.training.scene.scene_file import Scene
 from twin.training.scene.vocabulary import Words, in_language
-from twin.training.session.inspection import Inspection, Moment
 from twin.training.session.session import Session
 from twin.version import __version__
 
@@ -59,7 +59,7 @@ def score_sheet(session: Session, words: Words, date: str = "") -> dict[str, Any
         "alarms": [
             {"code": code, "name": words.alarm(code).name} for code in room.judge.evidence.alarms
         ],
-        "wrong": [_wrong(moment, words) for moment in tuple(room.moments)],
+        "wrong": [_wrong(moment, words) for moment in tuple(room.alarms.moments)],
         "lesson": _lesson(scene, words) if _fell_into_it(session) else None,
         "measured": None if room.handed_in is None else _measured(room.handed_in),
         "tasks": [
@@ -200,7 +200,7 @@ class SheetWriter:
         sheet = score_sheet(self._session, words, self._date)
         room = self._session.room
         part = None if room.handed_in is None else room.handed_in.moment.picture()
-        return score_page(sheet, words, [one.picture() for one in tuple(room.moments)], part)
+        return score_page(sheet, words, [one.picture() for one in tuple(room.alarms.moments)], part)
 
     def changed(self) -> None:
         """Something was done: the files are due."""
@@ -248,7 +248,7 @@ class SheetWriter:
             self._begin_folder()
         folder = self.folder
         assert folder is not None
-        moments = tuple(self._session.room.moments)
+        moments = tuple(self._session.room.alarms.moments)
         known = self._pictures
         self._pictures = {
             round(one.alarm.time_s, 3): known.get(round(one.alarm.time_s, 3)) or one.picture()

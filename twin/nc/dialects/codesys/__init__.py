@@ -6,10 +6,10 @@ from twin.nc.control.control import Control, Rules
 from twin.nc.control.dialect import Dialect
 from twin.nc.dialects.codesys import actions, program, subprograms, words
 from twin.nc.dialects.codesys.actions import ADDITIONAL
-from twin.nc.dialects.codesys.codes import CODES, INSTEAD
+from twin.nc.dialects.codesys.codes import CODES, REPLACEMENTS
 from twin.nc.dialects.codesys.decisions import DECISIONS
 from twin.nc.iso import base, shared_marks
-from twin.nc.path.paces import FeedMode
+from twin.nc.path.feed_rates import FeedMode
 from twin.nc.text.syntax import HEADING, Comment, Mark, Syntax
 
 CODESYS = Dialect(
@@ -37,10 +37,13 @@ CODESYS = Dialect(
             "motion",
         ),
         g=CODES,
-        instead=INSTEAD,
+        replacements=REPLACEMENTS,
         start=(15, 40, 50, 60, 90, 99),
         start_state={"feed_mode": FeedMode.PER_SECOND, "corner": Corner.EXACT_PATH},
-        m={number: MCode(meaning="end of program", late=True, ends=True) for number in (2, 30)},
+        m={
+            number: MCode(meaning="end of program", after_motion=True, ends=True)
+            for number in (2, 30)
+        },
         any_m=True,
         statements={
             "LET": program.let,

@@ -5,7 +5,7 @@ import math
 from twin.nc.control.codes import Action
 from twin.nc.control.compensation import compensate
 from twin.nc.control.control import Control, refuse_axis
-from twin.nc.control.interpolation import LineRule
+from twin.nc.control.modal import LineRule
 from twin.nc.dialects.codesys.program import variables
 from twin.nc.geometry.planes import XY, plane_with_normal
 from twin.nc.iso import offsets
@@ -155,7 +155,7 @@ def axis_named(control: Control, letter: str, word: Word) -> int:
 def length_vector(control: Control) -> None:
     """G43 I J K: the tool's vector is added to every position; 0 0 0 is off.
 
-    The next move leads into it or out of it: from where the axes stand to its end with the vector
+    The next move leads into it or out of it: from where the axes are to its end with the vector
     (page of the preprocessor), also where it names another axis.
     """
     vector = [control.length(control.take(letter)) for letter in "IJK"]
@@ -217,7 +217,7 @@ def shift_relatively(control: Control) -> None:
 
 
 def set_reference(control: Control) -> None:
-    """G56: the place where the machine stands gets the given coordinates.
+    """G56: the place where the machine is gets the given coordinates.
 
     Decision: the manual's page is not fully known; this is what its title says.
     """

@@ -1,7 +1,7 @@
 """Arcs of CODESYS SoftMotion: radius, centre with the 10 % rule, opening angle, any plane."""
 
 from twin.nc.control.control import Control
-from twin.nc.control.interpolation import ArcRule
+from twin.nc.control.modal import ArcRule
 from twin.nc.geometry import arcs
 from twin.nc.geometry.arcs import SAME_POINT, Bounds, Point, distance, turned
 from twin.nc.iso.circular import both_senses, refuse_arc, start_and_end, sweep_arc, take_center

@@ -12,7 +12,7 @@ from twin.nc.dialects.codesys.curves import (
 )
 from twin.nc.geometry.planes import XY, YZ, ZX
 from twin.nc.iso import base
-from twin.nc.iso.declared import instead, modal, motion_code, plane_code, refused
+from twin.nc.iso.declared import modal, motion_code, plane_code, refused, replacement
 from twin.nc.iso.tool_compensation import LEFT, RIGHT, end_compensation
 from twin.nc.path.blends import BlendKind
 
@@ -21,10 +21,12 @@ _PROFILE = "what it sets in the path preprocessing has no counterpart in the twi
 
 CODES: dict[float, GCode] = {
     0: motion_code("positioning in a straight line; FF is its feed", base.RAPID),
-    1: motion_code("straight line", base.FEED, "seed"),
-    2: motion_code("arc clockwise", CLOCKWISE, "seed"),
-    3: motion_code("arc counter-clockwise", COUNTER_CLOCKWISE, "seed"),
-    4: instead("dwell, seconds in T", base.dwell("T", "G4 needs T, its seconds", "write G4 T1")),
+    1: motion_code("straight line", base.FEED, "control page"),
+    2: motion_code("arc clockwise", CLOCKWISE, "control page"),
+    3: motion_code("arc counter-clockwise", COUNTER_CLOCKWISE, "control page"),
+    4: replacement(
+        "dwell, seconds in T", base.dwell("T", "G4 needs T, its seconds", "write G4 T1")
+    ),
     5: motion_code("point of a spline in X Y", FLAT_SPLINE),
     6: motion_code("parabola: X Y, vertex I J", PARABOLA),
     8: motion_code("ellipse clockwise: X Y I J K R", CLOCKWISE_ELLIPSE),
@@ -35,14 +37,14 @@ CODES: dict[float, GCode] = {
     17: plane_code("3D mode, plane X Y", XY, actions.plane_changed),
     18: plane_code("3D mode, plane Z X", ZX, actions.plane_changed),
     19: plane_code("3D mode, plane Y Z", YZ, actions.plane_changed),
-    20: instead(
+    20: replacement(
         "jump to L (or the label L? behind) when K is not 0",
         jumps.conditional_jump,
-        takes="L!",
+        consumes="L!",
     ),
-    31: instead("probe", actions.probe),
-    36: instead("write D to the variable O", program.write_variable, takes="D"),
-    37: instead("add D to the variable O", program.add_to_variable, takes="D"),
+    31: replacement("probe", actions.probe),
+    36: replacement("write D to the variable O", program.write_variable, consumes="D"),
+    37: replacement("add D to the variable O", program.add_to_variable, consumes="D"),
     **refused("state flags", _PROFILE, 38),
     **refused("parameters of the preprocessing", _PROFILE, 39),
     40: modal("radius compensation off", "compensation", end_compensation),
@@ -66,29 +68,31 @@ CODES: dict[float, GCode] = {
         "smoothing",
         actions.smooth_corners(BlendKind.ARC),
     ),
-    53: instead("coordinate shift off", actions.reset_shift),
-    54: instead("coordinate shift, absolute", actions.shift_absolutely),
-    55: instead("coordinate shift, relative", actions.shift_relatively),
-    56: instead("set the reference here", actions.set_reference),
+    53: replacement("coordinate shift off", actions.reset_shift),
+    54: replacement("coordinate shift, absolute", actions.shift_absolutely),
+    55: replacement("coordinate shift, relative", actions.shift_relatively),
+    56: replacement("set the reference here", actions.set_reference),
     60: modal("loop avoidance off", "loops", actions.keep_loops),
     61: modal("loop avoidance on: loops are cut out", "loops", actions.cut_loops),
-    70: instead(
+    70: replacement(
         "additional axis L (6 is C) goes with each move; without L all",
         actions.go_as_programmed,
-        takes="L",
+        consumes="L",
     ),
-    71: instead(
-        "additional axis L goes evenly over the moves up to G70", actions.go_evenly, takes="L"
+    71: replacement(
+        "additional axis L goes evenly over the moves up to G70", actions.go_evenly, consumes="L"
     ),
     75: modal("wait for the motion before variables are read"),
     90: modal("absolute coordinates", "distance", incremental=False),
     91: modal("relative coordinates", "distance", incremental=True),
-    92: instead("position from which the path goes on", actions.set_position),
-    98: modal("centre I J K absolute", "centre", ground="seed", center_absolute=True),
-    99: modal("centre I J K relative to the start", "centre", ground="seed", center_absolute=False),
+    92: replacement("position from which the path goes on", actions.set_position),
+    98: modal("centre I J K absolute", "centre", basis="control page", center_absolute=True),
+    99: modal(
+        "centre I J K relative to the start", "centre", basis="control page", center_absolute=False
+    ),
 }
 
-INSTEAD: dict[float, str] = {
+REPLACEMENTS: dict[float, str] = {
     **dict.fromkeys(range(80, 90), "there are no canned cycles: write their moves"),
     **dict.fromkeys((57, 58, 59), "shifts are G54 and G55 with their distances"),
     **dict.fromkeys((94, 95), "F counts units per second"),

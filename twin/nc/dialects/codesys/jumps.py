@@ -7,11 +7,7 @@ from twin.nc.text.blocks import Location, Word
 
 
 def destination(control: Control, target: Word) -> Location:
-    """The block with the number of a word L, among those that may be jumped to.
-
-    Raises:
-        ProgramError: There is none.
-    """
+    """The block with the number of a word L, among those that may be jumped to."""
     span = (target.column, target.width)
     return control.program_counter.find_label(
         int(control.number(target)), span, "L", own_lines(control)

@@ -80,7 +80,6 @@ class Subprogram:
 
     Attributes:
         lines: Those between its heading and its end, from 0.
-        formals: Names of its parameters.
         restores: It puts modal codes back when it returns.
     """
 
@@ -152,11 +151,7 @@ def given_variable(given: Mapping[str, float], name: str) -> float | None:
 
 
 def let(control: Control, statement: Statement) -> None:
-    """LET: declare a local variable, 0 unless it is given a value.
-
-    Raises:
-        ProgramError: It cannot be read.
-    """
+    """LET: declare a local variable, 0 unless it is given a value."""
     match = _LET.match(statement.text)
     if match is None:
         hint = "LET #x : LREAL := 1"
@@ -179,15 +174,11 @@ def assign(control: Control, statement: Statement) -> None:
     control.variables.write(name, value)
 
 
-def _require_declared(control: Control, name: str, blamed: Statement | None = None) -> None:
-    """A local variable must have been declared.
-
-    Raises:
-        ProgramError: It is not.
-    """
+def _require_declared(control: Control, name: str, error_at: Statement | None = None) -> None:
+    """A local variable must have been declared."""
     if name.startswith("#") and control.variables.read(name) is None:
         hint = f"write LET {name} : LREAL"
-        control.fail("unknown-variable", f"{name} is not declared", blamed, hint)
+        control.fail("unknown-variable", f"{name} is not declared", error_at, hint)
 
 
 def _reference(control: Control, word: Word | None) -> str:

@@ -1,4 +1,4 @@
-"""What the words of CODESYS SoftMotion do beside its G codes: paces, limits, periods, switch points."""
+"""What the words of CODESYS SoftMotion do beside its G codes: feed rates, limits, periods, switch points."""
 
 import math
 
@@ -120,7 +120,7 @@ def refuse_profile(control: Control, word: Word) -> None:
 
 
 def take_shortest_way(control: Control) -> None:
-    """Axes with a period go the shorter way round: the start is relabelled by whole periods."""
+    """Axes with a period go the shorter path around: the start is relabelled by whole periods."""
     if control.modal.incremental:
         return
     for index, period in variables(control).periods.items():

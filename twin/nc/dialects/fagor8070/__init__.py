@@ -13,13 +13,13 @@ from twin.nc.dialects.fagor8070 import (
     subroutines,
     variables,
 )
-from twin.nc.dialects.fagor8070.codes import CODES, INSTEAD, auxiliary, plain_dwell
+from twin.nc.dialects.fagor8070.codes import CODES, REPLACEMENTS, auxiliary, plain_dwell
 from twin.nc.dialects.fagor8070.decisions import DECISIONS
 from twin.nc.dialects.fagor8070.library import LIBRARY
 from twin.nc.dialects.fagor8070.memory import FagorMemory, acts_on_lines
 from twin.nc.iso import base, shared_marks
 from twin.nc.iso.declared import flow_function
-from twin.nc.path.paces import PATH_COUNTS, FeedRule
+from twin.nc.path.feed_rates import PATH_COUNTS, FeedRule
 from twin.nc.text.syntax import Comment, Mark, Syntax
 
 
@@ -69,15 +69,15 @@ FAGOR8070 = Dialect(
             "cycle",
         ),
         g=CODES,
-        instead=INSTEAD,
+        replacements=REPLACEMENTS,
         start=(1, 17, 40, 50, 71, 80, 90, 94, 97, 98, 108, 137, 139, 152, 197, 262, 265),
         m={
             **base.M_CODES,
-            6: MCode(meaning="tool change", action=frames.change_tool, ground="manual"),
+            6: MCode(meaning="tool change", action=frames.change_tool, basis="manual"),
             17: flow_function("end of subroutine", Control.go_back),
-            19: MCode(meaning="spindle orientation", ground="manual"),
+            19: MCode(meaning="spindle orientation", basis="manual"),
             29: flow_function("end of subroutine", Control.go_back),
-            **{number: MCode(meaning="spindle gear", ground="manual") for number in range(41, 45)},
+            **{number: MCode(meaning="spindle gear", basis="manual") for number in range(41, 45)},
         },
         statements=statements.STATEMENTS,
         other_statement=statements.other_statement,

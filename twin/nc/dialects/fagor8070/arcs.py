@@ -8,7 +8,7 @@ import math
 
 from twin.nc.control.codes import Interpolation
 from twin.nc.control.control import Control
-from twin.nc.control.interpolation import ArcRule
+from twin.nc.control.modal import ArcRule
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.dialects.fagor8070.polar import Goal, forget_polar, take_goal
 from twin.nc.geometry import arcs

@@ -10,10 +10,10 @@ from twin.nc.dialects.fagor8070.machine_coordinates import refuse_change
 from twin.nc.dialects.fagor8070.offset_table import offset_code
 from twin.nc.geometry.planes import XY, YZ, ZX
 from twin.nc.iso import base, fixed_cycles, offsets
-from twin.nc.iso.declared import instead, modal, motion_code, plane_code, refused
+from twin.nc.iso.declared import modal, motion_code, plane_code, refused, replacement
 from twin.nc.iso.tool_compensation import LEFT, RIGHT, end_compensation
 from twin.nc.path.blends import BlendKind
-from twin.nc.path.paces import FeedMode
+from twin.nc.path.feed_rates import FeedMode
 from twin.nc.text.arithmetic import is_whole
 from twin.nc.text.blocks import Word
 
@@ -56,7 +56,7 @@ def _passed_over(number: int, meaning: str, letters: str) -> GCode:
         message = f"{word.text} does not change the path here: {meaning}"
         control.report.notice(word.text, message, word.column, word.width)
 
-    return GCode(meaning=meaning, perform=perform, takes=letters, ground="manual")
+    return GCode(meaning=meaning, perform=perform, consumes=letters, basis="manual")
 
 
 _PROBE = "the twin has no probe to touch with"
@@ -64,7 +64,7 @@ _LEAD = "where its arc begins is not documented well enough; write the lead as a
 _LIMITS = "the limits are the machine file's"
 _UNKNOWN = "its effect on the path is not documented well enough to be followed"
 
-INSTEAD: dict[float, str] = {
+REPLACEMENTS: dict[float, str] = {
     21: "millimetres are G71",
     28: "write G53 G00 and the axes",
     43: "D1 brings the tool's length",
@@ -78,24 +78,26 @@ INSTEAD: dict[float, str] = {
 CODES: dict[float, GCode] = {
     0: motion_code("rapid positioning", arcs.RAPID),
     1: motion_code("straight line", arcs.FEED),
-    2: motion_code("arc clockwise, Cartesian or polar", arcs.CLOCKWISE, "seed"),
-    3: motion_code("arc counter-clockwise, Cartesian or polar", arcs.COUNTER_CLOCKWISE, "seed"),
-    4: instead(
+    2: motion_code("arc clockwise, Cartesian or polar", arcs.CLOCKWISE, "control page"),
+    3: motion_code(
+        "arc counter-clockwise, Cartesian or polar", arcs.COUNTER_CLOCKWISE, "control page"
+    ),
+    4: replacement(
         "dwell, seconds in K or right behind",
         base.dwell("K", "G04 needs its seconds", "write G04 K1.5 or G04 1.5"),
     ),
     5: modal("round corner", "corner", corner=Corner.CONTINUOUS),
-    6: modal("centre in absolute coordinates, this block", once=True, center_absolute=True),
+    6: modal("centre in absolute coordinates, this block", non_modal=True, center_absolute=True),
     7: modal("square corner", "corner", corner=Corner.EXACT_STOP),
     8: modal(
         "arc tangent to the last move, this block",
-        once=True,
+        non_modal=True,
         interpolation=arcs.TANGENT,
         cycle=None,
     ),
     9: modal(
         "arc through the point I J, this block",
-        once=True,
+        non_modal=True,
         interpolation=arcs.THREE_POINTS,
         cycle=None,
     ),
@@ -103,20 +105,20 @@ CODES: dict[float, GCode] = {
     11: modal("mirror X", action=transformations.mirror(0)),
     12: modal("mirror Y", action=transformations.mirror(1)),
     13: modal("mirror Z", action=transformations.mirror(2)),
-    14: instead("mirror the given axes: X-1", transformations.mirror_axes, ground="decision"),
-    17: plane_code("plane X Y", XY, frames.choose_plane, "seed"),
-    18: plane_code("plane Z X", ZX, frames.choose_plane, "seed"),
-    19: plane_code("plane Y Z", YZ, frames.choose_plane, "seed"),
+    14: replacement("mirror the given axes: X-1", transformations.mirror_axes, basis="decision"),
+    17: plane_code("plane X Y", XY, frames.choose_plane, "control page"),
+    18: plane_code("plane Z X", ZX, frames.choose_plane, "control page"),
+    19: plane_code("plane Y Z", YZ, frames.choose_plane, "control page"),
     20: modal("any plane: X1 Z2", "plane", frames.any_plane),
     30: modal("polar origin: I J, or where the tool stands", action=polar.set_polar_origin),
     31: modal("temporary polar origin at the arc's centre", action=polar.temporary_polar_origin),
     **refused("threading", "the twin's spindle has no angle", 33),
-    36: instead(
-        "corner rounded by the radius I", blend_code(BlendKind.FILLET, 36), ground="decision"
+    36: replacement(
+        "corner rounded by the radius I", blend_code(BlendKind.FILLET, 36), basis="decision"
     ),
     **refused("tangential entry, tangential exit", _LEAD, *range(37, 39)),
-    39: instead(
-        "corner chamfered at the distance I", blend_code(BlendKind.CHAMFER, 39), ground="decision"
+    39: replacement(
+        "corner chamfered at the distance I", blend_code(BlendKind.CHAMFER, 39), basis="decision"
     ),
     40: modal("radius compensation off", "compensation", end_compensation),
     41: modal("compensation, tool left", "compensation", frames.compensation_by_tool(LEFT)),
@@ -133,18 +135,18 @@ CODES: dict[float, GCode] = {
         n: modal(f"work offset G{n} of the job", "offset", _forgetting_polar(offset_code(n)))
         for n in range(54, 60)
     },
-    60: modal("square corner, this block", once=True, corner=Corner.EXACT_STOP),
-    61: modal("round corner, this block", once=True, corner=Corner.CONTINUOUS),
+    60: modal("square corner, this block", non_modal=True, corner=Corner.EXACT_STOP),
+    61: modal("round corner, this block", non_modal=True, corner=Corner.CONTINUOUS),
     **refused("rigid tapping", "the twin's spindle has no angle", 63),
     70: modal("inches", "units", unit=25.4),
     71: modal("millimetres", "units", unit=1.0),
-    72: instead("scale S, about part zero", transformations.scale, takes="S"),
-    73: instead("rotation by Q about I J; alone: off", transformations.rotate),
+    72: replacement("scale S, about part zero", transformations.scale, consumes="S"),
+    73: replacement("rotation by Q about I J; alone: off", transformations.rotate),
     **refused("home search", "the twin starts homed", 74),
     **CYCLES,
     90: modal("absolute coordinates", "distance", incremental=False),
     91: modal("incremental coordinates", "distance", incremental=True),
-    92: instead("preset part zero", _forgetting_polar(offsets.preset)),
+    92: replacement("preset part zero", _forgetting_polar(offsets.preset)),
     93: modal(
         "feed as seconds of the block",
         "feed",
@@ -167,13 +169,13 @@ CODES: dict[float, GCode] = {
     139: modal(
         "leads of compensation go around the contour's ends",
         "compensation leads",
-        ground="decision",
+        basis="decision",
         indirect_leads=True,
     ),
     **refused("programming in diameters", "a mill has none", 151),
     152: modal("programming in radii", "diameters"),
     **refused("axes without offset", _UNKNOWN, 157),
-    158: instead("incremental offset", frames.incremental_offset),
+    158: replacement("incremental offset", frames.incremental_offset),
     **refused("multiple machining", "write the positions one by one", *range(160, 166)),
     **refused("Hirth axes", _UNKNOWN, *range(170, 172)),
     **refused("set the machine coordinate", _UNKNOWN, 174),

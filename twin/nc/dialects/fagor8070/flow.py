@@ -150,7 +150,7 @@ def _end_for(control: Control, statement: Statement) -> None:
 
 
 def _for_values(
-    control: Control, statement: Statement, blamed: Statement
+    control: Control, statement: Statement, error_at: Statement
 ) -> tuple[str, float, float, float]:
     """The parameter, first and last value and step of $FOR.
 
@@ -166,7 +166,7 @@ def _for_values(
         control.compute(each, column) for each in control.statements.expressions(values, column, 3)
     )
     if step == 0.0:
-        control.fail("structure", "a step of 0 never ends", blamed)
+        control.fail("structure", "a step of 0 never ends", error_at)
     return variable[0].upper(), first, last, step
 
 

@@ -98,7 +98,7 @@ def _apply_offset(control: Control, *, on: bool) -> None:
     """The tool's length and radius count, or do not."""
     memory_of(control).offset_on = on
     tool = control.tools.data(control.tools.spindle) if on else None
-    set_length(control, 0.0 if tool is None else control.tools.longer(tool))
+    set_length(control, 0.0 if tool is None else control.tools.length_difference(tool))
 
 
 def compensation_by_tool(side: float) -> Action:

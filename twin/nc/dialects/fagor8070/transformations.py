@@ -49,16 +49,16 @@ def scale(control: Control) -> None:
     set_scale(control, 1.0 if word is None else control.number(word), word)
 
 
-def set_scale(control: Control, factor: float, blamed: Word | Statement | None) -> None:
+def set_scale(control: Control, factor: float, error_at: Word | Statement | None) -> None:
     """Multiply lengths.
 
     Raises:
         ProgramError: By too much or too little; or the frame cannot change now.
     """
     if not SMALLEST_SCALE <= factor <= LARGEST_SCALE:
-        control.fail("scale", "a scale lies between 0.001 and 1000", blamed)
+        control.fail("scale", "a scale lies between 0.001 and 1000", error_at)
     memory_of(control).scale = factor
-    _update(control, blamed if isinstance(blamed, Statement) else None)
+    _update(control, error_at if isinstance(error_at, Statement) else None)
 
 
 def rotate(control: Control) -> None:
@@ -78,12 +78,12 @@ def rotate(control: Control) -> None:
     _update(control)
 
 
-def _update(control: Control, blamed: Statement | None = None) -> None:
+def _update(control: Control, error_at: Statement | None = None) -> None:
     """Scale, then mirror, then rotation about its centre in the working plane hold from here on."""
     refuse_change(control)
     if control.path.compensation.in_force:
         message = "mirror, scale and rotation cannot change while compensation is in force"
-        control.fail("compensation-change", message, blamed, "end it by G40 first")
+        control.fail("compensation-change", message, error_at, "end it by G40 first")
     memory, axes = memory_of(control), control.modal.plane.directions
     x, y, z = memory.signs
     matrix, shift = composed((x, y, z), memory.scale, axes, memory.rotation, memory.rotation_center)

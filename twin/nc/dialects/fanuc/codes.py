@@ -19,9 +19,9 @@ from twin.nc.dialects.fanuc.cycles.canned_cycles import cycles
 from twin.nc.dialects.fanuc.memory import Variant, memory_of
 from twin.nc.dialects.fanuc.tool_offsets import compensation_code, end_length, length_code
 from twin.nc.iso import base, fixed_cycles
-from twin.nc.iso.declared import flow_function, instead, modal, motion_code, refused
+from twin.nc.iso.declared import flow_function, modal, motion_code, refused, replacement
 from twin.nc.iso.tool_compensation import LEFT, RIGHT, end_compensation
-from twin.nc.path.paces import FeedMode
+from twin.nc.path.feed_rates import FeedMode
 
 
 def _lose_feed(control: Control) -> None:
@@ -47,7 +47,7 @@ def passed_over(meaning: str, letters: str, *, modes: tuple[float, ...] = ()) ->
         message = f"{code.text} does not change the path here: {meaning}"
         control.report.notice(code.text, message, code.column, code.width)
 
-    return GCode(meaning=meaning, action=perform, ground="manual")
+    return GCode(meaning=meaning, action=perform, basis="manual")
 
 
 NO_PROBE = "the twin has no probe to touch with"
@@ -62,7 +62,7 @@ _MOTION: Mapping[float, GCode] = {
     1: motion_code("straight line", motion.FEED),
     2: motion_code("arc clockwise, by I J K or R", motion.CLOCKWISE),
     3: motion_code("arc counter-clockwise, by I J K or R", motion.COUNTER_CLOCKWISE),
-    4: instead(
+    4: replacement(
         "dwell, seconds in X or milliseconds in P",
         base.dwell("PX", "G4 needs its time", "G4 P500 or G4 X0.5 waits half a second"),
     ),
@@ -71,7 +71,7 @@ _MOTION: Mapping[float, GCode] = {
     ),
     5.1: passed_over("look-ahead (AI contour control): Q1 on, Q0 off", "QRXYZC"),
     8: passed_over("look-ahead (advanced preview): P1 on, P0 off", "P"),
-    9: modal("exact stop in this block", once=True, corner=Corner.EXACT_STOP),
+    9: modal("exact stop in this block", non_modal=True, corner=Corner.EXACT_STOP),
     61: modal("exact stop mode", "corner", corner=Corner.EXACT_STOP),
     62: modal("override at corners", "corner", corner=Corner.EXACT_PATH),
     63: modal("tapping mode", "corner", corner=Corner.EXACT_PATH),
@@ -80,29 +80,31 @@ _MOTION: Mapping[float, GCode] = {
 _PLACE: Mapping[float, GCode] = {
     **dict.fromkeys(
         (7.1, 107),
-        instead("contours on a cylinder: rotary axis and radius, 0 ends it", cylinder.begin_or_end),
+        replacement(
+            "contours on a cylinder: rotary axis and radius, 0 ends it", cylinder.begin_or_end
+        ),
     ),
-    10: instead("offsets from the program: L P and values", data_setting.set_data),
+    10: replacement("offsets from the program: L P and values", data_setting.set_data),
     11: passed_over("setting of data off", ""),
     15: modal("polar coordinates off", "polar", motion.end_polar),
     16: modal("polar coordinates: radius and angle", "polar", motion.begin_polar),
     **base.by_manual(base.PLANES),
     20: modal("inches", "units", unit=25.4),
     21: modal("millimetres", "units", unit=1.0),
-    27: instead("check of the reference point", reference_points.check_reference),
-    28: instead("to machine zero, by the block's point", reference_points.go_home),
-    29: instead("from machine zero, by the point of G28", reference_points.leave_reference),
-    30: instead("to a further reference point P2 P3 P4", reference_points.go_to_reference),
-    52: instead("local origin, in every work offset", offsets.local_offset),
-    53: instead("machine coordinates in this block", reference_points.machine_move),
+    27: replacement("check of the reference point", reference_points.check_reference),
+    28: replacement("to machine zero, by the block's point", reference_points.go_home),
+    29: replacement("from machine zero, by the point of G28", reference_points.leave_reference),
+    30: replacement("to a further reference point P2 P3 P4", reference_points.go_to_reference),
+    52: replacement("local origin, in every work offset", offsets.local_offset),
+    53: replacement("machine coordinates in this block", reference_points.machine_move),
     **{
         number: modal(f"work offset G{number} of the job", "offset", offsets.offset_code(number))
         for number in range(54, 60)
     },
     54.1: modal("work offset P1 to P300 of the job", "offset", offsets.extended_offset),
     **base.by_manual(base.DISTANCE),
-    92: instead("preset the position, in every work offset", offsets.preset),
-    92.1: instead("presets end for the axes named", offsets.end_preset),
+    92: replacement("preset the position, in every work offset", offsets.preset),
+    92.1: replacement("presets end for the axes named", offsets.end_preset),
 }
 _TOOL: Mapping[float, GCode] = {
     40: modal("radius compensation off", "compensation", end_compensation),
@@ -114,10 +116,10 @@ _TOOL: Mapping[float, GCode] = {
 }
 _TRANSFORMATIONS: Mapping[float, GCode] = {
     50: modal("scale off", "scale", transformations.end("scale")),
-    51: instead("scale about X Y Z: P, or I J K", transformations.scale, "scale"),
-    50.1: instead("mirror off", transformations.end_mirror, "mirror"),
-    51.1: instead("mirror the axes at the places named", transformations.mirror, "mirror"),
-    68: instead("rotation by R about a point of the plane", transformations.rotate, "rotation"),
+    51: replacement("scale about X Y Z: P, or I J K", transformations.scale, "scale"),
+    50.1: replacement("mirror off", transformations.end_mirror, "mirror"),
+    51.1: replacement("mirror the axes at the places named", transformations.mirror, "mirror"),
+    68: replacement("rotation by R about a point of the plane", transformations.rotate, "rotation"),
     69: modal("rotation off", "rotation", transformations.end("rotation")),
 }
 _FEEDS: Mapping[float, GCode] = {
@@ -127,7 +129,7 @@ _FEEDS: Mapping[float, GCode] = {
     94: modal("feed per minute", "feed", _lose_feed, feed_mode=FeedMode.PER_MINUTE),
     95: modal("feed per revolution", "feed", _lose_feed, feed_mode=FeedMode.PER_REVOLUTION),
     97: modal("constant spindle speed", "spindle"),
-    65: instead("macro call: P L and arguments", macro_calls.refuse_late_call),
+    65: replacement("macro call: P L and arguments", macro_calls.refuse_late_call),
     66: modal("modal macro call behind every move", "modal call", macro_calls.refuse_late_call),
     67: modal("modal macro call off", "modal call", macro_calls.end_modal_call),
 }
@@ -189,7 +191,7 @@ GROUPS = (
 )
 START = (0, 15, 17, 21, 40, 49, 50, 50.1, 54, 64, 67, 69, 80, 90, 94, 97, 98)
 
-INSTEAD: Mapping[float, str] = {
+REPLACEMENTS: Mapping[float, str] = {
     70: "inches are G20",
     71: "millimetres are G21",
     90.1: "I, J and K always count from the start of the arc",
@@ -200,8 +202,8 @@ INSTEAD: Mapping[float, str] = {
 
 M_CODES: Mapping[int, MCode] = {
     **base.M_CODES,
-    19: MCode(meaning="spindle orientation", ground="manual"),
-    29: MCode(meaning="rigid tapping", ground="manual"),
+    19: MCode(meaning="spindle orientation", basis="manual"),
+    29: MCode(meaning="rigid tapping", basis="manual"),
     98: flow_function("run a subprogram: P L", programs.call),
     99: flow_function("end of a subprogram, or jump: P", programs.return_),
 }

@@ -2,7 +2,7 @@
 
 ``G107 C30.`` begins on the radius 30, ``G107 C0`` ends. The rotary axis stays programmed in degrees; F
 counts along the surface, and G2 and G3 with R draw arcs on it, between the rotary axis and the linear
-axis of the plane that the block names. Decision: the rotary axis stands in the place of the plane's other
+axis of the plane that the block names. Decision: the rotary axis replaces the plane's other
 axis (parameter 1022), and an arc is driven in chords that leave it by 0.001 mm at most.
 """
 
@@ -12,7 +12,7 @@ from twin.nc.control.control import Control
 from twin.nc.dialects.fanuc.memory import memory_of
 from twin.nc.geometry.arcs import sweep_between
 from twin.nc.iso.circular import center_of_radius
-from twin.nc.path.paces import FeedMode, FeedRule
+from twin.nc.path.feed_rates import FeedMode, FeedRule
 
 CHORD_ERROR = 0.001
 """How far a chord may leave its arc [mm]."""

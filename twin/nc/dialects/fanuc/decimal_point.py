@@ -11,7 +11,7 @@ from twin.nc.control.control import Control
 from twin.nc.control.settings import ControlSettings
 from twin.nc.dialects.fanuc.memory import memory_of
 from twin.nc.dialects.fanuc.variables import rounding_to, rounds
-from twin.nc.path.paces import FeedMode
+from twin.nc.path.feed_rates import FeedMode
 from twin.nc.text import arithmetic
 from twin.nc.text.blocks import Block, Word
 from twin.nc.text.expressions import Computed, Expression, Number
@@ -41,7 +41,7 @@ _UNTOUCHED = frozenset({5.1, 8.0})
 """Codes whose words are switches."""
 
 
-def pointless(settings: ControlSettings) -> frozenset[str]:
+def addresses_without_point(settings: ControlSettings) -> frozenset[str]:
     """Addresses whose numbers without a point are looked at."""
     if settings.decimal_point == "calculator":
         return frozenset("P")
@@ -61,7 +61,7 @@ def count(control: Control, block: Block) -> Block:
         control.report.fail("assignment", message, second.column, second.width, "write two blocks")
     if any(isinstance(word.value, Expression) and rounds(word.value) for word in block.words):
         block = _rounded(control, block)
-    looked_at = pointless(control.settings)
+    looked_at = addresses_without_point(control.settings)
     if not any(word.address in looked_at for word in block.words):
         return block
     codes = {word.value for word in block.words if word.address == "G"}
@@ -81,7 +81,7 @@ def _counted(
     if word.address == "P":
         waits = 4.0 in codes or (cycles and not calls and codes.isdisjoint(_OWN_P))
         return _time(control, word) if waits else _scale(word, codes)
-    if not word.pointless or not isinstance(word.value, float) or word.value == 0.0:
+    if not word.without_point or not isinstance(word.value, float) or word.value == 0.0:
         return word
     if codes & _UNTOUCHED or (cycles and _is_number(control, word.address, codes)):
         return word
@@ -108,7 +108,7 @@ def is_counted(control: Control, word: Word) -> bool:
     """Whether an argument of a macro counts increments."""
     letters = LENGTHS | ANGLES
     counts = control.settings.decimal_point != "calculator"
-    return counts and word.pointless and word.address in letters and word.value != 0.0
+    return counts and word.without_point and word.address in letters and word.value != 0.0
 
 
 def argument(control: Control, word: Word) -> Word:
@@ -169,7 +169,7 @@ def _time(control: Control, word: Word) -> Word:
     """P of a dwell: milliseconds, without a point."""
     if isinstance(word.value, Expression):
         return word._replace(value=_times(word.value, _MILLI))
-    if not word.pointless:
+    if not word.without_point:
         if memory_of(control).variant.seconds_by_point:
             return word
         message = f"{word.address} counts milliseconds and takes no decimal point"
@@ -179,7 +179,7 @@ def _time(control: Control, word: Word) -> Word:
 
 def _scale(word: Word, codes: set[float | Expression]) -> Word:
     """P of G51: thousandths, where it has no point."""
-    if _SCALED in codes and word.pointless and isinstance(word.value, float):
+    if _SCALED in codes and word.without_point and isinstance(word.value, float):
         return word._replace(value=word.value * _MILLI)
     return word
 

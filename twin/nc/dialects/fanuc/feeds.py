@@ -12,7 +12,7 @@ strokes per minute in every move (manual, G2, G93 and settings).
 import math
 
 from twin.nc.control.settings import ControlSettings
-from twin.nc.path.paces import FeedRule
+from twin.nc.path.feed_rates import FeedRule
 
 DEGREE_AS_LENGTH = 1.0
 """What a degree counts beside linear axes, in programmed units of length (Fanuc's manual). Decision: of a Haas

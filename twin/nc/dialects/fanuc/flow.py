@@ -180,11 +180,7 @@ def _jump(control: Control, statement: Statement, target: Expression) -> None:
 
 
 def destination(control: Control, statement: Statement, number: float) -> Location:
-    """Where a jump leads: the next block of that number, else the first of the program.
-
-    Raises:
-        ProgramError: Nowhere, or into a loop.
-    """
+    """Where a jump leads: the next block of that number, else the first of the program."""
     if not number >= 0.0 or number != int(number):
         control.fail("jump-target", f"there is no block N{number:g}", statement)
     counter, around, here = control.program_counter, lines_around(control), control.block.line - 1

@@ -13,7 +13,7 @@ from twin.nc.dialects.fanuc.decisions import DECISIONS as FANUC_DECISIONS
 from twin.nc.dialects.fanuc.memory import HAAS
 from twin.nc.dialects.fanuc.tool_offsets import radius_in_force
 from twin.nc.geometry.planes import XY
-from twin.nc.iso.declared import flow_function, instead, modal, refused
+from twin.nc.iso.declared import flow_function, modal, refused, replacement
 from twin.nc.iso.tool_change import change_tool_at
 
 _LACKING = (5, 5.1, 7.1, 8, 15, 16, 27, 30, 50.1, 51.1, 54.1, 62, 63, 87, 92.1)
@@ -21,7 +21,7 @@ _LACKING = (5, 5.1, 7.1, 8, 15, 16, 27, 30, 50.1, 51.1, 54.1, 62, 63, 87, 92.1)
 
 
 def circular_pocket(control: Control, *, clockwise: bool) -> None:
-    """G12, G13: mill a round pocket about where the tool stands.
+    """G12, G13: mill a round pocket about where the tool is.
 
     I is the radius of the first circle, K that of the last, Q what each is larger, Z the depth that is
     plunged to first, L how many depths (in G91), D the tool. From the centre a half circle leads to
@@ -92,10 +92,10 @@ def _arc(
 
 
 def _pocket(meaning: str, *, clockwise: bool) -> GCode:
-    return instead(
+    return replacement(
         f"{meaning}: I K Q Z L D",
         lambda control: circular_pocket(control, clockwise=clockwise),
-        ground="decision",
+        basis="decision",
     )
 
 
@@ -143,7 +143,7 @@ def haas_codes() -> dict[float, GCode]:
 
 
 START = (0, 17, 21, 40, 49, 50, 54, 64, 67, 69, 80, 90, 94, 97, 98, 100)
-INSTEAD: Mapping[float, str] = {
+REPLACEMENTS: Mapping[float, str] = {
     15: "the control has no polar coordinates",
     16: "write X and Y: the control has no polar coordinates",
     30: "G28, or G53 and the axes",
@@ -163,7 +163,7 @@ def _with_words(meaning: str, letters: str) -> MCode:
         for letter in letters:
             control.take(letter)
 
-    return MCode(meaning=f"{meaning}: {' '.join(letters)}", action=action, ground="manual")
+    return MCode(meaning=f"{meaning}: {' '.join(letters)}", action=action, basis="manual")
 
 
 def _refused_function(meaning: str, reason: str) -> MCode:
@@ -175,14 +175,14 @@ def _refused_function(meaning: str, reason: str) -> MCode:
             "unknown-m", f"{'' if word is None else word.text} ({meaning}): {reason}", word
         )
 
-    return MCode(meaning=f"{meaning}; refused: {reason}", action=action, ground="manual")
+    return MCode(meaning=f"{meaning}; refused: {reason}", action=action, basis="manual")
 
 
 _NO_INPUTS = "the twin has no inputs to ask"
 
 HAAS_M_CODES: Mapping[int, MCode] = {
     **M_CODES,
-    6: dataclasses.replace(M_CODES[6], action=change_tool_at(_CHANGE_HEIGHT), ground="manual"),
+    6: dataclasses.replace(M_CODES[6], action=change_tool_at(_CHANGE_HEIGHT), basis="manual"),
     97: flow_function("run blocks of this program as a subprogram: P L", programs.call_block),
     46: _refused_function("jump where a pallet is loaded", "the twin has no pallets"),
     78: _refused_function("alarm where a probe has touched", NO_PROBE),
@@ -196,7 +196,7 @@ HAAS_M_CODES: Mapping[int, MCode] = {
     138: _with_words("spindle speed swings by E every P", "EP"),
     **{number: _with_words("oil pulses", "P") for number in (161, 162, 163)},
     **{
-        number: MCode(meaning=meaning, ground="manual")
+        number: MCode(meaning=meaning, basis="manual")
         for number, meaning in {
             10: "brake of the fourth axis on",
             11: "brake of the fourth axis off",

@@ -92,9 +92,9 @@ def _computed(control: Control, word: Word) -> Word:
     return word
 
 
-def _run(control: Control, asked: ModalCall, blamed: Word | Statement) -> None:
+def _run(control: Control, asked: ModalCall, error_at: Word | Statement) -> None:
     deepest, values = memory_of(control).variant.deepest_call, asked.values.items()
-    control.call(Location(asked.line, 0), deepest, blamed, values, times=float(asked.often))
+    control.call(Location(asked.line, 0), deepest, error_at, values, times=float(asked.often))
 
 
 def call_modally(control: Control, statement: Statement) -> None:
@@ -122,11 +122,7 @@ def call_after_motion(control: Control) -> None:
 
 
 def refuse_late_call(control: Control) -> None:
-    """G65 or G66 behind other words.
-
-    Raises:
-        ProgramError: Always.
-    """
+    """G65 or G66 behind other words."""
     word = control.codes[-1][0]
     message = f"{word.text} must stand before the other words of its block"
     control.fail("call-values", message, word, "write the other codes in a block before it")

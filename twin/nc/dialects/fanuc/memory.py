@@ -9,7 +9,7 @@ from twin.nc.control.constructs import Structure
 from twin.nc.control.control import Control
 from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.planes import Vector
-from twin.nc.path.paces import FeedMode
+from twin.nc.path.feed_rates import FeedMode
 from twin.nc.text.blocks import Word
 from twin.nc.text.lines import Lines
 
@@ -140,7 +140,6 @@ class ModalCall(NamedTuple):
 
     Attributes:
         line: First line of the program, from 0.
-        often: How many times it runs.
         values: Its arguments by their variables.
         word: That names the program.
     """
@@ -173,7 +172,6 @@ class FanucMemory:
     """Programs, offsets, transformations.
 
     Attributes:
-        variant: Which control of the family it is.
         programs: Line behind the heading of each program by its number, from 0.
         headings: Lines of all headings, from 0, in order.
         main: Line of the heading of the program that runs first, or None.

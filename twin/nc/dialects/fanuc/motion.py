@@ -1,7 +1,7 @@
 """How blocks of a Fanuc control move: lines, arcs, and polar coordinates (G16).
 
 With G16 the plane's first axis is a radius and its second an angle. In G90 the radius counts from the
-origin and the angle from the first axis; in G91 the radius counts from where the tool stands, and the
+origin and the angle from the first axis; in G91 the radius counts from where the tool is, and the
 angle from the last one.
 """
 
@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import TypeVar
 
 from twin.nc.control.control import Control
-from twin.nc.control.interpolation import ArcRule
+from twin.nc.control.modal import ArcRule
 from twin.nc.dialects.fanuc import cylinder
 from twin.nc.dialects.fanuc.memory import Variant, memory_of
 from twin.nc.dialects.fanuc.transformations import refuse_uneven_arc
@@ -59,7 +59,7 @@ def holes_of(variant: Variant) -> Holes:
 
 
 def begin_polar(control: Control) -> None:
-    """G16: origin and angle begin anew."""
+    """G16: origin and angle begin again."""
     memory = memory_of(control)
     memory.polar, memory.polar_center = True, (0.0, 0.0)
     memory.polar_radius = memory.polar_angle = None

@@ -109,7 +109,7 @@ def local_offset(control: Control) -> None:
 
 
 def preset(control: Control) -> None:
-    """G92: the place where the tool stands gets the coordinates of the block; ends G52 there.
+    """G92: the place where the tool is gets the coordinates of the block; ends G52 there.
 
     G92 S, the largest speed of the spindle at constant cutting speed, moves nothing.
     """

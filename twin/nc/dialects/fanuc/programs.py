@@ -100,11 +100,7 @@ def lines_around(control: Control, line: int | None = None) -> range:
 
 
 def whole(control: Control, word: Word, code: str, meaning: str) -> int:
-    """The value of a word that must be a whole number from 0.
-
-    Raises:
-        ProgramError: It is none.
-    """
+    """The value of a word that must be a whole number from 0."""
     value = control.number(word)
     if value < 0.0 or value != int(value):
         control.fail(code, f"{word.text} is no {meaning}", word)
@@ -174,7 +170,7 @@ def run_part(control: Control, first: Location, count: int, word: Word) -> None:
 def return_(control: Control) -> None:
     """M99: back behind the call; with P at the block of that number.
 
-    In the main program M99 P jumps, and M99 alone, by which a control begins anew for ever, ends.
+    In the main program M99 P jumps, and M99 alone, by which a control begins again for ever, ends.
     """
     target, counter = control.take("P"), control.program_counter
     if counter.is_calling:

@@ -92,11 +92,7 @@ def leave_reference(control: Control) -> None:
 
 
 def check_reference(control: Control) -> None:
-    """G27: rapidly to the point of the block, which must be the reference point.
-
-    Raises:
-        ProgramError: It is not.
-    """
+    """G27: rapidly to the point of the block, which must be the reference point."""
     axes = _named_axes(control)
     if not axes:
         control.fail("reference-point", "G27 needs the axes that shall stand there")

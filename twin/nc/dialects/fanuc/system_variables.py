@@ -38,11 +38,7 @@ _SAME_AS = 200
 
 
 def read(control: Control, number: int) -> float:
-    """Value of a system variable.
-
-    Raises:
-        ExpressionError: The twin does not know it.
-    """
+    """Value of a system variable."""
     if number in _LATEST_BLOCK:
         number -= _SAME_AS
     group = memory_of(control).variant.modal_groups.get(number - 4000)

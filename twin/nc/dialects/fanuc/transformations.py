@@ -82,7 +82,7 @@ def end(name: str) -> Action:
 
 
 def rotate(control: Control) -> None:
-    """G68 X Y R: turn by R in the working plane about a point, or about where the tool stands."""
+    """G68 X Y R: turn by R in the working plane about a point, or about where the tool is."""
     angle = control.take("R")
     if angle is None:
         control.fail("rotation-angle", "G68 needs its angle R", None, "G68 X0 Y0 R45.")
@@ -108,11 +108,7 @@ def rotate(control: Control) -> None:
 
 
 def refuse_uneven_arc(control: Control) -> None:
-    """An arc in a plane whose axes have different scales would be no arc.
-
-    Raises:
-        ProgramError: They have.
-    """
+    """An arc in a plane whose axes have different scales would be no arc."""
     memory = memory_of(control)
     if memory.scale is None:
         return
@@ -124,11 +120,7 @@ def refuse_uneven_arc(control: Control) -> None:
 
 
 def refuse_scaled_pecks(control: Control, name: str) -> None:
-    """A cycle whose depths or shifts no scale changes on the control.
-
-    Raises:
-        ProgramError: A scale is in force.
-    """
+    """A cycle whose depths or shifts no scale changes on the control."""
     if memory_of(control).scale is not None:
         message = f"{name} under a scale is not simulated: the scale leaves its pecks and shifts as they are"
         control.fail("scale", message, hint="end the scale by G50 before it")

@@ -132,11 +132,7 @@ def read_variable(control: Control, name: str, index: float | None) -> float:
 def write_variable(
     control: Control, name: str, index: float | None, value: float, assignment: Assignment
 ) -> None:
-    """Give a variable a value; NaN leaves it vacant.
-
-    Raises:
-        ProgramError: Programs do not write it.
-    """
+    """Give a variable a value; NaN leaves it vacant."""
     try:
         number = _number(name, index)
         stored = _stored(control, number)

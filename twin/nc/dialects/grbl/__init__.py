@@ -4,7 +4,7 @@ from twin.nc.canonical import Corner
 from twin.nc.control.codes import Action, Codes, GCode, MCode, Words
 from twin.nc.control.control import Control, Rules
 from twin.nc.control.dialect import Dialect
-from twin.nc.control.interpolation import ArcRule
+from twin.nc.control.modal import ArcRule
 from twin.nc.dialects.grbl import coordinates
 from twin.nc.dialects.grbl.decisions import DECISIONS
 from twin.nc.dialects.grbl.memory import SYSTEMS, GrblMemory
@@ -12,8 +12,8 @@ from twin.nc.geometry.arcs import Bounds
 from twin.nc.geometry.planes import XY, YZ, ZX
 from twin.nc.iso import base, shared_marks
 from twin.nc.iso.circular import both_senses, iso_arc, refuse_missing_center
-from twin.nc.iso.declared import instead, modal, motion_code, plane_code, refused
-from twin.nc.path.paces import FeedMode
+from twin.nc.iso.declared import modal, motion_code, plane_code, refused, replacement
+from twin.nc.path.feed_rates import FeedMode
 from twin.nc.text.blocks import Word
 from twin.nc.text.syntax import HEADING, Comment, Mark, Syntax
 
@@ -70,7 +70,7 @@ def _with_axes(meaning: str, action: Action, group: str = "not modal") -> GCode:
             control.fail("conflicting-codes", message, hint="write them in two blocks")
         action(control)
 
-    return instead(meaning, perform, group)
+    return replacement(meaning, perform, group)
 
 
 RAPID, FEED = base.straight(lambda control, rapid: control.line_to(control.target(), rapid=rapid))
@@ -98,7 +98,7 @@ CODES: dict[float, GCode] = {
     40: modal("no radius compensation: the only mode", "compensation"),
     43.1: _with_axes("length of the tool by Z", coordinates.tool_length, "length"),
     49: modal("no tool length", "length", coordinates.end_tool_length),
-    53: instead("in machine coordinates", coordinates.in_machine_coordinates, "not modal"),
+    53: replacement("in machine coordinates", coordinates.in_machine_coordinates, "not modal"),
     **{
         int(name[1:]): modal(
             f"coordinate system {number}", "offset", coordinates.select_system(number)
@@ -110,7 +110,7 @@ CODES: dict[float, GCode] = {
         meaning="no motion: axis words need a code",
         group="motion",
         sets={"interpolation": None},
-        ground="manual",
+        basis="manual",
     ),
     **base.by_manual(base.DISTANCE),
     91.1: modal("I J K from the start of the arc: the only mode", "centre"),
@@ -145,16 +145,16 @@ START = (0, 17, 21, 40, 49, 54, 61, 90, 91.1, 94)
 
 def _function(meaning: str, group: str) -> MCode:
     """An M function that is carried out before the block moves."""
-    return MCode(meaning=meaning, group=group, ground="manual")
+    return MCode(meaning=meaning, group=group, basis="manual")
 
 
 def _end(meaning: str) -> MCode:
-    return MCode(meaning=meaning, group="stop", late=True, ends=True, ground="manual")
+    return MCode(meaning=meaning, group="stop", after_motion=True, ends=True, basis="manual")
 
 
 M_CODES = {
-    0: MCode(meaning="program stop", group="stop", late=True, ground="manual"),
-    1: MCode(meaning="optional stop: passed over", group="stop", silent=True, ground="manual"),
+    0: MCode(meaning="program stop", group="stop", after_motion=True, basis="manual"),
+    1: MCode(meaning="optional stop: passed over", group="stop", silent=True, basis="manual"),
     2: _end("end of program"),
     3: _function("spindle clockwise", "spindle"),
     4: _function("spindle counter-clockwise", "spindle"),
@@ -177,7 +177,7 @@ GRBL = Dialect(
     codes=Codes(
         groups=GROUPS,
         g=CODES,
-        instead={
+        replacements={
             41: "Grbl has no radius compensation: let the post compensate",
             42: "Grbl has no radius compensation: let the post compensate",
             43: "the length of a tool is G43.1 Z",

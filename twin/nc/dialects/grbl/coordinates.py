@@ -54,7 +54,7 @@ def select_system(number: int) -> Action:
 
 
 def write_system(control: Control) -> None:
-    """G10 L2 P: the zero of a system in machine coordinates; L20: the place where it stands gets coordinates."""
+    """G10 L2 P: the zero of a system in machine coordinates; L20: the place where it is gets coordinates."""
     kind, number, words = control.take("L"), control.take("P"), control.take_axis_words()
     if kind is None or number is None or control.number(kind) not in (2.0, 20.0):
         message = "G10 needs L2 or L20, and P, the number of a coordinate system"
@@ -83,7 +83,7 @@ def write_system(control: Control) -> None:
 
 
 def preset(control: Control) -> None:
-    """G92: the place where the machine stands gets the coordinates of the block."""
+    """G92: the place where the machine is gets the coordinates of the block."""
     memory, words = memory_of(control), control.take_axis_words()
     if not words:
         control.fail("preset", "G92 needs the coordinates that this place shall have")
@@ -170,7 +170,7 @@ def _go_to_stored(
 
 
 def store_home(place: int) -> Action:
-    """G28.1, G30.1: where the axes stand is the stored position from now on."""
+    """G28.1, G30.1: where the axes are is the stored position from now on."""
 
     def action(control: Control) -> None:
         zero, names = machine_zero(control, ("G28.1", "G30.1")[place]), control.settings.axes.names

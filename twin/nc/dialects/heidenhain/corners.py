@@ -39,14 +39,14 @@ def _blend(
     control: Control, statement: Statement, kind: BlendKind, size: float, words: dict[str, Word]
 ) -> None:
     feed = words.pop("F", None)
-    pace = float("nan") if feed is None else control.length(feed)
+    rate = float("nan") if feed is None else control.length(feed)
     if feed is not None and control.modal.unit != 1.0:
-        pace *= INCH_FEEDS
+        rate *= INCH_FEEDS
     if words:
         word = next(iter(words.values()))
         control.fail("unused-word", f"nothing in {statement.keyword} uses '{word.text}'", word)
-    if size <= 0.0 or pace <= 0.0:
+    if size <= 0.0 or rate <= 0.0:
         control.fail("blend", f"{statement.keyword} needs a size and a feed above 0", statement)
-    if not control.path.blend_next(Blend(kind, size, control.motion.part_plane, feed=pace)):
+    if not control.path.blend_next(Blend(kind, size, control.motion.part_plane, feed=rate)):
         message = f"{statement.keyword} stands between two moves, and none is before it"
         control.fail("blend", message, statement)

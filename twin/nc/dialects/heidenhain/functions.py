@@ -9,7 +9,7 @@ from twin.nc.dialects.heidenhain.cycles.calls import call_from_now_on, call_last
 from twin.nc.dialects.heidenhain.flow import refuse_end_of_called
 from twin.nc.dialects.heidenhain.memory import memory_of
 from twin.nc.iso import base
-from twin.nc.iso.drilling import turn_spindle
+from twin.nc.iso.hole import turn_spindle
 from twin.nc.iso.machine_coordinates import machine_frame
 
 _HEIGHT = 2
@@ -23,11 +23,13 @@ def _refused(number: int, meaning: str, reason: str) -> MCode:
         word = next((each for each in words if each.address == "M" and each.value == number), None)
         control.fail("unsupported-m", f"M{number} ({meaning}): {reason}", word)
 
-    return MCode(meaning=f"{meaning}: refused", action=refuse, silent=True, ground="manual")
+    return MCode(meaning=f"{meaning}: refused", action=refuse, silent=True, basis="manual")
 
 
-def _silent(meaning: str, action: Action | None = None, *, late: bool = False) -> MCode:
-    return MCode(meaning=meaning, action=action, silent=True, late=late, ground="manual")
+def _silent(meaning: str, action: Action | None = None, *, after_motion: bool = False) -> MCode:
+    return MCode(
+        meaning=meaning, action=action, silent=True, after_motion=after_motion, basis="manual"
+    )
 
 
 def _passed(meaning: str) -> MCode:
@@ -142,29 +144,31 @@ _REFUSED: Mapping[int, tuple[str, str]] = {
 
 FUNCTIONS: Mapping[int, MCode] = {
     **{
-        number: dataclasses.replace(base.M_CODES[number], ground="manual")
+        number: dataclasses.replace(base.M_CODES[number], basis="manual")
         for number in (0, 1, 3, 4, 5, 8, 9)
     },
     **{
         number: MCode(
             meaning=meaning,
             group="stop",
-            late=True,
+            after_motion=True,
             ends=True,
             action=refuse_end_of_called,
-            ground="manual",
+            basis="manual",
         )
         for number, meaning in ((2, "end of program"), (30, "end of program and back to its start"))
     },
-    6: MCode(meaning="tool change by the machine's builder", ground="manual"),
-    7: MCode(meaning="mist on", ground="decision"),
+    6: MCode(meaning="tool change by the machine's builder", basis="manual"),
+    7: MCode(meaning="mist on", basis="decision"),
     13: _silent("spindle clockwise and coolant on", _starts("M3")),
     14: _silent("spindle counter-clockwise and coolant on", _starts("M4")),
-    89: _silent("the cycle runs behind every block that moves", call_from_now_on, late=True),
+    89: _silent(
+        "the cycle runs behind every block that moves", call_from_now_on, after_motion=True
+    ),
     91: _silent("this block counts from machine zero", _from_machine("M91")),
     92: _silent("this block counts from the datum M92 of the job", _from_machine("M92")),
     94: _silent("what is shown of rotary axes is brought below a turn", _reduce_rotary),
-    99: _silent("the cycle runs", call_last, late=True),
+    99: _silent("the cycle runs", call_last, after_motion=True),
     126: _silent("rotary axes go the shorter way", _go_shortest(True)),
     127: _silent("rotary axes go as written", _go_shortest(False)),
     136: _silent("F per revolution of the spindle", _feed_per_turn(True)),

@@ -5,7 +5,7 @@ from contextlib import contextmanager
 
 from twin.nc.control.codes import Interpolation, StatementAction
 from twin.nc.control.control import Control
-from twin.nc.control.interpolation import LineRule
+from twin.nc.control.modal import LineRule
 from twin.nc.dialects.heidenhain.memory import memory_of
 from twin.nc.geometry.arcs import (
     SAME_POINT,

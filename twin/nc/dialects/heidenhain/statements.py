@@ -116,13 +116,7 @@ STATEMENTS: Mapping[str, StatementAction] = {
         for keyword, interpolation in paths.KEYWORDS.items()
     },
     "CC": paths.pole_alone,
-    **{
-        f"{way} {polar}{kind}": leads.lead_keyword(f"{way} {polar}{kind}")
-        for way in ("APPR", "DEP")
-        for kind in ("LT", "LN", "CT", "LCT")
-        for polar in ("", "P")
-        if way == "APPR" or not polar or kind == "LCT"
-    },
+    **leads.KEYWORDS,
     "RND": corners.round_corner,
     "CHF": corners.cut_corner,
     "TOOL CALL": tools.call_tool,

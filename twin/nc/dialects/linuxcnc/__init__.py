@@ -12,7 +12,6 @@ from twin.nc.dialects.linuxcnc.library import LIBRARY
 from twin.nc.dialects.linuxcnc.memory import LinuxcncMemory, memory_of
 from twin.nc.dialects.linuxcnc.structure import COMMENTS
 from twin.nc.iso import base, shared_marks
-from twin.nc.path.drilling_cycle import START as CALL_HEIGHT
 from twin.nc.text.syntax import Mark, Syntax
 
 _LONGEST_LINE = 252
@@ -33,24 +32,14 @@ def _before_motion(control: Control, rapid: bool) -> None:
 
 
 def _acts_on_lines(control: Control) -> bool:
-    """What plain blocks heed.
-
-    Compensation, absolute centres, a spline, a cycle that returns elsewhere; a feed that another unit was
-    in force for, until the program writes one.
-    """
+    """Compensation, absolute centres, a spline, or a feed of another unit, until the program writes one."""
     memory, modal = memory_of(control), control.modal
-    cycle_elsewhere = False
-    if modal.cycle is not None:
-        height = control.motion.programmed[modal.plane.axes[2]]
-        level = not modal.return_to_reference and height != control.cycle_state[CALL_HEIGHT]
-        cycle_elsewhere = modal.incremental or level
     return (
         memory.compensation is not None
         or memory.leading_out
         or modal.center_absolute
         or bool(memory.control_points)
         or memory.spline_end is not None
-        or cycle_elsewhere
         or memory.converted_feed is not None
     )
 
@@ -81,7 +70,7 @@ LINUXCNC = Dialect(
     codes=Codes(
         groups=GROUPS,
         g=CODES,
-        instead={
+        replacements={
             15: "polar coordinates are @ and ^",
             16: "polar coordinates are @ and ^",
             50: "write G92.1, or scale by parameters",

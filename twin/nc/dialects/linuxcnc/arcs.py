@@ -1,7 +1,7 @@
 """Arcs of LinuxCNC: a centre from the start or absolute, a radius, several turns."""
 
 from twin.nc.control.control import Control
-from twin.nc.control.interpolation import ArcRule
+from twin.nc.control.modal import ArcRule
 from twin.nc.dialects.linuxcnc.compensation import in_force
 from twin.nc.dialects.linuxcnc.memory import memory_of
 from twin.nc.dialects.linuxcnc.motion import target

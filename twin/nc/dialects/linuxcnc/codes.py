@@ -10,10 +10,10 @@ from twin.nc.dialects.linuxcnc.cycles import CYCLES
 from twin.nc.dialects.linuxcnc.memory import SYSTEMS, memory_of
 from twin.nc.geometry.planes import XY, YZ, ZX
 from twin.nc.iso import base
-from twin.nc.iso.declared import instead, modal, motion_code, plane_code, refused
+from twin.nc.iso.declared import modal, motion_code, plane_code, refused, replacement
 from twin.nc.iso.fixed_cycles import BY_HAND
 from twin.nc.iso.tool_compensation import LEFT, RIGHT
-from twin.nc.path.paces import FeedMode
+from twin.nc.path.feed_rates import FeedMode
 
 _INCH = 25.4
 _LATHE = "it belongs to lathes"
@@ -72,12 +72,12 @@ def _with_axes(meaning: str, action: Action, group: str = "not modal") -> GCode:
     """A code that takes the axis words of its block, so that no motion code can stand beside it."""
 
     def perform(control: Control) -> None:
-        if any(code.group == "motion" and not code.yields for _, code in control.codes):
+        if any(code.group == "motion" and not code.weak for _, code in control.codes):
             message = "two codes of the block want its axis words"
             control.fail("conflicting-codes", message, hint="write them in two blocks")
         action(control)
 
-    return instead(meaning, perform, group)
+    return replacement(meaning, perform, group)
 
 
 MOTION = {
@@ -102,8 +102,8 @@ MOTION = {
         meaning="no motion: axis words need a code",
         group="motion",
         sets={"cycle": None, "interpolation": None},
-        yields=True,
-        ground="manual",
+        weak=True,
+        basis="manual",
     ),
     **CYCLES,
     **refused("boring, out by hand", BY_HAND, 88, group="motion"),
@@ -113,14 +113,14 @@ NOT_MODAL = {
     4: modal(
         "dwell, P seconds", "not modal", base.dwell("P", "G4 needs P, its seconds", "write G4 P1")
     ),
-    5.3: instead("end of a NURBS", curves.end_nurbs, "not modal"),
+    5.3: replacement("end of a NURBS", curves.end_nurbs, "not modal"),
     10: _with_axes("L2, L20 coordinate system; L1, L10, L11 tool", offsets.write_table),
     28: _with_axes("rapidly to the first stored position", motion.go_home(0)),
     28.1: modal("this is the first stored position", "not modal", motion.store_home(0)),
     30: _with_axes("rapidly to the second stored position", motion.go_home(1)),
     30.1: modal("this is the second stored position", "not modal", motion.store_home(1)),
     52: _with_axes("local shift of zero", offsets.local_offset),
-    53: instead("in machine coordinates", motion.in_machine_coordinates, "not modal"),
+    53: replacement("in machine coordinates", motion.in_machine_coordinates, "not modal"),
     92: _with_axes("this place gets these coordinates", offsets.preset),
     92.1: modal(
         "no preset, its parameters become 0",

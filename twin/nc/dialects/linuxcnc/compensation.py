@@ -2,7 +2,7 @@
 
 The entry ends beside the programmed point, square to the entry itself. At a convex corner the tool
 turns around the contour's point; at a concave one the move before ends where the two offset paths meet,
-for which it is held until its successor is known. Behind G40 a straight move leads out of where it is.
+for which it is kept until its successor is known. Behind G40 a straight move leads out of where it is.
 """
 
 import dataclasses
@@ -36,12 +36,10 @@ class Held:
     Attributes:
         goal: Programmed position of its end, shape (k,); its place in the plane is ``end``.
         end: Where it ends in the plane, compensated [mm].
-        rapid: At the machine's own speed.
         direction: Where it was going as programmed [mm]; of a line.
         center: Of an arc [mm], or None.
         turns: Of an arc, below 0 clockwise.
         sweep: How far the arc went as programmed [rad]; 0: its end is not moved.
-        block: Whose move it is.
         feed: F when it was given.
     """
 
@@ -63,7 +61,6 @@ class Compensation:
         side: 1 left of the contour, -1 right.
         radius: Of the tool [mm].
         entered: The first move has been made.
-        plane: In which it is.
     """
 
     def __init__(self, control: Control, side: float, radius: float) -> None:

@@ -95,7 +95,7 @@ def quadratic(control: Control) -> None:
 def add_control_point(control: Control) -> None:
     """G5.2 X Y P L: a control point with its weight P; L is the order of the NURBS.
 
-    The first control point is where the tool stands. Its weight is 1, or P of a first G5.2 without X
+    The first control point is where the tool is. Its weight is 1, or P of a first G5.2 without X
     and Y, which adds no other point. An order below 3 counts as 3 (``Interp::convert_nurbs``).
     """
     memory = memory_of(control)

@@ -4,39 +4,26 @@ The words of a cycle stay while the same cycle is in force; another one needs it
 G91, R counts from the height of the call and Z from R, and L repeats the hole along the way.
 """
 
-import math
-from collections.abc import Callable
-from typing import NamedTuple
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
 
 from twin.nc.control.codes import GCode, Interpolation
 from twin.nc.control.control import Control
-from twin.nc.control.interpolation import CycleRule
 from twin.nc.dialects.linuxcnc.memory import memory_of
 from twin.nc.dialects.linuxcnc.motion import check_feed, target
 from twin.nc.dialects.linuxcnc.offsets import refuse_in_compensation
 from twin.nc.iso.drilling import (
-    NEEDED_WORDS,
-    drill,
-    go_to_height,
-    refuse_hole,
-    repeats_of,
-    take_words,
-    turn_spindle,
-)
-from twin.nc.path.drilling_cycle import (
-    AXIS,
-    BOTTOM,
-    DWELL,
-    PECK,
-    REFERENCE,
-    START,
     Cycle,
     Pecking,
-    Retract,
-    Values,
+    hole_of,
+    refuse_missing,
+    refuse_other_plane,
+    repeats_of,
+    take_words,
 )
-from twin.nc.path.hole import Fault, hole_of
-from twin.nc.path.paces import FeedMode
+from twin.nc.iso.hole import Retract, drill, turn_spindle
+from twin.nc.iso.plane_moves import go_to_height
+from twin.nc.path.feed_rates import FeedMode
 
 CLEARANCE = 0.254
 """A rapid return ends this far above the bottom of the last peck [mm]: a hundredth of an inch."""
@@ -49,14 +36,12 @@ class Drilling(NamedTuple):
         reference: R [mm].
         bottom: Z [mm].
         clear: Height to which the tool returns [mm].
-        values: What the cycle remembers of its words.
         back_boring: I, J and K of G87 [mm].
     """
 
     reference: float
     bottom: float
     clear: float
-    values: Values
     back_boring: tuple[float, float, float]
 
 
@@ -67,46 +52,34 @@ class Kind(NamedTuple):
     """What is peculiar to one cycle.
 
     Attributes:
-        number: Of its code.
-        meaning: For people.
         words: Its own words besides R and the axes.
         needed: Those that it must have when it is called.
-        work: What happens at the hole, from R on: a rule, or a function.
+        work: What happens at the hole, from R on: a function, or fields of ``Cycle``.
     """
 
     number: int
     meaning: str
     words: str
     needed: str
-    work: Cycle | Work
+    work: Mapping[str, Any] | Work
 
     @property
-    def rule(self) -> CycleRule:
+    def cycle(self) -> Cycle:
         """Its words, and what is done at the hole, where there is a rule for that."""
-        cycle = self.work if isinstance(self.work, Cycle) else _G81
-        letters = {letter: place for letter, place in _PLACES.items() if letter in self.words}
-        return CycleRule(f"G{self.number}", cycle, {"R": REFERENCE, **letters})
+        words = {"R": "reference"}
+        words |= {letter: value for letter, value in _VALUES.items() if letter in self.words}
+        peculiar = {} if callable(self.work) else self.work
+        return Cycle(name=f"G{self.number}", words=words, as_written=True, **{**_PLAIN, **peculiar})
 
 
 _NAME_PLACES = frozenset("XYZ@^")
-_PLACES = {"P": DWELL, "Q": PECK}
+_VALUES = {"P": "dwell", "Q": "peck"}
 
 
-def _dwell(control: Control, hole: Drilling) -> None:
-    seconds = hole.values[DWELL]
-    if seconds == seconds and seconds > 0.0:
+def _dwell(control: Control) -> None:
+    seconds = control.cycle_values.get("dwell", 0.0)
+    if seconds > 0.0:
         control.dwell(seconds)
-
-
-def _drill(control: Control, hole: Drilling, rule: CycleRule) -> None:
-    """What the cycle's rule says of the way down and back."""
-    modal = control.modal
-    values = list(hole.values)
-    values[START], values[REFERENCE], values[BOTTOM] = hole.clear, hole.reference, hole.bottom
-    found = hole_of(rule.cycle, values, modal.plane.axes[2], modal.return_to_reference)
-    if found.fault in (Fault.PECKS, Fault.MANY_PECKS):
-        refuse_hole(control, rule, found)
-    drill(control, found, None)
 
 
 def _tap(inwards: int, outwards: int) -> Work:
@@ -120,7 +93,7 @@ def _tap(inwards: int, outwards: int) -> Work:
             control.fail("spindle-needed", message)
         go_to_height(control, hole.bottom, rapid=False)
         turn_spindle(control, f"M{outwards}")
-        _dwell(control, hole)
+        _dwell(control)
         go_to_height(control, hole.clear, rapid=False)
         turn_spindle(control, f"M{inwards}")
 
@@ -138,7 +111,7 @@ def _start_again(control: Control, code: str) -> Callable[[], None]:
 def _bore(control: Control, hole: Drilling) -> None:
     start = _start_again(control, "G86")
     go_to_height(control, hole.bottom, rapid=False)
-    _dwell(control, hole)
+    _dwell(control)
     control.function("M5", {})
     go_to_height(control, hole.clear)
     start()
@@ -175,31 +148,23 @@ def _across(control: Control, over: list[float]) -> None:
 
 
 def _take_words(control: Control, kind: Kind) -> None:
-    """Take the cycle's words; they stay in ``cycle_state`` as they are written.
-
-    Raises:
-        ProgramError: One is missing.
-    """
-    state, memory, axis = control.cycle_state, memory_of(control), control.modal.plane.axes[2]
-    if math.isnan(state[START]):
+    """Take the cycle's words; they stay in ``cycle_values`` as they are written."""
+    values, memory, axis = control.cycle_values, memory_of(control), control.modal.plane.axes[2]
+    if "start" not in values:
         memory.cycle = 0
-    elif state[AXIS] != axis:
-        message = f"G{kind.number} was called in another plane"
-        control.fail("cycle-plane", message, hint="end it by G80 before the plane changes")
+    elif values["axis"] != axis:
+        refuse_other_plane(control, f"G{kind.number}")
     if memory.cycle != kind.number:
         needed = ("R", control.settings.axes.names[axis], *kind.needed)
         missing = [letter for letter in needed if letter not in control.words]
         if missing:
-            hint = "; ".join(
-                f"{each}: {NEEDED_WORDS[each]}" for each in missing if each in NEEDED_WORDS
-            )
-            control.fail("cycle-word", f"G{kind.number} needs {' and '.join(missing)}", hint=hint)
+            refuse_missing(control, f"G{kind.number}", missing)
         memory.back_boring = (0.0, 0.0, 0.0)
     dwell = control.words.get("P") if "P" in kind.words else None
     if dwell is not None and control.number(dwell) < 0.0:
         control.fail("dwell", "a dwell cannot be negative", dwell)
-    take_words(control, kind.rule, calls=True)
-    take_words(control, kind.rule)
+    take_words(control, kind.cycle, calls=True)
+    take_words(control, kind.cycle)
     if kind.words == "IJK":
         memory.back_boring = tuple(
             old if (word := control.take(letter)) is None else control.length(word)
@@ -236,21 +201,21 @@ def _refuse_rotary(control: Control) -> None:
 
 
 def _drill_holes(control: Control, kind: Kind, repeats: int) -> None:
-    state, memory = control.cycle_state, memory_of(control)
+    values, memory = control.cycle_values, memory_of(control)
     axis, incremental = control.modal.plane.axes[2], control.modal.incremental
     words = {letter: control.words[letter] for letter in (*"XYZ@^",) if letter in control.words}
-    reference = state[REFERENCE] + (state[START] if incremental else 0.0)
-    bottom = state[BOTTOM] + (reference if incremental else 0.0)
+    reference = values["reference"] + (values["start"] if incremental else 0.0)
+    bottom = values["bottom"] + (reference if incremental else 0.0)
     if bottom > reference:
         message = f"G{kind.number} must drill downwards, not from {reference:g} to {bottom:g}"
         control.fail("cycle-depth", message)
-    start = state[START]
+    start = values["start"]
     if start < reference:
         go_to_height(control, reference)
         start = reference
     clear = reference if control.modal.return_to_reference else start
     i, j, k = memory.back_boring
-    hole = Drilling(reference, bottom, clear, state, (i, j, k + bottom if incremental else k))
+    hole = Drilling(reference, bottom, clear, (i, j, k + bottom if incremental else k))
     current = max(control.motion.programmed[axis], reference)
     if not control.modal.return_to_reference:
         current = start
@@ -261,21 +226,15 @@ def _drill_holes(control: Control, kind: Kind, repeats: int) -> None:
         over[axis] = current if number == 0 else clear
         control.line_to(over, rapid=True)
         go_to_height(control, reference)
-        if isinstance(kind.work, Cycle):
-            _drill(control, hole, kind.rule)
-        else:
+        if callable(kind.work):
             kind.work(control, hole)
+        else:
+            heights = {"start": clear, "reference": reference, "bottom": bottom}
+            drill(control, hole_of(control, kind.cycle, {**values, **heights}))
 
 
-_G81 = Cycle(
-    lasting=True,
-    across=BOTTOM,
-    needed=1 << REFERENCE | 1 << BOTTOM,
-    dwells=False,
-    clearance=CLEARANCE,
-    as_written=True,
-)
-_PECKING = _G81._replace(needed=_G81.needed | 1 << PECK, pecking=int(Pecking.TO_BOTTOM))
+_PLAIN = {"dwells": False, "clearance": CLEARANCE}
+_PECKING = {"pecking": Pecking.TO_BOTTOM}
 
 KINDS = (
     Kind(
@@ -283,14 +242,14 @@ KINDS = (
         "drilling with chips broken every Q",
         "Q",
         "Q",
-        _PECKING._replace(lift=CLEARANCE),
+        {**_PECKING, "lift": CLEARANCE},
     ),
     Kind(74, "tapping, left-hand", "P", "", _tap(4, 3)),
-    Kind(81, "drilling", "", "", _G81),
-    Kind(82, "drilling with P seconds at the bottom", "P", "P", _G81._replace(dwells=True)),
+    Kind(81, "drilling", "", "", {}),
+    Kind(82, "drilling with P seconds at the bottom", "P", "P", {"dwells": True}),
     Kind(83, "drilling in pecks of Q", "Q", "Q", _PECKING),
     Kind(84, "tapping, right-hand", "P", "", _tap(3, 4)),
-    Kind(85, "reaming, out with the feed", "", "", _G81._replace(retract=int(Retract.FEED))),
+    Kind(85, "reaming, out with the feed", "", "", {"retract": Retract.FEED}),
     Kind(86, "boring, out with the spindle stopped", "P", "P", _bore),
     Kind(87, "boring from behind: I J beside the hole, K its top", "IJK", "IJK", _bore_back),
     Kind(
@@ -298,18 +257,18 @@ KINDS = (
         "reaming with P seconds at the bottom",
         "P",
         "P",
-        _G81._replace(dwells=True, retract=int(Retract.FEED_ALL)),
+        {"dwells": True, "retract": Retract.FEED_ALL},
     ),
 )
 
 
 def _code(kind: Kind) -> GCode:
-    mode = Interpolation(_perform(kind), rule=kind.rule if isinstance(kind.work, Cycle) else None)
+    mode = Interpolation(_perform(kind))
     return GCode(
         meaning=kind.meaning,
         group="motion",
         sets={"cycle": mode, "interpolation": None},
-        ground="manual",
+        basis="manual",
     )
 
 

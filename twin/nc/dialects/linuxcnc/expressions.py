@@ -1,6 +1,6 @@
 """Expressions and variables of RS274/NGC as LinuxCNC reads them.
 
-Operators stand in square brackets: powers bind tightest, then products, sums, comparisons, and the
+Operators are in square brackets: powers bind tightest, then products, sums, comparisons, and the
 logical operators, all from left to right. Angles are degrees.
 """
 

@@ -216,7 +216,7 @@ def _continue(control: Control, statement: Statement, word: OWord) -> None:
 def _subroutine_line(control: Control, name: str, *, here: int) -> int | None:
     """The line, from 0, of a subroutine's definition; None where there is none.
 
-    What stands before the line of the call, ``here``, comes before a file.
+    What is before the line of the call, ``here``, comes before a file.
     """
     structure(control)
     lines = memory_of(control).subroutines.get(name, [])

@@ -11,16 +11,12 @@ from twin.nc.dialects.linuxcnc.offsets import refuse_changed_unit, refuse_in_com
 from twin.nc.geometry.planes import XY
 from twin.nc.iso import base
 from twin.nc.iso.offsets import machine_zero
-from twin.nc.path.paces import FeedMode
+from twin.nc.path.feed_rates import FeedMode
 from twin.nc.text.blocks import Word
 
 
 def check_feed(control: Control, rapid: bool) -> None:
-    """A move with a feed needs one; with G93 in its own block.
-
-    Raises:
-        ProgramError: There is none.
-    """
+    """A move with a feed needs one; with G93 in its own block."""
     if rapid:
         return
     base.require_feed_of_block(control)
@@ -31,21 +27,13 @@ def check_feed(control: Control, rapid: bool) -> None:
 
 
 def need_axes(control: Control) -> NoReturn:
-    """A motion code that wants words of axes has none.
-
-    Raises:
-        ProgramError: Always.
-    """
+    """A motion code that wants words of axes has none."""
     message = "the code moves where its block says, and no word of an axis stands in it"
     control.fail("code-words", message, hint="write its axes in its block")
 
 
 def require_axes(control: Control) -> None:
-    """Refuse a block without words of axes.
-
-    Raises:
-        ProgramError: It is one.
-    """
+    """Refuse a block without words of axes."""
     if control.words.keys().isdisjoint({*control.axis_letters, "@", "^"}):
         need_axes(control)
 
@@ -146,7 +134,7 @@ def go_home(place: int) -> Action:
 
 
 def store_home(place: int) -> Action:
-    """G28.1, G30.1: where the axes stand is the stored position from now on."""
+    """G28.1, G30.1: where the axes are is the stored position from now on."""
 
     def action(control: Control) -> None:
         zero = machine_zero(control, ("G28.1", "G30.1")[place])

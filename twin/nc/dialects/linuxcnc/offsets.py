@@ -70,7 +70,12 @@ def tool_shift(control: Control) -> list[float]:
     if offset is None:
         return [0.0] * len(control.settings.axes)
     reference = ToolData(0.0, 0.0)
-    return [offset[0], offset[1], offset[2] + control.tools.longer(reference), *offset[3:]]
+    return [
+        offset[0],
+        offset[1],
+        offset[2] + control.tools.length_difference(reference),
+        *offset[3:],
+    ]
 
 
 def select_system(number: int) -> Action:
@@ -86,11 +91,7 @@ def select_system(number: int) -> Action:
 
 
 def known_system(control: Control, number: int) -> CoordinateSystem:
-    """A coordinate system that the job or the program has given values.
-
-    Raises:
-        ProgramError: Neither has.
-    """
+    """A coordinate system that the job or the program has given values."""
     memory, name = memory_of(control), SYSTEMS[number - 1]
     if number not in memory.systems:
         known = ", ".join(SYSTEMS[each - 1] for each in sorted(memory.systems))
@@ -102,11 +103,7 @@ def known_system(control: Control, number: int) -> CoordinateSystem:
 
 
 def refuse_in_compensation(control: Control, what: str = "coordinates cannot change") -> None:
-    """What cannot be done while the tool's radius is compensated.
-
-    Raises:
-        ProgramError: It is.
-    """
+    """What cannot be done while the tool's radius is compensated."""
     if memory_of(control).compensation is not None:
         message = f"{what} while radius compensation is in force"
         control.fail("compensation-change", message, hint="end it by G40 first")
@@ -130,7 +127,7 @@ def refuse_changed_unit(control: Control) -> None:
 
 
 def preset(control: Control) -> None:
-    """G92: the place where the machine stands gets the coordinates of the block."""
+    """G92: the place where the machine is gets the coordinates of the block."""
     memory, words = memory_of(control), _needed_axes(control, "G92")
     before = _preset_of(memory)
     for index, word in words:
@@ -228,7 +225,7 @@ def _turn(control: Control, system: CoordinateSystem, number: int, angle: float)
 
     Raises:
         ProgramError: It is in force under a preset: the control leaves that out when it turns the place
-            where it stands, and the axes jump with the next move.
+            where it is, and the axes jump with the next move.
     """
     memory = memory_of(control)
     in_force = number == memory.system and system.rotation != angle
@@ -242,7 +239,7 @@ def _turn(control: Control, system: CoordinateSystem, number: int, angle: float)
 def _set_origin_here(
     control: Control, system: CoordinateSystem, axes: list[tuple[int, Word]]
 ) -> None:
-    """Move a system so that the place where the machine stands has new coordinates in it."""
+    """Move a system so that the place where the machine is has new coordinates in it."""
     preset, matrix = _preset_of(memory_of(control)), turned(system)
     length = control.frame.shift("length")
     place = [value - shift for value, shift in zip(control.motion.part, length, strict=True)]
@@ -261,7 +258,7 @@ def _zeros(control: Control, code: str) -> list[float]:
 
 
 def _write_tool(control: Control, number: Word, kind: int) -> None:
-    """G10 L1: length Z and radius R of a tool; L10, L11: its length so that Z is where it stands."""
+    """G10 L1: length Z and radius R of a tool; L10, L11: its length so that Z is where it is."""
     which = integer_of(control.number(number))
     tool = control.tools.table.get(which)
     if tool is None:
@@ -288,12 +285,12 @@ def _write_tool(control: Control, number: Word, kind: int) -> None:
 
 
 def _length_here(control: Control, height: float, *, from_fixture: bool) -> float:
-    """Length of a tool whose tip would stand at a height where the machine stands now [mm]."""
+    """Length of a tool whose tip would be at a height where the machine is now [mm]."""
     memory = memory_of(control)
     number = FIXTURE if from_fixture else memory.system
     origin = known_system(control, number).origin[2]
     preset = 0.0 if from_fixture else _preset_of(memory)[2]
-    reference = -control.tools.longer(ToolData(0.0, 0.0))
+    reference = -control.tools.length_difference(ToolData(0.0, 0.0))
     spindle = (
         control.motion.part[2] + reference
         if memory.tool_offset is not None

@@ -6,7 +6,7 @@ from twin.nc.control.control import Control
 from twin.nc.dialects.linuxcnc.memory import SYSTEMS, CoordinateSystem, memory_of, written_feed
 from twin.nc.dialects.linuxcnc.offsets import reframe
 from twin.nc.iso.offsets import machine_zero
-from twin.nc.path.paces import FeedMode
+from twin.nc.path.feed_rates import FeedMode
 from twin.nc.text.blocks import Assignment
 from twin.nc.text.expressions import ExpressionError
 
@@ -21,7 +21,7 @@ _READ_ONLY = (5400, *range(5420, 5429), *range(5599, 5602))
 
 
 def is_local(name: str) -> bool:
-    """Whether each call of a subroutine has a variable of this name anew."""
+    """Whether each call of a subroutine has a variable of this name again."""
     if name.startswith("#<"):
         return not name.startswith("#<_")
     return not name[1:].isdigit() or int(name[1:]) <= LOCAL_PARAMETERS

@@ -28,11 +28,7 @@ def forget(control: Control) -> None:
 
 
 def restore(control: Control) -> None:
-    """M72.
-
-    Raises:
-        ProgramError: Nothing was put aside here, or the block would move.
-    """
+    """M72: put back into force what M70 or M73 has put aside here; the block may not move."""
     saved = memory_of(control).saved.get(control.program_counter.depth)
     if saved is None:
         control.fail("code-words", "M72 puts back what M70 or M73 has put aside, and none has")
@@ -65,7 +61,7 @@ def _put_back(control: Control, state: SavedState) -> None:
         modal.active.put(group, active.get(group))
     now.restore(modal)
     control.motion.spindle = state.spindle
-    if state.feed != written_feed(control):  # else nothing is written anew (``rs274``)
+    if state.feed != written_feed(control):  # else nothing is written again (``rs274``)
         control.motion.feed, memory_of(control).converted_feed = state.feed, None
     system = f"G{control.modal.active.get('offset', 54):g}"
     memory_of(control).system = SYSTEMS.index(system) + 1

@@ -40,7 +40,6 @@ class OWord(NamedTuple):
     Attributes:
         label: As it is written, ``100`` or ``<name>``, without blanks.
         keyword: Upper case; empty for the beginning of a program that M98 calls.
-        text: What follows.
         column: Where that stands, from 0.
     """
 

@@ -4,7 +4,7 @@ from twin.nc.control.codes import Codes, MCode, WordAction, Words
 from twin.nc.control.control import Control, Rules
 from twin.nc.control.dialect import Dialect
 from twin.nc.dialects.sinumerik import frames, statements, subprograms, variables, words
-from twin.nc.dialects.sinumerik.codes import CODES, INSTEAD, NUMBERS
+from twin.nc.dialects.sinumerik.codes import CODES, NUMBERS, REPLACEMENTS
 from twin.nc.dialects.sinumerik.decisions import DECISIONS
 from twin.nc.dialects.sinumerik.memory import SinumerikMemory, acts_on_lines
 from twin.nc.iso import base, shared_marks
@@ -42,7 +42,7 @@ SINUMERIK = Dialect(
     title="SINUMERIK 840D sl, ONE, 828D (milling)",
     code_page="cp1252",
     syntax=Syntax(
-        address=rf"(?:{_LONG})[ \t]*=|[MS]1[ \t]*=|[XYZABC]1?[ \t]*=|[A-Z][ \t]*=|{_OFFSET}|[A-Z]|:",
+        address=rf"AX[ \t]*\[[^\]]*\][ \t]*=|(?:{_LONG})[ \t]*=|[MS]1[ \t]*=|[XYZABC]1?[ \t]*=|[A-Z][ \t]*=|{_OFFSET}|[A-Z]|:",
         comments=(Comment(";"),),
         expressions=variables.EXPRESSIONS,
         statement=statements.PATTERN,
@@ -72,14 +72,16 @@ SINUMERIK = Dialect(
             "offset",
             "compensation corners",
             "compensation leads",
+            "lead side",
+            "leads",
             "compensation watch",
             "compensation",
             "spindle",
             "motion",
         ),
         g=CODES,
-        instead=INSTEAD,
-        start=(1, 17, 40, 60, 71, 90, 94, 97, 290, 450, 460, 601, NUMBERS["NORM"]),
+        replacements=REPLACEMENTS,
+        start=(1, 17, 40, 60, 71, 90, 94, 97, 140, 290, 340, 450, 460, 601, NUMBERS["NORM"]),
         m={
             **base.M_CODES,
             **{
@@ -90,10 +92,10 @@ SINUMERIK = Dialect(
                     (30, "end of program, or of a subprogram"),
                 )
             },
-            6: MCode(meaning="tool change", action=words.change_tool, ground="manual"),
-            19: MCode(meaning="spindle positioning", ground="manual"),
-            70: MCode(meaning="spindle as an axis", ground="manual"),
-            **{number: MCode(meaning="spindle gear", ground="manual") for number in range(40, 46)},
+            6: MCode(meaning="tool change", action=words.change_tool, basis="manual"),
+            19: MCode(meaning="spindle positioning", basis="manual"),
+            70: MCode(meaning="spindle as an axis", basis="manual"),
+            **{number: MCode(meaning="spindle gear", basis="manual") for number in range(40, 46)},
         },
         statements=statements.STATEMENTS,
         other_statement=statements.other_statement,
@@ -101,6 +103,7 @@ SINUMERIK = Dialect(
     words=Words(
         motion=frozenset("XYZABCUVWIJK")
         | {"CR", "AR", "AP", "RP", "TURN", "I1", "J1", "K1", "ANG"},
+        indexed=variables.indexed_axis,
         actions={
             "F": words.set_feed,
             "FB": words.feed_of_block,
@@ -122,8 +125,7 @@ SINUMERIK = Dialect(
             "FRCM": _refused_word("the feed of rounded and cut corners"),
             "OVR": _refused_word("a feed override of the program"),
             "OVRRAP": _refused_word("a rapid override of the program"),
-            "DISR": _refused_word("the distance of a smooth lead"),
-            "DISCL": _refused_word("the distance of a smooth lead"),
+            "DISRP": _refused_word("the height over which a smooth lead begins"),
         },
         meanings={
             "N": "block number; : of a main block",
@@ -166,12 +168,15 @@ SINUMERIK = Dialect(
             **dict.fromkeys(("CTOL", "OTOL"), "tolerance of the compressor: no change here"),
             "FP": "number of the fixed point of G75",
             **{f"{axis}1": f"axis {axis} of the machine, of G74 and G75" for axis in "XYZABC"},
+            "AX": "axis that a variable holds: DEF AXIS NAME=X, AX[NAME]=10",
             "FRC": "refused: feed of a corner",
             "FRCM": "refused: feed of corners",
             "OVR": "refused: feed override",
             "OVRRAP": "refused: rapid override",
-            "DISR": "refused: distance of a smooth lead",
-            "DISCL": "refused: distance of a smooth lead",
+            "DISR": "length or radius of a smooth lead",
+            "DISCL": "height above the contour at which its rapid way ends; DISCL=AC(5) from zero",
+            "FAD": "feed of its way down",
+            "DISRP": "refused: height over which a smooth lead begins",
         },
     ),
     rules=Rules(

@@ -4,7 +4,7 @@ import math
 
 from twin.nc.control.codes import Interpolation
 from twin.nc.control.control import Control
-from twin.nc.control.interpolation import ArcRule
+from twin.nc.control.modal import ArcRule
 from twin.nc.dialects.sinumerik.frames import refuse_uneven_arc
 from twin.nc.dialects.sinumerik.memory import memory_of
 from twin.nc.dialects.sinumerik.targets import POLAR_WORDS, forget_polar, take_target

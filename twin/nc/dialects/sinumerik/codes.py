@@ -7,12 +7,13 @@ from twin.nc.control.codes import Action, GCode
 from twin.nc.control.control import Control
 from twin.nc.dialects.sinumerik import arcs, frames, words
 from twin.nc.dialects.sinumerik.known import PASSED_CODES, REFUSED_CODES
+from twin.nc.dialects.sinumerik.leads import LEADS
 from twin.nc.dialects.sinumerik.reference_points import to_reference
 from twin.nc.dialects.sinumerik.targets import set_pole
 from twin.nc.geometry.planes import XY, YZ, ZX
-from twin.nc.iso.declared import instead, modal, motion_code, plane_code, refused
-from twin.nc.iso.tool_compensation import LEFT, RIGHT, end_compensation
-from twin.nc.path.paces import FeedMode
+from twin.nc.iso.declared import modal, motion_code, plane_code, refused, replacement
+from twin.nc.iso.tool_compensation import LEFT, RIGHT
+from twin.nc.path.feed_rates import FeedMode
 
 _ACTING = (
     *("CIP", "CT", "TRANS", "ATRANS", "ROT", "AROT", "SCALE", "ASCALE", "MIRROR", "AMIRROR"),
@@ -42,7 +43,7 @@ def _passed(names: str, why: str) -> GCode:
 
 
 def _frame(meaning: str, change: frames.Change, *, additive: bool = False) -> GCode:
-    return instead(meaning, frames.frame_code(change, additive=additive))
+    return replacement(meaning, frames.frame_code(change, additive=additive))
 
 
 def _machine_code(code: str) -> GCode:
@@ -50,9 +51,9 @@ def _machine_code(code: str) -> GCode:
     return GCode(
         meaning="this block counts from machine zero, without any frame",
         action=frames.machine_position(code),
-        after=frames.leave_machine_position,
-        once=True,
-        ground="manual",
+        after_motion=frames.leave_machine_position,
+        non_modal=True,
+        basis="manual",
     )
 
 
@@ -65,12 +66,11 @@ def _corner(meaning: str, corner: Corner) -> GCode:
 
 
 def _pole(number: int, from_where: str) -> GCode:
-    return instead(f"pole of AP= and RP=, from {from_where}", partial(set_pole, number))
+    return replacement(f"pole of AP= and RP=, from {from_where}", partial(set_pole, number))
 
 
 _ROUND = "rounds corners as far as the machine file's tolerance, or ADIS="
 _SPINDLE = "the twin's spindle has no angle; CYCLE84 and CYCLE840 tap"
-_LEADS = "smooth leads are not simulated; write the lead as a line or an arc"
 _UNITS: Action = words.keep_feed
 
 CODES: dict[float, GCode] = {
@@ -78,9 +78,9 @@ CODES: dict[float, GCode] = {
     1: motion_code("straight line; ANG= with one coordinate", arcs.FEED),
     2: motion_code("arc clockwise: centre, CR=, AR= or polar; TURN=", arcs.CLOCKWISE),
     3: motion_code("arc counter-clockwise", arcs.COUNTER_CLOCKWISE),
-    4: instead("dwell, seconds in F or revolutions in S", words.dwell, takes="FS"),
+    4: replacement("dwell, seconds in F or revolutions in S", words.dwell, consumes="FS"),
     **refused("path across two axes of a slanting machine", "the axes stand square", 5, 7),
-    9: modal("exact stop, this block", once=True, corner=Corner.EXACT_STOP),
+    9: modal("exact stop, this block", non_modal=True, corner=Corner.EXACT_STOP),
     17: plane_code("plane X Y", XY, words.choose_plane),
     18: plane_code("plane Z X", ZX, words.choose_plane),
     19: plane_code("plane Y Z", YZ, words.choose_plane),
@@ -88,21 +88,21 @@ CODES: dict[float, GCode] = {
         "limits of the working area or of the spindle", "they are the machine file's", 25, 26
     ),
     **refused("threading", _SPINDLE, 33, 34, 35),
-    40: modal("radius compensation off", "compensation", end_compensation),
+    40: modal("radius compensation off", "compensation", words.end_compensation),
     41: modal("compensation, tool left", "compensation", words.compensation(LEFT)),
     42: modal("compensation, tool right", "compensation", words.compensation(RIGHT)),
     53: _machine_code("G53"),
     **{number: _work_offset(number) for number in range(54, 58)},
-    58: instead("shift of the frame along single axes", frames.translate_axes(fine=False)),
-    59: instead("fine shift of the frame along single axes", frames.translate_axes(fine=True)),
+    58: replacement("shift of the frame along single axes", frames.translate_axes(fine=False)),
+    59: replacement("fine shift of the frame along single axes", frames.translate_axes(fine=True)),
     60: _corner("exact stop", Corner.EXACT_STOP),
     62: modal("slower at inside corners: no change here", "corner override"),
     **refused("tapping without an encoder", _SPINDLE, 63),
     64: _corner(_ROUND, Corner.CONTINUOUS),
     70: modal("lengths in inches, feeds as before", "units", _UNITS, unit=25.4),
     71: modal("lengths in millimetres, feeds as before", "units", _UNITS, unit=1.0),
-    74: instead("rapidly to the reference points of the axes", to_reference(74)),
-    75: instead("rapidly to the fixed point of the axes", to_reference(75)),
+    74: replacement("rapidly to the reference points of the axes", to_reference(74)),
+    75: replacement("rapidly to the fixed point of the axes", to_reference(75)),
     90: modal("absolute coordinates", "distance", incremental=False),
     91: modal("incremental coordinates", "distance", incremental=True),
     93: modal(
@@ -115,8 +115,11 @@ CODES: dict[float, GCode] = {
     110: _pole(110, "where the tool stands"),
     111: _pole(111, "zero"),
     112: _pole(112, "the pole before"),
-    **refused("direction of smooth leads", _LEADS, 140, 141, 142, 143),
-    **refused("smooth lead to or from the contour", _LEADS, 147, 148, 247, 248, 347, 348, 340, 341),
+    140: modal("smooth leads come from the side of the tool", "lead side"),
+    **refused("direction of smooth leads", "they come from the side of the tool", 141, 142, 143),
+    340: modal("smooth leads fall and rise in space", "leads"),
+    341: modal("smooth leads lie in the plane", "leads"),
+    **LEADS,
     153: _machine_code("G153"),
     290: modal("the control's own language", "language"),
     **refused(
@@ -161,12 +164,12 @@ CODES: dict[float, GCode] = {
     ),
     **{_number(names): _passed(names, why) for names, why in PASSED_CODES.items()},
     **{
-        _number(names): GCode(meaning=names, refused=why, ground="manual")
+        _number(names): GCode(meaning=names, refused=why, basis="manual")
         for names, why in REFUSED_CODES.items()
     },
 }
 
-INSTEAD: dict[float, str] = {
+REPLACEMENTS: dict[float, str] = {
     20: "inches are G70 or G700",
     21: "millimetres are G71 or G710",
     28: "write SUPA G0 and the axes, or G74 Z1=0",

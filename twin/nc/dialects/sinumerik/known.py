@@ -112,8 +112,6 @@ REFUSED_STATEMENTS = each_name(
         "CYCLE76, CYCLE77": "spigots are not simulated; write their contour with G41 or G42",
         "CYCLE78": "drilling and thread milling in one is not simulated",
         "CYCLE79": "polygons are not simulated; write their contour with G41 or G42",
-        "CYCLE90": "thread milling is not simulated; write the helix as G2 or G3 with TURN=",
-        "CYCLE72": "milling along a contour that is a program of its own is not simulated; call it between G41 and G40",
         "CYCLE73, CYCLE74, CYCLE75": "pockets of any contour are not simulated; post their paths",
         "CYCLE802": "it drills a list of places; write MCALL and the places",
         "CYCLE899": "open slots are not simulated; write their path",

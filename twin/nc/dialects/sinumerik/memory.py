@@ -84,6 +84,8 @@ class SinumerikMemory:
         tool_on: The tool in the spindle has its offset D.
         unit: Of lengths, as it was before the block [mm].
         allowance: OFFN [mm].
+        lead_side: Of the contour that the last lead has come to.
+        lead_offset: How far beside it the tool's centre goes [mm].
         rounding: RNDM [mm].
         modal_feed: F that an FB of the block has put aside, or None.
         subprograms: By name.
@@ -110,6 +112,8 @@ class SinumerikMemory:
     tool_on: bool = True
     unit: float = 1.0
     allowance: float = 0.0
+    lead_side: float = 0.0
+    lead_offset: float = 0.0
     rounding: float = 0.0
     modal_feed: float | None = None
     subprograms: dict[str, Subprogram] = dataclasses.field(default_factory=dict)

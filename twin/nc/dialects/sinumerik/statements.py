@@ -99,13 +99,13 @@ def other_statement(control: Control, statement: Statement) -> None:
 LONG_WORDS = (
     *("CR", "AR", "AP", "RP", "TURN", "I1", "J1", "K1", "ANG", "RPL"),
     *("RND", "RNDM", "CHR", "CHF", "ADIS", "ADISPOS", "OFFN", "DISC", "FB", "SPOS", "LIMS", "FP"),
-    *("FRC", "FRCM", "OVR", "OVRRAP", "DISR", "DISCL", "SPOSA", "CTOL", "OTOL"),
+    *("FRC", "FRCM", "OVR", "OVRRAP", "DISR", "DISCL", "DISRP", "FAD", "SPOSA", "CTOL", "OTOL"),
 )
 """Addresses of several letters, which = follows."""
 
 _LONG = "|".join(word for word in LONG_WORDS if word.isalpha())
 PATTERN = (
     r"%|R[0-9]+(?=[ \t]*=(?!=))|R(?=[ \t]*\[)|\$[A-Z_]\w*|L[0-9]+\b(?![ \t]*=)"
-    rf"|(?!(?:{'|'.join(NUMBERS)})\b|(?:{_LONG})[ \t]*=)[A-Z_][A-Z_]\w*\b(?![ \t]*:(?!=))"
+    rf"|(?!AX[ \t]*\[|(?:{'|'.join(NUMBERS)})\b|(?:{_LONG})[ \t]*=)[A-Z_][A-Z_]\w*\b(?![ \t]*:(?!=))"
 )
 """What begins a statement."""

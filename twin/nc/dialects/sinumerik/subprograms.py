@@ -12,7 +12,7 @@ from twin.nc.control.control import Control
 from twin.nc.dialects.sinumerik.frames import put_programmable
 from twin.nc.dialects.sinumerik.memory import CallFrame, Formal, Subprogram, memory_of
 from twin.nc.dialects.sinumerik.types import VariableType
-from twin.nc.dialects.sinumerik.variables import NAME, write_variable
+from twin.nc.dialects.sinumerik.variables import NAME, axis_of_value, write_variable
 from twin.nc.text.blocks import Block, Location, Statement
 from twin.nc.text.expressions import Expression, ExpressionError, Variable
 from twin.nc.text.library import Library
@@ -40,6 +40,7 @@ _CALL = re.compile(
     rf"^[ \t]*/?[0-9]?[ \t]*(?:N[ \t]*\d+[ \t]*)?(?:MCALL[ \t]+|CALL[ \t]+\"?|EXTCALL[ \t]*\(?[ \t]*\"?)?(L\d+|{NAME})\b",
     re.IGNORECASE,
 )
+_CONTOUR = re.compile(r"\bCYCLE72[ \t]*\([ \t]*\"(\w+)\"", re.IGNORECASE)
 _CALL_SOMEWHERE = re.compile(rb"L[0-9]|[A-Z_]{2}", re.IGNORECASE)
 _QUOTED_NAME = re.compile(
     r"[ \t]*\(?[ \t]*\"(?:.*/)?(?:_N_)?(\w+?)(?:_[MS]PF|\.[MS]PF)?\"[ \t]*\)?[ \t]*(.*)",
@@ -58,8 +59,9 @@ def name_of_file(name: str) -> str:
 def _calls(source: Source) -> Iterator[str]:
     if source.lines.any_holds(_CALL_SOMEWHERE):
         for line in source.lines:
-            if (match := _CALL.match(line)) is not None:
-                yield match[1].upper()
+            for match in (_CALL.match(line), _CONTOUR.search(line)):
+                if match is not None:
+                    yield match[1].upper()
 
 
 SUFFIXES = (".spf", ".mpf", ".arc")
@@ -167,7 +169,7 @@ def call_named(control: Control, statement: Statement, name: str, text: str, col
         ProgramError: There is none of that name, or the values do not fit.
     """
     subprogram = _subprogram(control, statement, name)
-    values, rest, at = _values(control, text, column)
+    values, rest, at = _values(control, text, column, subprogram.formals)
     times = 1.0
     if rest.strip():
         match = _TIMES.fullmatch(rest.rstrip()) or _TIMES.match(f" {rest.strip()}")
@@ -191,8 +193,30 @@ def _subprogram(control: Control, statement: Statement, name: str) -> Subprogram
     return found
 
 
-Value = tuple[Expression | None, int]
-"""What a call gives for a parameter, None where it leaves it out, and where that stands."""
+def call_subprogram(control: Control, statement: Statement, name: str) -> None:
+    """Call a subprogram without values.
+
+    Raises:
+        ProgramError: There is none of that name, or it needs values.
+    """
+    _enter(control, statement, _subprogram(control, statement, name), [], 1.0)
+
+
+def call_part(control: Control, statement: Statement, first: str, last: str) -> None:
+    """Call the blocks between two labels.
+
+    Raises:
+        ProgramError: There are none.
+    """
+    begin, end = _place(control, statement, first), _place(control, statement, last)
+    if end < begin:
+        message = f"{statement.keyword} names {last}, which stands before {first}"
+        control.fail("repeat-range", message, statement)
+    control.call(begin, DEEPEST_CALL, statement, last=end)
+
+
+Value = tuple[Expression | str | None, int]
+"""What a call gives for a parameter, an axis as text, None where it leaves it out, and where that stands."""
 
 
 def split_values(text: str) -> list[tuple[str, int]]:
@@ -233,13 +257,18 @@ def bracketed(control: Control, text: str, column: int) -> tuple[str, int, int]:
     return text[at + 1 : end - 1], column + at + 1, end
 
 
-def _values(control: Control, text: str, column: int) -> tuple[list[Value], str, int]:
+def _values(
+    control: Control, text: str, column: int, formals: tuple[Formal, ...]
+) -> tuple[list[Value], str, int]:
     inner, at, end = bracketed(control, text, column)
     values = list[Value]()
-    if inner.strip():
-        for each, begin in split_values(inner):
-            expression = control.statements.expression(each, at + begin) if each.strip() else None
-            values.append((expression, at + begin))
+    for number, (each, begin) in enumerate(split_values(inner) if inner.strip() else ()):
+        value: Expression | str | None = None
+        if number < len(formals) and formals[number].type is VariableType.AXIS:
+            value = axis_of_value(control, each, at + begin)
+        elif each.strip():
+            value = control.statements.expression(each, at + begin)
+        values.append((value, at + begin))
     return values, text[end:], column + end
 
 
@@ -258,13 +287,17 @@ def _enter(
     given = list[tuple[str, float]]()
     for number, formal in enumerate(formals):
         expression, at = values[number] if number < len(values) else (None, statement.column)
+        frame.types[formal.name] = formal.type
+        if formal.type is VariableType.AXIS:
+            frame.texts[formal.name] = expression if isinstance(expression, str) else ""
+            continue
+        assert not isinstance(expression, str)
         if formal.is_reference:
             if expression is None or not isinstance(expression.tree, Variable):
                 message = f"{formal.name} is VAR: the call must give it a variable"
                 control.report.fail("call-values", message, at, 1)
             references[formal.name] = expression.tree.name
         value = formal.default if expression is None else control.compute(expression, at)
-        frame.types[formal.name] = formal.type
         given.append((formal.name, formal.type.converted(value)))
     frame.references = references
     if subprogram.restores:
@@ -274,13 +307,13 @@ def _enter(
     memory.calls.append(frame)
 
 
-def go_back(control: Control, blamed: Statement | None = None) -> None:
+def go_back(control: Control, error_at: Statement | None = None) -> None:
     """M17, RET, or the last line of a subprogram: back behind its call, or to its beginning again."""
-    control.require_caller(blamed)
+    control.require_caller(error_at)
     memory = memory_of(control)
     frame = memory.calls[-1]
     results = [(to, control.variables.read(name)) for name, to in frame.references.items()]
-    control.go_back(blamed)
+    control.go_back(error_at)
     if control.program_counter.depth >= frame.depth:  # it runs again
         return
     memory.calls.pop()
@@ -289,7 +322,7 @@ def go_back(control: Control, blamed: Statement | None = None) -> None:
             try:
                 write_variable(control, name, None, value)
             except ExpressionError as error:
-                control.fail(error.code, str(error), blamed, error.hint)
+                control.fail(error.code, str(error), error_at, error.hint)
     if frame.programmable is not None and frame.programmable != (memory.matrix, memory.translation):
         put_programmable(control, *frame.programmable)
 

@@ -8,6 +8,7 @@ from twin.nc.control.control import Control
 from twin.nc.control.settings import ToolData
 from twin.nc.dialects.sinumerik import frames
 from twin.nc.dialects.sinumerik.memory import memory_of
+from twin.nc.dialects.sinumerik.types import VariableType
 from twin.nc.text.expressions import ExpressionError
 
 _NAME = re.compile(r"(\$\w+)(?:\[([^\]]*)\])?")
@@ -94,11 +95,20 @@ def _split(name: str) -> tuple[str, list[str]]:
     return match[1], [] if match[2] is None else [each.strip() for each in match[2].split(",")]
 
 
+def axis_named(control: Control, name: str) -> str | None:
+    """An axis by its name or by a variable that holds it; None: there is none."""
+    call = memory_of(control).calls[-1]
+    if call.types.get(name) is VariableType.AXIS:
+        name = call.texts[name]
+    name = name.removesuffix("1") if len(name) == 2 else name
+    return name if name in control.axis_index else None
+
+
 def _axis(control: Control, name: str) -> int:
-    index = control.axis_index.get(name)
-    if index is None:
+    axis = axis_named(control, name)
+    if axis is None:
         raise ExpressionError("no-such-axis", f"this machine has no axis {name}")
-    return index
+    return control.axis_index[axis]
 
 
 def _number(control: Control, text: str) -> int:

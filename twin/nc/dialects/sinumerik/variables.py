@@ -285,6 +285,10 @@ def _value_of(
     quoted, many = _QUOTED.match(line, at), _MANY.match(line, at)
     if quoted is not None:
         return Assignment(target, begin, (), quoted[0]), quoted.end()
+    name = target.tree.name if isinstance(target.tree, Variable) else ""
+    if memory_of(control).calls[-1].types.get(name) is VariableType.AXIS:
+        axis, end = _axis_at(control, line, at, column)
+        return Assignment(target, begin, (), axis), end
     if many is None:
         value, end = control.statements.longest(line, at, column)
         return Assignment(target, begin, ((value, column + at),)), end
@@ -299,7 +303,7 @@ def _value_of(
 def _assign(control: Control, each: Assignment) -> None:
     tree, call = each.target.tree, memory_of(control).calls[-1]
     assert isinstance(tree, Variable | NumberedVariable)
-    if each.text or call.types.get(tree.name) is VariableType.STRING:
+    if each.text or call.types.get(tree.name) in TEXTS:
         _assign_text(control, each, tree.name)
         return
     try:
@@ -334,7 +338,7 @@ def _fill(control: Control, each: Assignment, name: str, index: float, values: l
 def _assign_text(control: Control, each: Assignment, name: str) -> None:
     call = memory_of(control).calls[-1]
     text = each.text.strip('"') if each.text else _named_text(call, each)
-    if call.types.get(name) is not VariableType.STRING or text is None:
+    if call.types.get(name) not in TEXTS or text is None:
         message = (
             f"{name} holds no text"
             if text is not None
@@ -348,6 +352,49 @@ def _assign_text(control: Control, each: Assignment, name: str) -> None:
 def _named_text(call: CallFrame, each: Assignment) -> str | None:
     (value, _), *_rest = each.values
     return call.texts.get(value.tree.name) if isinstance(value.tree, Variable) else None
+
+
+# --- axes
+
+
+TEXTS = (VariableType.STRING, VariableType.AXIS)
+"""Types whose values are texts."""
+_AXIS = re.compile(r"\(?[ \t]*(\w+)[ \t]*\)?")
+
+
+def _axis_at(control: Control, line: str, at: int, column: int) -> tuple[str, int]:
+    """The axis that stands in a line, also in brackets, and the place behind it.
+
+    Raises:
+        ProgramError: None does.
+    """
+    match = _AXIS.match(line, at)
+    axis = None if match is None else system_variables.axis_named(control, match[1].upper())
+    if match is None or axis is None:
+        known = ", ".join(control.settings.axes.names)
+        message = f"an axis must stand here: {known}"
+        control.report.fail("no-such-axis", message, column + at, 1)
+    return axis, match.end()
+
+
+def axis_of_value(control: Control, text: str, column: int) -> str:
+    """The axis that a call gives for a parameter of the type AXIS."""
+    blanks = len(text) - len(text.lstrip())
+    return _axis_at(control, text, blanks, column)[0]
+
+
+def indexed_axis(control: Control, word: Word) -> str:
+    """The axis of ``AX[NAME]=10``.
+
+    Raises:
+        ProgramError: There is none.
+    """
+    name = word.address.partition("[")[2].rstrip("] \t").strip()
+    axis = system_variables.axis_named(control, name)
+    if axis is None:
+        message = f"{name} is no axis, and no variable that holds one"
+        control.fail("no-such-axis", message, word, f"DEF AXIS {name}=X")
+    return axis
 
 
 def text_of(word: Word) -> str:
@@ -373,9 +420,6 @@ def define(control: Control, statement: Statement) -> None:
         hint = "types: REAL, INT, BOOL, CHAR, STRING[20]; DEF REAL DEPTH=5"
         control.fail("definition", message, statement, hint)
     variable_type = VariableType(re.split(r"[ \t\[]", kind[1].upper())[0])
-    if variable_type is VariableType.AXIS:
-        message = "a variable of the type AXIS is not followed"
-        control.fail("unsupported-statement", message, statement, "write the axis itself")
     text, at, column = statement.text.rstrip(), kind.end(), statement.text_column
     while True:
         name = _DEFINED_NAME.match(text, at)
@@ -403,7 +447,7 @@ def _define(
     if name in call.types:
         control.report.fail("definition", f"{name} is defined already", column, len(name))
     call.types[name] = kind
-    if kind is VariableType.STRING:
+    if kind in TEXTS:
         call.texts[name] = ""
         return
     if sizes is None:

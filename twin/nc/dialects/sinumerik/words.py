@@ -7,6 +7,7 @@ from twin.nc.control.codes import Action
 from twin.nc.control.compensation import compensate, tool_named, tool_numbered
 from twin.nc.control.control import Control
 from twin.nc.dialects.sinumerik import frames
+from twin.nc.dialects.sinumerik.leads import is_led
 from twin.nc.dialects.sinumerik.memory import memory_of
 from twin.nc.dialects.sinumerik.subprograms import call_after_motion
 from twin.nc.dialects.sinumerik.targets import (
@@ -21,7 +22,7 @@ from twin.nc.iso.declared import keep_compensated_plane
 from twin.nc.iso.tool_change import go_to_change_height
 from twin.nc.iso.tool_compensation import radius_in_spindle, set_length
 from twin.nc.path.blends import Blend, BlendKind
-from twin.nc.path.paces import counts_blocks
+from twin.nc.path.feed_rates import counts_blocks
 from twin.nc.text.arithmetic import is_whole
 from twin.nc.text.blocks import Word
 
@@ -106,7 +107,7 @@ def _apply_offset(control: Control, *, on: bool) -> None:
     memory_of(control).tool_on = on
     tool = control.tools.data(control.tools.spindle) if on else None
     before = frame_changes(control)
-    set_length(control, 0.0 if tool is None else control.tools.longer(tool))
+    set_length(control, 0.0 if tool is None else control.tools.length_difference(tool))
     frame_changed(control, before)
 
 
@@ -116,9 +117,16 @@ def compensation(side: float) -> Action:
     def action(control: Control) -> None:
         memory = memory_of(control)
         radius = radius_in_spindle(control) if memory.tool_on else 0.0
-        compensate(control, side, radius + memory.allowance)
+        if not is_led(control):
+            compensate(control, side, radius + memory.allowance)
 
     return action
+
+
+def end_compensation(control: Control) -> None:
+    """G40: the next line leads out, but for a lead of the block."""
+    if not is_led(control):
+        control.path.end_compensation()
 
 
 def set_allowance(control: Control, word: Word) -> None:

@@ -33,12 +33,7 @@ class Passed:
         self._boxes.clear()
 
     def add(self, element: Curve, own: Curve | None, line: int) -> int | None:
-        """Remember the next element, unless it crosses one where the contour does not cross itself.
-
-        Args:
-            element: The element.
-            own: That of the contour to which it belongs, or None.
-            line: Its line.
+        """Remember the next element, of a line and an element of the contour, unless it crosses one where the contour does not.
 
         Returns:
             Line of the element that it crosses; None: none.

@@ -77,9 +77,9 @@ class Compensation:
         self._events: list[list[Event]] = []
         """What happens behind each of them."""
         self._contour, self._parallel = _NO_CURVE, _NO_CURVE
-        """The held move in the plane, and the path beside it; while it leads out, the contour's last element."""
+        """The kept move in the plane, and the path beside it; while it leads out, the contour's last element."""
         self._start: Point = (0.0, 0.0)
-        """Where the compensated path of the held move begins in the plane [mm]."""
+        """Where the compensated path of the kept move begins in the plane [mm]."""
         self._here: list[float] | None = None
         """Where the compensated path has come to, shape (k,); None: nothing has been driven."""
         self._passed = Passed()
@@ -127,11 +127,7 @@ class Compensation:
         self._passed.clear()
 
     def change(self, signed_offset: float) -> None:
-        """Another radius on the same side, from the next move's end on: that line leads from the one to the other.
-
-        Args:
-            signed_offset: The tool's radius, positive left of the contour [mm].
-        """
+        """Another radius, signed likewise, from the next move's end on: that line leads from the one to the other."""
         if self.stage is STARTED:
             self._signed_offset = signed_offset
         else:
@@ -145,7 +141,7 @@ class Compensation:
             self._happen(event)
 
     def end(self, *, led: bool = False) -> None:
-        """Let go of what is held, square to itself, and wait for the line that leads out, if nothing else does."""
+        """Let go of what is kept, square to itself, and wait for the line that leads out, if nothing else does."""
         before = self._parallel if self.stage is FOLLOWING else self._contour
         if self.stage is LEADING_IN:
             self._let_go(before, before, before[2])
@@ -193,7 +189,7 @@ class Compensation:
             self._take_next_offset(move, curve, self._next_offset)
 
     def _take_next_offset(self, move: Segment, curve: Curve, offset: float) -> None:
-        """The held move ends beside the contour by another radius than it began with."""
+        """The kept move ends beside the contour by another radius than it began with."""
         if curve[0]:
             message = "the radius changes along a straight move, and this is an arc"
             self._report.refuse(move, "compensation-change", message)
@@ -203,7 +199,7 @@ class Compensation:
     # --- from move to move
 
     def _go_along_normal(self, move: Segment) -> None:
-        """A move that does not go in the plane: at once before the lead-in, else behind the held move."""
+        """A move that does not go in the plane: at once before the lead-in, else behind the kept move."""
         if self.stage is STARTED and self._led:
             message = "the contour must begin behind its approach with a move in the plane"
             self._report.refuse(move, "compensation-start", message)
@@ -247,13 +243,7 @@ class Compensation:
         self._contour, self._start = curve, start
 
     def _let_go(self, before: Curve, part: Curve, at: Point) -> None:
-        """Drive the held move up to a point, then what waits for its end.
-
-        Args:
-            before: The path beside the held move.
-            part: What is left of that.
-            at: Where it ends.
-        """
+        """Drive the kept move up to a point on what is left of its parallel, then what waits for its end."""
         plane, here = self.plane, self._here
         for number, (move, events) in enumerate(zip(self._held, self._events, strict=True)):
             start, end = move.start if here is None else here, list(move.end)
@@ -270,7 +260,7 @@ class Compensation:
         self._held, self._events = [], []
 
     def _go_around(self, move: Segment, corner: Curve) -> None:
-        """Go around a corner where the path has come to, as a held move goes."""
+        """Go around a corner where the path has come to, as a kept move goes."""
         assert self._here is not None
         arc = self._level_arc(move, corner, self._here)
         arc.corner = Corner.EXACT_PATH
@@ -345,12 +335,7 @@ class Compensation:
         self._report.refuse(move, code, message)
 
     def _pass(self, element: Curve, own: Curve | None) -> None:
-        """Pass an element of the path; refuse one that crosses another that was passed.
-
-        Args:
-            element: A part of the parallel, or the way around a corner.
-            own: The element of the contour that it belongs to, or None.
-        """
+        """Pass an element of the path; refuse one that crosses another that was passed."""
         line = self._passed.add(element, own, self._held[0].line)
         if line is not None:
             where = f"between this element and that of line {line}: the path crosses itself"

@@ -14,59 +14,33 @@ B that break the chip, back by H, or without it to the reference plane.
 
 import dataclasses
 from collections.abc import Mapping
+from typing import Any
 
-from twin.nc.control.codes import GCode, Ground, Interpolation
+from twin.nc.control.codes import Basis, GCode, Interpolation
 from twin.nc.control.control import Control
-from twin.nc.control.interpolation import CycleRule
 from twin.nc.dialects.fagor8070.cycles.pockets import call_pocket, mill_pocket
 from twin.nc.dialects.fagor8070.polar import take_goal
-from twin.nc.iso.drilling import Holes, cycle_code
-from twin.nc.path.drilling_cycle import (
-    BOTTOM,
-    CHIP_CLEARANCE,
-    CLEARANCE,
-    COUNT,
-    DWELL,
-    EVERY,
-    FACTOR,
-    LEAST,
-    LIFT,
-    PECK,
-    REFERENCE,
-    SURFACE,
-    Cycle,
-    Pecking,
-    Retract,
-)
+from twin.nc.iso.drilling import Cycle, Holes, Pecking, cycle_code
+from twin.nc.iso.hole import Retract
 
 _CLEARANCE = 1.0
 """G82: C where it is missing [mm]."""
 
 
-_PLAIN = Cycle(
-    lasting=False,
-    across=REFERENCE,
-    needed=1 << BOTTOM,
-    pecking=Pecking.NONE,
-    clearance=CHIP_CLEARANCE,
-    retract=Retract.RAPID,
-)
-"""Down with the feed, back with rapid."""
-_NO_OPTIONS: Mapping[str, tuple[float, ...]] = {}
-
-
 def _drilling(
     number: int,
     meaning: str,
-    words: Mapping[str, int],
-    cycle: Cycle = _PLAIN,
-    *,
-    ground: Ground = "decision",
-    options: Mapping[str, tuple[float, ...]] = _NO_OPTIONS,
+    words: Mapping[str, str],
+    basis: Basis = "decision",
+    **peculiar: Any,
 ) -> GCode:
-    """A cycle that drills, by its words besides Z and I; ``options`` change nothing of its path."""
-    rule = CycleRule(f"G{number}", cycle, {**words, "I": BOTTOM}, options)
-    return cycle_code(rule, f"{meaning}: Z I {' '.join(words)}", Holes(_hole, ground))
+    """A cycle that drills, by its words besides Z and I, and what is peculiar to it: fields of ``Cycle``."""
+    cycle = Cycle(
+        name=f"G{number}",
+        words={**words, "I": "bottom"},
+        **{"across": "reference", "needed": ("bottom",), "lasting": False, **peculiar},
+    )
+    return cycle_code(cycle, f"{meaning}: Z I {' '.join(words)}", Holes(_hole, basis))
 
 
 def _hole(control: Control) -> list[float]:
@@ -104,49 +78,51 @@ def _pocket(
         group="cycle",
         sets={"cycle": mill},
         action=lambda control: call_pocket(control, words, lengths),
-        takes="" if circular else "M",
-        ground="manual",
+        consumes="" if circular else "M",
+        basis="manual",
     )
 
 
-_DWELL = {"K": DWELL}
+_DWELL = {"K": "dwell"}
 _SPINDLE = {"A": (0.0,)}
 """A: what the spindle does on the way back; 0 as without it."""
 _RIGID = {"R": (0.0, 1.0), "J": (1.0,)}
 """R: 0 with a tapping chuck, 1 rigid: one path. J: how much faster the way back is."""
 
 CYCLES = {
-    80: GCode(meaning="cycles off", group="cycle", sets={"cycle": None}, ground="manual"),
-    81: _drilling(81, "drilling", _DWELL, ground="manual", options=_SPINDLE),
+    80: GCode(meaning="cycles off", group="cycle", sets={"cycle": None}, basis="manual"),
+    81: _drilling(81, "drilling", _DWELL, basis="manual", options=_SPINDLE),
     82: _drilling(
         82,
         "drilling in variable pecks",
         {
-            "B": PECK,
-            "D": SURFACE,
-            "R": FACTOR,
-            "L": LEAST,
-            "H": LIFT,
-            "J": EVERY,
-            "C": CLEARANCE,
-            "K": DWELL,
+            "B": "peck",
+            "D": "surface",
+            "R": "factor",
+            "L": "least",
+            "H": "lift",
+            "J": "every",
+            "C": "clearance",
+            "K": "dwell",
         },
-        _PLAIN._replace(
-            needed=_PLAIN.needed | 1 << PECK, pecking=Pecking.TO_BOTTOM, clearance=_CLEARANCE
-        ),
+        needed=("bottom", "peck"),
+        pecking=Pecking.TO_BOTTOM,
+        clearance=_CLEARANCE,
     ),
     83: _drilling(
         83,
         "deep drilling in equal pecks",
-        {"J": COUNT, "D": SURFACE, "K": DWELL},
-        _PLAIN._replace(needed=_PLAIN.needed | 1 << COUNT, pecking=Pecking.COUNTED),
+        {"J": "count", "D": "surface", "K": "dwell"},
+        needed=("bottom", "count"),
+        pecking=Pecking.COUNTED,
     ),
     84: _tapping(
         _drilling(
             84,
             "tapping",
-            {"B": PECK, "H": LIFT, "K": DWELL},
-            _PLAIN._replace(pecking=Pecking.UNSIGNED_PASSES, retract=Retract.REVERSED),
+            {"B": "peck", "H": "lift", "K": "dwell"},
+            pecking=Pecking.UNSIGNED_PASSES,
+            retract=Retract.REVERSED,
             options=_RIGID,
         )
     ),
@@ -154,14 +130,14 @@ CYCLES = {
         85,
         "reaming, back with the feed",
         _DWELL,
-        _PLAIN._replace(retract=Retract.FEED),
+        retract=Retract.FEED,
         options=_SPINDLE,
     ),
     86: _drilling(
         86,
         "boring, back with the spindle stopped",
         _DWELL,
-        _PLAIN._replace(retract=Retract.STOPPED),
+        retract=Retract.STOPPED,
         options=_SPINDLE,
     ),
     87: _pocket(87, "rectangular pocket", "DAJKBCLHVMQ", "DJKBCLHVQ"),

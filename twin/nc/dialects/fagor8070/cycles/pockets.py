@@ -13,17 +13,8 @@ import math
 
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.polar import take_goal
-from twin.nc.iso.pockets import (
-    DIAGONAL,
-    Corner,
-    CornerKind,
-    Passes,
-    Pocket,
-    insets_of,
-    levels_between,
-    mill,
-    require_room,
-)
+from twin.nc.iso.milling.clearing import Clearing, clear_pocket
+from twin.nc.iso.milling.outlines import Circle, Corner, CornerKind, Outline, Rectangle
 
 _DEFAULT_WIDTH = 0.75
 """Width of a pass where C is missing, of the tool's diameter (manual)."""
@@ -83,40 +74,38 @@ def mill_pocket(control: Control, name: str, *, circular: bool) -> None:
     if tool is None:
         control.fail("no-such-tool", f"{name} needs a tool, and the job has none")
     radius = tool.radius
-    goal = take_goal(control, arc=False).target
-    pocket = Pocket(
-        control.modal.plane.point(goal),
-        abs(values["J"]) - radius,
-        None if circular else values["K"] - radius,
-        values.get("A", 0.0),
-        values["J"] > 0.0,
-        Corner() if circular else _corner(control, name, radius),
-    )
-    mill(control, pocket, _passes(control, name, pocket, radius))
+    center = control.modal.plane.point(take_goal(control, arc=False).target)
+    length, clockwise = abs(values["J"]) - radius, values["J"] > 0.0
+    outline: Outline = Circle(center, length, clockwise, values.get("A", 0.0))
+    if not circular:
+        corner, width = _corner(control, name, radius), values["K"] - radius
+        outline = Rectangle(center, length, width, values.get("A", 0.0), clockwise, corner)
+    clear_pocket(control, outline, _clearing(control, name, radius))
 
 
-def _passes(control: Control, name: str, pocket: Pocket, radius: float) -> Passes:
+def _clearing(control: Control, name: str, radius: float) -> Clearing:
     values = control.cycle_values
     surface, bottom = values["Z"] - values.get("D", 0.0), values["bottom"]
-    depth, stock = abs(values["B"]), abs(values.get("L", 0.0))
-    width = values.get("C", 0.0) or _DEFAULT_WIDTH * 2.0 * radius
+    depth, width = abs(values["B"]), values.get("C", 0.0) or _DEFAULT_WIDTH * 2.0 * radius
     if not bottom < surface <= values["Z"] or depth == 0.0:
         message = f"from the surface {surface:g} to {bottom:g} in passes above 0"
         control.fail("cycle-depth", f"{name} must mill downwards, {message}")
     if not 0.0 < width <= 2.0 * radius:
         message = f"{name}: a pass of {width:g} is wider than the tool, {2.0 * radius:g}"
         control.fail("cycle-size", message)
-    step = min(width, DIAGONAL * radius)
-    require_room(control, name, pocket, stock, (surface - bottom) / depth, step, radius)
-    feed, back = control.motion.feed, control.cycle_values["start"]
-    plunge = values.get("V") or (None if feed is None else feed * _DEFAULT_PLUNGE)
-    return Passes(
-        values["Z"],
-        levels_between(surface, bottom, depth),
-        insets_of(pocket, step, stock),
-        (0.0,) if stock > 0.0 else (),
-        plunge,
-        values.get("H") or None,
-        values["Z"] if control.modal.return_to_reference else max(back, values["Z"]),
-        pocket.center,
+    feed = control.motion.feed
+    at_reference = control.modal.return_to_reference
+    return Clearing(
+        name=name,
+        radius=radius,
+        reference=values["Z"],
+        surface=surface,
+        bottom=bottom,
+        back=values["Z"] if at_reference else max(values["start"], values["Z"]),
+        depth=depth,
+        step=width,
+        stock=abs(values.get("L", 0.0)),
+        feed=feed,
+        plunge=values.get("V") or (None if feed is None else feed * _DEFAULT_PLUNGE),
+        finish_feed=values.get("H") or None,
     )

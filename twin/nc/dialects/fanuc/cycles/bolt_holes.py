@@ -1,7 +1,7 @@
 """G70 and G71 of a Haas: the holes of the canned cycle in force lie on a circle or on an arc.
 
 I is the radius, J the angle of the first hole from +X, K of G71 the angle from hole to hole, L how many
-holes. The centre is where the tool stands, or the X and Y of the block.
+holes. The centre is where the tool is, or the X and Y of the block.
 """
 
 import math
@@ -20,7 +20,7 @@ def bolt_holes(number: int) -> GCode:
     return GCode(
         meaning=f"holes of the cycle in force on {shape}",
         perform=lambda control: _drill(control, number),
-        ground="manual",
+        basis="manual",
     )
 
 
@@ -63,11 +63,11 @@ def _coordinate(control: Control, index: int) -> float:
     return control.axis_value(index, word) + (here if control.modal.incremental else 0.0)
 
 
-def _words_to(control: Control, place: tuple[float, float], blamed: Word) -> dict[str, Word]:
+def _words_to(control: Control, place: tuple[float, float], error_at: Word) -> dict[str, Word]:
     """The words that lead to a place, as the block could have written them."""
     words: dict[str, Word] = {}
     for index, (address, value) in enumerate(zip("XY", place, strict=True)):
         begin = control.motion.programmed[index] if control.modal.incremental else 0.0
         count = (value - begin) / control.modal.unit
-        words[address] = Word(address, count, blamed.column, blamed.width)
+        words[address] = Word(address, count, error_at.column, error_at.width)
     return words

@@ -8,48 +8,45 @@ import dataclasses
 
 from twin.nc.control.codes import GCode, Interpolation
 from twin.nc.control.control import Control
-from twin.nc.control.interpolation import CycleRule
 from twin.nc.dialects.fanuc.memory import Variant, memory_of
 from twin.nc.dialects.fanuc.motion import holes_of, target
 from twin.nc.dialects.fanuc.transformations import refuse_scaled_pecks
-from twin.nc.iso.drilling import cycle_code, go_to_height, refuse_hole, take_words, turn_spindle
-from twin.nc.path.drilling_cycle import BOTTOM, DWELL, PECK, REFERENCE, START, Cycle
-from twin.nc.path.hole import Fault, hole_of
+from twin.nc.iso.drilling import Cycle, cycle_code, require_words, take_words
+from twin.nc.iso.hole import turn_spindle
+from twin.nc.iso.plane_moves import go_to_height
 
-_WORDS = {"R": REFERENCE, "P": DWELL, "Q": PECK}
-_NEEDED = 1 << REFERENCE | 1 << BOTTOM | 1 << PECK
+_WORDS = {"R": "reference", "P": "dwell", "Q": "peck"}
+_NEEDED = ("reference", "bottom", "peck")
 
 
 def boring_code(number: int, meaning: str, variant: Variant) -> GCode:
     """The code that calls G76 or G87."""
-    cycle = Cycle(lasting=True, across=BOTTOM, needed=_NEEDED)
-    rule = CycleRule(f"G{number}", cycle, _WORDS)
-    code = cycle_code(rule, f"{meaning}: X Y Z R P Q", holes_of(variant))
+    cycle = Cycle(name=f"G{number}", words=_WORDS, needed=_NEEDED)
+    code = cycle_code(cycle, f"{meaning}: X Y Z R P Q", holes_of(variant))
     begin = code.action
     assert begin is not None
 
     def call(control: Control) -> None:
-        refuse_scaled_pecks(control, rule.name)
+        refuse_scaled_pecks(control, cycle.name)
         memory = memory_of(control)
         if memory.mirror or memory.rotation is not None:
-            message = f"{rule.name} shifts the tool as the machine stands: no mirror or rotation turns that"
+            message = f"{cycle.name} shifts the tool as the machine stands: no mirror or rotation turns that"
             control.fail("rotation-active", message, hint="end them first: G50.1, G69")
         begin(control)
 
     def perform(control: Control) -> None:
-        take_words(control, rule)
-        _bore(control, rule, target(control), back=number == 87)
+        take_words(control, cycle)
+        _bore(control, cycle, target(control), back=number == 87)
 
     return dataclasses.replace(code, sets={"cycle": Interpolation(perform)}, action=call)
 
 
-def _bore(control: Control, rule: CycleRule, hole: list[float], *, back: bool) -> None:
+def _bore(control: Control, cycle: Cycle, hole: list[float], *, back: bool) -> None:
     """Bore at a programmed position; ``back``: from below, R lies under the part."""
-    values, name, axis = control.cycle_state, rule.name, control.modal.plane.axes[2]
-    found = hole_of(rule.cycle, values, axis, control.modal.return_to_reference)
-    if found.fault in (Fault.MISSING, Fault.PLANE):
-        refuse_hole(control, rule, found)
-    reference, bottom, shift = found.reference, found.bottom, values[PECK]
+    require_words(control, cycle)
+    values, name, axis = control.cycle_values, cycle.name, control.modal.plane.axes[2]
+    start, reference, bottom, shift = (values[each] for each in ("start", *_NEEDED))
+    to_reference = control.modal.return_to_reference
     if shift < 0.0:
         control.fail("cycle-depth", f"{name} needs a shift Q not below 0")
     upwards = bottom > reference
@@ -57,10 +54,10 @@ def _bore(control: Control, rule: CycleRule, hole: list[float], *, back: bool) -
         way = "upwards" if back else "downwards"
         message = f"{name} must bore {way}, not from {reference:g} to {bottom:g}"
         control.fail("cycle-depth", message)
-    if back and control.modal.return_to_reference:
+    if back and to_reference:
         message = "G87 returns to the height of its call: its plane R lies under the part"
         control.fail("cycle-depth", message, hint="write G98")
-    over = values[START] if back else max(control.motion.programmed[axis], reference)
+    over = start if back else max(control.motion.programmed[axis], reference)
     go_to_height(control, over)
     hole[axis] = over
     control.line_to(hole, rapid=True)
@@ -72,10 +69,10 @@ def _bore(control: Control, rule: CycleRule, hole: list[float], *, back: bool) -
     else:
         go_to_height(control, reference)
     go_to_height(control, bottom, rapid=False)
-    if found.dwell > 0.0:
-        control.dwell(found.dwell)
+    if values.get("dwell", 0.0) > 0.0:
+        control.dwell(values["dwell"])
     _orient(control, shift)
-    go_to_height(control, found.back)
+    go_to_height(control, reference if to_reference else max(start, reference))
     _shift(control, -shift)
     turn_spindle(control, "M3")
 

@@ -17,8 +17,9 @@ from twin.nc.dialects.fanuc.memory import Variant, letter_patterns, memory_of
 from twin.nc.dialects.fanuc.motion import holes_of
 from twin.nc.dialects.fanuc.transformations import refuse_scaled_pecks
 from twin.nc.iso import base
+from twin.nc.iso.drilling import Pecking
 from twin.nc.iso.fixed_cycles import BY_HAND, CYCLES, DRILLS, drilling_code
-from twin.nc.path.drilling_cycle import CHIP_CLEARANCE, PECK, Pecking, Retract
+from twin.nc.iso.hole import CHIP_CLEARANCE, Retract
 from twin.nc.text.blocks import Block
 
 _TAPS = {
@@ -48,7 +49,11 @@ def _unscaled(number: int, code: GCode) -> GCode:
     assert action is not None
 
     def call(control: Control) -> None:
-        if number not in _TAPS or "Q" in control.words or control.cycle_state[PECK] > 0.0:
+        if (
+            number not in _TAPS
+            or "Q" in control.words
+            or control.cycle_values.get("peck", 0.0) > 0.0
+        ):
             refuse_scaled_pecks(control, f"G{number}")
         action(control)
 
@@ -69,7 +74,7 @@ def cycles(variant: Variant) -> dict[float, GCode]:
         **base.by_manual({80: CYCLES[80]}),
         76: boring_code(76, "fine boring, out with the tool shifted", variant),
         87: boring_code(87, "back boring, from below", variant),
-        88: GCode(meaning="boring by hand", group="cycle", refused=BY_HAND, ground="manual"),
+        88: GCode(meaning="boring by hand", group="cycle", refused=BY_HAND, basis="manual"),
     }
 
 
@@ -94,7 +99,7 @@ def _without_overruled_cycle(control: Control, block: Block) -> Block:
     """Of a cycle and a straight motion in a block the last counts; a motion leaves R P Q K L out (manual).
 
     Raises:
-        ProgramError: An arc stands behind a cycle, whose R would be ambiguous; or a motion on a control of
+        ProgramError: An arc is behind a cycle, whose R would be ambiguous; or a motion on a control of
             which it is not known what counts.
     """
     codes = [word for word in block.words if word.address == "G"]

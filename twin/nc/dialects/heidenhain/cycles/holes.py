@@ -6,9 +6,8 @@ Decisions, since the manuals leave them open or the twin does not follow them: t
 
 from twin.nc.control.control import Control
 from twin.nc.dialects.heidenhain.cycle_values import Parameters
-from twin.nc.iso.drilling import drill, go_to_height, turn_spindle
-from twin.nc.path.drilling_cycle import Retract
-from twin.nc.path.hole import MOST_PECKS, Fault, Hole, count_passes, count_stops
+from twin.nc.iso.hole import MOST_PECKS, Hole, Retract, count_passes, drill, turn_spindle
+from twin.nc.iso.plane_moves import at_feed, descend, go, go_to_height
 
 ADVANCE = 0.2
 """How far above its last depth a rapid return ends [mm]."""
@@ -31,26 +30,8 @@ def heights(control: Control, given: Parameters) -> tuple[float, float, float, f
 def _hole(control: Control, given: Parameters, **changes: object) -> Hole:
     """A hole that is drilled at once; changes are fields of it."""
     surface, reference, bottom, back = heights(control, given)
-    plain = Hole(
-        fault=int(Fault.NONE),
-        reference=reference,
-        bottom=bottom,
-        back=back,
-        dwell=_seconds(control, given, 211),
-        surface=surface,
-        stops=0,
-        passes=False,
-        peck=0.0,
-        factor=1.0,
-        reduction=0.0,
-        least=0.0,
-        lift=0.0,
-        full_every=1,
-        clearance=ADVANCE,
-        retract=int(Retract.RAPID),
-        faster=1.0,
-        rest=0.0,
-    )
+    dwell = _seconds(control, given, 211)
+    plain = Hole(reference, bottom, back, dwell, surface, clearance=ADVANCE)
     return plain._replace(**changes)
 
 
@@ -69,26 +50,31 @@ def _pecked(
     if peck <= 0.0 or reduction < 0.0 or (reduction > 0.0 and least <= 0.0):
         message = f"{given.name} needs Q202 above 0, and with Q212 also Q205"
         control.fail("cycle-depth", message, hint="Q202=+5")
-    stops = count_stops(hole.surface, hole.bottom, peck, (1.0, reduction, least))
-    if stops > MOST_PECKS:
+    hole = hole._replace(peck=peck, reduction=reduction, least=least).with_stops()
+    if hole.stops > MOST_PECKS:
         message = f"the hole would need more than {MOST_PECKS} pecks"
         control.fail("cycle-depth", message, hint="write a larger Q202")
-    return hole._replace(peck=peck, reduction=reduction, least=least, stops=stops)
+    return hole
 
 
 def _drill(control: Control, hole: Hole, feed: float | None) -> None:
-    """Drill with a feed, which the program's own survives; None: rapidly, which no hole is drilled.
+    """Drill with a feed, which the program's own survives."""
+    mode = control.modal.feed_mode
+    with at_feed(control, _drilling_feed(control, feed)):
+        drill(control, hole)
+    control.modal.feed_mode = mode
+
+
+def _drilling_feed(control: Control, feed: float | None) -> float:
+    """A feed that a hole is drilled with.
 
     Raises:
-        ProgramError: There is no feed.
+        ProgramError: It is none.
     """
     if feed is None or feed <= 0.0:
         message = "a hole is drilled with a feed above 0"
         control.fail("feed-range", message, hint="Q206=+150")
-    kept, mode = control.motion.feed, control.modal.feed_mode
-    control.motion.feed = feed
-    drill(control, hole, None)
-    control.motion.feed, control.modal.feed_mode = kept, mode
+    return feed
 
 
 def drilling(control: Control, given: Parameters) -> None:
@@ -102,7 +88,7 @@ def reaming(control: Control, given: Parameters) -> None:
     down, back = given.feed(206), given.feed(208)
     retract = Retract.RAPID if back is None else Retract.FEED
     faster = back / down if back and down else 1.0
-    _drill(control, _hole(control, given, retract=int(retract), faster=faster), down)
+    _drill(control, _hole(control, given, retract=retract, faster=faster), down)
 
 
 def universal_drilling(control: Control, given: Parameters) -> None:
@@ -115,7 +101,7 @@ def universal_drilling(control: Control, given: Parameters) -> None:
         hole = hole._replace(lift=lift, full_every=breaks + 1, clearance=ADVANCE)
     down, back = given.feed(206), given.feed(208)
     if back:
-        hole = hole._replace(retract=int(Retract.FEED), faster=back / (down or back))
+        hole = hole._replace(retract=Retract.FEED, faster=back / (down or back))
     _drill(control, hole, down)
 
 
@@ -135,16 +121,11 @@ def universal_pecking(control: Control, given: Parameters) -> None:
 
 def _break_chips(control: Control, given: Parameters, hole: Hole, breaking: float) -> None:
     """Deep drilling whose pecks are made of shorter ones."""
-    lift, feed, depth, peck = (
-        given.length(256) or ADVANCE,
-        control.motion.feed,
-        hole.surface,
-        hole.peck,
-    )
+    lift, depth, peck = given.length(256) or ADVANCE, hole.surface, hole.peck
     if (hole.surface - hole.bottom) / breaking > MOST_PECKS:
         message = f"the hole would need more than {MOST_PECKS} chips"
         control.fail("cycle-depth", message, hint="write a larger Q257")
-    control.motion.feed = given.feed(206)
+    feed = _drilling_feed(control, given.feed(206))
     go_to_height(control, hole.reference)
     while depth > hole.bottom:
         if depth < hole.surface:
@@ -152,14 +133,13 @@ def _break_chips(control: Control, given: Parameters, hole: Hole, breaking: floa
         goal = max(depth - peck, hole.bottom)
         while depth > goal:
             depth = max(depth - breaking, goal)
-            go_to_height(control, depth, rapid=False)
+            descend(control, depth, feed)
             if depth > goal:
                 go_to_height(control, depth + lift)
         if depth == hole.bottom and hole.dwell > 0.0:
             control.dwell(hole.dwell)
         go_to_height(control, hole.back if depth == hole.bottom else hole.reference)
         peck = max(peck - hole.reduction, hole.least)
-    control.motion.feed = feed
 
 
 def boring(control: Control, given: Parameters) -> None:
@@ -169,27 +149,24 @@ def boring(control: Control, given: Parameters) -> None:
     if way is None:
         control.fail("cycle-word", f"Q214 is 0 to 4, not {given.number(214):g}")
     _, reference, bottom, back = heights(control, given)
-    feed, place = control.motion.feed, list(control.motion.programmed)
+    x, y = control.modal.plane.point(control.motion.programmed)
+    down, up = _drilling_feed(control, given.feed(206)), given.feed(208)
     go_to_height(control, reference)
-    control.motion.feed = given.feed(206)
-    go_to_height(control, bottom, rapid=False)
+    descend(control, bottom, down)
     if (seconds := _seconds(control, given, 211)) > 0.0:
         control.dwell(seconds)
     control.function("M5", {})
-    leave = list(control.motion.programmed)
-    leave[0], leave[1] = leave[0] + ADVANCE * way[0], leave[1] + ADVANCE * way[1]
-    control.line_to(leave, rapid=False)
-    control.motion.feed = given.feed(208) or given.feed(206)
-    go_to_height(control, reference, rapid=given.feed(208) is None)
+    with at_feed(control, down):
+        go(control, (x + ADVANCE * way[0], y + ADVANCE * way[1]))
+    descend(control, reference, up if up is None else up or down)
     go_to_height(control, back)
     turn_spindle(control, "M3")
-    control.line_to([*place[:2], *control.motion.programmed[2:]], rapid=True)
-    control.motion.feed = feed
+    go(control, (x, y), rapid=True)
 
 
 def tapping(control: Control, given: Parameters) -> None:
     """206: with a floating chuck, at the feed Q206."""
-    _drill(control, _hole(control, given, retract=int(Retract.REVERSED)), given.feed(206))
+    _drill(control, _hole(control, given, retract=Retract.REVERSED), given.feed(206))
 
 
 def rigid_tapping(control: Control, given: Parameters) -> None:
@@ -226,7 +203,7 @@ def _tap(control: Control, given: Parameters, hole: Hole) -> None:
     retract = Retract.REVERSED if pitch > 0.0 else Retract.REVERSED_LEFT
     feed = abs(pitch) * speed / control.modal.unit
     turn_spindle(control, "M3" if pitch > 0.0 else "M4")
-    _drill(control, hole._replace(retract=int(retract)), feed)
+    _drill(control, hole._replace(retract=retract), feed)
 
 
 def centring(control: Control, given: Parameters) -> None:
@@ -246,26 +223,21 @@ def centring(control: Control, given: Parameters) -> None:
 def single_lip_drilling(control: Control, given: Parameters) -> None:
     """241: slowly to the deepened start Q379, with Q253; there the speed Q428, and drilled; back with Q208."""
     surface, reference, bottom, back = heights(control, given)
-    feed, start = control.motion.feed, surface - given.length(379)
     if 0.0 < given.length(202) < surface - bottom:
         message = "the twin drills a hole of cycle 241 at once"
         control.fail("cycle-word", message, hint="write Q202 as large as the hole is deep")
+    down, up = _drilling_feed(control, given.feed(206)), given.feed(208)
     go_to_height(control, reference)
     before = control.motion.spindle
     control.motion.spindle = given.number(427) or before
     turn_spindle(control, {4: "M4"}.get(int(given.number(426)), "M3"))
-    control.motion.feed = given.feed(253)
-    go_to_height(control, start, rapid=control.motion.feed is None)
+    descend(control, surface - given.length(379), given.feed(253))
     control.motion.spindle = given.number(428) or before
     control.function("S", {"S": control.motion.spindle or 0.0})
-    control.motion.feed = given.feed(206)
-    go_to_height(control, bottom, rapid=False)
+    descend(control, bottom, down)
     if (seconds := _seconds(control, given, 211)) > 0.0:
         control.dwell(seconds)
-    control.motion.feed = given.feed(208) or (
-        given.feed(206) if given.feed(208) is not None else None
-    )
-    go_to_height(control, reference, rapid=control.motion.feed is None)
+    descend(control, reference, up if up is None else up or down)
     go_to_height(control, back)
-    control.motion.spindle, control.motion.feed = before, feed
+    control.motion.spindle = before
     turn_spindle(control, "M3")

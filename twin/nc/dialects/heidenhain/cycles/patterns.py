@@ -1,6 +1,5 @@
 """Places of cycles: the patterns 220 and 221, which act where they are defined, and PATTERN DEF."""
 
-import math
 import re
 
 from twin.nc.control.control import Control
@@ -15,7 +14,8 @@ from twin.nc.dialects.heidenhain.cycles.calls import (
 )
 from twin.nc.dialects.heidenhain.cycles.parameters import continued
 from twin.nc.dialects.heidenhain.memory import memory_of
-from twin.nc.geometry.arcs import Point, turned
+from twin.nc.geometry.arcs import Point
+from twin.nc.iso.places import circle, grid, row
 from twin.nc.text.blocks import Statement
 
 MOST_PLACES = 10_000
@@ -36,17 +36,12 @@ def polar_pattern(control: Control, given: Parameters) -> None:
     if step == 0.0:
         whole = abs(last - first) % 360.0 == 0.0
         step = (last - first) / (count if whole else max(count - 1, 1))
-    angles = (math.radians(first + number * step) for number in range(count))
-    places = [
-        (center[0] + radius * math.cos(angle), center[1] + radius * math.sin(angle))
-        for angle in angles
-    ]
     if given.number(365) == 1.0 and given.number(301) == 0.0:
         message = (
             "between the places of cycle 220 the tool goes straight here, not on an arc (Q365)"
         )
         control.report.notice("Q365", message, *control.span_of(None))
-    _machine(control, given, places)
+    _machine(control, given, circle(center, radius, first, step, count))
 
 
 def linear_pattern(control: Control, given: Parameters) -> None:
@@ -55,14 +50,8 @@ def linear_pattern(control: Control, given: Parameters) -> None:
     columns = _count(control, given.number(242), "Q242")
     lines = _count(control, given.number(243), "Q243")
     _count(control, columns * lines, "Q242 times Q243")
-    places = []
-    for line in range(lines):
-        order = range(columns) if line % 2 == 0 else reversed(range(columns))
-        for column in order:
-            x = start[0] + column * given.length(237)
-            y = start[1] + line * given.length(238)
-            places.append(turned((x, y), start, given.number(224)))
-    _machine(control, given, places)
+    angle, spacing = given.number(224), (given.length(237), given.length(238))
+    _machine(control, given, grid(start, (angle, angle), spacing, (columns, lines)))
 
 
 def _machine(control: Control, given: Parameters, places: list[Point]) -> None:
@@ -137,37 +126,20 @@ def _places(
     columns = _count(control, words.get("NUMX", 1.0), "NUMX")
     lines = _count(control, words.get("NUMY", 1.0), "NUMY")
     _count(control, float(columns * lines), "NUMX times NUMY")
+    turn = words.get("ROT", 0.0)
     if kind == "ROW":
-        points = [(start[0] + each * words["D"], start[1]) for each in range(number)]
-    elif kind in ("PAT", "FRAME"):
-        points = _grid(words, start, columns, lines, frame=kind == "FRAME")
+        points = row(start, turn, words["D"], number)
     elif kind in ("CIRC", "PITCHCIRC"):
         step = words["STEP"] if kind == "PITCHCIRC" else 360.0 / number
-        begin = (start[0] + words["D"] / 2.0, start[1])
-        points = [turned(begin, start, words["START"] + each * step) for each in range(number)]
+        points = circle(start, words["D"] / 2.0, words["START"] + turn, step, number)
+    elif kind in ("PAT", "FRAME"):
+        angles = (turn + words.get("ROTX", 0.0), turn + words.get("ROTY", 0.0))
+        spacing = (words["DX"], words["DY"])
+        points = grid(start, angles, spacing, (columns, lines), frame=kind == "FRAME")
     else:
         points = [start]
-    unit, height, angle = control.modal.unit, words.get("Z", 0.0), words.get("ROT", 0.0)
-    return [
-        (x * unit, y * unit, height * unit) for x, y in (turned(p, start, angle) for p in points)
-    ]
-
-
-def _grid(
-    words: dict[str, float], start: Point, columns: int, lines: int, *, frame: bool
-) -> list[Point]:
-    """Columns and lines, every other line backwards; of a frame those at its edge."""
-    skew_x, skew_y = math.radians(words.get("ROTX", 0.0)), math.radians(words.get("ROTY", 0.0))
-    points = []
-    for line in range(lines):
-        order = range(columns) if line % 2 == 0 else reversed(range(columns))
-        for column in order:
-            if frame and 0 < line < lines - 1 and 0 < column < columns - 1:
-                continue
-            across, up = column * words["DX"], line * words["DY"]
-            x = start[0] + across * math.cos(skew_x) - up * math.sin(skew_y)
-            points.append((x, start[1] + across * math.sin(skew_x) + up * math.cos(skew_y)))
-    return points
+    unit, height = control.modal.unit, words.get("Z", 0.0)
+    return [(x * unit, y * unit, height * unit) for x, y in points]
 
 
 _NEEDED = {

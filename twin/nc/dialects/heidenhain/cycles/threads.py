@@ -1,61 +1,75 @@
-"""Helices: bore milling 208, thread milling 262 and 267.
+"""Cycles of helices: bore milling 208, thread milling 262 to 265 and 267.
 
-Decisions, since the manuals leave them open: the tool comes to the helix and leaves it on half a turn about the
-middle between the axis of the hole and its own place on the helix, which rises or falls with the thread.
+Climb milling (Q351=1) of an inside thread turns counter-clockwise, so that a right-handed one (Q239 above 0) is milled
+upwards. The feed Q207 counts the edge of the tool (TNC 426 user's manual, 8.3), that of the tool's centre follows.
+Decision: 263 with a clearance Q357 beside the wall is refused, since the core diameter is not given.
 """
-
-import math
 
 from twin.nc.control.control import Control
 from twin.nc.dialects.heidenhain.cycle_values import Parameters
-from twin.nc.dialects.heidenhain.cycles.holes import heights
+from twin.nc.dialects.heidenhain.cycles.holes import heights, universal_pecking
 from twin.nc.dialects.heidenhain.tools import compensation_radius
-from twin.nc.geometry.arcs import Point
-from twin.nc.iso.drilling import go_to_height
-
-_MOST_TURNS = 10_000.0
-
-
-def _go(control: Control, point: Point, *, rapid: bool = False) -> None:
-    plane, target = control.modal.plane, list(control.motion.programmed)
-    plane.aim(target, point)
-    control.line_to(target, rapid=rapid)
-
-
-def _turn(control: Control, center: Point, end: Point, sweep: float, height: float) -> None:
-    plane, target = control.modal.plane, list(control.motion.programmed)
-    plane.aim(target, end)
-    target[2] = height
-    control.arc_to(target, center, sweep)
+from twin.nc.iso.milling.threads import (
+    MOST_TURNS,
+    Thread,
+    mill_hole,
+    mill_thread,
+    right_handed_goes_up,
+)
+from twin.nc.iso.plane_moves import at_feed, descend, go_to_height, turn
 
 
 def bore_milling(control: Control, given: Parameters) -> None:
     """208: on a helix of the pitch Q334 to the depth, once around there, and out by the middle."""
     _, reference, bottom, back = heights(control, given)
     radius, pitch = given.length(335) / 2.0 - compensation_radius(control), abs(given.length(334))
-    if radius <= 0.0 or pitch == 0.0 or (reference - bottom) / pitch > _MOST_TURNS:
+    if radius <= 0.0 or pitch == 0.0 or (reference - bottom) / pitch > MOST_TURNS:
         message = "208 needs a hole Q335 that is wider than the tool, and a pitch Q334 above 0"
         control.fail("cycle-size", message)
-    center = control.modal.plane.point(control.motion.programmed)
-    begin = (center[0] + radius, center[1])
-    feed, sense = control.motion.feed, 1.0 if given.number(351, 1.0) >= 0.0 else -1.0
     go_to_height(control, reference)
-    control.motion.feed = given.feed(206)
-    _go(control, begin)
-    turns = (reference - bottom) / pitch
-    angle = math.radians(sense * 360.0 * turns)
-    end = (center[0] + radius * math.cos(angle), center[1] + radius * math.sin(angle))
-    _turn(control, center, end, sense * 360.0 * turns, bottom)
-    _turn(control, center, end, sense * 360.0, bottom)
-    _go(control, center)
-    control.motion.feed = feed
+    with at_feed(control, given.feed(206)):
+        mill_hole(control, radius, pitch, bottom, clockwise=given.number(351, 1.0) < 0.0)
     go_to_height(control, back)
 
 
 def thread_milling(control: Control, given: Parameters) -> None:
     """262: an inside thread of the diameter Q335."""
-    radius = given.length(335) / 2.0 - compensation_radius(control)
-    _mill_thread(control, given, radius, inside=True)
+    _mill(control, given, clockwise=given.number(351, 1.0) < 0.0)
+
+
+def thread_milling_and_countersinking(control: Control, given: Parameters) -> None:
+    """263: the hole is countersunk to Q356, and at its front, then the thread is milled."""
+    if given.length(357) != 0.0:
+        message = "263 with a clearance beside the wall (Q357) is not followed"
+        control.fail("cycle-word", message, hint="write Q357=+0")
+    surface, reference, _, _ = heights(control, given)
+    deep = surface + given.length(356)
+    if given.length(356) < 0.0:
+        go_to_height(control, reference)
+        descend(control, deep + given.length(200), given.feed(253))
+        descend(control, deep, given.feed(254))
+    _countersink_front(control, given)
+    thread_milling(control, given)
+
+
+def thread_drilling_and_milling(control: Control, given: Parameters) -> None:
+    """264: the hole is drilled to Q356 and countersunk at its front, then the thread is milled."""
+    if given.length(356) < 0.0:
+        universal_pecking(control, given.replaced({201: given.number(356), 204: 0.0}))
+    _countersink_front(control, given.replaced({254: given.number(206)}))
+    thread_milling(control, given)
+
+
+def helical_thread_drilling(control: Control, given: Parameters) -> None:
+    """265: the thread is milled downwards on one helix, its front countersunk before (Q360=0) or after it."""
+    after = given.number(360) != 0.0
+    if not after:
+        _countersink_front(control, given)
+    _, reference, _, back = heights(control, given)
+    _mill(control, given.replaced({355: 1.0, 204: 0.0}), clockwise=given.number(239) > 0.0)
+    if after:
+        _countersink_front(control, given)
+    go_to_height(control, max(reference, back))
 
 
 def outside_thread_milling(control: Control, given: Parameters) -> None:
@@ -67,63 +81,50 @@ def outside_thread_milling(control: Control, given: Parameters) -> None:
     if given.length(358) != 0.0:
         message = "267 with a countersink (Q358) is not followed"
         control.fail("cycle-word", message, hint="write Q358=+0")
-    radius = given.length(335) / 2.0 + compensation_radius(control)
-    _mill_thread(control, given, radius, inside=False)
+    _mill(control, given, clockwise=given.number(351, 1.0) >= 0.0, inside=False)
 
 
-def _mill_thread(control: Control, given: Parameters, radius: float, *, inside: bool) -> None:
-    """Mill a thread on a path of a radius: Q355 0 in one turn, 1 in as many as it has, else every so many threads.
-
-    The thread is right-handed with a pitch Q239 above 0; climb milling (Q351=1) of an inside one turns
-    counter-clockwise, so that a right-handed one is milled upwards (manual).
-    """
+def _mill(control: Control, given: Parameters, *, clockwise: bool, inside: bool = True) -> None:
+    """Mill a thread: Q355 0 in one turn, 1 in as many as it has, else every so many threads."""
     surface, reference, bottom, back = heights(control, given)
-    pitch, several = given.length(239), int(given.number(355))
-    if radius <= 0.0 or pitch == 0.0 or (surface - bottom) / abs(pitch) > _MOST_TURNS:
+    tool, nominal, pitch = compensation_radius(control), given.length(335) / 2.0, given.length(239)
+    radius, steps = nominal - tool if inside else nominal + tool, int(given.number(355))
+    turns = (surface - bottom) / abs(pitch) if pitch else 0.0
+    if radius <= 0.0 or not 0.0 < turns <= MOST_TURNS or steps < 0:
         message = f"{given.name} needs a thread Q335 that the tool fits into, and a pitch Q239"
         control.fail("cycle-size", message)
-    climbs = given.number(351, 1.0) >= 0.0
-    sense = 1.0 if climbs is inside else -1.0
-    rise = abs(pitch) if (sense > 0.0) is (pitch > 0.0) else -abs(pitch)
-    turns = (surface - bottom) / abs(pitch) if several == 1 else 1.0
-    steps = 1 if several in (0, 1) else math.ceil((surface - bottom) / (abs(pitch) * several))
-    center = control.modal.plane.point(control.motion.programmed)
-    feed, pre, mills = control.motion.feed, given.feed(253), given.feed(207)
-    for step in range(steps):
-        low = bottom + step * several * abs(pitch) if several > 1 else bottom
-        start = low if rise > 0.0 else low + turns * abs(pitch)
-        end = start + turns * rise
-        outside = radius + abs(given.length(357)) + compensation_radius(control)
-        begin = center if inside else (center[0] + outside, center[1])
-        go_to_height(control, reference)
-        control.motion.feed = pre
-        _go(control, begin, rapid=pre is None)
-        go_to_height(control, start - rise / 2.0 if inside else start, rapid=pre is None)
-        control.motion.feed = mills
-        _lead(control, center, begin, radius, sense, start, arrives=True)
-        angle = math.radians(sense * 360.0 * turns)
-        there = (center[0] + radius * math.cos(angle), center[1] + radius * math.sin(angle))
-        _turn(control, center, there, sense * 360.0 * turns, end)
-        _lead(control, center, begin, radius, sense, end, arrives=False)
-    control.motion.feed = feed
-    go_to_height(control, reference)
-    _go(control, center, rapid=True)
+    feed = given.feed(207)
+    thread = Thread(
+        center=control.modal.plane.point(control.motion.programmed),
+        radius=radius,
+        pitch=abs(pitch),
+        upwards=right_handed_goes_up(pitch, clockwise=clockwise),
+        clockwise=clockwise,
+        top=surface,
+        bottom=bottom,
+        threads_per_step=steps,
+        beside=0.0 if inside else radius + abs(given.length(357)) + tool,
+        reference=reference,
+        positioning=given.feed(253),
+        feed=None if feed is None else feed * radius / nominal,
+    )
+    mill_thread(control, thread)
     go_to_height(control, back)
 
 
-def _lead(
-    control: Control,
-    center: Point,
-    begin: Point,
-    radius: float,
-    sense: float,
-    height: float,
-    *,
-    arrives: bool,
-) -> None:
-    """Half a turn from a place beside the helix onto it, or back."""
-    here = control.modal.plane.point(control.motion.programmed)
-    end = (center[0] + radius, center[1]) if arrives else begin
-    middle = ((here[0] + end[0]) / 2.0, (here[1] + end[1]) / 2.0)
-    inside = begin == center
-    _turn(control, middle, end, sense * 180.0 if inside else -sense * 180.0, height)
+def _countersink_front(control: Control, given: Parameters) -> None:
+    """Once around on a circle of the radius Q359 at the depth Q358; half circles lead to it and back."""
+    depth, offset = given.length(358), given.length(359)
+    if depth == 0.0:
+        return
+    surface, reference, _, _ = heights(control, given)
+    center = control.modal.plane.point(control.motion.programmed)
+    begin, middle = (center[0] + offset, center[1]), (center[0] + offset / 2.0, center[1])
+    go_to_height(control, reference)
+    descend(control, surface + depth, given.feed(253))
+    if offset:
+        with at_feed(control, given.feed(254)):
+            turn(control, middle, begin, 180.0)
+            turn(control, center, begin, 360.0)
+            turn(control, middle, center, 180.0)
+    go_to_height(control, reference)

@@ -4,12 +4,13 @@ from collections.abc import Mapping
 
 from twin.nc.control.control import Control
 from twin.nc.dialects.sinumerik.cycles.calls import CycleForm, read_call
+from twin.nc.dialects.sinumerik.cycles.contours import CONTOURS
 from twin.nc.dialects.sinumerik.cycles.drilling import DRILLING
 from twin.nc.dialects.sinumerik.cycles.milling import MILLING
 from twin.nc.dialects.sinumerik.cycles.patterns import PATTERNS
 from twin.nc.text.blocks import Statement
 
-CYCLES: Mapping[str, CycleForm] = {**DRILLING, **PATTERNS, **MILLING}
+CYCLES: Mapping[str, CycleForm] = {**DRILLING, **PATTERNS, **MILLING, **CONTOURS}
 
 
 def call_cycle(control: Control, statement: Statement) -> None:

@@ -1,11 +1,15 @@
 """How cycles are called: their values by the names that the manuals give the parameters."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from typing import NamedTuple, NoReturn
 
 from twin.nc.control.control import Control
 from twin.nc.dialects.sinumerik.subprograms import bracketed, split_values
+from twin.nc.geometry.arcs import Point
 from twin.nc.text.blocks import Statement
+
+MOST_PLACES = 10_000
+"""Places or slots of one pattern: more is a slip of the pen."""
 
 
 class CycleCall(NamedTuple):
@@ -31,6 +35,17 @@ class CycleCall(NamedTuple):
         """A length [mm]."""
         return self.get(name, default) * self.control.modal.unit
 
+    def point(self, abscissa: str, ordinate: str) -> Point:
+        """A point of the plane [mm]."""
+        return (self.length(abscissa), self.length(ordinate))
+
+    def count(self, name: str) -> int:
+        """A number of places, which must be there."""
+        value = self.get(name)
+        if value != int(value) or not 1.0 <= value <= MOST_PLACES:
+            self.refuse("cycle-word", f"needs {name}, 1 to {MOST_PLACES} places")
+        return int(value)
+
     def need(self, *names: str) -> None:
         """The values of these parameters must be there.
 
@@ -55,10 +70,20 @@ class CycleCall(NamedTuple):
 
 
 class CycleForm(NamedTuple):
-    """A cycle: its parameters in their order, and what it does."""
+    """A cycle.
 
-    parameters: Sequence[str]
+    Attributes:
+        names: Its parameters in their order, with blanks between them and without the underscores before them.
+        run: What it does.
+    """
+
+    names: str
     run: Callable[[CycleCall], None]
+
+    @property
+    def parameters(self) -> list[str]:
+        """Its parameters in their order."""
+        return self.names.split()
 
 
 def read_call(control: Control, statement: Statement, form: CycleForm) -> CycleCall:

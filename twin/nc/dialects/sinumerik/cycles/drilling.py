@@ -9,14 +9,15 @@ from typing import NamedTuple
 
 from twin.nc.control.control import Control
 from twin.nc.dialects.sinumerik.cycles.calls import CycleCall, CycleForm, require_no_compensation
-from twin.nc.iso.drilling import go_to_height, turn_spindle
+from twin.nc.iso.hole import turn_spindle
+from twin.nc.iso.plane_moves import at_feed, go_to_height
 
-_HEIGHTS = ("RTP", "RFP", "SDIS", "DP", "DPR")
-NEW_MODES = ("_GMODE", "_DMODE", "_AMODE")
+_HEIGHTS = "RTP RFP SDIS DP DPR"
+MODES = "GMODE DMODE AMODE"
 _CHIP_BREAK = 1.0
-"""How far chip breaking withdraws where _VRT does not say it (manual) [mm]."""
+"""How far chip breaking withdraws where VRT does not say it (manual) [mm]."""
 _ANTICIPATION, _ANTICIPATION_SHARE, _MOST_ANTICIPATION = 0.6, 1.0 / 50.0, 7.0
-"""How far above its last depth deep drilling ends its rapid return, where _DIS1 does not say it (manual) [mm]:
+"""How far above its last depth deep drilling ends its rapid return, where DIS1 does not say it (manual) [mm]:
 up to 30 mm of depth always the same, then a share of the depth, up to a limit."""
 _MOST_PECKS = 10_000
 _PITCHES = {3: 0.5, 4: 0.7, 5: 0.8, 6: 1.0, 8: 1.25, 10: 1.5, 12: 1.75, 14: 2.0, 16: 2.0, 18: 2.5, 20: 2.5,
@@ -40,35 +41,27 @@ class Heights(NamedTuple):
     bottom: float
 
 
-def heights_of(
-    call: CycleCall,
-    depth: str = "DP",
-    relative: str = "DPR",
-    back: str = "RTP",
-    surface: str = "RFP",
-    safety: str = "SDIS",
-) -> Heights:
-    """The heights that a call gives by parameters of these names.
+def heights_of(call: CycleCall) -> Heights:
+    """The heights that a call gives.
 
     Raises:
         ProgramError: They do not lie one below the other.
     """
     require_no_compensation(call)
-    if call.get("_AXN") not in (0.0, call.control.modal.plane.axes[2] + 1.0):
-        call.refuse("unsupported-word", "drills along the axis across the plane alone (_AXN)")
-    call.need(back, surface)
-    if depth not in call.values and relative not in call.values:
-        below = f", or {relative}, the depth" if relative else ""
-        call.refuse("cycle-word", f"needs {depth}, the bottom{below}")
-    above = call.length(surface)
-    bottom = call.length(depth) if depth in call.values else above - abs(call.length(relative))
-    if call.get("_AMODE") % 10.0 == 1.0 and depth in call.values:  # the depth is incremental
-        bottom = above - abs(call.length(depth))
-    heights = Heights(call.length(back), above, above + abs(call.length(safety)), bottom)
-    if not heights.bottom < above <= heights.back:
-        message = f"must go down: {back} {heights.back:g}, {surface} {above:g}, bottom {bottom:g}"
+    if call.get("AXN") not in (0.0, call.control.modal.plane.axes[2] + 1.0):
+        call.refuse("unsupported-word", "drills along the axis across the plane alone (AXN)")
+    call.need("RTP", "RFP")
+    if "DP" not in call.values and "DPR" not in call.values:
+        call.refuse("cycle-word", "needs DP, the bottom, or DPR, the depth")
+    back, above, bottom = call.length("RTP"), call.length("RFP"), call.length("DP")
+    if "DP" not in call.values:
+        bottom = above - abs(call.length("DPR"))
+    elif call.get("AMODE") % 10.0 == 1.0:  # the depth is incremental
+        bottom = above - abs(bottom)
+    if not bottom < above <= back:
+        message = f"must go down: RTP {back:g}, RFP {above:g}, bottom {bottom:g}"
         call.refuse("cycle-depth", message)
-    return heights
+    return Heights(back, above, above + abs(call.length("SDIS")), bottom)
 
 
 def _approach(call: CycleCall) -> Heights:
@@ -90,11 +83,8 @@ def _wait(call: CycleCall, name: str) -> None:
 
 def _feed(control: Control, height: float, feed: float | None = None) -> None:
     """Go to a height with a feed [mm/min], or the one in force."""
-    kept = control.motion.feed
-    if feed:
-        control.motion.feed = feed
-    go_to_height(control, height, rapid=False)
-    control.motion.feed = kept
+    with at_feed(control, feed or control.motion.feed):
+        go_to_height(control, height, rapid=False)
 
 
 def _drill(call: CycleCall) -> None:
@@ -145,12 +135,12 @@ def _deep(call: CycleCall) -> None:
     if degression < -1.0:
         call.refuse("cycle-depth", "takes DAM from -1, a factor, upwards, an amount")
     degression = degression * control.modal.unit if degression > 0.0 else degression
-    depths = pecks(total, min(first, total), degression, abs(call.length("_MDEP")))
+    depths = pecks(total, min(first, total), degression, abs(call.length("MDEP")))
     if len(depths) > _MOST_PECKS:
         call.refuse("cycle-depth", f"would need more than {_MOST_PECKS} pecks")
     clears = call.only("VARI", 1.0) == 1.0
-    lift = abs(call.length("_VRT")) or _CHIP_BREAK
-    gap = abs(call.length("_DIS1")) or max(
+    lift = abs(call.length("VRT")) or _CHIP_BREAK
+    gap = abs(call.length("DIS1")) or max(
         _ANTICIPATION, min(total * _ANTICIPATION_SHARE, _MOST_ANTICIPATION)
     )
     factor = call.get("FRF") or 1.0
@@ -167,7 +157,7 @@ def _deep(call: CycleCall) -> None:
             depth,
             control.motion.feed * factor if control.motion.feed and number == 0 else None,
         )
-        _wait(call, "DTB" if number < len(depths) - 1 or not call.get("_DTD") else "_DTD")
+        _wait(call, "DTB" if number < len(depths) - 1 or not call.get("DTD") else "DTD")
         if number == len(depths) - 1:
             break
         if clears:
@@ -186,8 +176,8 @@ def _pitch(call: CycleCall) -> float:
         ProgramError: The call gives none, or two.
     """
     size, pitch = call.get("MPIT"), call.length("PIT")
-    if call.get("_PITA") not in (0.0, 1.0):
-        call.refuse("unsupported-word", "takes pitches in millimetres alone (_PITA 0 or 1)")
+    if call.get("PITA") not in (0.0, 1.0):
+        call.refuse("unsupported-word", "takes pitches in millimetres alone (PITA 0 or 1)")
     if size and int(abs(size)) not in _PITCHES:
         call.refuse("cycle-word", "takes MPIT from 3 to 48, sizes of the coarse metric threads")
     by_size = math.copysign(_PITCHES[int(abs(size))], size) if size else 0.0
@@ -208,7 +198,7 @@ def _tap(call: CycleCall) -> None:
     speed = call.get("SST") or (control.motion.spindle or 0.0)
     if not speed > 0.0:
         call.refuse("feed-per-revolution", "needs SST, the speed of tapping")
-    call.only("_VARI")
+    call.only("VARI")
     heights, kept = _approach(call), control.motion.spindle
     control.function("SPOS", {"ANGLE": call.get("POSS")})
     out = call.get("SST1") or speed
@@ -308,27 +298,25 @@ def _bore_and_stop(call: CycleCall) -> None:
     control.motion.spindle_turns = True
 
 
+_PITCHES_IN_TURNS = "PITM PTAB PTABA"
 DRILLING = {
-    "CYCLE81": CycleForm((*_HEIGHTS, "DTB", *NEW_MODES), _drill),
-    "CYCLE82": CycleForm((*_HEIGHTS, "DTB", *NEW_MODES, "_VARI", "S_ZA", "S_FA", "S_ZD", "S_FD"), _drill),
+    "CYCLE81": CycleForm(f"{_HEIGHTS} DTB {MODES}", _drill),
+    "CYCLE82": CycleForm(f"{_HEIGHTS} DTB {MODES} VARI S_ZA S_FA S_ZD S_FD", _drill),
     "CYCLE83": CycleForm(
-        (*_HEIGHTS, "FDEP", "FDPR", "DAM", "DTB", "DTS", "FRF", "VARI", "_AXN", "_MDEP", "_VRT", "_DTD", "_DIS1",
-         *NEW_MODES),
-        _deep,
+        f"{_HEIGHTS} FDEP FDPR DAM DTB DTS FRF VARI AXN MDEP VRT DTD DIS1 {MODES}", _deep
     ),
     "CYCLE84": CycleForm(
-        (*_HEIGHTS, "DTB", "SDAC", "MPIT", "PIT", "POSS", "SST", "SST1", "_AXN", "_PITA", "_TECHNO", "_VARI",
-         "_DAM", "_VRT", "_PITM", "_PTAB", "_PTABA", *NEW_MODES),
+        f"{_HEIGHTS} DTB SDAC MPIT PIT POSS SST SST1 AXN PITA TECHNO VARI DAM VRT "
+        f"{_PITCHES_IN_TURNS} {MODES}",
         _tap,
     ),
     "CYCLE840": CycleForm(
-        (*_HEIGHTS, "DTB", "SDR", "SDAC", "ENC", "MPIT", "PIT", "_AXN", "_PITA", "_TECHNO", "_PITM", "_PTAB",
-         "_PTABA", *NEW_MODES),
+        f"{_HEIGHTS} DTB SDR SDAC ENC MPIT PIT AXN PITA TECHNO {_PITCHES_IN_TURNS} {MODES}",
         _tap_in_chuck,
     ),
-    "CYCLE85": CycleForm((*_HEIGHTS, "DTB", "FFR", "RFF", *NEW_MODES), _ream),
-    "CYCLE86": CycleForm((*_HEIGHTS, "DTB", "SDIR", "RPA", "RPO", "RPAP", "POSS", *NEW_MODES), _bore),
-    "CYCLE87": CycleForm((*_HEIGHTS, "SDIR"), _bore_and_stop),
-    "CYCLE88": CycleForm((*_HEIGHTS, "DTB", "SDIR"), _bore_and_stop),
-    "CYCLE89": CycleForm((*_HEIGHTS, "DTB", *NEW_MODES), _ream),
-}  # fmt: skip
+    "CYCLE85": CycleForm(f"{_HEIGHTS} DTB FFR RFF {MODES}", _ream),
+    "CYCLE86": CycleForm(f"{_HEIGHTS} DTB SDIR RPA RPO RPAP POSS {MODES}", _bore),
+    "CYCLE87": CycleForm(f"{_HEIGHTS} SDIR", _bore_and_stop),
+    "CYCLE88": CycleForm(f"{_HEIGHTS} DTB SDIR", _bore_and_stop),
+    "CYCLE89": CycleForm(f"{_HEIGHTS} DTB {MODES}", _ream),
+}

@@ -5,16 +5,9 @@ import math
 from twin.nc.dialects.sinumerik.cycles.calls import CycleCall, CycleForm
 from twin.nc.dialects.sinumerik.memory import memory_of
 from twin.nc.dialects.sinumerik.subprograms import call_after_motion
-from twin.nc.geometry.arcs import Point, direction
-
-_MOST_HOLES = 10_000
-
-
-def _count(call: CycleCall, name: str) -> int:
-    value = call.get(name)
-    if value != int(value) or not 1.0 <= value <= _MOST_HOLES:
-        call.refuse("cycle-word", f"needs {name}, 1 to {_MOST_HOLES} places")
-    return int(value)
+from twin.nc.geometry.arcs import Point
+from twin.nc.iso.places import along, circle, grid, row
+from twin.nc.iso.plane_moves import go
 
 
 def _visit(call: CycleCall, places: list[Point]) -> None:
@@ -27,9 +20,7 @@ def _visit(call: CycleCall, places: list[Point]) -> None:
     if memory.modal_call is None:
         call.refuse("cycle-word", "needs a modal call before it", "write MCALL CYCLE81(...) before")
     for place in places:
-        target = list(control.motion.programmed)
-        control.modal.plane.aim(target, place)
-        control.line_to(target, rapid=True)
+        go(control, place, rapid=True)
         depth = control.program_counter.depth
         call_after_motion(control)
         if control.program_counter.depth > depth:
@@ -38,58 +29,39 @@ def _visit(call: CycleCall, places: list[Point]) -> None:
 
 
 def _row(call: CycleCall) -> None:
-    call.need("SPCA", "SPCO", "NUM")
-    cosine, sine = direction(call.get("STA1"))
-    ways = [
-        call.length("FDIS") + number * call.length("DBH") for number in range(_count(call, "NUM"))
-    ]
-    first, second = call.length("SPCA"), call.length("SPCO")
-    places = [(first + way * cosine, second + way * sine) for way in ways]
+    call.need("SPCA", "SPCO")
+    angle = call.get("STA1")
+    first = along(call.point("SPCA", "SPCO"), angle, call.length("FDIS"))
+    places = row(first, angle, call.length("DBH"), call.count("NUM"))
     here = call.control.modal.plane.point(call.control.motion.programmed)
-    if math.dist(here, places[-1]) < math.dist(
-        here, places[0]
-    ):  # it begins at the nearer end (manual)
-        places.reverse()
+    if math.dist(here, places[-1]) < math.dist(here, places[0]):
+        places.reverse()  # it begins at the nearer end (manual)
     _visit(call, places)
 
 
 def _circle(call: CycleCall) -> None:
-    call.need("CPA", "CPO", "RAD", "NUM")
-    radius, count = call.length("RAD"), _count(call, "NUM")
+    call.need("CPA", "CPO", "RAD")
+    radius, count = call.length("RAD"), call.count("NUM")
     if not radius > 0.0:
         call.refuse("cycle-size", "needs a radius RAD above 0")
     step = call.get("INDA") or 360.0 / count
-    places = list[Point]()
-    for number in range(count):
-        cosine, sine = direction(call.get("STA1") + number * step)
-        places.append((call.length("CPA") + radius * cosine, call.length("CPO") + radius * sine))
-    _visit(call, places)
+    _visit(call, circle(call.point("CPA", "CPO"), radius, call.get("STA1"), step, count))
 
 
 def _grid(call: CycleCall) -> None:
-    call.need("_SPCA", "_SPCO", "_NUM1", "_NUM2")
-    call.only("_VARI")
-    cosine, sine = direction(call.get("_STA"))
-    first, second = call.length("_SPCA"), call.length("_SPCO")
-    columns, rows = _count(call, "_NUM1"), _count(call, "_NUM2")
-    places = list[Point]()
-    for row in range(rows):
-        line = list[Point]()
-        for column in range(columns):
-            along, across = column * call.length("_DIS1"), row * call.length("_DIS2")
-            line.append(
-                (first + along * cosine - across * sine, second + along * sine + across * cosine)
-            )
-        places += line if row % 2 == 0 else reversed(line)  # in a zigzag
-    _visit(call, places)
+    call.need("SPCA", "SPCO")
+    call.only("VARI")
+    angle = call.get("STA")
+    angles = (angle + call.get("ANG1"), angle + call.get("ANG2"))
+    spacing = (call.length("DIS1"), call.length("DIS2"))
+    counts = (call.count("NUM1"), call.count("NUM2"))
+    _visit(call, grid(call.point("SPCA", "SPCO"), angles, spacing, counts))
 
 
 PATTERNS = {
-    "HOLES1": CycleForm(("SPCA", "SPCO", "STA1", "FDIS", "DBH", "NUM", "_VARI", "_UMODE", "_HIDE", "_NSP"), _row),
-    "HOLES2": CycleForm(("CPA", "CPO", "RAD", "STA1", "INDA", "NUM", "_VARI", "_UMODE", "_HIDE", "_NSP"), _circle),
+    "HOLES1": CycleForm("SPCA SPCO STA1 FDIS DBH NUM VARI UMODE HIDE NSP", _row),
+    "HOLES2": CycleForm("CPA CPO RAD STA1 INDA NUM VARI UMODE HIDE NSP", _circle),
     "CYCLE801": CycleForm(
-        ("_SPCA", "_SPCO", "_STA", "_DIS1", "_DIS2", "_NUM1", "_NUM2", "_VARI", "_UMODE", "_ANG1", "_ANG2", "_HIDE",
-         "_NSP", "_DMODE"),
-        _grid,
+        "SPCA SPCO STA DIS1 DIS2 NUM1 NUM2 VARI UMODE ANG1 ANG2 HIDE NSP DMODE", _grid
     ),
-}  # fmt: skip
+}

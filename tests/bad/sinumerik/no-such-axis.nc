@@ -1,0 +1,2 @@
+DEF AXIS FIRST=(Q)
+M30

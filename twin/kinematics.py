@@ -1,0 +1,134 @@
+"""How the axes of a machine carry the tool against the part: a chain of joints, as arrays.
+
+The chain leads from the tool over the machine's base to the part. Every joint is told as the motion of
+the tool against the part that a positive machine coordinate brings (ISO 841), whether it carries the one
+or the other, so that one rule holds for tables and heads: a point of the tool is moved by one joint after
+the other, each about or along where that joint lies with all axes at zero (product of exponentials, Brockett
+1984; Lynch and Park, Modern Robotics, chapter 4). What results is where the point is, seen from the part.
+
+All is in the machine's frame: its axes are the directions of X, Y and Z, its origin is the spindle nose
+with all axes at zero. The part's frame here is fixed to the part and is the machine's while all axes stand at zero.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from twin.units import DEGREE
+
+_Floats = npt.NDArray[np.float64]
+_SINGULAR = 1e-6
+"""Volume that the directions of three linear axes span, below which they leave the tip a direction short."""
+
+
+class Kinematics(NamedTuple):
+    """m joints between tool and part, from the tool to the part; arrays, so that kernels take it as it is.
+
+    Attributes:
+        column: Column of the axis of each joint, shape (m,).
+        rotary: Whether it turns, shape (m,).
+        on_tool: Whether it carries the tool; else the part, shape (m,).
+        axis: Unit vector along which, or about which, it moves the tool against the part, shape (m, 3).
+        anchor: A point on its axis with all axes at zero, shape (m, 3) [mm]; of linear axes zeros.
+        tool: Unit vector from the tip of the tool to the spindle with all axes at zero, shape (3,).
+        table: Middle of the work-holding surface with all axes at zero, shape (3,) [mm].
+        table_axes: Directions of the surface's own x, y and z with all axes at zero, as columns, shape (3, 3).
+    """
+
+    column: npt.NDArray[np.int64]
+    rotary: npt.NDArray[np.bool_]
+    on_tool: npt.NDArray[np.bool_]
+    axis: _Floats
+    anchor: _Floats
+    tool: _Floats
+    table: _Floats
+    table_axes: _Floats
+
+
+def tool_point(chain: Kinematics, joints: _Floats, length: float = 0.0) -> _Floats:
+    """Where a point on the axis of the tool is, seen from the part.
+
+    Args:
+        chain: The machine.
+        joints: Machine coordinates of all axes, shape (n, k) [mm or deg].
+        length: From the spindle nose to the point [mm].
+
+    Returns:
+        Shape (n, 3) [mm].
+    """
+    points = np.tile(-length * chain.tool, (len(joints), 1))
+    for joint in range(len(chain.column)):
+        value = joints[:, chain.column[joint], None]
+        if chain.rotary[joint]:
+            anchor = chain.anchor[joint]
+            points = turned(points - anchor, chain.axis[joint], value) + anchor
+        else:
+            points = points + value * chain.axis[joint]
+    return points
+
+
+def tool_direction(chain: Kinematics, joints: _Floats) -> _Floats:
+    """Which way the tool points from its tip to the spindle, seen from the part.
+
+    Returns:
+        Unit vectors, shape (n, 3).
+    """
+    return rotated(chain, np.tile(chain.tool, (len(joints), 1)), joints)
+
+
+def rotated(chain: Kinematics, vectors: _Floats, joints: _Floats, after: int = -1) -> _Floats:
+    """Directions that are fixed to the tool, or to what a joint carries, seen from the part.
+
+    Args:
+        chain: The machine.
+        vectors: In the machine's frame with all axes at zero, shape (n, 3).
+        joints: Shape (n, k) [mm or deg].
+        after: Joint beyond which the chain turns them; -1: all of it does.
+    """
+    for joint in np.flatnonzero(chain.rotary):
+        if joint <= after:
+            continue
+        vectors = turned(vectors, chain.axis[joint], joints[:, chain.column[joint], None])
+    return vectors
+
+
+def linear_axes(chain: Kinematics, points: _Floats, joints: _Floats, length: float) -> _Floats:
+    """Machine coordinates that bring the tip of a tool to points of the part.
+
+    Args:
+        chain: The machine.
+        points: Where the tip is meant to be, seen from the part, shape (n, 3) [mm].
+        joints: Where the rotary axes stand, shape (n, k) [deg]; X, Y and Z are not looked at.
+        length: From the spindle nose to the tip [mm].
+
+    Returns:
+        ``joints`` with X, Y and Z put in, shape (n, k).
+
+    Raises:
+        ValueError: With the rotary axes there X, Y and Z do not span space.
+    """
+    solved = joints.copy()
+    solved[:, :3] = 0.0
+    missing = points - tool_point(chain, solved, length)
+    steps = np.zeros((len(joints), 3, 3))
+    for joint in np.flatnonzero(~chain.rotary & (chain.column < 3)).tolist():
+        along = np.tile(chain.axis[joint], (len(joints), 1))
+        steps[:, :, chain.column[joint]] = rotated(chain, along, joints, after=joint)
+    if np.any(np.abs(np.linalg.det(steps)) < _SINGULAR):
+        raise ValueError("with the rotary axes there X, Y and Z do not reach every point")
+    solved[:, :3] = np.linalg.solve(steps, missing[:, :, None])[:, :, 0]
+    return solved
+
+
+def turned(vectors: _Floats, axis: _Floats, angle: _Floats) -> _Floats:
+    """Vectors turned about an axis through the origin (Rodrigues).
+
+    Args:
+        vectors: Shape (n, 3).
+        axis: Unit vector, shape (3,).
+        angle: Shape (n, 1) [deg].
+    """
+    cosine, sine = np.cos(angle * DEGREE), np.sin(angle * DEGREE)
+    along = (vectors @ axis)[:, None] * axis
+    return along + cosine * (vectors - along) + sine * np.cross(axis, vectors)

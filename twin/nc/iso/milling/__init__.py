@@ -1,0 +1,1 @@
+"""What milling cycles of several controls do: pockets and slots, studs, faces, threads."""
