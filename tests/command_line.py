@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from twin.files.shipped import machine_file
-from twin.machine.description.config import read_machine
+from twin.machine.load import read_machine
 
 
 @dataclasses.dataclass(frozen=True)

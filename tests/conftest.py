@@ -32,6 +32,7 @@ KINDS = frozenset(
 _NEED = {
     "api/test_feed_environment.py": "gymnasium",
     "compare/report/test_report_page.py": "playwright",
+    "fmu/test_unit_file.py": "fmpy",
     "motion/profile/test_time_optimality.py": "toppra",
     "serve/test_independent_client.py": "pymtconnect",
     "serve/test_official_schemas.py": "xmlschema",

@@ -14,8 +14,9 @@ import trimesh
 from tests.nc import fuzz
 from twin.files.shipped import machine_file, machine_names
 from twin.files.stl import read_stl
-from twin.job.job_file import read_job
-from twin.machine.description.config import Machine, read_machine
+from twin.job.load import load_job
+from twin.machine.description.config import Machine
+from twin.machine.load import read_machine
 from twin.machine.model.model import build_spec, physics_model
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Axes
@@ -145,7 +146,7 @@ def _jobs() -> list[Path]:
 
 def _lay_programs(folder: Path) -> None:
     for job in _jobs():
-        shutil.copy(read_job(job).program, folder)
+        shutil.copy(load_job(job).program, folder)
 
 
 def _read_job(data: bytes, folder: Path) -> None:

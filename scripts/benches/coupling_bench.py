@@ -9,9 +9,10 @@ from benches.row import Row, cpu_seconds_in_turns, median_cpu_seconds
 from twin.columns import join
 from twin.coupling.operations import OperatorOperation, cutting_process
 from twin.files.shipped import machine_file
-from twin.job.job_file import Job, StockTable, ToolTable
+from twin.job.job_file import StockTable, ToolTable
+from twin.job.load import Job
 from twin.machine.circle.circle_path import CirclePath
-from twin.machine.description.config import read_machine
+from twin.machine.load import read_machine
 from twin.machine.model.model import build_spec, physics_model
 from twin.machine.simulation.simulate import simulate
 from twin.run.outcome import Outcome

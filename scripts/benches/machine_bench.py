@@ -12,7 +12,7 @@ from twin.columns import join
 from twin.files.shipped import machine_file, machine_names
 from twin.job.fixture import FixtureTable
 from twin.machine.circle.circle_path import CirclePath
-from twin.machine.description.config import read_machine
+from twin.machine.load import read_machine
 from twin.machine.model.drives import feedforward_name
 from twin.machine.model.model import (
     build_spec,
@@ -85,7 +85,7 @@ def _watching() -> Iterator[Row]:
         FixtureTable(name=f"jaw {side}", size=(120.0, 40.0, 60.0), position=(0.0, side * 76.0, 0.0))
         for side in (-1, 1)
     )
-    machine = read_machine(machine_file("mill4")).with_fixtures(jaws)
+    machine = read_machine(machine_file("mill4"), fixtures=jaws)
     spec = build_spec(machine)
     model = physics_model(machine, spec)
     clearance = Clearance(machine, clearance_model(machine, spec))

@@ -13,7 +13,7 @@ from PIL import Image
 from twin.files.shipped import machine_file, machine_names
 from twin.machine.circle.circle_plot import write_circle_plot
 from twin.machine.circle.circular_test import circular_test
-from twin.machine.description.config import read_machine
+from twin.machine.load import read_machine
 from twin.machine.model.model import build_spec
 
 SIZE = (1280, 900)

@@ -22,7 +22,8 @@ from twin.calibrate.result import Calibration
 from twin.files.shipped import machine_file
 from twin.logs.column_map import AxisColumns, ColumnTable, ExternalForceTable
 from twin.logs.machine_log import AxisLog, MachineLog
-from twin.machine.description.config import Machine, read_machine
+from twin.machine.description.config import Machine
+from twin.machine.load import read_machine
 
 Numbers = npt.NDArray[np.float64]
 GROUPS = ("uneven", "held", "clipped", "injected", "two-mass")

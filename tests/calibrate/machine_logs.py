@@ -9,7 +9,8 @@ import pytest
 from twin.files.shipped import machine_file
 from twin.logs.column_map import AxisColumns, ColumnTable
 from twin.logs.machine_log import AxisLog, MachineLog
-from twin.machine.description.config import Machine, read_machine
+from twin.machine.description.config import Machine
+from twin.machine.load import read_machine
 from twin.machine.model.model import build_spec, physics_model
 from twin.machine.simulation.simulate import simulate
 from twin.motion.setpoints.setpoints import Setpoints

@@ -24,7 +24,7 @@ from twin.calibrate.result import Calibration
 from twin.files.shipped import machine_file
 from twin.logs.column_map import read_column_map
 from twin.logs.machine_log import MachineLog, read_machine_log
-from twin.machine.description.config import read_machine
+from twin.machine.load import read_machine
 
 pytestmark = pytest.mark.seconds("a machine is simulated, and fitted to its log")
 

@@ -9,7 +9,7 @@ from twin.calibrate.fit.parameters import Parameters, of_base
 from twin.calibrate.report.loop_plots import autocorrelation, margins, open_loop, whiteness
 from twin.calibrate.result import Course
 from twin.files.shipped import machine_file
-from twin.machine.description.config import read_machine
+from twin.machine.load import read_machine
 
 NONE = np.zeros(0)
 

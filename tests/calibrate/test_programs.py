@@ -9,7 +9,7 @@ from command_line import Twin
 import twin as package
 from twin.calibrate.programs import WORDINGS, write_programs
 from twin.files.shipped import machine_file
-from twin.machine.description.config import read_machine
+from twin.machine.load import read_machine
 
 
 @pytest.mark.parametrize("dialect", WORDINGS)

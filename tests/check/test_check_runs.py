@@ -17,7 +17,8 @@ from twin.check.runner import check_all, check_program
 from twin.check.task import CheckSettings
 from twin.commands.check import CODE_QUALITY_FILE, check_and_print
 from twin.errors import ExitCode, UsageError
-from twin.job.job_file import Job, JobFile, read_job
+from twin.job.job_file import JobFile
+from twin.job.load import Job, load_job
 
 PROGRAM = """N10 X0 Y0 Z0 G00
 N20 G01 X10.5 F3000
@@ -125,7 +126,7 @@ def test_a_baseline_lies_under_the_jobs_own_path(tmp_path: Path, monkeypatch: py
         tmp_path / "a" / "part.nc": "stored/a/part.baseline",
         Path("a/part.tap"): "stored/a/part.tap.baseline",
     }.items():
-        assert file_of(folder, read_job(path), ".baseline") == Path(stored)
+        assert file_of(folder, load_job(path), ".baseline") == Path(stored)
     monkeypatch.chdir(tmp_path / "a" / "..")
     elsewhere = Job(Path("/elsewhere"), JobFile(program="part.nc"))
     outside = file_of(folder, elsewhere, ".baseline")

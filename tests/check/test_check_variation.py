@@ -13,7 +13,7 @@ from twin.check.runner import check_variant, run_tasks
 from twin.check.task import CheckSettings, Variant
 from twin.check.variation import variants
 from twin.errors import ExitCode, UsageError
-from twin.files.overrides import changed
+from twin.files.toml import changed
 from twin.run.preparation import prepare
 
 JOB = Path(__file__).parents[2] / "programs" / "mefi" / "helix.toml"

@@ -7,7 +7,7 @@ import pytest
 from tests.check.test_check_runs import write_job
 from twin import api
 from twin.files.shipped import machine_file
-from twin.machine.description.config import read_machine
+from twin.machine.load import read_machine
 from twin.units import kv_per_second
 
 

@@ -10,7 +10,7 @@ from twin.check.runner import check_program
 from twin.check.task import CheckSettings
 from twin.errors import ExitCode
 from twin.files.shipped import resource_root
-from twin.job.job_file import read_job
+from twin.job.load import load_job
 
 ALARM = CheckOutcome(
     program="part.toml",
@@ -77,7 +77,7 @@ def test_what_is_expected_has_a_baseline_like_any_other(tmp_path: Path, end: str
 def test_every_shipped_job_that_ends_badly_says_so():
     alarms = resource_root("programs") / "alarms"
     jobs = {
-        path.stem: read_job(path).file.expect
+        path.stem: load_job(path).file.expect
         for path in alarms.rglob("*.toml")
         if "machines" not in path.parts
     }

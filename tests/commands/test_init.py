@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from command_line import Twin
 
-from twin.job.job_file import read_job
+from twin.job.load import load_job
 
 PROGRAM = "N10 T2 M6\nN20 G0 X10 Y20 Z5\nN30 G1 Z-6 F200\nN40 X90 Y60\nN50 G0 Z50\nN60 M30\n"
 
@@ -15,7 +15,7 @@ def test_a_first_job_holds_the_program_and_passes_its_own_reader(tmp_path: Path,
     program.write_text(PROGRAM)
     written = twin("init", program, "--dialect", "fagor8070")
     assert written.code == 0, written.stderr
-    file = read_job(tmp_path / "part.toml").file
+    file = load_job(tmp_path / "part.toml").file
     assert file.stock is not None
     assert file.stock.size == (100.0, 60.0, 16.0)
     assert file.stock.position == (50.0, 40.0, 0.0)
@@ -32,7 +32,7 @@ def test_a_program_that_counts_from_machine_zero_gets_a_place(tmp_path: Path, tw
     )
     written = twin("init", program, "--dialect", "gost")
     assert written.code == 0, written.stderr
-    file = read_job(tmp_path / "post.toml").file
+    file = load_job(tmp_path / "post.toml").file
     assert file.stock is not None
     assert list(file.part_zero) == ["X", "Y", "Z"]
     assert twin("interpret", program).code == 0
@@ -41,7 +41,7 @@ def test_a_program_that_counts_from_machine_zero_gets_a_place(tmp_path: Path, tw
 def test_a_program_above_zero_gets_no_stock(tmp_path: Path, twin: Twin):
     (tmp_path / "high.nc").write_text("N10 G0 X0 Z5\nN20 G1 X50 F500\n")
     assert twin("init", tmp_path / "high.nc", "--dialect", "fagor8070").code == 0
-    assert read_job(tmp_path / "high.toml").file.stock is None
+    assert load_job(tmp_path / "high.toml").file.stock is None
 
 
 @pytest.mark.parametrize("command", ["run", "check", "init", "doctor"])

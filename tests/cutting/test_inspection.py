@@ -17,7 +17,8 @@ from twin.cutting.inspection import inspect
 from twin.cutting.nominal import nominal_map
 from twin.cutting.part import part_mesh, write_glb, write_stl
 from twin.errors import ConfigError
-from twin.job.job_file import Job, JobFile, StockTable, ToolTable
+from twin.job.job_file import JobFile, StockTable, ToolTable
+from twin.job.load import Job
 from twin.nc.canonical import FloatArray
 from twin.toolpath.part_frame import PartFrame
 

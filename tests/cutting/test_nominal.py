@@ -8,7 +8,7 @@ import pytest
 from twin import api
 from twin.errors import ConfigError
 from twin.files.shipped import resource_root
-from twin.job.job_file import read_job
+from twin.job.load import load_job
 
 pytestmark = pytest.mark.seconds("a program is run and its part cut")
 
@@ -102,4 +102,4 @@ def test_what_cannot_be_is_refused(
     tmp_path: Path, changes: tuple[tuple[str, str], ...], message: str
 ):
     with pytest.raises(ConfigError, match=message):
-        api.run(read_job(job(tmp_path, *changes)).path or tmp_path, out=tmp_path / "out")
+        api.run(load_job(job(tmp_path, *changes)).path or tmp_path, out=tmp_path / "out")

@@ -14,7 +14,7 @@ from tests import file_fuzz, fuzz_kinds
 from twin.errors import ConfigError, RecordingError
 from twin.files.shipped import machine_file
 from twin.files.stl import read_stl
-from twin.machine.description.config import read_machine
+from twin.machine.load import read_machine
 from twin.machine.model.model import build_spec
 from twin.recording.reader import open_recording
 from twin.recording.seal import LENGTH as SEAL_LENGTH

@@ -4,7 +4,8 @@ import pytest
 
 from twin.errors import ConfigError, ExitCode
 from twin.files.toml import read_toml
-from twin.job.job_file import JobFile, read_job
+from twin.job.job_file import JobFile
+from twin.job.load import load_job
 
 
 def job_text(tmp_path: Path, text: str) -> Path:
@@ -54,15 +55,15 @@ def test_missing_and_binary_files_are_refused(tmp_path: Path):
 def test_a_program_is_run_by_the_job_beside_it(tmp_path: Path):
     program = tmp_path / "part.nc"
     program.write_text("G0 X0", encoding="utf-8")
-    assert read_job(program).file == JobFile(program="part.nc")
+    assert load_job(program).file == JobFile(program="part.nc")
     (tmp_path / "part.toml").write_text(
         'program = "part.nc"\ndefault_feed = 77.0', encoding="utf-8"
     )
-    assert read_job(program).file.default_feed == 77.0
-    assert read_job(tmp_path / "part.toml").program == program
+    assert load_job(program).file.default_feed == 77.0
+    assert load_job(tmp_path / "part.toml").program == program
 
 
 def test_a_job_without_its_program_is_refused(tmp_path: Path):
     path = job_text(tmp_path, 'program = "absent.nc"')
     with pytest.raises(ConfigError, match=r"absent\.nc: no such NC program"):
-        read_job(path)
+        load_job(path)

@@ -6,8 +6,8 @@ import pytest
 from tests.fmu.recorded import START, Recorded
 from twin.columns import join
 from twin.files.shipped import machine_file
-from twin.machine.description.config import read_machine
 from twin.machine.description.motion_limits import motion_limits
+from twin.machine.load import read_machine
 from twin.machine.simulation.live import LiveMachine
 from twin.motion.planner import plan
 from twin.nc.control.settings import ControlSettings

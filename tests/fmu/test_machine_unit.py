@@ -6,7 +6,7 @@ import pytest
 from tests.fmu.recorded import START, Recorded
 from twin.files.shipped import machine_file
 from twin.fmu.machine_unit import MachineUnit
-from twin.machine.description.config import read_machine
+from twin.machine.load import read_machine
 from twin.machine.watching.alarms import SimulationError
 
 

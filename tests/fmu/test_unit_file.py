@@ -9,8 +9,6 @@ from command_line import Twin
 from tests.fmu.recorded import START, Recorded
 
 pytestmark = pytest.mark.oracle
-fmpy = pytest.importorskip("fmpy", reason="fmpy is not installed (extra exhaustive)")
-pytest.importorskip("pythonfmu3", reason="pythonfmu3 is not installed (extra fmu)")
 
 
 @pytest.fixture(scope="module")

@@ -6,7 +6,7 @@ import pytest
 
 from twin.errors import ConfigError
 from twin.files.shipped import resource_root
-from twin.job.job_file import Job, read_job
+from twin.job.load import Job, load_job
 
 SHARED = """
 machine = "mill4_light"
@@ -29,7 +29,7 @@ def folder(tmp_path: Path) -> Path:
 
 def job(folder: Path, text: str = "") -> Job:
     (folder / "part.toml").write_text(f'program = "part.nc"\n{text}')
-    return read_job(folder / "part.toml")
+    return load_job(folder / "part.toml")
 
 
 def test_a_job_says_only_what_differs(folder: Path):
@@ -41,7 +41,7 @@ def test_a_job_says_only_what_differs(folder: Path):
 
 
 def test_a_program_without_a_job_shares_them_too(folder: Path):
-    assert read_job(folder / "part.nc").file.machine == "mill4_light"
+    assert load_job(folder / "part.nc").file.machine == "mill4_light"
 
 
 def test_the_nearest_folder_and_what_a_job_extends_come_first(folder: Path):

@@ -23,8 +23,8 @@ from twin.columns import join
 from twin.files.shipped import machine_file
 from twin.link.component import COMPILER, is_installed, module_folder
 from twin.link.linuxcnc import LOCK, process_name, processes_at_home
-from twin.machine.description.config import read_machine
-from twin.machine.model.model import build_spec
+from twin.machine.load import read_machine
+from twin.machine.model.model import MachineModel
 from twin.machine.simulation.simulate import simulate
 from twin.recording.form import STEPS
 from twin.recording.reader import open_recording
@@ -120,7 +120,7 @@ def test_a_sound_machine_runs_a_program_and_can_be_played_back(folder: Path, twi
         samples = join(list(recording.chunks()))
         assert recording.header.program.endswith("program_as_read.nc")
     machine = read_machine(machine_file("mill4"))
-    again = join(list(simulate(machine, build_spec(machine), [samples.setpoint])))
+    again = join(list(simulate(machine, MachineModel(machine), [samples.setpoint])))
     step = STEPS["joint/position"]
     assert np.array_equal(np.rint(again.joint_position / step) * step, samples.joint_position)
     lines = samples.setpoint.line

@@ -14,7 +14,7 @@ from twin.link.lockstep import SETTLING_S, LockstepMotion
 from twin.link.packet import JOINTS, MAGIC, REQUEST_LAYOUT, REQUEST_STATES, VERSION
 from twin.link.place import Places
 from twin.machine.description.config import Machine
-from twin.machine.model.model import build_spec
+from twin.machine.model.model import MachineModel
 from twin.machine.simulation.live import LiveMachine
 from twin.machine.simulation.simulate import simulate
 from twin.machine.watching.alarms import Alarm
@@ -65,7 +65,7 @@ def test_a_recording_played_back_gives_the_same_bits():
     samples, _, _ = driven(shipped_machine(), commanded(150.0, 0.4))
     setpoint = samples.setpoint
     machine = shipped_machine()
-    again = join(list(simulate(machine, build_spec(machine), [setpoint])))
+    again = join(list(simulate(machine, MachineModel(machine), [setpoint])))
     assert np.array_equal(again.joint_position, samples.joint_position)
     assert np.array_equal(again.drive_force, samples.drive_force)
 

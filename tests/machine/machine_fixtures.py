@@ -8,7 +8,9 @@ from typing import Any
 import numpy as np
 
 from twin.files.shipped import machine_file, resource_root
-from twin.machine.description.config import Machine, MachineFile, read_machine
+from twin.job.fixture import FixtureTable
+from twin.machine.description.config import Machine, MachineFile
+from twin.machine.load import read_machine
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
 
@@ -25,6 +27,12 @@ def shipped_machine(**axis_changes: Any) -> Machine:
     for axis in data["axes"].values():
         axis.update({"reset_time_s": 0.0} | axis_changes)
     return Machine(path, MachineFile.model_validate(data))
+
+
+def with_fixtures(machine: Machine, *fixtures: FixtureTable) -> Machine:
+    """A machine with more on its table."""
+    both = (*machine.file.fixtures, *fixtures)
+    return Machine(machine.path, machine.file.model_copy(update={"fixtures": both}))
 
 
 def setpoints(position: FloatArray, velocity: FloatArray, acceleration: FloatArray) -> Setpoints:

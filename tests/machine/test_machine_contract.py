@@ -8,7 +8,7 @@ from twin.files.shipped import machine_file, machine_names, variant_names
 from twin.machine.check import check_machine
 from twin.machine.circle.circular_test import circular_test
 from twin.machine.describe import describe, shipped_machines
-from twin.machine.description.config import read_machine
+from twin.machine.load import read_machine
 from twin.units import MM, UM_PER_MM
 
 POINTS = (

@@ -9,8 +9,8 @@ from motion_programs import Program, mill
 from random_programs import KINDS, UNEVEN_KINDS, random_machine, random_program
 
 from twin.files.shipped import machine_file, resource_root
-from twin.machine.description.config import read_machine
 from twin.machine.description.motion_limits import motion_limits
+from twin.machine.load import read_machine
 from twin.motion.limits import MotionLimits
 from twin.motion.phase_planner import plan_phases
 from twin.nc.canonical import Chunk, Corner, FloatArray

@@ -4,7 +4,7 @@ import dataclasses
 from pathlib import Path
 from typing import Any
 
-from twin.job.job_file import read_job
+from twin.job.load import load_job
 from twin.nc.canonical import Axes, Chunk, Event, Moves, concatenate
 from twin.nc.control.settings import ControlSettings, MachineFunction, ToolData
 from twin.nc.dialects import dialect_named
@@ -84,7 +84,7 @@ def bad(text: str, dialect: str, **changes: Any) -> Diagnostic:
 
 def shipped(path: Path) -> Interpretation:
     """A program with the settings of the job beside it."""
-    job = read_job(path)
+    job = load_job(path)
     assert job.file.dialect is not None
     dialect = dialect_named(job.file.dialect)
     zero = job.file.part_zero

@@ -11,7 +11,8 @@ import pytest
 from twin.cutting.program_summary import ProgramSummary
 from twin.cutting.tools import ToolPlan
 from twin.job.job_file import StockTable, ToolTable
-from twin.machine.description.config import Machine, read_machine
+from twin.machine.description.config import Machine
+from twin.machine.load import read_machine
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
 from twin.recording.reader import Recording, RecordingHeader, Samples, open_recording, record

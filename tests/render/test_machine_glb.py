@@ -10,7 +10,7 @@ from trimesh.transformations import rotation_matrix
 
 from twin.files.shipped import machine_file
 from twin.job.job_file import StockTable, ToolTable
-from twin.machine.description.config import read_machine
+from twin.machine.load import read_machine
 from twin.render.machine_glb import COLLISION_PREFIX, drawn_machine
 from twin.render.scene.placement import Joints, tip_position
 

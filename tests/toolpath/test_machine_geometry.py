@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from twin.files.shipped import machine_file
-from twin.machine.description.config import Machine, read_machine
+from twin.machine.description.config import Machine
+from twin.machine.load import read_machine
 from twin.toolpath.machine_geometry import geometry_from_text
 from twin.toolpath.part_frame import PartFrame
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import mujoco
 
 from twin.files.shipped import machine_file
-from twin.machine.description.config import read_machine
+from twin.machine.load import read_machine
 from twin.machine.model.drives import feedforward_name, integral_name
 from twin.machine.model.model import build_spec, compiled
 

@@ -7,7 +7,8 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
-from twin.job.job_file import Job, JobFile
+from twin.job.job_file import JobFile
+from twin.job.load import Job
 from twin.run.assumed_job import with_assumptions
 from twin.run.preparation import Preparation, prepare, prepare_job
 

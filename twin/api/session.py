@@ -107,6 +107,7 @@ class Session:
         self.alarm: Alarm | None = dry_run.alarm
         self.commands: list[Command] = []
         described, job = self.run.machine, self.run.preparation.job.file
+        blank = self.run.model.blank
         zero, summary = self.run.part_zero, dry_run.summary
         start = dry_run.program.start + zero
         self._tools = summary.tools
@@ -120,7 +121,7 @@ class Session:
             start=start,
             largest_override=largest_override,
         )
-        self._machine = LiveMachine(described, self._tool, start)
+        self._machine = LiveMachine(described, self._tool, start, blank)
         self._last = Step(self._machine.follow(self._machine.setpoint[:0]), np.zeros(0))
         self._machine.step_with(program_process(job, described, summary, self.run.part_frame, zero))
 

@@ -5,13 +5,13 @@ from pathlib import Path
 
 from twin.check.outcome import CheckOutcome, Finding
 from twin.errors import ExitCode, TwinError
-from twin.job.job_file import read_job
+from twin.job.load import load_job
 
 
 def expectation(path: Path) -> str | None:
     """The code that a job expects; None where it shall pass, or cannot be read."""
     try:
-        return read_job(path).file.expect
+        return load_job(path).file.expect
     except (TwinError, OSError):
         return None
 

@@ -15,10 +15,8 @@ from twin.compare.baseline import compare_baseline, write_baseline
 from twin.compare.baseline_text import RunFigures
 from twin.compare.verdict import Reason
 from twin.errors import ConfigError, EmptyProgramError, ExitCode, TwinError, UsageError
-from twin.files.toml import load_toml
 from twin.files.toml_lines import place_of_key
-from twin.job.job_file import Job
-from twin.job.layers import layers_of
+from twin.job.load import Job
 from twin.machine.watching.alarms import Alarm
 from twin.nc.canonical import Chunk
 from twin.nc.text.diagnostics import Diagnostic, ProgramError
@@ -226,7 +224,7 @@ def _finding(preparation: Preparation, reason: Reason) -> Finding:
     job = preparation.job.path
     if reason.what == "baseline-job" and job is not None:
         key = reason.message.partition(" is ")[0]
-        files = [layer.path for layer in layers_of(job, load_toml(job))]
+        files = [layer.path for layer in preparation.job.layers]
         if key.startswith("machine."):
             files, key = [preparation.machine.path], key.removeprefix("machine.")
         file, line = place_of_key(files, key)

@@ -3,7 +3,7 @@
 import dataclasses
 from pathlib import Path
 
-from twin.files.overrides import Change
+from twin.files.toml import Change
 
 
 @dataclasses.dataclass(frozen=True, slots=True)

@@ -21,7 +21,7 @@ from twin.files.shipped import machine_file
 from twin.logs.ball_bar import read_ball_bar
 from twin.logs.column_map import read_column_map
 from twin.logs.machine_log import MachineLog, read_machine_log
-from twin.machine.description.config import read_machine
+from twin.machine.load import read_machine
 
 if TYPE_CHECKING:
     from twin.calibrate.result import Calibration

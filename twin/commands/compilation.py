@@ -151,7 +151,7 @@ def _plan(job: Path) -> None:
 
 def _circle() -> None:
     from twin.machine.circle.circular_test import circular_test
-    from twin.machine.description.config import read_machine
+    from twin.machine.load import read_machine
 
     circular_test(read_machine(machine_file("mill4")), 20.0, 6000.0)
 

@@ -10,14 +10,12 @@ from twin.commands.run import print_findings, summary
 from twin.compilation.announcement import announce_compilation
 from twin.errors import ExitCode, UsageError
 from twin.files.atomic import write_text
-from twin.files.overrides import Change
-from twin.files.shipped import machine_file
-from twin.job.job_file import Job, read_job
-from twin.machine.description.config import read_machine
-from twin.machine.model.model import spindle_over_table_mm
+from twin.files.toml import Change
+from twin.job.load import Job, load_job
+from twin.machine.load import load_machine
 from twin.nc.dialects import recognise
 from twin.nc.text.source import read_source
-from twin.run.placement import part_zero, start_position
+from twin.run.layout import lay_out, start_position
 from twin.run.preparation import Preparation, prepare, prepare_job
 from twin.run.progress import shown_progress
 from twin.run.results import RESULT_FILES, write_results
@@ -124,7 +122,7 @@ def _linuxcnc_program(path: Path, changes: list[Change]) -> Job | None:
     """
     if not path.is_file():
         return None
-    job = read_job(path, changes)
+    job = load_job(path, changes)
     if job.file.dialect is not None:
         return None
     if job.program.suffix != LINUXCNC_SUFFIX:
@@ -142,11 +140,10 @@ def _prepare_as_read(
     """Prepare a program of LinuxCNC's own language, as LinuxCNC's interpreter reads it."""
     from twin.link.program_reading import DIALECT, read_program
 
-    found = machine_file(machine or job.file.machine, beside=None if machine else job.folder)
-    read = read_machine(found, changes)
-    zero = part_zero(job.file, read, spindle_over_table_mm(read))
+    read = load_machine(job, machine, changes)
+    zero = lay_out(job.file, read).part_zero
     start = start_position(job.file, read) + zero
     path = (out / READ_PROGRAM).resolve()
     write_text(path, read_program(job.program, read.axes, start, zero, job.file))
     file = job.file.model_copy(update={"program": str(path), "dialect": DIALECT})
-    return prepare_job(Job(job.folder, file, job.path), machine=machine, changes=changes)
+    return prepare_job(job.with_file(file), machine=machine, changes=changes)

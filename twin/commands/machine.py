@@ -11,7 +11,8 @@ from twin.machine.check import check_machine
 from twin.machine.circle.circle_plot import write_circle_plot
 from twin.machine.circle.circular_test import CircularTest, circular_test
 from twin.machine.describe import MachineFacts, describe, shipped_machines
-from twin.machine.description.config import Machine, read_machine
+from twin.machine.description.config import Machine
+from twin.machine.load import read_machine
 
 FORMATS = ("text", "json")
 PLOTS = (".svg", ".png", ".pdf")

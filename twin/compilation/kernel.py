@@ -14,7 +14,7 @@ from numba.extending import overload
 
 from twin.compilation.compilable import take_declared
 from twin.compilation.dispatcher import KernelDispatcher
-from twin.compilation.flags import compare_at_once
+from twin.compilation.shortcuts import take_shortcuts
 
 _SUMS = {"reassoc", "nsz", "nnan"}
 """Freedoms that let a sum or a maximum over neighbours be taken several at a time: its terms may be
@@ -26,7 +26,7 @@ FRAMES = 4000
 """Depth of calls that the compiler may need: Numba types what a function calls while it types the function,
 some 60 frames a level, and CPython's own limit of 1000 is reached from deep within a caller's stack."""
 sys.setrecursionlimit(max(sys.getrecursionlimit(), FRAMES))
-compare_at_once()
+take_shortcuts()
 
 
 def array_kernel(function: Kernel) -> Kernel:

@@ -7,8 +7,8 @@ import numpy as np
 
 from twin.cutting.forces.materials import kienzle
 from twin.files.stl import read_stl
+from twin.job.fixture import Weight, upright_weight
 from twin.job.job_file import StockTable
-from twin.job.weight import Weight, upright_weight
 from twin.units import MM
 
 _KG_PER_MM3 = 1e-6

@@ -2,14 +2,14 @@
 
 import difflib
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
 import pydantic
 from pydantic_core import ErrorDetails
 
-from twin.errors import ConfigError
+from twin.errors import ConfigError, UsageError
 
 
 class Table(pydantic.BaseModel):
@@ -151,3 +151,51 @@ def _first_model(annotation: Any) -> Any:
         if found is not None:
             return found
     return None
+
+
+def merged(
+    above: Data, below: Data, replaces: Callable[[Data, Data], bool] = lambda _above, _below: False
+) -> Data:
+    """Two tables as one, key by key; any other value, lists included, is that of ``above``.
+
+    Args:
+        above: What comes first.
+        below: What holds where ``above`` says nothing.
+        replaces: Whether an inner table of ``above`` is taken whole.
+    """
+    made = dict(below) | above
+    for key in above.keys() & below.keys():
+        first, second = above[key], below[key]
+        if isinstance(first, dict) and isinstance(second, dict) and not replaces(first, second):
+            made[key] = merged(first, second, replaces)
+    return made
+
+
+Change = tuple[str, Any]
+"""A key of the job (``job.``) or machine file (``machine.``) with dots, and its value."""
+
+
+def changed(data: dict[str, Any], prefix: str, changes: Sequence[Change]) -> dict[str, Any]:
+    """Content of a TOML file with the changes of one prefix made; the rest is left to the others.
+
+    Raises:
+        UsageError: A change goes through something that is no table.
+    """
+    made = data
+    for key, value in changes:
+        kind, *parts = key.split(".")
+        if kind == prefix:
+            made = _with(made, parts, value, key)
+    return made
+
+
+def _with(
+    table: Mapping[str, Any], parts: Sequence[str], value: object, key: str
+) -> dict[str, Any]:
+    name, *rest = parts
+    if not rest:
+        return {**table, name: value}
+    below = table.get(name, {})
+    if not isinstance(below, dict):
+        raise UsageError(f"--vary {key}: '{name}' is no table")
+    return {**table, name: _with(below, rest, value, key)}

@@ -12,7 +12,7 @@ from twin.errors import UsageError
 from twin.files.atomic import complete_or_absent
 from twin.files.shipped import is_shipped, machine_file
 from twin.fmu.slave import MACHINE
-from twin.machine.description.config import read_machine
+from twin.machine.load import read_machine
 
 fmi: Any = pythonfmu3
 _SCRIPT = '''"""A machine of mill-twin; the interpreter that loads it needs the package."""

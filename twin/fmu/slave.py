@@ -10,7 +10,7 @@ import pythonfmu3
 from twin.errors import TwinError
 from twin.files.shipped import machine_file
 from twin.fmu.machine_unit import MachineUnit
-from twin.machine.description.config import read_machine
+from twin.machine.load import read_machine
 from twin.nc.canonical import FloatArray
 from twin.version import __version__
 

@@ -1,22 +1,15 @@
 """The job file: which program, on which machine, with which stock, tools and tolerances."""
 
-import os
-from collections.abc import Callable, Mapping, Sequence
-from functools import partial
 from pathlib import Path
 from typing import Annotated, Literal
 
 import pydantic
 from pydantic import Field
 
-from twin.errors import ConfigError
-from twin.files.overrides import Change, changed
 from twin.files.stl import stl_extent
-from twin.files.toml import Data, Table, checked, load_toml
+from twin.files.toml import Table
+from twin.job.builder import MachineFunctions, ToolChangeTable
 from twin.job.fixture import FixtureTable
-from twin.job.layers import laid_over, layer_of, layers_of
-from twin.job.machine_functions import MachineFunctions
-from twin.job.tool_change import ToolChangeTable
 
 Positive = Annotated[float, Field(gt=0)]
 
@@ -377,92 +370,3 @@ class JobFile(Table):
         if not tools or len(set(numbers)) != len(numbers):
             raise ValueError("tools must be at least one, each with its own number")
         return tools
-
-
-class Job:
-    """A job that was read.
-
-    Attributes:
-        folder: What relative paths in it are relative to.
-        file: Its checked content; the files of an STL stock, of a nominal part and of fixtures are
-            whole paths.
-        program: The NC program.
-        path: The job file; None where a program has none.
-        tolerances_from: Which file sets each tolerance, ``default`` where none does, by its key.
-    """
-
-    def __init__(
-        self,
-        folder: Path,
-        file: JobFile,
-        path: Path | None = None,
-        tolerances_from: Mapping[str, str] | None = None,
-    ) -> None:
-        if file.stock is not None and file.stock.file is not None:
-            whole = str((folder / file.stock.file).absolute())
-            stock = file.stock.model_copy(update={"file": whole})
-            file = file.model_copy(update={"stock": stock})
-        if file.nominal is not None:
-            whole = str((folder / file.nominal.file).absolute())
-            nominal = file.nominal.model_copy(update={"file": whole})
-            file = file.model_copy(update={"nominal": nominal})
-        if file.fixtures:
-            fixtures = tuple(fixture.in_folder(folder) for fixture in file.fixtures)
-            file = file.model_copy(update={"fixtures": fixtures})
-        self.folder = folder
-        self.file = file
-        self.program = folder / file.program
-        self.path = path
-        self.tolerances_from = tolerances_from or _set_by(file, lambda _: "job")
-
-
-def _set_by(file: JobFile, place: Callable[[str], str]) -> dict[str, str]:
-    """Who sets each tolerance that holds, by its key."""
-    said = file.tolerance.model_dump(exclude_unset=True, exclude_none=True)
-    return {
-        key: place(f"tolerance.{key}") if key in said else "default"
-        for key in {**said, "contour_um": 0}
-    }
-
-
-def read_job(path: Path, changes: Sequence[Change] = ()) -> Job:
-    """Read a job file, or make the default job of an NC program.
-
-    An NC program with a job file of the same stem beside it is run by that job. What a job leaves
-    open it takes from the files that it shares with others (``twin.job.layers``).
-
-    Args:
-        path: A ``.toml`` job file, or an NC program.
-        changes: Values under ``job.`` to change.
-
-    Raises:
-        ConfigError: The job file is wrong, or the program does not exist.
-    """
-    beside = path.with_suffix(".toml")
-    if path.suffix == ".toml":
-        job = _layered(path, load_toml(path), changes, path)
-    elif beside.is_file() and _names(beside, path):
-        job = _layered(beside, load_toml(beside), changes, beside)
-    else:
-        job = _layered(path, {"program": path.name}, changes, None)
-    if not job.program.is_file():
-        raise ConfigError(f"{job.program}: no such NC program")
-    return job
-
-
-def _names(job: Path, program: Path) -> bool:
-    """Whether a job file runs a program; one that names none is a job with an error."""
-    named = load_toml(job).get("program", program.name)
-    return isinstance(named, str) and (job.parent / named).resolve() == program.resolve()
-
-
-def _layered(path: Path, data: Data, changes: Sequence[Change], job: Path | None) -> Job:
-    layers = layers_of(path, changed(data, "job", changes))
-    file = checked(laid_over(layers), JobFile, partial(layer_of, layers))
-    told = _set_by(file, lambda key: _shown_from(layer_of(layers, key), path.parent))
-    return Job(path.parent, file, job, told)
-
-
-def _shown_from(file: Path, folder: Path) -> str:
-    """A file's path as seen from a job's folder."""
-    return os.path.relpath(file.resolve(), folder.resolve())

@@ -34,7 +34,7 @@ def rehearse(run: Run, dry_run: DryRun, tool: ToolShape, position: FloatArray) -
         return
     with contextlib.suppress(_EnoughError):
         Run(run.preparation).execute(dry_run, None, _enough)
-    live = LiveMachine(run.machine, tool, position)
+    live = LiveMachine(run.machine, tool, position, run.model.blank)
     live.stand_at(position)
     live.follow(live.setpoint)
     live.brake(1)

@@ -86,7 +86,7 @@ def run_on_twin(
         install(own, module_folder(start))
         tool, position = preparation.job.file.tools[0], dry_run.program.start + run.part_zero
         rehearse(run, dry_run, tool, position)
-        live = LiveMachine(run.machine, tool, position)
+        live = LiveMachine(run.machine, tool, position, run.model.blank)
         places = _write_program(dry_run.program, axes, own / PROGRAM_NAME, wish.own_program)
         session = wish.display is not None
         with LockstepMotion(live, places, run.part_zero, session=session) as motion:

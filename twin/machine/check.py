@@ -15,7 +15,7 @@ import numpy as np
 from twin.errors import TwinError
 from twin.machine.description.config import Machine
 from twin.machine.model.drives import reflected_inertia
-from twin.machine.model.model import build_spec, compiled, drives, physics_model
+from twin.machine.model.model import MachineModel, build_spec, compiled, drives, physics_model
 from twin.machine.simulation.simulate import simulate
 from twin.machine.watching.alarms import SimulationError
 from twin.motion.setpoints.setpoints import Setpoints
@@ -202,7 +202,7 @@ def _run(machine: Machine, position: FloatArray) -> FloatArray:
     none = np.zeros(count, np.int64)
     time = period * np.arange(count, dtype=np.float64)
     points = Setpoints(time, none, none, np.zeros(count), position, velocity, acceleration)
-    run = simulate(machine, build_spec(machine), [points])
+    run = simulate(machine, MachineModel(machine), [points])
     joints = np.concatenate([samples.joint_position for samples in run])
     if run.alarm is not None:
         raise SimulationError(str(run.alarm))

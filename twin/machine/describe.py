@@ -4,7 +4,8 @@ import dataclasses
 import math
 
 from twin.files.shipped import machine_file, machine_names, variant_names
-from twin.machine.description.config import Machine, read_machine
+from twin.machine.description.config import Machine
+from twin.machine.load import read_machine
 from twin.machine.model.drives import reflected_inertia
 from twin.machine.model.model import build_spec, drives, physics_model, spindle_over_table_mm
 from twin.units import SECONDS_PER_MINUTE, AxisKind, kv_per_second

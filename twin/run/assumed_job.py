@@ -9,15 +9,15 @@ from pathlib import Path
 
 import numpy as np
 
-from twin.job.job_file import Job, JobFile
+from twin.job.job_file import JobFile
+from twin.job.load import Job
 from twin.machine.description.config import Machine
-from twin.machine.model.model import spindle_over_table_mm
 from twin.nc.canonical import Chunk, FloatArray, Function, Motion, Moves, concatenate
 from twin.nc.dialects.recognition import HEAD_LINES, comments_of, without_comments
 from twin.nc.functions import TOOL_CHANGE
 from twin.nc.interpreter import Interpretation
 from twin.nc.text.diagnostics import ProgramError
-from twin.run.placement import part_zero
+from twin.run.layout import lay_out
 from twin.run.preparation import IGNORED_AT_ZERO, Preparation, anywhere, prepare_job
 from twin.run.reading.assumed_reading import AssumedReading
 from twin.run.reading.assumed_tools import BELOW, tool_lines
@@ -362,7 +362,7 @@ def _zero_line(
 
 
 def _height(file: JobFile, machine: Machine) -> float:
-    return float(part_zero(file, machine, spindle_over_table_mm(machine))[machine.axes.index("Z")])
+    return float(lay_out(file, machine).part_zero[machine.axes.index("Z")])
 
 
 def text_beside(path: Path, assumed: AssumedJob, program: Path) -> str:

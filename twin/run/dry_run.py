@@ -13,9 +13,9 @@ from twin.machine.watching.alarms import Alarm
 from twin.machine.watching.travel import soft_limit_alarm
 from twin.nc.canonical import Chunk, FloatArray, Function
 from twin.nc.text.diagnostics import Diagnostic
+from twin.run.layout import start_position
 from twin.run.messages import speed_notice
 from twin.run.notices import shown
-from twin.run.placement import start_position
 from twin.run.preparation import Preparation
 from twin.run.program_watch import ProgramWatch
 from twin.run.stages import StageClock

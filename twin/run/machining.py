@@ -15,8 +15,8 @@ from twin.cutting.part_picture import part_picture
 from twin.cutting.program_summary import ProgramSummary
 from twin.cutting.spindle import standing
 from twin.job.job_file import JobFile, ToolTable
-from twin.machine.description.config import Machine
-from twin.machine.model.head_shape import head_shape
+from twin.machine.model.head_shape import HeadShape
+from twin.machine.model.model import MachineModel
 from twin.machine.simulation.tool_changes import REMEDY
 from twin.machine.watching.alarms import Alarm
 from twin.nc.canonical import FloatArray
@@ -36,7 +36,7 @@ class Machining:
 
     def __init__(
         self,
-        machine: Machine,
+        model: MachineModel,
         job: JobFile,
         summary: ProgramSummary,
         part_frame: PartFrame,
@@ -46,7 +46,7 @@ class Machining:
         """Lay the blank on the table.
 
         Args:
-            machine: What is above the tool is its.
+            model: What is above the tool is its.
             job: Its blank, without which nothing is cut, and its nominal part, if it names one.
             summary: What is in the spindle when, and which moves are rapids.
             part_frame: How the part turns under the tool.
@@ -64,7 +64,7 @@ class Machining:
         self._gouge_um = None if job.nominal is None else job.nominal.gouge_um
         self._gouge_stops = job.nominal is not None and job.nominal.gouge == "alarm"
         if job.stock is not None:
-            head = head_shape(machine).above_tip
+            head = HeadShape(model).above_tip
             self._cutter = Cutter(
                 job.stock, summary.tools, part_frame, part_zero, halts=True, head=head
             )

@@ -7,11 +7,12 @@ from types import MappingProxyType
 
 import pydantic
 
-from twin.errors import ConfigError, RecordingError, UsageError
-from twin.files.overrides import Change
-from twin.files.shipped import machine_file, shipped_program
-from twin.job.job_file import Job, JobFile, read_job
-from twin.machine.description.config import Machine, read_machine
+from twin.errors import ConfigError, RecordingError
+from twin.files.toml import Change
+from twin.job.job_file import JobFile
+from twin.job.load import Job, load_job
+from twin.machine.description.config import Machine
+from twin.machine.load import load_machine
 from twin.nc.control.settings import ControlSettings, MachineFunction, ToolData
 from twin.nc.dialects import Dialect, dialect_named
 from twin.nc.dialects.foreign import require_program
@@ -19,7 +20,7 @@ from twin.nc.functions import SpindleState
 from twin.nc.interpreter import Interpretation
 from twin.nc.text.source import Source, read_source, source_from_text
 from twin.recording.reader import RecordingHeader
-from twin.run.placement import start_position
+from twin.run.layout import start_position
 from twin.run.reading.assumed_reading import (
     NOTHING_ASSUMED,
     UNKNOWN_FUNCTION,
@@ -88,14 +89,7 @@ def prepare(
     Raises:
         UsageError: A file is missing or wrong, or the dialect cannot be told.
     """
-    if path.is_dir():
-        raise UsageError(f"{path}: a folder; twin check runs the programs in a folder")
-    if not path.is_file():
-        shipped = None if path.suffix else shipped_program(str(path))
-        if shipped is None:
-            raise UsageError(f"{path}: no such file")
-        path = shipped
-    job, reading = read_job(path, changes), None
+    job, reading = load_job(path, changes), None
     if assuming and job.path is None:
         require_program(job.program)
         reading = assumed_reading(read_source(job.program))
@@ -114,8 +108,7 @@ def prepare(
 def _with_keys(job: Job, keys: Mapping[str, object]) -> Job:
     """A job with what was assumed, where it says nothing else."""
     given = job.file.model_dump(exclude_unset=True)
-    file = JobFile.model_validate({**keys, **given})
-    return Job(job.folder, file, job.path, job.tolerances_from)
+    return job.with_file(JobFile.model_validate({**keys, **given}))
 
 
 def _with_functions(made: Preparation, reading: AssumedReading) -> Preparation:
@@ -130,7 +123,7 @@ def _with_functions(made: Preparation, reading: AssumedReading) -> Preparation:
     reading = AssumedReading({**reading.keys, "m_functions": declared}, (*reading.told, told))
     given = made.job.file.model_dump(exclude_unset=True).get("m_functions", {})
     file = made.job.file.model_dump(exclude_unset=True) | {"m_functions": {**declared, **given}}
-    job = Job(made.job.folder, JobFile.model_validate(file), None, made.job.tolerances_from)
+    job = made.job.with_file(JobFile.model_validate(file))
     functions_of_settings = dict.fromkeys(unknown, MachineFunction(UNKNOWN_FUNCTION))
     settings = dataclasses.replace(
         made.settings, m_functions={**made.settings.m_functions, **functions_of_settings}
@@ -157,11 +150,7 @@ def prepare_job(
         changes: As there.
         tools: What comments tell of the tools of a job that names none.
     """
-    if machine is None:
-        found = machine_file(job.file.machine, beside=job.folder)
-    else:
-        found = machine_file(machine)
-    twin_machine = read_machine(found, changes).with_fixtures(job.file.fixtures)
+    twin_machine = load_machine(job, machine, changes)
     name = dialect or job.file.dialect
     named = None if name is None else dialect_named(name)
     settings = _control_settings(job, twin_machine, strict=strict)
@@ -210,8 +199,8 @@ def prepare_recorded(header: RecordingHeader, *, machine: str | None = None) -> 
             "the recording does not hold the job that it was made with: run the job again"
         ) from error
     beside = header.machine_file if Path(header.machine_file).is_file() else header.machine
-    found = read_machine(machine_file(machine or beside)).with_fixtures(file.fixtures)
     job = Job(Path(), file)
+    found = load_machine(job, machine or beside)
     dialect = dialect_named(header.dialect)
     source = source_from_text(header.program_text, header.program)
     if not header.program_text:

@@ -25,7 +25,7 @@ from twin.errors import ConfigError
 from twin.job.job_file import ToleranceTable
 from twin.machine.description.motion_limits import motion_limits
 from twin.machine.model.clamping import refuse_overlaps, what_carries
-from twin.machine.model.model import build_spec, spindle_over_table_mm
+from twin.machine.model.model import MachineModel
 from twin.machine.simulation.growth import Growth
 from twin.machine.simulation.simulate import Simulation, simulate
 from twin.machine.watching.alarms import Alarm, NearMiss
@@ -42,16 +42,15 @@ from twin.run.cut_notices import (
     unjudged_limit_notices,
 )
 from twin.run.dry_run import DryRun, InterpretedProgram, interpret_all
+from twin.run.layout import bore_of, lay_out
 from twin.run.machining import Machining
 from twin.run.notices import Notice, shown
 from twin.run.outcome import Outcome
-from twin.run.placement import bore_of, part_zero, with_blank
 from twin.run.preparation import Preparation
 from twin.run.progress import Progress
 from twin.run.scope import nothing_judged, scope_of
 from twin.run.stages import StageClock
 from twin.run.tool_use import ToolTimes
-from twin.toolpath.part_frame import PartFrame
 from twin.units import UM_PER_MM
 from twin.version import __version__
 
@@ -77,10 +76,10 @@ class Run:
 
     Attributes:
         preparation: The job made concrete.
-        machine: Its machine with all that is clamped on the table.
+        machine: Its machine.
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
         part_frame: How the part turns under the tool.
-        spec: The model of the machine with the job's first tool in the spindle.
+        model: The machine's, with the blank on its table and the job's first tool in the spindle.
         clock: How long each stage took; a film's goes on it too.
         trace: The run thinned for plots.
     """
@@ -96,12 +95,10 @@ class Run:
         """
         machine, job = preparation.machine, preparation.job.file
         self.preparation = preparation
-        over_table = spindle_over_table_mm(machine)
-        self.part_zero = part_zero(job, machine, over_table)
-        self.machine = with_blank(machine, job, self.part_zero, over_table)
-        self.spec: mujoco.MjSpec = build_spec(self.machine, job.tools[0])
-        refuse_overlaps(self.machine, self.spec, bore_of(job))
-        self.part_frame: PartFrame = machine.part_frame.at(self.part_zero)
+        self.part_zero, self.part_frame, blank = lay_out(job, machine)
+        self.machine = machine
+        self.model = MachineModel(machine, job.tools[0], blank)
+        refuse_overlaps(self.model, bore_of(job))
         self.clock = StageClock()
         self.trace = Trace(machine.axes, self.part_frame, self.part_zero)
         self._planned_s = 0.0
@@ -257,7 +254,7 @@ class Run:
         elif watch.spindle_line and watch.first_feed:
             message = "the spindle turns, and the job has no [stock]: nothing that is cut is judged"
             yield Notice("no-stock", watch.spindle_line, message)
-        floats = what_carries(self.machine, self.spec)
+        floats = what_carries(self.model)
         if floats is not None:
             yield Notice("stock-floats", 0, f"nothing carries the stock: {floats}")
         yield from tolerance_notices(job.tolerance, len(self.preparation.source.lines))
@@ -327,7 +324,7 @@ class Run:
             if job.stock is None:
                 raise ConfigError("cutting_load needs a [stock] to cut")
             load = AxisLoad(job.stock, summary, self.part_frame, self.part_zero)
-        return simulate(machine, self.spec, setpoints, summary.tools, load, self._process)
+        return simulate(machine, self.model, setpoints, summary.tools, load, self._process)
 
     def _comparison(self) -> Comparison:
         return Comparison(
@@ -339,7 +336,7 @@ class Run:
 
     def _machining(self, dry_run: DryRun) -> Machining:
         return Machining(
-            self.preparation.machine,
+            self.model,
             self.preparation.job.file,
             dry_run.summary,
             self.part_frame,

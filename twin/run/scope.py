@@ -7,7 +7,8 @@ from typing import Any
 from twin.compare.figures import Figures
 from twin.compare.verdict import Check, Reason
 from twin.cutting.cut import CutResult
-from twin.job.job_file import Job, JobFile, ToleranceTable
+from twin.job.job_file import JobFile, ToleranceTable
+from twin.job.load import DEFAULT, Job
 from twin.machine.watching.alarms import Alarm
 from twin.run.dry_run import DryRun
 from twin.run.program_watch import ProgramWatch
@@ -175,7 +176,6 @@ def nothing_judged(
             yield Reason(key, message, 0, 0.0)
 
 
-DEFAULT = "default"
 _NO_FIGURE = "the run holds nothing that it could be held against"
 _WHY = {
     "circular_deviation_um": "the program has no arc of 90 degrees or more with the table at rest",

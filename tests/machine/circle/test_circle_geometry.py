@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from twin.machine.circle.circular_test import circular_test
-from twin.machine.description.config import read_machine
+from twin.machine.load import read_machine
 
 RADIUS = 100.0
 

@@ -7,7 +7,7 @@ from tests.machine.machine_fixtures import line, shipped_machine
 from twin.errors import ConfigError
 from twin.files.shipped import machine_file
 from twin.machine.circle.circular_test import circular_test
-from twin.machine.description.config import read_machine
+from twin.machine.load import read_machine
 from twin.machine.model.model import build_spec, drives, physics_model
 from twin.machine.simulation.simulate import simulate
 

@@ -11,8 +11,8 @@ from tests.machine.machine_fixtures import line
 from twin.errors import ConfigError, UsageError
 from twin.machine.check import check_machine
 from twin.machine.circle.circular_test import circular_test
-from twin.machine.description.config import read_machine
-from twin.machine.model.model import build_spec
+from twin.machine.load import read_machine
+from twin.machine.model.model import MachineModel, build_spec
 from twin.machine.simulation.simulate import simulate
 
 MODEL = """\
@@ -100,7 +100,7 @@ def test_it_is_read_and_every_axis_follows(tmp_path):
     assert machine.part_frame.rotary == 4
     for axis in range(6):
         points = line(axis, -20.0, 1.0, k=6)
-        (samples,) = simulate(machine, build_spec(machine), [points])
+        (samples,) = simulate(machine, MachineModel(machine), [points])
         lag = (samples.setpoint.position - samples.joint_position)[-1]
         assert lag[axis] == pytest.approx(-20.0 / (5000 / 60), rel=0.03)
         assert np.abs(np.delete(lag, axis)).max() < 1e-3

@@ -6,8 +6,8 @@ import pytest
 from tests.machine.machine_fixtures import circle
 from twin.errors import UsageError
 from twin.files.shipped import machine_file
-from twin.machine.description.config import read_machine
-from twin.machine.model.model import build_spec
+from twin.machine.load import read_machine
+from twin.machine.model.model import MachineModel, build_spec
 from twin.machine.simulation.simulate import simulate
 
 
@@ -69,8 +69,8 @@ def test_a_joint_that_counts_the_other_way_is_turned_round_by_its_direction(tmp_
     )
     points = circle(20.0, 3000.0, 1.0)
     shipped = read_machine(machine_file("mill4"))
-    (same,) = simulate(shipped, build_spec(shipped), [points])
-    (other,) = simulate(turned, build_spec(turned), [points])
+    (same,) = simulate(shipped, MachineModel(shipped), [points])
+    (other,) = simulate(turned, MachineModel(turned), [points])
     assert np.array_equal(same.joint_position, other.joint_position)
     assert np.array_equal(same.drive_force, other.drive_force)
 

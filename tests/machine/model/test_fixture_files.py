@@ -12,11 +12,13 @@ from tests.machine.watching.test_clearance import along
 from twin.errors import ConfigError
 from twin.files.shipped import machine_file
 from twin.job.fixture import FixtureTable
-from twin.job.job_file import ToolTable, read_job
-from twin.machine.description.config import Blank, Machine, read_machine
+from twin.job.job_file import ToolTable
+from twin.job.load import load_job
+from twin.machine.description.config import Blank, Machine
+from twin.machine.load import read_machine
 from twin.machine.model.clamping import TALLEST, refuse_overlaps, what_carries
 from twin.machine.model.convex_parts import MOST_PARTS, convex_parts
-from twin.machine.model.model import build_spec, clearance_model
+from twin.machine.model.model import MachineModel, build_spec, clearance_model
 from twin.machine.watching.clearance import Clearance
 from twin.render.machine_glb import drawn_machine
 
@@ -85,9 +87,12 @@ def test_a_table_needs_one_shape() -> None:
         FixtureTable(name="vise", file="vise.stl", size=(1.0, 1.0, 1.0))
 
 
-def mill(vise: FixtureTable, blank: Blank | None = None) -> Machine:
-    machine = read_machine(machine_file("mill4")).with_fixtures((vise,))
-    return machine if blank is None else machine.with_blank(blank)
+def mill(*fixtures: FixtureTable) -> Machine:
+    return read_machine(machine_file("mill4"), fixtures=fixtures)
+
+
+def clamped(blank: Blank | None, *fixtures: FixtureTable) -> MachineModel:
+    return MachineModel(mill(*fixtures), TOOL, blank)
 
 
 TOOL = ToolTable(number=1, diameter=10.0, length=60.0)
@@ -115,23 +120,21 @@ def test_a_tool_meets_it_within_a_twentieth(
 
 
 def test_stock_between_its_jaws_is_held_and_stock_in_them_is_refused(vise: FixtureTable) -> None:
-    between = mill(vise, Blank((59.8, 40.0, 20.0), (0.0, 0.0, 35.0), round=False))
-    spec = build_spec(between, TOOL)
-    refuse_overlaps(between, spec)
-    assert what_carries(between, spec) is None
-    within = mill(vise, Blank((60.2, 40.0, 20.0), (0.0, 0.0, 35.0), round=False))
+    between = clamped(Blank((59.8, 40.0, 20.0), (0.0, 0.0, 35.0), round=False), vise)
+    refuse_overlaps(between)
+    assert what_carries(between) is None
+    within = clamped(Blank((60.2, 40.0, 20.0), (0.0, 0.0, 35.0), round=False), vise)
     with pytest.raises(ConfigError, match=r"fixture 'vise' reaches 0\.10 mm into the stock"):
-        refuse_overlaps(within, build_spec(within, TOOL))
+        refuse_overlaps(within)
 
 
 def test_in_the_faceplate_or_in_another_fixture_it_is_refused(vise: FixtureTable) -> None:
-    low = mill(vise.model_copy(update={"position": (0.0, 0.0, -3.0)}))
+    low = clamped(None, vise.model_copy(update={"position": (0.0, 0.0, -3.0)}))
     with pytest.raises(ConfigError, match=r"fixture 'vise' reaches 3.00 mm into the"):
-        refuse_overlaps(low, build_spec(low, TOOL))
+        refuse_overlaps(low)
     block = FixtureTable(name="block", size=(30.0, 10.0, 50.0), position=(-60.0, 0.0, 0.0))
-    both = mill(vise).with_fixtures((block,))
     with pytest.raises(ConfigError, match=r"reaches 5.00 mm into the (vise|block)"):
-        refuse_overlaps(both, build_spec(both, TOOL))
+        refuse_overlaps(clamped(None, vise, block))
 
 
 def test_it_is_seen_in_film_and_page(vise: FixtureTable) -> None:
@@ -146,7 +149,7 @@ def test_its_path_is_relative_to_the_file_that_names_it(vise: FixtureTable, tmp_
     (tmp_path / "part.nc").write_text("G1 X1 F100\nM2\n")
     text = 'program = "part.nc"\n[[fixtures]]\nname = "vise"\nfile = "vise.stl"\n'
     (tmp_path / "part.toml").write_text(text)
-    (fixture,) = read_job(tmp_path / "part.toml").file.fixtures
+    (fixture,) = load_job(tmp_path / "part.toml").file.fixtures
     assert fixture.file == vise.file
     assert fixture.box == ((100.0, 60.0, 60.0), (0.0, 0.0, 30.0))
 
@@ -162,8 +165,5 @@ def test_its_path_is_relative_to_the_file_that_names_it(vise: FixtureTable, tmp_
 def test_stock_over_nothing_or_far_above_it_floats(
     center: tuple[float, float, float], why: str | None
 ) -> None:
-    machine = read_machine(machine_file("mill4")).with_blank(
-        Blank((40.0, 40.0, 20.0), center, round=False)
-    )
-    found = what_carries(machine, build_spec(machine, TOOL))
+    found = what_carries(clamped(Blank((40.0, 40.0, 20.0), center, round=False)))
     assert found == why or (why is not None and why in str(found))

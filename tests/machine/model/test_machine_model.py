@@ -8,7 +8,7 @@ import pytest
 from tests.machine.machine_fixtures import shipped_machine, write_machine
 from twin.errors import ConfigError
 from twin.files.shipped import machine_file, machine_names
-from twin.machine.description.config import read_machine
+from twin.machine.load import read_machine
 from twin.machine.model.model import (
     build_spec,
     compiled,

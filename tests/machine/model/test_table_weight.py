@@ -7,35 +7,33 @@ import numpy as np
 import pytest
 import trimesh
 
-from tests.machine.machine_fixtures import PERIOD, setpoints, shipped_machine
+from tests.machine.machine_fixtures import PERIOD, setpoints, shipped_machine, with_fixtures
 from twin.cutting.blank_weight import blank_weight
 from twin.job.fixture import FixtureTable
 from twin.job.job_file import JobFile, StockTable
-from twin.machine.description.config import Machine
-from twin.machine.model.model import build_spec, drives, moved, physics_model, spindle_over_table_mm
+from twin.machine.description.config import Blank, Machine
+from twin.machine.model.model import build_spec, drives, moved, physics_model
 from twin.machine.simulation.servo import Servo
-from twin.run.placement import part_zero, with_blank
+from twin.run.layout import lay_out
 
 DISC = StockTable(shape="cylinder", diameter=340.0, height=98.21564381, density=7.85)
 """70 kg; its inertia about its axis is m r²/2 = 1.01 kg m²."""
 
 
-def clamped(machine: Machine, stock: StockTable) -> Machine:
-    """A machine with a blank on its table."""
-    job = JobFile(program="part.nc", stock=stock)
-    over_table = spindle_over_table_mm(machine)
-    return with_blank(machine, job, part_zero(job, machine, over_table), over_table)
+def blank_of(machine: Machine, stock: StockTable) -> Blank | None:
+    """A stock as it lies on the table."""
+    return lay_out(JobFile(program="part.nc", stock=stock), machine).blank
 
 
-def felt(machine: Machine) -> dict[str, float]:
-    """What each motor feels, motor and screw included."""
-    model = physics_model(machine, build_spec(machine))
+def felt(machine: Machine, blank: Blank | None = None) -> dict[str, float]:
+    """What each motor moves, motor and screw included."""
+    model = physics_model(machine, build_spec(machine, blank=blank))
     return dict(zip(machine.axes.names, moved(machine, model), strict=True))
 
 
 def test_seventy_kilograms_on_the_table_are_moved_by_x_y_and_c_but_not_by_z() -> None:
     empty = shipped_machine()
-    before, after = felt(empty), felt(clamped(empty, DISC))
+    before, after = felt(empty), felt(empty, blank_of(empty, DISC))
     for axis in "XY":
         assert after[axis] - before[axis] == pytest.approx(70.0, rel=1e-5)
     assert after["C"] - before["C"] == pytest.approx(0.5 * 70.0 * 0.17**2, rel=1e-5)
@@ -48,7 +46,7 @@ def test_what_lies_beside_the_middle_turns_with_its_distance() -> None:
     empty = shipped_machine()
     jaw = FixtureTable(name="jaw", size=(100.0, 40.0, 50.0), position=(30.0, -120.0, 0.0), mass=4.0)
     pin = FixtureTable(name="pin", diameter=40.0, height=60.0, position=(0.0, 90.0, 0.0), mass=2.0)
-    before, after = felt(empty), felt(empty.with_fixtures((jaw, pin)))
+    before, after = felt(empty), felt(with_fixtures(empty, jaw, pin))
     own = 4.0 * (0.1**2 + 0.04**2) / 12.0 + 0.5 * 2.0 * 0.02**2
     steiner = 4.0 * (0.03**2 + 0.12**2) + 2.0 * 0.09**2
     assert after["C"] - before["C"] == pytest.approx(own + steiner, rel=1e-9)
@@ -57,26 +55,26 @@ def test_what_lies_beside_the_middle_turns_with_its_distance() -> None:
 
 def test_the_gains_are_those_of_the_empty_table() -> None:
     empty = shipped_machine()
-    loaded = clamped(empty, DISC)
-    models = [physics_model(machine, build_spec(machine)) for machine in (empty, loaded)]
-    assert drives(empty, models[0]) == drives(loaded, models[1])
+    specs = [build_spec(empty, blank=blank) for blank in (None, blank_of(empty, DISC))]
+    models = [physics_model(empty, spec) for spec in specs]
+    assert drives(empty, models[0]) == drives(empty, models[1])
 
 
 def test_a_heavier_table_lags_by_the_force_that_nobody_told_its_drive() -> None:
     """Told all of velocity and of the empty table's acceleration a, C trails by dJ a / (J w²)."""
-    empty = shipped_machine(velocity_feedforward=1.0, acceleration_feedforward=1.0)
-    loaded = clamped(empty, DISC)
+    machine = shipped_machine(velocity_feedforward=1.0, acceleration_feedforward=1.0)
+    disc = blank_of(machine, DISC)
     rate = 600.0  # deg/s²
     time = PERIOD * np.arange(301)
     position, velocity, acceleration = np.zeros((3, len(time), 4))
     position[:, 3], velocity[:, 3], acceleration[:, 3] = 0.5 * rate * time**2, rate * time, rate
     lag = []
-    for machine in (empty, loaded):
-        model = physics_model(machine, build_spec(machine))
+    for blank in (None, disc):
+        model = physics_model(machine, build_spec(machine, blank=blank))
         samples = Servo(machine, model).follow(setpoints(position, velocity, acceleration))
         lag.append(float(position[-1, 3] - samples.joint_position[-1, 3]))
-    frequency = drives(empty, model)[3].natural_frequency
-    share = felt(loaded)["C"] / felt(empty)["C"] - 1.0
+    frequency = drives(machine, model)[3].natural_frequency
+    share = felt(machine, disc)["C"] / felt(machine)["C"] - 1.0
     assert lag[0] == pytest.approx(0.0, abs=1e-5)
     assert lag[1] == pytest.approx(share * rate / frequency**2, rel=1e-3)
 

@@ -8,7 +8,7 @@ from tests.machine.machine_fixtures import PERIOD, circle, line, ramp_up, setpoi
 from twin.errors import ConfigError
 from twin.machine.description.config import Machine
 from twin.machine.model.drives import integral_name
-from twin.machine.model.model import build_spec, drives, physics_model
+from twin.machine.model.model import MachineModel, build_spec, drives, physics_model
 from twin.machine.model.transmission import give_stiffness
 from twin.machine.simulation.simulate import simulate
 from twin.motion.setpoints.setpoints import Setpoints
@@ -19,7 +19,7 @@ PERFECT = {"velocity_feedforward": 1.0, "acceleration_feedforward": 1.0}
 
 
 def run(machine: Machine, points: Setpoints) -> Samples:
-    (samples,) = simulate(machine, build_spec(machine), [points])
+    (samples,) = simulate(machine, MachineModel(machine), [points])
     return samples
 
 

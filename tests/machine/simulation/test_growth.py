@@ -12,7 +12,8 @@ from tests.machine.machine_fixtures import PERIOD, setpoints
 from twin.errors import ConfigError
 from twin.files.shipped import machine_file
 from twin.machine.circle.circular_test import circular_test
-from twin.machine.description.config import Machine, MachineFile, read_machine
+from twin.machine.description.config import Machine, MachineFile
+from twin.machine.load import read_machine
 from twin.machine.simulation.growth import Growth
 from twin.nc.canonical import FloatArray
 from twin.recording.reader import Samples, open_recording

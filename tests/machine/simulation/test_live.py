@@ -11,8 +11,9 @@ import twin.machine.simulation.live
 from tests.machine.machine_fixtures import PERIOD, circle, line, setpoints, shipped_machine
 from twin.errors import ConfigError
 from twin.files.shipped import machine_file, machine_names
-from twin.machine.description.config import FixtureTable, Machine, read_machine
-from twin.machine.model.model import build_spec, drives
+from twin.machine.description.config import FixtureTable, Machine
+from twin.machine.load import read_machine
+from twin.machine.model.model import MachineModel, build_spec, drives
 from twin.machine.model.tool_shape import DefaultTool
 from twin.machine.simulation.live import LiveMachine
 from twin.machine.simulation.simulate import simulate
@@ -48,7 +49,7 @@ def test_slices_move_bit_for_bit_as_one_run(name, size):
     machine = read_machine(machine_file(name))
     points = circle(10.0, 2000.0, 0.5)
     points.position[:, 2] -= 50.0
-    whole = positions(list(simulate(machine, build_spec(machine), [points])))
+    whole = positions(list(simulate(machine, MachineModel(machine), [points])))
     live = LiveMachine(machine, position=points.position[0])
     parts = [live.follow(points[i : i + size]) for i in range(1, len(points), size)]
     assert live.alarm is None

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from tests.machine.machine_fixtures import PERIOD, circle, line, setpoints, shipped_machine
 from twin.machine.description.config import Machine
-from twin.machine.model.model import build_spec, drives
+from twin.machine.model.model import MachineModel, build_spec, drives
 from twin.machine.simulation.sampling import held_acceleration, held_velocity, polyline_node
 from twin.machine.simulation.simulate import simulate
 from twin.motion.setpoints.setpoints import Setpoints
@@ -17,7 +17,7 @@ F3000, F10000 = 3000.0, 10000.0
 
 
 def run(machine: Machine, points: Setpoints) -> Samples:
-    simulation = simulate(machine, build_spec(machine), [points])
+    simulation = simulate(machine, MachineModel(machine), [points])
     (samples,) = simulation
     assert simulation.alarm is None
     return samples

@@ -7,8 +7,8 @@ import pytest
 from tests.machine.machine_fixtures import circle, line, shipped_machine
 from twin.columns import join
 from twin.files.shipped import machine_file
-from twin.machine.description.config import read_machine
-from twin.machine.model.model import build_spec, physics_model
+from twin.machine.load import read_machine
+from twin.machine.model.model import MachineModel, build_spec, physics_model
 from twin.machine.simulation.sampling import held_velocity, polyline_node
 from twin.machine.simulation.simulate import simulate
 from twin.machine.watching.alarms import SimulationError
@@ -20,7 +20,7 @@ def test_it_starts_at_rest_at_the_first_setpoint():
     machine = shipped_machine()
     points = circle(20.0, 3000.0, 0.1)
     points.position[:, 2] = -200.0
-    (samples,) = simulate(machine, build_spec(machine), [points])
+    (samples,) = simulate(machine, MachineModel(machine), [points])
     assert samples.joint_position[0] == pytest.approx(points.position[0])
     assert samples.joint_velocity[0] == pytest.approx(np.zeros(4))
     assert np.array_equal(samples.setpoint.time, points.time)
@@ -96,17 +96,17 @@ def test_rollout_equals_stepping_in_python_bit_for_bit():
 
 def test_neither_visuals_nor_fused_bodies_change_the_motion():
     machine = shipped_machine()
-    spec = build_spec(machine)
+    model = MachineModel(machine)
     points = circle(10.0, 6000.0, 0.3)
-    (lean,) = simulate(machine, spec, [points])
-    (full,) = simulate(machine, spec.compile(), [points])
+    (lean,) = simulate(machine, model, [points])
+    (full,) = simulate(machine, model.spec.compile(), [points])
     # Fused bodies add their masses in another order: the last bits differ.
     assert np.abs(lean.joint_position - full.joint_position).max() < 1e-12
 
 
 def test_a_run_does_not_ask_the_clock():
     machine = shipped_machine()
-    (_,) = simulate(machine, build_spec(machine), [line(0, 1.0, 0.1)])
+    (_,) = simulate(machine, MachineModel(machine), [line(0, 1.0, 0.1)])
     data = mujoco.MjData(build_spec(machine).compile())
     mujoco.mj_step(data.model, data)
     assert data.timer[mujoco.mjtTimer.mjTIMER_STEP].number == 1
@@ -116,14 +116,14 @@ def test_a_run_does_not_ask_the_clock():
 def test_the_machine_holds_still_at_home():
     machine = shipped_machine()
     points = line(0, 0.0, 2.0)
-    (samples,) = simulate(machine, build_spec(machine), [points])
+    (samples,) = simulate(machine, MachineModel(machine), [points])
     assert np.abs(samples.joint_position).max() < 1e-6
     assert np.abs(samples.drive_force).max() < 1e-3
 
 
 def test_the_force_on_a_line_is_what_accelerates_the_mass():
     machine = shipped_machine()
-    (samples,) = simulate(machine, build_spec(machine), [line(0, 200.0, 0.5)])
+    (samples,) = simulate(machine, MachineModel(machine), [line(0, 200.0, 0.5)])
     carried = 485.0 + 38.0
     reflected = (0.00096 + 0.0024) * (2 * np.pi / 0.016) ** 2
     acceleration = np.gradient(samples.joint_velocity[:, 0], 0.001) * MM
@@ -135,7 +135,7 @@ def test_the_force_on_a_line_is_what_accelerates_the_mass():
 def test_following_error_stops_the_run_and_keeps_the_samples():
     machine = shipped_machine(following_error_limit=0.5)
     points = line(0, 200.0, 0.6)
-    simulation = simulate(machine, build_spec(machine), [points[:100], points[100:]])
+    simulation = simulate(machine, MachineModel(machine), [points[:100], points[100:]])
     chunks = list(simulation)
     alarm = simulation.alarm
     assert alarm is not None
@@ -153,7 +153,7 @@ def test_a_setpoint_that_is_not_a_number_is_refused():
     points = line(0, 10.0, 0.1)
     points.position[50, 1] = np.nan
     with pytest.raises(SimulationError, match="not a finite number"):
-        list(simulate(machine, build_spec(machine), [points]))
+        list(simulate(machine, MachineModel(machine), [points]))
 
 
 def test_a_setpoint_beyond_all_reason_is_a_fault_and_no_result(
@@ -164,10 +164,10 @@ def test_a_setpoint_beyond_all_reason_is_a_fault_and_no_result(
     points = line(0, 10.0, 0.1)
     points.position[50, 0] = 1e30
     with pytest.raises(SimulationError, match="warned"):
-        list(simulate(machine, build_spec(machine), [points]))
+        list(simulate(machine, MachineModel(machine), [points]))
 
 
 def test_no_setpoints_give_no_samples():
     machine = shipped_machine()
     nothing: list[Setpoints] = []
-    assert list(simulate(machine, build_spec(machine), nothing)) == []
+    assert list(simulate(machine, MachineModel(machine), nothing)) == []

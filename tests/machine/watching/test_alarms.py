@@ -6,7 +6,7 @@ import pytest
 from tests.machine.machine_fixtures import PERIOD, line, ramp_up, setpoints, shipped_machine
 from twin.columns import join
 from twin.machine.description.config import FixtureTable, Machine, MachineFile
-from twin.machine.model.model import build_spec, clearance_model
+from twin.machine.model.model import MachineModel, build_spec, clearance_model
 from twin.machine.model.tool_shape import DefaultTool
 from twin.machine.simulation.simulate import simulate
 from twin.machine.watching.alarms import Alarm
@@ -45,7 +45,7 @@ def moves(*points: tuple[float, ...], speed: float = 100.0) -> Setpoints:
 
 
 def alarm_of(machine: Machine, points: Setpoints, tool=None) -> tuple[Alarm, Samples]:
-    simulation = simulate(machine, build_spec(machine, tool), [points])
+    simulation = simulate(machine, MachineModel(machine, tool), [points])
     *_, last = list(simulation)
     assert simulation.alarm is not None
     assert last.setpoint.time[-1] == simulation.alarm.time_s
@@ -77,14 +77,14 @@ def test_saturation_is_counted_over_the_border_of_chunks(size):
     points = line(1, 400.0, 1.0)
     whole, _ = alarm_of(machine, points)
     chunks = [points[first : first + size] for first in range(0, len(points), size)]
-    simulation = simulate(machine, build_spec(machine), chunks)
+    simulation = simulate(machine, MachineModel(machine), chunks)
     list(simulation)
     assert simulation.alarm == whole
 
 
 def test_a_moment_at_the_limit_is_no_alarm():
     machine = shipped_machine(force_limit=2000.0, saturation_time_s=10.0, following_error_limit=0.0)
-    simulation = simulate(machine, build_spec(machine), [line(1, 400.0, 0.8)])
+    simulation = simulate(machine, MachineModel(machine), [line(1, 400.0, 0.8)])
     (samples,) = simulation
     assert simulation.alarm is None
     assert np.abs(samples.drive_force).max() == 2000.0
@@ -105,7 +105,7 @@ def test_a_cutter_may_come_close_to_the_table_without_a_near_miss():
     machine = shipped_machine()
     tool = DefaultTool(length=80.0, flute=25.0)
     simulation = simulate(
-        machine, build_spec(machine, tool), [moves((0, 0, -300.0, 0), (0, 0, -539.95, 0))]
+        machine, MachineModel(machine, tool), [moves((0, 0, -300.0, 0), (0, 0, -539.95, 0))]
     )
     list(simulation)
     assert simulation.alarm is None
@@ -119,7 +119,7 @@ def test_the_holder_meets_a_fixture_that_turns_in_on_the_table():
     assert alarm.code == "collision"
     assert "vise jaw" in alarm.message
     assert -90.0 < last.joint_position[-1, 3] < -50.0
-    away = simulate(machine, build_spec(machine), [moves(there, (*there[:3], 30.0), speed=60.0)])
+    away = simulate(machine, MachineModel(machine), [moves(there, (*there[:3], 30.0), speed=60.0)])
     list(away)
     assert away.alarm is None
 
@@ -129,7 +129,7 @@ def test_a_near_miss_is_reported_with_its_distance():
     points = moves(
         (300.0, 0, -548.0, 0), (300.0, 0, -548.0, 0), (239.0, 0, -548.0, 0), (300.0, 0, -548.0, 0)
     )
-    simulation = simulate(machine, build_spec(machine), [points])
+    simulation = simulate(machine, MachineModel(machine), [points])
     list(simulation)
     assert simulation.alarm is None
     miss = simulation.near_miss
@@ -144,7 +144,7 @@ def test_chunks_do_not_change_when_a_collision_is_seen():
     points = moves((300.0, 0, -548.0, 0), (150.0, 0, -548.0, 0))
     whole, _ = alarm_of(machine, points)
     simulation = simulate(
-        machine, build_spec(machine), [points[i : i + 13] for i in range(0, len(points), 13)]
+        machine, MachineModel(machine), [points[i : i + 13] for i in range(0, len(points), 13)]
     )
     list(simulation)
     assert simulation.alarm == whole
@@ -157,7 +157,7 @@ def test_looks_are_few_and_yet_none_is_missed():
         (200, 150, -400, 0), (-100, 100, -500, 90), (-100, -150, -545, 0), (100, -100, -530, 45)
     )
     model = clearance_model(machine, build_spec(machine))
-    (samples,) = simulate(machine, build_spec(machine), [points])
+    (samples,) = simulate(machine, MachineModel(machine), [points])
     watched = Clearance(machine, model)
     told = np.flatnonzero(np.isfinite(watched._near)).tolist()
     every = [

@@ -11,7 +11,12 @@ import numpy as np
 import pytest
 from examples import examples
 
-from tests.machine.machine_fixtures import setpoints, shipped_machine, three_axis_machine
+from tests.machine.machine_fixtures import (
+    setpoints,
+    shipped_machine,
+    three_axis_machine,
+    with_fixtures,
+)
 from twin.job.fixture import FixtureTable
 from twin.job.job_file import ToolTable
 from twin.machine.description.config import Machine
@@ -51,7 +56,7 @@ STANDING = (
     "base",
     "column",
 )
-MACHINE = shipped_machine().with_fixtures(FIXTURES)
+MACHINE = with_fixtures(shipped_machine(), *FIXTURES)
 SPEC = build_spec(MACHINE, TOOL)
 
 
@@ -155,7 +160,7 @@ def test_the_end_of_a_cutter_has_its_shape(kind: str, gap: float) -> None:
 def test_between_two_samples_nothing_is_jumped_over() -> None:
     """A thin pin that two samples at 60 m/min step over, the flanks 0.1 mm into each other."""
     pin = FixtureTable(name="pin", diameter=0.4, height=50.0)
-    machine = shipped_machine().with_fixtures((pin,))
+    machine = with_fixtures(shipped_machine(), pin)
     thin = ToolTable(number=1, diameter=0.4, length=100.0, shank=0.4, holder=1.0)
     for gap, met in ((-0.1, True), (-0.05, True), (0.05, False)):
         clearance, _ = alone(build_spec(machine, thin), machine, "cutter", "pin")

@@ -11,9 +11,10 @@ from twin.errors import ConfigError
 from twin.files.shipped import machine_file
 from twin.job.fixture import FixtureTable
 from twin.job.job_file import ToolTable
-from twin.machine.description.config import Blank, Machine, read_machine
+from twin.machine.description.config import Blank, Machine
+from twin.machine.load import read_machine
 from twin.machine.model.clamping import refuse_overlaps
-from twin.machine.model.model import ROTARY_TABLE, build_spec, clearance_model
+from twin.machine.model.model import ROTARY_TABLE, MachineModel, clearance_model
 from twin.machine.model.tool_shape import COLLISION_GROUP, TOOL_SIDE
 from twin.machine.watching.clearance import Clearance
 from twin.units import MM
@@ -24,16 +25,19 @@ BY_HEIGHT_MAP = "stock"
 """What is on the tool's side is held against it as it is cut."""
 
 
-def clamped(name: str) -> Machine:
-    """A machine with a fixture and a stock on its work holding."""
-    arm = FixtureTable(name="arm", size=(20.0, 10.0, 10.0), position=(0.0, 45.0, 0.0))
-    blank = Blank((40.0, 40.0, 20.0), (0.0, 0.0, 40.0), round=False)
-    return read_machine(machine_file(name)).with_fixtures((arm,)).with_blank(blank)
+ARM = FixtureTable(name="arm", size=(20.0, 10.0, 10.0), position=(0.0, 45.0, 0.0))
+BLANK_IN_AIR = Blank((40.0, 40.0, 20.0), (0.0, 0.0, 40.0), round=False)
+
+
+def clamped(name: str, *fixtures: FixtureTable) -> MachineModel:
+    """A machine with a fixture and a stock on its work holding, and others."""
+    machine = read_machine(machine_file(name), fixtures=(ARM, *fixtures))
+    return MachineModel(machine, TOOL, BLANK_IN_AIR)
 
 
 def all_pairs(name: str) -> list[tuple[str, str, str]]:
     """Machine and names of every two solids of different bodies that may come to each other."""
-    model = clearance_model(clamped(name), build_spec(clamped(name), TOOL))
+    model = clamped(name).solids
     solids = [model.geom(i) for i in range(model.ngeom) if model.geom_group[i] == COLLISION_GROUP]
     return [
         (name, one.name, two.name)
@@ -58,9 +62,8 @@ PAIRS = [*all_pairs("mill4"), *all_pairs("mill4_light")]
 
 @pytest.fixture(scope="module")
 def machines() -> dict[str, tuple[Machine, mujoco.MjSpec]]:
-    return {
-        name: (clamped(name), build_spec(clamped(name), TOOL)) for name in ("mill4", "mill4_light")
-    }
+    models = {name: clamped(name) for name in ("mill4", "mill4_light")}
+    return {name: (model.machine, model.spec) for name, model in models.items()}
 
 
 def lone(
@@ -112,8 +115,7 @@ def _half_height(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> float
 def test_every_body_of_the_machine_is_in_the_matrix() -> None:
     named = {solid for _, one, two in PAIRS for solid in (one, two)}
     for name in ("mill4", "mill4_light"):
-        machine = clamped(name)
-        for geom in build_spec(machine, TOOL).geoms:
+        for geom in clamped(name).spec.geoms:
             assert geom.group != COLLISION_GROUP or geom.name in named, geom.name
 
 
@@ -129,13 +131,12 @@ def test_a_fixture_in_something_else_is_refused(
     position: tuple[float, float, float], into: str
 ) -> None:
     block = FixtureTable(name="block", size=(30.0, 30.0, 30.0), position=position)
-    machine = clamped("mill4").with_fixtures((block,))
     with pytest.raises(ConfigError, match=f"reaches .* mm into the {into}"):
-        refuse_overlaps(machine, build_spec(machine, TOOL))
+        refuse_overlaps(clamped("mill4", block))
 
 
 def test_a_jaw_that_touches_the_stock_is_none() -> None:
     jaw = FixtureTable(name="jaw", size=(40.0, 20.0, 45.0), position=(0.0, -30.0, 0.0))
-    machine = clamped("mill4").with_fixtures((jaw,))
-    refuse_overlaps(machine, build_spec(machine, TOOL))
-    assert ROTARY_TABLE in [body.name for body in build_spec(machine, TOOL).bodies]
+    model = clamped("mill4", jaw)
+    refuse_overlaps(model)
+    assert ROTARY_TABLE in [body.name for body in model.spec.bodies]

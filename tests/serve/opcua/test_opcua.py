@@ -14,7 +14,7 @@ from asyncua.common.events import get_filter_from_event_type
 
 from twin.errors import UsageError
 from twin.files.shipped import machine_file
-from twin.machine.description.config import read_machine
+from twin.machine.load import read_machine
 from twin.serve.agent import Agent
 from twin.serve.buffer import NORMAL, Condition
 from twin.serve.clock import Clock

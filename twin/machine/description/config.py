@@ -1,7 +1,6 @@
 """The machine file ``machine.toml``: axes, drives, feeds, as data."""
 
 import functools
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple
 
@@ -10,15 +9,11 @@ import pydantic
 from pydantic import Field
 
 from twin.errors import ConfigError
-from twin.files.overrides import Change, changed
-from twin.files.toml import Data, Table, checked, read_toml
-from twin.job.fixture import FixtureTable
-from twin.job.machine_functions import MachineFunctions
-from twin.job.tool_change import ToolChangeTable
-from twin.job.weight import Weight
+from twin.files.toml import Table, checked
+from twin.job.builder import MachineFunctions, ToolChangeTable
+from twin.job.fixture import FixtureTable, Weight
 from twin.kinematics import Kinematics
 from twin.machine.description.geometry import GeometryTable
-from twin.machine.description.variant import on_base
 from twin.nc.canonical import SPATIAL_AXES, Axes, FloatArray
 from twin.toolpath.part_frame import PartFrame
 from twin.units import AxisKind, to_si
@@ -329,21 +324,19 @@ class Blank(NamedTuple):
 
 
 class Machine:
-    """A machine file that was read, with what other rooms need of it.
+    """A machine file that was read, with what other packages need of it.
 
     Attributes:
         path: Where the machine file lies.
         file: Its checked content.
         axes: Names and kinds in the order of every column.
         part_frame: How the part turns under the tool.
-        blank: What is clamped on the table to be cut, if anything.
     """
 
-    def __init__(self, path: Path, file: MachineFile, blank: Blank | None = None) -> None:
+    def __init__(self, path: Path, file: MachineFile) -> None:
         fixtures = tuple(fixture.in_folder(path.parent) for fixture in file.fixtures)
         self.path = path
         self.file = file.model_copy(update={"fixtures": fixtures}) if fixtures else file
-        self.blank = blank
         self.axes = file.ordered_axes()
         turning = None if file.table is None else file.table.axis
         self.part_frame = PartFrame(
@@ -351,23 +344,6 @@ class Machine:
             center=(0.0, 0.0) if file.table is None else file.table.center,
             geometry=file.geometry.of(self.axes, turning),
         )
-
-    def with_fixtures(self, fixtures: tuple[FixtureTable, ...]) -> "Machine":
-        """This machine with more on its table.
-
-        Raises:
-            ConfigError: One has the name of another.
-        """
-        both = (*self.file.fixtures, *fixtures)
-        names = [fixture.name for fixture in both]
-        twice = sorted({name for name in names if names.count(name) > 1})
-        if twice:
-            raise ConfigError(f"fixture '{twice[0]}' is named twice")
-        return Machine(self.path, self.file.model_copy(update={"fixtures": both}), self.blank)
-
-    def with_blank(self, blank: Blank) -> "Machine":
-        """This machine with stock on its table."""
-        return Machine(self.path, self.file, blank)
 
     @property
     def model_path(self) -> Path:
@@ -411,24 +387,4 @@ class Machine:
             raise ConfigError(f"{self.file.name} has the axes {', '.join(self.axes.names)}")
         data = self.file.model_dump(by_alias=True)
         data["axes"][axis].update(fields)
-        return Machine(self.path, checked(data, MachineFile, self.file.name), self.blank)
-
-
-def read_machine(path: Path, changes: Sequence[Change] = ()) -> Machine:
-    """Read a machine file, over the one that its key ``base`` names, if any.
-
-    Args:
-        path: The file.
-        changes: Values under ``machine.`` to change.
-
-    Raises:
-        ConfigError: The file or the model that it names is missing or wrong.
-    """
-
-    def prepare(data: Data) -> Data:
-        return changed(on_base(data, path), "machine", changes)
-
-    machine = Machine(path, read_toml(path, MachineFile, prepare=prepare))
-    if not machine.model_path.is_file():
-        raise ConfigError(f"{path}: model '{machine.file.model}' does not exist")
-    return machine
+        return Machine(self.path, checked(data, MachineFile, self.file.name))

@@ -7,9 +7,8 @@ import mujoco
 import numpy as np
 
 from twin.errors import ConfigError
-from twin.machine.description.config import Machine
 from twin.machine.model.fixture_shape import fixture_of
-from twin.machine.model.model import BLANK, ROTARY_TABLE, clearance_model
+from twin.machine.model.model import BLANK, ROTARY_TABLE, MachineModel
 from twin.machine.model.tool_shape import COLLISION_GROUP
 from twin.machine.model.work_holding import PARALLELS, POST
 from twin.nc.canonical import FloatArray
@@ -20,21 +19,20 @@ TOUCHING = 0.01
 _FAR = 1.0
 
 
-def refuse_overlaps(machine: Machine, spec: mujoco.MjSpec, bore: float | None = None) -> None:
+def refuse_overlaps(clamped: MachineModel, bore: float | None = None) -> None:
     """Hold fixtures against each other, against the stock and against the table that they stand on.
 
     Args:
-        machine: The machine with all that is clamped on it.
-        spec: Its model.
+        clamped: The machine with all that is clamped on it.
         bore: Diameter of the stock's hole [mm], in which a fixture may stand; None: it has none.
 
     Raises:
         ConfigError: Two of them are in one place.
     """
-    fixtures = {fixture.name for fixture in machine.file.fixtures}
+    fixtures = {fixture.name for fixture in clamped.machine.file.fixtures}
     if not fixtures:
         return
-    model = clearance_model(machine, spec)
+    model = clamped.solids
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     table = int(model.body(ROTARY_TABLE).id)
@@ -87,24 +85,22 @@ def _corners(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> FloatArra
     return corners @ data.geom_xmat[geom].reshape(3, 3).T + data.geom_xpos[geom]
 
 
-def what_carries(machine: Machine, spec: mujoco.MjSpec) -> str | None:
+def what_carries(clamped: MachineModel) -> str | None:
     """Why nothing carries the stock, or None where something does, or where there is no stock.
 
     What is under the stock is taken to be packed with parallels or a post, as they are drawn, where there is something
     to stand them on no deeper than ``TALLEST``; a fixture that touches the stock holds it.
 
     Args:
-        machine: The machine with all that is clamped on it.
-        spec: Its model.
+        clamped: The machine with all that is clamped on it.
     """
-    blank = machine.blank
-    if blank is None:
+    if clamped.blank is None:
         return None
-    model = clearance_model(machine, spec)
+    model = clamped.solids
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     stock, table = int(model.geom(BLANK).id), int(model.body(ROTARY_TABLE).id)
-    fixtures = {fixture.name for fixture in machine.file.fixtures}
+    fixtures = {fixture.name for fixture in clamped.machine.file.fixtures}
     below = np.inf
     for geom in range(model.ngeom):
         name = fixture_of(model.geom(geom).name)

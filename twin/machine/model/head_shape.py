@@ -5,8 +5,7 @@ import dataclasses
 import mujoco
 import numpy as np
 
-from twin.machine.description.config import Machine
-from twin.machine.model.model import build_spec, clearance_model
+from twin.machine.model.model import MachineModel
 from twin.machine.model.tool_shape import (
     COLLISION_GROUP,
     TOOL_NAMES,
@@ -46,14 +45,9 @@ class HeadShape:
     A geom that is neither an upright cylinder nor an upright box counts as the box around it.
     """
 
-    def __init__(self, machine: Machine, model: mujoco.MjModel) -> None:
-        """Measure the model with all axes at zero.
-
-        Args:
-            machine: The machine file.
-            model: As ``clearance_model`` makes it; a tool in its spindle is passed over.
-        """
-        self._flange = machine.file.spindle.flange_diameter
+    def __init__(self, whole: MachineModel) -> None:
+        """Measure a machine with all axes at zero; the tool in its spindle is passed over."""
+        self._flange, model = whole.machine.file.spindle.flange_diameter, whole.solids
         data = mujoco.MjData(model)
         mujoco.mj_forward(model, data)
         nose = data.site("spindle_nose")
@@ -85,15 +79,6 @@ class HeadShape:
             dataclasses.replace(solid, above=solid.above + tool.length) for solid in self._solids
         )
         return (*flange, *raised)
-
-
-def head_shape(machine: Machine) -> HeadShape:
-    """The solids around a machine's spindle.
-
-    Raises:
-        ConfigError: The model is wrong.
-    """
-    return HeadShape(machine, clearance_model(machine, build_spec(machine)))
 
 
 def _solid(model: mujoco.MjModel, data: mujoco.MjData, geom: int, nose: FloatArray) -> HeadSolid:

@@ -1,10 +1,12 @@
 """The MuJoCo model of a machine: its MJCF file, its drives, the tool in its spindle."""
 
+from functools import cached_property
+
 import mujoco
 import numpy as np
 
 from twin.errors import ConfigError
-from twin.job.weight import Weight
+from twin.job.fixture import Weight
 from twin.machine.description.config import Blank, Machine
 from twin.machine.description.measured_mass import set_measured_masses
 from twin.machine.model.drive_actuators import add_drives
@@ -43,19 +45,82 @@ _TUNED_FOR = "moved at tuning"
 _JOINT_TYPES = {"linear": mujoco.mjtJoint.mjJNT_SLIDE, "rotary": mujoco.mjtJoint.mjJNT_HINGE}
 
 
-def build_spec(machine: Machine, tool: ToolShape | None = None) -> mujoco.MjSpec:
-    """Build the editable model: machine, lights, cameras, drives, tool.
+class MachineModel:
+    """A machine with what is clamped on its table and a tool in its spindle.
 
-    Args:
-        machine: The machine file.
-        tool: What the spindle holds; a 10 mm end mill by default.
+    Drives are tuned once, whatever tool comes. The compiled forms are made when they are first asked for: MuJoCo
+    steps a model without geoms in less time, and distances need those that may not meet.
+
+    Attributes:
+        machine: The machine.
+        blank: The uncut stock on its table.
+        tool: What the spindle holds.
+        spec: The editable model, which compiles.
+    """
+
+    def __init__(
+        self, machine: Machine, tool: ToolShape | None = None, blank: Blank | None = None
+    ) -> None:
+        """Build the model.
+
+        Args:
+            machine: The machine.
+            tool: What the spindle holds; a 10 mm end mill by default.
+            blank: The uncut stock on its table.
+
+        Raises:
+            ConfigError: The model cannot be read, or lacks what the machine file or the twin names.
+        """
+        self.machine, self.blank = machine, blank
+        self._without_tool = _without_tool(machine, blank)
+        self.tool: ToolShape = tool or DefaultTool(
+            holder=machine.file.spindle.flange_diameter / 2.0
+        )
+        self.spec = self._with_tool()
+
+    def with_tool(self, tool: ToolShape) -> "MachineModel":
+        """The same model with another tool in its spindle."""
+        other = object.__new__(MachineModel)
+        other.machine, other.blank = self.machine, self.blank
+        other._without_tool = self._without_tool
+        other.tool = tool
+        other.spec = other._with_tool()
+        return other
+
+    @cached_property
+    def physics(self) -> mujoco.MjModel:
+        """What moves, without geoms."""
+        return physics_model(self.machine, self.spec)
+
+    @cached_property
+    def solids(self) -> mujoco.MjModel:
+        """Only those geoms that may not meet."""
+        return clearance_model(self.machine, self.spec)
+
+    def _with_tool(self) -> mujoco.MjSpec:
+        spec = self._without_tool.copy()
+        try:
+            add_tool(spec, self.tool, self.machine.file.spindle.flange_diameter)
+        except ValueError as error:
+            raise _incomplete(self.machine, error) from error
+        return spec
+
+
+def build_spec(
+    machine: Machine, tool: ToolShape | None = None, blank: Blank | None = None
+) -> mujoco.MjSpec:
+    """The editable model of a ``MachineModel``: machine, lights, cameras, drives, tool.
 
     Returns:
-        A specification that compiles; other rooms may add to it, to ``rotary_table`` above all.
+        A specification that compiles; others may add to it, to ``rotary_table`` above all.
 
     Raises:
-        ConfigError: The model cannot be read, or lacks what the machine file or the rooms name.
+        ConfigError: As for ``MachineModel``.
     """
+    return MachineModel(machine, tool, blank).spec
+
+
+def _read(machine: Machine) -> mujoco.MjSpec:
     try:
         spec = mujoco.MjSpec.from_file(str(machine.model_path))
     except ValueError as error:
@@ -63,28 +128,37 @@ def build_spec(machine: Machine, tool: ToolShape | None = None) -> mujoco.MjSpec
     _require(machine, "site", SPINDLE_NOSE, [site.name for site in spec.sites])
     _require(machine, "site", TABLE_TOP, [site.name for site in spec.sites])
     _require(machine, "body", ROTARY_TABLE, [body.name for body in spec.bodies])
-    _require_mesh_files(spec, machine)
-    try:
-        _complete(spec, machine, tool)
-    except ValueError as error:
-        raise ConfigError(f"{machine.model_path}: cannot be completed: {error}") from error
     return spec
 
 
-def _complete(spec: mujoco.MjSpec, machine: Machine, tool: ToolShape | None) -> None:
+def _without_tool(machine: Machine, blank: Blank | None) -> mujoco.MjSpec:
+    """The model with an empty spindle."""
+    spec = _read(machine)
+    _require_mesh_files(spec, machine)
+    try:
+        _complete(spec, machine, blank)
+    except ValueError as error:
+        raise _incomplete(machine, error) from error
+    return spec
+
+
+def _incomplete(machine: Machine, error: ValueError) -> ConfigError:
+    return ConfigError(f"{machine.model_path}: cannot be completed: {error}")
+
+
+def _complete(spec: mujoco.MjSpec, machine: Machine, blank: Blank | None) -> None:
     add_materials(spec)
     _set_clock(spec, machine)
     _set_inertia(spec, machine)
     _require_actuators(spec, machine)
+    # Gains follow from what MuJoCo's inertia matrix says of the empty machine, which is why it is compiled here.
     empty = drives(machine, compiled(_without(spec, VISUAL_GROUP), machine))
     add_drives(spec, machine, empty)
     spec.add_numeric(name=_TUNED_FOR, data=[drive.moved for drive in empty])
     _hold_against_clamped(spec)
     _add_fixtures(spec, machine)
-    if machine.blank is not None:
-        _add_blank(spec, machine.blank)
-    flange = machine.file.spindle.flange_diameter
-    add_tool(spec, tool or DefaultTool(holder=flange / 2.0), flange)
+    if blank is not None:
+        _add_blank(spec, blank)
 
 
 def _require(machine: Machine, what: str, name: str, known: list[str]) -> None:
@@ -304,9 +378,46 @@ def _without(spec: mujoco.MjSpec, *groups: int) -> mujoco.MjSpec:
 
 
 def spindle_over_table_mm(machine: Machine) -> float:
-    """Height of the spindle nose over the work-holding surface with all axes at zero [mm]."""
-    model = physics_model(machine, build_spec(machine))
-    data = mujoco.MjData(model)
-    mujoco.mj_forward(model, data)
-    nose, table = data.site(SPINDLE_NOSE).xpos, data.site(TABLE_TOP).xpos
-    return float((nose[2] - table[2]) / MM)
+    """Height of the spindle nose over the work-holding surface with all axes at zero [mm].
+
+    Forward kinematics of the MJCF file, without compiling it.
+
+    Raises:
+        ConfigError: The model cannot be read, or lacks one of both.
+    """
+    return height_between(_read(machine), TABLE_TOP, SPINDLE_NOSE) / MM
+
+
+def height_between(spec: mujoco.MjSpec, low: str, high: str) -> float:
+    """How much higher one site lies than another with all joints at rest [m]."""
+    return float(_place(spec, spec.site(high))[2] - _place(spec, spec.site(low))[2])
+
+
+def _place(spec: mujoco.MjSpec, site: mujoco.MjsSite) -> FloatArray:
+    """Where a site is in the world with all joints at rest, shape (3,) [m]."""
+    origin, turn = _pose_of_parent(spec, site)
+    return origin + _turned(turn, site.pos)
+
+
+def _pose_of_parent(
+    spec: mujoco.MjSpec, element: "mujoco.MjsSite | mujoco.MjsBody | mujoco.MjsFrame"
+) -> tuple[FloatArray, FloatArray]:
+    """Position [m] and quaternion of the frame or body that an element is placed in."""
+    around = element.frame or element.parent
+    if around is None or around == spec.worldbody:
+        return np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0])
+    origin, turn = _pose_of_parent(spec, around)
+    own = np.array(around.quat)
+    if around.alt.type != mujoco.mjtOrientation.mjORIENTATION_QUAT:
+        compiler = spec.compiler
+        own = np.array(spec.resolve_orientation(compiler.degree, compiler.eulerseq, around.alt))
+    mujoco.mju_normalize4(own)
+    both = np.zeros(4)
+    mujoco.mju_mulQuat(both, turn, own)
+    return origin + _turned(turn, around.pos), both
+
+
+def _turned(turn: FloatArray, vector: FloatArray) -> FloatArray:
+    found = np.zeros(3)
+    mujoco.mju_rotVecQuat(found, vector, turn)
+    return found

@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 
 from twin.errors import ConfigError
-from twin.machine.description.config import Machine
+from twin.machine.description.config import Blank, Machine
 from twin.machine.model.head_shape import HeadShape
-from twin.machine.model.model import build_spec, clearance_model, physics_model
+from twin.machine.model.model import MachineModel
 from twin.machine.model.tool_shape import ToolShape
 from twin.machine.simulation.process import Process
 from twin.machine.simulation.servo import Servo
@@ -35,7 +35,7 @@ class LiveMachine:
     axis may then be driven off its limit switch, and a holder out of the vise, but not further in.
 
     Example:
-        >>> from twin.machine.description.config import read_machine
+        >>> from twin.machine.load import read_machine
         >>> from twin.files.shipped import machine_file
         >>> live = LiveMachine(read_machine(machine_file("mill4")))
         >>> samples = live.hold(100)
@@ -54,7 +54,11 @@ class LiveMachine:
     """
 
     def __init__(
-        self, machine: Machine, tool: ToolShape | None = None, position: FloatArray | None = None
+        self,
+        machine: Machine,
+        tool: ToolShape | None = None,
+        position: FloatArray | None = None,
+        blank: Blank | None = None,
     ) -> None:
         """Switch a machine on.
 
@@ -63,6 +67,7 @@ class LiveMachine:
             tool: What the spindle holds; a 10 mm end mill by default.
             position: Where the axes stand, machine coordinates, shape (k,) [mm or deg]; at zero by
                 default.
+            blank: The uncut stock on its table.
 
         Raises:
             ConfigError: The model is wrong.
@@ -70,11 +75,11 @@ class LiveMachine:
         self.machine = machine
         self.alarm: Alarm | None = None
         self._sound = machine
-        spec = build_spec(machine, tool)
-        solids = clearance_model(machine, spec)
-        self._clearance = Clearance(machine, solids)
-        self.head = HeadShape(machine, solids)
-        self._servo = Servo(machine, physics_model(machine, spec))
+        self._blank = blank
+        model = MachineModel(machine, tool, blank)
+        self._clearance = Clearance(machine, model.solids)
+        self.head = HeadShape(model)
+        self._servo = Servo(machine, model.physics)
         self._watch = Watch(machine)
         stand = np.zeros(len(machine.axes)) if position is None else np.asarray(position, float)
         self._stand = self._servo.follow(_standing(stand))
@@ -237,11 +242,11 @@ class LiveMachine:
 
     def mount(self, tool: ToolShape) -> None:
         """Put another tool into the spindle, as far as collisions are concerned."""
-        spec = build_spec(self.machine, tool)
-        self._clearance = Clearance(self.machine, clearance_model(self.machine, spec))
+        model = MachineModel(self.machine, tool, self._blank)
+        self._clearance = Clearance(self.machine, model.solids)
 
     def _rebuild(self, machine: Machine) -> None:
-        servo = Servo(machine, physics_model(machine, build_spec(machine)))
+        servo = Servo(machine, MachineModel(machine, None, self._blank).physics)
         servo.take_over(self._servo)
         self.machine, self._servo = machine, servo
         self._watch = Watch(machine)

@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 
 from twin.machine.description.config import Machine
-from twin.machine.model.model import clearance_model, physics_model
+from twin.machine.model.model import MachineModel
 from twin.machine.model.tool_shape import ToolSchedule
 from twin.machine.simulation.process import Process
 from twin.machine.simulation.servo import Servo
@@ -91,7 +91,7 @@ class Simulation:
 
 def simulate(
     machine: Machine,
-    model: mujoco.MjModel | mujoco.MjSpec,
+    model: MachineModel | mujoco.MjModel,
     setpoints: Iterable[Setpoints],
     tools: ToolSchedule | None = None,
     load: Load | None = None,
@@ -104,10 +104,10 @@ def simulate(
 
     Args:
         machine: The machine file.
-        model: What ``build_spec`` made: the run then also watches for collisions. Or a model
-            compiled from it, of which the motion alone is simulated.
+        model: Its model: the run then also watches for collisions. Or what that compiles to, of which the
+            motion alone is simulated.
         setpoints: Chunks of setpoints at the servo period, machine coordinates [mm or deg].
-        tools: Which tool is in the spindle during which move; by default that of the specification.
+        tools: Which tool is in the spindle during which move; by default that of the model.
         load: Called with every chunk in turn: what pushes the axes from outside during the period
             that ends with each setpoint, shape (n, k) [N or N m]; None: nothing.
         process: What the tool does, which pushes the axes while they move; instead of ``load``.
@@ -116,13 +116,9 @@ def simulate(
         The run: iterate it for the samples, then ask its ``alarm``.
 
     Raises:
-        ConfigError: The specification does not compile.
+        ConfigError: The model does not compile.
     """
     if isinstance(model, mujoco.MjModel):
         return Simulation(machine, model, None, setpoints, load, process)
-    clearance = (
-        Clearance(machine, clearance_model(machine, model))
-        if tools is None
-        else ToolClearances(machine, tools)
-    )
-    return Simulation(machine, physics_model(machine, model), clearance, setpoints, load, process)
+    clearance = Clearance(machine, model.solids) if tools is None else ToolClearances(model, tools)
+    return Simulation(machine, model.physics, clearance, setpoints, load, process)

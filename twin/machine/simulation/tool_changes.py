@@ -2,8 +2,7 @@
 
 import dataclasses
 
-from twin.machine.description.config import Machine
-from twin.machine.model.model import build_spec, clearance_model
+from twin.machine.model.model import MachineModel
 from twin.machine.model.tool_shape import ToolSchedule, ToolShape, tool_cylinders
 from twin.machine.watching.alarms import Alarm, NearMiss
 from twin.machine.watching.clearance import Clearance
@@ -18,8 +17,14 @@ REMEDY = (
 class ToolClearances:
     """Watches a run with tool changes; each tool's clearance is built when it first comes."""
 
-    def __init__(self, machine: Machine, tools: ToolSchedule) -> None:
-        self._machine = machine
+    def __init__(self, model: MachineModel, tools: ToolSchedule) -> None:
+        """Begin before the program.
+
+        Args:
+            model: The machine with a tool in its spindle.
+            tools: Which tool is in the spindle during which move.
+        """
+        self._first = model
         self._tools = tools
         self._built: dict[object, Clearance] = {}
         self._current: Clearance | None = None
@@ -73,10 +78,14 @@ class ToolClearances:
 
     def _of(self, tool: ToolShape) -> Clearance:
         """Tools of one shape share their clearance, at whatever speed they turn."""
-        flange = self._machine.file.spindle.flange_diameter
-        end = tool.kind, tool.diameter, tool.corner, tool.point_angle, tool.tip, tool.shank
-        shape = (*tool_cylinders(tool, flange), end)
+        shape = self._shape(tool)
         if shape not in self._built:
-            spec = build_spec(self._machine, tool)
-            self._built[shape] = Clearance(self._machine, clearance_model(self._machine, spec))
+            first = shape == self._shape(self._first.tool)
+            model = self._first if first else self._first.with_tool(tool)
+            self._built[shape] = Clearance(model.machine, model.solids)
         return self._built[shape]
+
+    def _shape(self, tool: ToolShape) -> object:
+        """All of a tool that a collision depends on."""
+        end = tool.kind, tool.diameter, tool.corner, tool.point_angle, tool.tip, tool.shank
+        return (*tool_cylinders(tool, self._first.machine.file.spindle.flange_diameter), end)

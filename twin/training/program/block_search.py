@@ -3,7 +3,6 @@
 import dataclasses
 import math
 
-from twin.forks import forked
 from twin.nc.canonical import Chunk, FloatArray, Function
 from twin.nc.control.control import Control
 from twin.nc.functions import (
@@ -30,10 +29,6 @@ class BlockSearch:
         self.line = line
         self._functions: dict[str, Function] = {}
         self._clearance = -math.inf
-
-    def fork(self) -> "BlockSearch":
-        """An independent copy; functions are immutable."""
-        return forked(self, _functions=self._functions.copy())
 
     def end(self) -> None:
         """The block has been found."""

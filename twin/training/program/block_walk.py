@@ -12,7 +12,7 @@ import itertools
 from collections import deque
 from typing import Self
 
-from twin.copies import Divided
+from twin.copies import Forkable
 from twin.nc.canonical import Dwell, Event, Function
 
 FORGOTTEN_AT_ONCE = 256
@@ -39,7 +39,7 @@ class ModalState:
     per_minute: float | None = 1.0
 
 
-class BlockWalk(Divided):
+class BlockWalk(Forkable):
     """What single block knows of a part.
 
     Attributes:
@@ -58,8 +58,8 @@ class BlockWalk(Divided):
         self._of_event = 0
         self._stepping = False
 
-    def divided(self) -> Self:
-        """Another walk through the same blocks."""
+    def fork(self) -> Self:
+        """An independent copy; blocks and events are immutable."""
         other = copy.copy(self)
         for name, value in vars(self).items():
             setattr(other, name, copy.copy(value))

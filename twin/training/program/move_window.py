@@ -2,7 +2,6 @@
 
 import bisect
 
-from twin.forks import forked
 from twin.nc.canonical import FloatArray, Motion, Moves
 
 MOVES_KEPT_BEHIND = 2
@@ -20,10 +19,6 @@ class MoveWindow:
         self.count = 0
         self._moves: list[Moves] = []
         self._firsts: list[int] = []
-
-    def fork(self) -> "MoveWindow":
-        """An independent copy; moves are immutable."""
-        return forked(self, _moves=self._moves.copy(), _firsts=self._firsts.copy())
 
     def add(self, moves: Moves) -> None:
         """Moves that come next."""

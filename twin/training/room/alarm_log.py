@@ -3,7 +3,6 @@
 import dataclasses
 from collections import deque
 
-from twin.forks import forked
 from twin.training.room.inspection import Moment, moment_of
 from twin.training.room.observed import Notice, Observed, block_number
 
@@ -30,15 +29,6 @@ class AlarmLog:
         self.history: deque[Notice] = deque(maxlen=ALARMS_KEPT)
         self.moments: deque[Moment] = deque(maxlen=MOMENTS_KEPT)
         self.broken: dict[int, Notice] = {}
-
-    def fork(self) -> "AlarmLog":
-        """An independent copy; notices and moments are immutable."""
-        return forked(
-            self,
-            history=self.history.copy(),
-            moments=self.moments.copy(),
-            broken=self.broken.copy(),
-        )
 
     def begin_with(self, code: str) -> Notice:
         """The last shift has left the machine with an alarm."""

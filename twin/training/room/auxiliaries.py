@@ -1,6 +1,5 @@
 """Spindle and coolant, which a program's auxiliary functions switch as well as the operator."""
 
-import copy
 import dataclasses
 
 from twin.nc.canonical import Function
@@ -20,10 +19,6 @@ class Auxiliaries:
         self.spindle = spindle
         self.running_down = False
         self.coolant = False
-
-    def fork(self) -> "Auxiliaries":
-        """An independent copy: all that it holds is immutable."""
-        return copy.copy(self)
 
     def turn(self, state: SpindleState) -> None:
         """Change what the spindle is told."""

@@ -3,7 +3,6 @@
 from typing import Any
 
 from twin.errors import ConfigError
-from twin.forks import forked
 from twin.machine.description.config import AxisTable
 from twin.training.room.observed import Notice, Observed
 from twin.training.scene.fault_table import FaultTable
@@ -18,10 +17,6 @@ class Faults:
 
     def __init__(self) -> None:
         self.active: list[FaultTable] = []
-
-    def fork(self) -> "Faults":
-        """An independent copy."""
-        return forked(self, active=self.active.copy())
 
     def inject(self, room: Observed, fault: FaultTable) -> None:
         """Break something.

@@ -6,7 +6,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twin.forks import forked
 from twin.machine.description.config import Machine
 from twin.nc.canonical import FloatArray
 from twin.training.program.program_run import ProgramRun
@@ -40,10 +39,6 @@ class ManualMotion:
 
     def __init__(self) -> None:
         self.moves: deque[JogMove] = deque()
-
-    def fork(self) -> "ManualMotion":
-        """An independent copy."""
-        return forked(self, moves=self.moves.copy())
 
     @property
     def wheel_move(self) -> JogMove | None:

@@ -65,7 +65,3 @@ class Panel:
     def enter(self, text: str) -> None:
         """Type a block into the MDI line."""
         self.entered = text
-
-    def fork(self) -> "Panel":
-        """An independent copy."""
-        return dataclasses.replace(self)

@@ -1,6 +1,5 @@
 """The program in the control's memory, which the operator edits."""
 
-import copy
 from collections.abc import Iterable
 
 from twin.errors import UsageError
@@ -27,10 +26,6 @@ class ProgramMemory:
         self.lines = tuple(source.lines)
         self.edits: tuple[tuple[str, ...], ...] = ()
         self.searched = 0
-
-    def fork(self) -> "ProgramMemory":
-        """An independent copy: all that it holds is immutable."""
-        return copy.copy(self)
 
     def edit(self, line: int, text: str | None) -> None:
         """Replace a line by several, by one, or by none (None); the line behind the last one is added.

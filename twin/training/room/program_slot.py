@@ -5,7 +5,6 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from twin.errors import UsageError
-from twin.forks import forked
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray, Function
 from twin.training.program.block_walk import ModalState
@@ -196,7 +195,3 @@ class ProgramSlot:
 
     def _empty(self) -> None:
         self.run, self.running, self.waiting = None, "", False
-
-    def fork(self) -> "ProgramSlot":
-        """An independent copy."""
-        return forked(self, label=self.label.copy())

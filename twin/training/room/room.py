@@ -8,7 +8,6 @@ import dataclasses
 from collections.abc import Iterable
 
 from twin.errors import TwinError, UsageError
-from twin.machine.model.model import spindle_over_table_mm
 from twin.machine.simulation.live import LiveMachine, moving
 from twin.machine.watching.alarms import Alarm, AlarmCode, AlarmStandsError
 from twin.nc.canonical import FloatArray
@@ -17,7 +16,7 @@ from twin.nc.iso.base import jog_block
 from twin.nc.text.diagnostics import ProgramError
 from twin.nc.text.source import Source, source_from_text
 from twin.recording.reader import Samples
-from twin.run.placement import part_zero, start_position, with_blank
+from twin.run.layout import lay_out, start_position
 from twin.training.program.program_run import ProgramRun
 from twin.training.program.run_options import RunOptions
 from twin.training.room.alarm_log import AlarmLog
@@ -347,10 +346,8 @@ def _switched_on(scene: Scene) -> tuple[LiveMachine, Tables]:
     """The machine of a scene where its axes begin, and the tables of its control."""
     preparation, start = scene.preparation, scene.file.start
     machine, job = preparation.machine, preparation.job.file
-    over_table = spindle_over_table_mm(machine)
-    zero = part_zero(job, machine, over_table)
+    zero, _, blank = lay_out(job, machine)
     stand = start_position(job, machine) + zero
     for axis, value in start.position.items():
         stand[machine.axes.index(axis)] = value
-    loaded = with_blank(machine, job, zero, over_table)
-    return LiveMachine(loaded, job.tools[0], stand), scene_tables(scene, zero)
+    return LiveMachine(machine, job.tools[0], stand, blank), scene_tables(scene, zero)

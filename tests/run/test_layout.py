@@ -4,9 +4,10 @@ import pytest
 from twin.errors import ConfigError
 from twin.files.shipped import machine_file
 from twin.job.job_file import JobFile, StockTable, ToolTable
-from twin.machine.description.config import Machine, read_machine
+from twin.machine.description.config import Machine
+from twin.machine.load import read_machine
 from twin.machine.model.model import spindle_over_table_mm
-from twin.run.placement import WORK_HOLDING_HEIGHT, part_zero, start_position
+from twin.run.layout import WORK_HOLDING_HEIGHT, lay_out, start_position
 
 
 @pytest.fixture(scope="module")
@@ -28,39 +29,37 @@ def test_the_default_zero_lies_on_the_stock_that_stands_on_its_jaws(
     machine: Machine, clearance: float, top: float
 ):
     tool = ToolTable(number=1, length=80.0)
-    zero = part_zero(
-        JobFile(program="a", stock=stock(30.0, top), tools=(tool,)), machine, clearance
-    )
+    zero = lay_out(JobFile(program="a", stock=stock(30.0, top), tools=(tool,)), machine).part_zero
     tip_over_table = clearance + zero[2] - tool.length
     assert tip_over_table + top - 30.0 == pytest.approx(WORK_HOLDING_HEIGHT)
     assert tuple(zero[:2]) == machine.part_frame.center
 
 
-def test_without_stock_there_is_room_both_ways(machine: Machine, clearance: float):
-    zero = part_zero(JobFile(program="a"), machine, clearance)
+def test_without_stock_there_is_room_both_ways(machine: Machine):
+    zero = lay_out(JobFile(program="a"), machine).part_zero
     travel = machine.axis("Z").travel
     assert travel is not None
     assert zero[2] == pytest.approx(sum(travel) / 2)
 
 
-def test_a_given_zero_is_taken_at_its_word(machine: Machine, clearance: float):
+def test_a_given_zero_is_taken_at_its_word(machine: Machine):
     job = JobFile(program="a", part_zero={"X": 12.5, "Z": -200.0, "C": 30.0})
-    np.testing.assert_array_equal(part_zero(job, machine, clearance), [12.5, 0.0, -200.0, 30.0])
+    np.testing.assert_array_equal(lay_out(job, machine).part_zero, [12.5, 0.0, -200.0, 30.0])
 
 
-def test_axes_that_the_machine_lacks_are_refused(machine: Machine, clearance: float):
+def test_axes_that_the_machine_lacks_are_refused(machine: Machine):
     with pytest.raises(ConfigError, match=r"part_zero\.A.*X, Y, Z, C"):
-        part_zero(JobFile(program="a", part_zero={"A": 1.0}), machine, clearance)
+        lay_out(JobFile(program="a", part_zero={"A": 1.0}), machine)
     with pytest.raises(ConfigError, match=r"start\.W"):
         start_position(JobFile(program="a", start={"W": 1.0}), machine)
 
 
 def test_a_stock_below_the_table_is_refused_with_the_height_that_fits(
-    machine: Machine, clearance: float
+    machine: Machine,
 ):
     low = JobFile(program="a", part_zero={"Z": -540.0}, stock=stock(200.0))
     with pytest.raises(ConfigError, match=r"raise part_zero\.Z to") as caught:
-        part_zero(low, machine, clearance)
+        lay_out(low, machine)
     lifted = float(str(caught.value).split("part_zero.Z to ")[1].split(" ")[0])
     fitting = JobFile(program="a", part_zero={"Z": lifted + 1e-3}, stock=stock(200.0))
-    assert part_zero(fitting, machine, clearance)[2] == pytest.approx(lifted + 1e-3)
+    assert lay_out(fitting, machine).part_zero[2] == pytest.approx(lifted + 1e-3)

@@ -1,6 +1,7 @@
-"""Where program zero lies in the machine, and whether the stock fits there."""
+"""Where a job lies on its machine: program zero, the blank on the table, the part's frame."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -8,66 +9,61 @@ from twin.cutting.blank_weight import blank_weight
 from twin.errors import ConfigError
 from twin.job.job_file import JobFile
 from twin.machine.description.config import Blank, Machine
+from twin.machine.model.model import spindle_over_table_mm
 from twin.nc.canonical import FloatArray
+from twin.toolpath.part_frame import PartFrame
 
 WORK_HOLDING_HEIGHT = 40.0
 """Height of the jaws or parallels between the rotary table and the stock [mm]."""
 
 
-def part_zero(job: JobFile, machine: Machine, spindle_over_table: float) -> FloatArray:
-    """Machine coordinates of program zero.
+class Layout(NamedTuple):
+    """A job on its machine.
 
-    An axis that the job's ``part_zero`` names is taken at its word. Otherwise program zero lies on
+    Attributes:
+        part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
+        part_frame: How the part turns under the tool.
+        blank: The uncut stock on the table; None without one.
+    """
+
+    part_zero: FloatArray
+    part_frame: PartFrame
+    blank: Blank | None
+
+
+def lay_out(job: JobFile, machine: Machine) -> Layout:
+    """Lay a job out on its machine.
+
+    An axis that the job's ``part_zero`` names is where that says. Otherwise program zero lies on
     the table's centre line, at the height of the top face of the stock on its work holding;
     without a stock in the middle of the Z travel.
 
-    Args:
-        job: The job file.
-        machine: The machine.
-        spindle_over_table: Height of the spindle nose over the table at machine Z 0 [mm].
-
-    Returns:
-        Shape (k,) [mm or deg].
-
     Raises:
-        ConfigError: An axis does not exist, or the stock would lie below the table.
+        ConfigError: An axis does not exist, the stock would lie below the table, or its material is not
+            known.
     """
+    over_table = spindle_over_table_mm(machine)
     zero = np.zeros(len(machine.axes))
     zero[:2] = machine.part_frame.center
-    zero[2] = _default_height(job, machine, spindle_over_table)
+    zero[2] = _default_height(job, machine, over_table)
     _write_axes(zero, job.part_zero, machine, "part_zero")
-    _require_stock_above_table(job, float(zero[2]), spindle_over_table)
-    return zero
+    _require_stock_above_table(job, float(zero[2]), over_table)
+    return Layout(zero, machine.part_frame.at(zero), _blank(job, machine, zero, over_table))
 
 
-def with_blank(
-    machine: Machine, job: JobFile, zero: FloatArray, spindle_over_table: float
-) -> Machine:
-    """The machine with the job's stock on its table.
-
-    Args:
-        machine: The machine.
-        job: The job file.
-        zero: Machine coordinates of program zero, shape (k,) [mm or deg].
-        spindle_over_table: As in ``part_zero``.
-
-    Raises:
-        ConfigError: The stock's material is not known.
-    """
+def _blank(job: JobFile, machine: Machine, zero: FloatArray, over_table: float) -> Blank | None:
     if job.stock is None:
-        return machine
+        return None
     size = job.stock.extent
     x, y, z = np.array(job.stock.position) + zero[:3] - np.array([*machine.part_frame.center, 0.0])
-    top = z + spindle_over_table - job.tools[0].length
+    top = z + over_table - job.tools[0].length
     weight = blank_weight(job.stock)
-    return machine.with_blank(
-        Blank(
-            size,
-            (float(x), float(y), float(top) - size[2] / 2.0),
-            round=job.stock.shape in ("cylinder", "tube"),
-            weight=None if weight is None else weight.moved((float(x), float(y), float(top))),
-            on_post=job.stock.shape != "box",
-        )
+    return Blank(
+        size,
+        (float(x), float(y), float(top) - size[2] / 2.0),
+        round=job.stock.shape in ("cylinder", "tube"),
+        weight=None if weight is None else weight.moved((float(x), float(y), float(top))),
+        on_post=job.stock.shape != "box",
     )
 
 
@@ -100,19 +96,19 @@ def _write_axes(row: FloatArray, values: dict[str, float], machine: Machine, key
         row[machine.axes.index(name)] = value
 
 
-def _default_height(job: JobFile, machine: Machine, spindle_over_table: float) -> float:
+def _default_height(job: JobFile, machine: Machine, over_table: float) -> float:
     if job.stock is not None:
         top = WORK_HOLDING_HEIGHT + job.stock.extent[2] - job.stock.position[2]
-        return top + job.tools[0].length - spindle_over_table
+        return top + job.tools[0].length - over_table
     travel = machine.axis("Z").travel
     return 0.0 if travel is None else (travel[0] + travel[1]) / 2.0
 
 
-def _require_stock_above_table(job: JobFile, zero_z: float, spindle_over_table: float) -> None:
+def _require_stock_above_table(job: JobFile, zero_z: float, over_table: float) -> None:
     if job.stock is None:
         return
-    program_zero_over_table = spindle_over_table + zero_z - job.tools[0].length
-    bottom = program_zero_over_table + job.stock.position[2] - job.stock.extent[2]
+    zero_over_table = over_table + zero_z - job.tools[0].length
+    bottom = zero_over_table + job.stock.position[2] - job.stock.extent[2]
     if bottom < 0.0:
         raise ConfigError(
             f"the stock would reach {-bottom:.3f} mm below the table: raise part_zero.Z "

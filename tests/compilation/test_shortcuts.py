@@ -1,10 +1,14 @@
-"""Numba's options are compared as Numba compares them."""
+"""What is done shortly is done as Numba does it."""
 
+import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from numba.core.compiler import Flags
 
-from twin.compilation.flags import compare_at_once
+from twin.compilation.kernel import array_kernel
+from twin.compilation.shortcuts import take_shortcuts
+from twin.nc.canonical import FloatArray
 
 NAMES = ("nrt", "boundscheck", "forceinline", "release_gil", "no_compile")
 
@@ -16,7 +20,7 @@ def flags_of(values: dict[str, bool]) -> Flags:
     return flags
 
 
-compare_at_once()
+take_shortcuts()
 some_values = st.dictionaries(st.sampled_from(NAMES), st.booleans())
 
 
@@ -29,3 +33,17 @@ def test_options_are_equal_where_all_their_values_are(
     if first == second:
         assert hash(first) == hash(second)
     assert first != one
+
+
+@array_kernel
+def assign_rows(target: FloatArray, source: FloatArray) -> None:
+    target[1:] = source
+
+
+@pytest.mark.seconds("a kernel is compiled")
+def test_an_array_that_does_not_fit_its_slice_is_an_error() -> None:
+    target = np.zeros((3, 2))
+    assign_rows(target, np.ones((2, 2)))
+    assert target.sum() == 4.0
+    with pytest.raises(ValueError, match="cannot assign slice from input of different size"):
+        assign_rows(target, np.ones((3, 2)))

@@ -1,4 +1,4 @@
-"""M codes of the machine's builder: what a job or a machine file says of them."""
+"""What the machine's builder adds to a control: M codes and the tool change, in a job or a machine file."""
 
 from typing import Annotated, Any, Literal
 
@@ -28,3 +28,11 @@ MachineFunctions = dict[
     Annotated[MachineFunctionTable, BeforeValidator(_from_meaning)],
 ]
 """By M code: ``M10 = "clamp the table"`` or ``M22 = { meaning = "change the pallet", dwell = 4.0 }``."""
+
+
+class ToolChangeTable(Table):
+    """The tool change."""
+
+    height: float | None = None
+    """Z that the control, or the builder's macro behind M6, rises to by itself before the tool changes, machine
+    coordinates [mm]; none: a Haas rises to machine zero, other controls change the tool where it stands."""
