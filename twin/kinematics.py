@@ -46,18 +46,18 @@ class Kinematics(NamedTuple):
     table_axes: _Floats
 
 
-def tool_point(chain: Kinematics, joints: _Floats, length: float = 0.0) -> _Floats:
+def tool_point(chain: Kinematics, joints: _Floats, length: float | _Floats = 0.0) -> _Floats:
     """Where a point on the axis of the tool is, seen from the part.
 
     Args:
         chain: The machine.
         joints: Machine coordinates of all axes, shape (n, k) [mm or deg].
-        length: From the spindle nose to the point [mm].
+        length: From the spindle nose to the point, one or shape (n,) [mm].
 
     Returns:
         Shape (n, 3) [mm].
     """
-    points = np.tile(-length * chain.tool, (len(joints), 1))
+    points = np.broadcast_to(length, len(joints))[:, None] * -chain.tool
     for joint in range(len(chain.column)):
         value = joints[:, chain.column[joint], None]
         if chain.rotary[joint]:
@@ -93,6 +93,29 @@ def rotated(chain: Kinematics, vectors: _Floats, joints: _Floats, after: int = -
     return vectors
 
 
+def with_rotary_at_rest(
+    chain: Kinematics, joints: _Floats, length: float | _Floats = 0.0
+) -> tuple[_Floats, _Floats]:
+    """Where X, Y and Z carry the tip of a tool while the rotary axes stand still.
+
+    Args:
+        chain: The machine.
+        joints: Where the rotary axes stand, shape (n, k) [deg]; X, Y and Z are not looked at.
+        length: From the spindle nose to the tip, one or shape (n,) [mm].
+
+    Returns:
+        The tip with X, Y and Z at zero, shape (n, 3) [mm], and what a millimetre of each moves it by, as
+        columns, shape (n, 3, 3).
+    """
+    still = joints.copy()
+    still[:, :3] = 0.0
+    steps = np.zeros((len(joints), 3, 3))
+    for joint in np.flatnonzero(~chain.rotary & (chain.column < 3)).tolist():
+        along = np.tile(chain.axis[joint], (len(joints), 1))
+        steps[:, :, chain.column[joint]] = rotated(chain, along, joints, after=joint)
+    return tool_point(chain, still, length), steps
+
+
 def linear_axes(chain: Kinematics, points: _Floats, joints: _Floats, length: float) -> _Floats:
     """Machine coordinates that bring the tip of a tool to points of the part.
 
@@ -108,17 +131,55 @@ def linear_axes(chain: Kinematics, points: _Floats, joints: _Floats, length: flo
     Raises:
         ValueError: With the rotary axes there X, Y and Z do not span space.
     """
-    solved = joints.copy()
-    solved[:, :3] = 0.0
-    missing = points - tool_point(chain, solved, length)
-    steps = np.zeros((len(joints), 3, 3))
-    for joint in np.flatnonzero(~chain.rotary & (chain.column < 3)).tolist():
-        along = np.tile(chain.axis[joint], (len(joints), 1))
-        steps[:, :, chain.column[joint]] = rotated(chain, along, joints, after=joint)
+    at_zero, steps = with_rotary_at_rest(chain, joints, length)
     if np.any(np.abs(np.linalg.det(steps)) < _SINGULAR):
         raise ValueError("with the rotary axes there X, Y and Z do not reach every point")
-    solved[:, :3] = np.linalg.solve(steps, missing[:, :, None])[:, :, 0]
+    solved = joints.copy()
+    solved[:, :3] = np.linalg.solve(steps, (points - at_zero)[:, :, None])[:, :, 0]
     return solved
+
+
+def counted_from(chain: Kinematics, zero: _Floats, length: float) -> Kinematics:
+    """The chain of a part that was measured with a tool while the rotary axes stood at a part zero.
+
+    Its frame is that of the machine while the axes that turn the part stand there: their joints are told
+    where they lie then, and their coordinates count from there. Its origin is the tip of the tool with X, Y
+    and Z at zero.
+
+    Args:
+        chain: The machine.
+        zero: Coordinates of the axes that turn the part, shape (k,) [deg]; others are not looked at.
+        length: From the spindle nose to the tip of the tool [mm].
+    """
+    axis, anchor, axes = chain.axis.copy(), chain.anchor.copy(), chain.table_axes.T
+    table = chain.table[None]
+    for joint in reversed(np.flatnonzero(turns_part(chain)).tolist()):
+        back = np.array([[-zero[chain.column[joint]]]])
+        about, through, later = chain.axis[joint], chain.anchor[joint], slice(joint + 1, None)
+        axis[later] = turned(axis[later], about, back)
+        anchor[later] = turned(anchor[later] - through, about, back) + through
+        table = turned(table - through, about, back) + through
+        axes = turned(axes, about, back)
+    up = length * chain.tool
+    anchor[chain.rotary] += up
+    return chain._replace(axis=axis, anchor=anchor, table=table[0] + up, table_axes=axes.T)
+
+
+def turns_part(chain: Kinematics) -> npt.NDArray[np.bool_]:
+    """Which joints turn the part, shape (m,)."""
+    return chain.rotary & ~chain.on_tool
+
+
+def is_turntable(chain: Kinematics) -> bool:
+    """Whether X, Y and Z carry tool and part, and at most one table turns the part about Z."""
+    if not chain.rotary.any():
+        return True
+    return bool(
+        chain.rotary[-1]
+        and chain.rotary.sum() == 1
+        and not chain.on_tool[-1]
+        and np.array_equal(chain.axis[-1], (0.0, 0.0, 1.0))
+    )
 
 
 def turned(vectors: _Floats, axis: _Floats, angle: _Floats) -> _Floats:

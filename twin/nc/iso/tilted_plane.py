@@ -1,0 +1,62 @@
+"""Tilted planes: a frame turned in space, and rotary axes that set the tool across it.
+
+Decision: where the tool stands across the plane, the rotary axes rest; moves count in the plane, the length of
+the tool acts along it, and whatever solution of the angles was taken, the cut is the same.
+"""
+
+from twin.nc.control.control import Control
+from twin.nc.geometry.arcs import direction
+from twin.nc.geometry.matrices import Matrix, applied
+from twin.nc.geometry.planes import Vector
+from twin.nc.iso.tool_center import begin_tool_center, end_tool_center
+from twin.nc.path.tool_center import ToolCenter
+
+_Z: Vector = (0.0, 0.0, 1.0)
+
+
+def about(axis: int, angle: float) -> Matrix:
+    """A turn about X, Y or Z, 0 to 2 [deg]."""
+    cosine, sine = direction(angle)
+    rows = [[0.0, 0.0, 0.0] for _ in range(3)]
+    first, second = (axis + 1) % 3, (axis + 2) % 3
+    rows[axis][axis] = 1.0
+    rows[first][first] = rows[second][second] = cosine
+    rows[first][second], rows[second][first] = -sine, sine
+    (a, b, c), (d, e, f), (g, h, i) = rows
+    return ((a, b, c), (d, e, f), (g, h, i))
+
+
+def point_tool(control: Control, name: str, *, moves: bool = True) -> None:
+    """Turn the rotary axes until the tool stands across the plane of the frame, then count in it.
+
+    Args:
+        control: The control.
+        name: What the program calls it, for diagnostics.
+        moves: False: the program turns the axes itself, and has done it.
+
+    Raises:
+        ProgramError: The machine cannot, or radius compensation is in force.
+    """
+    end_tool_center(control, name, keeps_length=True)
+    setup = control.settings.setup
+    if setup is not None and moves:
+        center = ToolCenter(setup, 0.0, control.frame.zero())
+        across = applied(control.frame.matrix, _Z)
+        try:
+            there = center.pointing(across, control.motion.part)
+        except ValueError as error:
+            control.fail("tilted-plane", f"{name}: {error}")
+        target = list(control.motion.programmed)
+        total = control.frame.total
+        target[3:] = [part - shift for part, shift in zip(there[3:], total[3:], strict=True)]
+        control.line_to(target, rapid=True)
+        control.path.flush()
+    begin_tool_center(control, name, tilted=True)
+
+
+def machine_directions(control: Control) -> Matrix:
+    """The directions of the machine's X, Y and Z as the part, whose tip is led, sees them; as columns."""
+    center = control.path.tool_center
+    assert center is not None
+    (a, b, c), (d, e, f), (g, h, i) = center.frame_there(control.motion.part).tolist()
+    return ((a, b, c), (d, e, f), (g, h, i))
