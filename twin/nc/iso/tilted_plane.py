@@ -4,6 +4,8 @@ Decision: where the tool stands across the plane, the rotary axes rest; moves co
 the tool acts along it, and whatever solution of the angles was taken, the cut is the same.
 """
 
+import math
+
 from twin.nc.control.control import Control
 from twin.nc.geometry.arcs import direction
 from twin.nc.geometry.matrices import Matrix, applied
@@ -12,6 +14,8 @@ from twin.nc.iso.tool_center import begin_tool_center, end_tool_center
 from twin.nc.path.tool_center import ToolCenter
 
 _Z: Vector = (0.0, 0.0, 1.0)
+_ACROSS = 1e-4
+"""How far a tool that stands across a plane may lean, by what posts round angles to [rad]."""
 
 
 def about(axis: int, angle: float) -> Matrix:
@@ -26,32 +30,51 @@ def about(axis: int, angle: float) -> Matrix:
     return ((a, b, c), (d, e, f), (g, h, i))
 
 
-def point_tool(control: Control, name: str, *, moves: bool = True) -> None:
+def point_tool(control: Control, name: str, *, sense: float = 0.0) -> None:
     """Turn the rotary axes until the tool stands across the plane of the frame, then count in it.
 
     Args:
         control: The control.
         name: What the program calls it, for diagnostics.
-        moves: False: the program turns the axes itself, and has done it.
+        sense: Sign of the axis next to the tool that is preferred; 0: whatever is nearest.
 
     Raises:
         ProgramError: The machine cannot, or radius compensation is in force.
     """
     end_tool_center(control, name, keeps_length=True)
-    setup = control.settings.setup
-    if setup is not None and moves:
-        center = ToolCenter(setup, 0.0, control.frame.zero())
-        across = applied(control.frame.matrix, _Z)
-        try:
-            there = center.pointing(across, control.motion.part)
-        except ValueError as error:
-            control.fail("tilted-plane", f"{name}: {error}")
-        target = list(control.motion.programmed)
-        total = control.frame.total
-        target[3:] = [part - shift for part, shift in zip(there[3:], total[3:], strict=True)]
-        control.line_to(target, rapid=True)
-        control.path.flush()
+    target = list(control.motion.programmed)
+    target[3:] = rotary_axes_across(control, name, sense=sense)[3:]
+    control.line_to(target, rapid=True)
     begin_tool_center(control, name, tilted=True)
+
+
+def rotary_axes_across(control: Control, name: str, *, sense: float = 0.0) -> list[float]:
+    """Programmed position at which the tool stands across the plane of the frame, the tip not being led.
+
+    Raises:
+        ProgramError: The machine cannot.
+    """
+    setup = control.settings.setup
+    if setup is None:
+        message = f"{name} needs rotary axes, and no axis of this machine turns"
+        control.fail("tilted-plane", message)
+    center = ToolCenter(setup, 0.0, control.frame.zero())
+    across = applied(control.frame.matrix, _Z)
+    try:
+        there = center.pointing(across, control.motion.part, sense)
+    except ValueError as error:
+        control.fail("tilted-plane", f"{name}: {error}")
+    return [part - shift for part, shift in zip(there, control.frame.total, strict=True)]
+
+
+def stands_across(control: Control) -> bool:
+    """Whether the tool, whose tip is not led, stands across the plane of the frame."""
+    setup = control.settings.setup
+    if setup is None:
+        return control.frame.matrix[2] == _Z
+    center = ToolCenter(setup, 0.0, control.frame.zero())
+    across = applied(control.frame.matrix, _Z)
+    return math.dist(center.direction(control.motion.part), across) < _ACROSS
 
 
 def machine_directions(control: Control) -> Matrix:

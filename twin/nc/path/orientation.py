@@ -16,7 +16,11 @@ _SAME_ANGLE = 1e-7
 
 
 def rotary_axes_for(
-    chain: Kinematics, direction: FloatArray, here: FloatArray, travel: FloatArray
+    chain: Kinematics,
+    direction: FloatArray,
+    here: FloatArray,
+    travel: FloatArray,
+    sense: float = 0.0,
 ) -> FloatArray:
     """Where the rotary axes point the tool in a direction.
 
@@ -29,6 +33,8 @@ def rotary_axes_for(
         direction: From the tip to the spindle, seen from the part, unit vector, shape (3,).
         here: Where the axes are, as the chain counts them, shape (k,) [mm or deg].
         travel: Of each axis, as the chain counts them, shape (k, 2) [mm or deg]; of endless axes infinite.
+
+        sense: Sign of the axis next to the tool that is preferred; 0: none is.
 
     Returns:
         ``here`` with the rotary axes put in, shape (k,).
@@ -49,8 +55,9 @@ def rotary_axes_for(
         )
     first = int(chain.column[joints[0]])
 
-    def cost(row: FloatArray) -> tuple[float, float]:
-        return (round(float(np.abs(row - here).sum()) / _SAME_ANGLE), -float(row[first]))
+    def cost(row: FloatArray) -> tuple[bool, float, float]:
+        way = round(float(np.abs(row - here).sum()) / _SAME_ANGLE)
+        return (float(row[first]) * sense < -_SAME_ANGLE, way, -float(row[first]))
 
     return min(found, key=cost)
 

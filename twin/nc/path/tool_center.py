@@ -105,8 +105,13 @@ class ToolCenter:
         """Which way the tool points from its tip to the spindle, seen from the part, shape (3,)."""
         return tool_direction(self._chain, np.array([axes]) + self._counted_zero)[0]
 
-    def pointing(self, direction: Vector, axes: list[float]) -> list[float]:
+    def pointing(self, direction: Vector, axes: list[float], sense: float = 0.0) -> list[float]:
         """Where the rotary axes point the tool in a direction of the part, the others as they are, shape (k,).
+
+        Args:
+            direction: The direction.
+            axes: Where the axes are.
+            sense: Sign of the axis next to the tool that is preferred; 0: whatever is nearest.
 
         Raises:
             ValueError: None do, within their travel (``orientation``).
@@ -114,7 +119,8 @@ class ToolCenter:
         offset = self._counted_zero
         travel = self._setup.travel - (self._zero - offset)[:, None]
         here = np.array(axes) + offset
-        return (rotary_axes_for(self._chain, np.array(direction), here, travel) - offset).tolist()
+        found = rotary_axes_for(self._chain, np.array(direction), here, travel, sense)
+        return (found - offset).tolist()
 
     def axes(self, tip: list[float]) -> list[float]:
         """Where the axes bring the tip to a place; the inverse of ``tip``.

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from twin.nc.control.control import Control
 from twin.nc.control.settings import ToolData
 from twin.nc.dialects.heidenhain.cycle_values import Parameters
+from twin.nc.geometry.matrices import Matrix
 from twin.nc.geometry.planes import Plane, Vector
 
 Cycle = Callable[[Control, Parameters], None]
@@ -81,6 +82,7 @@ class KlartextMemory:
     mirrored: Vector = (1.0, 1.0, 1.0)
     rotation: float = 0.0
     scale: float = 1.0
+    tilt: Matrix | None = None
     order: list[str] = dataclasses.field(default_factory=list)
     shortest: bool = False
 
@@ -92,6 +94,6 @@ def memory_of(control: Control) -> KlartextMemory:
 
 
 def acts_on_lines(control: Control) -> bool:
-    """A cycle behind every move, or the shorter way of rotary axes."""
+    """A cycle behind every move, the shorter way of rotary axes, or a tilted plane."""
     memory = memory_of(control)
-    return memory.calls_always or memory.shortest
+    return memory.calls_always or memory.shortest or memory.tilt is not None
