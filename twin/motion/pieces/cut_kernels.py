@@ -84,7 +84,8 @@ def cut_blocks(
     for piece in range(used):
         i = owner[piece]
         if is_curve(bend, i):
-            _add_curve(bend[i], offset[piece] / length[i], 1.0 / length[i], rounding[piece])
+            scale = 1.0 / float(length[i])
+            _add_curve(bend[i], offset[piece] * scale, scale, rounding[piece])
     return owner, offset, extent, rounding
 
 
