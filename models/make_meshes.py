@@ -317,6 +317,83 @@ def mill4() -> dict[str, dict[str, list[Mesh]]]:
     }
 
 
+def along_x(meshes: list[Mesh], x: float, z: float) -> list[Mesh]:
+    """Bodies of revolution about z laid along x, their origin moved to a place over the middle of the table."""
+    place = trimesh.transformations.translation_matrix([x, 0.0, z])
+    turn = trimesh.transformations.rotation_matrix(math.pi / 2, [0, 1, 0])
+    return [mesh.apply_transform(place @ turn) for mesh in meshes]
+
+
+def mill4a() -> dict[str, dict[str, list[Mesh]]]:
+    """What ``mill4a`` has besides the parts of ``mill4``: rotary table along x and tailstock."""
+    axis, face = 1.06, -0.15
+    table = {
+        "rotary": [
+            casting((-0.38, -0.21), (-0.14, 0.14), (0.90, 0.94), 0.02, 0.006),
+            casting((-0.37, -0.215), (-0.13, 0.13), (0.93, 1.19), 0.05, 0.012),
+            *along_x([lathe([(0, 0), (0.115, 0), (0.115, 0.02), (0.108, 0.026), (0, 0.026)], sections=64)], -0.218, axis),
+            casting((0.30, 0.42), (-0.07, 0.07), (0.90, 0.935), 0.015, 0.005),
+            casting((0.315, 0.41), (-0.055, 0.055), (0.93, 1.12), 0.03, 0.010),
+            rod(0.030, (0.262, 0, axis), (0.32, 0, axis), 40, 0.004),
+        ],
+        "accent": [
+            rod(0.062, (-0.295, 0.13, axis), (-0.295, 0.29, axis), 40, 0.008),
+            rod(0.045, (0.41, 0, axis), (0.425, 0, axis), 32, 0.003),
+        ],
+        "steel": [
+            *screws([(x, sy * 0.12, 0.94) for x in (-0.36, -0.23) for sy in (-1, 1)] + [(0.36, sy * 0.06, 0.935) for sy in (-1, 1)], 0.010, 0.01),
+            rod(0.007, (0.425, -0.03, axis), (0.47, -0.03, axis), 16, 0.002),
+        ],
+    }  # fmt: skip
+    rotary = {
+        "ground": along_x(slotted_disc(0.10, 0.025, (-0.027, 0.0), 4, 0.012), face, axis),
+        "steel": [
+            *along_x([lathe([(0, -0.042), (0.097, -0.042), (0.1, -0.039), (0.1, -0.024), (0.030, -0.024), (0.030, -0.002), (0, -0.002)], sections=64)], face, axis),
+            rod(0.016, (0.232, 0, axis), (0.262, 0, axis), 40, 0.002),
+            *along_x([lathe([(0, -0.032), (0.012, 0.0), (0.012, 0.012), (0, 0.012)], sections=40)], 0.222, axis),
+        ],
+        "mark": [box((face - 0.038, face - 0.004), (-0.003, 0.003), (axis + 0.0965, axis + 0.1015), 0.0005)],
+    }  # fmt: skip
+    return {"table": table, "rotary_table": rotary}
+
+
+def mill5() -> dict[str, dict[str, list[Mesh]]]:
+    """What ``mill5`` has besides the parts of ``mill4``: trunnion, cradle and rotary table."""
+    axis, top = 1.10, 1.075
+    table = {
+        "rotary": [
+            casting((-0.37, -0.21), (-0.12, 0.12), (0.90, 0.935), 0.02, 0.006),
+            loft(ring((-0.36, -0.22), (-0.11, 0.11), 0.93, 0.03), ring((-0.36, -0.22), (-0.085, 0.085), 1.14, 0.05), ring((-0.35, -0.23), (-0.06, 0.06), 1.175, 0.04)),
+            casting((0.215, 0.32), (-0.10, 0.10), (0.90, 0.935), 0.02, 0.006),
+            loft(ring((0.22, 0.31), (-0.09, 0.09), 0.93, 0.03), ring((0.22, 0.31), (-0.075, 0.075), 1.14, 0.03), ring((0.23, 0.30), (-0.05, 0.05), 1.165, 0.03)),
+        ],
+        "accent": [
+            rod(0.055, (-0.50, 0, axis), (-0.36, 0, axis), 40, 0.008),
+            rod(0.060, (0.31, 0, axis), (0.322, 0, axis), 40, 0.004),
+        ],
+        "steel": screws([(x, sy * 0.105, 0.935) for x in (-0.34, -0.24) for sy in (-1, 1)] + [(0.268, sy * 0.09, 0.935) for sy in (-1, 1)], 0.010, 0.01),
+    }  # fmt: skip
+    arm = [(-0.07, 1.03), (0.07, 1.03), (0.07, 1.10), (0.045, 1.14), (-0.045, 1.14), (-0.07, 1.10)]
+    cradle = {
+        "cast": [
+            *(hull([(x, y, z) for x in (s * 0.14, s * 0.20) for y, z in arm]) for s in (-1, 1)),
+            *(hull([(s * 0.14, y, z) for y in (-0.085, 0.085) for z in (0.97, 1.012)] + [(s * 0.20, y, z) for y in (-0.07, 0.07) for z in (1.0, 1.05)]) for s in (-1, 1)),
+            casting((-0.145, 0.145), (-0.09, 0.09), (0.97, 1.012), 0.03, 0.006),
+        ],
+        "dark": [*(rod(0.05, (s * 0.199, 0, axis), (s * 0.222, 0, axis), 48, 0.003) for s in (-1, 1))],
+        "steel": [lathe([(0, 1.008), (0.098, 1.008), (0.098, 1.040), (0.094, 1.044), (0, 1.044)], sections=64)],
+    }  # fmt: skip
+    rotary = {
+        "ground": [
+            *slotted_disc(0.105, 0.03, (1.052, top), 6, 0.012),
+            lathe([(0.0125, 1.052), (0.0285, 1.052), (0.0285, top), (0.0125, top), (0.0125, 1.052)], sections=40),
+        ],
+        "steel": [lathe([(0, 1.045), (0.102, 1.045), (0.105, 1.047), (0.105, 1.055), (0, 1.055)], sections=64)],
+        "mark": [box((0.1025, 0.1062), (-0.0025, 0.0025), (1.048, top - 0.003), 0.0004)],
+    }  # fmt: skip
+    return {"table": table, "cradle": cradle, "rotary_table": rotary}
+
+
 def mill4_light() -> dict[str, dict[str, list[Mesh]]]:
     """Parts of ``mill4_light`` by body and material: a router on a bench, the tool moves over the bed."""
     table_top, nose, gantry_y = 0.18, 0.35, 0.14
@@ -432,13 +509,15 @@ ORIGINS = {
         "base": (0, 0, 0), "saddle": (0, 0, 0.625), "table": (0, 0, 0.8),
         "rotary_table": (0, 0, 1.085), "head": (0, 0.6, 2.09), "spindle": (0, 0, 1.705),
     },
+    "mill4a": {"table": (0, 0, 0.8), "rotary_table": (-0.15, 0, 1.06)},
+    "mill5": {"table": (0, 0, 0.8), "cradle": (0, 0, 1.1), "rotary_table": (0, 0, 1.075)},
     "mill4_light": {
         "base": (0, 0, 0), "rotary_table": (0, 0, 0.18), "gantry": (0, 0.14, 0.46),
         "carriage": (0, 0.096, 0.52), "head": (0, 0.05, 0.46), "spindle": (0, 0, 0.35),
     },
 }  # fmt: skip
 """Frames of the bodies, as in the MJCF file."""
-MACHINES = {"mill4": mill4, "mill4_light": mill4_light}
+MACHINES = {"mill4": mill4, "mill4a": mill4a, "mill5": mill5, "mill4_light": mill4_light}
 
 
 def main(names: list[str]) -> None:

@@ -31,6 +31,7 @@ KINDS = frozenset(
 """Markers of what ``scripts/test`` leaves to ``scripts/test --all``."""
 _NEED = {
     "api/test_feed_environment.py": "gymnasium",
+    "cutting/tridexel/test_mesh_booleans.py": "manifold3d",
     "compare/report/test_report_page.py": "playwright",
     "fmu/test_unit_file.py": "fmpy",
     "motion/profile/test_time_optimality.py": "toppra",

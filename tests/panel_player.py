@@ -90,12 +90,14 @@ class Played:
         expected: Those that must fail by the scene's own word.
         score: Points reached.
         full: What all tasks are worth.
+        alarms: Messages of those that came.
     """
 
     failed: tuple[int, ...]
     expected: tuple[int, ...]
     score: int
     full: int
+    alarms: tuple[str, ...]
 
     @property
     def intended(self) -> bool:
@@ -113,6 +115,7 @@ def play(opened: "Browser", name: str, what: What, out: Path | None = None) -> P
         player = Player(room, open_page(room, context))
         player.play(getattr(scene.file, what))
         judge = player.machine.judge
+        alarms = tuple(notice.message for notice in player.machine.alarms.history)
         context.close()
     states = [verdict.state for verdict in judge.verdicts]
     return Played(
@@ -120,6 +123,7 @@ def play(opened: "Browser", name: str, what: What, out: Path | None = None) -> P
         expected=scene.file.mistake_fails if what == "mistake" else (),
         score=judge.score,
         full=scene.points,
+        alarms=alarms,
     )
 
 

@@ -50,6 +50,12 @@ def rows() -> Iterator[Row]:
                 rate = BLOCKS / median_cpu_seconds(lambda p=path, d=dialect: _interpret(p, d))
                 for peer in peers:
                     yield _row(f"{task}, {dialect}", rate, BLOCKS, *peer)
+            if "lines" in task:
+                klartext = Path(folder, "klartext.h")
+                klartext.write_text("\n".join(_klartext()))
+                seconds = median_cpu_seconds(lambda p=klartext: _interpret(p, "heidenhain"))
+                for peer in peers:
+                    yield _row(f"{task}, heidenhain (L)", BLOCKS / seconds, BLOCKS, *peer)
             yield _cold_row(task, path, BLOCKS)
         contour = Path(folder, "contour.nc")
         contour.write_text("\n".join([*_HEAD, "G41 D1", *_contour(), "M2", ""]))
@@ -90,6 +96,16 @@ def _lines() -> Iterator[str]:
     for _ in range(BLOCKS):
         x, y, z = (chance.uniform(-100.0, 100.0) for _ in range(3))
         yield f"G1 X{x:.3f} Y{y:.3f} Z{z:.3f}"
+
+
+def _klartext() -> Iterator[str]:
+    """The same lines in Klartext, with the numbers of their blocks."""
+    yield from ("0 BEGIN PGM LINES MM", "1 L X+0 Y+0 Z+0 F1000")
+    for number, line in enumerate(_lines(), 2):
+        words = line.removeprefix("G1 ").split()
+        signed = (word if word[1] == "-" else f"{word[0]}+{word[1:]}" for word in words)
+        yield f"{number} L {' '.join(signed)}"
+    yield "END PGM LINES MM"
 
 
 def _arcs() -> Iterator[str]:

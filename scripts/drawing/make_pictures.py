@@ -20,6 +20,9 @@ SIZE = (1280, 900)
 VIEWS = {
     # look at, distance [m], azimuth, elevation [deg], and where the axes stand [mm or deg]
     "mill4": ((0.06, 0.08, 1.22), 4.4, 56.0, -17.0, {"X": 60.0, "Y": -40.0, "Z": -430.0, "C": 25.0}),
+    "mill3": ((0.06, 0.08, 1.22), 4.4, 56.0, -17.0, {"X": 60.0, "Y": -40.0, "Z": -430.0}),
+    "mill4a": ((0.0, 0.05, 1.15), 2.9, 62.0, -18.0, {"X": 30.0, "Y": -20.0, "Z": -400.0, "A": 25.0}),
+    "mill5": ((0.0, 0.05, 1.15), 2.6, 62.0, -18.0, {"X": 20.0, "Y": -20.0, "Z": -380.0, "A": -35.0, "C": 25.0}),
     "mill4_light": ((0.0, 0.04, 0.27), 1.45, 52.0, -26.0, {"X": -40.0, "Y": 60.0, "Z": -40.0, "C": 30.0}),
 }  # fmt: skip
 
@@ -59,6 +62,8 @@ def main(names: list[str]) -> None:
         )
         shot.save(path, optimize=True)
         print(f"{path}: {path.stat().st_size / 1000:.0f} kB")
+        if name not in CIRCLES:
+            continue
         machine, feed = CIRCLES[name]
         plot = path.with_name("circle.png")
         write_circle_plot(circular_test(read_machine(machine_file(machine)), 50.0, feed), plot)

@@ -19,6 +19,7 @@ import numpy.typing as npt
 from twin.calibrate.calibrate import calibrate
 from twin.calibrate.fit.solve import Interval
 from twin.calibrate.result import Calibration
+from twin.errors import UsageError
 from twin.files.shipped import machine_file
 from twin.logs.column_map import AxisColumns, ColumnTable, ExternalForceTable
 from twin.logs.machine_log import AxisLog, MachineLog
@@ -264,7 +265,12 @@ def main() -> int:
     for group in GROUPS:
         for seed in range(each):
             axis = draw(group, seed)
-            result = fitted(axis)
+            try:
+                result = fitted(axis)
+            except UsageError as refused:
+                print(f"{group} {seed}: refused: {refused}", flush=True)
+                unnamed += 1
+                continue
             count, wrong = misses(axis, result)
             held[group][0] += count - len(wrong)
             held[group][1] += count

@@ -52,9 +52,10 @@ def short() -> Iterator[None]:
     [
         (dataclasses.replace(draw("uneven", 1), period=0.004), "uneven"),
         (draw("held", 3), "repeated"),
-        (draw("clipped", 0), "clipped"),
+        (draw("clipped", 5), "clipped"),
+        (draw("clipped", 7), "clipped"),
     ],
-    ids=["uneven", "held", "clipped"],
+    ids=["uneven", "held", "clipped", "clipped, and pieces that seem to lead"],
 )
 @pytest.mark.usefixtures("short")
 def test_intervals_of_another_integrator_s_axis_hold_the_truth(axis: Axis, code: str) -> None:

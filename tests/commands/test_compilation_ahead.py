@@ -9,6 +9,7 @@ import pytest
 from tests.loaded_kernels import loaded
 from twin.commands import compilation
 from twin.files.shipped import resource_root
+from twin.run.outcome import Outcome
 from twin.run.preparation import prepare
 from twin.run.progress import no_progress
 from twin.run.run import Run
@@ -20,10 +21,16 @@ FEW = 3
 JOBS = ("gallery/fagor8070/medallion", "mefi/helix")
 
 
+def gone_through(job: Path) -> Outcome:
+    """What comes of a run whose motion needs no planner."""
+    run = Run(prepare(job))
+    dry_run = run.dry_run()
+    return run.execute(dry_run, None, no_progress, compilation.later_motion(run, dry_run))
+
+
 def left_for_the_run(job: Path) -> set[str]:
     """Kernels behind the planner that a run calls and its rehearsal did not."""
-    ahead = compilation.LaterStages(prepare(job))
-    outcome = ahead.execute(ahead.dry_run(), None, no_progress)
+    outcome = gone_through(job)
     assert outcome.samples > 0
     assert outcome.cut is not None
     assert outcome.cut.removed_mm3 > 0.0
@@ -49,8 +56,7 @@ def test_a_program_without_a_cut_needs_none(tmp_path: Path) -> None:
     program = tmp_path / "a.nc"
     program.write_text("%A\nG90 G00 X1\nM30\n")
     (tmp_path / "a.toml").write_text('program = "a.nc"\ndialect = "fagor8070"\n')
-    ahead = compilation.LaterStages(prepare(tmp_path / "a.toml"))
-    assert ahead.execute(ahead.dry_run(), None, no_progress).samples == 0
+    assert gone_through(tmp_path / "a.toml").samples == 0
 
 
 @pytest.mark.parametrize(("cores", "is_kept"), [(1, True), (2, False)])

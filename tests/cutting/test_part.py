@@ -93,3 +93,45 @@ def test_failed_write_leaves_nothing(tmp_path: Path) -> None:
     with pytest.raises(OSError, match=r"part\.stl"):
         write_stl(blank(BOX, ORIGIN, 1.0), tmp_path / "part.stl")
     assert [path.name for path in tmp_path.iterdir()] == ["part.stl"]
+
+
+@pytest.mark.parametrize("left", [0.05, 0.12, 0.3, 0.45])
+@pytest.mark.parametrize("cell", [0.25, 0.5])
+def test_a_thin_cut_around_a_cylinder_leaves_a_round_side(left: float, cell: float) -> None:
+    cutter = Cutter(
+        CYLINDER.model_copy(update={"cell": cell}),
+        ToolTable(number=1, diameter=4.0),
+        PartFrame(None, (0.0, 0.0)),
+        np.zeros(3),
+    )
+    wall = 15.0 - left
+    turn = np.linspace(0.0, 2 * np.pi, 721)
+    path = np.column_stack(
+        [(wall + 2.0) * np.cos(turn), (wall + 2.0) * np.sin(turn), np.full(len(turn), -3.0)]
+    )
+    cutter.add(samples(path), np.zeros(len(path), np.bool_))
+    mesh = part_mesh(cutter.map)
+    mesh.merge_vertices()
+    assert mesh.is_watertight
+    radius = np.hypot(mesh.vertices[:, 0], mesh.vertices[:, 1])
+    top = mesh.vertices[:, 2] == 0.0
+    assert radius[top].max() == pytest.approx(wall, abs=0.11 * cell)
+    edge = radius > 15.0 - 1e-3
+    assert set(np.unique(mesh.vertices[edge, 2])) == {-8.0, -3.0}
+    ring = math.pi * (15.0**2 - wall**2) * 3.0
+    assert mesh.volume == pytest.approx(math.pi * 15.0**2 * 8.0 - ring, abs=max(0.5 * ring, 5.0))
+
+
+def test_a_slot_through_the_edge_keeps_the_edge_beside_it() -> None:
+    cutter = Cutter(
+        CYLINDER.model_copy(update={"cell": 0.25}),
+        ToolTable(number=1, diameter=4.0),
+        PartFrame(None, (0.0, 0.0)),
+        np.zeros(3),
+    )
+    cutter.add(samples(np.array([[-20.0, 0.1, -3.0], [20.0, 0.1, -3.0]])), np.zeros(2, np.bool_))
+    vertices = part_mesh(cutter.map).vertices
+    edge = (np.hypot(vertices[:, 0], vertices[:, 1]) > 15.0 - 1e-3) & (vertices[:, 2] > -8.0)
+    beside = np.abs(vertices[:, 1] - 0.1) > 2.25
+    assert (vertices[edge & beside, 2] == 0.0).all()
+    assert (vertices[edge & (np.abs(vertices[:, 1] - 0.1) < 1.75), 2] == -3.0).all()

@@ -19,6 +19,7 @@ POINTS = (
     "gains and inertias in the MJCF file are those that follow",
     "the machine holds still at home",
     "the machine survives pseudo-random commands",
+    "its axes are those of a mill",
 )
 
 

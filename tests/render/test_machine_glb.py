@@ -22,7 +22,9 @@ def drawn(request):
     machine = read_machine(machine_file(request.param))
     stock = StockTable(shape="box", size=(120.0, 80.0, 30.0))
     zero = np.array([0.0, 0.0, -300.0, 0.0])
-    return drawn_machine(machine, ToolTable(number=1, diameter=10.0), 0.0, stock, zero)
+    return drawn_machine(
+        machine, ToolTable(number=1, diameter=10.0), machine.part_frame, stock, zero
+    )
 
 
 def moved(drawn) -> trimesh.Scene:

@@ -397,3 +397,14 @@ def test_damaged_text_is_refused_or_read_and_never_ends_in_a_traceback(
     path.write_text(CONTOUR.replace("N30", f"{damage}\nN30"))
     with contextlib.suppress(TwinError):
         with_assumptions(prepare(path, assuming=True), machine=None, strict=False)
+
+
+def test_nothing_is_assumed_of_points_where_they_never_count(tmp_path: Path) -> None:
+    path = tmp_path / "part.h"
+    path.write_text(
+        "BEGIN PGM KEY_M10 MM\nL X+10 Y+5.5 F100\nEND PGM KEY_M10 MM\n", encoding="utf-8"
+    )
+    reading = prepare(path, assuming=True).reading
+    assert reading is not None
+    assert reading.told == ()
+    assert reading.keys == {}

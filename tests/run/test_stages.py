@@ -2,7 +2,7 @@ import time
 
 import pytest
 
-from twin.run.stages import StageClock
+from twin.run.progress import StageClock
 
 
 def test_inner_stages_do_not_count_for_outer_ones(monkeypatch: pytest.MonkeyPatch):

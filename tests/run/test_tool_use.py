@@ -7,7 +7,7 @@ from tests.compare.runs import samples, setpoints
 from tests.compare.test_trace import MOVES
 from twin.cutting.tools import ToolPlan
 from twin.job.job_file import ToolTable
-from twin.run.tool_use import ToolTimes
+from twin.run.observers import ToolTimes
 
 TOOLS = tuple(ToolTable(number=number, diameter=2.0 * number) for number in (3, 1))
 

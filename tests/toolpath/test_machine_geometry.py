@@ -23,7 +23,7 @@ def frame_of(**geometry: object) -> PartFrame:
     shipped = read_machine(machine_file("mill4"))
     data = shipped.file.model_dump(by_alias=True) | {"geometry": geometry}
     machine = Machine(shipped.path, type(shipped.file).model_validate(data))
-    return machine.part_frame.at(ZERO)
+    return machine.part_frame.at(ZERO, 0.0)
 
 
 def turned(point: np.ndarray, axis: str, angle: float) -> np.ndarray:
@@ -47,7 +47,9 @@ def test_a_machine_without_errors_has_its_tool_where_its_axes_say(joints: np.nda
 @given(place)
 def test_nothing_is_off_at_the_part_zero(joints: np.ndarray):
     machine = read_machine(machine_file("mill4/as_built"))
-    assert machine.part_frame.at(joints).real(joints[None])[0] == pytest.approx(joints, abs=1e-9)
+    assert machine.part_frame.at(joints, 0.0).real(joints[None])[0] == pytest.approx(
+        joints, abs=1e-9
+    )
 
 
 @given(place)
@@ -101,7 +103,7 @@ def test_indexing_repeats_after_a_turn():
 
 
 def test_the_shares_add_up_to_what_the_tool_is_off():
-    frame = read_machine(machine_file("mill4/as_built")).part_frame.at(ZERO)
+    frame = read_machine(machine_file("mill4/as_built")).part_frame.at(ZERO, 0.0)
     joints = np.array([-120.0, 80.0, -420.0, 123.0])
     shares = frame.shares(joints, {})
     assert {"squareness XY", "positioning EXX", "straightness EYX", "indexing ECC"} <= set(shares)
@@ -111,7 +113,7 @@ def test_the_shares_add_up_to_what_the_tool_is_off():
 
 
 def test_a_recording_gives_the_geometry_back():
-    geometry = read_machine(machine_file("mill4/as_built")).part_frame.at(ZERO).geometry
+    geometry = read_machine(machine_file("mill4/as_built")).part_frame.at(ZERO, 0.0).geometry
     assert geometry_from_text(geometry.as_text()) == geometry
     assert geometry_from_text("") == frame_of().geometry.__class__()
 

@@ -23,7 +23,7 @@ from websockets.sync.client import ClientConnection, connect
 
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.server.launch import OpenRoom
-from twin.web.doorkeeper import GUESSES
+from twin.web.authentication import GUESSES
 
 SCENE = "mefi_helix_hold"
 WATCHED_S = 2.0

@@ -3,6 +3,7 @@
 import importlib.util
 import struct
 import zlib
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ from browsers import CHROMIUM
 from panel_player import browser
 
 from twin.commands.run import run_and_print
-from twin.commands.view import view
+from twin.commands.view import report_of, view
 from twin.cutting.patches import LEVELS
 from twin.cutting.recut import recut
 from twin.errors import UsageError
@@ -47,6 +48,22 @@ def recorded(tmp_path_factory):
     )
     with open_scene(out / "recording.h5") as (scene, preparation):
         yield RecordedRun(scene, preparation.machine), scene
+
+
+@pytest.fixture
+def report(recorded) -> Path:
+    _, scene = recorded
+    found = report_of(scene, scene.recording.path)
+    assert found is not None
+    return found
+
+
+def test_the_report_of_another_program_is_not_shown(recorded, report, tmp_path):
+    _, scene = recorded
+    assert report_of(scene, tmp_path / "recording.h5") is None
+    text = report.read_text("utf-8")
+    (tmp_path / "report.html").write_text(text.replace(scene.recording.header.program_sha256, "0"))
+    assert report_of(scene, tmp_path / "recording.h5") is None
 
 
 def columns(content: bytes) -> np.ndarray:
@@ -165,6 +182,61 @@ def test_a_run_is_played_and_scrubbed_on_its_page(recorded):
                 assert found["y"] + found["height"] <= height, (name, width, height)
                 assert min(found["width"], found["height"]) > 10, (name, width, height)
     assert not wrong
+
+
+@pytest.mark.browser
+@pytest.mark.skipif(
+    CHROMIUM is None, reason="no Chromium here; Debian has it in the package chromium"
+)
+@pytest.mark.skipif(importlib.util.find_spec("playwright") is None, reason="no playwright")
+@pytest.mark.skipif(not THREE.is_dir(), reason="three.js is missing: run scripts/fetch_three.py")
+def test_the_report_leads_to_its_places_in_the_viewer(recorded, report):
+    run, scene = recorded
+    wrong: list[str] = []
+    with open_view(run, report=report) as address, browser() as opened:
+        page = opened.new_page(viewport={"width": 1100, "height": 800})
+        page.on("console", lambda message: wrong.append(message.text))
+        page.goto(address)
+        page.wait_for_selector("body[data-ready=yes]")
+        page.click("#report")
+        page.wait_for_selector("h1")
+        link = page.locator("table a.in-viewer").first
+        assert link.is_visible()
+        assert not page.locator(".alone").is_visible()
+        asked = float((link.get_attribute("href") or "").partition("t=")[2])
+        link.click()
+        page.wait_for_selector("body[data-ready=yes]")
+        shown = float(page.evaluate("document.getElementById('time').value"))
+        assert shown == pytest.approx(asked, abs=2.0 * scene.recording.header.period_s)
+        page.goto(report.as_uri())
+        assert not page.locator("a.in-viewer").first.is_visible()
+    assert not wrong
+
+
+@pytest.mark.browser
+@pytest.mark.skipif(
+    CHROMIUM is None, reason="no Chromium here; Debian has it in the package chromium"
+)
+@pytest.mark.skipif(importlib.util.find_spec("playwright") is None, reason="no playwright")
+@pytest.mark.skipif(not THREE.is_dir(), reason="three.js is missing: run scripts/fetch_three.py")
+def test_a_machine_that_makes_the_run_again_is_followed_until_somebody_scrubs(recorded):
+    run, _ = recorded
+    place = [0.2005]
+    with open_view(run, now=lambda: place[0]) as address, browser() as opened:
+        page = opened.new_page(viewport={"width": 1100, "height": 800})
+        page.goto(address)
+        page.wait_for_selector("body[data-ready=yes]")
+        page.wait_for_selector("#time[aria-valuetext^='0.200 s']")
+        place[0] = 0.4005
+        page.wait_for_selector("#time[aria-valuetext^='0.400 s']")
+        page.click("#back")
+        assert page.get_attribute("#live", "aria-pressed") == "false"
+        before = page.evaluate("document.getElementById('time').value")
+        place[0] = 0.6005
+        page.wait_for_timeout(200)
+        assert page.evaluate("document.getElementById('time').value") == before
+        page.click("#live")
+        page.wait_for_selector("#time[aria-valuetext^='0.600 s']")
 
 
 @pytest.mark.parametrize(("columns_each", "jump"), [(1, 0.0), (2, 50.0)])

@@ -7,11 +7,10 @@ from pathlib import Path
 from twin.api.program import Program, prepared, scratch_folder
 from twin.api.result import Result
 from twin.columns import join
-from twin.machine.description.motion_limits import motion_limits
-from twin.motion.planner import plan as plan_chunks
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Moves, concatenate
 from twin.run.dry_run import InterpretedProgram, interpreted
+from twin.run.pipeline import planned
 from twin.run.progress import no_progress
 from twin.run.results import RESULT_FILES, write_results
 from twin.run.run import Run
@@ -75,14 +74,7 @@ def plan(program: Program, *, dialect: str | None = None, machine: str | None = 
 
 def setpoints(run: Run, program: InterpretedProgram) -> Iterator[Setpoints]:
     """The setpoints of a run's program, in chunks."""
-    machine = run.machine
-    return plan_chunks(
-        program.timed_chunks(),
-        motion_limits(machine),
-        period_s=machine.file.servo_period_s,
-        part_zero=run.part_zero,
-        start=program.start + run.part_zero,
-    )
+    return planned(program, run.machine, run.part_zero)
 
 
 def run(

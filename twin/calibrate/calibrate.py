@@ -119,8 +119,10 @@ def _axis_findings(
         pieces = [axis.of_rows(slice(begin, end)) for begin, end in item.rows(name)]
         piece = max(pieces, key=lambda one: float(np.ptp(one.command)))
         period = item.health.period_s
-        refuse_wrong_log(item.log.name, name, piece, machine.axis(name), period)
-        found += item.defects[name].findings if name in item.defects else ()
+        defects = item.defects[name].findings if name in item.defects else ()
+        clipped = any(one.code == "clipped" for one in defects)
+        refuse_wrong_log(item.log.name, name, piece, machine.axis(name), period, clipped=clipped)
+        found += defects
         if not item.is_slow:
             if "force" in axis.more:
                 speed = np.gradient(piece.actual, period)

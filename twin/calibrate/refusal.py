@@ -9,6 +9,9 @@ from twin.nc.canonical import FloatArray
 
 _FOLLOWS = 0.3
 """What a straight law of lag and speed may leave of the deviation, as a share of the motion."""
+_FOLLOWS_AT_ITS_LIMIT = 0.6
+"""The same where a force was cut off at its limit: what is kept between are short pieces, of which a straight law
+tells little, neither who leads."""
 _RIGHT = 0.02
 """A ratio of actual to commanded motion may be off by this."""
 _TOO_FAST = 3.0
@@ -28,7 +31,7 @@ _KNOWN_RATIOS = {
 
 
 def refuse_wrong_log(
-    where: str, name: str, axis: AxisLog, base: AxisTable, period_s: float
+    where: str, name: str, axis: AxisLog, base: AxisTable, period_s: float, *, clipped: bool
 ) -> None:
     """Refuse columns that cannot be commanded and actual position of such an axis.
 
@@ -38,6 +41,7 @@ def refuse_wrong_log(
         axis: Its columns.
         base: The axis in the base machine.
         period_s: Between samples [s].
+        clipped: Where its force was cut off has been left out.
 
     Raises:
         UsageError: With the reason, and what would make it right.
@@ -68,13 +72,13 @@ def refuse_wrong_log(
                 "give it its own unit or scale in the map"
             )
     _refuse_jumps(place, axis, period_s, abs(ratio), unit)
-    if left > _FOLLOWS or abs(ratio - 1.0) > 10 * _RIGHT:
+    if left > (_FOLLOWS_AT_ITS_LIMIT if clipped else _FOLLOWS) or abs(ratio - 1.0) > 10 * _RIGHT:
         raise UsageError(
             f"{place}: actual does not follow command ({100 * left:.0f} % of the motion is left "
             f"unexplained, and it moves {ratio:.3g} times as far): it is the position of another axis, "
             "or another quantity"
         )
-    if lead > max(_LEADS_S, 0.02 * period_s):
+    if not clipped and lead > max(_LEADS_S, 0.02 * period_s):
         raise UsageError(
             f"{place}: actual leads command by {lead * 1e3:.3g} ms: the columns are swapped, or "
             "logged at different times; swap them in the map, or give the delay of a column, delay_s"

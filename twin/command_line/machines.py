@@ -50,7 +50,9 @@ def machine_circle(
     machine: Annotated[str, typer.Option("--machine", help="Name or machine.toml.")] = "mill4",
     radius: Annotated[float, typer.Option("--radius", help="Of the circle (mm).")] = 50.0,
     feed: Annotated[float, typer.Option("--feed", help="Along the circle (mm/min).")] = 3000.0,
-    plane: Annotated[str, typer.Option("--plane", help="XY, ZX, YZ or XYC.")] = "XY",
+    plane: Annotated[
+        str, typer.Option("--plane", help="XY, ZX, YZ; with the table XYC, ZXB, YZA.")
+    ] = "XY",
     form: FormatOption = "text",
     plot: Annotated[Path, typer.Option("--plot", help="SVG, PNG or PDF.")] = Path("circle.svg"),
 ) -> None:

@@ -132,6 +132,7 @@ def serve(
             help="Take programs from Grbl's senders, at the job's machine.",
         ),
     ] = None,
+    view: Annotated[bool, typer.Option("--view", help="Show the job's machine on a page.")] = False,
     dialect: DialectOption = None,
     machine: MachineOption = None,
 ) -> None:
@@ -140,8 +141,10 @@ def serve(
 
     source = agent.Source(
         host=host, port=port, speed=speed, buffer=buffer, dialect=dialect, machine=machine,
-        opcua_port=opcua, opcua_trust=opcua_trust, grbl=grbl,
+        opcua_port=opcua, opcua_trust=opcua_trust, grbl=grbl, view=view,
     )  # fmt: skip
+    if view and (scene is not None or grbl is not None):
+        raise UsageError("--view is for a job; a room has its own pages")
     if grbl is not None:
         if scene is not None or dialect is not None:
             raise UsageError("--grbl drives the machine of a job, in Grbl's own dialect")

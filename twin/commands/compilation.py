@@ -19,17 +19,18 @@ import numpy as np
 from numba.core import config as numba_config
 
 from twin.check.discovery import program_of
-from twin.compare.comparison import Comparison
 from twin.compilation.content import REQUIREMENTS, compilers
 from twin.compilation.folders import SHIPPED, keep_in, lasts, writable_folder
 from twin.compilation.inventory import inventory, note_complete
 from twin.errors import TwinError, UsageError
 from twin.files.shipped import is_installed, machine_file, resource_root
+from twin.job.job_file import StockTable
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray, Motion
 from twin.processor import available_cores
 from twin.run.assumed_job import with_assumptions
-from twin.run.dry_run import InterpretedProgram, interpreted
+from twin.run.dry_run import DryRun, InterpretedProgram, interpreted
+from twin.run.pipeline import ProgramMotion, cutting_forces
 from twin.run.preparation import prepare
 from twin.run.progress import no_progress
 from twin.run.run import Run
@@ -201,8 +202,9 @@ def _compile_later_stages(path: Path, dialect: str | None, machine: str | None) 
         preparation = prepare(path, dialect=dialect, machine=machine)
         if preparation.job.path is None:
             preparation, _ = with_assumptions(preparation, machine=machine, strict=False)
-        run = LaterStages(preparation)
-        run.execute(run.dry_run(), None, no_progress)
+        run = Run(preparation)
+        dry_run = run.dry_run()
+        run.execute(dry_run, None, no_progress, later_motion(run, dry_run))
 
 
 def _end_with_parent() -> None:
@@ -212,43 +214,48 @@ def _end_with_parent() -> None:
         os._exit(0)
 
 
-class LaterStages(Run):
-    """A run whose setpoints go aslant into the middle of the blank and need no planner."""
+def later_motion(run: Run, dry_run: DryRun) -> ProgramMotion:
+    """A motion that goes aslant into the middle of the blank and needs no planner.
 
-    def _setpoints(
-        self, program: InterpretedProgram, comparison: Comparison
-    ) -> Iterator[Setpoints]:
-        before = 0
-        for chunk in program.timed_chunks():
-            moves = chunk.moves
-            comparison.expect(moves)
-            feeds = np.flatnonzero(moves.motion == Motion.FEED)
-            if not len(feeds):
-                before += len(moves)
-                continue
-            # Two moves, for what is done where one ends.
-            ticks = np.arange(SETPOINTS)
-            move = np.minimum(feeds[0] + ticks // (SETPOINTS // 2), len(moves) - 1)
-            step = np.zeros(moves.start.shape[1])
-            step[:3] = STEP_MM
-            position = np.tile(moves.end[feeds[0]], (SETPOINTS, 1))
-            position[:, :3] = self._into_the_blank()
-            period = self.preparation.machine.file.servo_period_s
-            yield Setpoints(
-                time=ticks * np.float64(period),
-                line=moves.line[move],
-                move=before + move,
-                fraction=ticks % (SETPOINTS // 2) / (SETPOINTS // 2),
-                position=position + self.part_zero + np.outer(ticks, step),
-                velocity=np.tile(step / period, (SETPOINTS, 1)),
-                acceleration=np.zeros((SETPOINTS, len(step))),
-            )
-            return
+    Args:
+        run: The prepared job.
+        dry_run: What its dry run found.
+    """
+    forces = cutting_forces(run.preparation.job.file, run.machine, dry_run, run.layout)
+    return ProgramMotion(_aslant(run, dry_run.program), run.model, dry_run.summary, forces)
 
-    def _into_the_blank(self) -> FloatArray:
-        """Just below its top, in the middle of what is not bored, part coordinates, shape (3,) [mm]."""
-        stock = self.preparation.job.file.stock
-        if stock is None:
-            return np.zeros(3)
-        aside = 0.0 if stock.bore is None else 0.25 * (stock.extent[0] + stock.bore)
-        return np.add(stock.position, (aside, 0.0, -BELOW_MM))
+
+def _aslant(run: Run, program: InterpretedProgram) -> Iterator[Setpoints]:
+    before = 0
+    for chunk in program.timed_chunks():
+        moves = chunk.moves
+        feeds = np.flatnonzero(moves.motion == Motion.FEED)
+        if not len(feeds):
+            before += len(moves)
+            continue
+        # Two moves, for what is done where one ends.
+        ticks = np.arange(SETPOINTS)
+        move = np.minimum(feeds[0] + ticks // (SETPOINTS // 2), len(moves) - 1)
+        step = np.zeros(moves.start.shape[1])
+        step[:3] = STEP_MM
+        position = np.tile(moves.end[feeds[0]], (SETPOINTS, 1))
+        position[:, :3] = _into_the_blank(run.preparation.job.file.stock)
+        period = run.machine.file.servo_period_s
+        yield Setpoints(
+            time=ticks * np.float64(period),
+            line=moves.line[move],
+            move=before + move,
+            fraction=ticks % (SETPOINTS // 2) / (SETPOINTS // 2),
+            position=position + run.part_zero + np.outer(ticks, step),
+            velocity=np.tile(step / period, (SETPOINTS, 1)),
+            acceleration=np.zeros((SETPOINTS, len(step))),
+        )
+        return
+
+
+def _into_the_blank(stock: StockTable | None) -> FloatArray:
+    """Just below its top, in the middle of what is not bored, part coordinates, shape (3,) [mm]."""
+    if stock is None:
+        return np.zeros(3)
+    aside = 0.0 if stock.bore is None else 0.25 * (stock.extent[0] + stock.bore)
+    return np.add(stock.position, (aside, 0.0, -BELOW_MM))

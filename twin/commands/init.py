@@ -7,9 +7,8 @@ import typer
 from twin.errors import ExitCode, UsageError
 from twin.files.atomic import write_text
 from twin.nc.text.diagnostics import ProgramError
-from twin.run.assumed_job import assumed_job
+from twin.run.assumed_job import assumed_job, read_as, told_of_reading
 from twin.run.preparation import prepare
-from twin.run.raw_program import read_as, told_of_reading
 
 
 def init_and_print(

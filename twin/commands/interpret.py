@@ -6,8 +6,8 @@ from pathlib import Path
 from twin.errors import UsageError
 from twin.nc.jsonl import json_lines, text_lines
 from twin.nc.text.diagnostics import ProgramError
+from twin.run.assumed_job import read_as, told_of_reading
 from twin.run.preparation import prepare
-from twin.run.raw_program import read_as, told_of_reading
 
 FORMATS = {"text": text_lines, "jsonl": json_lines}
 

@@ -12,6 +12,7 @@ from twin.machine.circle.circle_plot import write_circle_plot
 from twin.machine.circle.circular_test import CircularTest, circular_test
 from twin.machine.describe import MachineFacts, describe, shipped_machines
 from twin.machine.description.config import Machine
+from twin.machine.description.kinematics import in_words
 from twin.machine.load import read_machine
 
 FORMATS = ("text", "json")
@@ -61,11 +62,14 @@ def print_check(name: str) -> ExitCode:
     Returns:
         ``FAILED`` where a point is not kept.
     """
-    findings = check_machine(_machine(name))
+    machine = _machine(name)
+    findings = check_machine(machine)
     for finding in findings:
         sys.stdout.write(f"{'ok   ' if not finding.faults else 'FAULT'}  {finding.point}\n")
         for fault in finding.faults:
             sys.stdout.write(f"         {fault}\n")
+    if not findings[-1].faults:
+        sys.stdout.write(f"{in_words(machine.axes.names, machine.kinematics)}\n")
     return ExitCode.FAILED if any(finding.faults for finding in findings) else ExitCode.OK
 
 
@@ -78,7 +82,7 @@ def print_circle(
         name: A shipped machine's name, or a machine file.
         radius: [mm].
         feed: [mm/min].
-        plane: ``XY``, ``ZX``, ``YZ`` or ``XYC``.
+        plane: ``XY``, ``ZX``, ``YZ``, or with the table ``XYC``, ``ZXB``, ``YZA``.
         form: ``text`` or ``json``.
         plot: Where the picture goes; its suffix tells the kind.
 

@@ -10,13 +10,12 @@ from twin.compilation.announcement import announce_compilation
 from twin.errors import ExitCode, RenderError, UsageError
 from twin.files.atomic import write_text
 from twin.nc.text.diagnostics import ProgramError
-from twin.run.assumed_job import text_beside, with_assumptions
+from twin.run.assumed_job import read_as, text_beside, told_of_reading, with_assumptions
 from twin.run.dry_run import DryRun
 from twin.run.messages import alarm_diagnostic, near_miss_diagnostic, reason_text
 from twin.run.outcome import Outcome
 from twin.run.preparation import Preparation, prepare
 from twin.run.progress import shown_progress
-from twin.run.raw_program import read_as, told_of_reading
 from twin.run.results import RESULT_FILES, write_results
 from twin.run.run import Run
 from twin.run.run_folder import program_stem, run_folder, without_verdict

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from twin.job.job_file import JobFile
     from twin.machine.description.config import Machine
     from twin.serve.agent import Agent
-    from twin.serve.playback import Production
+    from twin.serve.playback import Playhead, Production
     from twin.training.scene.scene_file import Scene
 
 FIRST_PORT, LAST_PORT = 5000, 5099
@@ -47,6 +47,7 @@ class Source:
         opcua_port: Where OPC UA is told beside MTConnect; None: nowhere.
         opcua_trust: Folder of the certificates of OPC UA's clients.
         grbl: Port at which a machine takes programs from Grbl's senders, or ``pty``; None: it takes none.
+        view: Whether a page shows the machine, too.
     """
 
     host: str
@@ -58,6 +59,7 @@ class Source:
     opcua_port: int | None = None
     opcua_trust: Path | None = None
     grbl: str | None = None
+    view: bool = False
 
 
 def serve_job(path: Path, source: Source) -> ExitCode:
@@ -73,10 +75,12 @@ def serve_job(path: Path, source: Source) -> ExitCode:
     """
     _check_opcua(source)
     require_extra("serve", "twin serve")
+    if source.view:
+        require_extra("train", "twin serve --view")
     from twin.serve.agent import Agent
     from twin.serve.clock import Clock
     from twin.serve.device import device_of
-    from twin.serve.playback import feed, ticks
+    from twin.serve.playback import Playhead, feed, ticks
 
     with _listen(source.host, source.port) as listener, tempfile.TemporaryDirectory() as folder:
         announce_compilation()
@@ -90,11 +94,16 @@ def serve_job(path: Path, source: Source) -> ExitCode:
         stop = threading.Event()
         tools = _tools(run.preparation.job.file)
         named = (machine, production.program, tools)
+        playhead = Playhead()
 
         def observe() -> Coroutine[Any, Any, None]:
-            return _with_opcua(feed(agent, ticks(production)), agent, source, named)
+            return _with_opcua(feed(agent, ticks(production), playhead), agent, source, named)
 
-        with _served(agent, observe, listener, stop), let_interruption_stop(stop.set):
+        with (
+            _viewed(production, playhead, wanted=source.view),
+            _served(agent, observe, listener, stop),
+            let_interruption_stop(stop.set),
+        ):
             typer.echo(_address(listener))
             while not stop.wait(_WAIT_S):
                 pass
@@ -164,7 +173,7 @@ def _grbl_line(source: Source) -> "Iterator[socket.socket | int]":
         UsageError: Nobody can or may listen there.
     """
     from twin.serve.grbl.server import PSEUDO_TERMINAL, pseudo_terminal
-    from twin.web.guard import LOCAL_NAMES
+    from twin.web.origin_check import LOCAL_NAMES
 
     if source.grbl == PSEUDO_TERMINAL:
         with pseudo_terminal() as (master, path):
@@ -225,6 +234,29 @@ def _serve_room(
             for role, address in room.addresses.items():
                 typer.echo(f"{scene.name}, {role}: {address}", err=True)
             room.serve()
+
+
+@contextlib.contextmanager
+def _viewed(production: "Production", playhead: "Playhead", *, wanted: bool) -> Iterator[None]:
+    """Show the machine on a page as well, where that is asked for.
+
+    Raises:
+        UsageError: Nothing moved, or the view's library is missing.
+    """
+    if not wanted:
+        yield
+        return
+    if production.recording is None:
+        raise UsageError("--view: nothing moved, so there is nothing to show")
+    from twin.run.replay import open_scene
+    from twin.view.app import open_view
+    from twin.view.recorded_run import RecordedRun
+
+    with open_scene(production.recording) as (scene, _):
+        run = RecordedRun(scene, production.machine)
+        with open_view(run, now=lambda: playhead.time_s) as address:
+            typer.echo(f"{production.program}: open {address} in a browser", err=True)
+            yield
 
 
 async def _beside(*tasks: Coroutine[Any, Any, None]) -> None:
@@ -317,7 +349,7 @@ def _served(
     import uvicorn
 
     from twin.serve.http_server import application, without_broken_requests
-    from twin.web.guard import LOCAL_NAMES
+    from twin.web.origin_check import LOCAL_NAMES
 
     failures: list[Exception] = []
 

@@ -35,7 +35,7 @@ def print_course(folder: Path, language: str | None) -> None:
         UsageError: There is no such folder, or the panel does not speak the language.
     """
     from twin.files.atomic import write_text
-    from twin.training.sheets.course import course_of, course_page, language_of
+    from twin.training.score_sheets.course import course_of, course_page, language_of
 
     chosen = language_named(language)
     rows, unread = course_of(folder)

@@ -11,9 +11,20 @@ from twin.commands.run import run_and_print
 from twin.compilation.announcement import announce_compilation
 from twin.errors import ExitCode, UsageError
 from twin.extras import require_extra
+from twin.render.scene.scene import Scene
 from twin.run.replay import open_scene
 
 RECORDING_SUFFIX = ".h5"
+
+
+def report_of(scene: Scene, recording: Path) -> Path | None:
+    """The report beside a recording; None: there is none, or it is that of another program."""
+    report = recording.parent / "report.html"
+    try:
+        known = scene.recording.header.program_sha256 in report.read_text("utf-8")
+    except (OSError, UnicodeDecodeError):
+        return None
+    return report if known else None
 
 
 def view(path: Path, port: int) -> ExitCode:
@@ -46,7 +57,7 @@ def view(path: Path, port: int) -> ExitCode:
         if not len(scene.recording):
             raise UsageError(f"{recording}: the recording has no samples: there is nothing to show")
         run = RecordedRun(scene, preparation.machine)
-        address = stack.enter_context(open_view(run, port))
+        address = stack.enter_context(open_view(run, port, report=report_of(scene, recording)))
         stack.enter_context(let_interruption_stop(over.set))
         typer.echo(f"{recording}: open {address} in a browser; Ctrl+C ends")
         while not over.wait(0.2):

@@ -1,6 +1,6 @@
 """The comparison of a run with its program: following error and contour error, chunk by chunk."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -31,6 +31,10 @@ _ROWS = 16384
 """Samples that are worked on at once: bounds how many arcs are open at a time."""
 
 
+def _all_alike(move: IntArray) -> FloatArray:
+    return np.zeros(len(move))
+
+
 class Comparison:
     """Compares the simulated joints of a run with its program, in bounded memory.
 
@@ -44,6 +48,8 @@ class Comparison:
         part_frame: How the part turns under the tool.
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
         apart: First and last line of ranges that have a tolerance of their own.
+        lower: How much longer than the first tool that of each move is, from move numbers of shape (n,) to
+            shape (n,) [mm]; looked at on machines that tilt the tool against the part.
     """
 
     def __init__(
@@ -52,9 +58,11 @@ class Comparison:
         part_frame: PartFrame,
         part_zero: FloatArray,
         apart: Sequence[tuple[int, int]] = (),
+        lower: Callable[[IntArray], FloatArray] = _all_alike,
     ) -> None:
         self.axes = axes
         self._frame = part_frame
+        self._lower = lower if part_frame.chain is not None else _all_alike
         self._part_zero = np.asarray(part_zero, np.float64)
         self._first = 0
         self._moves = Moves.empty(axes)
@@ -108,7 +116,8 @@ class Comparison:
             new = concatenate(self._waiting, self.axes)
             self._waiting = []
             self._moves = concatenate([self._moves, new], self.axes)
-            new_path = path_columns(new, self._frame, self._part_zero)
+            numbers = self._first + len(self._moves) - len(new) + np.arange(len(new))
+            new_path = path_columns(new, self._frame, self._part_zero, self._lower(numbers))
             self._path = join_paths(self._path, new_path)
             self._corners.expect(new_path)
 
@@ -117,14 +126,17 @@ class Comparison:
         self._duration = float(setpoint.time[-1])
         self._add_tracking(samples)
         real = samples.real(self._frame)
-        point = np.ascontiguousarray(self._frame.position(real))
+        longer = self._lower(setpoint.move)
+        point = np.ascontiguousarray(self._frame.position(real, longer))
         if int(setpoint.move.max()) >= self._first + len(self._moves):
             raise RecordingError(
                 f"a sample names move {setpoint.move.max()}, but the program has only "
                 f"{self._first + len(self._moves)} moves"
             )
         if len(self._moves) == 0:
-            distance = np.linalg.norm(point - self._frame.position(setpoint.position), axis=1)
+            distance = np.linalg.norm(
+                point - self._frame.position(setpoint.position, longer), axis=1
+            )
             place, fraction = None, np.zeros(0)
         else:
             distance, place, fraction = self._follow(samples, point)
@@ -184,7 +196,7 @@ class Comparison:
             np.concatenate([late.fraction, setpoint.fraction]),
         )
         if np.isnan(self._state[0]):
-            where = self._frame.position(setpoint.position[:1])[0]
+            where = self._frame.position(setpoint.position[:1], self._lower(setpoint.move[:1]))[0]
             started = setpoint.move[0] >= 0
             place = (setpoint.move[0], setpoint.fraction[0]) if started else (0, 0.0)
             self._state[:] = (*place, *where, 0.0)

@@ -32,7 +32,7 @@ class Trace:
     def __init__(self, axes: Axes, part_frame: PartFrame, part_zero: FloatArray) -> None:
         self.axes = axes
         self._frame = part_frame
-        self._origin = part_zero[:3] - np.array([*part_frame.center, 0.0])
+        self._origin = part_frame.program_zero(part_zero)
         self._part_zero = np.asarray(part_zero, np.float64)
         self._group = 1
         self._kept = np.zeros((0, _FIRST_AXIS_COLUMN + 3 * len(axes)))
@@ -92,8 +92,7 @@ class Trace:
     ) -> FloatArray:
         """What is kept of some samples."""
         asked, joints = samples.setpoint, samples.joint_position[rows]
-        tip = self._frame.position(samples[rows].real(self._frame)) - self._origin
-        tip[:, 2] -= lower[rows]
+        tip = self._frame.position(samples[rows].real(self._frame), lower[rows]) - self._origin
         return np.column_stack(
             [
                 asked.time[rows],

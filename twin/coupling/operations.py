@@ -134,6 +134,6 @@ def cutting_process(
     resists = kienzle(stock)
     if resists is None:
         return None
-    corner = np.asarray(part_zero[:3]) - np.array([*part_frame.center, 0.0])
+    corner = part_frame.program_zero(part_zero)
     material = blank(stock, corner, cell)
     return CuttingProcess(material, resists, operation, part_frame, machine.file.spindle)

@@ -135,7 +135,7 @@ class Cutter:
         """
         self.plan = tool if isinstance(tool, ToolPlan) else ToolPlan((tool,))
         self.tool = self.plan.tools[0]
-        corner = np.asarray(part_zero[:3]) - np.array([*part_frame.center, 0.0])
+        corner = part_frame.program_zero(part_zero)
         self.map = blank(stock, corner, stock.cell or default_cell(self.plan.tools, stock))
         self.changed = (0, 0, 0, 0)
         self.force = np.zeros((0, 3))

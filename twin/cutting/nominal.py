@@ -65,7 +65,7 @@ def nominal_map(
     Raises:
         ConfigError: The file cannot be read.
     """
-    corner = part_zero[:3] - np.array([*part_frame.center, 0.0])
+    corner = part_frame.program_zero(part_zero)
     result = part.copy()
     result.heights[:] = part.bottom
     triangles = np.ascontiguousarray(read_stl(file).triangles + corner, dtype=np.float64)
@@ -108,7 +108,7 @@ class NominalWatch:
             )
         self._allowed = nominal.gouge_um / UM_PER_MM
         self._cutter, self._frame = cutter, part_frame
-        self._corner = part_zero[:3] - np.array([*part_frame.center, 0.0])
+        self._corner = part_frame.program_zero(part_zero)
         self.worst: NominalGouge | None = None
 
     def look(self, samples: Samples) -> tuple[NominalGouge, int] | None:

@@ -58,7 +58,9 @@ def part_mesh(height_map: HeightMap, colours: Colours | None = None) -> "trimesh
         underside = top_faces[:, ::-1] + below
     faces = np.concatenate([top_faces, underside, walls])
     plan = np.stack([surface.x.ravel(), surface.y.ravel()], 1)
-    top = np.column_stack([plan, heights.ravel()])
+    top = np.column_stack(
+        [*(place.ravel() for place in surface.places(height_map)), heights.ravel()]
+    )
     bottom = np.column_stack([plan, np.full(below, height_map.bottom)])
     used, renumbered = np.unique(faces, return_inverse=True)
     middle = [*height_map.outline.center, height_map.bottom]

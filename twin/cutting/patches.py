@@ -1,5 +1,6 @@
 """Heights of some cells as bytes, for pages that draw the stock."""
 
+import dataclasses
 import struct
 import zlib
 
@@ -48,4 +49,5 @@ def grid_of(stock: HeightMap) -> dict[str, object]:
         "columns": stock.heights.shape[1],
         "bottom": stock.bottom,
         "top": stock.top,
+        "outline": dataclasses.asdict(stock.outline),
     }

@@ -65,6 +65,7 @@ def check_machine(machine: Machine) -> tuple[Finding, ...]:
         ("gains and inertias in the MJCF file are those that follow", _gains),
         ("the machine holds still at home", _holds_still),
         ("the machine survives pseudo-random commands", _survives_shaking),
+        ("its axes are those of a mill", _carries_tool_and_part),
     )
     findings = []
     for point, look in points:
@@ -126,6 +127,13 @@ def _compiles(machine: Machine) -> list[str]:
     if any(geom.mass != 0.0 for body in spec.bodies[1:] for geom in body.geoms):
         faults.append('geoms add to the masses of the bodies; give them mass="0"')
     return faults + _undriven(machine)
+
+
+def _carries_tool_and_part(machine: Machine) -> list[str]:
+    """An axis that is on the way neither to the tool nor to the part, or a model that is no mill, which raises."""
+    carried = {machine.axes.names[column] for column in machine.kinematics.column}
+    idle = [name for name in machine.axes.names if name not in carried]
+    return [f"axis {name} moves neither tool nor part" for name in idle]
 
 
 def _undriven(machine: Machine) -> list[str]:

@@ -49,6 +49,7 @@ class Samples(Columns):
         tool: What the tool felt; None where the force of the cut was not simulated.
         growth: How far the warm machine has shifted the tool along X, Y, Z, shape (n, 3) [mm]; None: it
             does not grow.
+        contour_um: Contour error, shape (n,) [µm]; None: nobody has compared.
     """
 
     setpoint: Setpoints
@@ -57,6 +58,7 @@ class Samples(Columns):
     drive_force: FloatArray
     tool: ToolLoad | None = None
     growth: FloatArray | None = None
+    contour_um: FloatArray | None = None
 
     def real(self, frame: PartFrame) -> FloatArray:
         """Machine coordinates at which an ideal machine with a rigid tool would have the tool.

@@ -35,7 +35,7 @@ from twin.recording.seal import is_sealed, seal_is_broken
 from twin.recording.trial import reading_ends
 from twin.recording.writer import PROGRAM_TEXT, RecordingWriter, record
 from twin.toolpath.machine_geometry import geometry_from_text
-from twin.toolpath.part_frame import PartFrame
+from twin.toolpath.part_frame import PartFrame, chain_from_text
 
 __all__ = [
     "CONTOUR",
@@ -165,6 +165,7 @@ def _read_header(file: h5py.File) -> RecordingHeader:
     values = {name: np.asarray(value).tolist() for name, value in file.attrs.items()}
     axes = Axes(tuple(values["axes"]), tuple(values["kinds"]))
     table_axis = values["table_axis"]
+    chain, chain_zero = chain_from_text(values.get("kinematics", ""))
     return RecordingHeader(
         axes=axes,
         period_s=values["period_s"],
@@ -174,6 +175,8 @@ def _read_header(file: h5py.File) -> RecordingHeader:
             center=tuple(values["table_center"]),
             turn_zero=values["table_zero"],
             geometry=geometry_from_text(values.get("geometry", "")),
+            chain=chain,
+            zero=chain_zero,
         ),
         program_text=_program_text(file),
         **{name: values[name] for name in TEXT_ATTRIBUTES},

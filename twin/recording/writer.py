@@ -164,6 +164,7 @@ def _write_attributes(file: h5py.File, header: RecordingHeader) -> None:
     )
     attributes["table_center"] = header.part_frame.center
     attributes["table_zero"] = header.part_frame.turn_zero
+    attributes["kinematics"] = header.part_frame.as_text()
     attributes["geometry"] = header.part_frame.geometry.as_text()
     for name in (*TEXT_ATTRIBUTES, *LATER_ATTRIBUTES):
         attributes[name] = getattr(header, name)

@@ -12,12 +12,14 @@ from trimesh.visual.material import PBRMaterial
 from twin.cutting.tools import ToolPlan
 from twin.job.job_file import StockTable, ToolTable
 from twin.machine.description.config import Machine
+from twin.machine.description.kinematics import SPINDLE_NOSE, part_carrier
 from twin.machine.model.model import build_spec
 from twin.machine.model.tool_shape import COLLISION_GROUP, VISUAL_GROUP
 from twin.nc.canonical import FloatArray
-from twin.render.scene.placement import ROTARY_TABLE, SPINDLE_NOSE, Placement, place
+from twin.render.scene.placement import Placement, place
 from twin.render.scene.tool_body import PREFIX, ToolBodies
 from twin.render.scene.work_holding import add_work_holding
+from twin.toolpath.part_frame import PartFrame
 from twin.units import MM
 
 COLLISION_PREFIX = "collision "
@@ -113,7 +115,10 @@ class DrawnMachine:
         carrier = int(model.site_bodyid[int(nose.id)])
         return {
             "joints": joints,
-            "part": {"body": ROTARY_TABLE, "matrix": part.T.ravel().tolist()},
+            "part": {
+                "body": model.body(part_carrier(model)).name,
+                "matrix": part.T.ravel().tolist(),
+            },
             "tip": {"body": model.body(carrier).name, "matrix": tip.T.ravel().tolist()},
             "cutter": f"{PREFIX}{self.tool.number}",
             "tool": {
@@ -128,7 +133,7 @@ class DrawnMachine:
 def drawn_machine(
     machine: Machine,
     tool: ToolTable,
-    turn_zero: float,
+    part_frame: PartFrame,
     stock: StockTable | None = None,
     true_zero: FloatArray | None = None,
 ) -> DrawnMachine:
@@ -137,7 +142,7 @@ def drawn_machine(
     Args:
         machine: The machine file.
         tool: What is in the spindle.
-        turn_zero: Rotary value at which the part's frame is parallel to the machine's [deg].
+        part_frame: How the part turns under the tool.
         stock: The blank, for the parallels below it.
         true_zero: Machine coordinates of the part's zero, shape (k,) [mm or deg].
 
@@ -145,9 +150,9 @@ def drawn_machine(
         ConfigError: The model cannot be completed.
     """
     spec = build_spec(machine, tool)
-    placement = place(machine, spec.compile(), tool.length, turn_zero)
+    placement = place(machine, spec.compile(), tool.length, part_frame)
     if stock is not None and true_zero is not None:
-        corner = true_zero[:3] - np.array([*machine.part_frame.center, 0.0])
+        corner = part_frame.program_zero(true_zero)
         add_work_holding(spec, stock, placement, corner)
     ToolBodies(ToolPlan((tool,)), machine.file.spindle.flange_diameter).add_to(spec)
     return DrawnMachine(spec.compile(), machine, placement, tool)

@@ -6,7 +6,7 @@ from twin.cutting.cut import CutResult
 from twin.cutting.cut_watch import CutSlip
 from twin.job.job_file import JobFile, ToleranceTable
 from twin.run.machining import Machining
-from twin.run.notices import Notice
+from twin.run.messages import Notice
 from twin.run.program_watch import ProgramWatch, ToothFeed
 
 LEAST_CUT_MM3 = 1e-3

@@ -14,15 +14,17 @@ from twin.machine.watching.travel import soft_limit_alarm
 from twin.nc.canonical import Chunk, FloatArray, Function
 from twin.nc.text.diagnostics import Diagnostic
 from twin.run.layout import start_position
-from twin.run.messages import speed_notice
-from twin.run.notices import shown
+from twin.run.messages import shown, speed_notice
 from twin.run.preparation import Preparation
 from twin.run.program_watch import ProgramWatch
-from twin.run.stages import StageClock
+from twin.run.progress import StageClock
 from twin.run.waits import with_waits
 
 MOVES_IN_MEMORY = 200_000
 """Of a longer program the further moves lie in a file, at some 200 bytes each: memory stays bounded."""
+
+_WITHIN = (0.0, 0.381966, 1.0)
+"""Fractions of a move at which the direction of the tool is looked at: whole turns come back to where they began."""
 
 NOTICES_KEPT = 100
 """Lines whose speed of the spindle was limited that are told."""
@@ -105,6 +107,7 @@ class DryRun:
         summary: What the program says beside its moves.
         watch: What it tells that no axis feels.
         lines_never_run: How many lines with motion it never came to.
+        tilts: Whether the tool ever stands off the part's Z.
     """
 
     program: InterpretedProgram
@@ -113,6 +116,7 @@ class DryRun:
     summary: ProgramSummary
     watch: ProgramWatch
     lines_never_run: int
+    tilts: bool = False
 
     @property
     def moves(self) -> int:
@@ -137,6 +141,7 @@ def interpret_all(preparation: Preparation, part_zero: FloatArray, clock: StageC
     builder = SummaryBuilder(preparation.job.file, preparation.spindle)
     watch = ProgramWatch(preparation.job.file, preparation.spindle)
     limited: dict[int, str] = {}
+    frame, tilts = preparation.machine.part_frame.at(part_zero, 0.0), False
     chunks: Iterable[Chunk] = clock.watch("interpret", interpretation.chunks())
     for chunk in chunks:
         program.add(chunk)
@@ -145,6 +150,9 @@ def interpret_all(preparation: Preparation, part_zero: FloatArray, clock: StageC
         for event in chunk.events:
             if isinstance(event, Function) and (said := preparation.spindle.limited_by(event)):
                 limited.setdefault(event.line, said)
+        if frame.chain is not None and not tilts:
+            start, end = chunk.moves.start + part_zero, chunk.moves.end + part_zero
+            tilts = any(frame.tilts(start + u * (end - start)) for u in _WITHIN)
         if alarm is None:
             alarm = soft_limit_alarm(preparation.machine, chunk.moves, part_zero)
     return DryRun(
@@ -165,4 +173,5 @@ def interpret_all(preparation: Preparation, part_zero: FloatArray, clock: StageC
         summary=builder.summary(),
         watch=watch,
         lines_never_run=len(interpretation.coverage.never_run()),
+        tilts=tilts,
     )

@@ -13,6 +13,7 @@ from twin.machine.model.model import spindle_over_table_mm
 from twin.nc.canonical import FloatArray
 from twin.toolpath.part_frame import PartFrame
 
+_Z = 2
 WORK_HOLDING_HEIGHT = 40.0
 """Height of the jaws or parallels between the rotary table and the stock [mm]."""
 
@@ -36,27 +37,36 @@ def lay_out(job: JobFile, machine: Machine) -> Layout:
 
     An axis that the job's ``part_zero`` names is where that says. Otherwise program zero lies on
     the table's centre line, at the height of the top face of the stock on its work holding;
-    without a stock in the middle of the Z travel.
+    without a stock in the middle of the Z travel. Where the table does not turn about Z, its
+    work-holding surface is no floor: program zero lies in the middle of that.
 
     Raises:
         ConfigError: An axis does not exist, the stock would lie below the table, or its material is not
             known.
     """
-    over_table = spindle_over_table_mm(machine)
-    zero = np.zeros(len(machine.axes))
-    zero[:2] = machine.part_frame.center
-    zero[2] = _default_height(job, machine, over_table)
+    over_table, length = spindle_over_table_mm(machine), job.tools[0].length
+    frame = machine.part_frame
+    zero = frame.rotary_zero(len(machine.axes))
+    lies = frame.table_about(_Z) is not None or frame.chain is None
+    if frame.chain is not None:
+        zero[:3] = frame.chain.table + length * frame.chain.tool
+    if lies:
+        zero[2] = _default_height(job, machine, over_table)
     _write_axes(zero, job.part_zero, machine, "part_zero")
-    _require_stock_above_table(job, float(zero[2]), over_table)
-    return Layout(zero, machine.part_frame.at(zero), _blank(job, machine, zero, over_table))
+    if lies:
+        _require_stock_above_table(job, float(zero[2]), over_table)
+    frame = frame.at(zero, length)
+    return Layout(zero, frame, _blank(job, frame, zero, over_table))
 
 
-def _blank(job: JobFile, machine: Machine, zero: FloatArray, over_table: float) -> Blank | None:
+def _blank(job: JobFile, frame: PartFrame, zero: FloatArray, over_table: float) -> Blank | None:
     if job.stock is None:
         return None
     size = job.stock.extent
-    x, y, z = np.array(job.stock.position) + zero[:3] - np.array([*machine.part_frame.center, 0.0])
+    x, y, z = np.array(job.stock.position) + frame.program_zero(zero)
     top = z + over_table - job.tools[0].length
+    if frame.chain is not None:
+        x, y, top = frame.chain.table_axes.T @ (np.array([x, y, z]) - frame.chain.table)
     weight = blank_weight(job.stock)
     return Blank(
         size,

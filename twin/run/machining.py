@@ -7,7 +7,6 @@ import numpy as np
 
 from twin.cutting.cut import CutResult, Cutter
 from twin.cutting.events import CutEvent
-from twin.cutting.forces.load_log import LoadLog
 from twin.cutting.inspection import Inspection, inspect
 from twin.cutting.nominal import NominalGouge, NominalWatch
 from twin.cutting.part import write_stl
@@ -21,18 +20,20 @@ from twin.machine.simulation.tool_changes import REMEDY
 from twin.machine.watching.alarms import Alarm
 from twin.nc.canonical import FloatArray
 from twin.recording.form import Samples
+from twin.run.observers import Observer
 from twin.run.program_watch import Stop
 from twin.toolpath.part_frame import PartFrame
 
 
-class Machining:
-    """Cuts the stock of a run chunk by chunk.
+class Machining(Observer):
+    """Cuts the stock of a run chunk by chunk; its alarm is that of what must not meet the stock.
 
     Attributes:
-        loads: The greatest of what the tools felt.
         stopped: The stops at which the tool was in the cut, in order.
         ended_in_cut: Whether the program ended with the tool in the cut.
     """
+
+    stage = "cut"
 
     def __init__(
         self,
@@ -42,6 +43,8 @@ class Machining:
         part_frame: PartFrame,
         part_zero: FloatArray,
         stops: Sequence[Stop] = (),
+        *,
+        tilts: bool = False,
     ) -> None:
         """Lay the blank on the table.
 
@@ -52,18 +55,18 @@ class Machining:
             part_frame: How the part turns under the tool.
             part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
             stops: Where the program stops spindle or tool, in order.
+            tilts: The tool stands off the part's Z, where no height map can be cut: nothing is.
         """
         self.stopped: list[Stop] = []
         self.ended_in_cut = False
         self._stops = list(stops)
         self._summary = summary
-        self.loads = LoadLog()
-        self._zero = part_zero[:3] - np.array([*part_frame.center, 0.0])
+        self._zero = part_frame.program_zero(part_zero)
         self._cutter: Cutter | None = None
         self._nominal: NominalWatch | None = None
         self._gouge_um = None if job.nominal is None else job.nominal.gouge_um
         self._gouge_stops = job.nominal is not None and job.nominal.gouge == "alarm"
-        if job.stock is not None:
+        if job.stock is not None and not tilts:
             head = HeadShape(model).above_tip
             self._cutter = Cutter(
                 job.stock, summary.tools, part_frame, part_zero, halts=True, head=head
@@ -82,15 +85,11 @@ class Machining:
             return None
         return inspect(self._cutter.map, self._nominal.surface, self._gouge_um)
 
-    def add(self, samples: Samples) -> tuple[Samples, Alarm | None]:
-        """Cut along a chunk.
-
-        Returns:
-            The samples up to the first alarm, and that alarm.
-        """
+    def add(self, samples: Samples) -> Samples:
+        """Cut along a chunk; see ``Observer``."""
         cutter = self._cutter
         if cutter is None:
-            return samples, None
+            return samples
         move = samples.setpoint.move
         rapid = self._summary.is_rapid(move)
         cutter.add(samples, rapid, standing(self._summary, samples.setpoint))
@@ -98,12 +97,13 @@ class Machining:
         found = None if self._nominal is None else self._nominal.look(samples)
         if found is not None and self._gouge_stops:
             gouge, sample = found
-            return samples[: sample + 1], gouge_alarm(gouge, cutter.plan.at(int(move[sample])))
-        alarm = self._alarm()
-        if alarm is None:
-            return samples, None
-        end = int(np.searchsorted(samples.setpoint.time, alarm.time_s, side="right"))
-        return samples[:end], alarm
+            self.alarm = gouge_alarm(gouge, cutter.plan.at(int(move[sample])))
+            return samples[: sample + 1]
+        self._note_alarm()
+        if self.alarm is None:
+            return samples
+        end = int(np.searchsorted(samples.setpoint.time, self.alarm.time_s, side="right"))
+        return samples[:end]
 
     def _look_at_stops(self, samples: Samples) -> None:
         """See whether the tool is in the cut where the program stops it, within a chunk."""
@@ -123,39 +123,36 @@ class Machining:
         """What cuts the stock; None without one."""
         return self._cutter
 
-    def end_program(self) -> Alarm | None:
-        """The alarm of a tool that comes behind the last move and stands in the part then."""
+    def end_program(self) -> None:
+        """Look at the tools that come behind the last move, which may be in the part then."""
         if self._cutter is not None:
             for stop in self._stops:
                 self._note_stop(stop, np.inf)
             self.ended_in_cut = not self.stopped[-1:] and self._cutter.watch.engaged(np.inf)
             self._cutter.end_program()
-        return self._alarm()
+            self._note_alarm()
 
-    def _alarm(self) -> Alarm | None:
+    def _note_alarm(self) -> None:
         cutter = self._cutter
-        if cutter is None or cutter.halted is None:
-            return None
-        return stock_alarm(cutter.halted, cutter.tool, cutter.plan.before(cutter.tool))
+        if cutter is not None and cutter.halted is not None:
+            self.alarm = stock_alarm(cutter.halted, cutter.tool, cutter.plan.before(cutter.tool))
 
     def picture(self) -> bytes:
         """The part from above by now, PNG; empty without a stock."""
         return b"" if self._cutter is None else part_picture(self._cutter.map)
 
-    def finish(self, out: Path | None) -> CutResult | None:
-        """What the cut came to; the part is written as ``part.stl`` into a folder, if one is given.
-
-        Returns:
-            None without a stock.
+    def write_part(self, folder: Path) -> None:
+        """Write the part as ``part.stl``, if there is a stock.
 
         Raises:
-            OSError: The part cannot be written.
+            OSError: It cannot be written.
         """
-        if self._cutter is None:
-            return None
-        if out is not None:
-            write_stl(self._cutter.map, out / "part.stl", self._zero)
-        return self._cutter.result()
+        if self._cutter is not None:
+            write_stl(self._cutter.map, folder / "part.stl", self._zero)
+
+    def result(self) -> CutResult | None:
+        """What the cut came to; None without a stock."""
+        return None if self._cutter is None else self._cutter.result()
 
 
 def gouge_alarm(gouge: NominalGouge, tool: ToolTable) -> Alarm:

@@ -1,12 +1,14 @@
-"""Alarms, near misses and broken tolerances shown as errors of a program: place, caret, text."""
+"""What is said of a program's lines: alarms, near misses, broken tolerances and warnings, with place and caret."""
 
+import dataclasses
 import re
+from collections.abc import Iterable, Iterator
 
 from twin.compare.verdict import Reason
 from twin.machine.watching.alarms import Alarm, NearMiss
 from twin.machine.watching.clearance import TOUCH
 from twin.nc.functions import SPINDLE_LIMITED
-from twin.nc.text.diagnostics import Diagnostic, Severity
+from twin.nc.text.diagnostics import Diagnostic, ProgramError, Severity
 from twin.nc.text.source import Source
 
 _FIRST_WORD = re.compile(r"\S+")
@@ -107,3 +109,35 @@ def at_line(
         width=1 if found is None else max(found.end() - found.start(), 1),
         source=text,
     )
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Notice:
+    """One warning of a run.
+
+    Attributes:
+        code: Its name in ``twin explain``.
+        line: Source line of the program; 0 where it concerns the whole program.
+        message: What was found, in one sentence.
+    """
+
+    code: str
+    line: int
+    message: str
+
+    def diagnostic(self, source: Source) -> Diagnostic:
+        """The notice at its line of the program."""
+        return at_line(source, self.line, self.code, self.message, severity="warning")
+
+
+def shown(notices: Iterable[Notice], source: Source, *, strict: bool) -> Iterator[Diagnostic]:
+    """Notices as warnings of a program, by line.
+
+    Raises:
+        ProgramError: There is one, and ``strict`` makes it an error.
+    """
+    for notice in sorted(notices, key=lambda each: (each.line, each.code)):
+        warning = notice.diagnostic(source)
+        if strict:
+            raise ProgramError(dataclasses.replace(warning, severity="error"))
+        yield warning

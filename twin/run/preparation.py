@@ -115,6 +115,7 @@ def _with_keys(job: Job, keys: Mapping[str, object]) -> Job:
 
 def _with_functions(made: Preparation, reading: AssumedReading) -> Preparation:
     """A raw program whose M codes that nobody knows do nothing."""
+    reading = reading.as_read_by(made.dialect, made.settings)
     unknown = unknown_functions(made.source, made.dialect, frozenset(made.settings.m_functions))
     if not unknown:
         return dataclasses.replace(made, reading=reading)

@@ -18,7 +18,7 @@ from twin.nc.functions import (
     SpindleState,
 )
 from twin.nc.interpreter import Interpretation
-from twin.run.notices import Notice
+from twin.run.messages import Notice
 
 
 @dataclasses.dataclass(frozen=True, slots=True)

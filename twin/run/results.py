@@ -4,14 +4,16 @@ import dataclasses
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from twin.compare.report.report import Report, write_report
 from twin.compare.result import RunSummary, result, write_result
 from twin.cutting.forces.materials import kienzle
 from twin.job.job_file import StockTable
 from twin.run.outcome import Outcome
 from twin.run.run import Run
+
+if TYPE_CHECKING:
+    from twin.compare.report.report import Report
 
 STILL_NAME = "still.png"
 """Picture of a run's end."""
@@ -43,6 +45,9 @@ def write_results(
         folder: Where the files go; stills that were drawn there are put on the page.
         further: What ``result.json`` says besides.
     """
+    # Its plots load Matplotlib, which is not waited for before a run.
+    from twin.compare.report.report import write_report
+
     content = {**result_of(run, outcome), **further}
     moments = [
         (f"Line {alarm.line}, {alarm.time_s:.3f} s: {alarm.message}", folder / ALARM_STILL_NAME)
@@ -67,7 +72,7 @@ def report_of(
     outcome: Outcome,
     content: Mapping[str, Any],
     stills: Sequence[tuple[str, Path]] = (),
-) -> Report:
+) -> "Report":
     """What the page about a run is made of.
 
     Args:
@@ -76,6 +81,8 @@ def report_of(
         content: The content of ``result.json``.
         stills: Pictures for the page, with what each shows.
     """
+    from twin.compare.report.report import Report
+
     return Report(
         header=run.header(),
         source=run.preparation.source.lines,

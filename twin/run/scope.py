@@ -100,12 +100,12 @@ def scope_of(
     """
     file, watch = job.file, dry_run.watch
     watched = [DRIVES, COLLISIONS]
-    watched += [STOCK] if file.stock is not None else []
+    watched += [STOCK] if file.stock is not None and not dry_run.tilts else []
     watched += [FORCES] if forces else []
-    watched += [WALLS] if file.nominal is not None else []
+    watched += [WALLS] if file.nominal is not None and not dry_run.tilts else []
     watched += sorted({check.what for check in checks})
     blind = (
-        *_blind(file, forces=forces),
+        *_blind(file, forces=forces, tilts=dry_run.tilts),
         *(_silent_spindle(file, watch)),
         *(Unwatched(reason.what, reason.message) for reason in unjudged),
         *(
@@ -126,9 +126,10 @@ def scope_of(
     )
 
 
-def _blind(job: JobFile, *, forces: bool) -> Iterator[Unwatched]:
-    if job.stock is None:
-        yield Unwatched("stock, forces and walls", "the job has no [stock]")
+def _blind(job: JobFile, *, forces: bool, tilts: bool) -> Iterator[Unwatched]:
+    if job.stock is None or tilts:
+        why = "the job has no [stock]" if job.stock is None else _TILTS
+        yield Unwatched("stock, forces and walls", why)
         return
     if not forces:
         yield Unwatched(FORCES, _why_no_forces(job))
@@ -150,7 +151,7 @@ def _why_no_forces(job: JobFile) -> str:
         return "the stock has no material"
     if job.cutting_force != "teeth":
         return f'cutting_force is "{job.cutting_force}"'
-    return "neither program nor job says how fast the spindle turns"
+    return "neither program nor job says how fast the spindle turns, or the machine turns the part about more than Z"
 
 
 def nothing_judged(
@@ -176,6 +177,7 @@ def nothing_judged(
             yield Reason(key, message, 0, 0.0)
 
 
+_TILTS = "the tool comes to the part from several sides, and a height map is cut from one"
 _NO_FIGURE = "the run holds nothing that it could be held against"
 _WHY = {
     "circular_deviation_um": "the program has no arc of 90 degrees or more with the table at rest",

@@ -19,7 +19,7 @@ from starlette.routing import Route
 
 from twin.serve.agent import LEAST_INTERVAL_MS, REQUESTS, Agent, Query, RequestError
 from twin.serve.forms import Form, accepted_form
-from twin.web.guard import LOCAL_NAMES
+from twin.web.origin_check import LOCAL_NAMES
 
 _CODES = {404: "INVALID_URI", 405: "UNSUPPORTED"}
 MS_PER_S = 1000.0

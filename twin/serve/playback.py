@@ -62,10 +62,33 @@ class Production(NamedTuple):
 
 
 class Tick(NamedTuple):
-    """What is to be observed at a moment: seconds since the start, values by data item."""
+    """What is to be observed at a moment.
+
+    Attributes:
+        elapsed_s: Since the start [s].
+        values: By data item.
+        run_s: Where in the run of the part the machine is [s]; None: it does not run.
+    """
 
     elapsed_s: float
     values: Mapping[str, Value]
+    run_s: float | None = None
+
+
+class Playhead:
+    """Where in the run of its part the machine is.
+
+    Attributes:
+        time_s: The time [s].
+    """
+
+    def __init__(self) -> None:
+        self.time_s = 0.0
+
+    def move(self, tick: Tick) -> None:
+        """The machine has come to another moment."""
+        if tick.run_s is not None:
+            self.time_s = tick.run_s
 
 
 def coolant_of(chunks: Iterable[Chunk]) -> Steps[bool]:
@@ -123,7 +146,7 @@ def _parts(production: Production, recording: Recording | None) -> Iterator[Tick
         began = now
         for tick in _motion(production, recording):
             now = began + tick.elapsed_s
-            yield Tick(now, tick.values)
+            yield Tick(now, tick.values, tick.elapsed_s)
         if production.alarms:
             alarm = production.alarms[0]
             now = max(now, began + alarm.time_s)
@@ -188,12 +211,13 @@ def _path_feed(samples: Samples, frame: PartFrame, before: Samples | None) -> Fl
     return np.divide(way, time, out=np.zeros(len(way)), where=time > 0.0)
 
 
-async def feed(agent: Agent, machine: Iterator[Tick]) -> None:
+async def feed(agent: Agent, machine: Iterator[Tick], playhead: Playhead | None = None) -> None:
     """Let an agent observe a machine, as the twin's clock goes on; ends when it is cancelled.
 
     Args:
         agent: What observes.
         machine: What is to be observed, in order of time.
+        playhead: Moves with it; None: nobody looks on.
     """
     for number, tick in enumerate(machine):
         while tick.elapsed_s > agent.clock.elapsed_s():
@@ -201,3 +225,5 @@ async def feed(agent: Agent, machine: Iterator[Tick]) -> None:
         if number % _TICKS_AT_ONCE == 0:
             await asyncio.sleep(0)
         agent.observe(tick.elapsed_s, tick.values)
+        if playhead is not None:
+            playhead.move(tick)

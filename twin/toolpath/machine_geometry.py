@@ -62,7 +62,12 @@ class MachineGeometry:
 
     def __bool__(self) -> bool:
         """Whether there is any error."""
-        return bool(self.terms) or any(self.center_offset) or any(self.tilt)
+        return bool(self.terms) or self.has_table
+
+    @property
+    def has_table(self) -> bool:
+        """Whether the axis of a table is off."""
+        return any(self.center_offset) or any(self.tilt)
 
     def as_text(self) -> str:
         """All of it as JSON; empty without errors."""

@@ -8,18 +8,25 @@ A move over its fraction u from 0 to 1 is, in machine axes measured from the tab
 
     P(u) = Rz(turn + u turn_rate) p(u)
 
-Other rotary axes than the table's, and linear axes beyond X Y Z, do not move the tool against the
-part; they have a following error but no contour error.
+Linear axes beyond X Y Z do not move the tool against the part; they have a following error but no
+contour error.
+
+On a machine that is more than a table about Z the moves are laid out as its chain of joints
+(``twin.kinematics``) carries them: where the rotary axes stand still they are lines and arcs in the part;
+where these move, every joint has its coordinate as a function of u.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from twin.nc.canonical import CodeArray, FloatArray, Moves, Shape
+from twin.kinematics import Kinematics, with_rotary_at_rest
+from twin.nc.canonical import SPATIAL_AXES, CodeArray, FloatArray, Moves, Shape
+from twin.toolpath.nearest_kernels import derivatives
 from twin.toolpath.part_frame import PartFrame
+from twin.units import DEGREE
 
-LINE, CIRCLE, CURVE = 0, 1, 2
+LINE, CIRCLE, CURVE, CHAIN = 0, 1, 2, 3
 """How the nearest point is found: closed form for the first two, Newton's method for the rest."""
 
 
@@ -27,7 +34,7 @@ class PathColumns(NamedTuple):
     """The geometry of n moves in the part's frame; every column is C-contiguous.
 
     Attributes:
-        kind: ``LINE``, ``CIRCLE`` (an arc without lead) or ``CURVE``, shape (n,).
+        kind: ``LINE``, ``CIRCLE`` (an arc without lead), ``CURVE``, or ``CHAIN`` where a chain turns, shape (n,).
         origin: Start of a line, centre of an arc at its start, shape (n, 3) [mm].
         along: What is added linearly over the move, shape (n, 3) [mm].
         first: From the centre to the start, shape (n, 3) [mm]; 0 for lines.
@@ -36,6 +43,11 @@ class PathColumns(NamedTuple):
         turn: How far the table has turned the part at the start, shape (n,) [rad].
         turn_rate: How far the table turns during the move, shape (n,) [rad].
         facing: Cosine and sine of ``turn``, shape (n, 2).
+        tip: Of ``CHAIN``: where the tip is with all axes at zero, shape (n, 3) [mm].
+        begin: Where each of m joints begins; of X, Y and Z nothing, shape (n, m) [rad or mm].
+        rate: How far it moves during the move, shape (n, m) [rad or mm].
+        joint: What each joint does: the number of X, Y or Z, or -1; whether it turns; its axis; its anchor [mm];
+            shape (n, m, 8).
     """
 
     kind: CodeArray
@@ -47,16 +59,26 @@ class PathColumns(NamedTuple):
     turn: FloatArray
     turn_rate: FloatArray
     facing: FloatArray
+    tip: FloatArray
+    begin: FloatArray
+    rate: FloatArray
+    joint: FloatArray
 
 
-def path_columns(moves: Moves, frame: PartFrame, part_zero: FloatArray) -> PathColumns:
+def path_columns(
+    moves: Moves, frame: PartFrame, part_zero: FloatArray, longer: FloatArray | float = 0.0
+) -> PathColumns:
     """Lay out canonical moves for the nearest-point kernels.
 
     Args:
         moves: Moves in part coordinates (program zero).
         frame: How the part turns under the tool.
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
+        longer: How much longer than the first the tool of each move is, shape (n,) [mm]; looked at where a
+            chain tilts it.
     """
+    if frame.chain is not None:
+        return _chain_columns(moves, frame, frame.chain, part_zero, longer)
     shift = part_zero[:3] - np.array([*frame.center, 0.0])
     arc = moves.shape == Shape.ARC
     delta = moves.end[:, :3] - moves.start[:, :3]
@@ -81,6 +103,60 @@ def path_columns(moves: Moves, frame: PartFrame, part_zero: FloatArray) -> PathC
         turn=turn,
         turn_rate=turn_rate,
         facing=np.column_stack([np.cos(turn), np.sin(turn)]),
+        tip=np.zeros((len(moves), 3)),
+        begin=np.zeros((len(moves), 0)),
+        rate=np.zeros((len(moves), 0)),
+        joint=np.zeros((len(moves), 0, 8)),
+    )
+
+
+def _chain_columns(
+    moves: Moves,
+    frame: PartFrame,
+    chain: Kinematics,
+    part_zero: FloatArray,
+    longer: FloatArray | float,
+) -> PathColumns:
+    """The columns of a machine that is more than a table about Z."""
+    count, arc = len(moves), moves.shape == Shape.ARC
+    start = frame.counted(moves.start + part_zero)
+    delta = moves.end - moves.start
+    shift = frame.counted(part_zero[None])[0, :3]
+    normal = np.where(arc[:, None], moves.normal, 0.0)
+    first = np.where(arc[:, None], moves.start[:, :3] - moves.center, 0.0)
+    lead = np.einsum("ij,ij->i", delta[:, :3], normal)
+    origin = np.where(arc[:, None], moves.center + shift, start[:, :3])
+    along = np.where(arc[:, None], lead[:, None] * normal, delta[:, :3])
+    second = np.cross(normal, first)
+    turning = chain.column[chain.rotary]
+    turns = np.any(delta[:, turning] != 0.0, axis=1)
+    at_zero, steps = with_rotary_at_rest(chain, start, longer)
+    still, carried = ~turns[:, None], np.where(turns[:, None, None], np.eye(3), steps)
+
+    def seen(vectors: FloatArray) -> FloatArray:
+        return np.ascontiguousarray(np.einsum("nij,nj->ni", carried, vectors))
+
+    circle = arc & ~np.any(along, axis=1)
+    kind = np.where(turns, CHAIN, np.where(circle, CIRCLE, np.where(arc, CURVE, LINE)))
+    unit = np.where(chain.rotary, DEGREE, np.where(chain.column < len(SPATIAL_AXES), 0.0, 1.0))
+    coordinate = np.where(chain.rotary | (chain.column >= len(SPATIAL_AXES)), -1, chain.column)
+    turns_or_not = chain.rotary.astype(np.float64)
+    joint = np.column_stack([coordinate, turns_or_not, chain.axis, chain.anchor])
+    zeros = np.zeros(count)
+    return PathColumns(
+        kind=kind.astype(np.uint8),
+        origin=seen(origin) + np.where(still, at_zero, 0.0),
+        along=seen(along),
+        first=seen(first),
+        second=seen(second),
+        sweep=np.where(arc, np.deg2rad(moves.sweep), 0.0),
+        turn=zeros,
+        turn_rate=zeros,
+        facing=np.tile([1.0, 0.0], (count, 1)),
+        tip=-chain.tool * np.broadcast_to(longer, count)[:, None],
+        begin=start[:, chain.column] * unit,
+        rate=delta[:, chain.column] * unit,
+        joint=np.tile(joint, (count, 1, 1)),
     )
 
 
@@ -126,6 +202,9 @@ def _at(path: PathColumns, u: float) -> tuple[FloatArray, FloatArray, FloatArray
     slope[:, 0] -= path.turn_rate * point[:, 1]
     slope[:, 1] += path.turn_rate * point[:, 0]
     angle = path.turn + u * path.turn_rate
+    for move in np.flatnonzero(path.kind == CHAIN):
+        seen = derivatives(path, move, u)
+        point[move], slope[move] = seen[:3], seen[3:6]
     speed = np.linalg.norm(slope, axis=1)
     still = np.zeros_like(slope)
     unit = np.divide(slope, speed[:, None], out=still, where=speed[:, None] > 0.0)

@@ -2,7 +2,7 @@
 
 ``path`` is a ``PathColumns``; a place on it is a move number and a fraction from 0 to 1; points
 are in the part's frame [mm]. Lines and circles with the table at rest are solved in closed form;
-helices, and whatever the table turns, by Newton's method kept inside brackets.
+helices, and whatever the table or a chain of joints turns, by Newton's method kept inside brackets.
 """
 
 import math
@@ -10,8 +10,8 @@ import math
 from twin.compilation.compilable import inlined
 from twin.compilation.kernel import kernel
 
-_LINE, _CIRCLE = 0, 1
-"""``twin.toolpath.nearest.LINE`` and ``CIRCLE``."""
+_LINE, _CIRCLE, _CHAIN = 0, 1, 3
+"""``twin.toolpath.nearest.LINE``, ``CIRCLE`` and ``CHAIN``."""
 _RESOLUTION_MM = 1e-9
 """A piece of a curve that can hold nothing nearer by more than this is left out."""
 _STEP_MM = 1e-10
@@ -41,6 +41,8 @@ def derivatives(path, move, u):
     ddx = -sweep * sweep * (cosine * f[0] + sine * s[0])
     ddy = -sweep * sweep * (cosine * f[1] + sine * s[1])
     ddz = -sweep * sweep * (cosine * f[2] + sine * s[2])
+    if path.kind[move] == _CHAIN:
+        return _carried(path, move, u, (px, dx, ddx), (py, dy, ddy), (pz, dz, ddz))
     rate = path.turn_rate[move]
     vx, vy = dx - rate * py, dy + rate * px
     wx = ddx - 2.0 * rate * dy - rate * rate * px
@@ -51,6 +53,64 @@ def derivatives(path, move, u):
         c * vx - t * vy, t * vx + c * vy, dz,
         c * wx - t * wy, t * wx + c * wy, ddz,
     )  # fmt: skip
+
+
+@kernel
+def _carried(path, move, u, x, y, z):
+    """Where a chain of joints carries the tip: point, first and second derivative, nine numbers [mm].
+
+    Args:
+        path: The moves.
+        move: One that a chain turns.
+        u: Fraction of it.
+        x: Coordinate of X with its first and second derivative [mm].
+        y: Of Y.
+        z: Of Z.
+    """
+    px, py, pz = path.tip[move, 0], path.tip[move, 1], path.tip[move, 2]
+    vx, vy, vz, wx, wy, wz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for number in range(path.rate.shape[1]):
+        joint = path.joint[move, number]
+        ax, ay, az = joint[2], joint[3], joint[4]
+        rate = path.rate[move, number]
+        value = path.begin[move, number] + u * rate
+        if joint[1] == 0.0:
+            slope, bend = rate, 0.0
+            if joint[0] == 0.0:
+                value, slope, bend = x
+            elif joint[0] == 1.0:
+                value, slope, bend = y
+            elif joint[0] == 2.0:
+                value, slope, bend = z
+            px, py, pz = px + value * ax, py + value * ay, pz + value * az
+            vx, vy, vz = vx + slope * ax, vy + slope * ay, vz + slope * az
+            wx, wy, wz = wx + bend * ax, wy + bend * ay, wz + bend * az
+            continue
+        px, py, pz = px - joint[5], py - joint[6], pz - joint[7]
+        # About the joint: v + r a x p, and w + 2 r a x v + r² a x (a x p).
+        sx, sy, sz = ay * pz - az * py, az * px - ax * pz, ax * py - ay * px
+        tx, ty, tz = ay * vz - az * vy, az * vx - ax * vz, ax * vy - ay * vx
+        wx += 2.0 * rate * tx + rate * rate * (ay * sz - az * sy)
+        wy += 2.0 * rate * ty + rate * rate * (az * sx - ax * sz)
+        wz += 2.0 * rate * tz + rate * rate * (ax * sy - ay * sx)
+        vx, vy, vz = vx + rate * sx, vy + rate * sy, vz + rate * sz
+        c, s = math.cos(value), math.sin(value)
+        px, py, pz = _turned(px, py, pz, ax, ay, az, c, s)
+        vx, vy, vz = _turned(vx, vy, vz, ax, ay, az, c, s)
+        wx, wy, wz = _turned(wx, wy, wz, ax, ay, az, c, s)
+        px, py, pz = px + joint[5], py + joint[6], pz + joint[7]
+    return px, py, pz, vx, vy, vz, wx, wy, wz
+
+
+@inlined
+def _turned(x, y, z, ax, ay, az, cosine, sine):
+    """A vector turned about an axis (Rodrigues)."""
+    along = (1.0 - cosine) * (ax * x + ay * y + az * z)
+    return (
+        cosine * x + sine * (ay * z - az * y) + along * ax,
+        cosine * y + sine * (az * x - ax * z) + along * ay,
+        cosine * z + sine * (ax * y - ay * x) + along * az,
+    )
 
 
 @inlined
@@ -66,6 +126,9 @@ def _facing(path, move, u):
 @inlined
 def _point_at(path, move, u):
     """The point alone, at a third of the cost of its derivatives [mm]."""
+    if path.kind[move] == _CHAIN:
+        cx, cy, cz, _, _, _, _, _, _ = derivatives(path, move, u)
+        return cx, cy, cz
     f, s, o, a = path.first[move], path.second[move], path.origin[move], path.along[move]
     px, py, pz = o[0] + u * a[0], o[1] + u * a[1], o[2] + u * a[2]
     if path.kind[move] != _LINE:
@@ -228,10 +291,39 @@ def _bounds(path, move):
     speed = straight + sweep * radius
     second = sweep**2 * radius
     third = sweep**3 * radius
+    if path.kind[move] == _CHAIN:
+        far = math.sqrt(o[0] ** 2 + o[1] ** 2 + o[2] ** 2) + straight + radius
+        return _bounds_of_chain(path, move, far, speed, second, third)
     return (
         second + 2.0 * rate * speed + rate**2 * reach,
         third + 3.0 * rate * second + 3.0 * rate**2 * speed + rate**3 * reach,
     )
+
+
+@kernel
+def _bounds_of_chain(path, move, far, speed, second, third):
+    """Largest second and third derivative where a chain turns [mm], from those of X, Y and Z together.
+
+    A joint that turns at a rate r about a point no farther than d adds r d, 2 r v + r² d and
+    3 r w + 3 r² v + r³ d to the bounds v, w and of the third derivative.
+    """
+    tip = path.tip[move]
+    away = math.sqrt(tip[0] ** 2 + tip[1] ** 2 + tip[2] ** 2) + far
+    for number in range(path.rate.shape[1]):
+        joint = path.joint[move, number]
+        rate = abs(path.rate[move, number])
+        if joint[1] == 0.0:
+            if joint[0] < 0.0:
+                away += abs(path.begin[move, number]) + rate
+                speed += rate
+            continue
+        anchor = math.sqrt(joint[5] ** 2 + joint[6] ** 2 + joint[7] ** 2)
+        away += anchor
+        third += 3.0 * rate * second + 3.0 * rate**2 * speed + rate**3 * away
+        second += 2.0 * rate * speed + rate**2 * away
+        speed += rate * away
+        away += anchor
+    return second, third
 
 
 @inlined

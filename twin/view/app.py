@@ -1,28 +1,46 @@
-"""The pages of a recorded run, behind the guard."""
+"""The pages of a recorded run, behind the origin check."""
 
+import asyncio
 import contextlib
 import functools
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+import anyio
 import anyio.to_thread
 from starlette.applications import Starlette
 from starlette.requests import Request
-from starlette.responses import FileResponse, JSONResponse, Response
-from starlette.routing import Mount, Route
+from starlette.responses import FileResponse, HTMLResponse, JSONResponse, Response
+from starlette.routing import Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
+from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from twin.view.recorded_run import RecordedRun
-from twin.web.doorkeeper import Doorkeeper, new_tokens
-from twin.web.guard import ASSETS, Guard
+from twin.web.authentication import Authentication, new_tokens
+from twin.web.origin_check import ASSETS, OriginCheck
 from twin.web.server import WebServer, require_three
 
 ROLE = "viewer"
 PAGE = Path(__file__).resolve().parent / "page"
+FOLLOWED_EVERY_S = 0.04
+"""Between two messages of where a machine is that makes the run again [s]."""
+REPORT_POLICY = (
+    "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:; "
+    "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+)
+"""Of the report, whose scripts and styles are within it: it can load nothing and call nowhere."""
 
 
-def view_app(run: RecordedRun) -> Starlette:
-    """What the page of a run is served; everything is made once, when it is asked for."""
+def view_app(
+    run: RecordedRun, report: Path | None = None, now: Callable[[], float] | None = None
+) -> Starlette:
+    """What the page of a run is served; everything is made once, when it is asked for.
+
+    Args:
+        run: The run.
+        report: Its report, to be read beside it; None: there is none.
+        now: Where in the run a machine is that makes it again [s]; None: none does.
+    """
     samples = functools.cache(run.samples)
     cuts = functools.cache(lambda: b"".join(run.cuts()))
     description = functools.cache(run.description)
@@ -40,7 +58,26 @@ def view_app(run: RecordedRun) -> Starlette:
         return FileResponse(PAGE / "player.html")
 
     async def run_json(_request: Request) -> Response:
-        return JSONResponse(await anyio.to_thread.run_sync(description))
+        found = await anyio.to_thread.run_sync(description)
+        beside = {"has_report": report is not None, "is_live": now is not None}
+        return JSONResponse(found | beside)
+
+    async def report_page(_request: Request) -> Response:
+        if report is None:
+            return Response(status_code=404)
+        text = await anyio.Path(report).read_text("utf-8")
+        text = text.replace("<html ", '<html class="viewed" ', 1)
+        return HTMLResponse(text, headers={"Content-Security-Policy": REPORT_POLICY})
+
+    async def follow(page: WebSocket) -> None:
+        if now is None:
+            await page.close()
+            return
+        await page.accept()
+        with contextlib.suppress(WebSocketDisconnect):
+            while True:
+                await page.send_text(f"{now():.4f}")
+                await asyncio.sleep(FOLLOWED_EVERY_S)
 
     async def machine(request: Request) -> Response:
         number = request.query_params.get("tool", "")
@@ -57,6 +94,8 @@ def view_app(run: RecordedRun) -> Starlette:
 
     routes = [
         Route("/", page),
+        Route("/report.html", report_page),
+        WebSocketRoute("/now", follow),
         Route("/run.json", run_json),
         Route("/samples.bin", bytes_of(samples)),
         Route("/cuts.bin", bytes_of(cuts)),
@@ -69,22 +108,33 @@ def view_app(run: RecordedRun) -> Starlette:
 
 
 @contextlib.contextmanager
-def open_view(run: RecordedRun, port: int = 0, *, framed: bool = False) -> Iterator[str]:
+def open_view(
+    run: RecordedRun,
+    port: int = 0,
+    *,
+    framed: bool = False,
+    report: Path | None = None,
+    now: Callable[[], float] | None = None,
+) -> Iterator[str]:
     """Serve a run on this computer while it is open; gives the page's address.
 
     Args:
         run: The run.
         port: 0: the first free one.
         framed: Whether a page of this computer, such as a notebook, may hold it.
+        report: As for ``view_app``.
+        now: As for ``view_app``.
 
     Raises:
         UsageError: The port is taken, or the view's library is missing.
     """
     require_three()
     server = WebServer(port=port)
-    doorkeeper = Doorkeeper(new_tokens((ROLE,)), server.port)
-    server.start(Guard(view_app(run), doorkeeper, local=server.local, framed=framed))
+    authentication = Authentication(new_tokens((ROLE,)), server.port)
+    server.start(
+        OriginCheck(view_app(run, report, now), authentication, local=server.local, framed=framed)
+    )
     try:
-        yield f"{server.origin}/{ROLE}/#{doorkeeper.tokens[ROLE]}"
+        yield f"{server.origin}/{ROLE}/#{authentication.tokens[ROLE]}"
     finally:
         server.stop()

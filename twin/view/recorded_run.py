@@ -142,7 +142,7 @@ class RecordedRun:
                 return drawn_machine(
                     self._machine,
                     tool,
-                    header.part_frame.turn_zero,
+                    header.part_frame,
                     self._scene.stock,
                     header.part_zero,
                 )

@@ -16,7 +16,7 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from twin.errors import UsageError
 from twin.processor import take_precedence
-from twin.web.guard import ASSETS, LOCAL_NAMES
+from twin.web.origin_check import ASSETS, LOCAL_NAMES
 
 THREE = ASSETS / "three"
 """The view's library: put there by ``scripts/fetch_three.py``, not committed."""

@@ -112,8 +112,10 @@ def test_the_page_needs_no_network(tmp_path: Path):
     Image.new("RGB", (8, 8)).save(tmp_path / "still.png")
     report = dataclasses.replace(report_of(), stills=[("The end", tmp_path / "still.png")])
     page = Page(render_report(report))
-    elsewhere = [a for a in page.addresses if not a.startswith(("data:", "#"))]
+    elsewhere = [a for a in page.addresses if not a.startswith(("data:", "#", "./"))]
     assert elsewhere == ["recording.h5"], "the recording beside the page, for twin view"
+    in_viewer = {a for a in page.addresses if a.startswith("./")}
+    assert all(re.fullmatch(r"\./(#t=[\d.]+)?", address) for address in in_viewer)
     assert sum(a.startswith("data:image/png;base64,") for a in page.addresses) == 1
     urls = set(re.findall(r"https?://[^\s\"'<>]+", page.source))
     assert urls <= {"http://www.w3.org/2000/svg", "http://www.w3.org/1999/xlink"}

@@ -24,7 +24,7 @@ def changed(machine: Machine, axis: str, **fields) -> Machine:
     return Machine(machine.path, MachineFile.model_validate(data))
 
 
-@pytest.mark.parametrize("plane", sorted(PLANES))
+@pytest.mark.parametrize("plane", [plane for plane in PLANES if plane not in ("ZXB", "YZA")])
 def test_a_perfect_machine_draws_a_perfect_circle(plane):
     result = circular_test(shipped_machine(**PERFECT), 50.0, 3000.0, plane)
     assert result.circular_deviation_um < 0.01
@@ -157,10 +157,7 @@ def test_circles_that_the_machine_cannot_run_are_refused_with_what_it_can():
     refuse("up to 3795 mm/min fits", 1.0, 20000.0)
     refuse("does not fit the travel of Y; up to 300 mm does", 301.0, 1000.0)
     refuse("C is fast enough for 2513 mm/min", 10.0, 3000.0, "XYC")
-    no_table = shipped_machine().file.model_copy(update={"table": None})
-    refuse(
-        "no rotary table", 50.0, 1000.0, "XYC", machine=Machine(shipped_machine().path, no_table)
-    )
+    refuse("no rotary table for YZA", 50.0, 1000.0, "YZA")
 
 
 def test_the_plot_shows_the_figures(tmp_path):

@@ -11,6 +11,7 @@ from tests.machine.machine_fixtures import line
 from twin.errors import ConfigError, UsageError
 from twin.machine.check import check_machine
 from twin.machine.circle.circular_test import circular_test
+from twin.machine.description.kinematics import in_words
 from twin.machine.load import read_machine
 from twin.machine.model.model import MachineModel, build_spec
 from twin.machine.simulation.simulate import simulate
@@ -97,7 +98,8 @@ def written(
 def test_it_is_read_and_every_axis_follows(tmp_path):
     machine = read_machine(written(tmp_path))
     assert machine.axes.names == ("X", "Y", "Z", "A", "B", "W")
-    assert machine.part_frame.rotary == 4
+    words = in_words(machine.axes.names, machine.kinematics)
+    assert words == "the part turns on B, B on A, A on Y, Y on X; the tool moves in W and Z"
     for axis in range(6):
         points = line(axis, -20.0, 1.0, k=6)
         (samples,) = simulate(machine, MachineModel(machine), [points])
@@ -160,7 +162,6 @@ def test_a_wrong_file_is_refused_with_place_and_hint(tmp_path, old, new, message
     [
         ('<motor name="W" joint="jw"/>', "", "has no actuator 'W'; it has X, Y, Z, A, B"),
         ('<site name="table_top"/>', "", "has no site 'table_top'; it has spindle_nose"),
-        ("rotary_table", "turner", "has no body 'rotary_table'"),
         ('mass="5"', 'mass="0"', "mass and inertia of moving bodies"),
         ('type="box"', 'type="mesh" mesh="cast"', "mesh 'cast' not found"),
         ("<worldbody>", '<asset><mesh name="c" file="c.stl"/></asset><worldbody>', "c.stl'"),

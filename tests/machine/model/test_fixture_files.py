@@ -138,7 +138,7 @@ def test_in_the_faceplate_or_in_another_fixture_it_is_refused(vise: FixtureTable
 
 
 def test_it_is_seen_in_film_and_page(vise: FixtureTable) -> None:
-    drawn = drawn_machine(mill(vise), TOOL, 0.0, None, np.zeros(4))
+    drawn = drawn_machine(mill(vise), TOOL, mill(vise).part_frame, None, np.zeros(4))
     model = drawn.model
     assert int(model.mesh_facenum[int(model.geom("vise seen").dataid[0])]) == 28
     scene = trimesh.load_scene(io.BytesIO(drawn.glb()), file_type="glb")

@@ -5,7 +5,8 @@ import hypothesis.strategies as st
 import mujoco
 import pytest
 
-from twin.machine.model.model import SPINDLE_NOSE, TABLE_TOP, height_between
+from twin.machine.description.kinematics import SPINDLE_NOSE, TABLE_TOP
+from twin.machine.model.model import height_between
 
 NUMBER = st.floats(-2.0, 2.0).map(lambda value: round(value, 3))
 

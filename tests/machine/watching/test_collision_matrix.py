@@ -14,7 +14,7 @@ from twin.job.job_file import ToolTable
 from twin.machine.description.config import Blank, Machine
 from twin.machine.load import read_machine
 from twin.machine.model.clamping import refuse_overlaps
-from twin.machine.model.model import ROTARY_TABLE, MachineModel, clearance_model
+from twin.machine.model.model import MachineModel, clearance_model
 from twin.machine.model.tool_shape import COLLISION_GROUP, TOOL_SIDE
 from twin.machine.watching.clearance import Clearance
 from twin.units import MM
@@ -57,12 +57,13 @@ def built_to_pass(model: mujoco.MjModel, one: int, two: int) -> bool:
     return not names.intersection(CLAMPED) and (not any(tool) or gantry)
 
 
-PAIRS = [*all_pairs("mill4"), *all_pairs("mill4_light")]
+MACHINES = ("mill4", "mill4_light", "mill3", "mill4a", "mill5")
+PAIRS = [pair for name in MACHINES for pair in all_pairs(name)]
 
 
 @pytest.fixture(scope="module")
 def machines() -> dict[str, tuple[Machine, mujoco.MjSpec]]:
-    models = {name: clamped(name) for name in ("mill4", "mill4_light")}
+    models = {name: clamped(name) for name in MACHINES}
     return {name: (model.machine, model.spec) for name, model in models.items()}
 
 
@@ -114,7 +115,7 @@ def _half_height(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> float
 
 def test_every_body_of_the_machine_is_in_the_matrix() -> None:
     named = {solid for _, one, two in PAIRS for solid in (one, two)}
-    for name in ("mill4", "mill4_light"):
+    for name in MACHINES:
         for geom in clamped(name).spec.geoms:
             assert geom.group != COLLISION_GROUP or geom.name in named, geom.name
 
@@ -139,4 +140,4 @@ def test_a_jaw_that_touches_the_stock_is_none() -> None:
     jaw = FixtureTable(name="jaw", size=(40.0, 20.0, 45.0), position=(0.0, -30.0, 0.0))
     model = clamped("mill4", jaw)
     refuse_overlaps(model)
-    assert ROTARY_TABLE in [body.name for body in model.spec.bodies]
+    assert "jaw" in [geom.name for geom in model.spec.geoms]

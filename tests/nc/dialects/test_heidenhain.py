@@ -65,6 +65,20 @@ def test_numbers(says: str) -> None:
     assert made.position["X"] == pytest.approx(expected, abs=1e-9)
 
 
+def test_fn_18_numbers_axes_as_the_control_does() -> None:
+    made = read(
+        "L X+10 C+30 FMAX\nFN 18: SYSREAD Q1 = ID270 NR1 IDX6\nFN 18: SYSREAD Q2 = ID240 NR1 IDX3\nL X+Q1 Y+Q2 F100"
+    )
+    assert made.position["X"] == pytest.approx(30.0)
+    assert made.position["Y"] == pytest.approx(-290.0)
+
+
+def test_a_parameter_behind_the_definition_of_a_cycle_is_no_word_of_it() -> None:
+    cycle = DRILL.replace(" Q2", " ~\nQ2").replace("Q201=-15", "Q201=-5").rstrip()
+    made = read(f"{cycle}\nQ201 = -3\nL X+1 FMAX M99")
+    assert made.moves.end[:, 2].min() == pytest.approx(-3.0)
+
+
 # --- where paths end
 
 ROOT3 = math.sqrt(3.0)

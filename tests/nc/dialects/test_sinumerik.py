@@ -240,3 +240,9 @@ def test_random_chains_of_frames_are_products_of_matrices(seed: int) -> None:
     position = good("\n".join([*lines, "M30"]), "sinumerik").position
     wanted = frame @ np.array([*place, 1.0])
     assert [position[name] for name in "XYZ"] == pytest.approx(wanted[:3].tolist(), abs=1e-6)
+
+
+def test_rndm_0_still_rounds_the_corner_before_its_block() -> None:
+    text = "G1 X0 Y0 F100\nX20 RNDM=3\nY20\nX0 RNDM=0\nY0"
+    moves = good(f"G54 G90\n{text}\nM30", "sinumerik").moves
+    assert moves.sweep.tolist() == [0.0, 90.0, 0.0, 90.0, 0.0, 0.0]

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from tests.nc.running import MILL, SETTINGS, WITH_TABLES
 from tests.nc.test_golden import PROGRAMS, RULES, interpretation_of
-from twin.nc.canonical import concatenate
+from twin.nc.canonical import NO_BLOCK_NUMBER, concatenate
 from twin.nc.control.executor import Executor
 from twin.nc.control.settings import ControlSettings
 from twin.nc.dialects import DIALECTS, dialect_named
@@ -19,7 +19,7 @@ from twin.nc.interpreter import Interpretation
 from twin.nc.line_kernel.choice import compiled_kernel
 from twin.nc.line_kernel.kernel import run_lines
 from twin.nc.line_kernel.plain_state import LineKernel, line_format
-from twin.nc.line_kernel.reading import AXIS, NOT_PLAIN, read_line
+from twin.nc.line_kernel.reading import AXIS, NOT_PLAIN, NUMBER, read_line
 from twin.nc.text.diagnostics import ProgramError
 from twin.nc.text.lexer import Lexer
 from twin.nc.text.reporter import Reporter
@@ -122,6 +122,46 @@ def test_random_lines_mean_the_same_in_the_kernel(dialect: str, seed: int) -> No
     assert outcome(source, dialect, settings, run_lines) == python
 
 
+KLARTEXT = (
+    "CC X+0 Y+0|C X+0 Y+0 DR+|CYCL DEF 7.1 X+5|CYCL DEF 8.1 X|CYCL DEF 10.1 IROT+30|CYCL DEF 11.1 SCL 0.5|M136|M137|M126"
+    "|M127|L X+1 RL F100|L X+9 Y-9 R0|L FU0.2|F200|F0|S500 M3|TOOL CALL 1 Z S900 DL+1|LBL 1|CALL LBL 1 REP 1|; a ~|* - b"
+    "|CYCL DEF 32.1 T0.05|CYCL DEF 200 DRILL Q200=2 Q201=-3 Q206=100 Q202=3 Q203=0|M89|M99|L M140 MB 2|L IX+1|X+4 Y+5|L"
+    "|12 Z+3|L X+1,5 Y+2|/ L X+3|L C+30|Q1 = 5|L X+Q1|LN X+1|L Z-5 FMAX M91|L X+5 FMAX|APPR LT X+1 Y+1 LEN2 R0|DEP LT LEN2"
+)
+
+
+def klartext_program(chance: random.Random) -> str:
+    """The same in Klartext."""
+    lines = [
+        "BEGIN PGM P MM" if chance.random() < 0.9 else "BEGIN PGM P INCH",
+        "L X+0 Y+0 Z+0 R0 F500",
+    ]
+    for row in range(chance.randrange(5, 50)):
+        words = [
+            f"{axis}{chance.uniform(-50.0, 50.0):+.3f}" for axis in "XYZ" if chance.random() < 0.6
+        ]
+        words += [f"F{chance.randrange(10, 3000)}"] if chance.random() < 0.2 else []
+        words += (
+            [chance.choice(("R0", "FMAX", "R0 FMAX", "; c", "~"))] if chance.random() < 0.1 else []
+        )
+        begin = [f"{row}"] if chance.random() < 0.7 else []
+        line = chance.choice((" ", " ", "  ", "\t")).join([*begin, "L", *words])
+        lines.append(line if chance.random() < 0.85 else chance.choice(KLARTEXT.split("|")))
+    text = "\n".join([*lines, "END PGM P MM", ""])
+    if chance.random() < 0.3:
+        at, slip = chance.randrange(len(text)), chance.choice("LXYZ-+.,0123 QRFIC([;~/%é\t")
+        text = text[:at] + slip + text[at + chance.randrange(2) :]
+    return text
+
+
+@given(seed=st.integers(0, 2**32))
+def test_random_lines_of_klartext_mean_the_same_in_the_kernel(seed: int) -> None:
+    chance = random.Random(seed)  # noqa: S311 (the same)
+    source = source_from_text(klartext_program(chance))
+    python = outcome(source, "heidenhain", WITH_TABLES, None)
+    assert outcome(source, "heidenhain", WITH_TABLES, run_lines) == python
+
+
 @pytest.mark.seconds("compiles the kernel where it was not compiled before")
 @pytest.mark.parametrize("dialect", WITH_CODES)
 def test_the_compiled_kernel_computes_the_same_bits(dialect: str) -> None:
@@ -130,6 +170,15 @@ def test_the_compiled_kernel_computes_the_same_bits(dialect: str) -> None:
         source = source_from_text(cam_program(chance, dialect))
         python = outcome(source, dialect, POINTED, None)
         assert outcome(source, dialect, POINTED, compiled_kernel()) == python
+
+
+@pytest.mark.seconds("compiles the kernel where it was not compiled before")
+def test_the_compiled_kernel_computes_the_same_bits_of_klartext() -> None:
+    chance = random.Random(1)  # noqa: S311 (the same)
+    for _ in range(20):
+        source = source_from_text(klartext_program(chance))
+        python = outcome(source, "heidenhain", WITH_TABLES, None)
+        assert outcome(source, "heidenhain", WITH_TABLES, compiled_kernel()) == python
 
 
 @pytest.mark.seconds("interprets every golden program twice")
@@ -175,12 +224,39 @@ def test_a_file_of_lines_runs_in_the_kernel_in_every_dialect(dialect: str) -> No
     assert ran >= 1990
 
 
+def test_a_file_of_klartext_runs_in_the_kernel() -> None:
+    lines = [f"{row} L X{row % 97:+.3f} Y{row % 89:+.3f}" for row in range(1000)]
+    source = source_from_text("\n".join(["BEGIN PGM P MM", "L Z+5 F100", *lines, "END PGM P MM"]))
+    ran = 0
+
+    def counting(*arguments: object) -> int:
+        nonlocal ran
+        made = run_lines(*arguments)  # pyright: ignore[reportArgumentType]  # handed on
+        ran += made
+        return made
+
+    outcome(source, "heidenhain", SETTINGS, counting)
+    assert ran >= 990
+
+
+KLARTEXT_LETTERS = st.text("LlXYF1205.+- \t;~,CR", max_size=16)
+
+
+@given(KLARTEXT_LETTERS)
+def test_what_the_kernel_reads_of_klartext_the_reader_reads_as_well(line: str) -> None:
+    assert_read_alike("heidenhain", line)
+
+
 LETTERS = st.text("XYyG1205.+-( *)/%\t#é\v\f\x01", max_size=16)
 
 
 @given(LETTERS)
 def test_what_the_kernel_reads_the_reader_reads_as_well(line: str) -> None:
-    dialect = dialect_named("codesys")  # it has comments of every kind
+    assert_read_alike("codesys", line)  # it has comments of every kind
+
+
+def assert_read_alike(name: str, line: str) -> None:
+    dialect = dialect_named(name)
     control = Executor(dialect, SETTINGS, source_from_text(line))
     values, data = np.zeros(AXIS + len(MILL)), np.frombuffer(line.encode(), np.uint8)
     form = line_format(control)
@@ -190,4 +266,8 @@ def test_what_the_kernel_reads_the_reader_reads_as_well(line: str) -> None:
     blocks = Lexer(dialect, Reporter(source_from_text(line), strict=False)).blocks(line, 1)
     words = [word for block in blocks for word in block.words]
     read = {int(form.roles[ord(word.address) - ord("A")]): word.value for word in words}
+    if form.keyword >= 0:  # its block number is no word
+        for block in blocks:
+            if block.number != NO_BLOCK_NUMBER:
+                read[NUMBER] = block.number
     assert read == {role: values[role] for role in range(len(values)) if seen >> role & 1}

@@ -8,7 +8,7 @@ import pytest
 
 from tests.render.conftest import MODEL, TOOL
 from twin.machine.description.config import Machine
-from twin.render.scene.placement import ROTARY_TABLE, Joints, place, tip_position
+from twin.render.scene.placement import Joints, place, tip_position
 
 reach = st.floats(-200.0, 200.0)
 
@@ -38,12 +38,12 @@ def test_tool_point_is_drawn_where_the_part_frame_says(
     )
     moved = Machine(machine.path, machine.file)
     moved.part_frame = frame
-    placement = place(moved, model, TOOL.length, turn_zero)
+    placement = place(moved, model, TOOL.length, frame)
     position = np.array([x, y, z, c])
     data = mujoco.MjData(model)
     Joints(moved, model).set(data, position)
     mujoco.mj_kinematics(model, data)
-    body = data.body(ROTARY_TABLE)
+    body = data.body("rotary_table")
     seen = placement.points(frame.position(position[None]))[0]
     world = body.xpos + body.xmat.reshape(3, 3) @ seen
     np.testing.assert_allclose(world, tip_position(model, data, TOOL.length), atol=1e-9)
@@ -51,7 +51,9 @@ def test_tool_point_is_drawn_where_the_part_frame_says(
 
 def test_quaternion_is_the_rotation(machine: Machine) -> None:
     model = mujoco.MjModel.from_xml_string(MODEL)
-    placement = place(machine, model, TOOL.length, 15.0)
+    placement = place(
+        machine, model, TOOL.length, dataclasses.replace(machine.part_frame, turn_zero=15.0)
+    )
     matrix = np.zeros(9)
     mujoco.mju_quat2Mat(matrix, placement.quaternion)
     np.testing.assert_allclose(matrix.reshape(3, 3), placement.rotation, atol=1e-12)

@@ -49,3 +49,12 @@ def test_room_and_lines_always_agree(pieces: list[bytes]) -> None:
     if serial.head is not None:
         serial.pop()
         assert serial.free == BUFFER_SIZE
+
+
+def test_a_line_without_an_end_can_be_forgotten_and_gives_its_room_back():
+    buffer = SerialBuffer()
+    buffer.receive(b"G1 X1\nG1 X1")
+    buffer.forget_open()
+    buffer.receive(b"0 F100\n")
+    assert [buffer.pop()[0], buffer.pop()[0]] == [b"G1 X1", b"0 F100"]
+    assert buffer.free == BUFFER_SIZE

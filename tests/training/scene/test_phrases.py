@@ -16,8 +16,12 @@ from twin.training.scene.phrases import PhrasesFile, finding_in, translated
 from twin.training.scene.vocabulary import LANGUAGES, Language
 from twin.training.session.commands import WRONG
 
-ROOM = Path(training.__file__).parent / "session"
-SPEAKERS = ("actions.py", "room.py", "session.py", "tables.py")
+SPEAKERS = [
+    path
+    for folder in ("room", "session")
+    for path in sorted((Path(training.__file__).parent / folder).glob("*.py"))
+    if path.name not in ("commands.py", "script.py")
+]
 RAISED = ("UsageError", "TwinError", "AlarmStandsError")
 OTHERS: list[Language] = [lang for lang in LANGUAGES if lang != "en"]
 UNITS = ("mm", "deg", "N", "N m", "text")
@@ -43,8 +47,8 @@ def sample(node: ast.expr) -> str | None:
 def refusals() -> set[str]:
     """What actions, rooms and sessions say no with, read from their source."""
     found = set()
-    for name in SPEAKERS:
-        for node in ast.walk(ast.parse((ROOM / name).read_text(encoding="utf-8"))):
+    for path in SPEAKERS:
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Name):
                 continue
             if node.func.id in RAISED and node.args:

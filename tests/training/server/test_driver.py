@@ -10,10 +10,10 @@ from twin.training.program import program_run
 from twin.training.program.program_run import BLOCKS_AT_REST, BLOCKS_FOR_PLANNER
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.scene.vocabulary import Words
+from twin.training.score_sheets.score import score_sheet
 from twin.training.server.driver import CAUGHT_UP_AT_ONCE_S, HELD_S, MOST_BEHIND_S, Driver
 from twin.training.session.log import Who
 from twin.training.session.session import Session
-from twin.training.sheets.score import score_sheet
 
 PAGE = 7
 

@@ -1,5 +1,7 @@
 """Every scene's solution and mistake, played with the keys of the real page, faster than real time and without its view.
 
+The solution reaches full points, the mistake fails the tasks that the scene names, and every alarm on the way is translated.
+
 ``TWIN_TEST_BROWSER=firefox`` plays them in that one.
 """
 
@@ -12,7 +14,9 @@ import pytest
 from browsers import CHROMIUM, FIREFOX
 from panel_player import What, browser, play
 
+from twin.training.scene.phrases import translated
 from twin.training.scene.scene_file import scene_names
+from twin.training.scene.vocabulary import LANGUAGES
 from twin.web.server import THREE
 
 if TYPE_CHECKING:
@@ -45,3 +49,7 @@ def opened() -> "Iterator[Browser]":
 def test_a_scene_ends_as_intended(opened: "Browser", scene: str, what: What) -> None:
     played = play(opened, scene, what)
     assert played.intended, str(played)
+    assert bool(played.expected) == (what == "mistake")
+    for message in played.alarms:
+        for language in LANGUAGES:
+            assert (translated(message, language) == message) == (language == "en"), message

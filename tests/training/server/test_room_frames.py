@@ -13,6 +13,7 @@ from twin.training.room.run_settings import path_to_come
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.server.app import RoomApp
 from twin.training.server.attempts import CELLS_ACROSS
+from twin.training.server.connections import MESSAGES, MOST_PAGES, Connections
 from twin.training.server.driver import Driver
 from twin.training.server.frames import (
     Changes,
@@ -22,7 +23,6 @@ from twin.training.server.frames import (
     path_message,
     state_message,
 )
-from twin.training.server.seats import MESSAGES, MOST_PAGES, Seats
 from twin.training.session.session import Session
 
 
@@ -107,44 +107,48 @@ def test_a_typing_error_in_mdi_is_told_in_every_language():
 
 
 def test_the_panel_is_asked_for_and_given():
-    seats = Seats()
-    first, second, trainer = seats.sit("operator"), seats.sit("operator"), seats.sit("trainer")
-    watcher = seats.sit("watcher")
+    connections = Connections()
+    first, second, trainer = (
+        connections.open("operator"),
+        connections.open("operator"),
+        connections.open("trainer"),
+    )
+    watcher = connections.open("watcher")
     assert first is not None
     assert second is not None
     assert trainer is not None
     assert watcher is not None
     start, stop = {"do": "cycle_start"}, {"do": "emergency_stop"}
-    assert [seats.may(one, start) for one in (first, second, trainer, watcher)] == [True, False, True, False]  # fmt: skip
-    assert [seats.may(one, stop) for one in (first, second, trainer, watcher)] == [True, True, True, False]  # fmt: skip
-    assert not seats.may(second, stop | {"pressed": False})
+    assert [connections.allows(one, start) for one in (first, second, trainer, watcher)] == [True, False, True, False]  # fmt: skip
+    assert [connections.allows(one, stop) for one in (first, second, trainer, watcher)] == [True, True, True, False]  # fmt: skip
+    assert not connections.allows(second, stop | {"pressed": False})
     for what in ("give", "keep"):
-        seats.hand_over(second, what)
-    seats.hand_over(watcher, "ask")
-    seats.hand_over(second, "ask")
-    assert seats.may(first, start)
-    assert seats.words(first)["somebody_asks"]
-    seats.hand_over(first, "keep")
-    assert not seats.words(first)["somebody_asks"]
-    seats.hand_over(second, "ask")
-    seats.hand_over(first, "give")
-    assert [seats.may(one, start) for one in (first, second)] == [False, True]
-    seats.leave(second)
-    assert seats.may(first, start)
+        connections.hand_over(second, what)
+    connections.hand_over(watcher, "ask")
+    connections.hand_over(second, "ask")
+    assert connections.allows(first, start)
+    assert connections.words(first)["somebody_asks"]
+    connections.hand_over(first, "keep")
+    assert not connections.words(first)["somebody_asks"]
+    connections.hand_over(second, "ask")
+    connections.hand_over(first, "give")
+    assert [connections.allows(one, start) for one in (first, second)] == [False, True]
+    connections.close(second)
+    assert connections.allows(first, start)
 
 
 def test_there_is_an_end_to_pages_and_to_what_one_may_say():
-    seats = Seats()
-    pages = [seats.sit("watcher") for _ in range(MOST_PAGES + 1)]
+    connections = Connections()
+    pages = [connections.open("watcher") for _ in range(MOST_PAGES + 1)]
     assert pages[-1] is None
-    # Watchers leave seats for who acts.
-    acting = [seats.sit("operator") for _ in range(MOST_PAGES + 1)]
+    # Watchers leave connections for who acts.
+    acting = [connections.open("operator") for _ in range(MOST_PAGES + 1)]
     assert sum(page is not None for page in pages + acting) == MOST_PAGES
     assert acting[0] is not None
-    assert seats.may(acting[0], {"do": "cycle_start"})
+    assert connections.allows(acting[0], {"do": "cycle_start"})
     page = pages[0]
     assert page is not None
-    assert sum(page.may_speak() for _ in range(10_000)) < 2 * MESSAGES
+    assert sum(page.within_rate_limit() for _ in range(10_000)) < 2 * MESSAGES
 
 
 def test_a_path_is_a_head_and_then_its_points():

@@ -29,7 +29,7 @@ pytestmark = [
 
 SIZES = [(1024, 768, 1), (1280, 720, 1), (1366, 768, 1), (1920, 1080, 1), (1280, 720, 2), (820, 1180, 2), (1180, 820, 2)]  # fmt: skip
 INSIDE = """() => [...document.querySelectorAll(
-  "#desk button, #desk input, #desk output, #views button, #tabs button, #axes td, .chip, #clock, #control, #language, #speeds span, #loads [role=meter], #loads .bar, #loads b, #loads .caption"
+  "#control-desk button, #control-desk input, #control-desk output, #views button, #tabs button, #axes td, .chip, #clock, #control, #language, #speeds span, #loads [role=meter], #loads .bar, #loads b, #loads .caption"
 )].filter((one) => one.checkVisibility()).map((one) => {
   const box = one.getBoundingClientRect(), out = [];
   if (box.width < 1 || box.height < 1) out.push("no size");
@@ -41,7 +41,7 @@ INSIDE = """() => [...document.querySelectorAll(
   }
   return out.length ? `${one.dataset.key || one.id || one.className || one.textContent}: ${out.join()}` : null;
 }).concat((() => {
-  const keys = [...document.querySelectorAll("#desk .key, #emergency, #steps button, .dial")].filter((one) => one.checkVisibility());
+  const keys = [...document.querySelectorAll("#control-desk .key, #emergency, #steps button, .dial")].filter((one) => one.checkVisibility());
   return keys.flatMap((a, i) => keys.slice(i + 1).map((b) => {
     const [p, q] = [a.getBoundingClientRect(), b.getBoundingClientRect()];
     const over = p.left < q.right - 1 && q.left < p.right - 1 && p.top < q.bottom - 1 && q.top < p.bottom - 1;
@@ -214,6 +214,15 @@ def test_the_machine_is_worked_by_hand_from_the_sheets(room, chromium_context):
     page.fill("[data-key='radius 1']", "2.5")
     page.press("[data-key='radius 1']", "Tab")
     player.until(lambda: machine.setup.tables.radii[1] == 2.5, "the radius")
+    page.fill("#new-tool-number", "12")
+    page.select_option("#new-tool-kind", "drill")
+    page.fill("#new-tool-diameter", "8.5")
+    page.fill("#new-tool-length", "80")
+    player.press("add tool", "add_tool")
+    player.until(lambda: 12 in machine.setup.tables.tools, "the row")
+    player.press("change tool 12", "change_tool")
+    player.until(lambda: machine.setup.tables.spindle == 12, "the tool")
+    assert machine.setup.tables.tool.kind == "drill"
 
 
 def test_a_handwheel_that_is_spun_is_heard_to_its_last_click(room, context):
@@ -540,7 +549,7 @@ REACHED = """() => {
   for (const one of document.querySelectorAll("#work button, #work input, #program, #sheet, #language")) {
     if (!one.checkVisibility()) continue;
     one.scrollIntoView({ block: "center", inline: "center" });
-    const now = box(one), outer = one.closest("#tabs, #sheet, #desk, #views, #screen, #head").getBoundingClientRect();
+    const now = box(one), outer = one.closest("#tabs, #sheet, #control-desk, #views, #screen, #head").getBoundingClientRect();
     const name = one.dataset.key || one.id;
     if (now.right > outer.right + 1 || now.left < outer.left - 1 || now.right > innerWidth + 1) out.push(`${name} cut off`);
     // What is higher than the screen is cut off where its scrolling parent ends.

@@ -50,6 +50,7 @@ COMMANDS = st.one_of(
     command("set_zero", axis=AXES, reading=NUMBERS), command("change_tool", number=st.integers(0, 3)), command("new_blank"),
     command("set_offset", axis=AXES, value=NUMBERS, name=st.sampled_from([None, "G54", "G55", "G99"])),
     command("set_tool", number=st.integers(0, 2), length=st.sampled_from([None, 20.0, 900.0]), radius=st.sampled_from([None, 0.0, 5.0])),
+    command("add_tool", number=st.integers(1, 4), kind=st.sampled_from(["flat", "drill"]), diameter=st.sampled_from([0.1, 6.0, 100.0]), length=st.sampled_from([20.0, 300.0])),
     command("answer", task=st.integers(1, 3), choice=st.just("R")), command("hint"), command("finish"),
     command("inject", fault=st.fixed_dictionaries({"kind": st.sampled_from(["friction", "backlash", "lost_offset"]), "axis": AXES, "value": NUMBERS})),
     command("inject", fault=st.just({"kind": "alarm"})), command("repair"),

@@ -11,6 +11,7 @@ from twin.nc.dialects.linuxcnc import LINUXCNC
 from twin.nc.text.source import source_from_text
 from twin.training.program.program_run import ProgramRun, RunOptions
 from twin.training.room.observed import block_number
+from twin.training.room.tables import MAGAZINE_PLACES
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.session import checkpoints
 from twin.training.session.session import Session
@@ -673,3 +674,26 @@ def test_a_search_comes_to_where_its_block_begins(text, line, begins, ends):
     rest(session)
     assert session.room.slot.run is None
     assert at(session)[:2] == pytest.approx(ends)
+
+
+def test_a_tool_that_is_added_is_mounted_and_cuts(session):
+    added = {"number": 7, "kind": "flat", "diameter": 4.0, "length": 70.0}
+    do(session, "mode", mode="jog")
+    do(session, "add_tool", **added)
+    row = next(row for row in session.snapshot().tools if row.number == 7)
+    assert (row.kind, row.diameter, row.length, row.radius) == ("flat", 4.0, 70.0, 2.0)
+    assert "T7" in refused(session, "add_tool", **added)
+    do(session, "change_tool", number=7)
+    assert session.room.setup.tables.longer[2] == 10.0
+    do(session, "mode", mode="auto")
+    load(session, "N10 T7 M6\nN20 S3000 M3\nN30 G90 G1 F500 X1\nN40 M30")
+    do(session, "cycle_start")
+    rest(session)
+    assert session.room.alarm is None
+
+
+def test_a_full_magazine_takes_no_more_tools(session):
+    for number in range(2, MAGAZINE_PLACES + 1):
+        do(session, "add_tool", number=number, kind="drill", diameter=3.0, length=50.0)
+    more = refused(session, "add_tool", number=99, kind="drill", diameter=3.0, length=50.0)
+    assert more == f"the magazine has {MAGAZINE_PLACES} places, and all are taken"

@@ -13,8 +13,18 @@ from twin.nc.canonical import FloatArray
 from twin.recording.form import Samples
 from twin.units import DEGREE, SECONDS_PER_MINUTE
 
-PLANES = {"XY": ("X", "Y"), "ZX": ("Z", "X"), "YZ": ("Y", "Z"), "XYC": ("X", "Y")}
-"""Axes of each plane, in the order in which positive turns go; ``XYC`` also turns the table."""
+PLANES = {
+    "XY": ("X", "Y"),
+    "ZX": ("Z", "X"),
+    "YZ": ("Y", "Z"),
+    "XYC": ("X", "Y"),
+    "ZXB": ("Z", "X"),
+    "YZA": ("Y", "Z"),
+}
+"""Axes of each plane, in the order in which positive turns go; the last three also turn the table that lies
+in it, whatever its axis is called."""
+_TURNED = {"YZA": 0, "ZXB": 1, "XYC": 2}
+"""Which of X, Y, Z the table turns about."""
 
 RUN_IN = math.pi / 2
 """Angle at full feed before the measured turn begins, as with a ball bar [rad]."""
@@ -27,9 +37,9 @@ _CHUNK = 16384
 class CirclePath:
     """A circle of one machine.
 
-    With ``XYC`` a point of the table, as far from its axis as the radius, is followed at a constant
-    distance: the table turns once while X and Y draw the circle that keeps the tool beside that
-    point. The measured distance then tells X, Y and C apart from each other.
+    With ``XYC``, ``ZXB`` and ``YZA`` a point of the table, as far from its axis as the radius, is followed at a constant
+    distance: the table turns once while two axes draw the circle that keeps the tool beside that
+    point. The measured distance then tells the three axes apart from each other.
 
     Attributes:
         machine: The machine.
@@ -50,9 +60,17 @@ class CirclePath:
             raise UsageError(f"no plane '{self.plane}': known are {', '.join(PLANES)}")
         if not (self.radius > 0 and self.feed > 0):
             raise UsageError("radius and feed must be positive")
-        if self.plane == "XYC" and self.machine.part_frame.rotary is None:
-            raise UsageError(f"machine '{self.machine.file.name}' has no rotary table for XYC")
+        if self.plane in _TURNED and self._table is None:
+            raise UsageError(
+                f"machine '{self.machine.file.name}' has no rotary table for {self.plane}"
+            )
         self._refuse_what_the_axes_cannot()
+
+    @property
+    def _table(self) -> tuple[int, FloatArray] | None:
+        """Column of the axis that turns along, and where it turns about; None: nothing does."""
+        normal = _TURNED.get(self.plane)
+        return None if normal is None else self.machine.part_frame.table_about(normal)
 
     @property
     def speed(self) -> float:
@@ -73,9 +91,12 @@ class CirclePath:
         """Where the circle lies in the machine: in the middle of the travel, shape (k,)."""
         travel = [self.machine.axis(name).travel or (0.0, 0.0) for name in self.machine.axes.names]
         center = np.array([(low + high) / 2 for low, high in travel])
-        if self.plane == "XYC":
-            center[:2] = self.machine.part_frame.center
-            center[0] += self.radius
+        rotary = self.machine.axes.rotary()
+        center[rotary] = np.clip(0.0, *np.array(travel)[rotary].T)
+        if self._table is not None:
+            first, second = self._columns()
+            center[[first, second]] = self._table[1][[first, second]]
+            center[first] += self.radius
         return center
 
     def _refuse_what_the_axes_cannot(self) -> None:
@@ -99,12 +120,10 @@ class CirclePath:
                     f"radius {self.radius:g} mm does not fit the travel of {name}; "
                     f"up to {most:g} mm does"
                 )
-        if self.plane == "XYC":
-            self._refuse_too_fast_a_turn()
+        if self._table is not None:
+            self._refuse_too_fast_a_turn(self.machine.axes.names[self._table[0]])
 
-    def _refuse_too_fast_a_turn(self) -> None:
-        assert self.machine.part_frame.rotary is not None
-        name = self.machine.axes.names[self.machine.part_frame.rotary]
+    def _refuse_too_fast_a_turn(self, name: str) -> None:
         most = self.machine.axis(name).velocity * DEGREE * self.radius * SECONDS_PER_MINUTE
         if self.feed > most:
             raise UsageError(f"{name} is fast enough for {most:.0f} mm/min, not {self.feed:g}")
@@ -143,9 +162,9 @@ class CirclePath:
         velocity[:, second] = radius * cosine * rate
         acceleration[:, first] = -radius * (cosine * rate**2 + sine * change)
         acceleration[:, second] = radius * (cosine * change - sine * rate**2)
-        if self.plane == "XYC":
-            rotary = self.machine.part_frame.rotary
-            # The part turns against C (ISO 841), so C runs against the circle.
+        if self._table is not None:
+            rotary = self._table[0]
+            # The part turns against the axis (ISO 841), so the axis runs against the circle.
             position[:, rotary] = -angle / DEGREE
             velocity[:, rotary] = -rate / DEGREE
             acceleration[:, rotary] = -change / DEGREE
@@ -162,12 +181,12 @@ class CirclePath:
             Shape (n, 2) [mm].
         """
         center = self._center()
-        frame = self.machine.part_frame.at(center)
+        frame = self.machine.part_frame.at(center, 0.0)
         real = samples.real(frame)
-        if self.plane != "XYC":
-            first, second = self._columns()
-            return (real - center)[:, [first, second]]
-        # The followed point is (radius, 0) of the part, which turns against the circle. There, with
+        columns = list(self._columns())
+        if self._table is None:
+            return (real - center)[:, columns]
+        # The followed point is fixed to the part, which turns against the circle. There, with
         # the table at zero, its place was measured.
-        seen = frame.position(real)[:, :2] - np.array([self.radius, 0.0])
+        seen = (frame.position(real) - frame.program_zero(center))[:, columns]
         return seen * np.array([1.0, -1.0])

@@ -98,7 +98,7 @@ def circular_test(machine: Machine, radius: float, feed: float, plane: str = "XY
         machine: The machine.
         radius: [mm].
         feed: Along the circle [mm/min].
-        plane: ``XY``, ``ZX`` or ``YZ``; ``XYC`` follows a point of the turning table.
+        plane: ``XY``, ``ZX`` or ``YZ``; ``XYC``, ``ZXB``, ``YZA`` follow a point of the turning table.
 
     Raises:
         UsageError: The machine cannot run that circle, or raised an alarm on it.

@@ -12,7 +12,7 @@ from twin.errors import ConfigError
 from twin.files.toml import Table, checked
 from twin.job.builder import MachineFunctions, ToolChangeTable
 from twin.job.fixture import FixtureTable, Weight
-from twin.kinematics import Kinematics
+from twin.kinematics import Kinematics, is_turntable
 from twin.machine.description.geometry import GeometryTable
 from twin.nc.canonical import SPATIAL_AXES, Axes, FloatArray
 from twin.toolpath.part_frame import PartFrame
@@ -24,6 +24,10 @@ Share = Annotated[float, Field(ge=0, le=1, strict=True)]
 Coordinate = Annotated[float, Field(strict=True)]
 Lateness = Annotated[float, Field(ge=0, le=0.1, strict=True)]
 ServoPeriod = Annotated[float, Field(ge=1e-4, le=0.02, strict=True)]
+
+
+_CENTER_MM = 1e-3
+"""How far the centre of a table in a machine file may be from that of the model [mm]."""
 
 
 class LuGreTable(Table):
@@ -156,10 +160,10 @@ class PathTable(Table):
 
 
 class TableTable(Table):
-    """The rotary table that carries the part."""
+    """What the model must say of the table that carries the part; not needed, and checked."""
 
     axis: str
-    """Name of the rotary axis that turns the part about +Z."""
+    """Name of the rotary axis that turns the part."""
     center: tuple[Coordinate, Coordinate] = (0.0, 0.0)
     """Machine X and Y at which the tool stands over the axis of rotation [mm]."""
 
@@ -286,7 +290,7 @@ class MachineFile(Table):
             raise ValueError(f"table.axis '{self.table.axis}' is not an axis")
         if self.table is not None and self.axes[self.table.axis].kind != "rotary":
             raise ValueError(f"table.axis '{self.table.axis}' is not rotary")
-        self.geometry.of(self.ordered_axes(), None if self.table is None else self.table.axis)
+        self.geometry.of(self.ordered_axes())
         for name, growth in self.thermal.items():
             if growth.source not in ("spindle", *self.axes):
                 known = ", ".join(("spindle", *self.axes))
@@ -330,7 +334,6 @@ class Machine:
         path: Where the machine file lies.
         file: Its checked content.
         axes: Names and kinds in the order of every column.
-        part_frame: How the part turns under the tool.
     """
 
     def __init__(self, path: Path, file: MachineFile) -> None:
@@ -338,12 +341,6 @@ class Machine:
         self.path = path
         self.file = file.model_copy(update={"fixtures": fixtures}) if fixtures else file
         self.axes = file.ordered_axes()
-        turning = None if file.table is None else file.table.axis
-        self.part_frame = PartFrame(
-            rotary=None if turning is None else self.axes.index(turning),
-            center=(0.0, 0.0) if file.table is None else file.table.center,
-            geometry=file.geometry.of(self.axes, turning),
-        )
 
     @property
     def model_path(self) -> Path:
@@ -362,6 +359,38 @@ class Machine:
         axes = [self.file.axes[name] for name in self.axes.names]
         joints = [Joint(axis.joint, axis.direction) for axis in axes]
         return read_kinematics(self.model_path, self.axes, joints)
+
+    @functools.cached_property
+    def part_frame(self) -> PartFrame:
+        """How the part turns under the tool.
+
+        Raises:
+            ConfigError: The model is no mill, or its table is not where the machine file says.
+        """
+        chain, geometry = self.kinematics, self.file.geometry.of(self.axes)
+        turning = chain.rotary & ~chain.on_tool
+        names = [self.axes.names[column] for column in chain.column[turning].tolist()]
+        innermost = chain.anchor[turning][-1] if names else np.zeros(3)
+        table = self.file.table
+        if table is not None and (
+            table.axis not in names[-1:] or np.abs(innermost[:2] - table.center).max() > _CENTER_MM
+        ):
+            found = (
+                f"{names[-1]} about X {innermost[0]:g} Y {innermost[1]:g}" if names else "nothing"
+            )
+            raise ConfigError(
+                f"{self.path}: [table] does not fit the model, where {found} turns the part"
+            )
+        if geometry.has_table and not (names and is_turntable(chain)):
+            raise ConfigError(
+                f"{self.path}: geometry.table: no rotary table turns the part about Z alone"
+            )
+        if not is_turntable(chain):
+            return PartFrame(None, (0.0, 0.0), geometry=geometry, chain=chain)
+        if not names:
+            return PartFrame(None, (0.0, 0.0), geometry=geometry)
+        center = (float(innermost[0]), float(innermost[1]))
+        return PartFrame(self.axes.index(names[0]), center, geometry=geometry)
 
     @property
     def joint_scale(self) -> FloatArray:

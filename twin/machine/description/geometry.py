@@ -76,12 +76,11 @@ class GeometryTable(Table):
     compensation: dict[str, ErrorTable] = Field(default_factory=dict)
     """What the control takes off, by the same names."""
 
-    def of(self, axes: Axes, turning: str | None) -> MachineGeometry:
+    def of(self, axes: Axes) -> MachineGeometry:
         """What the tables come to.
 
         Args:
             axes: The machine's.
-            turning: Name of the axis that turns the table, if there is one.
 
         Raises:
             ValueError: A name is none of ISO 230-1's over these axes, or an error has the wrong unit.
@@ -91,8 +90,6 @@ class GeometryTable(Table):
             *(_term(axes, key, table, 1.0) for key, table in self.errors.items()),
             *(_term(axes, key, table, -1.0) for key, table in self.compensation.items()),
         ]
-        if turning is None and any((*self.table.offset_um, *self.table.tilt_um_per_m)):
-            raise ValueError("geometry.table: the machine has no rotary table")
         x, y = (value / UM_PER_MM for value in self.table.offset_um)
         about_x, about_y = (value * MM / UM_PER_MM for value in self.table.tilt_um_per_m)
         present = tuple(term for term in terms if any(term.error))

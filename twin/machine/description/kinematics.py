@@ -33,6 +33,11 @@ class Joint(NamedTuple):
     """1, or -1 where the joint counts against the machine coordinate."""
 
 
+def part_carrier(model: mujoco.MjModel) -> int:
+    """Number of the body that the part is clamped to."""
+    return int(model.site_bodyid[model.site(TABLE_TOP).id])
+
+
 def read_kinematics(model_path: Path, axes: Axes, joints: Sequence[Joint]) -> Kinematics:
     """Read which joints carry the tool and which the part, their order, directions and centres.
 

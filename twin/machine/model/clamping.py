@@ -7,8 +7,9 @@ import mujoco
 import numpy as np
 
 from twin.errors import ConfigError
+from twin.machine.description.kinematics import part_carrier
 from twin.machine.model.fixture_shape import fixture_of
-from twin.machine.model.model import BLANK, ROTARY_TABLE, MachineModel
+from twin.machine.model.model import BLANK, MachineModel
 from twin.machine.model.tool_shape import COLLISION_GROUP
 from twin.machine.model.work_holding import PARALLELS, POST
 from twin.nc.canonical import FloatArray
@@ -35,7 +36,7 @@ def refuse_overlaps(clamped: MachineModel, bore: float | None = None) -> None:
     model = clamped.solids
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
-    table = int(model.body(ROTARY_TABLE).id)
+    table = part_carrier(model)
     solids = [
         geom
         for geom in range(model.ngeom)
@@ -56,6 +57,7 @@ def refuse_overlaps(clamped: MachineModel, bore: float | None = None) -> None:
             )
 
 
+_Z = 2
 _CARRIES = (*PARALLELS, POST)
 """What the twin puts under the stock gives way to a fixture there."""
 
@@ -94,12 +96,13 @@ def what_carries(clamped: MachineModel) -> str | None:
     Args:
         clamped: The machine with all that is clamped on it.
     """
-    if clamped.blank is None:
+    frame = clamped.machine.part_frame
+    if clamped.blank is None or (frame.chain is not None and frame.table_about(_Z) is None):
         return None
     model = clamped.solids
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
-    stock, table = int(model.geom(BLANK).id), int(model.body(ROTARY_TABLE).id)
+    stock, table = int(model.geom(BLANK).id), part_carrier(model)
     fixtures = {fixture.name for fixture in clamped.machine.file.fixtures}
     below = np.inf
     for geom in range(model.ngeom):

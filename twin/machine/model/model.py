@@ -8,6 +8,7 @@ import numpy as np
 from twin.errors import ConfigError
 from twin.job.fixture import Weight
 from twin.machine.description.config import Blank, Machine
+from twin.machine.description.kinematics import SPINDLE_NOSE, TABLE_TOP
 from twin.machine.description.measured_mass import set_measured_masses
 from twin.machine.model.drive_actuators import add_drives
 from twin.machine.model.drives import Drive, tune
@@ -30,14 +31,8 @@ from twin.machine.model.work_holding import supports
 from twin.nc.canonical import FloatArray
 from twin.units import MM
 
-SPINDLE_NOSE = "spindle_nose"
-"""Site on the head at the lower end of the spindle, on its axis."""
-TABLE_TOP = "table_top"
-"""Site in the middle of the work-holding surface."""
 BLANK = "stock"
 """Geom of the stock, as an alarm calls it."""
-ROTARY_TABLE = "rotary_table"
-"""Body that the part is clamped to."""
 
 _TUNED_FOR = "moved at tuning"
 """Number field of a model: what the motors felt when their drives were tuned."""
@@ -112,7 +107,7 @@ def build_spec(
     """The editable model of a ``MachineModel``: machine, lights, cameras, drives, tool.
 
     Returns:
-        A specification that compiles; others may add to it, to ``rotary_table`` above all.
+        A specification that compiles; others may add to it, to the body of the site ``table_top`` above all.
 
     Raises:
         ConfigError: As for ``MachineModel``.
@@ -127,7 +122,6 @@ def _read(machine: Machine) -> mujoco.MjSpec:
         raise ConfigError(f"{machine.model_path}: is not an MJCF model: {error}") from error
     _require(machine, "site", SPINDLE_NOSE, [site.name for site in spec.sites])
     _require(machine, "site", TABLE_TOP, [site.name for site in spec.sites])
-    _require(machine, "body", ROTARY_TABLE, [body.name for body in spec.bodies])
     return spec
 
 
@@ -271,8 +265,9 @@ def _hold_against_clamped(spec: mujoco.MjSpec) -> None:
     The table's own faceplate is built so as to pass what carries it; the tool's side meets fixtures as
     it is, and the stock as it is cut.
     """
+    carrier = spec.site(TABLE_TOP).parent.name
     for geom in spec.geoms:
-        turns = geom.parent.name == ROTARY_TABLE
+        turns = geom.parent.name == carrier
         if geom.group == COLLISION_GROUP and not turns and not geom.contype & TOOL_SIDE:
             geom.conaffinity |= CLAMPED_SIDE
 

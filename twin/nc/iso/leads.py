@@ -153,6 +153,9 @@ class Approach:
     def __call__(self, move: Segment) -> bool:
         """Lead to a move; whether it is to be made."""
         if self.contour is None:
+            if any(math.isnan(value) for value in move.display) or move.center is not None:
+                message = "the contour's first block says where it begins: a line to both axes of the plane"
+                self.control.fail("contour-lead", message)
             self.contour = list(move.display)
             self.control.path.leads = self
             return False
@@ -204,10 +207,18 @@ def approach(control: Control, lead: Lead, contour: list[float] | None) -> None:
         _stand(control, contour)
 
 
-def stand_at_height(control: Control, height: float) -> None:
-    """Let the next move, which tells where the contour begins, end at a height [mm]."""
-    target = list(control.motion.programmed)
-    target[control.modal.plane.axes[2]] = height
+def stand_at_height(control: Control, height: float, *, nowhere: bool = False) -> None:
+    """Let the next move, which tells where the contour begins, end at a height [mm].
+
+    Args:
+        control: The control.
+        height: Of the contour.
+        nowhere: The tool stands nowhere in the plane, so that the move must tell both coordinates.
+    """
+    target, (first, second, across) = list(control.motion.programmed), control.modal.plane.axes
+    target[across] = height
+    if nowhere:
+        target[first] = target[second] = math.nan
     _stand(control, target)
 
 

@@ -75,6 +75,8 @@ class LineRuns:
         line = control.program_counter.fresh_line
         if line is None or room <= 0 or not may_run_lines(self._executor):
             return range(0)
+        if self._goes_on(line):
+            return range(0)
         page = control.program_counter.lines.page_of(line)
         columns = PageColumns(page.data, page.starts, page.ends, page.lines.start)
         state = self._state(line)
@@ -88,6 +90,14 @@ class LineRuns:
         if came_to > line:
             self._take_back(state, came_to, self._rows.first(made))
         return range(line, came_to)
+
+    def _goes_on(self, line: int) -> bool:
+        """Whether a line goes on with the block of the one before it."""
+        continued, lines = (
+            self._executor.dialect.syntax.continued,
+            self._control.program_counter.lines,
+        )
+        return bool(continued) and line > 0 and lines[line - 1].rstrip().endswith(continued)
 
     def _state(self, line: int) -> PlainState:
         control, motion = self._control, self._control.motion
@@ -202,12 +212,15 @@ def _kind_of_code(code: GCode) -> int:
 def line_format(executor: Executor) -> LineFormat:
     """How plain lines are written: letters that a dialect uses otherwise as well have no role."""
     dialect, control = executor.dialect, executor.control
-    letters = {"R": RADIUS, **{letter: CENTER + index for index, letter in enumerate("IJK")}}
-    letters |= {
+    letters = {
         name: AXIS + index
         for name, index in control.axis_index.items()
         if name in dialect.words.axes
     }
+    codes: dict[str, int] = {}
+    if not dialect.syntax.worded:
+        letters |= {"R": RADIUS, **{each: CENTER + index for index, each in enumerate("IJK")}}
+        codes = {"N": NUMBER, "G": CODE}
     taken = {
         *dialect.words.actions,
         *dialect.words.references,
@@ -215,11 +228,13 @@ def line_format(executor: Executor) -> LineFormat:
         *dialect.words.series,
     }
     roles = {each: role for each, role in letters.items() if each in dialect.words.motion - taken}
-    roles |= {**dict.fromkeys(dialect.words.feed, FEED), "N": NUMBER, "G": CODE}
+    roles |= {**dict.fromkeys(dialect.words.feed, FEED), **codes}
     pointed = dialect.rules.without_point(control.settings)
     return LineFormat(
         np.array([roles.get(letter, OTHER) for letter in string.ascii_uppercase]),
         np.array([letter in pointed for letter in string.ascii_uppercase]),
         comment_marks(dialect.syntax.comments).columns,
         dialect.syntax.longest_line,
+        string.ascii_uppercase.find(dialect.syntax.line_keyword or " "),
+        ord(dialect.syntax.continued or "\0"),
     )

@@ -17,6 +17,7 @@ from twin.nc.text.plain_word import (
     BEGIN,
     END,
     FRACTION,
+    IS_BLANK,
     IS_DIGIT,
     IS_WORD,
     SCAN_TABLE,
@@ -33,6 +34,8 @@ _MINUS, _POINT, _DIGIT_0 = ord("-"), ord("."), ord("0")
 _LETTER_A, _TO_UPPER = ord("A"), 0xDF
 _EXACT_MANTISSA = 2**53 // 10 - 1
 """A mantissa up to here takes a further digit and is still exact as a double."""
+_LONGEST_NUMBER = 12
+"""Digits of a bare block number (as ``text.keyword_line`` reads it)."""
 _POWERS = 10.0 ** np.arange(23)
 """The powers of ten that are exact as doubles.
 
@@ -49,12 +52,16 @@ class LineFormat(NamedTuple):
         pointed: Numbers of the letter are plain with a decimal point only, unless 0, shape (26,).
         comments: How comments are marked.
         longest: Bytes of a line that may be plain.
+        keyword: Letter, from 0, that a line may begin with behind a bare block number; -1: none, and no such numbers.
+        continued: Byte at the end of a line that goes on in the next one; 0: none does.
     """
 
     roles: IntArray
     pointed: npt.NDArray[np.bool_]
     comments: CommentMarks
     longest: int
+    keyword: int = -1
+    continued: int = 0
 
 
 @compilable
@@ -72,6 +79,10 @@ def read_line(data: ByteArray, begin: int, end: int, form: LineFormat, values: F
         The roles that it has, as bits; or ``NOT_PLAIN``.
     """
     seen, at = int(np.int64(0)), begin
+    if form.keyword >= 0:
+        seen, at = _read_keyword(data, begin, end, form, values)
+        if seen == NOT_PLAIN:
+            return NOT_PLAIN
     while True:
         stage, letter, value, at = _read_word(data, at, end)
         if stage == BEGIN:
@@ -88,6 +99,32 @@ def read_line(data: ByteArray, begin: int, end: int, form: LineFormat, values: F
             return NOT_PLAIN
         seen |= 1 << role
         values[role] = value
+
+
+@compilable
+def _read_keyword(
+    data: ByteArray, begin: int, end: int, form: LineFormat, values: FloatArray
+) -> tuple[int, int]:
+    """A bare block number and the keyword, where a line has them: its roles so far, and the place behind both."""
+    last = end
+    while last > begin and IS_BLANK[data[last - 1]]:
+        last -= 1
+    if last > begin and data[last - 1] == form.continued:
+        return NOT_PLAIN, begin
+    seen, at = int(np.int64(0)), _stay(data, begin, end, BEGIN)
+    first, number = at, 0
+    while at < end and IS_DIGIT[data[at]] and at - first < _LONGEST_NUMBER:
+        number = 10 * number + int(data[at]) - _DIGIT_0
+        at += 1
+    if at > first:
+        if at < end and not IS_BLANK[data[at]]:
+            return NOT_PLAIN, begin
+        seen, values[NUMBER] = 1 << NUMBER, number
+        at = _stay(data, at, end, BEGIN)
+    is_keyword = at < end and (int(data[at]) & _TO_UPPER) - _LETTER_A == form.keyword
+    if is_keyword and (at + 1 == end or IS_BLANK[data[at + 1]]):
+        at += 1
+    return seen, at
 
 
 @compilable

@@ -61,6 +61,8 @@ class Syntax:
         decimal_comma: A comma between digits is a decimal point.
         worded: Keywords of statements behind which the block's words stand; a block may also have a bare number
             before it, and none of both.
+        line_keyword: The letter that is the keyword of a straight line, which a block may also do without; empty: there
+            is none.
         flag: Regular expression of words that have no value, such as ``FMAX``; None: there are none.
         continued: Character at the end of a line whose block goes on in the next one; empty: none does.
         relative: Addresses of words that are incremental, such as ``IX``, and those that they stand for.
@@ -91,6 +93,7 @@ class Syntax:
     blanks_in_numbers: bool = False
     decimal_comma: bool = False
     worded: frozenset[str] = frozenset()
+    line_keyword: str = ""
     flag: str | None = None
     continued: str = ""
     relative: Mapping[str, str] = dataclasses.field(default_factory=dict)

@@ -3,8 +3,9 @@
 import mujoco
 import numpy as np
 
+from twin.machine.description.kinematics import TABLE_TOP
 from twin.nc.canonical import FloatArray
-from twin.render.scene.placement import ROTARY_TABLE, Placement
+from twin.render.scene.placement import Placement
 
 PART = "part"
 """Close to the part; it goes along with the table but does not turn."""
@@ -40,7 +41,7 @@ def add_part_cameras(
     right = np.cross([0.0, 0.0, 1.0], away)
     right /= np.linalg.norm(right)
     up = np.cross(away, right)
-    table = spec.body(ROTARY_TABLE)
+    table = spec.site(TABLE_TOP).parent
     for name, body, frame in (
         (RIDING, table, placement),
         (PART, table.parent, placement.at_rest),

@@ -3,9 +3,10 @@
 import mujoco
 import numpy as np
 
+from twin.machine.description.kinematics import TABLE_TOP
 from twin.nc.canonical import FloatArray, IntArray
 from twin.render.drawing.canvas import HIDDEN_GROUP
-from twin.render.scene.placement import ROTARY_TABLE, Placement
+from twin.render.scene.placement import Placement
 from twin.units import MM
 
 SHOWN_GROUP = 2
@@ -51,7 +52,7 @@ def add_live_mesh(
         userfacetexcoord=faces.ravel().tolist(),
         inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL,
     )
-    spec.body(ROTARY_TABLE).add_geom(
+    spec.site(TABLE_TOP).parent.add_geom(
         name=name,
         type=mujoco.mjtGeom.mjGEOM_MESH,
         meshname=name,

@@ -6,13 +6,10 @@ import mujoco
 import numpy as np
 
 from twin.machine.description.config import Machine
+from twin.machine.description.kinematics import SPINDLE_NOSE, part_carrier
 from twin.nc.canonical import FloatArray
+from twin.toolpath.part_frame import PartFrame
 from twin.units import MM
-
-ROTARY_TABLE = "rotary_table"
-"""Body of the model that carries the part."""
-SPINDLE_NOSE = "spindle_nose"
-"""Site of the model from which the tool's length counts."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -65,7 +62,7 @@ class Joints:
 
 
 def place(
-    machine: Machine, model: mujoco.MjModel, tool_length: float, turn_zero: float
+    machine: Machine, model: mujoco.MjModel, tool_length: float, part_frame: PartFrame
 ) -> Placement:
     """Find the part's frame on the machine: by moving the tool point along its axes.
 
@@ -73,14 +70,11 @@ def place(
         machine: The machine file.
         model: The compiled machine.
         tool_length: From the spindle nose to the tip [mm].
-        turn_zero: Rotary value at which the part's frame is parallel to the machine's [deg].
+        part_frame: How the part turns under the tool.
     """
     data = mujoco.MjData(model)
     joints = Joints(machine, model)
-    zero = np.zeros(len(machine.axes))
-    zero[:2] = machine.part_frame.center
-    if machine.part_frame.rotary is not None:
-        zero[machine.part_frame.rotary] = turn_zero
+    zero = part_frame.rotary_zero(len(machine.axes))
 
     def tip_from(body: int, offset: FloatArray) -> FloatArray:
         position = zero.copy()
@@ -95,7 +89,7 @@ def place(
         ways = [(tip_from(body, direction) - origin) / MM for direction in np.eye(3)]
         return origin, np.stack(ways, axis=1)
 
-    table = int(model.body(ROTARY_TABLE).id)
+    table = part_carrier(model)
     return Placement(*frame(table), Frame(*frame(int(model.body_parentid[table]))))
 
 

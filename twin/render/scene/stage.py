@@ -11,13 +11,14 @@ import numpy as np
 from twin.cutting.colours import Colours
 from twin.cutting.cut import Cutter
 from twin.cutting.sweeping import Rectangle, union
+from twin.machine.description.kinematics import part_carrier
 from twin.nc.canonical import FloatArray
 from twin.recording.reader import Samples
 from twin.render.drawing.canvas import Canvas, Focus, Pixels, Quality
 from twin.render.drawing.chips import Chips, chips
 from twin.render.drawing.renderer import Renderer, open_canvas, prepare
 from twin.render.scene.cameras import PART_CAMERAS, SMALLEST_MM, add_part_cameras, framed
-from twin.render.scene.placement import ROTARY_TABLE, Joints, Placement, place, tip_position
+from twin.render.scene.placement import Joints, Placement, place, tip_position
 from twin.render.scene.scene import Scene
 from twin.render.scene.skin import Skin
 from twin.render.scene.stock_surface import StockSurface
@@ -172,8 +173,8 @@ class Stage:
     @property
     def _tip(self) -> FloatArray:
         """Where the tool point is, in the part's frame, shape (3,) [mm]."""
-        tip = self._scene.recording.header.part_frame.position(self._position[None])[0]
-        return tip - [0.0, 0.0, self._scene.summary.tools.longer(self._tool)]
+        frame, longer = self._scene.recording.header.part_frame, self._scene.summary.tools.longer
+        return frame.position(self._position[None], longer(self._tool))[0]
 
     def _spray(self) -> Chips:
         """Chips of what was removed of late; out of a slot they fly from its upper edge."""
@@ -187,7 +188,7 @@ class Stage:
         if camera not in PART_CAMERAS:
             stat = self.model.stat
             return Focus(stat.center.copy(), SHADOWS_OVER_MACHINE * float(stat.extent))
-        table = self.data.body(ROTARY_TABLE)
+        table = self.data.body(part_carrier(self.model))
         middle, radius = self._seen
         center = table.xpos + table.xmat.reshape(3, 3) @ self.placement.points(middle[None])[0]
         return Focus(center, SHADOWS_OVER_PART * MM * max(radius, SMALLEST_MM))
@@ -244,8 +245,8 @@ def _build_props(
 ) -> _Props:
     """Add stock, work holding, cameras, trail and tools to a machine's specification."""
     header = scene.recording.header
-    turn_zero = header.part_frame.turn_zero
-    placement = place(scene.machine, spec.compile(), scene.summary.tools.tools[0].length, turn_zero)
+    length = scene.summary.tools.tools[0].length
+    placement = place(scene.machine, spec.compile(), length, header.part_frame)
     cutter = surface = None
     if scene.stock is not None:
         cutter = Cutter(
@@ -254,7 +255,7 @@ def _build_props(
         step = max(1, -(-max(cutter.map.heights.shape) // quality.drawn_cells))
         surface = StockSurface(cutter.map, Skin(cutter.map, cutter.marks, step, paint), step)
         surface.add_to(spec)
-        corner = header.part_zero[:3] - np.array([*header.part_frame.center, 0.0])
+        corner = header.part_frame.program_zero(header.part_zero)
         add_work_holding(spec, scene.stock, placement, corner)
     points = trail_points(scene.recording, scene.summary)
     seen = framed(points.position if cutter is None else cutter.map.corners)

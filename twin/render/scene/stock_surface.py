@@ -79,7 +79,7 @@ class StockSurface:
         self._skin = skin
         self._step = step
         self._net = net(height_map, step)
-        self._z = self._net.heights(height_map)
+        self._look()
         self._tiles = _tiles(self._net)
         self._edges = open_edges(self._net.patches)
         self._side_normals = _side_normals(self._net, self._edges)
@@ -126,7 +126,7 @@ class StockSurface:
         first_row, last_row = row // self._step, row_end // self._step + 2
         first_column, last_column = column // self._step, column_end // self._step + 2
         before = self._z.ravel()[self._edges]
-        self._z = self._net.heights(self._map)
+        self._look()
         for tile in self._tiles:
             if (
                 tile.rows.stop >= first_row
@@ -139,9 +139,14 @@ class StockSurface:
             canvas.upload_mesh(self._set_side())
         self._skin.update(canvas, changed)
 
+    def _look(self) -> None:
+        """Take over the heights of the vertices and where they lie."""
+        self._z = self._net.heights(self._map)
+        self._x, self._y = self._net.places(self._map)
+
     def _vertices(self, tile: _Tile) -> FloatArray:
         block = (tile.rows, tile.columns)
-        return np.stack([self._net.x[block], self._net.y[block], self._z[block]], -1).reshape(-1, 3)
+        return np.stack([self._x[block], self._y[block], self._z[block]], -1).reshape(-1, 3)
 
     def _set_tile(self, tile: _Tile) -> int:
         """Bring one tile up to date; returns the mesh that is shown now."""

@@ -86,9 +86,7 @@ def trail_points(recording: Recording, summary: ProgramSummary) -> TrailPoints:
     parts = []
     first, frame = 0, recording.header.part_frame
     for chunk in recording.chunks():
-        position = frame.position(chunk.real(frame))
-        for run, tool in summary.tools.runs(chunk.setpoint.move):
-            position[run, 2] -= summary.tools.longer(tool)
+        position = frame.position(chunk.real(frame), summary.tools.lower(chunk.setpoint.move))
         sample = first + np.arange(len(chunk))
         first += len(chunk)
         error = recording.contour_um(first - len(chunk), first)

@@ -4,13 +4,12 @@ import mujoco
 import numpy as np
 
 from twin.job.job_file import StockTable
+from twin.machine.description.kinematics import TABLE_TOP
 from twin.machine.model.work_holding import supports
 from twin.nc.canonical import FloatArray
-from twin.render.scene.placement import ROTARY_TABLE, Placement
+from twin.render.scene.placement import Placement
 from twin.units import MM
 
-TABLE_TOP = "table_top"
-"""Site of the model in the middle of the work-holding surface, on the body that carries the part."""
 _COLOUR = (0.33, 0.36, 0.4, 1.0)
 
 
@@ -45,7 +44,7 @@ def _add(
     position: FloatArray,
     placement: Placement,
 ) -> None:
-    spec.body(ROTARY_TABLE).add_geom(
+    spec.site(TABLE_TOP).parent.add_geom(
         name=name,
         type=kind,
         size=size,

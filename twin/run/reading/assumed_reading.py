@@ -1,5 +1,6 @@
 """How a raw program is read: what its job would tell the control, as far as the program's text shows it."""
 
+import dataclasses
 import re
 from collections.abc import Iterator, Mapping
 from itertools import islice
@@ -7,7 +8,7 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from twin.nc.control.dialect import Dialect
-from twin.nc.control.settings import ToolData
+from twin.nc.control.settings import ControlSettings, ToolData
 from twin.nc.dialects.recognition import comments_of, without_comments
 from twin.nc.text.source import Source
 from twin.run.reading.assumed_tools import USUAL_LENGTH, listed_tools
@@ -20,7 +21,7 @@ _LENGTH = re.compile(
 _OFFSET = re.compile(
     r"(?<![A-Z0-9.])G[ \t]*(5[4-9](?:\.[1-3])?)(?![0-9.])(?![ \t]*P)", re.IGNORECASE
 )
-_FUNCTION = re.compile(r"(?<![A-Z#\[])M[ \t]*([0-9]{1,4})(?![0-9.\[#])", re.IGNORECASE)
+_FUNCTION = re.compile(r"(?<![A-Z_#\[])M[ \t]*([0-9]{1,4})(?![0-9.\[#])", re.IGNORECASE)
 _TOOL = re.compile(r"(?<![A-Z#\[])T[ \t]*([0-9]{1,4})(?![0-9.])", re.IGNORECASE)
 _INCHES = re.compile(r"(?<![A-Z0-9.])G[ \t]*[27]0(?![0-9.])", re.IGNORECASE)
 _USUAL_OFFSET = "G54"
@@ -40,6 +41,14 @@ class AssumedReading(NamedTuple):
     keys: dict[str, object]
     told: tuple[str, ...]
     tools: Mapping[int, ToolData] = MappingProxyType({})
+
+    def as_read_by(self, dialect: Dialect, settings: ControlSettings) -> "AssumedReading":
+        """What of it says something of a dialect, in which numbers without a point may always count whole units."""
+        counting = dataclasses.replace(settings, decimal_point="increments")
+        if "decimal_point" not in self.keys or dialect.rules.without_point(counting):
+            return self
+        keys = {key: value for key, value in self.keys.items() if key != "decimal_point"}
+        return self._replace(keys=keys, told=self.told[1:])
 
 
 NOTHING_ASSUMED = AssumedReading({}, ())

@@ -57,7 +57,8 @@ class GrblController:
     # --- what the line asks for
 
     def welcome(self) -> bytes:
-        """What a sender that has just come is told."""
+        """What a sender that has just come is told; a line that another one has not ended is forgotten."""
+        self.serial.forget_open()
         self._greet()
         return self._take_output()
 

@@ -69,6 +69,12 @@ class SerialBuffer:
         self._used -= len(line) + 1
         return line, damaged
 
+    def forget_open(self) -> None:
+        """Forget the bytes of a line that has no end yet."""
+        self._used -= len(self._open)
+        self._open.clear()
+        self._damaged = False
+
     def clear(self) -> None:
         """Forget everything."""
         self._lines.clear()

@@ -67,7 +67,7 @@ _Wish = pydantic.TypeAdapter[Hold | HandOut](Annotated[Hold | HandOut, Field(dis
 
 
 class ClassApp:
-    """The application of a class, behind the guard.
+    """The application of a class, behind the origin check.
 
     Attributes:
         asgi: What answers; the first part of a path is ``teacher`` or the key of a seat.

@@ -13,8 +13,8 @@ from twin.training.classroom.rooms import Rooms
 from twin.training.classroom.roster import Pupil
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.scene.vocabulary import Language
-from twin.web.doorkeeper import Doorkeeper, new_tokens
-from twin.web.guard import Guard
+from twin.web.authentication import Authentication, new_tokens
+from twin.web.origin_check import OriginCheck
 from twin.web.server import LOOPBACK, WebServer, require_three
 
 
@@ -69,8 +69,8 @@ def open_class(
         tokens = file.tokens(new_tokens((TEACHER, *rooms.seats)))
         links = {role: f"{server.origin}/{role}/#{token}" for role, token in tokens.items()}
         app = ClassApp(rooms, file, links, language or first.file.language)
-        doorkeeper = Doorkeeper(tokens, server.port, encrypted=certificate is not None)
-        server.start(Guard(app.asgi, doorkeeper, local=server.local))
+        authentication = Authentication(tokens, server.port, encrypted=certificate is not None)
+        server.start(OriginCheck(app.asgi, authentication, local=server.local))
         try:
             people = tuple((seat.pupil.name, links[key]) for key, seat in rooms.seats.items())
             yield OpenClass(links[TEACHER], people)

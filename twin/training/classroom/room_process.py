@@ -141,5 +141,5 @@ def _status(look: Look, app: RoomApp, driver: Driver) -> dict[str, Any]:
         "refusals": now.refusals,
         "lost_s": round(look.lost_s),
         "trouble": look.trouble,
-        "pages": app.seats.count("operator"),
+        "pages": app.connections.count("operator"),
     }

@@ -59,7 +59,7 @@ export class Help {
     guide.hidden = step < 0 || !acts;
     if (guide.hidden) return;
     const over = step === MINUTE.length, { key, say } = over ? { say: "guide_over" } : MINUTE[step];
-    const target = key === "emergency" ? document.getElementById("emergency") : document.querySelector(`#desk [data-key="${key}"]`);
+    const target = key === "emergency" ? document.getElementById("emergency") : document.querySelector(`#control-desk [data-key="${key}"]`);
     target?.classList.add("press-this");
     const text = make("span", { role: "status" });
     guide.replaceChildren(text, this.button("end guide", over ? "close" : "skip", () => this.end()));

@@ -3,7 +3,7 @@
 import { View } from "../view/view.js";
 import { PATCH, readState, STATE } from "../view/wire.js";
 import { Connection } from "./connection.js";
-import { Desk } from "./desk.js";
+import { ControlDesk } from "./control_desk.js";
 import { Editor } from "./editor.js";
 import { Help } from "./help.js";
 import { Looking } from "./looking.js";
@@ -40,7 +40,7 @@ const line = new Connection(hear, (down) => {
 });
 const preview = new Preview(view), trouble = new Trouble(view), looking = new Looking(view, trouble);
 const score = new Score(scene, line), editor = new Editor(line), help = new Help(scene);
-const desk = new Desk(scene, line), screen = new Screen(scene, line), sheets = new Sheets(scene, line, looking, desk, screen, score, editor);
+const desk = new ControlDesk(scene, line), screen = new Screen(scene, line), sheets = new Sheets(scene, line, looking, desk, screen, score, editor);
 let attempt = null;
 screen.on_choice = () => { if (now.mode !== undefined && words) sheets.show(now, words); };
 

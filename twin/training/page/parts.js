@@ -14,7 +14,7 @@ export function make(tag, attributes = {}, ...children) {
   return element;
 }
 
-/** A key of the desk. It keeps the focus where it is, so that the keyboard stays the machine's. */
+/** A key of the control desk. It keeps the focus where it is, so that the keyboard stays the machine's. */
 export function key(label, act, { lamp = "cyan", atOnce = false, name = null, className = "" } = {}) {
   const button = make("button", { type: "button", class: `key ${className}`, "data-key": name }, label);
   button.style.setProperty("--lamp", `var(--${lamp})`);

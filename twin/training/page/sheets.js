@@ -13,6 +13,7 @@ function colour_of(number) {
 
 const MARKS = { open: "○", done: "●", failed: "×" };
 const BACK_S = [10, 60];
+const NEW_KINDS = ["flat", "ball", "drill", "chamfer"];
 
 export class Sheets {
   constructor(scene, line, looking, desk, screen, score, editor) {
@@ -158,7 +159,23 @@ export class Sheets {
         here && !now.broken ? null : make("div", { class: "row" }, this.button(`change tool ${tool.number}`, words.label(here ? "new_tool" : "change_tool"), () => this.line.say({ do: "change_tool", number: tool.number }))),
         here ? make("div", { class: "row" }, this.button("touch off", words.label("touch_off"), () => this.measure())) : null,
       ].filter(Boolean);
-    });
+    }).concat(this.new_tool());
+  }
+
+  /** A row for a tool that the table lacks. */
+  new_tool() {
+    const { now, words, line } = this;
+    const value = (name, label, given) => make("input", { id: `new-tool-${name}`, "data-key": `new tool ${name}`, inputmode: "decimal", value: given, "aria-label": `${words.label("new_row")}: ${words.label(label)}` });
+    const free = Math.max(...now.tools.map((tool) => tool.number)) + 1;
+    const rows = { number: value("number", "number", free), diameter: value("diameter", "diameter", 6), length: value("length", "length", 60) };
+    const kind = make("select", { id: "new-tool-kind", "data-key": "new tool kind", "aria-label": `${words.label("new_row")}: ${words.label("tool")}` }, ...NEW_KINDS.map((one) => make("option", { value: one }, words.label(`tool_${one}`))));
+    const add = () => line.say({ do: "add_tool", kind: kind.value, number: Math.round(number(rows.number.value)), diameter: number(rows.diameter.value), length: number(rows.length.value) });
+    return [
+      make("h3", {}, words.label("new_row")),
+      make("div", { class: "row" }, make("label", {}, "T", rows.number), kind),
+      make("div", { class: "row" }, make("label", {}, words.label("diameter"), rows.diameter), make("label", {}, words.label("length"), rows.length)),
+      make("div", { class: "row" }, this.button("add tool", words.label("add_row"), add)),
+    ];
   }
 
   /** The tool in the spindle is as long as it must be for its tip to stand on Z0. */

@@ -49,7 +49,9 @@ class Setup:
         self._first_tool = job.tools[0]
         self._stock = None if job.stock is None else _fine(job.stock, scene)
         self.tables = tables
-        self.part_frame = scene.preparation.machine.part_frame.at(tables.true_zero)
+        self.part_frame = scene.preparation.machine.part_frame.at(
+            tables.true_zero, self._first_tool.length
+        )
         self.cut = LiveCut(machine, job, self.part_frame, tables.true_zero)
         self.work = self._clamped_blank()
         self._growth = Growth(machine.machine, self.cut.told_speed)

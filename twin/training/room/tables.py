@@ -8,6 +8,9 @@ from twin.errors import UsageError
 from twin.job.job_file import ToolTable
 from twin.nc.canonical import FloatArray
 
+MAGAZINE_PLACES = 40
+"""Tools that fit."""
+
 
 class Tables:
     """Part zero and tool lengths, as the control has them and as they are.
@@ -89,6 +92,20 @@ class Tables:
             self.lengths[number] = length
         if radius is not None:
             self.radii[number] = radius
+
+    def add_tool(self, tool: ToolTable) -> None:
+        """Put another tool into the magazine, with a row that says what it measures.
+
+        Raises:
+            UsageError: Its number is taken, or the magazine is full.
+        """
+        if tool.number in self.tools:
+            raise UsageError(f"T{tool.number} is in the table already: choose another number")
+        if len(self.tools) >= MAGAZINE_PLACES:
+            raise UsageError(f"the magazine has {MAGAZINE_PLACES} places, and all are taken")
+        self.tools[tool.number] = tool
+        self.lengths[tool.number] = tool.length
+        self.radii[tool.number] = tool.diameter / 2.0
 
     def set_offset(self, name: str, axis: str, value: float) -> float:
         """Write a work offset of an axis [mm or deg].

@@ -107,7 +107,7 @@ class Workpiece:
     def height_at(self, x: float, y: float) -> float:
         """How high the part stands at a place, program coordinates at C0 [mm]."""
         map_ = self._cutter.map
-        corner = self._zero[:3] - np.array([*self._frame.center, 0.0])
+        corner = self._frame.program_zero(self._zero)
         column = round((x + corner[0] - map_.origin[0]) / map_.cell)
         row = round((y + corner[1] - map_.origin[1]) / map_.cell)
         rows, columns = map_.heights.shape
@@ -117,7 +117,7 @@ class Workpiece:
     def program_place(self, row: int, column: int) -> tuple[float, float]:
         """X and Y of a cell of the map, program coordinates at C0 [mm]."""
         map_ = self._cutter.map
-        corner = self._zero[:3] - np.array([*self._frame.center, 0.0])
+        corner = self._frame.program_zero(self._zero)
         x, y = map_.origin[0] + column * map_.cell, map_.origin[1] + row * map_.cell
         return float(x - corner[0]), float(y - corner[1])
 

@@ -79,7 +79,7 @@ class PartTable(Table):
 
 
 class LessonTable(Table):
-    """What the sheet tells of the scene's trap to somebody who fell into it."""
+    """What the score sheet tells of the scene's trap to somebody who fell into it."""
 
     cause: Text
     """What went wrong, and at which block."""
@@ -138,7 +138,7 @@ class SceneFile(Table):
     part: PartTable | None = None
     """The part by which the condition ``finished`` is judged; none: the program's end is enough."""
     lesson: LessonTable | None = None
-    """Told on the sheet of a scene that was handed in with less than all points."""
+    """Told on the score sheet of a scene that was handed in with less than all points."""
     hints: tuple[Text, ...] = ()
     """Given one after the other when the operator asks for one."""
     hint_cost: Annotated[int, Field(ge=0)] = 1

@@ -1,4 +1,4 @@
-"""The application behind the guard: pages, the drawn machine, and the stream of a running session."""
+"""The application behind the origin check: pages, the drawn machine, and the stream of a running session."""
 
 import asyncio
 import contextlib
@@ -34,6 +34,7 @@ from twin.training.scene.scene_file import (
 )
 from twin.training.scene.vocabulary import LANGUAGES, Words
 from twin.training.server.attempts import Attempt, Attempts, next_scene
+from twin.training.server.connections import Connections, Page
 from twin.training.server.driver import Driver, Look
 from twin.training.server.frames import (
     Changes,
@@ -45,9 +46,8 @@ from twin.training.server.frames import (
 )
 from twin.training.server.program_check import ProgramCheck
 from twin.training.server.scene_maker import scene_of, write_scene
-from twin.training.server.seats import Page, Seats
 from twin.training.session.commands import LONGEST_TEXT
-from twin.web.guard import ASSETS
+from twin.web.origin_check import ASSETS
 
 ROLES = ("operator", "trainer", "watcher")
 PAGE = Path(__file__).resolve().parent.parent / "page"
@@ -79,7 +79,7 @@ class RoomApp:
 
     Attributes:
         attempt: What is played.
-        seats: Who sits where.
+        connections: Open pages, and which has the panel.
         bytes_sent: Through all streams so far.
         messages: Heard from all pages so far.
     """
@@ -96,7 +96,7 @@ class RoomApp:
         self._attempts = attempts
         self.attempt = attempt
         self._changing: asyncio.Task[None] | None = None
-        self.seats = Seats()
+        self.connections = Connections()
         self.bytes_sent = 0
         self.messages = 0
         self._stock = StockFeed()
@@ -178,7 +178,7 @@ class RoomApp:
     def _begin_again(self, page: Page, name: str) -> None:
         """Begin the scene again, or the next one, for who has handed in; for a trainer always."""
         over = self._driver.session.room.judge.over
-        acts = page.role == "trainer" or (over and self.seats.may(page, None))
+        acts = page.role == "trainer" or (over and self.connections.allows(page, None))
         known = name in ("", next_scene(self.attempt.scene.name))
         if acts and known and (self._changing is None or self._changing.done()):
             self._changing = asyncio.create_task(anyio.to_thread.run_sync(self.begin, name))
@@ -249,7 +249,7 @@ class RoomApp:
         drawn = drawn_machine(
             scene.machine,
             room.setup.tables.tools[number],
-            room.setup.part_frame.turn_zero,
+            room.setup.part_frame,
             scene.job.file.stock,
             room.setup.tables.true_zero,
         )
@@ -257,7 +257,7 @@ class RoomApp:
 
     async def _stream(self, socket: WebSocket) -> None:
         role = socket.scope["path"].split("/")[1]
-        page = self.seats.sit(role)
+        page = self.connections.open(role)
         await socket.accept()
         if page is None:
             return await socket.close(1013)
@@ -268,7 +268,7 @@ class RoomApp:
             pass  # The page is gone; nothing is left to say to it.
         finally:
             tell.cancel()
-            self.seats.leave(page)
+            self.connections.close(page)
             self._driver.leave(page.number)
 
     async def _hear(self, socket: WebSocket, page: Page) -> None:
@@ -276,7 +276,7 @@ class RoomApp:
         while True:
             text = await socket.receive_text()
             self.messages += 1
-            if not page.may_speak():
+            if not page.within_rate_limit():
                 return await socket.close(1008)
             try:
                 said = json.loads(text)
@@ -291,10 +291,10 @@ class RoomApp:
             elif "make_scene" in said:
                 await self._make_scene(socket, page, said["make_scene"])
             elif "panel" in said:
-                self.seats.hand_over(page, str(said["panel"]))
+                self.connections.hand_over(page, str(said["panel"]))
             elif "attempt" in said:
                 self._begin_again(page, str(said["attempt"]))
-            elif self.seats.may(page, said):
+            elif self.connections.allows(page, said):
                 who = "trainer" if page.role == "trainer" else "operator"
                 self._driver.ask(said, who, page.number)
 
@@ -340,7 +340,9 @@ class RoomApp:
             look = self._driver.look
             self._stock.note(self._driver.seen)
             patch, epoch, version = self._stock.patch(epoch, version)
-            own = self.seats.words(page) | {"attempt": f"{self._opening} {self.attempt.number}"}
+            own = self.connections.words(page) | {
+                "attempt": f"{self._opening} {self.attempt.number}"
+            }
             messages: list[bytes | str] = []
             if patch is not None or look is not shown[0] or own != shown[1]:
                 shown = look, own

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 from twin.training.scene.scene_file import Scene, read_scene, scene_names, scene_path
 from twin.training.scene.vocabulary import Language, Words
+from twin.training.score_sheets.score import ScoreSheetWriter
 from twin.training.session.session import Session
-from twin.training.sheets.score import SheetWriter
 
 CELLS_ACROSS = 400
 """Cells of the live stock along its shorter side, at least: a step of 0.2 mm can be seen."""
@@ -26,7 +26,7 @@ class Attempt(NamedTuple):
     number: int
     scene: Scene
     session: Session
-    writer: SheetWriter
+    writer: ScoreSheetWriter
 
 
 class Attempts:
@@ -62,7 +62,7 @@ class Attempts:
         """
         session = Session(self.prepared(scene))
         words = Words(self.language, scene.preparation.dialect.name)
-        return Attempt(number, scene, session, SheetWriter(session, words, self._out))
+        return Attempt(number, scene, session, ScoreSheetWriter(session, words, self._out))
 
     def after(self, attempt: Attempt, name: str) -> Attempt:
         """Begin the next attempt.

@@ -13,8 +13,8 @@ from twin.training.server.attempts import Attempts
 from twin.training.server.driver import Driver
 from twin.training.session.log import Who
 from twin.training.session.session import Session
-from twin.web.doorkeeper import Doorkeeper, new_tokens
-from twin.web.guard import Guard
+from twin.web.authentication import Authentication, new_tokens
+from twin.web.origin_check import OriginCheck
 from twin.web.server import LOOPBACK, WebServer, require_three
 
 TURNS_S = 0.0005
@@ -124,11 +124,13 @@ def open_room(
     driver = Driver(attempt.session, attempt.writer.changed)
     driver.trouble = attempt.writer.trouble
     app = RoomApp(driver, attempts, attempt)
-    doorkeeper = Doorkeeper(new_tokens(ROLES), server.port, encrypted=certificate is not None)
+    authentication = Authentication(
+        new_tokens(ROLES), server.port, encrypted=certificate is not None
+    )
     addresses = {
-        role: f"{server.origin}/{role}/#{token}" for role, token in doorkeeper.tokens.items()
+        role: f"{server.origin}/{role}/#{token}" for role, token in authentication.tokens.items()
     }
-    server.start(Guard(app.asgi, doorkeeper, local=server.local), promptly=promptly)
+    server.start(OriginCheck(app.asgi, authentication, local=server.local), promptly=promptly)
     try:
         with prompt_threads():
             yield OpenRoom(driver, app, addresses, promptly=promptly)

@@ -52,7 +52,7 @@ def scene_of(room: Room, language: Language, title: str, story: str) -> SceneTex
     Raises:
         UsageError: The room cannot be written down as a scene.
     """
-    tables, file = room.setup.tables, room.scene.file
+    tables = room.setup.tables
     if not title.strip():
         raise UsageError("a scene needs a title")
     first = next(iter(tables.tools))
@@ -64,7 +64,7 @@ def scene_of(room: Room, language: Language, title: str, story: str) -> SceneTex
         "language": language,
         "title": {language: title.strip()},
         "story": {language: story.strip() or title.strip()},
-        "job": file.job.model_dump(mode="json", exclude_unset=True),
+        "job": _job(room),
         "start": _start(room),
         "faults": [
             fault.model_dump(mode="json", exclude_unset=True) for fault in room.faults.active
@@ -103,6 +103,17 @@ def write_scene(scene: SceneText, folder: Path) -> Path:
                 written.unlink()
         raise UsageError(f"this room is no scene that stands alone: {error}") from error
     return path
+
+
+def _job(room: Room) -> dict[str, Any]:
+    """The scene's job, with the tools that have been added at the panel."""
+    job, tools = room.scene.file.job, room.setup.tables.tools
+    content = job.model_dump(mode="json", exclude_unset=True)
+    if len(tools) > len(job.tools):
+        content["tools"] = [
+            tool.model_dump(mode="json", exclude_unset=True) for tool in tools.values()
+        ]
+    return content
 
 
 def _start(room: Room) -> dict[str, Any]:

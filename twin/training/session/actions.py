@@ -5,6 +5,7 @@ from collections.abc import Callable
 from typing import Any
 
 from twin.errors import UsageError
+from twin.job.job_file import ToolTable
 from twin.nc.text.source import source_from_text
 from twin.training.program.run_options import RunOptions
 from twin.training.room.manual_motion import SHORTEST_MOVE, JogMove, within_travel
@@ -20,6 +21,8 @@ _NO_TOUCH = (c.Sign, c.Answer, c.Hint, c.Inject, c.Repair)
 """What does not begin a scene's time."""
 ENDLESS = 3600.0
 """How far a jog goes at most that lasts while its key is held [mm or deg]."""
+LONGEST_FLUTE = 25.0
+"""Cutting part of a tool that is added [mm]; of a short one half its length."""
 REFERENCE = 0.0
 """Machine coordinate of the reference point of every axis."""
 
@@ -295,8 +298,21 @@ def _set_tool(room: Room, command: c.SetTool) -> None:
     room.setup.tables.set_tool(command.number, command.length, command.radius)
 
 
+def _add_tool(room: Room, command: c.AddTool) -> None:
+    _require_no_run(room)
+    flute = min(LONGEST_FLUTE, 0.5 * command.length)
+    tool = ToolTable(
+        number=command.number,
+        kind=command.kind,
+        diameter=command.diameter,
+        length=command.length,
+        flute=flute,
+    )
+    room.setup.tables.add_tool(tool)
+
+
 def _sign(_room: Room, _command: c.Sign) -> None:
-    """Only the sheet wants to know."""
+    """Only the score sheet needs it."""
 
 
 def _answer(room: Room, command: c.Answer) -> None:
@@ -386,6 +402,7 @@ _ACTIONS: dict[type, Callable[[Room, Any], None]] = {
     c.SetZero: _set_zero,
     c.SetOffset: _set_offset,
     c.SetTool: _set_tool,
+    c.AddTool: _add_tool,
     c.Sign: _sign,
     c.Answer: _answer,
     c.Hint: _hint,

@@ -23,6 +23,9 @@ from twin.training.scene.scene_file import (
 MOST = 10**9
 """Beyond what anything is numbered with."""
 
+MOST_TOOL_NUMBER = 9999
+"""Of a tool that is added at the panel."""
+
 SPINDLE_SPEEDS = (1.0, 20000.0)
 """Ends of what the spindle turns [1/min]."""
 
@@ -250,6 +253,19 @@ class SetTool(Table):
     """[mm]"""
 
 
+class AddTool(Table):
+    """Put another tool into the magazine, with a row of its own in the tool table."""
+
+    do: Literal["add_tool"] = "add_tool"
+    number: Annotated[int, Field(ge=1, le=MOST_TOOL_NUMBER)]
+    kind: Literal["flat", "ball", "drill", "chamfer"]
+    """The shape of its end; a bull-nose cutter would need a corner as well."""
+    diameter: Annotated[float, Field(ge=0.1, le=100)]
+    """[mm]"""
+    length: Annotated[float, Field(ge=20, le=300)]
+    """From the spindle nose to the tip [mm]."""
+
+
 class Sign(Table):
     """Say who is at the panel, for the score sheet."""
 
@@ -329,7 +345,7 @@ SessionCommand = Freeze | Unfreeze | Rewind | StartReplay | EndReplay
 Command = (
     SelectMode | CycleStart | FeedHold | Reset | EmergencyStop | Override | Jog | JogStop
     | Handwheel | Reference | ReturnToPath | Search | Switch | Enter | Edit | Load | Undo | Reload
-    | Spindle | Coolant | ChangeTool | NewBlank | SetZero | SetOffset | SetTool | Sign | Answer | Hint
+    | Spindle | Coolant | ChangeTool | NewBlank | SetZero | SetOffset | SetTool | AddTool | Sign | Answer | Hint
     | Finish | Inject | Repair | SessionCommand
 )  # fmt: skip
 

@@ -42,7 +42,7 @@ const chart = new Chart(at("chart"), at("pointed"), {
   times, feeds, speeds, errors: run.has_error ? errors : null, worst, alarms: run.alarms.map(([when]) => when),
   text: (index) => `${times[index].toFixed(3)} s · line ${lines[index]} · ${values(index)}`, sample, jump,
 });
-let now = 0, tool = null, playing = false, before = 0, shown_line = -1;
+let now = 0, tool = null, playing = false, following = false, before = 0, shown_line = -1;
 
 /** The last sample that is not later than a time. */
 function sample(time) {
@@ -83,6 +83,7 @@ function show(index) {
 }
 
 function play(on) {
+  follow(false);
   playing = on;
   at("play").textContent = on ? "Pause" : "Play";
   at("play").setAttribute("aria-pressed", on);
@@ -105,6 +106,19 @@ function step(clock) {
 function jump(index) {
   play(false);
   show(index);
+}
+
+/** Show where a machine is that makes the run again, or stop doing so. */
+function follow(on) {
+  following = on;
+  at("live").setAttribute("aria-pressed", on);
+}
+
+/** Where the address asks for: #t=SECONDS or #line=NUMBER. */
+function asked() {
+  const [, what, value] = /^#(t|line)=([\d.]+)$/.exec(location.hash) ?? [];
+  if (what === "t") return sample(Number(value));
+  return what === "line" ? first_of.get(Number(value)) : undefined;
 }
 
 function colour(share) {
@@ -214,7 +228,17 @@ at("views").append(
 );
 banner("");
 view.say("show", { trail: true });
-show(last);
+show(asked() ?? last);
+addEventListener("hashchange", () => { if (asked() !== undefined) jump(asked()); });
+at("report").hidden = !run.has_report;
+if (run.is_live) {
+  at("live").hidden = false;
+  at("live").addEventListener("click", () => { play(false); follow(true); });
+  follow(asked() === undefined);
+  const socket = new WebSocket(new URL("now", location.href).href.replace(/^http/, "ws"));
+  socket.addEventListener("message", ({ data }) => { if (following) show(sample(Number(data))); });
+  socket.addEventListener("close", () => { at("live").disabled = true; banner("The machine has been switched off."); });
+}
 draw_path();
 await read_cuts();
 document.body.dataset.ready = "yes";

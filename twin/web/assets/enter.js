@@ -1,5 +1,6 @@
 // Hands in the token that stands behind the # of the address, and takes it out of the address.
-const token = location.hash.slice(1);
+// A place in the page, such as t=1.5, is no token.
+const token = location.hash.includes("=") ? "" : location.hash.slice(1);
 const role = location.pathname.split("/")[1];
 if (token) {
   history.replaceState(null, "", location.pathname + location.search);

@@ -2,6 +2,7 @@
 // themselves, so that a small step shows however coarse the drawn net is.
 
 import * as THREE from "./three/three.module.js";
+import { edge_of, stock_net } from "./stock_net.js";
 import { TOOL_COLOURS } from "./tool_colours.js";
 
 const RAW = new THREE.Color(0.25, 0.27, 0.3);
@@ -11,10 +12,27 @@ const SECTION = 0xd9822b;
 const VERTEX_PARS = `
 uniform sampler2D heights;
 uniform vec2 cells;
+uniform vec4 circle;
+attribute vec2 at;
+attribute vec3 source;
+attribute vec2 outward;
 varying vec2 cell;
+varying vec2 side;
 float stored(ivec2 at) {
   if (at.x < 0 || at.y < 0 || at.x >= int(cells.x) || at.y >= int(cells.y)) return 0.0;
   return texelFetch(heights, at, 0).r;
+}
+float height_of(vec3 source) {
+  ivec2 from = ivec2(round(source.xy));
+  float least = stored(from);
+  if (source.z < 0.5) return least;
+  // A cut that leaves less than a cell takes some cells of the edge and leaves others: the edge is as low as any nearby.
+  for (int i = -2; i < 3; i++) for (int j = -2; j < 3; j++) {
+    if (circle.z > 0.0 && distance(vec2(from + ivec2(i, j)), circle.xy) < circle.z + 0.5) continue;
+    float beside = stored(from + ivec2(i, j));
+    if (beside > 0.0) least = min(least, beside);
+  }
+  return least;
 }
 `;
 
@@ -29,11 +47,20 @@ uniform float blank;
 uniform vec3 rawColour;
 uniform vec3 cutColour;
 uniform mat3 normalMatrix;
+uniform vec4 circle;
 varying vec2 cell;
+varying vec2 side;
 float stored(ivec2 at) {
   return texelFetch(heights, clamp(at, ivec2(0), ivec2(cells) - 1), 0).r;
 }
-float smoothly(vec2 at) {
+vec2 within(vec2 at) {
+  if (circle.z <= 0.0) return at;
+  vec2 from = at - circle.xy;
+  float away = max(length(from), 1e-6);
+  return circle.xy + from / away * clamp(away, circle.w, circle.z);
+}
+float smoothly(vec2 place) {
+  vec2 at = within(place);
   vec2 low = floor(at), share = at - low;
   ivec2 i = ivec2(low);
   return mix(mix(stored(i), stored(i + ivec2(1, 0)), share.x),
@@ -66,16 +93,13 @@ const COLOUR = `
 const NORMAL = `
   vec2 slope = vec2(smoothly(cell + vec2(0.6, 0.0)) - smoothly(cell - vec2(0.6, 0.0)),
                     smoothly(cell + vec2(0.0, 0.6)) - smoothly(cell - vec2(0.0, 0.6))) * blank / (1.2 * cellSize);
-  float rim = max(max(-cell.x, cell.x - cells.x + 1.0), max(-cell.y, cell.y - cells.y + 1.0));
-  vec3 upright = vec3(-slope, 1.0);
-  if (rim > 0.02) upright = vec3(cell.x < 0.0 ? -1.0 : cell.x > cells.x - 1.0 ? 1.0 : 0.0,
-                                 cell.y < 0.0 ? -1.0 : cell.y > cells.y - 1.0 ? 1.0 : 0.0, 0.0);
+  vec3 upright = dot(side, side) > 0.25 ? vec3(side, 0.0) : vec3(-slope, 1.0);
   vec3 normal = normalize(normalMatrix * normalize(upright));
   vec3 nonPerturbedNormal = normal;
 `;
 
 export class Stock {
-  /** grid: origin, cell, rows, columns, bottom, top [mm]; step: cells between two drawn vertices; fine: it gleams. */
+  /** grid: origin, cell, rows, columns, bottom, top, outline [mm]; step: cells between two drawn vertices; fine: it gleams. */
   constructor(grid, step, fine) {
     this.grid = grid;
     const { rows, columns, cell, bottom, top } = grid;
@@ -90,6 +114,7 @@ export class Stock {
     const uniforms = {
       tools: { value: this.tools }, byTool: this.byTool, toolColours: { value: TOOL_COLOURS.map((colour) => new THREE.Color(colour)) },
       heights: { value: this.texture }, cells: { value: new THREE.Vector2(columns, rows) },
+      circle: { value: circle_of(edge_of(grid)) },
       cellSize: { value: cell }, blank: { value: top - bottom }, rawColour: { value: RAW }, cutColour: { value: CUT },
     };
     const material = fine ? new THREE.MeshStandardMaterial({ metalness: 0.35, roughness: 0.42 }) : new THREE.MeshLambertMaterial();
@@ -99,18 +124,16 @@ export class Stock {
       shader.vertexShader = shader.vertexShader
         .replace("#include <common>", `#include <common>\n${VERTEX_PARS}`)
         .replace("#include <begin_vertex>", `
-          cell = position.xy;
-          vec3 transformed = vec3(clamp(position.xy, vec2(-0.5), cells - 0.5), position.z);
-          bool outside = any(lessThan(position.xy, vec2(-0.75))) || any(greaterThan(position.xy, cells - 0.25));
-          transformed.z = outside ? 0.0 : stored(ivec2(clamp(floor(position.xy + 0.5), vec2(0.0), cells - 1.0)));
-          transformed = vec3(transformed.xy * ${cell.toFixed(6)}, transformed.z * ${(top - bottom).toFixed(6)});`);
+          cell = at;
+          side = outward;
+          vec3 transformed = vec3(position.xy * ${cell.toFixed(6)}, height_of(source) * ${(top - bottom).toFixed(6)});`);
       shader.fragmentShader = shader.fragmentShader
         .replace("#include <common>", `#include <common>\n${FRAGMENT_PARS}`)
         .replace("#include <color_fragment>", COLOUR)
         .replace("#include <normal_fragment_begin>", `float faceDirection = gl_FrontFacing ? 1.0 : -1.0;\n${NORMAL}`)
-        .replace("#include <clipping_planes_fragment>", "#include <clipping_planes_fragment>\nif (smoothly(clamp(cell, vec2(0.0), cells - 1.0)) <= 0.0005) discard;");
+        .replace("#include <clipping_planes_fragment>", "#include <clipping_planes_fragment>\nif (dot(side, side) < 0.25 && smoothly(clamp(cell, vec2(0.0), cells - 1.0)) <= 0.0005) discard;");
     };
-    this.mesh = new THREE.Mesh(net(rows, columns, step), material);
+    this.mesh = new THREE.Mesh(stock_net(grid, step), material);
     this.mesh.frustumCulled = false;
     this.mesh.position.set(grid.origin[0], grid.origin[1], bottom);
     this.face = new THREE.Mesh(new THREE.BufferGeometry(), new THREE.MeshBasicMaterial({ color: SECTION, side: THREE.DoubleSide, toneMapped: false }));
@@ -176,23 +199,7 @@ export class Stock {
   }
 }
 
-/** Vertices every few cells, with a rim outside the blank from which its sides hang. */
-function net(rows, columns, step) {
-  const places = (count) => [-1, -0.5, ...Array.from({ length: Math.floor((count - 1) / step) }, (_, i) => i * step), count - 1, count - 0.5, count];
-  const xs = places(columns), ys = places(rows);
-  const points = new Float32Array(xs.length * ys.length * 3);
-  ys.forEach((y, j) => xs.forEach((x, i) => points.set([x, y, 0], 3 * (j * xs.length + i))));
-  const faces = new Uint32Array((xs.length - 1) * (ys.length - 1) * 6);
-  let at = 0;
-  for (let j = 0; j < ys.length - 1; j++) {
-    for (let i = 0; i < xs.length - 1; i++) {
-      const a = j * xs.length + i, b = a + xs.length;
-      faces.set([a, a + 1, b + 1, a, b + 1, b], at);
-      at += 6;
-    }
-  }
-  const geometry = new THREE.BufferGeometry();
-  geometry.setAttribute("position", new THREE.BufferAttribute(points, 3));
-  geometry.setIndex(new THREE.BufferAttribute(faces, 1));
-  return geometry;
+/** Middle, and the radii between which a round blank's cells are all its own; a negative one for others [cells]. */
+function circle_of({ center, half, round, bore }) {
+  return new THREE.Vector4(...center, round ? Math.max(half[0] - 1.5, 0.5) : -1, bore ? bore + 1.5 : 0);
 }

@@ -74,7 +74,10 @@ def require_orientation(control: Control) -> None:
 
 def level(control: Control) -> None:
     """G69: no tilted plane and no rotation; the axes stay where they are."""
-    end_tool_center(control, "G69", keeps_length=True)
+    center = control.path.tool_center
+    if center is not None and center.tilted:
+        end_tool_center(control, "G69", keeps_length=True)
+    memory_of(control).rotation = None
     set_tilt(control, None)
 
 

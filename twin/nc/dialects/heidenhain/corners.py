@@ -4,6 +4,7 @@ import re
 
 from twin.nc.control.control import Control
 from twin.nc.dialects.heidenhain.cycle_values import INCH_FEEDS
+from twin.nc.dialects.heidenhain.memory import memory_of
 from twin.nc.dialects.heidenhain.values import computed_words, value_at
 from twin.nc.path.blends import Blend, BlendKind
 from twin.nc.text.blocks import Statement, Word
@@ -27,12 +28,25 @@ def round_corner(control: Control, statement: Statement) -> None:
 
 
 def cut_corner(control: Control, statement: Statement) -> None:
-    """CHF 10 F100: a line between the points that lie so far from the corner."""
+    """CHF 10 F100: between two lines a further one between the points that lie so far from the corner."""
     if not statement.text.strip():
         control.fail("blend", "CHF needs its length", statement, "CHF 10")
     value, end = value_at(control, statement)
     words = computed_words(control, statement, end)
+    memory, memory.chamfered = memory_of(control), control.motion.last
+    if memory.chamfered is not None and memory.chamfered.center is not None:
+        refuse_chamfered_arc(control, statement)
     _blend(control, statement, BlendKind.CHAMFER, value * control.modal.unit, words)
+
+
+def refuse_chamfered_arc(control: Control, statement: Statement | None = None) -> None:
+    """A chamfer cuts off the corner between two lines (TNC 426 user's manual, 6.4).
+
+    Raises:
+        ProgramError: Always.
+    """
+    message = "CHF stands between two straight lines, and one of its moves is an arc"
+    control.fail("blend", message, statement, "RND rounds the corner beside an arc")
 
 
 def _blend(

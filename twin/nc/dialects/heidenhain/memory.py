@@ -8,6 +8,8 @@ from twin.nc.control.settings import ToolData
 from twin.nc.dialects.heidenhain.cycle_values import Parameters
 from twin.nc.geometry.matrices import Matrix
 from twin.nc.geometry.planes import Plane, Vector
+from twin.nc.path.feed_rates import FeedMode
+from twin.nc.path.move_columns import Segment
 
 Cycle = Callable[[Control, Parameters], None]
 
@@ -55,6 +57,7 @@ class KlartextMemory:
         rotation: Of cycle 10 [deg].
         scale: Of cycle 11.
         order: In which of these the program has put them into force.
+        chamfered: The move whose end CHF cuts off, or None.
         shortest: M126: rotary axes go the shorter way.
     """
 
@@ -84,6 +87,7 @@ class KlartextMemory:
     scale: float = 1.0
     tilt: Matrix | None = None
     order: list[str] = dataclasses.field(default_factory=list)
+    chamfered: Segment | None = None
     shortest: bool = False
 
 
@@ -94,6 +98,15 @@ def memory_of(control: Control) -> KlartextMemory:
 
 
 def acts_on_lines(control: Control) -> bool:
-    """A cycle behind every move, the shorter way of rotary axes, or a tilted plane."""
-    memory = memory_of(control)
-    return memory.calls_always or memory.shortest or memory.tilt is not None
+    """A cycle behind every move, the shorter way of rotary axes, a tilted plane, feeds that are
+    none per minute, FMAX before."""
+    memory, modal = memory_of(control), control.modal
+    counts_otherwise = modal.unit != 1.0 or modal.feed_mode != FeedMode.PER_MINUTE
+    return (
+        memory.calls_always
+        or memory.shortest
+        or memory.tilt is not None
+        or memory.was_rapid
+        or memory.per_revolution
+        or counts_otherwise
+    )

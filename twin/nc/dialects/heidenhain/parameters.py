@@ -6,6 +6,7 @@ from twin.nc.control.control import Control
 from twin.nc.dialects.heidenhain.cycles.parameters import continued
 from twin.nc.dialects.heidenhain.memory import memory_of
 from twin.nc.dialects.heidenhain.values import text_of, value_at
+from twin.nc.iso.offsets import machine_zero
 from twin.nc.text.blocks import Statement
 from twin.nc.text.expressions import ExpressionError
 
@@ -22,6 +23,8 @@ _SYSTEM = re.compile(
 )
 _PIECE = re.compile(r"\"[^\"]*\"|QS[0-9]+", re.IGNORECASE)
 
+_AXES = "XYZABCUVW"
+"""Axes as FN 18 numbers them, from 1 (manual)."""
 COMPUTING = frozenset((*range(9), 13))
 """FN 0 to FN 8 and FN 13 give a parameter a value."""
 _PASSED = {
@@ -110,20 +113,32 @@ def _read_system(control: Control, statement: Statement) -> None:
     if match is not None and match["index"]:
         index, _ = value_at(control, statement, match.start("index"))
     value: float | None = None
-    axis = int(index) - 1
     asked = (0, 0) if match is None else (int(match["id"]), int(match["number"]))
     if asked == (20, 1):
         value = float(tool)
     elif asked[0] == 50 and asked[1] in (1, 2):
         data = control.tools.data(int(index) or tool)
         value = None if data is None else (data.length, data.radius)[asked[1] - 1]
-    elif asked == (270, 1) and 0 <= axis < len(control.motion.programmed):
-        value = control.motion.programmed[axis] / control.motion.unit_of(axis)
+    elif asked in ((240, 1), (270, 1)) and 1.0 <= index <= len(_AXES):
+        value = _position(control, _AXES[int(index) - 1], of_machine=asked[0] == 240)
     if value is None or match is None:
         message = f"{statement.keyword.rstrip(':').strip()} reads data of the control that the twin does not keep"
-        hint = "known: ID20 NR1, ID50 NR1 and NR2, ID270 NR1; else give Q its value by FN 0"
+        hint = (
+            "known: ID20 NR1, ID50 NR1 and NR2, ID240 NR1, ID270 NR1; else give Q its value by FN 0"
+        )
         control.fail("unsupported-statement", message, statement, hint)
     control.variables.write(match["name"].upper(), value)
+
+
+def _position(control: Control, axis: str, *, of_machine: bool) -> float | None:
+    """Where an axis stands, as the program or the machine counts it; None: the machine lacks it."""
+    column = control.axis_index.get(axis)
+    if column is None:
+        return None
+    value = control.motion.programmed[column]
+    if of_machine:
+        value = control.motion.part[column] - machine_zero(control, "ID240").get(axis, 0.0)
+    return value / control.motion.unit_of(column)
 
 
 def read_variable(control: Control, name: str, _index: float | None) -> float:

@@ -6,6 +6,7 @@ from contextlib import contextmanager
 from twin.nc.control.codes import Interpolation, StatementAction
 from twin.nc.control.control import Control
 from twin.nc.control.modal import LineRule
+from twin.nc.dialects.heidenhain.corners import refuse_chamfered_arc
 from twin.nc.dialects.heidenhain.memory import memory_of
 from twin.nc.geometry.arcs import (
     SAME_POINT,
@@ -185,14 +186,17 @@ def take_sense(control: Control) -> bool:
     return right is not None
 
 
-def _refuse_rapid(control: Control) -> None:
-    if memory_of(control).rapid:
+def _begin_arc(control: Control) -> None:
+    memory = memory_of(control)
+    if memory.rapid:
         control.fail("rapid-arc", "an arc is not driven with FMAX", hint="write F and the feed")
+    if memory.chamfered is not None and memory.chamfered is control.motion.last:
+        refuse_chamfered_arc(control)
 
 
 def _arc(control: Control) -> None:
     """C: about the pole to the end, or all around where it ends where it begins."""
-    _refuse_rapid(control)
+    _begin_arc(control)
     with circle_plane(control) as pole:
         clockwise, target = take_sense(control), control.target()
         center = fitted_center(control, start_and_end(control, target), pole, BOUNDS, None)
@@ -201,7 +205,7 @@ def _arc(control: Control) -> None:
 
 def _arc_by_radius(control: Control) -> None:
     """CR: of the radius R; a negative one draws the arc beyond 180°."""
-    _refuse_rapid(control)
+    _begin_arc(control)
     word = control.take("R")
     if word is None:
         control.fail("arc-radius", "CR needs its radius R", hint="CR X+10 Y+20 R+5 DR-")
@@ -232,20 +236,20 @@ def _tangent_arc_to(control: Control, target: list[float]) -> None:
 
 def _tangent_arc(control: Control) -> None:
     """CT."""
-    _refuse_rapid(control)
+    _begin_arc(control)
     _tangent_arc_to(control, control.target())
 
 
 def _polar_tangent_arc(control: Control) -> None:
     """CTP."""
-    _refuse_rapid(control)
+    _begin_arc(control)
     with circle_plane(control) as pole:
         _tangent_arc_to(control, polar_target(control, pole))
 
 
 def _polar_arc(control: Control) -> None:
     """CP: about the pole to the angle PA, or by IPA, also by more than a turn; a helix with the axis across."""
-    _refuse_rapid(control)
+    _begin_arc(control)
     word = control.take("PA")
     if word is None:
         control.fail("missing-words", "CP needs PA or IPA", hint="CP IPA+360 IZ-2 DR+ is a helix")

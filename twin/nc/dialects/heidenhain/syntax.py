@@ -83,6 +83,7 @@ SYNTAX = Syntax(
     expressions=EXPRESSIONS,
     statement=KEYWORDS,
     worded=WORDED,
+    line_keyword="L",
     flag=_FLAG,
     relative={**{f"I{axis}": axis for axis in _AXES}, "IPR": "PR", "IPA": "PA"},
     aliases={f"LIN_{axis}": axis for axis in "XYZ"},

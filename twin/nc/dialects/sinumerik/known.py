@@ -88,6 +88,7 @@ REFUSED_STATEMENTS = each_name(
     {
         "TRACON, TRAANG": _NO_TILT,
         "TRANSMIT, TRACYL": "write the rotary axis itself",
+        "DEFINE": "macros of texts are not followed; write the words that they stand for",
         "G291": "the ISO language of this control is another one",
         "MEAS, MEAW, MEASA, MEAWA, MEAC, CYCLE971, CYCLE976, CYCLE977, CYCLE978, CYCLE979, CYCLE982, CYCLE996, CYCLE998, CYCLE961, CYCLE997, CYCLE995, CYCLE9960": _PROBE,
         "TANG, TANGON, TLIFT, TRAILON, COUPDEF, COUPON, LEADON, CTABDEF, CTABEND, MASLON, EGDEF, EGON, CPON, CPLON": _COUPLING,

@@ -88,6 +88,7 @@ class SinumerikMemory:
         lead_side: Of the contour that the last lead has come to.
         lead_offset: How far beside it the tool's centre goes [mm].
         rounding: RNDM [mm].
+        ends_rounding: RNDM=0: it ends behind the next move.
         modal_feed: F that an FB of the block has put aside, or None.
         subprograms: By name.
         main: Lines of the main program.
@@ -117,6 +118,7 @@ class SinumerikMemory:
     lead_side: float = 0.0
     lead_offset: float = 0.0
     rounding: float = 0.0
+    ends_rounding: bool = False
     modal_feed: float | None = None
     subprograms: dict[str, Subprogram] = dataclasses.field(default_factory=dict)
     main: range = range(0)

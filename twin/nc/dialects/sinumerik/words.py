@@ -201,14 +201,14 @@ def prepare_corners(control: Control) -> None:
 
 
 def modal_rounding(control: Control, word: Word) -> None:
-    """RNDM=: every corner of the contour that follows is rounded; 0 ends it."""
-    radius = control.length(word)
+    """RNDM=: the corner behind this block and all further ones are rounded; 0: none behind this block is."""
+    radius, memory = control.length(word), memory_of(control)
     if radius < 0.0:
         control.fail("blend", f"the radius {word.text} is below 0", word)
-    memory_of(control).rounding = radius
-    blend = Blend(BlendKind.FILLET, radius, control.motion.part_plane) if radius > 0.0 else None
-    control.path.blend_always(blend)
-    control.path.hold_for_blends()
+    memory.ends_rounding = radius == 0.0
+    if radius > 0.0:
+        memory.rounding = radius
+        control.path.blend_always(Blend(BlendKind.FILLET, radius, control.motion.part_plane))
 
 
 def before_motion(control: Control, _rapid: bool) -> None:
@@ -220,8 +220,12 @@ def before_motion(control: Control, _rapid: bool) -> None:
 def after_motion(control: Control) -> None:
     """What a block does when it has moved: angles within a turn, its corner, its own feed."""
     shows_within_turn(control)
-    _blend(control)
     memory = memory_of(control)
+    if memory.ends_rounding:
+        memory.ends_rounding, memory.rounding = False, 0.0
+        control.path.blend_always(None)
+        control.path.hold_for_blends()
+    _blend(control)
     if memory.modal_feed is not None:
         control.motion.feed = None if math.isnan(memory.modal_feed) else memory.modal_feed
         memory.modal_feed = None

@@ -19,12 +19,12 @@ _COMMA = re.compile(r"(?<=[0-9]),(?=[0-9])")
 def continued(control: Control, *, while_: re.Pattern[str] | None) -> Iterator[tuple[int, str]]:
     """The lines that go on with the block, without their comments, numbered from 0; they are passed over.
 
-    A line goes on where the one before ends with ``~``, or where it looks as given.
+    A line goes on where the one before ends with ``~``; of a block without any ``~`` where it looks as given.
     """
-    counter = control.program_counter
-    number, lines = counter.location.line, counter.lines
-    tilde = lines[control.block.line - 1].rstrip().endswith("~")
-    number = control.block.line
+    counter, number = control.program_counter, control.block.line
+    lines = counter.lines
+    tilde = lines[number - 1].rstrip().endswith("~")
+    while_ = None if tilde else while_
     while number < len(lines):
         raw = lines[number]
         code = _COMMA.sub(".", raw.split(";")[0]).rstrip("~ \t")

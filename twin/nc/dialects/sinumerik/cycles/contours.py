@@ -52,7 +52,7 @@ class _Milling:
         motion.feed = self.leads[0].feed
         above = min(self.heights.safe, motion.programmed[across]) - level
         approach(control, dataclasses.replace(self.leads[0], above=max(above, 0.0)), None)
-        stand_at_height(control, level)
+        stand_at_height(control, level, nowhere=True)
         name = self.call.texts["KNAME"]
         part = _PART.fullmatch(name)
         if part is not None:

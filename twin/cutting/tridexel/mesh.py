@@ -1,0 +1,104 @@
+"""The material of a tri-dexel stock as a closed mesh."""
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from twin.cutting.tridexel.cell_loops import cell_loops
+from twin.cutting.tridexel.dexels import SkinArray, TriDexel
+from twin.cutting.tridexel.surface import Coarse, Crossings, find_surface, mark_inside
+from twin.nc.canonical import FloatArray, IntArray
+
+if TYPE_CHECKING:
+    import trimesh
+
+MESH_CROSSINGS = 250_000
+"""Crossings of the finest mesh that is written, four triangles each; a finer stock is thinned to it."""
+MARKED_NODES = 100_000_000
+"""Nodes that are marked at a time: as many bytes."""
+
+
+class Surface(NamedTuple):
+    """A closed surface.
+
+    Attributes:
+        points: Vertices, shape (n, 3) [mm].
+        skin: Normal and tool at each (``normals``), shape (n,).
+        faces: Triangles, counter-clockwise from outside, shape (m, 3).
+    """
+
+    points: FloatArray
+    skin: SkinArray
+    faces: IntArray
+
+
+def surface(stock: TriDexel, crossings: int = MESH_CROSSINGS) -> Surface:
+    """The surface of the material, with sharp edges where the lines have seen both sides of them.
+
+    What is thinner than the distance of the nodes that are taken may be left out, on both sides.
+
+    Args:
+        stock: The material.
+        crossings: About as many edges of the lattice may be crossed; if there are more, nodes are left out.
+    """
+    step = 1
+    while np.prod(-(-stock.lattice.shape // step) + 2.0) > MARKED_NODES:
+        step += 1
+    while True:
+        coarse = Coarse((step - 1) // 2, step)
+        inside, count = _marked(stock, coarse)
+        if count <= crossings:
+            break
+        step = max(step + 1, int(step * (count / crossings) ** 0.5))
+    found = Crossings(
+        np.zeros((count + 2 * count, 3)),
+        np.zeros(count + 2 * count, np.int32),
+        np.zeros((4 * count, 3), np.int32),
+        np.zeros((5, *inside.shape[1:]), np.int32),
+    )
+    patches = find_surface(stock.dexels, stock.lattice, coarse, inside, cell_loops(), found, count)
+    vertices = count + patches
+    return Surface(found.point[:vertices], found.skin[:vertices], _faces(found.segment))
+
+
+def _marked(stock: TriDexel, coarse: Coarse) -> tuple[np.ndarray, int]:
+    """Which nodes are in the material, with a layer around them that is not, and how many edges change."""
+    shape = -(-(stock.lattice.shape - coarse.first) // coarse.step) + 2
+    inside = np.zeros(tuple(shape), np.uint8)
+    mark_inside(stock.dexels, stock.lattice, coarse, inside)
+    count = sum(int(np.count_nonzero(np.diff(inside, axis=axis))) for axis in range(inside.ndim))
+    return inside, count
+
+
+def _faces(segments: np.ndarray) -> IntArray:
+    """Triangles from the rims of patches.
+
+    A segment of a rim lies between two patches and is part of both rims, once to and once fro. The two triangles
+    between it and the patches' vertices are turned about: their common edge goes from vertex to vertex, along
+    the edge of the part if there is one. Where two patches meet in two segments that edge would be there
+    twice; there the triangles stay as they are.
+    """
+    rim = segments.astype(np.int64)
+    key = rim[:, :2].min(axis=1) * (rim.max(initial=0) + 1) + rim[:, :2].max(axis=1)
+    order = np.argsort(key, kind="stable")
+    one, other = rim[order[::2]], rim[order[1::2]]
+    a, b, first, last = one[:, 2], other[:, 2], one[:, 0], one[:, 1]
+    pair = np.minimum(a, b) * (rim.max(initial=0) + 1) + np.maximum(a, b)
+    _, place, times = np.unique(pair, return_inverse=True, return_counts=True)
+    turned = times[place] == 1
+    faces = np.stack(
+        [
+            np.where(turned[:, None], np.stack([first, b, a], 1), np.stack([first, last, a], 1)),
+            np.where(turned[:, None], np.stack([last, a, b], 1), np.stack([last, first, b], 1)),
+        ],
+        axis=1,
+    )
+    return faces.reshape(-1, 3)
+
+
+def part_mesh(stock: TriDexel) -> "trimesh.Trimesh":
+    """The material as a mesh; nothing left gives an empty one."""
+    import trimesh  # As long to load as the rest of a run, and most runs cut no part.
+
+    found = surface(stock)
+    return trimesh.Trimesh(found.points, found.faces, process=False)

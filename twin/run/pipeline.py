@@ -1,0 +1,167 @@
+"""From moves to samples: plan, settle, simulate, grow, each a generator that feeds the next."""
+
+import abc
+from collections.abc import Callable, Iterable, Iterator
+from typing import NamedTuple
+
+from twin.coupling.cutting_process import CuttingProcess
+from twin.coupling.operations import ProgramOperation, program_process
+from twin.cutting.axis_load import AxisLoad
+from twin.cutting.program_summary import ProgramSummary
+from twin.errors import ConfigError
+from twin.job.job_file import JobFile
+from twin.machine.description.config import Machine
+from twin.machine.description.motion_limits import motion_limits
+from twin.machine.model.model import MachineModel
+from twin.machine.simulation.growth import Growth
+from twin.machine.simulation.simulate import Load, simulate
+from twin.machine.watching.alarms import Alarm, NearMiss
+from twin.motion.planner import plan
+from twin.motion.setpoints.setpoints import Setpoints
+from twin.motion.setpoints.settle import settle
+from twin.nc.canonical import Chunk, FloatArray, Moves
+from twin.recording.reader import Samples
+from twin.run.dry_run import DryRun, InterpretedProgram
+from twin.run.layout import Layout
+
+
+class Motion(abc.ABC):
+    """What moves the machine along a program; iterated once, for the samples of its joints.
+
+    Attributes:
+        alarm: What stopped it, None while nothing did.
+        process: The cut whose forces push the axes; None where nothing simulates them.
+        planned_s: When the last setpoint planned so far is due [s]; None where nobody plans ahead.
+    """
+
+    alarm: Alarm | None = None
+    process: CuttingProcess | None = None
+    planned_s: float | None = None
+
+    @property
+    @abc.abstractmethod
+    def near_miss(self) -> NearMiss | None:
+        """The closest that the tool's side and the part's came without touching."""
+
+    @abc.abstractmethod
+    def __iter__(self) -> Iterator[Samples]:
+        """Yield chunks of samples."""
+
+
+class Forces(NamedTuple):
+    """What pushes the axes besides their drives.
+
+    Attributes:
+        process: The cut, tooth by tooth, while the machine moves.
+        load: The mean force of the cut, computed ahead along the setpoints.
+    """
+
+    process: CuttingProcess | None = None
+    load: Load | None = None
+
+
+class ProgramMotion(Motion):
+    """Setpoints of a program, held at their end and followed by the simulated drives."""
+
+    def __init__(
+        self,
+        setpoints: Iterable[Setpoints],
+        model: MachineModel,
+        summary: ProgramSummary,
+        forces: Forces,
+    ) -> None:
+        """Prepare the simulation.
+
+        Args:
+            setpoints: As planned, machine coordinates, in chunks.
+            model: The machine.
+            summary: Which tool is in the spindle during which move.
+            forces: What pushes the axes.
+
+        Raises:
+            ConfigError: The model does not compile.
+        """
+        self.process = forces.process
+        self._setpoints = setpoints
+        period_s = model.machine.file.servo_period_s
+        self._simulation = simulate(
+            model.machine,
+            model,
+            settle(self._noted(), period_s),
+            summary.tools,
+            forces.load,
+            forces.process,
+        )
+
+    @property
+    def near_miss(self) -> NearMiss | None:
+        """The closest that the tool's side and the part's came without touching."""
+        return self._simulation.near_miss
+
+    def __iter__(self) -> Iterator[Samples]:
+        """Yield chunks of samples, the last one that of an alarm if there is one.
+
+        Raises:
+            SimulationError: The simulation failed.
+        """
+        yield from self._simulation
+        self.alarm = self._simulation.alarm
+
+    def _noted(self) -> Iterator[Setpoints]:
+        for chunk in self._setpoints:
+            self.planned_s = float(chunk.time[-1])
+            yield chunk
+
+
+def planned(
+    program: InterpretedProgram,
+    machine: Machine,
+    part_zero: FloatArray,
+    expect: Callable[[Moves], None] | None = None,
+) -> Iterator[Setpoints]:
+    """The setpoints of a program, in chunks.
+
+    Args:
+        program: Its moves and events.
+        machine: The machine.
+        part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
+        expect: Called with the moves before setpoints of theirs are made.
+    """
+
+    def moves() -> Iterator[Chunk]:
+        for chunk in program.timed_chunks():
+            if expect is not None:
+                expect(chunk.moves)
+            yield chunk
+
+    return plan(
+        moves(),
+        motion_limits(machine),
+        period_s=machine.file.servo_period_s,
+        part_zero=part_zero,
+        start=program.start + part_zero,
+    )
+
+
+def cutting_forces(job: JobFile, machine: Machine, dry_run: DryRun, layout: Layout) -> Forces:
+    """What the cut of a job pushes the axes with.
+
+    Raises:
+        ConfigError: The job wants a force that cannot be computed.
+    """
+    process, summary, frame = None, dry_run.summary, layout.part_frame
+    if frame.chain is None:
+        process = program_process(job, machine, summary, frame, layout.part_zero)
+    if process is not None or not job.cutting_load:
+        return Forces(process)
+    if job.stock is None or dry_run.tilts:
+        raise ConfigError("cutting_load needs a [stock] that is cut from one side")
+    return Forces(load=AxisLoad(job.stock, summary, frame, layout.part_zero))
+
+
+def grown(
+    chunks: Iterable[Samples], machine: Machine, summary: ProgramSummary
+) -> Iterator[Samples]:
+    """Samples of a machine that warms up, with what it has grown."""
+    growth = Growth(machine, ProgramOperation(summary).speed)
+    return (growth.warm(samples) for samples in chunks)
