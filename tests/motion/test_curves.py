@@ -4,12 +4,12 @@ import dataclasses
 
 import numpy as np
 import pytest
-from five_axes import on_machine, settings, trunnion
 from hypothesis import assume, given
 from hypothesis import settings as examples
 from hypothesis import strategies as st
 from motion_checks import assert_consistent, assert_within_limits
 
+from tests.five_axes import on_machine, settings, trunnion
 from tests.nc.running import run
 from twin.machine.watching.travel import move_bounds
 from twin.motion.limits import MotionLimits
@@ -40,9 +40,7 @@ def _planned(program: str) -> tuple[Moves, Setpoints]:
     assert outcome.error is None, outcome.error
     zero = np.zeros(5)
     start = outcome.moves.start[0]
-    made = plan(
-        [Chunk(outcome.moves)], LIMITS, period_s=PERIOD, part_zero=zero, start=start
-    )
+    made = plan([Chunk(outcome.moves)], LIMITS, period_s=PERIOD, part_zero=zero, start=start)
     parts = list(made)
     columns = {
         field.name: np.concatenate([getattr(part, field.name) for part in parts])

@@ -4,8 +4,8 @@ import dataclasses
 
 import numpy as np
 import pytest
-from five_axes import head_and_table, on_machine, settings, trunnion
 
+from tests.five_axes import head_and_table, on_machine, settings, trunnion
 from tests.nc.running import Outcome, run
 from twin.kinematics import tool_direction
 from twin.nc.canonical import Moves, Shape

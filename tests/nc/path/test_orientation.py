@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from five_axes import TRAVEL, head_and_table, trunnion
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.five_axes import TRAVEL, head_and_table, trunnion
 from twin.kinematics import Kinematics, tool_direction
 from twin.nc.path.orientation import rotary_axes_for
 

@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 import pytest
-from five_axes import HEAD_AXES, head_and_table, on_machine, trunnion
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.five_axes import HEAD_AXES, head_and_table, on_machine, trunnion
 from twin.nc.canonical import Corner, Motion
 from twin.nc.path.move_columns import Segment
 from twin.nc.path.tool_center import ToolCenter

@@ -12,6 +12,7 @@ from twin.nc.geometry.matrices import Matrix, applied
 from twin.nc.geometry.planes import Vector
 from twin.nc.iso.tool_center import begin_tool_center, end_tool_center
 from twin.nc.path.tool_center import ToolCenter
+from twin.nc.text.blocks import Statement
 
 _Z: Vector = (0.0, 0.0, 1.0)
 _ACROSS = 1e-4
@@ -30,25 +31,30 @@ def about(axis: int, angle: float) -> Matrix:
     return ((a, b, c), (d, e, f), (g, h, i))
 
 
-def point_tool(control: Control, name: str, *, sense: float = 0.0) -> None:
+def point_tool(
+    control: Control, name: str, *, sense: float = 0.0, at: Statement | None = None
+) -> None:
     """Turn the rotary axes until the tool stands across the plane of the frame, then count in it.
 
     Args:
         control: The control.
         name: What the program calls it, for diagnostics.
         sense: Sign of the axis next to the tool that is preferred; 0: whatever is nearest.
+        at: What asks for it; None: the block's code.
 
     Raises:
         ProgramError: The machine cannot, or radius compensation is in force.
     """
     end_tool_center(control, name, keeps_length=True)
     target = list(control.motion.programmed)
-    target[3:] = rotary_axes_across(control, name, sense=sense)[3:]
+    target[3:] = rotary_axes_across(control, name, sense=sense, at=at)[3:]
     control.line_to(target, rapid=True)
     begin_tool_center(control, name, tilted=True)
 
 
-def rotary_axes_across(control: Control, name: str, *, sense: float = 0.0) -> list[float]:
+def rotary_axes_across(
+    control: Control, name: str, *, sense: float = 0.0, at: Statement | None = None
+) -> list[float]:
     """Programmed position at which the tool stands across the plane of the frame, the tip not being led.
 
     Raises:
@@ -57,13 +63,13 @@ def rotary_axes_across(control: Control, name: str, *, sense: float = 0.0) -> li
     setup = control.settings.setup
     if setup is None:
         message = f"{name} needs rotary axes, and no axis of this machine turns"
-        control.fail("tilted-plane", message)
+        control.fail("tilted-plane", message, at, "run it on a machine with them")
     center = ToolCenter(setup, 0.0, control.frame.zero())
     across = applied(control.frame.matrix, _Z)
     try:
         there = center.pointing(across, control.motion.part, sense)
     except ValueError as error:
-        control.fail("tilted-plane", f"{name}: {error}")
+        control.fail("tilted-plane", f"{name}: {error}", at)
     return [part - shift for part, shift in zip(there, control.frame.total, strict=True)]
 
 

@@ -84,7 +84,7 @@ def swivel(control: Control, statement: Statement) -> None:
     memory.swivel = turned, (o + x + a, p + y + b, q + z + c)
     put_programmable(control, memory.matrix, memory.translation)
     if values[_DIRECTION] and control.settings.setup is not None:
-        point_tool(control, "CYCLE800", sense=values[_DIRECTION])
+        point_tool(control, "CYCLE800", sense=values[_DIRECTION], at=statement)
 
 
 def require_orientation(control: Control) -> None:

@@ -274,18 +274,18 @@ def _turn(control: Control, statement: Statement, words: _Plane) -> None:
         retract(control, words.values["MB"])
     if not how or "STAY" in how:
         if memory_of(control).tilt is not None:
-            axes = rotary_axes_across(control, "PLANE", sense=words.sense)
+            axes = rotary_axes_across(control, "PLANE", sense=words.sense, at=statement)
             _write_angles(control, axes)
         return
     if "MOVE" in how:
         if words.values.get("DIST", 0.0):
             message = "PLANE ... MOVE is simulated about the tip itself, without DIST"
             control.fail("tilted-plane", message, statement, "write TURN, or STAY and the axes")
-        target = rotary_axes_across(control, "PLANE", sense=words.sense)
+        target = rotary_axes_across(control, "PLANE", sense=words.sense, at=statement)
         begin_tool_center(control, "PLANE")
         here = list(control.motion.programmed)
         control.line_to([*here[:3], *target[3:]], rapid=True)
-    point_tool(control, "PLANE", sense=words.sense)
+    point_tool(control, "PLANE", sense=words.sense, at=statement)
 
 
 def _reset(control: Control, words: _Plane) -> None:
