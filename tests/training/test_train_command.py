@@ -42,6 +42,8 @@ def test_the_list_names_every_scene_in_the_language_asked_for() -> None:
         (["--key", "nowhere.pem"], "belongs to a --certificate"),
         (["--port", "99999"], ""),
         (["--out", __file__], "that is a file"),
+        (["--out", f"{__file__}/results"], f"{__file__} is a file"),
+        (["--seats", "2", "--out", f"{__file__}/class"], f"{__file__} is a file"),
         (["--class", "nowhere.csv"], "nowhere.csv: No such file"),
         (["--seats", "61"], "a class has 1 to 60 seats"),
         (["--class", "nowhere.csv", "--seats", "2"], "give --class ROSTER.csv, or --seats"),

@@ -103,6 +103,22 @@ class Place:
     key: Path | None
 
 
+def _require_folder(out: Path) -> None:
+    """Refuse a place for results that is a file, or lies in one.
+
+    Raises:
+        UsageError: It does.
+    """
+    for place in (out, *out.parents):
+        if place.exists():
+            if not place.is_dir():
+                within = "that" if place == out else str(place)
+                raise UsageError(
+                    f"--out {out}: {within} is a file; log and score sheet need a folder"
+                )
+            return
+
+
 def train(name: str, place: Place, out: Path | None) -> ExitCode:
     """Open a scene and play it until it is closed.
 
@@ -118,8 +134,8 @@ def train(name: str, place: Place, out: Path | None) -> ExitCode:
     from twin.training.server.launch import open_room
     from twin.web.server import LOOPBACK
 
-    if out is not None and out.exists() and not out.is_dir():
-        raise UsageError(f"--out {out}: that is a file; log and sheet need a folder")
+    if out is not None:
+        _require_folder(out)
     announce_compilation()
     scene = read_scene(scene_path(name))
     with contextlib.ExitStack() as stack:
@@ -174,6 +190,7 @@ def teach(
     pupils = counted_seats(seats or 0) if roster is None else read_roster(roster)
     name = "seats" if roster is None else roster.stem
     folder = out or Path("out") / "class" / name
+    _require_folder(folder)
     announce_compilation()
     over = threading.Event()
     with contextlib.ExitStack() as stack:

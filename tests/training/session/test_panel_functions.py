@@ -14,6 +14,7 @@ from twin.training.room.observed import block_number
 from twin.training.room.tables import MAGAZINE_PLACES
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.session import checkpoints
+from twin.training.session.commands import LONGEST_TEXT
 from twin.training.session.session import Session
 
 pytestmark = pytest.mark.seconds("programs are run at a panel")
@@ -697,3 +698,10 @@ def test_a_full_magazine_takes_no_more_tools(session):
         do(session, "add_tool", number=number, kind="drill", diameter=3.0, length=50.0)
     more = refused(session, "add_tool", number=99, kind="drill", diameter=3.0, length=50.0)
     assert more == f"the magazine has {MAGAZINE_PLACES} places, and all are taken"
+
+
+def test_a_line_that_is_too_long_is_refused_with_its_limit(session):
+    too_long = "X" * (LONGEST_TEXT + 1)
+    assert refused(session, "edit", line=1, text=too_long) == (
+        f"text: there is room for {LONGEST_TEXT} characters"
+    )

@@ -359,6 +359,7 @@ WRONG = {
     "greater_than_equal": "the value begins at {ge:g}",
     "less_than_equal": "the value ends at {le:g}",
     "string_too_long": "there is room for {max_length} characters",
+    "too_long": "there is room for {max_length} characters",
 }
 """What is wrong with a value that somebody typed, by pydantic's name of the kind of error."""
 
