@@ -1,6 +1,7 @@
 """Tool centre point control: the tip of the tool is where the program wants it, at every instant."""
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -101,7 +102,7 @@ def test_parts_join_without_a_step_of_slope_or_curvature() -> None:
     start, end = [10.0, 20.0, 5.0, -40.0, 0.0], [60.0, -10.0, -3.0, 50.0, 200.0]
     parts = list(machine.moves_of(_segment(start, end)))
     assert len(parts) > 50
-    for before, after in zip(parts, parts[1:], strict=False):
+    for before, after in pairwise(parts):
         assert before.curve is not None
         assert after.curve is not None
         assert before.end == after.start

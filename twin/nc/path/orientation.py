@@ -14,6 +14,9 @@ _SAME = 1e-9
 _SAME_ANGLE = 1e-7
 """Angles [deg]."""
 
+_DIGITS = 9
+"""Of angles, behind the point: finer than any control counts."""
+
 
 def rotary_axes_for(
     chain: Kinematics,
@@ -128,7 +131,7 @@ def _within_travel(
     choices = []
     for joint, angle in zip(joints, angles, strict=True):
         column = int(chain.column[joint])
-        near = angle + 360.0 * round((float(here[column]) - angle) / 360.0)
+        near = round(angle + 360.0 * round((float(here[column]) - angle) / 360.0), _DIGITS)
         low, high = travel[column] + (-_SAME_ANGLE, _SAME_ANGLE)
         choices.append([each for each in (near, near - 360.0, near + 360.0) if low <= each <= high])
     rows = []

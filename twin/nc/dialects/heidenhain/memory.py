@@ -98,9 +98,7 @@ def memory_of(control: Control) -> KlartextMemory:
 
 
 def acts_on_lines(control: Control) -> bool:
-    """A cycle behind every move, the shorter way of rotary axes, a tilted plane, feeds that are
-    none per minute, FMAX before.
-    """
+    """A cycle behind every move, shortest ways, a tilted plane, feeds that are none per minute, FMAX before."""
     memory, modal = memory_of(control), control.modal
     counts_otherwise = modal.unit != 1.0 or modal.feed_mode != FeedMode.PER_MINUTE
     return (
