@@ -23,6 +23,7 @@ from twin.nc.canonical import Axes
 from twin.nc.control.settings import ControlSettings, ToolData
 from twin.nc.dialects import dialect_named
 from twin.nc.interpreter import Interpretation
+from twin.nc.line_kernel.plain_state import usual_kernel
 from twin.nc.text.source import read_source
 
 PEERS = Path(__file__).resolve().parents[2] / ".peers"
@@ -70,8 +71,8 @@ def rows() -> Iterator[Row]:
 
 
 def _cold_row(task: str, path: Path, blocks: int) -> Row:
-    """The interpreter tier alone."""
-    seconds = median_cpu_seconds(lambda: _interpret(path, "gost"))
+    """Python alone."""
+    seconds = median_cpu_seconds(lambda: _interpret(path, "gost", compiled=False))
     return Row("nc", f"{task}, nothing compiled", blocks / seconds, "blocks/s")
 
 
@@ -134,8 +135,10 @@ def _contour() -> Iterator[str]:
         yield f"G1 X{x:.3f} Y{chance.uniform(0.0, 4.0):.3f}"
 
 
-def _interpret(path: Path, dialect: str) -> int:
-    interpretation = Interpretation(read_source(path), dialect_named(dialect), _SETTINGS)
+def _interpret(path: Path, dialect: str, *, compiled: bool = True) -> int:
+    kernel = usual_kernel if compiled else lambda _lines: None
+    language = dialect_named(dialect)
+    interpretation = Interpretation(read_source(path), language, _SETTINGS, kernel=kernel)
     return sum(len(chunk.moves) for chunk in interpretation.chunks())
 
 

@@ -408,3 +408,12 @@ def test_nothing_is_assumed_of_points_where_they_never_count(tmp_path: Path) -> 
     assert reading is not None
     assert reading.told == ()
     assert reading.keys == {}
+
+
+def test_tolerances_are_assumed_for_moves_that_there_are(tmp_path: Path) -> None:
+    _, alone = raw(tmp_path, "%\nO1\nG21 G90 G17 G54\nG0 X10. Y0. Z2.\nX20.\nM30\n%\n")
+    assert "\ncontour_um" not in alone.text
+    assert "rapid_contour_um" in alone.text
+    _, fed = raw(tmp_path, "%\nO1\nG21 G90 G17 G54\nG1 X10. F300.\nX20.\nM30\n%\n")
+    assert "\ncontour_um" in fed.text
+    assert "rapid_contour_um" not in fed.text

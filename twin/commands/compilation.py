@@ -120,7 +120,7 @@ def _read_lines() -> None:
     from twin.nc.control.settings import ControlSettings
     from twin.nc.dialects import dialect_named
     from twin.nc.interpreter import Interpretation
-    from twin.nc.line_kernel.choice import compiled_kernel
+    from twin.nc.line_kernel.plain_state import compiled_kernel
     from twin.nc.text.source import source_from_text
 
     source = source_from_text("G0 X1\nX2\nM30\n")

@@ -10,8 +10,7 @@ from twin.nc.control.dialect import Dialect
 from twin.nc.control.executor import Executor
 from twin.nc.control.settings import ControlSettings
 from twin.nc.coverage import Coverage
-from twin.nc.line_kernel.choice import usual_kernel
-from twin.nc.line_kernel.plain_state import LineKernel, LineRuns
+from twin.nc.line_kernel.plain_state import LineKernel, LineRuns, usual_kernel
 from twin.nc.path.move_columns import CHUNK, Refused
 from twin.nc.text.blocks import Block
 from twin.nc.text.diagnostics import Diagnostic, ProgramError

@@ -127,14 +127,20 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
             if lacking
             else []
         ),
-        "[tolerance]",
-        f"contour_um = {preparation.job.file.tolerance.contour_um}",
-        f"rapid_contour_um = {_RAPID_TOLERANCE_UM}  # a guess",
-        "",
+        *_tolerance_lines(moves, preparation.job.file.tolerance.contour_um),
     ]
     left_out = tuple(f"{word} stays at 0: the machine has no such axis" for word in lacking)
     rapids = f"rapids may leave their path by {_RAPID_TOLERANCE_UM:g} µm"
-    return AssumedJob("\n".join(lines), (*preparation.reading.told, said, *told, rapids, *left_out))
+    told += [rapids] if (moves.motion == Motion.RAPID).any() else []
+    return AssumedJob("\n".join(lines), (*preparation.reading.told, said, *told, *left_out))
+
+
+def _tolerance_lines(moves: Moves, contour_um: float) -> list[str]:
+    """The tolerances, those alone that some move of the program is held to."""
+    rapid = moves.motion == Motion.RAPID
+    feeds = [f"contour_um = {contour_um}"] if (~rapid).any() or not rapid.any() else []
+    rapids = [f"rapid_contour_um = {_RAPID_TOLERANCE_UM}  # a guess"] if rapid.any() else []
+    return ["[tolerance]", *feeds, *rapids, ""]
 
 
 def _interpreted(preparation: Preparation) -> tuple[Interpretation, list[Chunk], bool]:

@@ -26,10 +26,9 @@ def cut_notices(
     """
     cutter = machining.cutter
     assert cutter is not None
-    if not cut.removed_mm3 and watch.first_feed:
-        yield Notice(
-            "nothing-cut", watch.first_feed, "no move of the program takes anything off the stock"
-        )
+    begins = watch.first_feed or watch.spindle_line
+    if not cut.removed_mm3 and begins:
+        yield Notice("nothing-cut", begins, "no move of the program takes anything off the stock")
     if cutter.start_depth:
         yield Notice(
             "starts-in-stock",

@@ -4,8 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from twin.nc.dialects import OWN
-from twin.nc.dialects.outside import dialects_from_outside
+from twin.nc.dialects import OWN, dialects_from_outside
 
 MODULE = '''
 """A control of a maker who writes its comments in braces."""

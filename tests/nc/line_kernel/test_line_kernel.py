@@ -16,9 +16,8 @@ from twin.nc.control.executor import Executor
 from twin.nc.control.settings import ControlSettings
 from twin.nc.dialects import DIALECTS, dialect_named
 from twin.nc.interpreter import Interpretation
-from twin.nc.line_kernel.choice import compiled_kernel
 from twin.nc.line_kernel.kernel import run_lines
-from twin.nc.line_kernel.plain_state import LineKernel, line_format
+from twin.nc.line_kernel.plain_state import LineKernel, compiled_kernel, line_format
 from twin.nc.line_kernel.reading import AXIS, NOT_PLAIN, NUMBER, read_line
 from twin.nc.text.diagnostics import ProgramError
 from twin.nc.text.lexer import Lexer

@@ -7,7 +7,7 @@ import pytest
 from tests.nc.running import SETTINGS
 from twin.nc.canonical import Moves, concatenate
 from twin.nc.dialects.fagor8070 import FAGOR8070
-from twin.nc.dialects.fagor8070.library import LIBRARY
+from twin.nc.dialects.fagor8070.subroutines import LIBRARY
 from twin.nc.interpreter import Interpretation
 from twin.nc.text.diagnostics import ProgramError
 from twin.nc.text.source import read_source

@@ -15,6 +15,7 @@ from twin.nc.path.feed_rates import (
     PATH_COUNTS,
     Displacement,
     FeedRule,
+    arc_displacement,
     feed_by_rule,
     feed_per_minute,
     finding_of_feed,
@@ -224,11 +225,11 @@ class Motion:
         """The feed rate of a move whose F counts another length than that of its path [mm/min or deg/min]."""
         ways = (new - old for new, old in zip(end, self.part, strict=True))
         turned = math.hypot(*(way for way, line in zip(ways, self.linear, strict=True) if not line))
-        turning = arc is None and only_turns(self.part, end, self.linear)
-        move = Displacement(length, turned, turning)
-        if arc is not None:
+        if arc is None:
+            move = Displacement(length, turned, only_turns(self.part, end, self.linear))
+        else:
             radius = arc_radius(self.part, arc.center)
-            move = move._replace(radius=radius, around=radius * math.radians(abs(arc.sweep)))
+            move = arc_displacement(length, turned, radius, arc.sweep)
         return feed_by_rule(self.feed_rule, rate, move, self.modal.feed_mode, self.modal.unit)
 
     # --- coordinates

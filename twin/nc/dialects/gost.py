@@ -10,7 +10,7 @@ from twin.nc.canonical import Corner
 from twin.nc.control.codes import Codes, Words
 from twin.nc.control.control import Control, Rules
 from twin.nc.control.dialect import Decision, Dialect
-from twin.nc.iso import base, fixed_cycles, shared_decisions, shared_marks
+from twin.nc.iso import base, fixed_cycles, shared_marks
 from twin.nc.iso.declared import modal, replacement
 from twin.nc.text.syntax import HEADING, Comment, Mark, Syntax
 
@@ -158,7 +158,7 @@ DECISIONS = (
         "1200 degrees per minute is the only sensible reading of the page's G1 C359.999 F1200.",
         example="feed_of_rotary_axes",
     ),
-    *shared_decisions.DECISIONS,
+    *base.DECISIONS,
 )
 
 GOST = Dialect(

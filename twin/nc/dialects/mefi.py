@@ -10,7 +10,7 @@ from twin.nc.control.control import Control, Rules
 from twin.nc.control.dialect import Decision, Dialect
 from twin.nc.control.modal import ArcRule
 from twin.nc.geometry.arcs import sweep_between
-from twin.nc.iso import base, shared_decisions, shared_marks
+from twin.nc.iso import base, shared_marks
 from twin.nc.iso.circular import BOUNDS, arc_center, both_senses, start_and_end
 from twin.nc.iso.declared import modal, motion_code, replacement
 from twin.nc.text.syntax import HEADING, Comment, Mark, Syntax
@@ -167,7 +167,7 @@ DECISIONS = (
         "Nothing in the page allows the tool to leave the programmed path.",
         example="exact_path",
     ),
-    *shared_decisions.DECISIONS,
+    *base.DECISIONS,
 )
 
 MEFI = Dialect(

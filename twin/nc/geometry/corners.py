@@ -1,8 +1,8 @@
-"""How the parallel of a contour passes a corner of the contour, as plain functions over tuples."""
+"""How the parallel of a contour passes its corners, and the paths to and from it: plain functions over tuples."""
 
 import math
 
-from twin.nc.geometry import curves
+from twin.nc.geometry import arcs, curves
 from twin.nc.geometry.arcs import Point, distance
 from twin.nc.geometry.curves import Curve
 
@@ -57,3 +57,63 @@ def _inside_corner(before: Before, behind: Behind) -> Passage:
             if not fits or far < least:
                 fits, at, least = True, point, far
     return (fits, False, at, at)
+
+
+ALLOWED_DEPTH = 0.01
+"""How far a lead may cut into the contour without a warning [mm]."""
+
+
+def depth_of(lead: Curve, contour: Curve, radius: float) -> float:
+    """How far a tool on a straight lead cuts into an element of the contour; 0 if little [mm]."""
+    depth = radius - clearance(lead, contour)
+    return depth if depth > ALLOWED_DEPTH else 0.0
+
+
+def clearance(line: Curve, curve: Curve) -> float:
+    """Smallest distance between a line and a line or an arc; 0 where they cross [mm]."""
+    count, first, second = curves.meetings(line, curve)
+    for number in range(count):
+        point = first if number == 0 else second
+        on_line = curves.within(line, curves.along(line, point))
+        if on_line and curves.within(curve, curves.along(curve, point)):
+            return 0.0
+    near = min(
+        distance_to(curve, line[1]),
+        distance_to(curve, line[2]),
+        distance_to(line, curve[1]),
+        distance_to(line, curve[2]),
+    )
+    if curve[0]:
+        share = curves.along(line, curve[3])
+        if curves.within(line, share):
+            near = min(near, distance_to(curve, curves.point_of(line, share)))
+    return near
+
+
+def distance_to(curve: Curve, point: Point) -> float:
+    """From a point to the nearest point of a curve [mm]."""
+    is_arc, start, end, center, _ = curve
+    share = curves.along(curve, point)
+    if 0.0 <= share <= 1.0:
+        if is_arc:
+            return abs(distance(point, center) - curves.radius_of(curve))
+        return distance(point, curves.point_of(curve, share))
+    return min(distance(point, start), distance(point, end))
+
+
+def way_around(start: Point, end: Point, corner: Point, signed_offset: float) -> tuple[bool, Curve]:
+    """Whether there is an arc as ``leads.around`` has it, and that arc."""
+    none = (False, start, end, corner, 0.0)
+    radius, far = abs(signed_offset), distance(start, corner)
+    lead = (end[0] - start[0], end[1] - start[1])
+    arm = (corner[0] - end[0], corner[1] - end[1])
+    if lead[0] * arm[0] + lead[1] * arm[1] >= 0.0 or far <= radius:
+        return (False, none)
+    opening = math.degrees(math.acos(radius / far))
+    towards = (
+        corner[0] + (start[0] - corner[0]) * radius / far,
+        corner[1] + (start[1] - corner[1]) * radius / far,
+    )
+    touch = arcs.turned(towards, corner, -opening if signed_offset > 0.0 else opening)
+    sweep = arcs.sweep_between(touch, end, corner, signed_offset > 0.0)
+    return (abs(sweep) < 180.0, (True, touch, end, corner, sweep))

@@ -39,20 +39,17 @@ def length_of(curve: Curve) -> float:
     return math.radians(abs(curve[4])) * radius_of(curve)
 
 
-def unit(x: float, y: float) -> Point:
-    """The direction of a vector; none, 0 0, where a slot as wide as the tool leaves no way."""
+def tangent_of(curve: Curve, at_end: bool) -> Point:
+    """Unit direction of travel at the start or the end; 0 0 where a slot as wide as the tool leaves no path."""
+    is_arc, start, end, center, sweep = curve
+    if is_arc:
+        point = end if at_end else start
+        x, y = point[0] - center[0], point[1] - center[1]
+        x, y = (-y, x) if sweep > 0.0 else (y, -x)
+    else:
+        x, y = end[0] - start[0], end[1] - start[1]
     length = math.sqrt(x * x + y * y)
     return (x / length, y / length) if length > 0.0 else (0.0, 0.0)
-
-
-def tangent_of(curve: Curve, at_end: bool) -> Point:
-    """Unit direction of travel at the start or the end."""
-    is_arc, start, end, center, sweep = curve
-    if not is_arc:
-        return unit(end[0] - start[0], end[1] - start[1])
-    point = end if at_end else start
-    x, y = unit(point[0] - center[0], point[1] - center[1])
-    return (-y, x) if sweep > 0.0 else (y, -x)
 
 
 def leaves_room(curve: Curve, by: float) -> bool:

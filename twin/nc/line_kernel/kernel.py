@@ -32,7 +32,9 @@ from twin.nc.path import move_columns
 from twin.nc.path.feed_rates import (
     KNOWN_FEED,
     WITHOUT_FEED,
-    counts_blocks,
+    FeedRule,
+    arc_displacement,
+    feed_by_rule,
     feed_per_minute,
     finding_of_feed,
     needs_own_feed,
@@ -43,6 +45,7 @@ from twin.nc.path.moves import (
     RAPIDS_END,
     SMALLEST_MOVE,
     arc_length,
+    arc_radius,
     axis_target,
     line_length,
     only_turns,
@@ -84,8 +87,8 @@ class PlainRules(NamedTuple):
         signed_radius: A negative radius asks for the larger arc, else it is not plain.
         fits_radius: A centre found by its radius is fitted like a given one.
         linear: Which axes are linear, shape (k,).
-        rotary: Roles of the words of the others, as bits.
-        path_counts: F counts the path in X, Y and Z of every move: helices and rotary axes are plain.
+        rotary: Roles of the words of the others where F counts them, so that they are not plain, as bits.
+        feed_rule: Which part of a move F counts.
         default_feed: Where none is programmed [mm/min].
         default_rotary_feed: Where none is programmed and only rotary axes move [deg/min].
     """
@@ -97,7 +100,7 @@ class PlainRules(NamedTuple):
     fits_radius: bool
     linear: BoolArray
     rotary: int
-    path_counts: bool
+    feed_rule: FeedRule
     default_feed: float
     default_rotary_feed: float
 
@@ -203,10 +206,7 @@ def _run_line(
     if moves:
         if kind == NO_MOTION or (not is_arc and seen & _ARC_WORDS):
             return NOT_PLAIN
-        if kind != RAPID_LINE and not (
-            _has_pace(seen, feed, state)
-            and (rules.path_counts or _counts_path(seen, kind, rules, state))
-        ):
+        if kind != RAPID_LINE and (seen & rules.rotary or not _has_feed(seen, feed, state)):
             return NOT_PLAIN
         length = _place(seen, kind, rules, state, rows, row)
         if length < 0.0:
@@ -224,21 +224,12 @@ def _run_line(
 
 
 @inlined
-def _has_pace(seen: int, feed: float, state: PlainState) -> bool:
-    """Whether nothing is wrong with the pace of a line that moves with a feed."""
+def _has_feed(seen: int, feed: float, state: PlainState) -> bool:
+    """Whether nothing is wrong with the feed rate of a line that moves with a feed."""
     if needs_own_feed(state.feed_mode) and not seen & 1 << FEED:
         return False
     finding = finding_of_feed(feed, state.feed_mode, state.spindle, state.spindle_turns)
     return finding == KNOWN_FEED or (finding == WITHOUT_FEED and state.feed_may_lack)
-
-
-@inlined
-def _counts_path(seen: int, kind: int, rules: PlainRules, state: PlainState) -> bool:
-    """Whether F counts the path of a line also where it counts other lengths of other moves."""
-    if seen & rules.rotary:
-        return False
-    helix = seen >> (AXIS + state.plane_axes[2]) & 1 or state.turned
-    return kind < CLOCKWISE or not (helix or counts_blocks(state.feed_mode))
 
 
 @inlined
@@ -330,6 +321,10 @@ def _finish_row(
         value[7] = feed_per_minute(
             feed, state.feed_mode, length, turning, state.unit, state.spindle, otherwise
         )
+        if kind >= CLOCKWISE:
+            center = (value[0], value[1], value[2])
+            move = arc_displacement(length, 0.0, arc_radius(position[0], center), value[6])
+            value[7] = feed_by_rule(rules.feed_rule, value[7], move, state.feed_mode, state.unit)
     value[8], value[9], value[10] = state.limits
     code[0] = _RAPID if kind == RAPID_LINE else _FEED
     code[1] = move_columns.LINE if kind < CLOCKWISE else move_columns.ARC

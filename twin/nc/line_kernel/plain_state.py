@@ -1,11 +1,14 @@
 """When a control may let plain lines run in the kernel, what it tells it, and what it takes back."""
 
+import functools
 import math
 import string
+import sys
 from collections.abc import Callable
 
 import numpy as np
 
+from twin.compilation.speed import Speed, usual_speed
 from twin.nc.control.codes import GCode
 from twin.nc.control.executor import Executor
 from twin.nc.control.modal import ArcRule, LineRule, MotionMode
@@ -21,6 +24,7 @@ from twin.nc.line_kernel.kernel import (
     PageColumns,
     PlainRules,
     PlainState,
+    run_lines,
 )
 from twin.nc.line_kernel.reading import (
     AXIS,
@@ -180,6 +184,7 @@ def plain_rules(executor: Executor) -> PlainRules:
         getattr(dialect.codes.g[number].sets.get("interpolation"), "rule", None) for number in plain
     ]
     arc = next((rule for rule in rules if isinstance(rule, ArcRule)), _NO_ARC)
+    rotary = sum(1 << (AXIS + axis) for axis, linear in enumerate(motion.linear) if not linear)
     return PlainRules(
         form=line_format(executor),
         kinds=by_number,
@@ -187,8 +192,8 @@ def plain_rules(executor: Executor) -> PlainRules:
         signed_radius=arc.signed_radius,
         fits_radius=arc.fits_radius,
         linear=np.array(motion.linear),
-        rotary=sum(1 << (AXIS + axis) for axis, linear in enumerate(motion.linear) if not linear),
-        path_counts=motion.feed_rule is PATH_COUNTS,
+        rotary=0 if motion.feed_rule is PATH_COUNTS else rotary,
+        feed_rule=motion.feed_rule,
         default_feed=settings.default_feed,
         default_rotary_feed=settings.default_rotary_feed,
     )
@@ -238,3 +243,45 @@ def line_format(executor: Executor) -> LineFormat:
         string.ascii_uppercase.find(dialect.syntax.line_keyword or " "),
         ord(dialect.syntax.continued or "\0"),
     )
+
+
+LONG_PROGRAM = 50_000
+"""Lines of a program for which it pays to load the compiler, which takes about a second."""
+PAYS_LOADED = 500
+"""The same where the compiler is loaded already."""
+PAYS_COMPILED = 500_000
+"""The same to compile the kernel where it was not: Python would take longer."""
+_COMPILER = "twin.compilation.kernel"
+
+
+@functools.cache
+def compiled_kernel() -> LineKernel:
+    """The compiled form; the first call loads the compiler, the first run compiles or loads the kernel."""
+    from twin.compilation.kernel import branching_kernel
+
+    return branching_kernel(run_lines)
+
+
+def usual_kernel(lines: int) -> LineKernel | None:
+    """The compiled form for a program of so many lines, where it pays; it runs nothing where it is not there."""
+    if lines < (PAYS_LOADED if _COMPILER in sys.modules else LONG_PROGRAM):
+        return None
+    if usual_speed() is Speed.HOT or lines >= PAYS_COMPILED:
+        return compiled_kernel()
+    return _WhereCompiled()
+
+
+class _WhereCompiled:
+    """The compiled form, if it was compiled before; else no line is plain."""
+
+    def __init__(self) -> None:
+        self._is_there: bool | None = None
+
+    def __call__(
+        self, page: PageColumns, rules: PlainRules, state: PlainState, rows: MoveRows
+    ) -> int:
+        if self._is_there is None:
+            from twin.compilation.cache import is_compiled
+
+            self._is_there = is_compiled(compiled_kernel(), (page, rules, state, rows))
+        return compiled_kernel()(page, rules, state, rows) if self._is_there else 0

@@ -124,16 +124,24 @@ class Displacement(NamedTuple):
     radius: float = 0.0
 
 
+@inlined
+def arc_displacement(length: float, turned: float, radius: float, sweep: float) -> Displacement:
+    """That of an arc of a length and a radius [mm] with its sweep [deg]."""
+    return Displacement(length, turned, False, radius * math.radians(abs(sweep)), radius)
+
+
+@inlined
 def feed_by_rule(rule: FeedRule, feed: float, move: Displacement, mode: int, unit: float) -> float:
     """Feed along the path of a move whose F counts another length [mm/min or deg/min]."""
     by_time = counts_blocks(mode)
-    if by_time and not (rule.arc_by_radius and move.around):
+    if by_time and not (rule.arc_by_radius and move.around > 0.0):
         return feed
     if move.turning:
         return feed * (unit / rule.degree) if rule.surface else feed
-    if move.around and rule.helix_by_arc:
+    counted = move.length
+    if move.around > 0.0 and rule.helix_by_arc:
         counted = move.around
-    else:
+    elif move.turned > 0.0:
         degree = rule.degree if rule.surface else rule.degree * unit
         counted = math.hypot(move.length, move.turned * degree)
     return feed * ((move.radius if by_time else move.length) / counted)

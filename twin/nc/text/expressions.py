@@ -6,10 +6,9 @@ are the same for all.
 
 import dataclasses
 import math
+import operator
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Protocol
-
-from twin.nc.text import arithmetic
 
 LARGEST_NUMBER = 1e12
 """Largest magnitude of a value: beyond it neither a coordinate nor a count makes sense."""
@@ -133,7 +132,7 @@ class ExpressionSyntax:
     brackets: str
     indexed: tuple[str, ...] = ()
     subscripts: str = ""
-    joined: Callable[[float, float], float] = arithmetic.add
+    joined: Callable[[float, float], float] = operator.add
     existence: tuple[str, ...] = ()
     prefixes: Mapping[str, Callable[[float], float]] = dataclasses.field(default_factory=dict)
     spelled: Callable[[str], str] = str.upper
@@ -156,21 +155,35 @@ class ExpressionSyntax:
 
 
 ARITHMETIC: Mapping[str, Operator] = {
-    "+": Operator(5, arithmetic.add),
-    "-": Operator(5, arithmetic.subtract),
-    "*": Operator(6, arithmetic.multiply),
-    "/": Operator(6, arithmetic.divide),
+    "+": Operator(5, operator.add),
+    "-": Operator(5, operator.sub),
+    "*": Operator(6, operator.mul),
+    "/": Operator(6, operator.truediv),
     "MOD": Operator(6, math.fmod),
 }
 """Operators that every dialect with expressions has."""
 
 COMPARISON: Mapping[str, Operator] = {
-    "<": Operator(4, arithmetic.less),
-    ">": Operator(4, arithmetic.greater),
-    "<=": Operator(4, arithmetic.at_most),
-    ">=": Operator(4, arithmetic.at_least),
+    "<": Operator(4, operator.lt),
+    ">": Operator(4, operator.gt),
+    "<=": Operator(4, operator.le),
+    ">=": Operator(4, operator.ge),
 }
 """Comparisons that every dialect with expressions has."""
+
+IN_DEGREES: Mapping[str, FunctionOf] = {
+    "SIN": FunctionOf(lambda a: math.sin(math.radians(a))),
+    "COS": FunctionOf(lambda a: math.cos(math.radians(a))),
+    "TAN": FunctionOf(lambda a: math.tan(math.radians(a))),
+    "ASIN": FunctionOf(lambda a: math.degrees(math.asin(a))),
+    "ACOS": FunctionOf(lambda a: math.degrees(math.acos(a))),
+    "ATAN": FunctionOf(lambda a: math.degrees(math.atan(a))),
+    "SQRT": FunctionOf(math.sqrt),
+    "ABS": FunctionOf(math.fabs),
+    "LN": FunctionOf(math.log),
+    "EXP": FunctionOf(math.exp),
+}
+"""Functions that most dialects have; their angles are degrees."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -284,7 +297,7 @@ def _computation(
     def one(scope: Scope) -> float:
         a = first(scope)
         try:
-            value = function(a)
+            value = float(function(a))
         except (ArithmeticError, ValueError):
             value = math.nan
         return value if -LARGEST_NUMBER <= value <= LARGEST_NUMBER else checked(value, (a,))
@@ -292,7 +305,7 @@ def _computation(
     def two(scope: Scope) -> float:
         a, b = first(scope), second(scope)
         try:
-            value = function(a, b)
+            value = float(function(a, b))
         except (ArithmeticError, ValueError):
             value = math.nan
         return value if -LARGEST_NUMBER <= value <= LARGEST_NUMBER else checked(value, (a, b))
@@ -300,7 +313,7 @@ def _computation(
     def several(scope: Scope) -> float:
         values = [operand(scope) for operand in operands]
         try:
-            value = function(*values)
+            value = float(function(*values))
         except (ArithmeticError, ValueError):
             value = math.nan
         return checked(value, values)

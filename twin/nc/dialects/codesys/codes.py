@@ -1,7 +1,7 @@
 """G codes of CODESYS SoftMotion."""
 
 from twin.nc.control.codes import GCode
-from twin.nc.dialects.codesys import actions, jumps, program
+from twin.nc.dialects.codesys import actions, program, subprograms
 from twin.nc.dialects.codesys.arcs import CLOCKWISE, COUNTER_CLOCKWISE
 from twin.nc.dialects.codesys.curves import (
     CLOCKWISE_ELLIPSE,
@@ -39,7 +39,7 @@ CODES: dict[float, GCode] = {
     19: plane_code("3D mode, plane Y Z", YZ, actions.plane_changed),
     20: replacement(
         "jump to L (or the label L? behind) when K is not 0",
-        jumps.conditional_jump,
+        subprograms.conditional_jump,
         consumes="L!",
     ),
     31: replacement("probe", actions.probe),

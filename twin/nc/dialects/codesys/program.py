@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+import operator
 import re
 from collections.abc import Mapping
 
@@ -32,8 +33,8 @@ EXPRESSIONS = ExpressionSyntax(
     operators={
         **ARITHMETIC,
         **COMPARISON,
-        "=": Operator(3, arithmetic.equal),
-        "<>": Operator(3, arithmetic.unequal),
+        "=": Operator(3, operator.eq),
+        "<>": Operator(3, operator.ne),
         "AND": Operator(2, arithmetic.both),
         "XOR": Operator(1, arithmetic.one_alone),
         "OR": Operator(0, arithmetic.either),
@@ -50,17 +51,17 @@ EXPRESSIONS = ExpressionSyntax(
         "EXP": FunctionOf(math.exp),
         "LN": FunctionOf(math.log),
         "LOG": FunctionOf(math.log10),
-        "TRUNC": FunctionOf(arithmetic.whole_part),
+        "TRUNC": FunctionOf(int),
         "EXPT": FunctionOf(math.pow, 2),
-        "MIN": FunctionOf(arithmetic.smaller, 2),
-        "MAX": FunctionOf(arithmetic.larger, 2),
+        "MIN": FunctionOf(min, 2),
+        "MAX": FunctionOf(max, 2),
         "LIMIT": FunctionOf(arithmetic.limited, 3),
-        "SEL": FunctionOf(arithmetic.chosen, 3),
+        "SEL": FunctionOf(lambda choice, no, yes: yes if choice != 0.0 else no, 3),
     },
     constants={"PI": math.pi, "TRUE": 1.0, "FALSE": 0.0},
     variable=r"\$[A-Z_][\w.]*\$|#[A-Z_]\w*",
     brackets="()",
-    prefixes={"NOT": arithmetic.opposite},
+    prefixes={"NOT": operator.not_},
 )
 """Angles of functions are radians, as IEC 61131-3 has them."""
 
@@ -202,7 +203,7 @@ def write_variable(control: Control) -> None:
 def add_to_variable(control: Control) -> None:
     """G37: D is added to variable O, or to the internal one."""
     name, word = _reference(control, control.take("O")), _value_word(control)
-    total = Computed("+", arithmetic.add, (Variable(name), Number(control.number(word))))
+    total = Computed("+", operator.add, (Variable(name), Number(control.number(word))))
     control.variables.write(name, control.compute(Expression(name, total), word))
 
 

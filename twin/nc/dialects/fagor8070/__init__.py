@@ -15,8 +15,8 @@ from twin.nc.dialects.fagor8070 import (
 )
 from twin.nc.dialects.fagor8070.codes import CODES, REPLACEMENTS, auxiliary, plain_dwell
 from twin.nc.dialects.fagor8070.decisions import DECISIONS
-from twin.nc.dialects.fagor8070.library import LIBRARY
 from twin.nc.dialects.fagor8070.memory import FagorMemory, acts_on_lines
+from twin.nc.dialects.fagor8070.subroutines import LIBRARY
 from twin.nc.iso import base, shared_marks
 from twin.nc.iso.declared import flow_function
 from twin.nc.path.feed_rates import PATH_COUNTS, FeedRule

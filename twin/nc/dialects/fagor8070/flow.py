@@ -1,15 +1,39 @@
 """Structured flow of the Fagor CNC 8070: conditions, loops, jumps."""
 
 import re
+from collections.abc import Sequence
 
 from twin.nc.control.codes import StatementAction
 from twin.nc.control.constructs import Construct, Structure
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.memory import memory_of
-from twin.nc.dialects.fagor8070.structure import structure_of
 from twin.nc.dialects.fagor8070.subroutines import lines_around
 from twin.nc.text.blocks import Location, Statement
 from twin.nc.text.expressions import Expression, Variable
+
+_KEYWORD = re.compile(
+    r"[ \t]*/?[ \t]*(?:N[ \t]*[0-9]+[ \t]*|\[\w+\][ \t]*)?(\$[A-Z]+)(.*)", re.IGNORECASE
+)
+_ENDS = {
+    "$ENDIF": "$IF",
+    "$ENDWHILE": "$WHILE",
+    "$ENDDO": "$DO",
+    "$ENDFOR": "$FOR",
+    "$ENDSWITCH": "$SWITCH",
+}
+_BRANCHES = {"$ELSEIF": "$IF", "$ELSE": "$IF", "$CASE": "$SWITCH", "$DEFAULT": "$SWITCH"}
+
+
+def structure_of(lines: Sequence[str]) -> Structure:
+    """Pair the keywords of a program; those that have no counterpart stay open."""
+    structure = Structure(_ENDS, _BRANCHES)
+    for line, text in enumerate(lines):
+        if "$" in text and (match := _KEYWORD.match(text)) is not None:
+            keyword = match[1].upper()
+            if not (keyword == "$IF" and "$" in match[2]):
+                structure.add(keyword, line)
+    return structure
+
 
 _PLACE = re.compile(r"[ \t]*(?:N[ \t]*([0-9]+)|\[[ \t]*([A-Z_]\w*)[ \t]*\])[ \t]*", re.IGNORECASE)
 

@@ -5,10 +5,32 @@ from collections.abc import Iterator, Mapping
 
 from twin.nc.control.codes import StatementAction
 from twin.nc.control.control import Control
-from twin.nc.dialects.fagor8070.library import MARK
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.text.blocks import Location, Statement
 from twin.nc.text.expressions import Expression, ExpressionError
+from twin.nc.text.library import Library
+from twin.nc.text.source import Source
+
+MARK = "%GLOBAL "
+"""Begins the line in front of a global subroutine; a program's own heading has no blank in it."""
+
+_CALL = re.compile(
+    r"^[ \t]*/?[ \t]*(?:N[ \t]*[0-9]+[ \t]*|\[\w+\][ \t]*)?(?:L|#P?CALL|#MCALL)[ \t]+([A-Z_]\w*)",
+    re.IGNORECASE,
+)
+
+_CALL_SOMEWHERE = re.compile(rb"(?:L|CALL)[ \t]+[A-Z_]", re.IGNORECASE)
+
+
+def _calls(source: Source) -> Iterator[str]:
+    if source.lines.any_holds(_CALL_SOMEWHERE):
+        for line in source.lines:
+            if (match := _CALL.match(line)) is not None:
+                yield match[1].upper()
+
+
+LIBRARY = Library(_calls, MARK, ("", ".nc"))
+
 
 DEEPEST_CALL = 20
 """Subroutines and repetitions within each other (manual, E1152)."""

@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+import operator
 import re
 
 from twin.nc.control.control import Control
@@ -11,6 +12,7 @@ from twin.nc.text.blocks import Block, Statement
 from twin.nc.text.expressions import (
     ARITHMETIC,
     COMPARISON,
+    IN_DEGREES,
     Computed,
     Expression,
     ExpressionError,
@@ -35,32 +37,23 @@ EXPRESSIONS = ExpressionSyntax(
         **ARITHMETIC,
         **COMPARISON,
         "**": Operator(7, math.pow),
-        "==": Operator(3, arithmetic.equal),
-        "!=": Operator(3, arithmetic.unequal),
+        "==": Operator(3, operator.eq),
+        "!=": Operator(3, operator.ne),
         "&": Operator(2, arithmetic.bits_of_both),
         "^": Operator(1, arithmetic.bits_of_one_alone),
         "|": Operator(0, arithmetic.bits_of_either),
     },
     functions={
-        "SIN": FunctionOf(arithmetic.sine_of_degrees),
-        "COS": FunctionOf(arithmetic.cosine_of_degrees),
-        "TAN": FunctionOf(arithmetic.tangent_of_degrees),
-        "ASIN": FunctionOf(arithmetic.arc_sine_in_degrees),
-        "ACOS": FunctionOf(arithmetic.arc_cosine_in_degrees),
-        "ATAN": FunctionOf(arithmetic.arc_tangent_in_degrees),
-        "ARG": FunctionOf(arithmetic.direction_in_degrees, 2),
-        "ABS": FunctionOf(math.fabs),
-        "SQR": FunctionOf(arithmetic.square),
-        "SQRT": FunctionOf(math.sqrt),
+        **IN_DEGREES,
+        "ARG": FunctionOf(lambda x, y: math.degrees(math.atan2(y, x)), 2),
+        "SQR": FunctionOf(lambda a: a * a),
         "LOG": FunctionOf(math.log10),
-        "LN": FunctionOf(math.log),
-        "EXP": FunctionOf(math.exp),
-        "DEXP": FunctionOf(arithmetic.power_of_ten),
-        "INT": FunctionOf(arithmetic.whole_part),
+        "DEXP": FunctionOf(lambda a: math.pow(10.0, a)),
+        "INT": FunctionOf(int),
         "FRACT": FunctionOf(arithmetic.fraction),
-        "ROUND": FunctionOf(arithmetic.nearest_whole),
-        "FUP": FunctionOf(arithmetic.next_whole),
-        "INV": FunctionOf(arithmetic.inverted_bits),
+        "ROUND": FunctionOf(lambda a: math.floor(a + 0.5)),
+        "FUP": FunctionOf(math.ceil),
+        "INV": FunctionOf(lambda a: ~int(a)),
     },
     constants={},
     variable=rf"P[0-9]+|{_NAME}",

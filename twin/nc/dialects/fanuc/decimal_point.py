@@ -7,12 +7,13 @@ without a point counts least input increments, 0.001 mm, 0.0001 inch or 0.001 de
 milliseconds on either. The first number that is changed so is warned of.
 """
 
+import operator
+
 from twin.nc.control.control import Control
 from twin.nc.control.settings import ControlSettings
 from twin.nc.dialects.fanuc.memory import memory_of
 from twin.nc.dialects.fanuc.variables import rounding_to, rounds
 from twin.nc.path.feed_rates import FeedMode
-from twin.nc.text import arithmetic
 from twin.nc.text.blocks import Block, Word
 from twin.nc.text.expressions import Computed, Expression, Number
 
@@ -185,5 +186,5 @@ def _scale(word: Word, codes: set[float | Expression]) -> Word:
 
 
 def _times(expression: Expression, factor: float) -> Expression:
-    times = Computed("*", arithmetic.multiply, (expression.tree, Number(factor)))
+    times = Computed("*", operator.mul, (expression.tree, Number(factor)))
     return Expression(expression.text, times)

@@ -6,6 +6,7 @@ it from 0, and a word that has it as its value is left out.
 """
 
 import math
+import operator
 import re
 
 from twin.nc.control.control import Control
@@ -16,6 +17,7 @@ from twin.nc.text.blocks import Assignment
 from twin.nc.text.expressions import (
     ARITHMETIC,
     COMPARISON,
+    IN_DEGREES,
     Computed,
     Expression,
     ExpressionError,
@@ -50,21 +52,13 @@ EXPRESSIONS = ExpressionSyntax(
         "LE": COMPARISON["<="],
     },
     functions={
-        "SIN": FunctionOf(arithmetic.sine_of_degrees),
-        "COS": FunctionOf(arithmetic.cosine_of_degrees),
-        "TAN": FunctionOf(arithmetic.tangent_of_degrees),
+        **IN_DEGREES,
         "ASIN": FunctionOf(arithmetic.arc_sine_from_zero),
-        "ACOS": FunctionOf(arithmetic.arc_cosine_in_degrees),
-        "ATAN": FunctionOf(arithmetic.arc_tangent_in_degrees),
-        "SQRT": FunctionOf(math.sqrt),
         "SQR": FunctionOf(math.sqrt),
-        "ABS": FunctionOf(math.fabs),
         "ROUND": FunctionOf(arithmetic.nearest_whole_away),
         "RND": FunctionOf(arithmetic.nearest_whole_away),
-        "FIX": FunctionOf(arithmetic.whole_part),
-        "FUP": FunctionOf(arithmetic.whole_away),
-        "LN": FunctionOf(math.log),
-        "EXP": FunctionOf(math.exp),
+        "FIX": FunctionOf(int),
+        "FUP": FunctionOf(lambda a: math.ceil(a) if a >= 0.0 else math.floor(a)),
         "POW": FunctionOf(math.pow, 2),
         "BIN": FunctionOf(arithmetic.from_binary_decimal),
         "BCD": FunctionOf(arithmetic.to_binary_decimal),
@@ -160,6 +154,6 @@ def _rounding_to(tree: Tree, increment: float) -> Tree:
     operands = tuple(_rounding_to(each, increment) for each in tree.operands)
     if tree.compute not in _ROUNDING:
         return Computed(tree.what, tree.compute, operands)
-    shares = Computed("/", arithmetic.divide, (operands[0], Number(increment)))
+    shares = Computed("/", operator.truediv, (operands[0], Number(increment)))
     nearest = Computed(tree.what, tree.compute, (shares,))
-    return Computed("*", arithmetic.multiply, (nearest, Number(increment)))
+    return Computed("*", operator.mul, (nearest, Number(increment)))

@@ -4,7 +4,7 @@ import math
 import operator
 
 from twin.nc.text import arithmetic
-from twin.nc.text.expressions import ARITHMETIC, ExpressionSyntax, Operator
+from twin.nc.text.expressions import ARITHMETIC, IN_DEGREES, ExpressionSyntax, Operator
 from twin.nc.text.syntax import Comment, Syntax
 
 _VALUE = r"(?=[ \t]*[-+]?[ \t]*(?:[.0-9]|Q))"
@@ -46,7 +46,7 @@ EXPRESSIONS = ExpressionSyntax(
     operators={
         **{name: each for name, each in ARITHMETIC.items() if name != "MOD"},
         "%": Operator(6, math.fmod),
-        "DIV": Operator(6, arithmetic.divide),
+        "DIV": Operator(6, operator.truediv),
         "^": Operator(7, math.pow),
         "LEN": Operator(5, math.hypot),
         "ANG": Operator(5, arithmetic.direction_from_zero),
@@ -57,22 +57,13 @@ EXPRESSIONS = ExpressionSyntax(
     brackets="()",
     bracketed=True,
     prefixes={
-        "SIN": arithmetic.sine_of_degrees,
-        "COS": arithmetic.cosine_of_degrees,
-        "TAN": arithmetic.tangent_of_degrees,
-        "ASIN": arithmetic.arc_sine_in_degrees,
-        "ACOS": arithmetic.arc_cosine_in_degrees,
-        "ATAN": arithmetic.arc_tangent_in_degrees,
-        "SQRT": math.sqrt,
-        "SQ": arithmetic.square,
-        "LN": math.log,
+        **{name: function.compute for name, function in IN_DEGREES.items()},
+        "SQ": lambda a: a * a,
         "LOG": math.log10,
-        "EXP": math.exp,
         "NEG": operator.neg,
-        "INT": arithmetic.whole_part,
-        "ABS": math.fabs,
+        "INT": int,
         "FRAC": arithmetic.fraction,
-        "SGN": arithmetic.sign,
+        "SGN": lambda a: (a > 0.0) - (a < 0.0),
     },
 )
 """Formulas and the operators of FN 4, FN 8 and FN 13; angles are degrees (manual)."""

@@ -7,10 +7,9 @@ from twin.nc.control.dialect import Dialect
 from twin.nc.dialects.linuxcnc import flow, functions, motion, offsets, parameters
 from twin.nc.dialects.linuxcnc.codes import CODES, GROUPS, START
 from twin.nc.dialects.linuxcnc.decisions import DECISIONS
-from twin.nc.dialects.linuxcnc.expressions import EXPRESSIONS
-from twin.nc.dialects.linuxcnc.library import LIBRARY
 from twin.nc.dialects.linuxcnc.memory import LinuxcncMemory, memory_of
-from twin.nc.dialects.linuxcnc.structure import COMMENTS
+from twin.nc.dialects.linuxcnc.parameters import EXPRESSIONS
+from twin.nc.dialects.linuxcnc.structure import COMMENTS, LIBRARY
 from twin.nc.iso import base, shared_marks
 from twin.nc.text.syntax import Mark, Syntax
 

@@ -1,5 +1,8 @@
 """Parameters of LinuxCNC: numbered and named, the program's own and those of the control."""
 
+import math
+import operator
+import re
 from collections.abc import Callable, Mapping
 
 from twin.nc.control.control import Control
@@ -7,8 +10,62 @@ from twin.nc.dialects.linuxcnc.memory import SYSTEMS, CoordinateSystem, memory_o
 from twin.nc.dialects.linuxcnc.offsets import reframe
 from twin.nc.iso.offsets import machine_zero
 from twin.nc.path.feed_rates import FeedMode
+from twin.nc.text import arithmetic
 from twin.nc.text.blocks import Assignment
-from twin.nc.text.expressions import ExpressionError
+from twin.nc.text.expressions import (
+    IN_DEGREES,
+    ExpressionError,
+    ExpressionSyntax,
+    FunctionOf,
+    Operator,
+)
+
+_SAME_NUMBER = 0.0001
+"""Numbers that differ by less are equal for EQ and NE (LinuxCNC)."""
+_VARIABLE = r"#[ \t]*(?:[0-9]+(?![0-9.])|<[^<>#]*>)"
+
+
+def spelled(name: str) -> str:
+    """One spelling of a variable: ``#5``, ``#<depth>``; blanks and capitals do not count."""
+    name = re.sub(r"\s", "", name).lower()
+    return name if name.startswith("#<") else f"#{int(name[1:])}"
+
+
+EXPRESSIONS = ExpressionSyntax(
+    operators={
+        "**": Operator(6, math.pow),
+        "*": Operator(5, operator.mul),
+        "/": Operator(5, operator.truediv),
+        "MOD": Operator(5, arithmetic.positive_remainder),
+        "+": Operator(4, operator.add),
+        "-": Operator(4, operator.sub),
+        "EQ": Operator(3, lambda a, b: abs(a - b) < _SAME_NUMBER),
+        "NE": Operator(3, lambda a, b: not abs(a - b) < _SAME_NUMBER),
+        "GT": Operator(3, operator.gt),
+        "GE": Operator(3, operator.ge),
+        "LT": Operator(3, operator.lt),
+        "LE": Operator(3, operator.le),
+        "AND": Operator(2, arithmetic.both),
+        "OR": Operator(2, arithmetic.either),
+        "XOR": Operator(2, arithmetic.one_alone),
+    },
+    functions={
+        **{name: each for name, each in IN_DEGREES.items() if name != "ATAN"},
+        "FIX": FunctionOf(math.floor),
+        "FUP": FunctionOf(math.ceil),
+        "ROUND": FunctionOf(arithmetic.nearest_whole_away),
+    },
+    constants={},
+    variable=_VARIABLE,
+    brackets="[]",
+    existence=("EXISTS",),
+    spelled=spelled,
+    indirect="#",
+    quotients={"ATAN": arithmetic.direction_of_quotient},
+    bracketed=True,
+)
+"""Angles are degrees."""
+
 
 LOCAL_PARAMETERS = 30
 """#1 to #30 belong to the call of a subroutine, which gives the first of them their values."""

@@ -1,6 +1,7 @@
 """Which O-words of a program belong together, and what a line with one says."""
 
 import re
+from collections.abc import Iterator
 from typing import NamedTuple
 
 from twin.nc.control.constructs import Construct, Structure
@@ -8,6 +9,8 @@ from twin.nc.control.control import Control
 from twin.nc.dialects.linuxcnc.memory import memory_of
 from twin.nc.text.blocks import Statement
 from twin.nc.text.comments import NO_COMMENT, comment_marks, without_comments
+from twin.nc.text.library import Library
+from twin.nc.text.source import Source
 from twin.nc.text.syntax import Comment
 
 FILE = "%FILE "
@@ -122,3 +125,20 @@ def scope(control: Control, line: int) -> str:
     """The subroutine that a line, from 0, lies in; labels of others are not its own."""
     around = structure(control).around(line)
     return next((f"{each.begin}#" for each in around if each.keyword == "SUB"), "#")
+
+
+_PROGRAM = re.compile(r"\bM[ \t]*0*98[ \t]*P[ \t]*([0-9]+)", re.IGNORECASE)
+_SOMEWHERE = re.compile(rb"CALL|M[ \t]*0*98", re.IGNORECASE)
+
+
+def _calls(source: Source) -> Iterator[str]:
+    if source.lines.any_holds(_SOMEWHERE):
+        for line in source.lines:
+            named = named_o_word(line)
+            if named is not None and named[1] == "CALL":
+                yield named[0].upper()
+            elif (program := _PROGRAM.search(line)) is not None:
+                yield str(int(program[1]))
+
+
+LIBRARY = Library(_calls, FILE, (".ngc", ".nc"))

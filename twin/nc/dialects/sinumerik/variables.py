@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+import operator
 import re
 
 from twin.nc.control.control import Control
@@ -11,6 +12,7 @@ from twin.nc.dialects.sinumerik.types import VariableType
 from twin.nc.text import arithmetic
 from twin.nc.text.blocks import Statement, Word
 from twin.nc.text.expressions import (
+    IN_DEGREES,
     Expression,
     ExpressionError,
     ExpressionSyntax,
@@ -95,22 +97,14 @@ _WORDS = (
     "OF",
 )
 _FUNCTIONS = {
-    "SIN": FunctionOf(arithmetic.sine_of_degrees),
-    "COS": FunctionOf(arithmetic.cosine_of_degrees),
-    "TAN": FunctionOf(arithmetic.tangent_of_degrees),
-    "ASIN": FunctionOf(arithmetic.arc_sine_in_degrees),
-    "ACOS": FunctionOf(arithmetic.arc_cosine_in_degrees),
+    **{name: each for name, each in IN_DEGREES.items() if name != "ATAN"},
     "ATAN2": FunctionOf(arithmetic.direction_of_quotient, 2),
-    "SQRT": FunctionOf(math.sqrt),
-    "ABS": FunctionOf(math.fabs),
-    "POT": FunctionOf(arithmetic.square),
-    "TRUNC": FunctionOf(arithmetic.whole_part),
+    "POT": FunctionOf(lambda a: a * a),
+    "TRUNC": FunctionOf(int),
     "ROUND": FunctionOf(arithmetic.nearest_whole_away),
-    "ROUNDUP": FunctionOf(arithmetic.next_whole),
-    "LN": FunctionOf(math.log),
-    "EXP": FunctionOf(math.exp),
-    "MINVAL": FunctionOf(arithmetic.smaller, 2),
-    "MAXVAL": FunctionOf(arithmetic.larger, 2),
+    "ROUNDUP": FunctionOf(math.ceil),
+    "MINVAL": FunctionOf(min, 2),
+    "MAXVAL": FunctionOf(max, 2),
     "BOUND": FunctionOf(lambda low, high, a: arithmetic.limited(low, a, high), 3),
 }
 _CONSTANTS = {"TRUE": 1.0, "FALSE": 0.0}
@@ -123,12 +117,12 @@ SYSTEM = r"\$[A-Z_]\w*(?:[ \t]*\[[^\]]*\])?"
 EXPRESSIONS = ExpressionSyntax(
     operators={
         "EX": Operator(10, _decimal),
-        "*": Operator(8, arithmetic.multiply),
-        "/": Operator(8, arithmetic.divide),
+        "*": Operator(8, operator.mul),
+        "/": Operator(8, operator.truediv),
         "DIV": Operator(8, _whole_quotient),
         "MOD": Operator(8, _remainder),
-        "+": Operator(7, arithmetic.add),
-        "-": Operator(7, arithmetic.subtract),
+        "+": Operator(7, operator.add),
+        "-": Operator(7, operator.sub),
         "B_AND": Operator(6, arithmetic.bits_of_both),
         "B_XOR": Operator(5, arithmetic.bits_of_one_alone),
         "B_OR": Operator(4, arithmetic.bits_of_either),
@@ -148,7 +142,7 @@ EXPRESSIONS = ExpressionSyntax(
     brackets="()",
     subscripts="[]",
     joined=_element,
-    prefixes={"NOT": arithmetic.opposite, "B_NOT": arithmetic.inverted_bits},
+    prefixes={"NOT": operator.not_, "B_NOT": lambda a: ~int(a)},
     spelled=lambda name: re.sub(r"[ \t]", "", name).upper(),
 )
 """Comparisons bind least (manual); angles are degrees."""

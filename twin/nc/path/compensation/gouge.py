@@ -44,6 +44,8 @@ class Passed:
             for number, (west, south, east, north) in enumerate(self._boxes)
             if east >= left and west <= right and south <= high and north >= low
         ]
+        if near and near[-1] == len(self._boxes) - 1 and self._follows(element, own):
+            near.pop()
         for number in near:
             curve, _, passed = self._elements[number]
             if curves.crossing_of(curve, element)[0] and not self._is_excused(number, own):
@@ -51,6 +53,11 @@ class Passed:
         self._elements.append(_Element(element, own, line))
         self._boxes.append(box)
         return None
+
+    def _follows(self, element: Curve, own: Curve | None) -> bool:
+        """It and the last one are lines or paths around corners: these touch each other and cannot cross."""
+        last, last_own, _ = self._elements[-1]
+        return not (element[0] and own is not None) and not (last[0] and last_own is not None)
 
     def _is_excused(self, number: int, own: Curve | None) -> bool:
         """The contour crosses itself near an element."""

@@ -13,9 +13,8 @@ from collections.abc import Callable
 from typing import NoReturn
 
 from twin.nc.canonical import Corner, Event
-from twin.nc.geometry import curves, lead_curves
+from twin.nc.geometry import corners, curves
 from twin.nc.geometry.arcs import SAME_POINT, Point, distance
-from twin.nc.geometry.corners import corner_of
 from twin.nc.geometry.curves import Curve
 from twin.nc.geometry.matrices import dot
 from twin.nc.geometry.planes import (
@@ -215,7 +214,7 @@ class Compensation:
         """The contour's next element, with its parallel."""
         held, before, offset = self._contour, self._parallel, self._signed_offset
         turn = curves.turn_from(held, curve)
-        fits, rolls, at, follows = corner_of(
+        fits, rolls, at, follows = corners.corner_of(
             (held, before, self._start), (curve, element), turn, offset, self._square
         )
         if not fits:
@@ -291,9 +290,7 @@ class Compensation:
         """Lead in to the contour's first element, and hold that."""
         touch, turns, arc, held = element[1], False, curve, self._held[0]
         if self._indirect:
-            turns, arc = lead_curves.way_around(
-                self._start, element[1], curve[1], self._signed_offset
-            )
+            turns, arc = corners.way_around(self._start, element[1], curve[1], self._signed_offset)
             if turns:
                 touch = arc[1]
         lead = (False, self._start, touch, (0.0, 0.0), 0.0)
@@ -313,7 +310,7 @@ class Compensation:
         start, end = point_of(plane, vector_of(move.start)), point_of(plane, vector_of(move.end))
         leads, turns, arc = distance(start, end) >= SAME_POINT, False, contour
         if leads and self._indirect:
-            turns, arc = lead_curves.way_around(end, here, contour[2], -self._signed_offset)
+            turns, arc = corners.way_around(end, here, contour[2], -self._signed_offset)
         if leads:
             lead = (False, arc[1] if turns else here, end, (0.0, 0.0), 0.0)
             self._warn_of_cut(move, "from", lead, contour)
@@ -343,7 +340,7 @@ class Compensation:
 
     def _warn_of_cut(self, move: Segment, way: str, lead: Curve, element: Curve) -> None:
         """Warn of a lead that cuts into an element of the contour."""
-        depth = lead_curves.depth_of(lead, element, abs(self._signed_offset))
+        depth = corners.depth_of(lead, element, abs(self._signed_offset))
         if depth > 0.0:
             message = f"on its way {way} the contour the tool cuts {depth:.3f} mm into it"
             self._report.warn(move, "compensation-lead", message)
