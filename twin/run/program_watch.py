@@ -1,4 +1,4 @@
-"""What the moves and functions of a program tell before anything moves: slips that no axis feels."""
+"""What moves and functions of a program show before anything moves: mistakes that no axis shows."""
 
 import dataclasses
 from collections.abc import Iterator
@@ -68,7 +68,7 @@ class ProgramWatch:
     """
 
     def __init__(self, job: JobFile, spindle: SpindleState) -> None:
-        """Begin with the job's first tool in a spindle of which nothing was said.
+        """Begin with the job's first tool in a spindle that no function has set yet.
 
         Args:
             job: Its tools are those that the program may bring.
@@ -106,7 +106,7 @@ class ProgramWatch:
             self._span(chunk, first, event.before)
             first = event.before
             behind = int(moves.line[first]) if first < len(moves) else 0
-            self._hear(
+            self._follow(
                 event, self._moves + event.before, in_cycle=behind == event.line == self._line
             )
         self._span(chunk, first, len(moves))
@@ -150,7 +150,7 @@ class ProgramWatch:
             if known is None or per_tooth[row] > known.value:
                 self._tooth_feeds[int(line[row])] = ToothFeed(float(per_tooth[row]), self._tool)
 
-    def _hear(self, event: Function, place: int, *, in_cycle: bool) -> None:
+    def _follow(self, event: Function, place: int, *, in_cycle: bool) -> None:
         word, was = event.word, self._state.turns
         if word[:1] == "T" and word[1:].isdigit():
             self._selected = int(word[1:])
@@ -210,7 +210,7 @@ class ProgramWatch:
             yield Notice("change-without-tool", self._nameless_line, message)
 
     def notices(self, interpretation: Interpretation) -> Iterator[Notice]:
-        """What is to be told of the whole program, once it was interpreted to its end."""
+        """Warnings about the whole program, once it was interpreted to its end."""
         yield from self._counter.values()
         yield from self._tool_notices()
         for line, call in interpretation.length_calls.items():

@@ -23,7 +23,7 @@ WALLS = "cuts into the nominal part"
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Unwatched:
-    """Something that the verdict says nothing about.
+    """Something that the verdict does not cover.
 
     Attributes:
         what: It.
@@ -76,13 +76,13 @@ class Scope:
             yield f"tools never used: {', '.join(map(str, self.tools_unused))}"
         if self.lines_never_run:
             yield f"lines with motion never run: {self.lines_never_run}"
-        told = (
+        sources = (
             f"{key} = {self.tolerances[key]:.15g} from {place}"
             if key in self.tolerances
             else f"{key} from {place}"
             for key, place in self.tolerances_from.items()
         )
-        yield f"tolerances: {', '.join(told)}"
+        yield f"tolerances: {', '.join(sources)}"
 
 
 def scope_of(
@@ -99,7 +99,7 @@ def scope_of(
 
     Args:
         job: What was asked for.
-        dry_run: What the program said.
+        dry_run: What the program does.
         checks: What was held to tolerances.
         cut: What was cut; None without a stock.
         forces: Whether the force of the cut was simulated.
