@@ -14,6 +14,9 @@ from twin.nc.text.diagnostics import Diagnostic, ProgramError
 from twin.nc.text.source import read_source, source_from_text
 
 ROOT = Path(__file__).resolve().parents[2]
+SHIPPED = sorted(
+    path for suffix in ("nc", "h", "mpf") for path in (ROOT / "programs").glob(f"*/*.{suffix}")
+)
 MILL = Axes(("X", "Y", "Z", "C"), ("linear", "linear", "linear", "rotary"))
 SETTINGS = ControlSettings(axes=MILL, periodic=frozenset({"C"}))
 WITH_TABLES = dataclasses.replace(

@@ -305,10 +305,15 @@ def define(control: Control, statement: Statement) -> None:
         return
     definition = DEFINITIONS.get(number)
     if number != 247 and definition is None:
-        known = ", ".join(map(str, (*STEPS, *DEFINITIONS, 247)))
+        near = sorted({*STEPS, *DEFINITIONS, 247}, key=lambda each: abs(each - number))[:5]
+        known = ", ".join(map(str, sorted(near)))
         message = f"there is no cycle {number}"
         control.report.fail(
-            "unsupported-cycle", message, statement.text_column, match.end(), f"cycles: {known}"
+            "unsupported-cycle",
+            message,
+            statement.text_column,
+            match.end(),
+            f"cycles near it: {known}; all of them: twin dialects heidenhain",
         )
     _define_with_parameters(control, statement, number, match.end(), definition)
 
