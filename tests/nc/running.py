@@ -4,7 +4,9 @@ import dataclasses
 from pathlib import Path
 from typing import Any
 
+from twin.files.shipped import machine_file
 from twin.job.load import load_job
+from twin.machine.load import read_machine
 from twin.nc.canonical import Axes, Chunk, Event, Moves, concatenate
 from twin.nc.control.settings import ControlSettings, MachineFunction, ToolData
 from twin.nc.dialects import dialect_named
@@ -91,8 +93,10 @@ def shipped(path: Path) -> Interpretation:
     assert job.file.dialect is not None
     dialect = dialect_named(job.file.dialect)
     zero = job.file.part_zero
+    axes = read_machine(machine_file(job.file.machine)).axes
     settings = dataclasses.replace(
         SETTINGS,
+        axes=axes,
         start=job.file.start,
         default_feed=job.file.default_feed or 1000.0,
         tools={
