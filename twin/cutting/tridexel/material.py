@@ -24,11 +24,12 @@ from twin.cutting.stock_contact import BRUSH_MM, above_edge
 from twin.cutting.tools import Profile
 from twin.cutting.tridexel.dexels import TriDexel
 from twin.cutting.tridexel.engagement import cut, met
-from twin.cutting.tridexel.mesh import part_mesh
+from twin.cutting.tridexel.mesh import surface
 from twin.cutting.tridexel.normals import MOST_TOOLS
 from twin.cutting.tridexel.solids import Solid, cutting_edge, cylinder, thinner
 from twin.cutting.tridexel.sweep import Poses
 from twin.files.atomic import complete_or_absent
+from twin.files.stl import stl_text
 from twin.job.job_file import ToolTable
 from twin.nc.canonical import BoolArray, FloatArray, IntArray
 
@@ -106,10 +107,10 @@ class TriDexelMaterial:
 
     def write_stl(self, path: Path, zero: ArrayLike) -> None:
         """Write the part as binary STL."""
-        mesh = part_mesh(self.stock)
-        mesh.apply_translation(-np.asarray(zero))
+        found = surface(self.stock)
+        text = stl_text((found.points - np.asarray(zero))[found.faces])
         with complete_or_absent(path) as temporary:
-            mesh.export(temporary, file_type="stl")
+            temporary.write_bytes(text)
 
     def picture(self) -> bytes:
         """None: from above a part that was cut from several sides is not seen whole."""
