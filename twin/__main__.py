@@ -23,8 +23,8 @@ COLLECT_AFTER = 100_000
 _BOXING_NAME, _BOXING_MODULE = "_numba_unpickle", "namedtuple_"
 """What Numba calls in Python while compiled code hands its result over: a function, and constructors
 of modules of such names."""
-_LOADING = "<frozen importlib"
-"""Where Python keeps the loading of modules."""
+_LOADING, _LOAD = "<frozen importlib", "_find_and_load"
+"""Where Python keeps the loading of modules, and the function that loads the one that it calls ``name``."""
 _SOON_S = 0.005
 
 
@@ -73,17 +73,20 @@ def is_handing_over(frame: types.FrameType | None) -> bool:
 
 
 def is_loading(frame: types.FrameType | None) -> bool:
-    """Whether a module is being loaded.
+    """Whether a library's module is being loaded.
 
     Libraries try what may be missing, and take any exception for its absence: an interruption is lost
-    there, or leaves a library half loaded.
+    there, or leaves a library half loaded. Modules of this package let it through.
 
     Args:
         frame: What is being executed.
     """
     while frame is not None:
-        if frame.f_code.co_filename.startswith(_LOADING):
-            return True
+        code = frame.f_code
+        if code.co_name == _LOAD and code.co_filename.startswith(_LOADING):
+            package = str(frame.f_locals.get("name")).partition(".")[0]
+            if package != "twin":
+                return True
         frame = frame.f_back
     return False
 

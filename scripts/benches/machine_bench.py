@@ -11,6 +11,7 @@ from mujoco.rollout import Rollout
 from twin.columns import join
 from twin.files.shipped import machine_file, machine_names
 from twin.job.fixture import FixtureTable
+from twin.job.job_file import ToolTable
 from twin.machine.circle.circle_path import CirclePath
 from twin.machine.load import read_machine
 from twin.machine.model.drives import feedforward_name
@@ -20,7 +21,6 @@ from twin.machine.model.model import (
     physics_model,
     spindle_over_table_mm,
 )
-from twin.machine.model.tool_shape import DefaultTool
 from twin.machine.simulation.live import LiveMachine
 from twin.machine.simulation.sampling import (
     held_acceleration,
@@ -89,7 +89,7 @@ def _watching() -> Iterator[Row]:
     spec = build_spec(machine)
     model = physics_model(machine, spec)
     clearance = Clearance(machine, clearance_model(machine, spec))
-    table = -spindle_over_table_mm(machine) + DefaultTool().length
+    table = -spindle_over_table_mm(machine) + ToolTable(number=1).length
     for task, turns, z in (("between jaws", 0.0, 30.0), ("over jaws, C turning", 90.0, 61.0)):
         points = _circle("mill4")
         place = points.position.copy()

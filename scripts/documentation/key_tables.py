@@ -1,8 +1,12 @@
 """Reference of files: every key of a TOML file, from the models that check it."""
 
+import ast
+import inspect
+import textwrap
 import types
 import typing
 from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple, get_args, get_origin
 
@@ -83,8 +87,9 @@ def _tables(
 
 def _table(model: type[pydantic.BaseModel]) -> str:
     rows = ["| key | value | default | meaning |", "|---|---|---|---|"]
+    meanings = _attribute_docstrings(model)
     for name, field in model.model_fields.items():
-        meaning = _paragraphs(field.description or "") or _leads_to(field)
+        meaning = _paragraphs(field.description or meanings.get(name, "")) or _leads_to(field)
         cells = (
             f"`{field.alias or name}`",
             _kind(field.annotation, field.metadata),
@@ -93,6 +98,20 @@ def _table(model: type[pydantic.BaseModel]) -> str:
         )
         rows.append(f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in cells)} |")
     return "\n".join(rows)
+
+
+def _attribute_docstrings(model: type[pydantic.BaseModel]) -> dict[str, str]:
+    """The texts below the keys of a table; Pydantic reads them too, at each start of each command."""
+    found: dict[str, str] = {}
+    for base in reversed(model.__mro__[: model.__mro__.index(pydantic.BaseModel)]):
+        (tree,) = ast.parse(textwrap.dedent(inspect.getsource(base))).body
+        assert isinstance(tree, ast.ClassDef)
+        for key, text in pairwise(tree.body):
+            if isinstance(key, ast.AnnAssign) and isinstance(key.target, ast.Name):
+                match text:
+                    case ast.Expr(value=ast.Constant(value=str(said))):
+                        found[key.target.id] = said
+    return found
 
 
 def _leads_to(field: FieldInfo) -> str:

@@ -9,10 +9,10 @@ from tests.cutting.conftest import Motion
 from twin.cutting.axis_load import AxisLoad
 from twin.cutting.cut import Cutter
 from twin.cutting.program_summary import ProgramSummary
-from twin.cutting.tools import ToolPlan
 from twin.errors import ConfigError
 from twin.job.job_file import StockTable, ToolTable
 from twin.toolpath.part_frame import PartFrame
+from twin.toolpath.tool_plan import ToolPlan
 
 FRAME = PartFrame(rotary=3, center=(5.0, -3.0), turn_zero=20.0)
 ZERO = np.array([5.0, -3.0, 0.0, 20.0])

@@ -5,10 +5,11 @@ import pytest
 
 from tests.cutting.conftest import Motion
 from twin.cutting.cut import Cutter
-from twin.cutting.tools import ToolPlan, default_cell, profile
+from twin.cutting.tools import default_cell, profile
 from twin.errors import ConfigError
 from twin.job.job_file import StockTable, ToolTable
 from twin.toolpath.part_frame import PartFrame
+from twin.toolpath.tool_plan import ToolPlan
 
 FRAME = PartFrame(rotary=None, center=(0.0, 0.0))
 PLATE = StockTable(shape="box", size=(60.0, 40.0, 12.0), cell=0.05)

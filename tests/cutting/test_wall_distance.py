@@ -11,10 +11,10 @@ import trimesh
 from tests.cutting.conftest import Motion
 from twin.cutting.cut import Cutter
 from twin.cutting.stock_contact import Head
-from twin.cutting.tools import ToolChange, ToolPlan
 from twin.job.job_file import StockTable, ToolTable
 from twin.nc.canonical import FloatArray
 from twin.toolpath.part_frame import PartFrame
+from twin.toolpath.tool_plan import ToolChange, ToolPlan
 
 FRAME = PartFrame(rotary=3, center=(0.0, 0.0))
 ZERO = np.zeros(4)

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from twin.cutting.program_summary import ProgramSummary
-from twin.cutting.tools import ToolPlan
 from twin.job.job_file import StockTable, ToolTable
 from twin.machine.description.config import Machine
 from twin.machine.load import read_machine
@@ -18,6 +17,7 @@ from twin.nc.canonical import FloatArray
 from twin.recording.reader import Recording, RecordingHeader, Samples, open_recording, record
 from twin.render.drawing.gl import BACKENDS, probe
 from twin.render.scene.scene import Scene
+from twin.toolpath.tool_plan import ToolPlan
 
 MODEL = """
 <mujoco>

@@ -104,7 +104,7 @@ def test_a_control_that_would_hardly_feed_was_not_meant(tmp_path: Path) -> None:
     path.write_text(path.read_text().replace("G43 H1", "M10\nG43 H1"))  # which a Haas alone knows
     made = prepare(path, assuming=True)
     assert made.dialect.name == "fanuc"
-    assert made.reading.told == ("M10 does nothing: fanuc has no such code",)
+    assert made.reading.notes == ("M10 does nothing: fanuc has no such code",)
 
 
 @pytest.mark.parametrize(
@@ -125,7 +125,7 @@ def test_numbers_without_a_point_count_whole_units_where_the_program_shows_it(
     path.write_text(f"O1\nG21 G90 G54\nG43 H1 Z0\nG1 {numbers} F100\nM30\n")
     made = prepare(path, assuming=True, dialect="fanuc")
     assert (made.settings.decimal_point == "calculator") == calculator
-    assert bool(made.reading.told) == calculator
+    assert bool(made.reading.notes) == calculator
     assert prepare(path, dialect="fanuc").settings.decimal_point is None
 
 
@@ -406,5 +406,14 @@ def test_nothing_is_assumed_of_points_where_they_never_count(tmp_path: Path) -> 
     )
     reading = prepare(path, assuming=True).reading
     assert reading is not None
-    assert reading.told == ()
+    assert reading.notes == ()
     assert reading.keys == {}
+
+
+def test_tolerances_are_assumed_for_moves_that_there_are(tmp_path: Path) -> None:
+    _, alone = raw(tmp_path, "%\nO1\nG21 G90 G17 G54\nG0 X10. Y0. Z2.\nX20.\nM30\n%\n")
+    assert "\ncontour_um" not in alone.text
+    assert "rapid_contour_um" in alone.text
+    _, fed = raw(tmp_path, "%\nO1\nG21 G90 G17 G54\nG1 X10. F300.\nX20.\nM30\n%\n")
+    assert "\ncontour_um" in fed.text
+    assert "rapid_contour_um" not in fed.text

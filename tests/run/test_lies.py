@@ -105,6 +105,21 @@ TOLD: dict[str, tuple[str, dict[str, str], str, int]] = {
     "stock beside the table": (
         CUT_, {"top": "part_zero = { X = 300.0 }"}, "stock-floats", 1,
     ),
+    "a jump over all that cuts": (
+        HEAD + "GOTO 90\n" + CUT + "N90 G0 Z30.\nM30\n", {}, "nothing-cut", 3,
+    ),
+    "a move to a variable that nobody set": (
+        HEAD + "G0 X-30. Y0.\nG0 Z-2.\nG1 X#100 F600.\nG0 Z20.\nM30\n", {}, "nothing-cut", 3,
+    ),
+    "a tool that is called and never comes": (
+        "G90 G17 T2\nS3000 M3\n" + CUT + "M30\n", {}, "tool-never-changed", 1,
+    ),
+    "a change that names no tool": (
+        "G90 G17 M6\nG43 H1\nS3000 M3\n" + CUT + "M30\n", {}, "change-without-tool", 1,
+    ),
+    "blocks behind the end of the tape": (
+        "%\nO1\n" + HEAD + "%\n" + CUT + "M30\n%\n", {}, "behind-tape-end", 6,
+    ),
     "no feed": (CUT_.replace(" F600.", ""), {}, "no-feed", 6),
 }  # fmt: skip
 

@@ -5,9 +5,9 @@ import pytest
 
 from tests.compare.runs import samples, setpoints
 from tests.compare.test_trace import MOVES
-from twin.cutting.tools import ToolPlan
 from twin.job.job_file import ToolTable
 from twin.run.observers import ToolTimes
+from twin.toolpath.tool_plan import ToolPlan
 
 TOOLS = tuple(ToolTable(number=number, diameter=2.0 * number) for number in (3, 1))
 

@@ -57,7 +57,7 @@ def prepared(
         program = _written(program, folder)
     found = prepare(Path(program), dialect=dialect, machine=machine, assuming=True)
     if not assuming or found.job.path is not None:
-        return found, found.reading.told
+        return found, found.reading.notes
     made, assumed = with_assumptions(found, machine=machine, strict=False)
     return made, assumed.assumptions
 

@@ -44,5 +44,5 @@ def print_doctor(*, compile_now: bool = False) -> ExitCode:
     typer.echo(f"disk       {facts.disk_mb:.0f} MB free")
     for problem in facts.problems:
         typer.echo(f"problem: {problem}", err=True)
-    typer.echo("all rooms work here" if facts.ready else "all rooms but the pictures work here")
+    typer.echo("everything works here" if facts.ready else "everything but pictures works here")
     return ExitCode.OK if facts.ready else ExitCode.USAGE

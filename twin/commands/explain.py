@@ -1,4 +1,4 @@
-"""``twin explain``: every code that a message may bear, whichever room says it."""
+"""``twin explain``: every code that a message may have, whichever package reports it."""
 
 import difflib
 import functools

@@ -1,4 +1,4 @@
-"""``twin init PROGRAM``: a first job file, with what the program itself tells."""
+"""``twin init PROGRAM``: a first job file, with what the program itself shows."""
 
 from pathlib import Path
 
@@ -7,7 +7,7 @@ import typer
 from twin.errors import ExitCode, UsageError
 from twin.files.atomic import write_text
 from twin.nc.text.diagnostics import ProgramError
-from twin.run.assumed_job import assumed_job, read_as, told_of_reading
+from twin.run.assumed_job import assumed_job, read_as, reading_notes
 from twin.run.preparation import prepare
 
 
@@ -18,12 +18,12 @@ def init_and_print(
 
     Args:
         program: The NC program.
-        dialect: Its dialect; told by its words by default.
-        machine: The machine; ``mill4`` or what ``twin.toml`` says by default.
+        dialect: Its dialect; recognised by its words by default.
+        machine: The machine; ``mill4`` or what ``twin.toml`` sets by default.
         force: Replace a job file that is there.
 
     Raises:
-        UsageError: There is a job file already, or the program's dialect cannot be told.
+        UsageError: There is a job file already, or the program's dialect cannot be recognised.
         ProgramError: The program is wrong.
     """
     path = program.with_suffix(".toml")
@@ -37,7 +37,7 @@ def init_and_print(
     except ProgramError as error:
         raise read_as(error, preparation) from None
     write_text(path, assumed.text)
-    for line in told_of_reading(preparation, assumed.assumptions):
+    for line in reading_notes(preparation, assumed.assumptions):
         typer.echo(line, err=True)
     typer.echo(f"{path}: check the stock and the tools, then: twin run {path}")
     return ExitCode.OK

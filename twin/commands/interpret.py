@@ -6,7 +6,7 @@ from pathlib import Path
 from twin.errors import UsageError
 from twin.nc.jsonl import json_lines, text_lines
 from twin.nc.text.diagnostics import ProgramError
-from twin.run.assumed_job import read_as, told_of_reading
+from twin.run.assumed_job import read_as, reading_notes
 from twin.run.preparation import prepare
 
 FORMATS = {"text": text_lines, "jsonl": json_lines}
@@ -24,8 +24,8 @@ def print_interpretation(
     if form not in FORMATS:
         raise UsageError(f"no format '{form}': known formats are {', '.join(FORMATS)}")
     preparation = prepare(program, dialect=dialect, machine=machine, strict=strict, assuming=True)
-    for told in told_of_reading(preparation, preparation.reading.told):
-        sys.stderr.write(f"{told}\n")
+    for note in reading_notes(preparation, preparation.reading.notes):
+        sys.stderr.write(f"{note}\n")
     interpretation = preparation.interpretation()
     try:
         for line in FORMATS[form](interpretation):

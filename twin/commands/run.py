@@ -10,7 +10,7 @@ from twin.compilation.announcement import announce_compilation
 from twin.errors import ExitCode, RenderError, UsageError
 from twin.files.atomic import write_text
 from twin.nc.text.diagnostics import ProgramError
-from twin.run.assumed_job import read_as, text_beside, told_of_reading, with_assumptions
+from twin.run.assumed_job import read_as, reading_notes, text_beside, with_assumptions
 from twin.run.dry_run import DryRun
 from twin.run.messages import alarm_diagnostic, near_miss_diagnostic, reason_text
 from twin.run.outcome import Outcome
@@ -75,14 +75,14 @@ def run_and_print(
 def _assumed(
     preparation: Preparation, machine: str | None, *, strict: bool, save_job: Path | None
 ) -> Preparation:
-    """A raw program with the job that is assumed for it, which is told and kept where that is asked for."""
+    """A raw program with the job that is assumed for it, which is printed, and kept where that is asked for."""
     if save_job is not None and save_job.exists():
         raise UsageError(f"{save_job}: exists already")
     try:
         made, assumed = with_assumptions(preparation, machine=machine, strict=strict)
     except ProgramError as error:
         raise read_as(error, preparation) from None
-    for line in told_of_reading(made, assumed.assumptions):
+    for line in reading_notes(made, assumed.assumptions):
         typer.echo(line, err=True)
     if save_job is None:
         typer.echo("to keep and correct this: --save-job FILE", err=True)
@@ -93,7 +93,7 @@ def _assumed(
 
 
 def _draw_contact(run: Run, dry_run: DryRun, folder: Path) -> None:
-    """Draw the moment for the report; the alarm is told where no picture can be made too."""
+    """Draw the moment for the report; the alarm is printed even where no picture can be made."""
     try:
         draw_contact(run, dry_run, folder)
     except RenderError as error:
@@ -101,7 +101,7 @@ def _draw_contact(run: Run, dry_run: DryRun, folder: Path) -> None:
 
 
 def print_findings(run: Run, outcome: Outcome) -> None:
-    """Tell a person what the interpreter, the machine and the verdict found."""
+    """Print what the interpreter, the machine and the verdict found."""
     for warning in outcome.warnings:
         typer.echo(str(warning), err=True)
     if outcome.near_miss is not None:

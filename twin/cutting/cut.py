@@ -18,11 +18,12 @@ from twin.cutting.kernels.thin import thin
 from twin.cutting.kernels.wall_distance import note_walls
 from twin.cutting.stock_contact import EDGE, Head, Points, StockContact
 from twin.cutting.sweeping import sweep_lines, union
-from twin.cutting.tools import Profile, ToolPlan, default_cell, profile
+from twin.cutting.tools import Profile, default_cell, profile
 from twin.job.job_file import StockTable, ToolTable
 from twin.nc.canonical import FloatArray, IntArray
 from twin.recording.reader import Samples
 from twin.toolpath.part_frame import PartFrame
+from twin.toolpath.tool_plan import ToolPlan
 
 STRAIGHT_SHARE = 0.01
 STRAIGHT_MM = 5e-4

@@ -8,7 +8,7 @@ from typing import Generic, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from twin.cutting.tools import EMPTY_SPINDLE, ToolChange, ToolPlan
+from twin.cutting.tools import EMPTY_SPINDLE
 from twin.errors import ConfigError
 from twin.job.job_file import JobFile, ToolTable
 from twin.nc.canonical import Chunk, FloatArray, Function, IntArray, Motion
@@ -20,6 +20,7 @@ from twin.nc.functions import (
     TOOL_CHANGE,
     SpindleState,
 )
+from twin.toolpath.tool_plan import ToolChange, ToolPlan
 
 BoolArray = npt.NDArray[np.bool_]
 ValueT = TypeVar("ValueT")

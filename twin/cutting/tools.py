@@ -1,16 +1,13 @@
 """What a turning tool's lower end looks like: its lowest height over every radius."""
 
-import bisect
 import dataclasses
-import itertools
 import math
 from collections.abc import Iterable
-from typing import NamedTuple
 
 import numpy as np
 
 from twin.job.job_file import StockTable, ToolTable
-from twin.nc.canonical import FloatArray, IntArray
+from twin.nc.canonical import FloatArray
 
 FINEST_CELL_MM = 0.1
 """The finest grid that is chosen without being asked for [mm]."""
@@ -62,71 +59,6 @@ def profile(tool: ToolTable) -> Profile:
 
 def _cone_slope(angle: float) -> float:
     return 1.0 / math.tan(math.radians(0.5 * angle))
-
-
-class ToolChange(NamedTuple):
-    """A tool that comes into the spindle.
-
-    Attributes:
-        move: Number of the next move.
-        line: Source line of the change.
-        tool: The tool that comes.
-    """
-
-    move: int
-    line: int
-    tool: ToolTable
-
-
-@dataclasses.dataclass(frozen=True, slots=True)
-class ToolPlan:
-    """Which tool is in the spindle during which moves of a program.
-
-    Attributes:
-        tools: In the order in which they come into the spindle; the first is in it at the start.
-            A tool whose speed changes stands there once for each speed.
-        first_move: Number of the first move that each is in the spindle for, never falling from 0.
-        changes: Those of the program, also where no move follows.
-    """
-
-    tools: tuple[ToolTable, ...]
-    first_move: tuple[int, ...] = (0,)
-    changes: tuple[ToolChange, ...] = ()
-
-    def at(self, move: int) -> ToolTable:
-        """The tool in the spindle during a move."""
-        return self.tools[bisect.bisect_right(self.first_move, max(move, 0)) - 1]
-
-    def before(self, tool: ToolTable) -> ToolTable | None:
-        """The tool that was in the spindle before another came first; None: that one is the first."""
-        numbers = [each.number for each in self.tools]
-        place = numbers.index(tool.number) if tool.number in numbers else 0
-        return self.tools[place - 1] if place else None
-
-    def longer(self, tool: ToolTable) -> float:
-        """How much lower a tool's tip is than that of the first, which positions count for [mm]."""
-        return tool.length - self.tools[0].length
-
-    def lower(self, move: IntArray) -> FloatArray:
-        """How much lower the tip is than that of the first tool, by the moves of samples, shape (n,) [mm]."""
-        lower = np.zeros(len(move))
-        for run, tool in self.runs(move):
-            lower[run] = self.longer(tool)
-        return lower
-
-    def runs(self, move: IntArray) -> list[tuple[slice, ToolTable]]:
-        """Split samples where the tool changes.
-
-        Args:
-            move: Move number of each sample, never falling, shape (n,).
-        """
-        number = np.searchsorted(self.first_move, np.maximum(move, 0), side="right") - 1
-        ends = [*(np.flatnonzero(np.diff(number)) + 1).tolist(), len(move)]
-        return [
-            (slice(first, end), self.tools[int(number[first])])
-            for first, end in itertools.pairwise([0, *ends])
-            if first < end
-        ]
 
 
 EMPTY_SPINDLE = ToolTable(

@@ -15,7 +15,7 @@ LARGEST_MM = 1e6
 if TYPE_CHECKING:
     import trimesh
 
-# It logs tracebacks of what it gets over; what it does not is told of here.
+# It logs tracebacks of what it recovers from; the rest is reported here.
 logging.getLogger("trimesh").addHandler(logging.NullHandler())
 
 
@@ -29,7 +29,7 @@ def read_stl(path: Path) -> "trimesh.Trimesh":
     import trimesh
 
     try:
-        # Corners that are no numbers are told of below.
+        # Corners that are no numbers are reported below.
         with path.open("rb") as file, np.errstate(all="ignore"):
             mesh = trimesh.load_mesh(file, file_type="stl", process=False)
     except (OSError, ValueError, KeyError, IndexError) as error:

@@ -15,9 +15,7 @@ from twin.errors import ConfigError, UsageError
 class Table(pydantic.BaseModel):
     """A TOML table: unknown keys are errors, values do not change after reading."""
 
-    model_config = pydantic.ConfigDict(
-        extra="forbid", frozen=True, allow_inf_nan=False, use_attribute_docstrings=True
-    )
+    model_config = pydantic.ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
 
 TableT = TypeVar("TableT", bound=Table)
@@ -55,7 +53,7 @@ def checked(data: Data, table: type[TableT], where: str | Callable[[str], str | 
     Args:
         data: The content.
         table: The model that names its keys.
-        where: What a message begins with, such as the file; or what tells it for a key with dots.
+        where: What a message begins with, such as the file; or a function that gives it for a key with dots.
 
     Raises:
         ConfigError: A wrong key or value.
@@ -160,7 +158,7 @@ def merged(
 
     Args:
         above: What comes first.
-        below: What holds where ``above`` says nothing.
+        below: What holds where ``above`` has no value.
         replaces: Whether an inner table of ``above`` is taken whole.
     """
     made = dict(below) | above

@@ -1,4 +1,4 @@
-"""Where in a TOML file a key stands, which its parser does not tell."""
+"""The line of a key in a TOML file, which its parser does not report."""
 
 import re
 from collections.abc import Sequence

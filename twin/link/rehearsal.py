@@ -7,7 +7,7 @@ and LinuxCNC's component takes a twin that is silent for two seconds for gone.
 import contextlib
 
 from twin.compilation.inventory import inventory
-from twin.machine.model.tool_shape import ToolShape
+from twin.job.job_file import ToolTable
 from twin.machine.simulation.live import LiveMachine
 from twin.nc.canonical import FloatArray
 from twin.run.dry_run import DryRun
@@ -18,7 +18,7 @@ class _EnoughError(Exception):
     """The chain has been gone through."""
 
 
-def rehearse(run: Run, dry_run: DryRun, tool: ToolShape, position: FloatArray) -> None:
+def rehearse(run: Run, dry_run: DryRun, tool: ToolTable, position: FloatArray) -> None:
     """Call what a linked run will call, unless all of it is compiled anyway; nothing of it is kept.
 
     Args:

@@ -28,9 +28,9 @@ class AxisFacts:
     kv: float
     """Loop gain [(m/min)/mm or (1000 deg/min)/deg]."""
     moved: float
-    """What the motor feels, reflected inertia included [kg or kg m²]."""
+    """What the motor moves, reflected inertia included [kg or kg m²]."""
     reflected: float
-    """Motor and screw, as the axis feels them [kg or kg m²]."""
+    """Motor and screw, reflected to the axis [kg or kg m²]."""
     natural_frequency_hz: float
     """Of the position loop [Hz]."""
     lag: float

@@ -9,7 +9,6 @@ import trimesh
 from trimesh.visual import TextureVisuals
 from trimesh.visual.material import PBRMaterial
 
-from twin.cutting.tools import ToolPlan
 from twin.job.job_file import StockTable, ToolTable
 from twin.machine.description.config import Machine
 from twin.machine.description.kinematics import SPINDLE_NOSE, part_carrier
@@ -20,6 +19,7 @@ from twin.render.scene.placement import Placement, place
 from twin.render.scene.tool_body import PREFIX, ToolBodies
 from twin.render.scene.work_holding import add_work_holding
 from twin.toolpath.part_frame import PartFrame
+from twin.toolpath.tool_plan import ToolPlan
 from twin.units import MM
 
 COLLISION_PREFIX = "collision "

@@ -1,1 +1,1 @@
-"""One run of a job: preparation, dry run, the order of the rooms, results."""
+"""One run of a job: preparation, dry run, pipeline, observers, outcome, results."""

@@ -1,4 +1,4 @@
-"""The job that is assumed for a raw program: stock, zero and tools, as its path and its comments tell them."""
+"""The job that is assumed for a raw program: stock, zero and tools, as its path and its comments show them."""
 
 import dataclasses
 import os
@@ -70,7 +70,7 @@ def with_assumptions(
 ) -> tuple[Preparation, AssumedJob]:
     """A raw program with the job that is assumed for it.
 
-    What a ``twin.toml`` above it says holds instead of what would be assumed.
+    What a ``twin.toml`` above it sets replaces what would be assumed.
 
     Args:
         preparation: Of the program.
@@ -127,14 +127,20 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
             if lacking
             else []
         ),
-        "[tolerance]",
-        f"contour_um = {preparation.job.file.tolerance.contour_um}",
-        f"rapid_contour_um = {_RAPID_TOLERANCE_UM}  # a guess",
-        "",
+        *_tolerance_lines(moves, preparation.job.file.tolerance.contour_um),
     ]
     left_out = tuple(f"{word} stays at 0: the machine has no such axis" for word in lacking)
     rapids = f"rapids may leave their path by {_RAPID_TOLERANCE_UM:g} µm"
-    return AssumedJob("\n".join(lines), (*preparation.reading.told, said, *told, rapids, *left_out))
+    told += [rapids] if (moves.motion == Motion.RAPID).any() else []
+    return AssumedJob("\n".join(lines), (*preparation.reading.notes, said, *told, *left_out))
+
+
+def _tolerance_lines(moves: Moves, contour_um: float) -> list[str]:
+    """The tolerances, those alone that some move of the program is held to."""
+    rapid = moves.motion == Motion.RAPID
+    feeds = [f"contour_um = {contour_um}"] if (~rapid).any() or not rapid.any() else []
+    rapids = [f"rapid_contour_um = {_RAPID_TOLERANCE_UM}  # a guess"] if rapid.any() else []
+    return ["[tolerance]", *feeds, *rapids, ""]
 
 
 def _interpreted(preparation: Preparation) -> tuple[Interpretation, list[Chunk], bool]:
@@ -371,7 +377,7 @@ def text_beside(path: Path, assumed: AssumedJob, program: Path) -> str:
     return f'program = "{relative}"\n{assumed.text.partition(chr(10))[2]}'
 
 
-def told_of_reading(preparation: Preparation, assumptions: Iterable[str]) -> Iterator[str]:
+def reading_notes(preparation: Preparation, assumptions: Iterable[str]) -> Iterator[str]:
     """Which dialect was taken and why, where nobody named one, and what was assumed, a line each."""
     if preparation.dialect_reason:
         yield _reading_line(preparation)

@@ -1,4 +1,4 @@
-"""What there is to tell of a finished run beside its figures: cuts of air, slips in the material, unjudged limits."""
+"""Warnings about a finished run: cuts of air, mistakes in the material, unjudged limits."""
 
 from collections.abc import Iterator
 
@@ -16,20 +16,19 @@ LEAST_CUT_MM3 = 1e-3
 def cut_notices(
     job: JobFile, watch: ProgramWatch, machining: Machining, cut: CutResult
 ) -> Iterator[Notice]:
-    """What the cut of a whole program leaves to tell.
+    """Warnings about the cut of a whole program.
 
     Args:
         job: Its stock is there.
-        watch: What the program said.
+        watch: What the program does.
         machining: The cut.
         cut: What it came to.
     """
     cutter = machining.cutter
     assert cutter is not None
-    if not cut.removed_mm3 and watch.first_feed:
-        yield Notice(
-            "nothing-cut", watch.first_feed, "no move of the program takes anything off the stock"
-        )
+    begins = watch.first_feed or watch.spindle_line
+    if not cut.removed_mm3 and begins:
+        yield Notice("nothing-cut", begins, "no move of the program takes anything off the stock")
     if cutter.start_depth:
         yield Notice(
             "starts-in-stock",
@@ -70,8 +69,8 @@ def tooth_feed_notices(watch: ProgramWatch, cut: CutResult | None) -> Iterator[N
     """Feeds per tooth that no edge bears, where no force is simulated that would show it.
 
     Args:
-        watch: What the program said.
-        cut: What was cut; None without a stock: then only what no tool at all could bear is told.
+        watch: What the program does.
+        cut: What was cut; None without a stock: then only what no tool at all could bear is reported.
     """
     for line, feed in watch.tooth_feeds.items():
         if cut is None:

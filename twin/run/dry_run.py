@@ -1,4 +1,4 @@
-"""The dry run: the whole program interpreted once, before anything moves, and read by all who follow it."""
+"""The dry run: the whole program interpreted once, before anything moves, and read by all that follows."""
 
 import dataclasses
 import pickle
@@ -27,7 +27,7 @@ _WITHIN = (0.0, 0.381966, 1.0)
 """Fractions of a move at which the direction of the tool is looked at: whole turns come back to where they began."""
 
 NOTICES_KEPT = 100
-"""Lines whose speed of the spindle was limited that are told."""
+"""Lines whose speed of the spindle was limited that are reported."""
 
 
 class InterpretedProgram:
@@ -104,8 +104,8 @@ class DryRun:
         program: Its moves and events.
         warnings: What the interpreter and the spindle had to say.
         alarm: The soft-limit alarm of the first move that leaves the travel, if any.
-        summary: What the program says beside its moves.
-        watch: What it tells that no axis feels.
+        summary: Its tools, speeds of the spindle and rapids.
+        watch: Mistakes of its functions that no axis shows.
         lines_never_run: How many lines with motion it never came to.
         tilts: Whether the tool ever stands off the part's Z.
     """

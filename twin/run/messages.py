@@ -1,4 +1,4 @@
-"""What is said of a program's lines: alarms, near misses, broken tolerances and warnings, with place and caret."""
+"""Messages about a program's lines: alarms, near misses, broken tolerances and warnings, with place and caret."""
 
 import dataclasses
 import re
@@ -44,10 +44,10 @@ def near_miss_diagnostic(near_miss: NearMiss, source: Source) -> Diagnostic:
         source: The program that ran.
     """
     one, two = near_miss.between
-    room = f"passes the {two} with {near_miss.clearance_mm:.2f} mm to spare"
+    passing = f"passes the {two} with {near_miss.clearance_mm:.2f} mm to spare"
     if near_miss.clearance_mm <= TOUCH:
-        room = f"touches the {two}: there is no room between them"
-    message = f"the {one} {room} (after {near_miss.time_s:.3f} s)"
+        passing = f"touches the {two}: there is no room between them"
+    message = f"the {one} {passing} (after {near_miss.time_s:.3f} s)"
     return at_line(source, near_miss.line, "near-miss", message, _WHOLE_LINE, severity="warning")
 
 

@@ -13,12 +13,12 @@ from twin.compare.figures import Figures
 from twin.compare.trace import Trace
 from twin.cutting.cut import CutResult
 from twin.cutting.forces.load_log import LoadLog
-from twin.cutting.tools import ToolPlan
 from twin.job.job_file import ToolTable
 from twin.machine.watching.alarms import Alarm
 from twin.nc.canonical import FloatArray
 from twin.recording.reader import RecordingWriter, Samples
 from twin.run.progress import StageClock
+from twin.toolpath.tool_plan import ToolPlan
 
 
 class Observer(abc.ABC):

@@ -112,7 +112,7 @@ def outcome_of(preparation: Preparation, dry_run: DryRun, found: Findings) -> Ou
 
     Args:
         preparation: What was asked for.
-        dry_run: What the program says.
+        dry_run: What the program does.
         found: What happened.
     """
     job, reached, alarms = preparation.job, found.reached, found.alarms

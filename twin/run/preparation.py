@@ -40,8 +40,8 @@ class Preparation:
         machine: The machine that it runs on.
         source: The NC program.
         dialect: The language that the program is written in.
-        settings: What the interpreter is told about machine and job.
-        dialect_reason: What told the dialect of a program whose job names none; empty: the job does.
+        settings: What the interpreter has to know of machine and job.
+        dialect_reason: What showed the dialect of a program whose job names none; empty: the job does.
         reading: What was assumed of how a raw program is read.
     """
 
@@ -59,7 +59,7 @@ class Preparation:
 
     @property
     def spindle(self) -> SpindleState:
-        """The spindle before anybody has said anything of it, with the job's first tool."""
+        """The spindle before the program sets it, with the job's first tool."""
         return SpindleState(
             tool_speed=self.job.file.tools[0].speed,
             has_word=bool(self.dialect.words.spindle),
@@ -84,10 +84,10 @@ def prepare(
         machine: Overrides the job's machine; a path is relative to the working folder.
         strict: Warnings of the interpreter are errors.
         changes: Values of the job (``job.``) and the machine file (``machine.``) to change.
-        assuming: How a program without a job is read may be assumed; the caller says what was.
+        assuming: How a program without a job is read may be assumed; the caller reports what was.
 
     Raises:
-        UsageError: A file is missing or wrong, or the dialect cannot be told.
+        UsageError: A file is missing or wrong, or the dialect cannot be recognised.
     """
     job, reading = load_job(path, changes), None
     if assuming and job.path is None:
@@ -106,7 +106,7 @@ def prepare(
 
 
 def _with_keys(job: Job, keys: Mapping[str, object]) -> Job:
-    """A job with what was assumed, where it says nothing else."""
+    """A job with what was assumed, where it has no value of its own."""
     given = job.file.model_dump(exclude_unset=True)
     return job.with_file(JobFile.model_validate({**keys, **given}))
 
@@ -120,8 +120,8 @@ def _with_functions(made: Preparation, reading: AssumedReading) -> Preparation:
     names = [f"M{number}" for number in unknown]
     declared = dict.fromkeys(names, UNKNOWN_FUNCTION)
     several = "do" if len(names) > 1 else "does"
-    told = f"{', '.join(names)} {several} nothing: {made.dialect.name} has no such code"
-    reading = AssumedReading({**reading.keys, "m_functions": declared}, (*reading.told, told))
+    note = f"{', '.join(names)} {several} nothing: {made.dialect.name} has no such code"
+    reading = AssumedReading({**reading.keys, "m_functions": declared}, (*reading.notes, note))
     given = made.job.file.model_dump(exclude_unset=True).get("m_functions", {})
     file = made.job.file.model_dump(exclude_unset=True) | {"m_functions": {**declared, **given}}
     job = made.job.with_file(JobFile.model_validate(file))
@@ -149,7 +149,7 @@ def prepare_job(
         machine: As there.
         strict: As there.
         changes: As there.
-        tools: What comments tell of the tools of a job that names none.
+        tools: What comments say of the tools of a job that names none.
     """
     twin_machine = load_machine(job, machine, changes)
     name = dialect or job.file.dialect
@@ -184,7 +184,7 @@ def anywhere(preparation: Preparation) -> Preparation:
 
 
 def prepare_recorded(header: RecordingHeader, *, machine: str | None = None) -> Preparation:
-    """What a recording was made with, from what it says about itself.
+    """What a recording was made with, from its header.
 
     Args:
         header: Of the recording.

@@ -1,4 +1,4 @@
-"""What the moves and functions of a program tell before anything moves: slips that no axis feels."""
+"""What moves and functions of a program show before anything moves: mistakes that no axis shows."""
 
 import dataclasses
 from collections.abc import Iterator
@@ -68,7 +68,7 @@ class ProgramWatch:
     """
 
     def __init__(self, job: JobFile, spindle: SpindleState) -> None:
-        """Begin with the job's first tool in a spindle of which nothing was said.
+        """Begin with the job's first tool in a spindle that no function has set yet.
 
         Args:
             job: Its tools are those that the program may bring.
@@ -87,6 +87,10 @@ class ProgramWatch:
         self._line = 0
         self.changed_at = 0
         self._end_line = 0
+        self._called: tuple[int, int] | None = None
+        """Number and line of the first tool that is called."""
+        self._nameless_line = 0
+        """Line of a tool change before any tool is called; 0: there is none."""
         self._started_at, self._started_in_cycle = 0, False
         self._tapped: set[int] = set()
         self._tooth_feeds: dict[int, ToothFeed] = {}
@@ -102,7 +106,7 @@ class ProgramWatch:
             self._span(chunk, first, event.before)
             first = event.before
             behind = int(moves.line[first]) if first < len(moves) else 0
-            self._hear(
+            self._follow(
                 event, self._moves + event.before, in_cycle=behind == event.line == self._line
             )
         self._span(chunk, first, len(moves))
@@ -146,12 +150,15 @@ class ProgramWatch:
             if known is None or per_tooth[row] > known.value:
                 self._tooth_feeds[int(line[row])] = ToothFeed(float(per_tooth[row]), self._tool)
 
-    def _hear(self, event: Function, place: int, *, in_cycle: bool) -> None:
+    def _follow(self, event: Function, place: int, *, in_cycle: bool) -> None:
         word, was = event.word, self._state.turns
         if word[:1] == "T" and word[1:].isdigit():
             self._selected = int(word[1:])
+            self._called = self._called or (self._selected, event.line)
         elif word == TOOL_CHANGE:
             self.changed_at = self.changed_at or event.line
+            if self._called is None:
+                self._nameless_line = self._nameless_line or event.line
             if self._selected != self._tool.number:
                 self.stops.append(Stop(float(place), event.line, "the tool is changed"))
             self._tool = self._tools.get(self._selected, self._tool)
@@ -189,9 +196,23 @@ class ProgramWatch:
         """Line at which the program ended, or of its last move."""
         return self._end_line or self._line
 
+    def _tool_notices(self) -> Iterator[Notice]:
+        """Calls of tools that bring none, and changes that name none."""
+        number, line = self._called or (self._tool.number, 0)
+        if self.first_feed and not self.changed_at and number != self._tool.number:
+            message = (
+                f"tool {number} is called, and no M6 brings it: all is cut by tool "
+                f"{self._tool.number}, the job's first"
+            )
+            yield Notice("tool-never-changed", line, message)
+        if self._nameless_line:
+            message = f"no T before it says which tool comes: tool {self._tool.number} is taken"
+            yield Notice("change-without-tool", self._nameless_line, message)
+
     def notices(self, interpretation: Interpretation) -> Iterator[Notice]:
-        """What is to be told of the whole program, once it was interpreted to its end."""
+        """Warnings about the whole program, once it was interpreted to its end."""
         yield from self._counter.values()
+        yield from self._tool_notices()
         for line, call in interpretation.length_calls.items():
             if call.spindle is not None and call.number != call.spindle:
                 message = (

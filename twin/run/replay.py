@@ -18,7 +18,7 @@ first alarm, the first rapid into stock, the first gouge by flutes, shank or hol
 
 
 def summary_of(preparation: Preparation) -> ProgramSummary:
-    """What a program says beside its moves.
+    """Tools, speeds of the spindle and rapids of a program.
 
     Raises:
         ProgramError: The program is wrong.

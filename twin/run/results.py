@@ -43,7 +43,7 @@ def write_results(
         run: The run.
         outcome: What it came to.
         folder: Where the files go; stills that were drawn there are put on the page.
-        further: What ``result.json`` says besides.
+        further: Additional keys of ``result.json``.
     """
     # Its plots load Matplotlib, which is not waited for before a run.
     from twin.compare.report.report import write_report

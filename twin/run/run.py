@@ -108,7 +108,7 @@ class Run:
         return self._outcome(dry_run, followers, motion, alarms, out)
 
     def header(self) -> RecordingHeader:
-        """What the recording says about itself."""
+        """The attributes of the recording."""
         preparation = self.preparation
         return RecordingHeader(
             axes=preparation.machine.axes,

@@ -11,7 +11,7 @@ from twin.errors import UsageError
 from twin.files.atomic import LEFTOVERS
 
 VERDICT_FILES = ("result.json", "report.html", "part.stl")
-"""What tells of a run that came to its end."""
+"""What a run that came to its end leaves."""
 _PROGRAM = re.compile(r"^\s*program\s*=\s*[\"'](?P<name>[^\"']+)", re.MULTILINE)
 
 

@@ -12,6 +12,7 @@ from twin.job.load import DEFAULT, Job
 from twin.machine.watching.alarms import Alarm
 from twin.run.dry_run import DryRun
 from twin.run.program_watch import ProgramWatch
+from twin.run.reading.assumed_reading import UNKNOWN_FUNCTION
 
 DRIVES = "travel, limit switches, following error and force of every axis"
 COLLISIONS = "tool, holder, spindle and head against fixtures and machine; the table's load against the machine"
@@ -22,7 +23,7 @@ WALLS = "cuts into the nominal part"
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Unwatched:
-    """Something that the verdict says nothing about.
+    """Something that the verdict does not cover.
 
     Attributes:
         what: It.
@@ -45,6 +46,7 @@ class Scope:
         tools_unused: Numbers of tools that the job lists and no move used.
         lines_never_run: How many lines with words of axes were never come to.
         tolerances_from: Where each tolerance is set: a file, or ``default``.
+        tolerances: What each of them allows, in the unit that its key names.
     """
 
     watched: tuple[str, ...]
@@ -54,6 +56,7 @@ class Scope:
     tools_unused: tuple[int, ...]
     lines_never_run: int
     tolerances_from: Mapping[str, str]
+    tolerances: Mapping[str, float]
 
     def as_json(self) -> dict[str, Any]:
         """The object ``scope`` of ``result.json``."""
@@ -73,8 +76,13 @@ class Scope:
             yield f"tools never used: {', '.join(map(str, self.tools_unused))}"
         if self.lines_never_run:
             yield f"lines with motion never run: {self.lines_never_run}"
-        told = (f"{key} from {place}" for key, place in self.tolerances_from.items())
-        yield f"tolerances: {', '.join(told)}"
+        sources = (
+            f"{key} = {self.tolerances[key]:.15g} from {place}"
+            if key in self.tolerances
+            else f"{key} from {place}"
+            for key, place in self.tolerances_from.items()
+        )
+        yield f"tolerances: {', '.join(sources)}"
 
 
 def scope_of(
@@ -91,7 +99,7 @@ def scope_of(
 
     Args:
         job: What was asked for.
-        dry_run: What the program said.
+        dry_run: What the program does.
         checks: What was held to tolerances.
         cut: What was cut; None without a stock.
         forces: Whether the force of the cut was simulated.
@@ -107,6 +115,7 @@ def scope_of(
     blind = (
         *_blind(file, forces=forces, tilts=dry_run.tilts),
         *(_silent_spindle(file, watch)),
+        *_unknown_functions(file),
         *(Unwatched(reason.what, reason.message) for reason in unjudged),
         *(
             Unwatched(f"all behind line {each.line}", "the alarm ended the run")
@@ -123,7 +132,19 @@ def scope_of(
         tools_unused=tuple(unused) if listed else (),
         lines_never_run=dry_run.lines_never_run,
         tolerances_from=job.tolerances_from,
+        tolerances={
+            key: value
+            for key, value in file.tolerance.model_dump(exclude_none=True).items()
+            if key in job.tolerances_from and isinstance(value, int | float)
+        },
     )
+
+
+def _unknown_functions(job: JobFile) -> Iterator[Unwatched]:
+    """M codes of a raw program that were taken to do nothing."""
+    unknown = [name for name, table in job.m_functions.items() if table.meaning == UNKNOWN_FUNCTION]
+    if unknown:
+        yield Unwatched(", ".join(unknown), UNKNOWN_FUNCTION)
 
 
 def _blind(job: JobFile, *, forces: bool, tilts: bool) -> Iterator[Unwatched]:

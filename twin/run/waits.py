@@ -52,7 +52,7 @@ class Waits:
             spindle: How long the machine takes.
             speeds: Of the tools, for programs that say none [1/min].
             tool: Number of the tool in the spindle.
-            state: What the spindle has been told.
+            state: The spindle before the program.
             selected: Number of the tool that the next change brings; None: the one in the spindle.
         """
         self._spindle = spindle
@@ -67,11 +67,11 @@ class Waits:
         for event in events:
             yield event
             if isinstance(event, Function):
-                seconds = self._hear(event)
+                seconds = self._seconds_for(event)
                 if seconds > 0.0 and event.at == 0.0:
                     yield Dwell(event.before, event.line, seconds)
 
-    def _hear(self, event: Function) -> float:
+    def _seconds_for(self, event: Function) -> float:
         """How long the machine takes for a function [s]."""
         word = event.word
         if word[:1] == "T" and word[1:].isdigit():

@@ -8,6 +8,7 @@ import pytest
 from tests.machine.machine_fixtures import shipped_machine, write_machine
 from twin.errors import ConfigError
 from twin.files.shipped import machine_file
+from twin.job.job_file import ToolTable
 from twin.machine.load import read_machine
 from twin.machine.model.model import (
     build_spec,
@@ -16,7 +17,6 @@ from twin.machine.model.model import (
     physics_model,
     spindle_over_table_mm,
 )
-from twin.machine.model.tool_shape import DefaultTool
 from twin.toolpath.part_frame import PartFrame
 from twin.units import DEGREE, MM
 
@@ -45,7 +45,7 @@ def tip_seen_from_table(data: mujoco.MjData) -> np.ndarray:
 def test_the_tool_stands_where_machine_coordinates_and_part_frame_say(name, at):
     machine = read_machine(machine_file(name))
     _, data = pose(machine, **dict(zip("XYZC", at, strict=True)))
-    over = spindle_over_table_mm(machine) - DefaultTool().length
+    over = spindle_over_table_mm(machine) - ToolTable(number=1).length
     expected = machine.part_frame.position(np.array([at], float))[0] + [0.0, 0.0, over]
     assert tip_seen_from_table(data) == pytest.approx(expected, abs=1e-9)
     assert machine.part_frame == PartFrame(rotary=3, center=(0.0, 0.0))
@@ -61,7 +61,7 @@ def test_the_lowest_tip_of_a_short_tool_stays_above_the_table():
     ("diameter", "length", "flute"), [(10, 60, 25), (0.5, 30, 3), (63, 90, 40), (6, 20, 40)]
 )
 def test_the_tool_reaches_from_the_nose_to_its_tip(kind, diameter, length, flute):
-    tool = DefaultTool(kind, diameter, length, flute)
+    tool = ToolTable(number=1, kind=kind, diameter=diameter, length=length, flute=flute)
     model, data = pose(shipped_machine(), tool)
     names = [model.geom(i).name for i in range(model.ngeom)]
     pieces = [name for name in names if name.startswith("tool_")]

@@ -11,10 +11,10 @@ import twin.machine.simulation.live
 from tests.machine.machine_fixtures import PERIOD, circle, line, setpoints, shipped_machine
 from twin.errors import ConfigError
 from twin.files.shipped import machine_file
+from twin.job.job_file import ToolTable
 from twin.machine.description.config import FixtureTable, Machine
 from twin.machine.load import read_machine
 from twin.machine.model.model import MachineModel, build_spec, drives
-from twin.machine.model.tool_shape import DefaultTool
 from twin.machine.simulation.live import LiveMachine
 from twin.machine.simulation.simulate import simulate
 from twin.machine.watching.alarms import AlarmStandsError
@@ -237,7 +237,7 @@ def test_a_fault_that_makes_no_sense_changes_nothing(axis, fields, message):
 def test_another_tool_has_other_collisions():
     live = LiveMachine(shipped_machine(), position=np.array([0.0, 0.0, -400.0, 0.0]))
     down = after(live, line(2, -100.0, 1.1))
-    live.mount(DefaultTool(length=150.0, flute=20.0))
+    live.mount(ToolTable(number=1, length=150.0, flute=20.0))
     live.follow(down)
     assert live.alarm is not None
     assert "the cutter meets the faceplate" in live.alarm.message

@@ -5,9 +5,9 @@ import pytest
 
 from tests.machine.machine_fixtures import PERIOD, line, ramp_up, setpoints, shipped_machine
 from twin.columns import join
+from twin.job.job_file import ToolTable
 from twin.machine.description.config import FixtureTable, Machine, MachineFile
 from twin.machine.model.model import MachineModel, build_spec, clearance_model
-from twin.machine.model.tool_shape import DefaultTool
 from twin.machine.simulation.simulate import simulate
 from twin.machine.watching.alarms import Alarm
 from twin.machine.watching.clearance import NEAR_STEP, TOUCH, Clearance
@@ -92,7 +92,7 @@ def test_a_moment_at_the_limit_is_no_alarm():
 
 def test_a_long_tool_meets_the_faceplate():
     machine = shipped_machine()
-    tool = DefaultTool(length=150.0, flute=20.0)
+    tool = ToolTable(number=1, length=150.0, flute=20.0)
     points = moves((0, 0, -300.0, 0), (0, 0, -540.0, 0))
     alarm, last = alarm_of(machine, points, tool)
     assert alarm.code == "collision"
@@ -103,7 +103,7 @@ def test_a_long_tool_meets_the_faceplate():
 
 def test_a_cutter_may_come_close_to_the_table_without_a_near_miss():
     machine = shipped_machine()
-    tool = DefaultTool(length=80.0, flute=25.0)
+    tool = ToolTable(number=1, length=80.0, flute=25.0)
     simulation = simulate(
         machine, MachineModel(machine, tool), [moves((0, 0, -300.0, 0), (0, 0, -539.95, 0))]
     )

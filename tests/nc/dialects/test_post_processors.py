@@ -2,6 +2,7 @@
 
 import dataclasses
 
+import numpy as np
 import pytest
 
 from tests.nc.running import SETTINGS, Outcome, run
@@ -611,3 +612,10 @@ def test_a_helix_has_one_arc_for_each_block() -> None:
     moves = run(POCKET, "fanuc", JOB).moves
     arcs = moves.end[moves.shape == Shape.ARC]
     assert arcs[:, 2].tolist() == [-2.0, -5.0, -5.0]
+
+
+def test_a_tolerance_of_nought_is_none_as_g64_alone() -> None:
+    outcome = run("G21 G64 P0.05\nG1 X10 F600\nG64 P0\nY10\nG64\nX0\nM2", "linuxcnc")
+    assert outcome.error is None
+    assert outcome.moves.corner_tolerance[0] == 0.05
+    assert np.isnan(outcome.moves.corner_tolerance[1:]).all()

@@ -8,7 +8,7 @@ import pytest
 import trimesh
 
 from tests.render.conftest import SUMMARY, TOOL, Record
-from twin.cutting.tools import ToolPlan, profile
+from twin.cutting.tools import profile
 from twin.job.job_file import StockTable, ToolTable
 from twin.machine.description.config import Machine
 from twin.nc.canonical import FloatArray
@@ -27,6 +27,7 @@ from twin.render.scene.scene import Scene
 from twin.render.scene.stage import Stage, stage
 from twin.render.scene.tool_body import fluted
 from twin.render.still import moment
+from twin.toolpath.tool_plan import ToolPlan
 
 SIZE = (320, 240)
 

@@ -74,7 +74,7 @@ class AxisTable(Table):
     lead: Positive | None = None
     """Axis travel per turn of the motor [mm or deg]; none: a direct drive, nothing is reflected."""
     mass: NonNegative = 0.0
-    """What the motor feels, as it was measured: mass [kg] or inertia [kg m²], motor and screw
+    """What the motor moves, as it was measured: mass [kg] or inertia [kg m²], motor and screw
     included; 0: as bodies, inertias and lead say. The axis's own body, motor and screw are scaled."""
     viscous_friction: NonNegative = 0.0
     """Of guides and screw [N s/mm or N m s/deg]."""

@@ -1,4 +1,4 @@
-"""An axis whose moved mass was measured: what moves is scaled until the motor feels that."""
+"""An axis whose moved mass was measured: what moves is scaled until the motor moves that."""
 
 import mujoco
 import numpy as np

@@ -22,7 +22,7 @@ from twin.machine.model.transmission import (
     FASTEST,
     FASTEST_SPRING,
     add_friction_and_give,
-    felt,
+    directly_driven,
     give_substeps,
     has_give,
     swinging,
@@ -167,7 +167,7 @@ class _Need(NamedTuple):
 
 def _needs(machine: Machine, name: str, drive: Drive) -> Iterator[_Need]:
     axis, period = machine.axis(name), machine.file.servo_period_s
-    fastest = drive.velocity_gain / felt(axis, drive.moved) * period
+    fastest = drive.velocity_gain / directly_driven(axis, drive.moved) * period
     yield _Need("kv", math.ceil(fastest / FASTEST))
     yield _Need("stiffness", give_substeps(axis, drive.moved, period))
     for lag in drive.lags:
@@ -210,7 +210,7 @@ def _refuse_what_outruns_the_clock(machine: Machine, name: str, drive: Drive) ->
     """A loop or a spring that swings within a step cannot be simulated with it."""
     axis = machine.axis(name)
     period = machine.file.servo_period_s
-    if not felt(axis, drive.moved) > 0.0:
+    if not directly_driven(axis, drive.moved) > 0.0:
         raise ConfigError(
             f"{machine.path}: axes.{name}: behind a backlash or spring the motor needs an inertia "
             "of its own; give motor_inertia"

@@ -5,12 +5,12 @@ import dataclasses
 import mujoco
 import numpy as np
 
+from twin.job.job_file import ToolTable
 from twin.machine.model.model import MachineModel
 from twin.machine.model.tool_shape import (
     COLLISION_GROUP,
     TOOL_NAMES,
     TOOL_SIDE,
-    ToolShape,
     tool_cylinders,
 )
 from twin.nc.canonical import FloatArray
@@ -61,7 +61,7 @@ class HeadShape:
             and model.geom(geom).name not in TOOL_NAMES
         )
 
-    def above_tip(self, tool: ToolShape) -> tuple[HeadSolid, ...]:
+    def above_tip(self, tool: ToolTable) -> tuple[HeadSolid, ...]:
         """The holder's flange and what is above it, with a tool in the spindle."""
         pieces = tool_cylinders(tool, self._flange)
         flange = tuple(

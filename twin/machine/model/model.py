@@ -7,6 +7,7 @@ import numpy as np
 
 from twin.errors import ConfigError
 from twin.job.fixture import Weight
+from twin.job.job_file import ToolTable
 from twin.machine.description.config import Blank, Machine
 from twin.machine.description.kinematics import SPINDLE_NOSE, TABLE_TOP
 from twin.machine.description.measured_mass import set_measured_masses
@@ -21,10 +22,9 @@ from twin.machine.model.tool_shape import (
     STOCK_SIDE,
     TOOL_SIDE,
     VISUAL_GROUP,
-    DefaultTool,
-    ToolShape,
     add_materials,
     add_tool,
+    default_tool,
 )
 from twin.machine.model.transmission import add_inertia
 from twin.machine.model.work_holding import supports
@@ -54,7 +54,7 @@ class MachineModel:
     """
 
     def __init__(
-        self, machine: Machine, tool: ToolShape | None = None, blank: Blank | None = None
+        self, machine: Machine, tool: ToolTable | None = None, blank: Blank | None = None
     ) -> None:
         """Build the model.
 
@@ -68,12 +68,10 @@ class MachineModel:
         """
         self.machine, self.blank = machine, blank
         self._without_tool = _without_tool(machine, blank)
-        self.tool: ToolShape = tool or DefaultTool(
-            holder=machine.file.spindle.flange_diameter / 2.0
-        )
+        self.tool = tool or default_tool(machine.file.spindle.flange_diameter)
         self.spec = self._with_tool()
 
-    def with_tool(self, tool: ToolShape) -> "MachineModel":
+    def with_tool(self, tool: ToolTable) -> "MachineModel":
         """The same model with another tool in its spindle."""
         other = object.__new__(MachineModel)
         other.machine, other.blank = self.machine, self.blank
@@ -102,7 +100,7 @@ class MachineModel:
 
 
 def build_spec(
-    machine: Machine, tool: ToolShape | None = None, blank: Blank | None = None
+    machine: Machine, tool: ToolTable | None = None, blank: Blank | None = None
 ) -> mujoco.MjSpec:
     """The editable model of a ``MachineModel``: machine, lights, cameras, drives, tool.
 

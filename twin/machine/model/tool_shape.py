@@ -2,13 +2,12 @@
 
 import dataclasses
 import math
-from collections.abc import Sequence
-from typing import Protocol
 
 import mujoco
 import numpy as np
 
-from twin.nc.canonical import FloatArray, IntArray
+from twin.job.job_file import ToolTable
+from twin.nc.canonical import FloatArray
 from twin.units import MM
 
 VISUAL_GROUP = 2
@@ -30,111 +29,13 @@ _COLLISION = {
 }
 
 
-class ToolShape(Protocol):
-    """What the machine needs to know of a tool; the job's tool table fits."""
+def default_tool(flange_diameter: float) -> ToolTable:
+    """A 10 mm end mill whose holder fits a spindle, for a machine without a job.
 
-    @property
-    def kind(self) -> str:
-        """``flat``, ``ball`` or another."""
-        ...
-
-    @property
-    def diameter(self) -> float:
-        """Of the cutting edge [mm]."""
-        ...
-
-    @property
-    def length(self) -> float:
-        """From the spindle nose to the tip, holder included [mm]."""
-        ...
-
-    @property
-    def flute(self) -> float:
-        """Length of the cutting part [mm]."""
-        ...
-
-    @property
-    def shank(self) -> float | None:
-        """Diameter above the flutes [mm]; None: that of the cutting edge."""
-        ...
-
-    @property
-    def corner(self) -> float | None:
-        """Radius of the rounding between end and flank [mm]; None: sharp."""
-        ...
-
-    @property
-    def point_angle(self) -> float | None:
-        """Included angle of a conical end [deg]; None: the end is flat or round."""
-        ...
-
-    @property
-    def tip(self) -> float:
-        """Diameter of the flat at the end of a cone [mm]."""
-        ...
-
-    @property
-    def holder(self) -> float:
-        """Diameter of the holder's nut [mm]."""
-        ...
-
-    @property
-    def below_holder(self) -> float:
-        """From the holder to the tip [mm]."""
-        ...
-
-
-class ToolChange(Protocol):
-    """A tool that comes into the spindle."""
-
-    @property
-    def move(self) -> int:
-        """Number of the next move."""
-        ...
-
-    @property
-    def line(self) -> int:
-        """Source line of the change."""
-        ...
-
-    @property
-    def tool(self) -> ToolShape:
-        """The tool that comes."""
-        ...
-
-
-class ToolSchedule(Protocol):
-    """Which tool is in the spindle when; the cutting room's plan fits."""
-
-    @property
-    def changes(self) -> Sequence[ToolChange]:
-        """The changes of the program in their order."""
-        ...
-
-    def runs(self, move: IntArray) -> Sequence[tuple[slice, ToolShape]]:
-        """Split samples where the tool changes, by their move numbers."""
-        ...
-
-
-@dataclasses.dataclass(frozen=True, slots=True)
-class DefaultTool:
-    """A 10 mm end mill, for a machine shown without a job."""
-
-    kind: str = "flat"
-    diameter: float = 10.0
-    length: float = 60.0
-    flute: float = 25.0
-    shank: float | None = None
-    corner: float | None = None
-    point_angle: float | None = None
-    tip: float = 0.0
-    holder: float = 32.0
-
-    @property
-    def below_holder(self) -> float:
-        """From the holder to the tip [mm]."""
-        flute = min(self.flute, 0.8 * self.length)
-        return flute + 0.375 * (self.length - flute)
+    Args:
+        flange_diameter: Of the spindle's tool holders [mm].
+    """
+    return ToolTable(number=1, holder=flange_diameter / 2.0)
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -181,7 +82,7 @@ _FLANGE_SHARE = 0.3
 """Of the length above the flutes: what the holder's flange takes."""
 
 
-def tool_cylinders(tool: ToolShape, flange_diameter: float) -> tuple[Cylinder, ...]:
+def tool_cylinders(tool: ToolTable, flange_diameter: float) -> tuple[Cylinder, ...]:
     """Flange, collet nut, shank and cutter, from the spindle nose down.
 
     The nut ends ``tool.below_holder`` above the tip, and the cutter's bottom is the tip,
@@ -209,7 +110,7 @@ def add_materials(spec: mujoco.MjSpec) -> None:
             spec.add_material(name=name, rgba=colour, specular=0.8, shininess=0.8)
 
 
-def add_tool(spec: mujoco.MjSpec, tool: ToolShape, flange_diameter: float) -> None:
+def add_tool(spec: mujoco.MjSpec, tool: ToolTable, flange_diameter: float) -> None:
     """Put the tool into the spindle: geoms on the body that carries the site ``spindle_nose``.
 
     Args:
@@ -246,7 +147,7 @@ def add_tool(spec: mujoco.MjSpec, tool: ToolShape, flange_diameter: float) -> No
     body.add_site(name="tool_tip", pos=[x, y, z - tool.length * MM], size=[0.001] * 3, group=4)
 
 
-def _add_solids(spec: mujoco.MjSpec, tool: ToolShape, flange_diameter: float) -> None:
+def _add_solids(spec: mujoco.MjSpec, tool: ToolTable, flange_diameter: float) -> None:
     """Add what may not meet anything: the exact shapes of holder, shank and cutting part."""
     nose = spec.site("spindle_nose")
     x, y, z = (float(value) for value in nose.pos)
@@ -286,7 +187,7 @@ def _add_solids(spec: mujoco.MjSpec, tool: ToolShape, flange_diameter: float) ->
         )
 
 
-def _end_outline(tool: ToolShape) -> list[tuple[float, float]]:
+def _end_outline(tool: ToolTable) -> list[tuple[float, float]]:
     """Radius and height above the tip of a cutter's lower end, from its flat to its flank [mm]."""
     radius = tool.diameter / 2.0
     if tool.kind == "ball":

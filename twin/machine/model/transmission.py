@@ -59,7 +59,7 @@ def has_give(axis: AxisTable) -> bool:
     return axis.backlash > 0 or axis.stiffness > 0
 
 
-def felt(axis: AxisTable, moved: float) -> float:
+def directly_driven(axis: AxisTable, moved: float) -> float:
     """What the motor accelerates at once: itself alone where the transmission gives [kg or kg m²]."""
     return reflected_inertia(axis) if has_give(axis) else moved
 

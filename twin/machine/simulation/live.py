@@ -5,10 +5,10 @@ from typing import Any
 import numpy as np
 
 from twin.errors import ConfigError
+from twin.job.job_file import ToolTable
 from twin.machine.description.config import Blank, Machine
 from twin.machine.model.head_shape import HeadShape
 from twin.machine.model.model import MachineModel
-from twin.machine.model.tool_shape import ToolShape
 from twin.machine.simulation.process import Process
 from twin.machine.simulation.servo import Servo
 from twin.machine.watching.alarms import Alarm, AlarmCode, AlarmStandsError, NearMiss
@@ -56,7 +56,7 @@ class LiveMachine:
     def __init__(
         self,
         machine: Machine,
-        tool: ToolShape | None = None,
+        tool: ToolTable | None = None,
         position: FloatArray | None = None,
         blank: Blank | None = None,
     ) -> None:
@@ -240,7 +240,7 @@ class LiveMachine:
         """Take back all changes."""
         self._rebuild(self._sound)
 
-    def mount(self, tool: ToolShape) -> None:
+    def mount(self, tool: ToolTable) -> None:
         """Put another tool into the spindle, as far as collisions are concerned."""
         model = MachineModel(self.machine, tool, self._blank)
         self._clearance = Clearance(self.machine, model.solids)

@@ -58,10 +58,10 @@ class Process(Protocol):
             states: Set to the states there, shape (n, width).
 
         Returns:
-            What the tool felt at each.
+            The load on the tool at each.
         """
         ...
 
     def at_rest(self, count: int) -> ToolLoad:
-        """What a tool feels that does not cut, n times."""
+        """The load on a tool that does not cut, n times."""
         ...

@@ -14,7 +14,7 @@ from twin.machine.description.config import Machine
 from twin.machine.model.drives import Drive, feedforward_name, integral_name
 from twin.machine.model.model import drives, moved
 from twin.machine.model.timers import switch_off_timers
-from twin.machine.model.transmission import felt, give_name, give_stiffness, has_give
+from twin.machine.model.transmission import directly_driven, give_name, give_stiffness, has_give
 from twin.machine.simulation.drive_kernels import (
     Drives,
     Points,
@@ -144,7 +144,9 @@ class Servo:
             ),
             speed_bulge=np.array(
                 [
-                    axis.velocity_feedforward * loop.velocity_gain / felt(axis, float(size))
+                    axis.velocity_feedforward
+                    * loop.velocity_gain
+                    / directly_driven(axis, float(size))
                     for (axis, loop), size in zip(driven, moved(machine, model), strict=True)
                 ]
             )
@@ -189,14 +191,14 @@ class Servo:
         if not all_finite(points):
             raise SimulationError(_NOT_FINITE)
         begun: list[FloatArray] = []
-        felt: list[ToolLoad] = []
+        loads: list[ToolLoad] = []
         past, ahead, following = points, points, chunk
         if self._chunk is None:
             self._begin(chunk)
             begun, following = [self._state[None]], chunk[1:]
             if self.process is not None:
                 self.process.begin(chunk.position[0])
-                felt = [self.process.at_rest(1)]
+                loads = [self.process.at_rest(1)]
             past = Points(*(column[:1] for column in points))
             ahead = Points(*(column[1:] for column in points))
             load = None if load is None else load[1:]
@@ -206,8 +208,8 @@ class Servo:
         states, tool = self._roll(past, ahead, told, load, following)
         states = np.concatenate([*begun, states]) if begun else states
         self._chunk, self._states = chunk, states
-        felt += [] if tool is None else [tool]
-        return Samples(chunk, *self._read(points, told, states), join(felt) if felt else None)
+        loads += [] if tool is None else [tool]
+        return Samples(chunk, *self._read(points, told, states), join(loads) if loads else None)
 
     @property
     def _is_lean(self) -> bool:
@@ -415,7 +417,7 @@ class Servo:
         """Step from the last of some setpoints to others.
 
         Returns:
-            The states there, shape (n, width), and what the tool felt.
+            The states there, shape (n, width), and the load on the tool.
         """
         if len(points.position) == 0:
             return np.zeros((0, len(self._state))), None

@@ -7,7 +7,6 @@ import numpy as np
 
 from twin.machine.description.config import Machine
 from twin.machine.model.model import MachineModel
-from twin.machine.model.tool_shape import ToolSchedule
 from twin.machine.simulation.process import Process
 from twin.machine.simulation.servo import Servo
 from twin.machine.simulation.tool_changes import ToolClearances
@@ -17,6 +16,7 @@ from twin.machine.watching.watch import Watch
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
 from twin.recording.reader import Samples
+from twin.toolpath.tool_plan import ToolPlan
 
 Load = Callable[[Setpoints], FloatArray]
 
@@ -93,7 +93,7 @@ def simulate(
     machine: Machine,
     model: MachineModel | mujoco.MjModel,
     setpoints: Iterable[Setpoints],
-    tools: ToolSchedule | None = None,
+    tools: ToolPlan | None = None,
     load: Load | None = None,
     process: Process | None = None,
 ) -> Simulation:

@@ -2,11 +2,13 @@
 
 import dataclasses
 
+from twin.job.job_file import ToolTable
 from twin.machine.model.model import MachineModel
-from twin.machine.model.tool_shape import ToolSchedule, ToolShape, tool_cylinders
+from twin.machine.model.tool_shape import tool_cylinders
 from twin.machine.watching.alarms import Alarm, NearMiss
 from twin.machine.watching.clearance import Clearance
 from twin.recording.reader import Samples
+from twin.toolpath.tool_plan import ToolPlan
 
 REMEDY = (
     "go up before M6, or write [tool_change] height = 0 into the job where M6 goes there by itself"
@@ -17,7 +19,7 @@ REMEDY = (
 class ToolClearances:
     """Watches a run with tool changes; each tool's clearance is built when it first comes."""
 
-    def __init__(self, model: MachineModel, tools: ToolSchedule) -> None:
+    def __init__(self, model: MachineModel, tools: ToolPlan) -> None:
         """Begin before the program.
 
         Args:
@@ -68,15 +70,15 @@ class ToolClearances:
                 return dataclasses.replace(alarm, line=change.line, message=message)
         return None
 
-    def _with(self, tool: ToolShape) -> Clearance:
-        """The clearance of a tool; a tool that was not in the spindle is looked at anew."""
+    def _with(self, tool: ToolTable) -> Clearance:
+        """The clearance of a tool; a tool that was not in the spindle is looked at again."""
         clearance = self._of(tool)
         if clearance is not self._current:
             clearance.begin()
             self._current = clearance
         return clearance
 
-    def _of(self, tool: ToolShape) -> Clearance:
+    def _of(self, tool: ToolTable) -> Clearance:
         """Tools of one shape share their clearance, at whatever speed they turn."""
         shape = self._shape(tool)
         if shape not in self._built:
@@ -85,7 +87,7 @@ class ToolClearances:
             self._built[shape] = Clearance(model.machine, model.solids)
         return self._built[shape]
 
-    def _shape(self, tool: ToolShape) -> object:
+    def _shape(self, tool: ToolTable) -> object:
         """All of a tool that a collision depends on."""
         end = tool.kind, tool.diameter, tool.corner, tool.point_angle, tool.tip, tool.shank
         return (*tool_cylinders(tool, self._first.machine.file.spindle.flange_diameter), end)

@@ -24,7 +24,7 @@ from twin.render.scene.skin import Skin
 from twin.render.scene.stock_surface import StockSurface
 from twin.render.scene.tool_body import ToolBodies
 from twin.render.scene.trail import Trail, trail_points
-from twin.render.scene.work_holding import add_work_holding
+from twin.render.scene.work_holding import add_uncut, add_work_holding
 from twin.units import MM
 
 WARNINGS = {
@@ -248,14 +248,16 @@ def _build_props(
     length = scene.summary.tools.tools[0].length
     placement = place(scene.machine, spec.compile(), length, header.part_frame)
     cutter = surface = None
-    if scene.stock is not None:
+    corner = header.part_frame.program_zero(header.part_zero)
+    if scene.stock is not None and not scene.from_one_side:
+        add_uncut(spec, scene.stock, placement, corner)
+    elif scene.stock is not None:
         cutter = Cutter(
             scene.stock, scene.summary.tools, header.part_frame, header.part_zero, keep_marks=True
         )
         step = max(1, -(-max(cutter.map.heights.shape) // quality.drawn_cells))
         surface = StockSurface(cutter.map, Skin(cutter.map, cutter.marks, step, paint), step)
         surface.add_to(spec)
-        corner = header.part_frame.program_zero(header.part_zero)
         add_work_holding(spec, scene.stock, placement, corner)
     points = trail_points(scene.recording, scene.summary)
     seen = framed(points.position if cutter is None else cutter.map.corners)

@@ -3,13 +3,14 @@
 import mujoco
 import numpy as np
 
-from twin.cutting.tools import Profile, ToolPlan, profile
+from twin.cutting.tools import Profile, profile
 from twin.job.job_file import ToolTable
 from twin.machine.description.kinematics import SPINDLE_NOSE
 from twin.machine.model.tool_shape import tool_cylinders
 from twin.nc.canonical import FloatArray, IntArray
 from twin.render.drawing.canvas import HIDDEN_GROUP
 from twin.render.scene.live_mesh import SHOWN_GROUP
+from twin.toolpath.tool_plan import ToolPlan
 from twin.units import MM
 
 PREFIX = "cutter_"

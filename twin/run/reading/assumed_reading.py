@@ -1,4 +1,4 @@
-"""How a raw program is read: what its job would tell the control, as far as the program's text shows it."""
+"""How a raw program is read: what its job would say, as far as the program's text shows it."""
 
 import dataclasses
 import re
@@ -33,22 +33,22 @@ class AssumedReading(NamedTuple):
 
     Attributes:
         keys: Of the job file, that it does not give itself.
-        told: A line each.
-        tools: What comments tell of the tools, for radius compensation; the job's own come later, by what
+        notes: A line each.
+        tools: What comments say of the tools, for radius compensation; the job's own come later, by what
             they do.
     """
 
     keys: dict[str, object]
-    told: tuple[str, ...]
+    notes: tuple[str, ...]
     tools: Mapping[int, ToolData] = MappingProxyType({})
 
     def as_read_by(self, dialect: Dialect, settings: ControlSettings) -> "AssumedReading":
-        """What of it says something of a dialect, in which numbers without a point may always count whole units."""
+        """What of it matters to a dialect, in which numbers without a point may always count whole units."""
         counting = dataclasses.replace(settings, decimal_point="increments")
         if "decimal_point" not in self.keys or dialect.rules.without_point(counting):
             return self
         keys = {key: value for key, value in self.keys.items() if key != "decimal_point"}
-        return self._replace(keys=keys, told=self.told[1:])
+        return self._replace(keys=keys, notes=self.notes[1:])
 
 
 NOTHING_ASSUMED = AssumedReading({}, ())
@@ -57,30 +57,30 @@ NOTHING_ASSUMED = AssumedReading({}, ())
 def assumed_reading(source: Source) -> AssumedReading:
     """What the text of a raw program shows of how it is to be read, in whatever dialect."""
     keys: dict[str, object] = {}
-    told: list[str] = []
+    notes: list[str] = []
     bare = _bare_number(source)
     if bare:
         keys["decimal_point"] = "calculator"
-        told.append(
+        notes.append(
             f"{bare} counts whole units: the program never writes a whole number with a point"
         )
     offsets = {f"G{found[1]}" for line in _blocks(source) for found in _OFFSET.finditer(line)}
     if len(offsets) == 1 and _USUAL_OFFSET not in offsets:
         (offset,) = offsets
         keys["offsets"] = {offset: {}}
-        told.append(f"{offset} lies at program zero: the program names no other work offset")
-    return AssumedReading(keys, tuple(told), _told_tools(source))
+        notes.append(f"{offset} lies at program zero: the program names no other work offset")
+    return AssumedReading(keys, tuple(notes), _commented_tools(source))
 
 
-def _told_tools(source: Source) -> dict[int, ToolData]:
+def _commented_tools(source: Source) -> dict[int, ToolData]:
     blocks = list(_blocks(source))
     numbers = {int(found[1]) for line in blocks for found in _TOOL.finditer(line)}
     inches = any(_INCHES.search(line) for line in blocks)
     comments = (each for line in islice(source.lines, _MOST_LINES) for each in comments_of(line))
-    told = listed_tools(comments, numbers, inches=inches)
+    listed = listed_tools(comments, numbers, inches=inches)
     return {
         number: ToolData(radius=tool.diameter / 2.0, length=USUAL_LENGTH)
-        for number, tool in told.items()
+        for number, tool in listed.items()
         if tool.diameter is not None
     }
 

@@ -66,6 +66,29 @@ def begin(control: Control) -> None:
         if number not in memory.programs or _follows(control, before, line, number):
             memory.programs[number] = line + 1
         before = line
+    _warn_of_tape_end(control)
+
+
+def _warn_of_tape_end(control: Control) -> None:
+    """Warn of blocks behind a % within a program: a control reads no further, and the twin does."""
+    lines, begun = control.program_counter.lines, False
+    for line, _ in lines.holding("%"):
+        if not lines[line].lstrip().startswith("%"):
+            continue
+        begun = begun or any(not _BLANK.fullmatch(lines[each]) for each in range(line))
+        behind = next(
+            (each for each in range(line + 1, len(lines)) if not _BLANK.fullmatch(lines[each])),
+            None,
+        )
+        if begun and behind is not None and not _HEADING.match(lines[behind]):
+            control.report.line = line + 1
+            message = (
+                "a control reads a file up to this %, and blocks of the program stand behind it"
+            )
+            control.report.warn_once(
+                "behind-tape-end", message, hint="leave it out, or begin a program by O behind it"
+            )
+            return
 
 
 def _follows(control: Control, before: int | None, line: int, number: int) -> bool:

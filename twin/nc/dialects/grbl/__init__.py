@@ -76,7 +76,18 @@ def _with_axes(meaning: str, action: Action, group: str = "not modal") -> GCode:
 POSITIONING, LINEAR = base.straight(
     lambda control, rapid: control.line_to(control.target(), rapid=rapid)
 )
-CLOCKWISE, COUNTER_CLOCKWISE = both_senses(iso_arc, ArcRule(bounds=BOUNDS), refuse_missing_center)
+
+
+def _arc(control: Control, rule: ArcRule) -> None:
+    """G2, G3: a centre beside the plane is passed over, as Grbl does (gcode.c, "Arc Center Format"); posts write K0."""
+    by_radius = "R" in control.words
+    iso_arc(control, rule)
+    if not by_radius:
+        for letter in "IJK":
+            control.take(letter)
+
+
+CLOCKWISE, COUNTER_CLOCKWISE = both_senses(_arc, ArcRule(bounds=BOUNDS), refuse_missing_center)
 
 CODES: dict[float, GCode] = {
     0: motion_code("rapid positioning", POSITIONING),

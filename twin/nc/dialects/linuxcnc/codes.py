@@ -1,5 +1,7 @@
 """G codes of LinuxCNC, milling."""
 
+import math
+
 from twin.nc.canonical import Corner
 from twin.nc.control.codes import Action, GCode
 from twin.nc.control.control import Control
@@ -59,13 +61,18 @@ change_return = _uncompensated("the return plane of cycles")
 
 
 def corner_tolerance(control: Control) -> None:
-    """G64 P Q: how far corners may be rounded; Q, for lines nearly straight, changes no path here."""
+    """G64 P Q: how far corners may be rounded; Q, for lines nearly straight, changes no path here.
+
+    P0 says what G64 alone does: LinuxCNC's planner (tp.c) looks at tolerances above 0 alone.
+    """
     change_corners(control)
     word, straight = control.take("P"), control.take("Q")
     for each in (word, straight):
         if each is not None and control.number(each) < 0.0:
             control.fail("code-words", f"{each.text} is no distance", each)
-    control.modal.corner_tolerance = float("nan") if word is None else control.length(word)
+    control.modal.corner_tolerance = (
+        control.length(word) if word is not None and control.number(word) > 0.0 else math.nan
+    )
 
 
 def _with_axes(meaning: str, action: Action, group: str = "not modal") -> GCode:
