@@ -1,7 +1,8 @@
 """Ordinary programs in great number, as posts write them: nothing in them deserves a warning."""
 
 import math
-from collections.abc import Callable, Iterator
+import re
+from collections.abc import Callable, Iterable, Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -51,14 +52,16 @@ class Post(NamedTuple):
         change: Of a tool, by its number, speed and place above the first feature.
         lift: The tool at the end of its work.
         end: Of a program.
-        drill: A cycle at places.
+        drill: A cycle at places; None: it has none, and changes no tool.
+        spelt: The lines of a feature as it writes them.
     """
 
     head: str
     change: Callable[[int, int, str], str]
     lift: str
     end: str
-    drill: Callable[[list[tuple[float, float]], float, int], Iterator[str]]
+    drill: Callable[[list[tuple[float, float]], float, int], Iterator[str]] | None
+    spelt: Callable[[Iterable[str]], Iterable[str]] = list
 
 
 def _cycle(code: str, extra: str = "") -> Callable[..., Iterator[str]]:
@@ -99,7 +102,72 @@ FAGOR = Post(
     lambda tool, speed, at: f"T{tool} D1\nM6\nS{speed} M3\nG0 {at}\nG0 Z{CLEAR:.1f}\nM8\n",
     "M9\nG0 Z25\n#MCS G0 Z0\nM5\n", "M30\n", _by_moves,
 )  # fmt: skip
-POSTS = {"fanuc": FANUC, "haas": HAAS, "linuxcnc": LINUXCNC, "fagor8070": FAGOR}
+
+
+def _mcall(places: list[tuple[float, float]], depth: float, feed: int) -> Iterator[str]:
+    yield f"F{feed}"
+    yield f"MCALL CYCLE83({CLEAR:.1f},0,{NEAR:.1f},{-depth:.3f},,,4,1,0,0,1,0)"
+    for x, y in places:
+        yield f"X{x:.3f} Y{y:.3f}"
+    yield "MCALL"
+
+
+def _cycle_200(places: list[tuple[float, float]], depth: float, feed: int) -> Iterator[str]:
+    values = (NEAR, -depth, feed, 2.0, 0.0, 0.0, CLEAR - 1.0, 0.0)
+    numbers = (200, 201, 206, 202, 210, 203, 204, 211)
+    words = (f"Q{number}={value:+.3f}" for number, value in zip(numbers, values, strict=True))
+    yield f"CYCL DEF 200 BOHREN {' '.join(words)}"
+    for x, y in places:
+        yield f"L X{x:+.3f} Y{y:+.3f} R0 FMAX M99"
+
+
+def klartext(lines: Iterable[str]) -> Iterator[str]:
+    """ISO lines as Klartext: arcs by their centre, helices by their angle."""
+    here = {"X": 0.0, "Y": 0.0}
+    for line in lines:
+        words = {letter: float(value) for letter, value in re.findall(r"([A-Z])(-?[0-9.]+)", line)}
+        code, feed = words.pop("G"), words.pop("F", None)
+        paced = " FMAX" if code == 0 else "" if feed is None else f" F{feed:.0f}"
+        if "I" in words:
+            yield f"CC X{here['X'] + words.pop('I'):+.4f} Y{here['Y'] + words.pop('J'):+.4f}"
+            sense = "DR-" if code == 2 else "DR+"
+            if "Z" in words:
+                yield f"CP IPA+360 Z{words['Z']:+.3f} {sense}{paced}"
+            else:
+                yield f"C X{words['X']:+.3f} Y{words['Y']:+.3f} {sense}{paced}"
+        else:
+            aims = " ".join(f"{letter}{value:+.3f}" for letter, value in words.items())
+            yield f"L {aims} R0{paced}"
+        here |= {letter: words[letter] for letter in "XY" if letter in words}
+
+
+SINUMERIK = Post(
+    "; PART\nG17 G90 G94 G71\nG40\n",
+    lambda tool, speed, at: f"T{tool} D1\nM6\nS{speed} M3\nG54\nG0 {at}\nG0 Z{CLEAR:.1f}\nM8\n",
+    "M9\nG0 Z25\nSUPA G0 Z0 D0\nM5\n", "M30\n", _mcall,
+)  # fmt: skip
+HEIDENHAIN = Post(
+    "BEGIN PGM PART MM\nBLK FORM 0.1 Z X-30 Y-30 Z-20\nBLK FORM 0.2 X+30 Y+30 Z+0\n",
+    lambda tool, speed, at: (
+        f"TOOL CALL {tool} Z S{speed}\nL {at.replace('X', 'X+').replace('Y', 'Y+').replace('+-', '-')} R0 FMAX M3\n"
+        f"L Z+{CLEAR:.1f} R0 FMAX M8\n"
+    ),
+    "M9\nL Z+25 R0 FMAX\nL Z+0 R0 FMAX M91\nM5\n", "M30\nEND PGM PART MM\n", _cycle_200, klartext,
+)  # fmt: skip
+GRBL = Post(
+    "; PART\nG90 G94 G17\nG21\n",
+    lambda tool, speed, at: f"T{tool}\nS{speed} M3\nG54\nG0 {at}\nG0 Z{CLEAR:.1f}\nM8\n",
+    "M9\nG0 Z25\nG53 G0 Z0\nM5\n", "M30\n", None,
+)  # fmt: skip
+POSTS = {
+    "fanuc": FANUC,
+    "haas": HAAS,
+    "linuxcnc": LINUXCNC,
+    "fagor8070": FAGOR,
+    "sinumerik": SINUMERIK,
+    "heidenhain": HEIDENHAIN,
+    "grbl": GRBL,
+}
 
 
 def _at(x: float, y: float) -> str:
@@ -223,16 +291,19 @@ def ordinary(seed: int) -> tuple[str, str, list[str]]:
     ]
     text, names = post.head, [dialect]
     for feature in made:
-        big = feature is facing and rng.random() < 0.5
+        if feature is flats and dialect == "grbl":
+            feature = contour  # it turns no table
+        big = feature is facing and post.drill is not None and rng.random() < 0.5
         tool, diameter = (3, 16.0) if big else (1, mill)
         number = 4 if big else teeth
         speed = min(10000, round(1e5 / diameter / 10) * 10)
         feed = round(speed * number * float(rng.uniform(0.02, 0.05)))
         lines = list(feature(rng, diameter, feed))
         first = next(line for line in lines if "X" in line).partition("X")[2]
-        text += post.change(tool, speed, "X" + first) + "\n".join(lines) + "\n" + post.lift
+        spelt = "\n".join(post.spelt(lines))
+        text += post.change(tool, speed, "X" + first) + spelt + "\n" + post.lift
         names.append(feature.__name__)
-    if rng.random() < 0.6:
+    if post.drill is not None and rng.random() < 0.6:
         places, depth = holes(rng), float(rng.uniform(4.0, 12.0))
         text += post.change(2, 2500, _at(*places[0]))
         text += "\n".join(post.drill(places, depth, 200)) + "\n" + post.lift

@@ -254,7 +254,7 @@ def _viewed(production: "Production", playhead: "Playhead", *, wanted: bool) -> 
 
     with open_scene(production.recording) as (scene, _):
         run = RecordedRun(scene, production.machine)
-        with open_view(run, now=lambda: playhead.time_s) as address:
+        with open_view(run, now=lambda: {"time": playhead.time_s}) as address:
             typer.echo(f"{production.program}: open {address} in a browser", err=True)
             yield
 

@@ -119,6 +119,8 @@ class Unreadable:
         slip = self._slip_at(at)
         if slip is not None:
             return slip
+        if character.isdigit():
+            return "a number stands behind the letter or name that it is for"
         return self._comments() if character in ";$\"('/" else None
 
     def _comments(self) -> str:

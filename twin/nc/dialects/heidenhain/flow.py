@@ -198,6 +198,9 @@ def call_program(control: Control, statement: Statement) -> None:
     """CALL PGM: the program of another file."""
     written = statement.text.strip()
     name = program_name(written)
+    if not name:
+        message = "CALL PGM needs the name of a program"
+        control.fail("unknown-subprogram", message, statement, "CALL PGM PART2")
     for first, _ in control.report.parts:
         if control.program_counter.lines[first - 2] == f"{FILE}{name}":
             control.call(Location(first - 1, 0), DEEPEST_CALL, statement, ())

@@ -9,6 +9,7 @@ from twin.nc.dialects.heidenhain.cycle_values import Parameters
 from twin.nc.dialects.heidenhain.cycles import (
     holes,
     patterns,
+    planes,
     pockets,
     step_cycles,
     threads,
@@ -255,7 +256,7 @@ STEPS: Mapping[int, Callable[[Control, Step], None]] = {
     10: frames.rotate,
     11: frames.scale,
     13: frames.orient_spindle,
-    19: frames.tilt_plane,
+    19: planes.define_plane,
     32: frames.set_tolerance,
     **dict.fromkeys((1, 2, 4, 5), step_cycles.take),
 }
@@ -305,10 +306,15 @@ def define(control: Control, statement: Statement) -> None:
         return
     definition = DEFINITIONS.get(number)
     if number != 247 and definition is None:
-        known = ", ".join(map(str, (*STEPS, *DEFINITIONS, 247)))
+        near = sorted({*STEPS, *DEFINITIONS, 247}, key=lambda each: abs(each - number))[:5]
+        known = ", ".join(map(str, sorted(near)))
         message = f"there is no cycle {number}"
         control.report.fail(
-            "unsupported-cycle", message, statement.text_column, match.end(), f"cycles: {known}"
+            "unsupported-cycle",
+            message,
+            statement.text_column,
+            match.end(),
+            f"cycles near it: {known}; all of them: twin dialects heidenhain",
         )
     _define_with_parameters(control, statement, number, match.end(), definition)
 
