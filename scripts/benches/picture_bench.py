@@ -12,6 +12,10 @@ from benches.row import REPEATS, Row, median_cpu_seconds
 from twin.cutting.height_map import blank
 from twin.cutting.sweeping import sweep_lines
 from twin.cutting.tools import profile
+from twin.cutting.tridexel import engagement
+from twin.cutting.tridexel.blanks import box
+from twin.cutting.tridexel.solids import cutting_edge
+from twin.cutting.tridexel.sweep import Poses
 from twin.files.shipped import resource_root
 from twin.job.job_file import StockTable, ToolTable, VideoTable
 from twin.nc.canonical import FloatArray
@@ -47,6 +51,13 @@ def rows() -> Iterator[Row]:
             peer=FREECAD,
             peer_figure=published,
         )
+    for tilt in (0.0, 20.0):
+        yield Row(
+            package="picture",
+            task=f"cut from any side: moves of {MOVE_MM} mm, 6 mm ball at {tilt:g} degrees, cell 0.2 mm",
+            figure=tri_dexel_moves_per_second(0.2, tilt),
+            unit="moves/s",
+        )
     with tempfile.TemporaryDirectory() as folder:
         run = Run(prepare(resource_root("programs") / DEMO))
         dry_run = run.dry_run()
@@ -78,6 +89,33 @@ def moves_per_second(cell: float) -> float:
         sweep_lines(part, points, edge, cores=1)
 
     return (len(points) - 1) / median_cpu_seconds(cut)
+
+
+def tri_dexel_moves_per_second(cell: float, tilt: float) -> float:
+    """Moves of a ball per second, on waves in rows a millimetre apart, its axis turning about Z.
+
+    Args:
+        cell: Between the lines of the stock [mm].
+        tilt: Of the axis off Z [deg].
+    """
+    edge = profile(TOOL.model_copy(update={"kind": "ball"}))
+    x = np.arange(-27.0, 27.0, MOVE_MM)
+    middle = np.concatenate(
+        [
+            np.stack(np.broadcast_arrays(x[:: 1 - 2 * (n % 2)], y, 1.5 + 0.5 * np.sin(x / 5.0)), 1)
+            for n, y in enumerate(np.arange(-20.0, 20.0))
+        ]
+    )
+    turn, off = np.arange(len(middle)) / 300.0, np.deg2rad(tilt)
+    upright = np.full(len(turn), np.cos(off))
+    axis = np.stack([np.sin(off) * np.cos(turn), np.sin(off) * np.sin(turn), upright], 1)
+    poses = Poses(middle - edge.radius * axis, axis)
+    whole = box(np.array([-30.0, -30.0, -10.0]), np.array([30.0, 30.0, 0.0]), cell)
+
+    def cut() -> None:
+        engagement.cut(whole.copy(), poses, cutting_edge(edge, TOOL.flute), 1)
+
+    return (len(middle) - 1) / median_cpu_seconds(cut)
 
 
 def _film(scene: Scene, video: VideoTable, out: Path) -> Iterator[Row]:
