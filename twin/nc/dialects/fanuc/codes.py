@@ -58,8 +58,8 @@ _UNKNOWN = "its effect on the path is not documented well enough to be followed"
 _LIMITS = "the limits are the machine file's"
 
 _MOTION: Mapping[float, GCode] = {
-    0: motion_code("rapid positioning", motion.RAPID),
-    1: motion_code("straight line", motion.FEED),
+    0: motion_code("rapid positioning", motion.POSITIONING),
+    1: motion_code("straight line", motion.LINEAR),
     2: motion_code("arc clockwise, by I J K or R", motion.CLOCKWISE),
     3: motion_code("arc counter-clockwise, by I J K or R", motion.COUNTER_CLOCKWISE),
     4: replacement(
