@@ -11,8 +11,8 @@ import tempfile
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from benches.long_programs import short_lines
 from benches.row import Row, median_cpu_seconds
+from long_programs import short_lines
 
 HOUR_S = 3600.0
 """Machine time of the program that is run [s]."""
@@ -37,6 +37,8 @@ def rows() -> Iterator[Row]:
         yield Row(
             "chain", "  busiest other package, of the simulation", other / stages["simulate_s"], "x"
         )
+        share = stages["compare_s"] / stages["simulate_s"]
+        yield Row("chain", "  comparison, of the simulation", share, "x")
         size = (out / "recording.h5").stat().st_size
         yield Row("chain", "  recording", size / hours / 1e6, "MB")
         small = folder / "ten.nc"

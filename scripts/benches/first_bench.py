@@ -16,20 +16,6 @@ from benches.row import Row, processor_seconds
 from twin.files.shipped import resource_root
 
 LINES = 1000
-_FIRST_MOVES = """
-import sys
-from pathlib import Path
-from twin.nc.canonical import Axes
-from twin.nc.control.settings import ControlSettings
-from twin.nc.dialects import dialect_named
-from twin.nc.interpreter import Interpretation
-from twin.nc.text.source import read_source
-axes = Axes(("X", "Y", "Z", "C"), ("linear", "linear", "linear", "rotary"))
-run = Interpretation(
-    read_source(Path(sys.argv[1])), dialect_named("gost"), ControlSettings(axes=axes)
-)
-assert len(next(iter(run.chunks())).moves) > 0
-"""
 TEN = ("codesys", "fagor8070/omitted_words.toml", "fagor8070/full_circles.toml",
        "fagor8070/three_planes.toml", "mefi")  # fmt: skip
 """Ten small programs."""
@@ -54,11 +40,8 @@ def rows() -> Iterator[Row]:
             "rehearsal of a training scene": ["train", "codesys_opening_angle", "--rehearse"],
         }
         commands = {task: ["-m", "twin", *command] for task, command in tasks.items()}
-        twice = folder / "twice.nc"
-        twice.write_text(long.read_text() * 2)
-        commands[f"first moves of {2 * LINES} lines"] = ["-c", _FIRST_MOVES, str(twice)]
         cold, kernels = {}, folder / "kernels"
-        for number, task in enumerate((*tuple(tasks)[:2], *tuple(commands)[-1:])):
+        for number, task in enumerate(tuple(tasks)[:2]):
             kernels = folder / f"kernels{number}"
             cold[task] = _seconds(commands[task], kernels)
         for task, command in commands.items():

@@ -29,7 +29,6 @@ from twin.nc.text.source import read_source
 PEERS = Path(__file__).resolve().parents[2] / ".peers"
 """Where ``scripts/bench --peers`` puts them."""
 BLOCKS = LINES
-CONTOUR = LINES // 10
 _HEAD = ("G90 G17", "G1 X0 Y0 Z0 F1000")
 _AXES = Axes(("X", "Y", "Z", "C"), ("linear", "linear", "linear", "rotary"))
 _SETTINGS = ControlSettings(
@@ -58,9 +57,6 @@ def rows() -> Iterator[Row]:
                 for peer in peers:
                     yield _row(f"{task}, heidenhain (L)", BLOCKS / seconds, BLOCKS, *peer)
             yield _cold_row(task, path, BLOCKS)
-        contour = Path(folder, "contour.nc")
-        contour.write_text("\n".join([*_HEAD, "G41 D1", *_contour(), "M2", ""]))
-        yield _cold_row(f"{CONTOUR:,} lines of a compensated contour", contour, CONTOUR)
         for each in programs():
             ours, theirs = Path(folder, "ours.nc"), Path(folder, "theirs.ngc")
             ours.write_text(each.ours)
@@ -125,14 +121,6 @@ def _arcs() -> Iterator[str]:
             z = z - 1 if z > -50 else 0
             height = f" Z{z}"
         yield f"G{2 if clockwise else 3} X{x}.000 Y{y}.000{height} I{i}.000 J{j}.000"
-
-
-def _contour() -> Iterator[str]:
-    """A zigzag whose corners the tool fits into."""
-    chance, x = random.Random(3), 0.0  # noqa: S311 (the same)
-    for _ in range(CONTOUR):
-        x += chance.uniform(5.0, 9.0)
-        yield f"G1 X{x:.3f} Y{chance.uniform(0.0, 4.0):.3f}"
 
 
 def _interpret(path: Path, dialect: str, *, compiled: bool = True) -> int:

@@ -9,22 +9,19 @@ from pathlib import Path
 import numpy as np
 from benches.row import REPEATS, Row, median_cpu_seconds
 
-from twin.cutting.cut import Cutter
 from twin.cutting.height_map import blank
 from twin.cutting.sweeping import sweep_lines
 from twin.cutting.tools import profile
 from twin.files.shipped import resource_root
 from twin.job.job_file import StockTable, ToolTable, VideoTable
-from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
-from twin.recording.reader import Samples, open_recording
+from twin.recording.reader import open_recording
 from twin.render.film import film
 from twin.render.scene.stage import Scene
 from twin.run.preparation import prepare
 from twin.run.progress import no_progress
 from twin.run.replay import scene_of
 from twin.run.run import Run
-from twin.toolpath.part_frame import PartFrame
 
 FREECAD = "FreeCAD height map, published"
 PUBLISHED = {0.1: 44e3, 0.2: 146e3}
@@ -34,15 +31,13 @@ of 6 mm. It was not run here: PyPI has no FreeCAD."""
 MOVE_MM = 0.1
 PLATE = StockTable(shape="box", size=(60.0, 60.0, 10.0))
 TOOL = ToolTable(number=1, diameter=6.0)
-FRAME = PartFrame(rotary=3, center=(0.0, 0.0))
 FRAMES = {"draft": 100, "final": 10}
 """Of a film by its quality."""
 DEMO = Path("gallery", "fagor8070", "medallion.toml")
-RING_CELLS = (0.8, 0.4, 0.2, 0.1)
 
 
 def rows() -> Iterator[Row]:
-    """Cutting at two cells, a ring against its formula, then a film of the demo's scene."""
+    """Cutting at two cells, then a film of the demo's scene."""
     for cell, published in PUBLISHED.items():
         yield Row(
             package="picture",
@@ -52,16 +47,6 @@ def rows() -> Iterator[Row]:
             peer=FREECAD,
             peer_figure=published,
         )
-        yield Row(
-            package="picture",
-            task=f"the same on straight passes, cell {cell} mm",
-            figure=straight_moves_per_second(cell),
-            unit="moves/s",
-            peer=FREECAD,
-            peer_figure=published,
-        )
-    for cell in RING_CELLS:
-        yield Row("picture", f"ring cut by C at X100, cell {cell} mm: volume off", ring(cell), "%")
     with tempfile.TemporaryDirectory() as folder:
         run = Run(prepare(resource_root("programs") / DEMO))
         dry_run = run.dry_run()
@@ -93,43 +78,6 @@ def moves_per_second(cell: float) -> float:
         sweep_lines(part, points, edge, cores=1)
 
     return (len(points) - 1) / median_cpu_seconds(cut)
-
-
-def _samples(position: FloatArray) -> Samples:
-    """Samples at 1 ms of axes that stand where they were told to."""
-    still, column, line = np.zeros_like(position), np.zeros(len(position)), np.ones(len(position))
-    number = line.astype(np.int64)
-    time: FloatArray = 1e-3 * np.arange(len(position), dtype=np.float64)
-    setpoint = Setpoints(time, number, number - 1, column, position, still, still)
-    return Samples(setpoint, position, still, still)
-
-
-def straight_moves_per_second(cell: float) -> float:
-    """Moves of straight passes, to and fro, that a cutter takes per second: it joins them."""
-    x = np.arange(-27.0, 27.0, MOVE_MM)
-    passes = [
-        np.stack(np.broadcast_arrays(x[:: 1 - 2 * (number % 2)], y, -2.0, 0.0), axis=1)
-        for number, y in enumerate(np.arange(-27.0, 27.0, TOOL.diameter / 3))
-    ]
-    samples = _samples(np.concatenate(passes))
-    feed = np.zeros(len(samples), np.bool_)
-
-    def cut() -> None:
-        Cutter(PLATE.model_copy(update={"cell": cell}), TOOL, FRAME, np.zeros(4)).add(samples, feed)
-
-    return len(samples) / median_cpu_seconds(cut)
-
-
-def ring(cell: float) -> float:
-    """How far the volume of a groove cut by turning C alone is off 2 pi R width depth [%]."""
-    depth, radius = 2.0, 100.0
-    stock = StockTable(shape="cylinder", diameter=240.0, height=20.0, cell=cell)
-    cutter = Cutter(stock, TOOL, FRAME, np.zeros(4))
-    position = np.tile([radius, 0.0, -depth, 0.0], (20_000, 1))
-    position[:, 3] = np.linspace(0.0, 360.0, len(position))
-    cutter.add(_samples(position), np.zeros(len(position), np.bool_))
-    exact = 2 * np.pi * radius * TOOL.diameter * depth
-    return 100.0 * abs(cutter.result().removed_mm3 / exact - 1.0)
 
 
 def _film(scene: Scene, video: VideoTable, out: Path) -> Iterator[Row]:

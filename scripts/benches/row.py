@@ -2,7 +2,6 @@
 
 import resource
 import statistics
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -54,14 +53,3 @@ def cpu_seconds_in_turns(*tasks: Callable[[], object], repeats: int = REPEATS) -
             task()
             kept.append(processor_seconds() - start)
     return [statistics.median(kept[1:]) for kept in times]
-
-
-def median_seconds(task: Callable[[], object], repeats: int = REPEATS) -> float:
-    """The median time that ``task`` takes, after one run that is not counted [s]."""
-    task()
-    times: list[float] = []
-    for _ in range(repeats):
-        start = time.perf_counter()
-        task()
-        times.append(time.perf_counter() - start)
-    return statistics.median(times)

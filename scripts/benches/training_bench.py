@@ -13,12 +13,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from benches.row import REPEATS, Row
-from benches.training_room import SCENE, RoomProcess, room_process
 from browsers import CHROMIUM
 from panel_player import browser, without_view
 
+from tests.training.server.measured_room import SCENE, RoomProcess, room_process
 from twin.training.scene.scene_file import read_scene, scene_path
-from twin.training.session.checkpoints import checkpoint
 from twin.training.session.session import Session
 
 if TYPE_CHECKING:
@@ -27,21 +26,6 @@ if TYPE_CHECKING:
 WATCHED_S = 5.0
 WATCHERS = 3
 CLICKS = 200
-ENDLESS = """G1 F6000 Z50
-o1 while [1]
-  X20
-  M3 S500
-  X0 Y5
-  G4 P0.1
-  G3 X0 Y5 I2 J0
-  G0 Y0
-o1 endwhile
-M2
-"""
-"""A program without an end, with stops and arcs."""
-LENGTHS_MIN = (1, 5, 20)
-"""Machine time after which the operator goes back [min]."""
-BACK_S = 10.0
 BETWEEN_S = 0.3
 """An operator presses at any time within this [s]."""
 NOTE_CLICKS = """
@@ -54,7 +38,6 @@ addEventListener("pointerdown", (e) => clicks.push(performance.timeOrigin + e.ti
 def rows() -> Iterator[Row]:
     """Machine time per time without a page; all the rest with pages."""
     yield Row("training", "headless, in slices of 10 ms", _headless(), "x real time")
-    yield from _going_back()
     if CHROMIUM is None or importlib.util.find_spec("playwright") is None:
         return
     with room_process() as room, browser() as opened:
@@ -77,28 +60,6 @@ def rows() -> Iterator[Row]:
         time.sleep(3.0)
         yield from _steady_rows(room, page)
         yield from _click_rows(room, page)
-
-
-def _going_back() -> Iterator[Row]:
-    """How long copies take for going back, and going back, in a program without an end."""
-    session = Session(read_scene(scene_path("linuxcnc_round_corners")))
-    room = session.room
-    room.setup.remove_blank()
-    room.program.load(ENDLESS)
-    session.submit({"do": "cycle_start"})
-    for minutes in LENGTHS_MIN:
-        while session.room.time_s < 60.0 * minutes:
-            session.advance(100)
-        begin = time.perf_counter()
-        kept = checkpoint(session.room, 0, ())
-        copied = time.perf_counter()
-        kept.restored()
-        restored = time.perf_counter()
-        session.rewind(BACK_S)
-        back = time.perf_counter()
-        yield Row("training", f"a copy after {minutes} min", 1e3 * (copied - begin), "ms")
-        yield Row("training", "  to restore it", 1e3 * (restored - copied), "ms")
-        yield Row("training", f"  going back by {BACK_S:g} s", 1e3 * (back - restored), "ms")
 
 
 def _steady_rows(room: RoomProcess, page: "Page") -> Iterator[Row]:

@@ -39,6 +39,7 @@ _ATTRIBUTES = {
     "table_axis": "the axis that turns the part; empty where none does",
     "table_center": "machine X and Y of its centre [mm]",
     "table_zero": "its angle at which the part stands as programmed [deg]",
+    "kinematics": "the chain of joints from tool to part, as text",
     "geometry": "errors of the machine's geometry (ISO 230), as text; empty where it has none",
     "program": "the program's name",
     "program_sha256": "checksum of its text",

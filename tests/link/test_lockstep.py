@@ -70,6 +70,14 @@ def test_a_recording_played_back_gives_the_same_bits():
     assert np.array_equal(again.drive_force, samples.drive_force)
 
 
+def test_the_present_moment_is_that_of_the_last_sample():
+    samples, _, motion = driven(shipped_machine(), commanded(50.0, 0.3))
+    time_s, source_line, position = motion.moment
+    assert time_s == pytest.approx(samples.setpoint.time[-1] + PERIOD)
+    assert source_line == PROGRAM.line[0]
+    assert position == pytest.approx(samples.joint_position[-1], abs=1e-6)
+
+
 def test_samples_begin_at_rest_and_end_settled():
     samples, _, motion = driven(shipped_machine(), commanded(50.0, 0.3))
     setpoint = samples.setpoint

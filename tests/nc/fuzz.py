@@ -102,7 +102,7 @@ JUNK = [
 
 
 def _texts(dialect: Dialect) -> list[bytes]:
-    paths = [*(ROOT / "programs" / dialect.name).glob("*.[nh]*")]
+    paths = [*(ROOT / "programs" / dialect.name).glob("*.[nhm]*")]
     paths += (ROOT / "tests" / "golden" / dialect.name).glob("*/*.nc")
     return [path.read_bytes() for path in sorted(paths)]
 

@@ -11,27 +11,29 @@ from typing import Any
 
 import pytest
 
-from tests.nc.running import ROOT, WITH_TABLES, all_records, shipped
+from tests.five_axes import on_machine, settings, trunnion
+from tests.nc.running import ROOT, SHIPPED, WITH_TABLES, all_records, shipped
 from twin.nc.dialects import DIALECTS, dialect_named, recognise
 from twin.nc.interpreter import Interpretation
 from twin.nc.text.source import read_source
 
 GOLDEN = ROOT / "tests" / "golden"
-PROGRAMS = sorted(
-    path for suffix in ("nc", "h") for path in (ROOT / "programs").glob(f"*/*.{suffix}")
-)
 RULES = sorted(GOLDEN.glob("*/*/*.nc"))
+NEEDS_FIVE_AXES = ("G43.4", "G53.1", "G68.2", "G234", "G254", "G255", "TRAORI")
+"""Programs that lead the tip, or tilt the plane."""
+ON_FIVE_AXES = settings(on_machine(trunnion()))
 
 
 def interpretation_of(path: Path) -> Interpretation:
-    if path in PROGRAMS:
+    if path in SHIPPED:
         return shipped(path)
     dialect = dialect_named(path.parent.parent.name)
-    return Interpretation(read_source(path, dialect), dialect, WITH_TABLES)
+    settings = ON_FIVE_AXES if path.stem in NEEDS_FIVE_AXES else WITH_TABLES
+    return Interpretation(read_source(path, dialect), dialect, settings)
 
 
 def golden_of(path: Path) -> Path:
-    if path in PROGRAMS:
+    if path in SHIPPED:
         return GOLDEN / path.parent.name / "programs" / f"{path.stem}.jsonl"
     return path.with_suffix(".jsonl")
 
@@ -61,7 +63,7 @@ def assert_same(made: Any, wanted: Any, where: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "path", [*PROGRAMS, *RULES], ids=lambda path: f"{path.parts[-2]}/{path.stem}"
+    "path", [*SHIPPED, *RULES], ids=lambda path: f"{path.parts[-2]}/{path.stem}"
 )
 def test_moves_are_those_of_the_golden_file(path: Path) -> None:
     made = golden_records(path)
@@ -69,15 +71,15 @@ def test_moves_are_those_of_the_golden_file(path: Path) -> None:
     assert_same(made, [json.loads(line) for line in lines], path.name)
 
 
-@pytest.mark.parametrize("path", PROGRAMS, ids=lambda path: f"{path.parts[-2]}/{path.stem}")
+@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: f"{path.parts[-2]}/{path.stem}")
 def test_shipped_programs_are_recognised(path: Path) -> None:
     assert recognise(read_source(path)).name == path.parent.name
 
 
 def test_every_golden_file_has_its_program() -> None:
-    known = {golden_of(path) for path in [*PROGRAMS, *RULES]}
+    known = {golden_of(path) for path in [*SHIPPED, *RULES]}
     assert known == set(GOLDEN.glob("*/*/*.jsonl"))
-    assert {path.parent.name for path in PROGRAMS} == set(DIALECTS)
+    assert {path.parent.name for path in SHIPPED} == set(DIALECTS)
 
 
 @pytest.mark.parametrize("name", DIALECTS)
@@ -106,7 +108,7 @@ def test_only_decisions_are_shown_by_refusals(path: Path) -> None:
 
 
 def write_all() -> None:
-    for path in [*PROGRAMS, *RULES]:
+    for path in [*SHIPPED, *RULES]:
         golden = golden_of(path)
         golden.parent.mkdir(parents=True, exist_ok=True)
         lines = (json.dumps(each, ensure_ascii=False) for each in golden_records(path))

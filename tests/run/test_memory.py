@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from benches.long_programs import short_lines
+from long_programs import short_lines
 
 HOURS = (0.1, 1.0, 10.0)
 MILLION_BLOCKS = (0.1, 1.0, 5.0)

@@ -58,6 +58,7 @@ def report(recorded) -> Path:
     return found
 
 
+@pytest.mark.seconds("a program is run to be viewed")
 def test_the_report_of_another_program_is_not_shown(recorded, report, tmp_path):
     _, scene = recorded
     assert report_of(scene, tmp_path / "recording.h5") is None
@@ -222,7 +223,7 @@ def test_the_report_leads_to_its_places_in_the_viewer(recorded, report):
 def test_a_machine_that_makes_the_run_again_is_followed_until_somebody_scrubs(recorded):
     run, _ = recorded
     place = [0.2005]
-    with open_view(run, now=lambda: place[0]) as address, browser() as opened:
+    with open_view(run, now=lambda: {"time": place[0]}) as address, browser() as opened:
         page = opened.new_page(viewport={"width": 1100, "height": 800})
         page.goto(address)
         page.wait_for_selector("body[data-ready=yes]")

@@ -30,12 +30,15 @@ def linuxcnc(
         typer.Option("--ferror", min=1e-6, help="LinuxCNC's FERROR; default: the machine's."),
     ] = None,
     dialect: DialectOption = None,
+    view: Annotated[
+        bool, typer.Option("--view", help="Show the machine on a page meanwhile.")
+    ] = False,
 ) -> None:
     """LinuxCNC drives the twin in lock-step: its planner, the twin's drives and axes."""
     from twin.commands.link import link_linuxcnc
 
     code = link_linuxcnc(
         out, headless, machine=machine, dialect=dialect, period_us=period_us, display=display,
-        following_error_limit=ferror,
+        following_error_limit=ferror, view=view,
     )  # fmt: skip
     raise typer.Exit(code)

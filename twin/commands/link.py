@@ -2,13 +2,17 @@
 
 import os
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import typer
 
 from twin.commands.run import print_findings, summary
 from twin.compilation.announcement import announce_compilation
 from twin.errors import ExitCode, UsageError
+from twin.extras import require_extra
 from twin.files.atomic import write_text
 from twin.files.toml import Change
 from twin.job.load import Job, load_job
@@ -21,6 +25,9 @@ from twin.run.progress import shown_progress
 from twin.run.results import RESULT_FILES, write_results
 from twin.run.run import Run
 from twin.run.run_folder import run_folder
+
+if TYPE_CHECKING:
+    from twin.link.lockstep import LockstepMotion
 
 SECONDS_PER_US = 1e-6
 LINUXCNC_SUFFIX = ".ngc"
@@ -44,6 +51,7 @@ def link_linuxcnc(
     period_us: int,
     display: str,
     following_error_limit: float | None,
+    view: bool = False,
 ) -> ExitCode:
     """Let LinuxCNC work the twin, and judge what it did as any run.
 
@@ -55,10 +63,13 @@ def link_linuxcnc(
         period_us: Servo period of both [µs].
         display: Command of LinuxCNC's screen.
         following_error_limit: LinuxCNC's own limit [mm or deg]; None: the machine's.
+        view: Whether a page shows the machine meanwhile.
 
     Raises:
         TwinError: Something is wrong before the run could end; see each error's exit code.
     """
+    if view:
+        require_extra("train", "twin link --view")
     from twin.link.session import Wish, run_on_twin
 
     announce_compilation()
@@ -82,7 +93,13 @@ def link_linuxcnc(
         )
         with shown_progress() as progress:
             outcome, figures = run_on_twin(
-                run, dry_run, out, progress, wish, lambda text: typer.echo(text, err=True)
+                run,
+                dry_run,
+                out,
+                progress,
+                wish,
+                _say,
+                (lambda motion: _shown(run, motion)) if view else (lambda _motion: nullcontext()),
             )
         own_language = {} if own is None else {"dialect": OWN_LANGUAGE}
         write_results(run, outcome, out, {"link": figures, **own_language})
@@ -91,6 +108,26 @@ def link_linuxcnc(
     print_findings(run, outcome)
     typer.echo(summary(run, outcome, out))
     return outcome.verdict.exit_code
+
+
+def _say(text: str) -> None:
+    typer.echo(text, err=True)
+
+
+@contextmanager
+def _shown(run: Run, motion: "LockstepMotion") -> Iterator[None]:
+    """Show a machine that a control drives on the page of ``twin view``.
+
+    Raises:
+        UsageError: The view's library is missing.
+    """
+    from twin.view.app import open_view
+    from twin.view.live_run import LiveRun, Moment
+
+    live = LiveRun(run.preparation, run.part_frame, run.part_zero, lambda: Moment(*motion.moment))
+    with open_view(live, now=live.now) as address:
+        _say(f"open {address} in a browser")
+        yield
 
 
 def _explain_blending(program: Path) -> None:

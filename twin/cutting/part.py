@@ -1,16 +1,20 @@
-"""The machined part as a closed mesh."""
+"""The machined part as a closed mesh, and as a picture from above."""
 
+import io
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
+from PIL import Image
 
 from twin.cutting.colours import RAW_RGB, Colours, surface_colours
 from twin.cutting.height_map import HeightMap
 from twin.cutting.net import all_corners, net, open_edges, surface_faces
 from twin.cutting.outline import BoolArray
 from twin.files.atomic import complete_or_absent
+from twin.files.stl import stl_text
+from twin.nc.canonical import FloatArray, IntArray
 from twin.units import MM
 
 if TYPE_CHECKING:
@@ -33,8 +37,16 @@ def part_mesh(height_map: HeightMap, colours: Colours | None = None) -> "trimesh
         height_map: The cut stock.
         colours: One for each cell, shape (ny, nx, 3); the underside is raw. None: no colours.
     """
-    import trimesh  # As long to load as the rest of a run, and most runs cut no part.
+    import trimesh
 
+    vertices, faces, painted = _net(height_map, colours)
+    return trimesh.Trimesh(vertices, faces, vertex_colors=painted, process=False)
+
+
+def _net(
+    height_map: HeightMap, colours: Colours | None
+) -> tuple[FloatArray, IntArray, Colours | None]:
+    """Corners, shape (n, 3) [mm], faces, shape (m, 3), and colours of the corners."""
     step = 1
     while height_map.heights[::step, ::step].size > MESH_CELLS:
         step += 1
@@ -70,8 +82,7 @@ def part_mesh(height_map: HeightMap, colours: Colours | None = None) -> "trimesh
         skin = np.where(surface.cell.ravel() < 0, 0, surface.cell.ravel())
         raw = np.tile(np.array(RAW_RGB, np.uint8), (below + 1, 1))
         painted = np.concatenate([colours.reshape(-1, 3)[skin], raw])[used]
-    faces = renumbered.reshape(faces.shape)
-    return trimesh.Trimesh(vertices, faces, vertex_colors=painted, process=False)
+    return vertices, renumbered.reshape(faces.shape), painted
 
 
 def _separate_pinches(patches: BoolArray) -> None:
@@ -116,7 +127,41 @@ def write_stl(height_map: HeightMap, path: Path, zero: ArrayLike = (0.0, 0.0, 0.
     Raises:
         OSError: The file cannot be written.
     """
-    mesh = part_mesh(height_map)
-    mesh.apply_translation(-np.asarray(zero))
+    vertices, faces, _ = _net(height_map, None)
+    text = stl_text((vertices - np.asarray(zero))[faces])
     with complete_or_absent(path) as temporary:
-        mesh.export(temporary, file_type="stl")
+        temporary.write_bytes(text)
+
+
+_LONGEST = 640
+"""Pixels of the picture's longer side."""
+_LIGHT = np.array([-0.45, 0.45, 0.77])
+"""Towards the light, of length 1: from the upper left, as drawings are lit."""
+_AMBIENT = 0.35
+_DEEP = 0.25
+"""How much darker the lowest place is than the highest, as a share."""
+
+
+def part_picture(height_map: HeightMap) -> bytes:
+    """A PNG of the part from above, +X to the right and +Y up; where there is no material it is clear."""
+    step = max(1, -(-max(height_map.heights.shape) // _LONGEST))
+    heights = height_map.heights[::step, ::step]
+    slope_y, slope_x = (
+        np.gradient(heights, height_map.cell * step)
+        if min(heights.shape) > 1
+        else (np.zeros_like(heights),) * 2
+    )
+    normal = np.stack([-slope_x, -slope_y, np.ones_like(heights)], axis=-1)
+    normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
+    light = _AMBIENT + (1.0 - _AMBIENT) * np.clip(normal @ _LIGHT, 0.0, 1.0) / _LIGHT[2]
+    depth = (height_map.top - heights) / max(height_map.top - height_map.bottom, 1e-9)
+    shade = np.clip(light * (1.0 - _DEEP * np.clip(depth, 0.0, 1.0)), 0.0, 1.15)
+    colours = surface_colours(height_map)[::step, ::step] * shade[..., None]
+    solid = height_map.solid()[::step, ::step]
+    pixels = np.dstack([np.clip(colours, 0.0, 255.0), np.where(solid, 255.0, 0.0)])
+    image = Image.fromarray(pixels[::-1].astype(np.uint8), "RGBA")
+    larger = max(1, _LONGEST // max(image.size))
+    image = image.resize((image.width * larger, image.height * larger), Image.Resampling.NEAREST)
+    file = io.BytesIO()
+    image.save(file, "PNG")
+    return file.getvalue()

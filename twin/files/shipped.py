@@ -40,7 +40,7 @@ def shipped_program(name: str) -> Path | None:
     jobs = {
         path.relative_to(resource_root("programs")).with_suffix("").as_posix(): path
         for path in sorted(resource_root("programs").rglob("*.toml"))
-        if any(path.with_suffix(suffix).is_file() for suffix in (".nc", ".h"))
+        if any(path.with_suffix(suffix).is_file() for suffix in (".nc", ".h", ".mpf"))
     }
     found = [each for each in jobs if each == name or each.endswith(f"/{name}")]
     if len(found) > 1:

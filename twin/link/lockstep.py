@@ -124,6 +124,11 @@ class LockstepMotion(Motion):
         self._socket.close()
 
     @property
+    def moment(self) -> tuple[float, int, FloatArray]:
+        """Time [s], source line and machine coordinates (k,) of the machine now; read from any thread."""
+        return self._log.ticks * self._period, self._source_line, self._live.position
+
+    @property
     def near_miss(self) -> NearMiss | None:
         """The closest that the tool's side and the part's came without touching."""
         collided = self.alarm is not None and self.alarm.code == "collision"

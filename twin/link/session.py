@@ -3,6 +3,7 @@
 import os
 import re
 from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import NamedTuple
 
@@ -59,6 +60,9 @@ def run_on_twin(
     progress: Progress,
     wish: Wish,
     say: Callable[[str], None],
+    beside: Callable[[LockstepMotion], AbstractContextManager[None]] = lambda _motion: (
+        nullcontext()
+    ),
 ) -> tuple[Outcome, dict[str, float]]:
     """Let LinuxCNC work the twin; there can be one of both on a computer.
 
@@ -69,6 +73,7 @@ def run_on_twin(
         progress: Told how far the run is.
         wish: How.
         say: Told what LinuxCNC says.
+        beside: Open while the control drives the machine, such as a page that shows it.
 
     Returns:
         What the run came to, and how the two got on: ``answered`` and ``missed`` servo periods, and
@@ -99,7 +104,10 @@ def run_on_twin(
                 job=preparation.job.file,
             )
             ini = write_configuration(own, preparation.machine, settings)
-            with running(start, ini, folder / LOG_NAME) as linuxcnc:
+            with (
+                beside(motion),
+                running(start, ini, folder / LOG_NAME) as linuxcnc,
+            ):
                 motion.goes_on = linuxcnc.goes_on
                 if not session:
                     motion.last_word = _last_word(linuxcnc, axes.names)

@@ -5,6 +5,7 @@ import contextlib
 import functools
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import anyio
 import anyio.to_thread
@@ -15,6 +16,7 @@ from starlette.routing import Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
+from twin.view.live_run import LiveRun
 from twin.view.recorded_run import RecordedRun
 from twin.web.authentication import Authentication, new_tokens
 from twin.web.origin_check import ASSETS, OriginCheck
@@ -32,14 +34,17 @@ REPORT_POLICY = (
 
 
 def view_app(
-    run: RecordedRun, report: Path | None = None, now: Callable[[], float] | None = None
+    run: RecordedRun | LiveRun,
+    report: Path | None = None,
+    now: Callable[[], dict[str, Any]] | None = None,
 ) -> Starlette:
     """What the page of a run is served; everything is made once, when it is asked for.
 
     Args:
         run: The run.
         report: Its report, to be read beside it; None: there is none.
-        now: Where in the run a machine is that makes it again [s]; None: none does.
+        now: Where a machine is that makes the run: ``time`` [s], and where the run goes on what ``LiveRun.now``
+            says; None: none does.
     """
     samples = functools.cache(run.samples)
     cuts = functools.cache(lambda: b"".join(run.cuts()))
@@ -76,7 +81,7 @@ def view_app(
         await page.accept()
         with contextlib.suppress(WebSocketDisconnect):
             while True:
-                await page.send_text(f"{now():.4f}")
+                await page.send_json(now())
                 await asyncio.sleep(FOLLOWED_EVERY_S)
 
     async def machine(request: Request) -> Response:
@@ -109,12 +114,12 @@ def view_app(
 
 @contextlib.contextmanager
 def open_view(
-    run: RecordedRun,
+    run: RecordedRun | LiveRun,
     port: int = 0,
     *,
     framed: bool = False,
     report: Path | None = None,
-    now: Callable[[], float] | None = None,
+    now: Callable[[], dict[str, Any]] | None = None,
 ) -> Iterator[str]:
     """Serve a run on this computer while it is open; gives the page's address.
 

@@ -57,7 +57,7 @@ class OriginCheck:
                 "frame-ancestors 'none'", IN_LOCAL_PAGES
             )
         self._app = app
-        self._doorkeeper = authentication
+        self._authentication = authentication
         self._local = local
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -75,8 +75,12 @@ class OriginCheck:
                 answer = await self._entry(path.removeprefix(f"{ENTRY}/"), scope, receive)
                 return await answer(scope, receive, send)
         role = path.split("/")[1] if path.startswith("/") else ""
-        if not self._doorkeeper.knows(role, headers.get("cookie", "")):
-            if scope["type"] == "http" and path == f"/{role}/" and role in self._doorkeeper.tokens:
+        if not self._authentication.knows(role, headers.get("cookie", "")):
+            if (
+                scope["type"] == "http"
+                and path == f"/{role}/"
+                and role in self._authentication.tokens
+            ):
                 return await FileResponse(ASSETS / "enter.html")(scope, receive, send)
             return await self._refuse(scope, receive, send, 401)
         scope["twin_role"] = role
@@ -113,9 +117,9 @@ class OriginCheck:
             body += message.get("body", b"")
             more = message.get("more_body", False) and message["type"] == "http.request"
         token = body[:_TOKEN_LIMIT].decode("ascii", "replace")
-        cookie = self._doorkeeper.admit(what, token)
+        cookie = self._authentication.admit(what, token)
         if cookie is None:
-            return PlainTextResponse("", 429 if self._doorkeeper.rate_limited else 401)
+            return PlainTextResponse("", 429 if self._authentication.rate_limited else 401)
         return Response(status_code=204, headers={"Set-Cookie": cookie})
 
     async def _refuse(self, scope: Scope, receive: Receive, send: Send, status: int) -> None:

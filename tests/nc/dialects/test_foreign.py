@@ -5,14 +5,14 @@ from pathlib import Path
 
 import pytest
 
-from tests.nc.running import ROOT
+from tests.nc.running import ROOT, SHIPPED
 from twin.errors import UsageError
 from twin.nc.dialects.foreign import foreign_kind, require_program
 from twin.nc.dialects.recognition import reading_of
 from twin.nc.text.source import source_from_bytes
 
 PROGRAMS = [
-    *(ROOT / "programs").rglob("*.nc"),
+    *SHIPPED,
     *(ROOT / "tests" / "golden").rglob("*.nc"),
     *(ROOT / "tests" / "bad").rglob("*.nc"),
     *(ROOT / "twin" / "training" / "scenes").glob("*.nc"),

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.nc.running import MILL, SETTINGS, WITH_TABLES
-from tests.nc.test_golden import PROGRAMS, RULES, interpretation_of
+from tests.nc.running import MILL, SETTINGS, SHIPPED, WITH_TABLES
+from tests.nc.test_golden import RULES, interpretation_of
 from twin.nc.canonical import NO_BLOCK_NUMBER, concatenate
 from twin.nc.control.executor import Executor
 from twin.nc.control.settings import ControlSettings
@@ -183,7 +183,7 @@ def test_the_compiled_kernel_computes_the_same_bits_of_klartext() -> None:
 @pytest.mark.seconds("interprets every golden program twice")
 @pytest.mark.parametrize("dialect", DIALECTS)
 def test_golden_programs_mean_the_same_in_the_kernel(dialect: str) -> None:
-    paths = [path for path in (*PROGRAMS, *RULES) if dialect in path.parts[-3:-1]]
+    paths = [path for path in (*SHIPPED, *RULES) if dialect in path.parts[-3:-1]]
     assert len(paths) > 10
     for path in paths:
         run = interpretation_of(path)

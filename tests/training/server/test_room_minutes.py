@@ -9,8 +9,9 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import pytest
-from benches.training_room import RoomProcess, room_process
 from panel_player import browser
+
+from tests.training.server.measured_room import RoomProcess, room_process
 
 MINUTES = 20.0
 LOOK_S = 10.0

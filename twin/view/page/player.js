@@ -58,20 +58,21 @@ function sample(time) {
 function show(index) {
   now = index;
   if (tools[index] !== tool) view.say("load", tool = tools[index]);
-  const machine = joints.map((values) => values[index]);
-  view.say("moment", {
-    time: times[index], machine, tip: tips.map((values) => values[index]), turns: playing, coolant: false, cutting: false,
-  });
-  [...at("axes").rows].forEach((row, axis) => {
-    row.cells[1].textContent = (machine[axis] - run.part_zero[axis]).toFixed(3);
-    row.cells[2].textContent = machine[axis].toFixed(3);
-  });
+  show_machine({ time: times[index], line: lines[index], machine: joints.map((values) => values[index]), tip: tips.map((values) => values[index]) });
   at("figures").textContent = `T ${tool} · ${values(index)}`;
   at("clock").textContent = `${times[index].toFixed(3)} of ${times[last].toFixed(1)} s`;
   at("time").value = times[index];
   at("time").setAttribute("aria-valuetext", `${times[index].toFixed(3)} s, line ${lines[index]}`);
   chart.point(index);
-  const line = lines[index];
+}
+
+/** Show where the machine is, and its block. */
+function show_machine({ time, line, machine, tip }) {
+  view.say("moment", { time, machine, tip, turns: playing, coolant: false, cutting: false });
+  [...at("axes").rows].forEach((row, axis) => {
+    row.cells[1].textContent = (machine[axis] - run.part_zero[axis]).toFixed(3);
+    row.cells[2].textContent = machine[axis].toFixed(3);
+  });
   if (line !== shown_line) {
     at("program").querySelector(".runs")?.classList.remove("runs");
     const row = at("program").children[line - 1];
@@ -231,12 +232,19 @@ view.say("show", { trail: true });
 show(asked() ?? last);
 addEventListener("hashchange", () => { if (asked() !== undefined) jump(asked()); });
 at("report").hidden = !run.has_report;
+document.body.classList.toggle("goes_on", Boolean(run.goes_on));
 if (run.is_live) {
   at("live").hidden = false;
   at("live").addEventListener("click", () => { play(false); follow(true); });
   follow(asked() === undefined);
   const socket = new WebSocket(new URL("now", location.href).href.replace(/^http/, "ws"));
-  socket.addEventListener("message", ({ data }) => { if (following) show(sample(Number(data))); });
+  socket.addEventListener("message", ({ data }) => {
+    const moment = JSON.parse(data);
+    if (run.goes_on) {
+      show_machine(moment);
+      at("clock").textContent = `${moment.time.toFixed(3)} s`;
+    } else if (following) show(sample(moment.time));
+  });
   socket.addEventListener("close", () => { at("live").disabled = true; banner("The machine has been switched off."); });
 }
 draw_path();
