@@ -10,6 +10,7 @@ from twin.cutting.events import CutEvent
 from twin.cutting.inspection import Inspection, inspect
 from twin.cutting.nominal import NominalGouge, NominalWatch
 from twin.cutting.program_summary import ProgramSummary
+from twin.errors import ConfigError
 from twin.job.job_file import JobFile, ToolTable
 from twin.machine.model.head_shape import HeadShape
 from twin.machine.model.model import MachineModel
@@ -50,6 +51,10 @@ class Machining(Observer):
             part_frame: How the part turns under the tool.
             part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
             stops: Where the program stops spindle or tool, in order.
+
+        Raises:
+            ConfigError: The stock or the nominal part is wrong, or the part is cut from several sides and has
+                a nominal one.
         """
         self.stopped: list[Stop] = []
         self.ended_in_cut = False
@@ -71,7 +76,12 @@ class Machining(Observer):
                 head=head,
                 tilts=summary.tilts,
             )
-            if job.nominal is not None and not summary.tilts:
+            if job.nominal is not None and summary.tilts:
+                raise ConfigError(
+                    "job key 'nominal': the tool comes to the part from several sides, and a nominal part "
+                    "is compared with one that is cut from one side: leave it out"
+                )
+            if job.nominal is not None:
                 self._nominal = NominalWatch(job.nominal, self._cutter, part_frame, part_zero)
 
     @property

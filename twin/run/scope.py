@@ -114,7 +114,7 @@ def scope_of(
     watched = [DRIVES, COLLISIONS]
     watched += [STOCK] if file.stock is not None else []
     watched += [FORCES] if forces else []
-    watched += [WALLS] if file.nominal is not None and not dry_run.summary.tilts else []
+    watched += [WALLS] if file.nominal is not None else []
     watched += sorted({check.what for check in checks})
     blind = (
         *_blind(file, forces=forces, tilts=dry_run.summary.tilts),
@@ -158,8 +158,6 @@ def _blind(job: JobFile, *, forces: bool, tilts: bool) -> Iterator[Unwatched]:
         return
     if tilts:
         yield Unwatched(HEAD, _TILTS)
-        if job.nominal is not None:
-            yield Unwatched(WALLS, _TILTS)
     if not forces:
         yield Unwatched(FORCES, _why_no_forces(job))
     if job.nominal is None:
