@@ -125,6 +125,7 @@ def _retract(control: Control) -> None:
 
 _TCPM = "the tool's tip is led while rotary axes move, which the twin's machines do not follow yet"
 _REFUSED: Mapping[int, tuple[str, str]] = {
+    **dict.fromkeys((90, 112), ("smoothed corners of old controls", "write CYCL DEF 32")),
     97: ("small steps of the contour", "a contour smaller than the tool is refused here"),
     98: ("open corners of the contour", "the path there is not known"),
     102: ("tool change at the end of its life", "the twin's tools do not wear"),
@@ -137,7 +138,9 @@ _REFUSED: Mapping[int, tuple[str, str]] = {
     124: ("points of the contour that are left out", "the path would not be the programmed one"),
     128: ("the tool's tip is led (TCPM)", _TCPM),
     130: ("points in the level system", "the working plane is never tilted"),
+    134: ("exact stop of rotary axes", "corners are those of CYCL DEF 32"),
     138: ("rotary axes of the tilted plane", "the working plane is never tilted"),
+    143: ("the end of a basic rotation", "the twin keeps none"),
     144: ("kinematics in the path", _TCPM),
     197: ("corners of the parallel path", "corners are rolled around"),
 }
