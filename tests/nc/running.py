@@ -6,12 +6,13 @@ from typing import Any
 
 from twin.job.load import load_job
 from twin.nc.canonical import Axes, Chunk, Event, Moves, concatenate
-from twin.nc.control.settings import ControlSettings, MachineFunction, ToolData
+from twin.nc.control.settings import ControlSettings, ToolData
 from twin.nc.dialects import dialect_named
 from twin.nc.interpreter import Interpretation
 from twin.nc.jsonl import records
 from twin.nc.text.diagnostics import Diagnostic, ProgramError
-from twin.nc.text.source import read_source, source_from_text
+from twin.nc.text.source import source_from_text
+from twin.run.preparation import prepare_job
 
 ROOT = Path(__file__).resolve().parents[2]
 SHIPPED = sorted(
@@ -87,27 +88,7 @@ def bad(text: str, dialect: str, **changes: Any) -> Diagnostic:
 
 def shipped(path: Path) -> Interpretation:
     """A program with the settings of the job beside it."""
-    job = load_job(path)
-    assert job.file.dialect is not None
-    dialect = dialect_named(job.file.dialect)
-    zero = job.file.part_zero
-    settings = dataclasses.replace(
-        SETTINGS,
-        start=job.file.start,
-        default_feed=job.file.default_feed or 1000.0,
-        tools={
-            each.number: ToolData(each.diameter / 2.0, each.length, each.name)
-            for each in job.file.tools
-        },
-        any_tool="tools" not in job.file.model_fields_set,
-        offsets=job.file.offsets,
-        m_functions={
-            int(code[1:]): MachineFunction(each.meaning, each.dwell)
-            for code, each in job.file.m_functions.items()
-        },
-        machine_zero={name: -value for name, value in zero.items()} if "Z" in zero else None,
-    )
-    return Interpretation(read_source(path, dialect), dialect, settings)
+    return prepare_job(load_job(path)).interpretation()
 
 
 def all_records(interpretation: Interpretation) -> list[dict[str, Any]]:

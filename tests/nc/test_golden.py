@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 
+from tests.five_axes import on_machine, settings, trunnion
 from tests.nc.running import ROOT, SHIPPED, WITH_TABLES, all_records, shipped
 from twin.nc.dialects import DIALECTS, dialect_named, recognise
 from twin.nc.interpreter import Interpretation
@@ -18,13 +19,17 @@ from twin.nc.text.source import read_source
 
 GOLDEN = ROOT / "tests" / "golden"
 RULES = sorted(GOLDEN.glob("*/*/*.nc"))
+NEEDS_FIVE_AXES = ("G43.4", "G53.1", "G68.2", "G234", "G254", "G255", "TRAORI")
+"""Programs that lead the tip, or tilt the plane."""
+ON_FIVE_AXES = settings(on_machine(trunnion()))
 
 
 def interpretation_of(path: Path) -> Interpretation:
     if path in SHIPPED:
         return shipped(path)
     dialect = dialect_named(path.parent.parent.name)
-    return Interpretation(read_source(path, dialect), dialect, WITH_TABLES)
+    settings = ON_FIVE_AXES if path.stem in NEEDS_FIVE_AXES else WITH_TABLES
+    return Interpretation(read_source(path, dialect), dialect, settings)
 
 
 def golden_of(path: Path) -> Path:

@@ -3,17 +3,18 @@
 import json
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from twin.compilation.announcement import announce_compilation
 from twin.errors import ExitCode, UsageError
 from twin.files.shipped import machine_file
-from twin.machine.check import check_machine
-from twin.machine.circle.circle_plot import write_circle_plot
-from twin.machine.circle.circular_test import CircularTest, circular_test
 from twin.machine.describe import MachineFacts, describe, shipped_machines
 from twin.machine.description.config import Machine
 from twin.machine.description.kinematics import in_words
 from twin.machine.load import read_machine
+
+if TYPE_CHECKING:
+    from twin.machine.circle.circular_test import CircularTest
 
 FORMATS = ("text", "json")
 PLOTS = (".svg", ".png", ".pdf")
@@ -63,6 +64,8 @@ def print_check(name: str) -> ExitCode:
         ``FAILED`` where a point is not kept.
     """
     machine = _machine(name)
+    from twin.machine.check import check_machine
+
     findings = check_machine(machine)
     for finding in findings:
         sys.stdout.write(f"{'ok   ' if not finding.faults else 'FAULT'}  {finding.point}\n")
@@ -93,6 +96,9 @@ def print_circle(
     _require_format(form)
     if plot.suffix not in PLOTS:
         raise UsageError(f"no plot of kind '{plot.suffix}': known are {', '.join(PLOTS)}")
+    from twin.machine.circle.circle_plot import write_circle_plot
+    from twin.machine.circle.circular_test import circular_test
+
     announce_compilation()
     result = circular_test(_machine(name), radius, feed, plane.upper())
     write_circle_plot(result, plot)
@@ -138,7 +144,7 @@ def _fact_lines(facts: MachineFacts) -> list[str]:
     return lines
 
 
-def _circle_lines(result: CircularTest) -> list[str]:
+def _circle_lines(result: "CircularTest") -> list[str]:
     largest, smallest = result.radial_deviation_um
     peaks = zip(result.quadrant_names, result.quadrant_peaks_um, strict=True)
     return [

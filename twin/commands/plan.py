@@ -14,7 +14,6 @@ from twin.commands.console import table_console
 from twin.compilation.announcement import announce_compilation
 from twin.errors import UsageError
 from twin.machine.description.motion_limits import motion_limits
-from twin.motion.report.drawing import draw_plan
 from twin.motion.report.summary import Summary, summarize
 from twin.run.dry_run import interpreted
 from twin.run.preparation import prepare
@@ -60,6 +59,8 @@ def plan_and_print(
     )
     folder = out or Path("out") / preparation.job.program.stem
     folder.mkdir(parents=True, exist_ok=True)
+    from twin.motion.report.drawing import draw_plan
+
     picture = folder / "plan.png"
     samples = math.ceil(summary.total / twin_machine.file.servo_period_s)
     draw_plan(setpoints(Run(preparation), program), twin_machine.axes, samples, picture)

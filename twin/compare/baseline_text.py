@@ -122,6 +122,8 @@ _KINDS = {
     (Motion.FEED, Shape.LINE): "feed",
     (Motion.RAPID, Shape.ARC): "rapid arc",
     (Motion.FEED, Shape.ARC): "arc",
+    (Motion.RAPID, Shape.CURVE): "rapid curve",
+    (Motion.FEED, Shape.CURVE): "curve",
 }
 _MOVES = frozenset(_KINDS.values())
 _CORNERS = {
@@ -312,7 +314,8 @@ def read_entries(lines: Iterator[str], names: tuple[str, ...]) -> Iterator[Entry
         parts = line.split()
         if not parts:
             continue
-        kind = "rapid arc" if parts[:2] == ["rapid", "arc"] else parts[0]
+        both = " ".join(parts[:2])
+        kind = both if both in _MOVES else parts[0]
         if kind in _MODAL:
             modal[kind] = " ".join(parts[1:])
         elif kind == "dwell":

@@ -118,7 +118,7 @@ def cutting_process(
     part_frame: PartFrame,
     part_zero: FloatArray,
 ) -> CuttingProcess | None:
-    """What tools do to a stock; None where its material is not named.
+    """What tools do to a stock; None where its material is not named, or the machine turns it about more than Z.
 
     Args:
         stock: The blank.
@@ -132,7 +132,7 @@ def cutting_process(
         ConfigError: As for ``program_process``.
     """
     resists = kienzle(stock)
-    if resists is None:
+    if resists is None or part_frame.chain is not None:
         return None
     corner = part_frame.program_zero(part_zero)
     material = blank(stock, corner, cell)

@@ -11,6 +11,8 @@ from twin.cutting.height_map import HeightMap
 from twin.cutting.net import all_corners, net, open_edges, surface_faces
 from twin.cutting.outline import BoolArray
 from twin.files.atomic import complete_or_absent
+from twin.files.stl import stl_text
+from twin.nc.canonical import FloatArray, IntArray
 from twin.units import MM
 
 if TYPE_CHECKING:
@@ -33,8 +35,16 @@ def part_mesh(height_map: HeightMap, colours: Colours | None = None) -> "trimesh
         height_map: The cut stock.
         colours: One for each cell, shape (ny, nx, 3); the underside is raw. None: no colours.
     """
-    import trimesh  # As long to load as the rest of a run, and most runs cut no part.
+    import trimesh
 
+    vertices, faces, painted = _net(height_map, colours)
+    return trimesh.Trimesh(vertices, faces, vertex_colors=painted, process=False)
+
+
+def _net(
+    height_map: HeightMap, colours: Colours | None
+) -> tuple[FloatArray, IntArray, Colours | None]:
+    """Corners, shape (n, 3) [mm], faces, shape (m, 3), and colours of the corners."""
     step = 1
     while height_map.heights[::step, ::step].size > MESH_CELLS:
         step += 1
@@ -70,8 +80,7 @@ def part_mesh(height_map: HeightMap, colours: Colours | None = None) -> "trimesh
         skin = np.where(surface.cell.ravel() < 0, 0, surface.cell.ravel())
         raw = np.tile(np.array(RAW_RGB, np.uint8), (below + 1, 1))
         painted = np.concatenate([colours.reshape(-1, 3)[skin], raw])[used]
-    faces = renumbered.reshape(faces.shape)
-    return trimesh.Trimesh(vertices, faces, vertex_colors=painted, process=False)
+    return vertices, renumbered.reshape(faces.shape), painted
 
 
 def _separate_pinches(patches: BoolArray) -> None:
@@ -116,7 +125,7 @@ def write_stl(height_map: HeightMap, path: Path, zero: ArrayLike = (0.0, 0.0, 0.
     Raises:
         OSError: The file cannot be written.
     """
-    mesh = part_mesh(height_map)
-    mesh.apply_translation(-np.asarray(zero))
+    vertices, faces, _ = _net(height_map, None)
+    text = stl_text((vertices - np.asarray(zero))[faces])
     with complete_or_absent(path) as temporary:
-        mesh.export(temporary, file_type="stl")
+        temporary.write_bytes(text)

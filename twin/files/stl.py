@@ -1,4 +1,4 @@
-"""Solids that come as STL files."""
+"""Solids that come as STL files, and go."""
 
 import functools
 import logging
@@ -6,11 +6,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+import numpy.typing as npt
 
 from twin.errors import ConfigError
 
+_TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attributes", "<u2")])
+"""Of a binary STL file."""
 LARGEST_MM = 1e6
 """A corner farther from zero than a kilometre is damage, and no sum with it is exact any more."""
+
+FloatArray = npt.NDArray[np.float64]
 
 if TYPE_CHECKING:
     import trimesh
@@ -45,6 +50,21 @@ def read_stl(path: Path) -> "trimesh.Trimesh":
     if not isinstance(mesh, trimesh.Trimesh) or len(mesh.faces) < 4 or mesh.extents.min() <= 0:
         raise ConfigError(f"{path}: holds no solid")
     return mesh
+
+
+def stl_text(triangles: FloatArray) -> bytes:
+    """Triangles as a binary STL file; trimesh, which reads them, takes as long to load as a short run.
+
+    Args:
+        triangles: Corners, counter-clockwise seen from outside, shape (n, 3, 3) [mm].
+    """
+    corners = triangles.astype("<f4")
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    length = np.linalg.norm(normal, axis=1, keepdims=True)
+    records = np.zeros(len(corners), _TRIANGLE)
+    records["normal"] = np.divide(normal, length, out=np.zeros_like(normal), where=length > 0.0)
+    records["corners"] = corners
+    return b"".join((bytes(80), np.uint32(len(corners)).tobytes(), records.tobytes()))
 
 
 def stl_extent(path: Path) -> tuple[float, float, float]:

@@ -67,6 +67,10 @@ class _Writer:
         if (corner := _corner(moves, row)) != self._corner:
             self._line(corner)
             self._corner = corner
+        if moves.shape[row] == Shape.CURVE:
+            raise UsageError(
+                f"line {moves.line[row]}: the tip of the tool is led while axes turn; LinuxCNC does not do it so"
+            )
         if moves.shape[row] == Shape.ARC:
             words += self._arc(moves, row)
         else:

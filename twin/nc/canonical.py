@@ -13,6 +13,9 @@ Conventions, once for all rooms:
   turn. With u from 0 to 1 the tool is at
   ``center + rotate(normal, u * sweep) (start - center) + u * advance * normal``, where ``advance``
   is the component of ``end - start`` along the normal; all other axes go linearly with u.
+* A curve is a part of a move under tool centre point control: the axes go by the polynomials of ``curve``,
+  and the tip goes straight in the part, or on the arc of ``center``, ``normal`` and ``sweep``, which
+  are the part's then. ``length`` is the tip's.
 * ``length`` is what the feed counts: mm along the path of X Y Z, or, where these stand still, the
   length of the other linear axes, and where those stand still too, the degrees of the rotary axes
   (Euclidean where several move).
@@ -52,6 +55,8 @@ class Shape(enum.IntEnum):
 
     LINE = 0
     ARC = 1
+    CURVE = 2
+    """Every axis goes by a polynomial of the path fraction (``Moves.curve``)."""
 
 
 class FeedUnit(enum.IntEnum):
@@ -134,6 +139,8 @@ class Moves:
             ``feed_unit``]; NaN: the machine's.
         deceleration: Programmed limit for slowing down, positive, in the units of ``acceleration``,
             shape (n,).
+        curve: What curves add to ``start``, coefficients by powers 1 to 5 of u, 0 for other shapes, shape
+            (n, k, 5) [mm or deg]; None: there is no curve.
     """
 
     axes: Axes
@@ -155,13 +162,15 @@ class Moves:
     corner_tolerance: FloatArray
     acceleration: FloatArray
     deceleration: FloatArray
+    curve: FloatArray | None = None
 
     def __len__(self) -> int:
         return len(self.line)
 
     def __getitem__(self, index: slice | npt.NDArray[np.bool_] | IntArray) -> "Moves":
         """A selection of the moves, as columns again."""
-        return Moves(self.axes, **{name: getattr(self, name)[index] for name in _COLUMNS})
+        columns = {name: getattr(self, name)[index] for name in _COLUMNS}
+        return Moves(self.axes, **columns, curve=None if self.curve is None else self.curve[index])
 
     def __iter__(self) -> Iterator[dict[str, float | int]]:
         """One flat row a move, for people and data frames; calculations take the columns."""
@@ -187,7 +196,9 @@ class Moves:
         return concatenate([], axes)
 
 
-_COLUMNS = tuple(field.name for field in dataclasses.fields(Moves) if field.name != "axes")
+_COLUMNS = tuple(
+    field.name for field in dataclasses.fields(Moves) if field.name not in ("axes", "curve")
+)
 _CODES = ("motion", "shape", "feed_unit", "corner")
 _INTEGERS = ("line", "block")
 _VECTORS = ("center", "normal")
@@ -201,7 +212,18 @@ def concatenate(parts: Iterable[Moves], axes: Axes) -> Moves:
     for name in _COLUMNS:
         arrays = [getattr(part, name) for part in parts]
         columns[name] = np.concatenate(arrays) if arrays else _empty_column(name, len(axes))
-    return Moves(axes, **columns)
+    return Moves(axes, **columns, curve=_joined_curves(parts, len(axes)))
+
+
+def _joined_curves(parts: Sequence[Moves], axis_count: int) -> FloatArray | None:
+    if all(part.curve is None for part in parts):
+        return None
+    return np.concatenate(
+        [
+            np.zeros((len(part), axis_count, 5)) if part.curve is None else part.curve
+            for part in parts
+        ]
+    )
 
 
 def _empty_column(name: str, axis_count: int) -> npt.NDArray[np.generic]:

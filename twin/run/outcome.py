@@ -2,6 +2,7 @@
 
 import dataclasses
 from collections.abc import Iterator
+from typing import NamedTuple
 
 from twin.compare.figures import Figures
 from twin.compare.verdict import Check, Reason, Verdict, judge
@@ -15,6 +16,7 @@ from twin.job.job_file import JobFile, ToleranceTable
 from twin.machine.watching.alarms import Alarm, NearMiss
 from twin.nc.canonical import FloatArray
 from twin.nc.text.diagnostics import Diagnostic
+from twin.recording.reader import RecordingWriter
 from twin.run.cut_notices import (
     cut_notices,
     tolerance_notices,
@@ -24,8 +26,19 @@ from twin.run.cut_notices import (
 from twin.run.dry_run import DryRun
 from twin.run.machining import Machining
 from twin.run.messages import Notice, shown
-from twin.run.observers import Reached, ToolUse
+from twin.run.observers import (
+    Compared,
+    Loads,
+    Observer,
+    Reached,
+    Recorded,
+    ToolTimes,
+    ToolUse,
+    Traced,
+)
+from twin.run.pipeline import Motion
 from twin.run.preparation import Preparation
+from twin.run.program_watch import ProgramWatch
 from twin.run.scope import Scope, nothing_judged, scope_of
 from twin.units import UM_PER_MM
 
@@ -72,79 +85,76 @@ class Outcome:
     final_simulated: FloatArray
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
-class Findings:
-    """What those who followed a run have found.
+class Followers(NamedTuple):
+    """All that follow a run, in the order in which they see it."""
 
-    Attributes:
-        reached: How far it came.
-        figures: Following and contour error.
-        machining: The cut.
-        cut: What the cut came to; None without a stock.
-        loads: The greatest of what the tools bore.
-        tools: Those that were in the spindle.
-        inspection: How far the part is from the nominal one; None without one.
-        alarms: Alarms of the machine, in order.
-        near_miss: The closest that the tool's side and the part's came.
-        planned_s: Machine time of the program as planned [s]; None where nobody planned ahead.
-        forces: Whether the force of the cut was simulated.
-        floats: Why nothing carries the stock; None where something does.
-        part: A picture of the part, PNG; empty where there is none.
-    """
-
-    reached: Reached
-    figures: Figures
     machining: Machining
-    cut: CutResult | None
-    loads: LoadLog
-    tools: tuple[ToolUse, ...]
-    inspection: Inspection | None
-    alarms: tuple[Alarm, ...]
-    near_miss: NearMiss | None
-    planned_s: float | None
-    forces: bool
-    floats: str | None
-    part: bytes
+    reached: Reached
+    loads: Loads
+    compared: Compared
+    traced: Traced
+    tools: ToolTimes
+
+    def in_order(self, writer: RecordingWriter | None) -> list[Observer]:
+        """They, and the recording at their end if one is written."""
+        return [*self, *([] if writer is None else [Recorded(writer)])]
 
 
-def outcome_of(preparation: Preparation, dry_run: DryRun, found: Findings) -> Outcome:
+def outcome_of(
+    preparation: Preparation,
+    dry_run: DryRun,
+    followers: Followers,
+    motion: Motion | None,
+    alarms: tuple[Alarm, ...],
+    floats: str | None,
+) -> Outcome:
     """Judge what was run, with what was looked at.
 
     Args:
         preparation: What was asked for.
         dry_run: What the program does.
-        found: What happened.
+        followers: What they have found.
+        motion: What moved the machine; None: nothing did.
+        alarms: Alarms of the machine, in order.
+        floats: Why nothing carries the stock; None where something does.
     """
-    job, reached, alarms = preparation.job, found.reached, found.alarms
-    figures = _as_shown(found.figures, dry_run.summary)
-    duration_s = min(found.planned_s or reached.last_motion_s, reached.time_s)
+    job, reached, machining = preparation.job, followers.reached, followers.machining
+    cut = machining.result() if reached.samples else None
+    inspection = machining.inspect() if reached.samples else None
+    loads, planned_s = followers.loads.result(), None if motion is None else motion.planned_s
+    figures = _as_shown(followers.compared.result(), dry_run.summary)
+    duration_s = min(planned_s or reached.last_motion_s, reached.time_s)
     checks = [
-        *_nominal_checks(job.file, found.machining.gouge, found.inspection),
-        *_load_checks(job.file.tolerance, found.loads),
+        *_nominal_checks(job.file, machining.gouge, inspection),
+        *_load_checks(job.file.tolerance, loads),
     ]
     judged = judge(figures, job.file.tolerance, alarms, cycle_time_s=duration_s, more=checks)
-    blind = () if alarms else tuple(_unjudged(preparation, judged, dry_run, figures))
-    notices = [] if alarms else list(_notices(preparation, dry_run, found))
+    forces = motion is not None and motion.process is not None
+    blind, notices = (), []
+    if not alarms:
+        blind = tuple(_unjudged(preparation, judged, dry_run, figures))
+        notices = [
+            *_notices(preparation, dry_run, machining, cut, floats),
+            *(() if forces else _unsimulated_notices(job.file, dry_run.watch, cut)),
+        ]
     failing = [
         Reason(each.code, each.message, each.line, 0.0)
         for each in (notices if preparation.settings.strict else ())
     ]
-    scope = scope_of(
-        job, dry_run, judged.checks, found.cut, forces=found.forces, unjudged=blind, alarms=alarms
-    )
     return Outcome(
         verdict=judged.with_more([*failing, *blind]),
         figures=figures,
-        cut=found.cut,
-        gouge=found.machining.gouge,
-        inspection=found.inspection,
-        loads=found.loads,
+        cut=cut,
+        gouge=machining.gouge,
+        inspection=inspection,
+        loads=loads,
         alarms=alarms,
-        near_miss=found.near_miss,
+        near_miss=None if motion is None else motion.near_miss,
         warnings=(*dry_run.warnings, *shown(notices, preparation.source, strict=False)),
-        scope=scope,
-        tools=found.tools,
-        part=found.part,
+        scope=scope_of(
+            job, dry_run, judged.checks, cut, forces=forces, unjudged=blind, alarms=alarms
+        ),
+        tools=followers.tools.result(cut),
         samples=reached.samples,
         duration_s=duration_s,
         final_commanded=reached.commanded,
@@ -177,20 +187,31 @@ def _unjudged(
         yield from nothing_judged(job.file.tolerance, judged.checks, job.tolerances_from, figures)
 
 
-def _notices(preparation: Preparation, dry_run: DryRun, found: Findings) -> Iterator[Notice]:
+def _notices(
+    preparation: Preparation,
+    dry_run: DryRun,
+    machining: Machining,
+    cut: CutResult | None,
+    floats: str | None,
+) -> Iterator[Notice]:
     """Warnings about a run that came to its end."""
     job, watch = preparation.job.file, dry_run.watch
-    if found.cut is not None:
-        yield from cut_notices(job, watch, found.machining, found.cut)
+    if cut is not None:
+        yield from cut_notices(job, watch, machining, cut)
     elif watch.spindle_line and watch.first_feed and job.stock is None:
         message = "the spindle turns, and the job has no [stock]: nothing that is cut is judged"
         yield Notice("no-stock", watch.spindle_line, message)
-    if found.floats is not None:
-        yield Notice("stock-floats", 0, f"nothing carries the stock: {found.floats}")
+    if floats is not None:
+        yield Notice("stock-floats", 0, f"nothing carries the stock: {floats}")
     yield from tolerance_notices(job.tolerance, len(preparation.source.lines))
-    if not found.forces:
-        yield from tooth_feed_notices(watch, found.cut)
-        yield from unjudged_limit_notices(job, watch)
+
+
+def _unsimulated_notices(
+    job: JobFile, watch: ProgramWatch, cut: CutResult | None
+) -> Iterator[Notice]:
+    """What only a simulated force would show."""
+    yield from tooth_feed_notices(watch, cut)
+    yield from unjudged_limit_notices(job, watch)
 
 
 def _nominal_checks(

@@ -149,9 +149,8 @@ def cutting_forces(job: JobFile, machine: Machine, dry_run: DryRun, layout: Layo
     Raises:
         ConfigError: The job wants a force that cannot be computed.
     """
-    process, summary, frame = None, dry_run.summary, layout.part_frame
-    if frame.chain is None:
-        process = program_process(job, machine, summary, frame, layout.part_zero)
+    summary, frame = dry_run.summary, layout.part_frame
+    process = program_process(job, machine, summary, frame, layout.part_zero)
     if process is not None or not job.cutting_load:
         return Forces(process)
     if job.stock is None or dry_run.tilts:

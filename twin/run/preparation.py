@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 
+import numpy as np
 import pydantic
 
 from twin.errors import ConfigError, RecordingError
@@ -18,9 +19,10 @@ from twin.nc.dialects import Dialect, dialect_named
 from twin.nc.dialects.foreign import require_program
 from twin.nc.functions import SpindleState
 from twin.nc.interpreter import Interpretation
+from twin.nc.path.tool_center import Setup
 from twin.nc.text.source import Source, read_source, source_from_text
 from twin.recording.reader import RecordingHeader
-from twin.run.layout import start_position
+from twin.run.layout import lay_out, start_position
 from twin.run.reading.assumed_reading import (
     NOTHING_ASSUMED,
     UNKNOWN_FUNCTION,
@@ -233,6 +235,7 @@ def _control_settings(job: Job, machine: Machine, *, strict: bool) -> ControlSet
         },
         any_tool="tools" not in job.file.model_fields_set,
         offsets=job.file.offsets,
+        setup=_setup(job, machine),
         machine_zero=_machine_zero(job, machine),
         variables=job.file.variables,
         m_functions={
@@ -252,6 +255,15 @@ def _control_settings(job: Job, machine: Machine, *, strict: bool) -> ControlSet
         step_limit=job.file.step_limit,
         strict=strict,
     )
+
+
+def _setup(job: Job, machine: Machine) -> Setup | None:
+    """The part on the machine; None where no axis turns."""
+    if "rotary" not in machine.axes.kinds:
+        return None
+    zero = lay_out(job.file, machine).part_zero
+    travels = [machine.axis(name).travel or (-np.inf, np.inf) for name in machine.axes.names]
+    return Setup(machine.kinematics, zero, job.file.tools[0].length, np.array(travels))
 
 
 def _block_skip_levels(file: JobFile) -> frozenset[int]:

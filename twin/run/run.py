@@ -1,8 +1,8 @@
 """A run: moves are planned, settled and simulated; what follows them cuts, compares, records; the whole is judged."""
 
+import dataclasses
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
-from typing import NamedTuple
 
 import mujoco
 
@@ -20,14 +20,12 @@ from twin.run.machining import Machining
 from twin.run.observers import (
     Compared,
     Loads,
-    Observer,
     Reached,
-    Recorded,
     ToolTimes,
     Traced,
     observed,
 )
-from twin.run.outcome import Findings, Outcome, outcome_of, refuse_unjudged_loads
+from twin.run.outcome import Followers, Outcome, outcome_of, refuse_unjudged_loads
 from twin.run.pipeline import Motion, ProgramMotion, cutting_forces, grown, planned
 from twin.run.preparation import Preparation
 from twin.run.progress import Progress, StageClock
@@ -126,7 +124,7 @@ class Run:
             machine_file=str(preparation.machine.path.resolve()),
         )
 
-    def _followers(self, dry_run: DryRun) -> "Followers":
+    def _followers(self, dry_run: DryRun) -> Followers:
         job, machine, summary = self.preparation.job.file, self.machine, dry_run.summary
         apart = [part.lines for part in job.tolerance.blocks]
         comparison = Comparison(
@@ -149,7 +147,7 @@ class Run:
             tools=ToolTimes(summary.tools, machine.file.servo_period_s),
         )
 
-    def _motion(self, dry_run: DryRun, followers: "Followers", given: Motion | None) -> Motion:
+    def _motion(self, dry_run: DryRun, followers: Followers, given: Motion | None) -> Motion:
         """What moves the machine; those who judge it know of every move before it is simulated."""
         job, program, summary = self.preparation.job.file, dry_run.program, dry_run.summary
         expect = followers.compared.comparison.expect
@@ -169,34 +167,19 @@ class Run:
     def _outcome(
         self,
         dry_run: DryRun,
-        followers: "Followers",
+        followers: Followers,
         motion: Motion | None,
         alarms: tuple[Alarm, ...],
         out: Path | None,
     ) -> Outcome:
         """Judge what was run; a part that was cut is written."""
-        machining, moved = followers.machining, followers.reached.samples > 0
+        floats = None if alarms else what_carries(self.model)
         with self.clock.stage("cut"):
-            if moved and out is not None:
-                machining.write_part(out)
-            cut = machining.result() if moved else None
-            inspection = machining.inspect() if moved else None
-        found = Findings(
-            reached=followers.reached,
-            figures=followers.compared.result(),
-            machining=machining,
-            cut=cut,
-            loads=followers.loads.result(),
-            tools=followers.tools.result(cut),
-            inspection=inspection,
-            alarms=alarms,
-            near_miss=None if motion is None else motion.near_miss,
-            planned_s=None if motion is None else motion.planned_s,
-            forces=motion is not None and motion.process is not None,
-            floats=None if alarms else what_carries(self.model),
-            part=machining.picture() if moved and out is not None else b"",
-        )
-        return outcome_of(self.preparation, dry_run, found)
+            outcome = outcome_of(self.preparation, dry_run, followers, motion, alarms, floats)
+            if out is None or not outcome.samples:
+                return outcome
+            followers.machining.write_part(out)
+            return dataclasses.replace(outcome, part=followers.machining.picture())
 
     def _overspeed(self, dry_run: DryRun) -> Alarm | None:
         """A tool that is turned faster than it bears, where no force is simulated that would show it."""
@@ -206,21 +189,6 @@ class Run:
 
     def _recording(self, out: Path | None) -> AbstractContextManager[RecordingWriter | None]:
         return nullcontext() if out is None else record(out / "recording.h5", self.header())
-
-
-class Followers(NamedTuple):
-    """All that follow a run, in the order in which they see it."""
-
-    machining: Machining
-    reached: Reached
-    loads: Loads
-    compared: Compared
-    traced: Traced
-    tools: ToolTimes
-
-    def in_order(self, writer: RecordingWriter | None) -> list[Observer]:
-        """They, and the recording at their end if one is written."""
-        return [*self, *([] if writer is None else [Recorded(writer)])]
 
 
 def _alarms(motion: Motion, followers: Followers) -> tuple[Alarm, ...]:

@@ -2,10 +2,10 @@
 
 Every move, line or arc or helix, with any further axes in step, has the one form
 
-    q(u) = base + cosine cos(angle u) + sine sin(angle u) + drift u,   u from 0 to 1,
+    q(u) = base + cosine cos(angle u) + sine sin(angle u) + drift u + bend_2 u² + ... + bend_5 u⁵
 
-where ``cosine`` and ``sine`` span the plane of an arc and vanish for a line. Its derivatives of
-any order follow from it.
+with u from 0 to 1, where ``cosine`` and ``sine`` span the plane of an arc and vanish for a line, and
+``bend`` is a curve's alone. Its derivatives of any order follow from it.
 """
 
 import dataclasses
@@ -27,6 +27,7 @@ class Geometry(Columns):
     Attributes:
         base: Shape (n, k) [mm or deg].
         drift: Travel that goes evenly with the path, shape (n, k) [mm or deg].
+        bend: Of curves, coefficients by powers 2 to 5 of u, 0 for other shapes, shape (n, k, 4) [mm or deg].
         cosine: From the centre of an arc to its start, shape (n, 3) [mm].
         sine: ``cosine`` a quarter turn counter-clockwise about the normal, shape (n, 3) [mm].
         angle: Signed sweep, shape (n,) [rad].
@@ -35,6 +36,7 @@ class Geometry(Columns):
 
     base: FloatArray
     drift: FloatArray
+    bend: FloatArray
     cosine: FloatArray
     sine: FloatArray
     angle: FloatArray
@@ -42,7 +44,9 @@ class Geometry(Columns):
 
     def curves(self) -> Curves:
         """The columns, for compiled code."""
-        return Curves(self.base, self.drift, self.cosine, self.sine, self.angle, self.end)
+        return Curves(
+            self.base, self.drift, self.bend, self.cosine, self.sine, self.angle, self.end
+        )
 
     def position(self, move: IntArray, fraction: FloatArray) -> FloatArray:
         """Where the axes are.
@@ -107,4 +111,9 @@ def geometry(moves: Moves) -> Geometry:
         base[arc, :3] -= along
         drift[arc, :3] = moves.end[arc, :3] - base[arc, :3]
         drift[arc, :3] -= along * np.cos(turn)[:, None] + across * np.sin(turn)[:, None]
-    return Geometry(base, drift, cosine, sine, angle, moves.end)
+    bend = np.zeros((*drift.shape, 4))
+    if moves.curve is not None:
+        curved = moves.shape == Shape.CURVE
+        bend = moves.curve[:, :, 1:].copy()
+        drift = np.where(curved[:, None], moves.curve[:, :, 0], drift)
+    return Geometry(base, drift, bend, cosine, sine, angle, moves.end)

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twin.compilation.kernel import array_kernel
+from twin.compilation.kernel import array_kernel, kernel
 from twin.nc.canonical import FloatArray, IntArray
 
 
@@ -14,10 +14,42 @@ class Curves(NamedTuple):
 
     base: FloatArray
     drift: FloatArray
+    bend: FloatArray
     cosine: FloatArray
     sine: FloatArray
     angle: FloatArray
     end: FloatArray
+
+
+@kernel
+def is_curve(bend: FloatArray, move: int) -> bool:
+    """Whether a move's axes go by polynomials."""
+    for axis in range(bend.shape[1]):
+        for power in range(4):
+            if bend[move, axis, power] != 0.0:
+                return True
+    return False
+
+
+@kernel
+def bend_of(bend: FloatArray, move: int, axis: int, u: float, order: int) -> float:
+    """What the polynomial of a curve adds to an axis, or to a derivative by the path fraction.
+
+    Args:
+        bend: As in ``Geometry``.
+        move: Its row.
+        axis: Column of the axis.
+        u: Path fraction.
+        order: Of the derivative, 0 for the position, 3 at most.
+    """
+    total = 0.0
+    for power in range(5, 1, -1):
+        factor = 1.0
+        for taken in range(order):
+            factor *= power - taken
+        if power >= order:
+            total += factor * bend[move, axis, power - 2] * u ** (power - order)
+    return total
 
 
 @array_kernel
@@ -33,7 +65,7 @@ def evaluate(
         order: 0 to 3.
         out: Result, shape (m, k) [mm or deg].
     """
-    base, drift, cosine, sine, angle, end = curves
+    base, drift, bend, cosine, sine, angle, end = curves
     for row in range(len(move)):
         i = move[row]
         u = fraction[row]
@@ -54,3 +86,6 @@ def evaluate(
                 out[row, axis] += scale * (
                     cosine[i, axis] * math.cos(turned) + sine[i, axis] * math.sin(turned)
                 )
+        if is_curve(bend, i):
+            for axis in range(base.shape[1]):
+                out[row, axis] += bend_of(bend, i, axis, u, order)

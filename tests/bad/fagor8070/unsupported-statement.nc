@@ -1,2 +1,1 @@
-G0 X1
-#RTCP ON
+#TLC ON

@@ -7,10 +7,12 @@ import pytest
 
 from tests.machine.machine_fixtures import shipped_machine
 from twin.errors import UsageError
+from twin.files.shipped import machine_file
 from twin.machine.circle.circle_path import PLANES
 from twin.machine.circle.circle_plot import write_circle_plot
 from twin.machine.circle.circular_test import CircularTest, circular_test
 from twin.machine.description.config import Machine, MachineFile
+from twin.machine.load import read_machine
 from twin.machine.model.model import build_spec, drives
 from twin.machine.model.transmission import give_stiffness
 from twin.units import MM, UM_PER_MM
@@ -30,6 +32,14 @@ def test_a_perfect_machine_draws_a_perfect_circle(plane):
     assert result.circular_deviation_um < 0.01
     assert result.hysteresis_um < 0.01
     assert max(np.abs(result.radial_deviation_um)) < 0.1
+
+
+@pytest.mark.parametrize(("name", "plane"), [("mill4a", "YZA"), ("mill5", "XYC"), ("mill3", "YZ")])
+def test_a_circle_with_the_table_of_any_machine_is_round(name, plane):
+    """Loops of one gain: the table follows the circle without an error of its own, to the simulator's own."""
+    result = circular_test(read_machine(machine_file(name)), 40.0, 1000.0, plane)
+    assert result.circular_deviation_um < 0.05
+    assert result.hysteresis_um < 0.05
 
 
 @pytest.mark.parametrize("plane", ["XY", "ZX", "YZ"])

@@ -16,7 +16,8 @@ def bounds_of(
     rounding = np.zeros((1, 4, 6))
     rounding[0, 1] = coefficients
     drift, none = np.array([[0.0, slope, 0.0, 0.0]]), np.zeros((1, 3))
-    curves = Curves(np.zeros((1, 4)), drift, none, none, np.zeros(1), drift)
+    bend = np.zeros((1, 4, 4))
+    curves = Curves(np.zeros((1, 4)), drift, bend, none, none, np.zeros(1), drift)
     bounds, _, against = bound_derivatives(
         curves, np.zeros(1, np.int64), np.zeros(1), np.ones(1), np.array([length]), rounding
     )

@@ -337,7 +337,10 @@ def test_m140_moves_away_along_the_tool() -> None:
 
 REFUSED = {
     "FK": ("FPOL X+20 Y+30\nFL IX+10 Y+20 F100", "FPOL"),
-    "a tilted plane": ("PLANE SPATIAL SPA+27 SPB+0 SPC+45 STAY", "tilted"),
+    "a tilted plane of a machine without the axes": (
+        "PLANE SPATIAL SPA+27 SPB+0 SPC+45 STAY",
+        "PLANE",
+    ),
     "TCPM": ("FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS", "TCPM"),
     "M128": ("M128", "M128"),
     "normal vectors": ("LN X+1 Y+2 Z+3 NX0 NY0 NZ1 F100", "LN"),

@@ -93,7 +93,7 @@ REFUSED: dict[str, tuple[str, str]] = {
     "DC of a linear axis": ("G0 X=DC(5)", "rotary-direction"),
     "an angle of DC beyond a turn": ("G0 C=DC(400)", "rotary-direction"),
     "ISO mode": ("G291", "unsupported-g"),
-    "a transformation": ("TRAORI", "unsupported-statement"),
+    "a transformation": ("TRAORI", "tool-center"),
     "a spline": ("BSPLINE", "unsupported-g"),
     "more values than PROC has": ("SUB(1,2)\nM30\n%_N_SUB_SPF\nPROC SUB(REAL AA)\nM17", "call-values"),
     "a number for a VAR": ("SUB(1)\nM30\n%_N_SUB_SPF\nPROC SUB(VAR REAL AA)\nM17", "call-values"),

@@ -55,6 +55,17 @@ def test_a_script_that_ends_otherwise_is_told(tmp_path):
     assert mistake.score < 10
 
 
+def test_a_blank_that_no_height_map_can_show_is_refused(tmp_path):
+    shipped = scene_path("fanuc_index_and_lift")
+    text = shipped.read_text(encoding="utf-8").replace(
+        '[[job.fixtures]]\nname = "bar"', '[job.stock]\nshape = "box"'
+    )
+    (tmp_path / shipped.name).write_text(text, encoding="utf-8")
+    (tmp_path / f"{shipped.stem}.nc").write_text(shipped.with_suffix(".nc").read_text())
+    with pytest.raises(ConfigError, match="where the part turns about Z alone"):
+        rehearse(read_scene(tmp_path / shipped.name))
+
+
 @pytest.mark.parametrize("name", scene_names())
 def test_texts_are_there_in_the_scene_s_language_and_in_english(name):
     file = scene(name).file

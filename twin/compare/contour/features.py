@@ -8,7 +8,11 @@ from twin.nc.canonical import BoolArray, FloatArray, IntArray, Moves, Shape
 
 FEATURES = ("line", "arc", "corner")
 _CORNER = FEATURES.index("corner")
-_SHAPES = {Shape.LINE: FEATURES.index("line"), Shape.ARC: FEATURES.index("arc")}
+_SHAPES = {
+    Shape.LINE: FEATURES.index("line"),
+    Shape.ARC: FEATURES.index("arc"),
+    Shape.CURVE: FEATURES.index("line"),
+}
 
 
 class FeatureCollector:

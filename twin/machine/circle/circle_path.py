@@ -87,6 +87,14 @@ class CirclePath:
         first, second = (self.machine.axes.index(name) for name in PLANES[self.plane])
         return first, second
 
+    @property
+    def _length(self) -> float:
+        """From the spindle nose to the ball, so that it reaches a table that lies below the travel of Z [mm]."""
+        travel = self.machine.axis("Z").travel
+        if self._table is None or travel is None or "Z" not in PLANES[self.plane]:
+            return 0.0
+        return max(0.0, travel[0] + self.radius - float(self._table[1][2]))
+
     def _center(self) -> FloatArray:
         """Where the circle lies in the machine: in the middle of the travel, shape (k,)."""
         travel = [self.machine.axis(name).travel or (0.0, 0.0) for name in self.machine.axes.names]
@@ -97,6 +105,7 @@ class CirclePath:
             first, second = self._columns()
             center[[first, second]] = self._table[1][[first, second]]
             center[first] += self.radius
+            center[2] += self._length
         return center
 
     def _refuse_what_the_axes_cannot(self) -> None:
@@ -181,7 +190,7 @@ class CirclePath:
             Shape (n, 2) [mm].
         """
         center = self._center()
-        frame = self.machine.part_frame.at(center, 0.0)
+        frame = self.machine.part_frame.at(center, self._length)
         real = samples.real(frame)
         columns = list(self._columns())
         if self._table is None:

@@ -27,7 +27,44 @@ def move_bounds(moves: Moves) -> tuple[FloatArray, FloatArray]:
         points = _extreme_points(moves[arcs])
         low[arcs, :3] = np.fmin(low[arcs, :3], np.fmin.reduce(points, axis=0))
         high[arcs, :3] = np.fmax(high[arcs, :3], np.fmax.reduce(points, axis=0))
+    curves = np.flatnonzero(moves.shape == Shape.CURVE)
+    if len(curves):
+        places = _turning_places(moves[curves])
+        low[curves] = np.minimum(low[curves], places.min(axis=0))
+        high[curves] = np.maximum(high[curves], places.max(axis=0))
     return low, high
+
+
+def _turning_places(curves: Moves) -> FloatArray:
+    """Coordinates at and near to where the axes of curves turn back, shape (m, n, k) [mm or deg].
+
+    From the places of ``_LOOKED_AT`` where a slope changes its sign, Newton's method finds it.
+    """
+    assert curves.curve is not None
+    slopes = curves.curve * np.arange(1, 6)
+    bends = slopes[:, :, 1:] * np.arange(1, 5)
+    found = []
+    for u in _LOOKED_AT:
+        place = np.full(slopes.shape[:2], u)
+        for _ in range(3):
+            slope, bend = _polynomial(slopes, place), _polynomial(bends, place)
+            step = np.divide(slope, bend, out=np.zeros_like(slope), where=bend != 0.0)
+            place = np.clip(place - np.clip(step, -_NEXT, _NEXT), 0.0, 1.0)
+        found.append(curves.start + place * _polynomial(curves.curve, place))
+    return np.array(found)
+
+
+_LOOKED_AT = np.linspace(0.0, 1.0, 9)
+_NEXT = 0.125
+"""How far apart these are."""
+
+
+def _polynomial(coefficients: FloatArray, at: FloatArray) -> FloatArray:
+    """Polynomials of shape (n, k, powers from 0) at places of shape (n, k)."""
+    total = np.zeros_like(at)
+    for power in range(coefficients.shape[2] - 1, -1, -1):
+        total = total * at + coefficients[:, :, power]
+    return total
 
 
 def _extreme_points(arcs: Moves) -> FloatArray:

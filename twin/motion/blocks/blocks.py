@@ -14,10 +14,12 @@ from twin.nc.canonical import (
     Corner,
     Dwell,
     Event,
+    FeedUnit,
     FloatArray,
     IntArray,
     Motion,
     Moves,
+    Shape,
 )
 from twin.toolpath.geometry import Geometry, geometry
 from twin.units import SECONDS_PER_MINUTE
@@ -89,6 +91,7 @@ class BlocksOfChunks(Step[Chunk, Blocks]):
         self._first = 0
         self._position = start
         self._corner, self._tolerance = int(Corner.EXACT_STOP), np.nan
+        self._within_rapid = False
 
     def take(self, part: Chunk) -> Iterator[Blocks]:
         """The blocks of a chunk."""
@@ -100,8 +103,9 @@ class BlocksOfChunks(Step[Chunk, Blocks]):
             if until > done:
                 between = moves[done:until]
                 blocks, self._corner, self._tolerance = _of_moves(
-                    between, self._first + done, self._corner, self._tolerance
+                    between, self._first + done, self._corner, self._tolerance, self._within_rapid
                 )
+                self._within_rapid = bool(goes_on(between)[-1])
                 yield blocks
                 self._position = between.end[-1]
                 done = until
@@ -116,8 +120,24 @@ def _stops(event: Event) -> bool:
     return isinstance(event, Dwell) or event.at == 0.0
 
 
-def _of_moves(moves: Moves, first: int, corner: int, tolerance: float) -> tuple[Blocks, int, float]:
-    """The blocks of moves, and the corner and tolerance at their end."""
+def goes_on(moves: Moves) -> BoolArray:
+    """Which moves are parts of a rapid under tool centre point control that goes on behind them, shape (n,)."""
+    rapid = (moves.shape == Shape.CURVE) & (moves.motion == Motion.RAPID)
+    return rapid & (moves.corner != Corner.EXACT_STOP)
+
+
+def _of_moves(
+    moves: Moves, first: int, corner: int, tolerance: float, within_rapid: bool
+) -> tuple[Blocks, int, float]:
+    """The blocks of moves, and the corner and tolerance at their end.
+
+    Args:
+        moves: The moves.
+        first: Number of the first.
+        corner: At its begin.
+        tolerance: There.
+        within_rapid: The move before it is a part of the same rapid.
+    """
     farthest, linear = largest_travels(moves.start, moves.end, moves.axes.rotary())
     length = np.maximum(moves.length, farthest / STEEPEST)
     rows = np.flatnonzero(length >= SHORTEST)
@@ -132,10 +152,15 @@ def _of_moves(moves: Moves, first: int, corner: int, tolerance: float) -> tuple[
     kept = moves if len(rows) == len(moves) else moves[rows]
     rapid = kept.motion == Motion.RAPID
     # Rapids stand still at both ends (twin.nc.canonical).
-    at_border[:-1][rapid] = Corner.EXACT_STOP
-    at_border[1:][rapid] = Corner.EXACT_STOP
+    inner = goes_on(kept)
+    at_border[:-1][rapid & ~np.append(within_rapid, inner)[:-1]] = Corner.EXACT_STOP
+    at_border[1:][rapid & ~inner] = Corner.EXACT_STOP
     shapes = geometry(kept)
     scale = length / np.maximum(moves.length, 1e-12)
+    turns = (linear[rows] == 0.0) & (shapes.angle == 0.0)
+    if kept.curve is not None:
+        # Its linear axes follow the rotary ones while the tip rests.
+        turns |= (kept.shape == Shape.CURVE) & (kept.feed_unit == FeedUnit.DEG_PER_MIN)
     blocks = Blocks(
         move=first + rows,
         line=kept.line,
@@ -145,7 +170,7 @@ def _of_moves(moves: Moves, first: int, corner: int, tolerance: float) -> tuple[
         feed=np.where(np.isnan(kept.feed), np.inf, kept.feed / SECONDS_PER_MINUTE),
         acceleration=np.where(np.isnan(kept.acceleration), np.inf, kept.acceleration),
         deceleration=np.where(np.isnan(kept.deceleration), np.inf, kept.deceleration),
-        rotary_alone=(linear[rows] == 0.0) & (shapes.angle == 0.0),
+        rotary_alone=turns,
         corner=at_border[:-1],
         tolerance=tolerances[rows],
         pause=np.zeros(len(rows)),
@@ -160,6 +185,7 @@ def _of_dwell(dwell: Dwell, move: int, position: FloatArray) -> Blocks:
     still = Geometry(
         base=position[None],
         drift=np.zeros_like(position)[None],
+        bend=np.zeros((1, len(position), 4)),
         cosine=np.zeros((1, 3)),
         sine=np.zeros((1, 3)),
         angle=zero,

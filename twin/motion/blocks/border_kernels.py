@@ -7,7 +7,7 @@ import numpy as np
 from twin.compilation.kernel import array_kernel
 from twin.motion.blocks.blocks import BoolArray
 from twin.nc.canonical import FloatArray
-from twin.toolpath.geometry_kernels import Curves
+from twin.toolpath.geometry_kernels import Curves, bend_of, is_curve
 
 STEP_NOISE = 1e-9
 """Steps of derivatives below this are rounding of the geometry [1, or 1/mm]."""
@@ -44,6 +44,13 @@ def border_steps(curves: Curves, length: FloatArray) -> tuple[FloatArray, FloatA
                 if i + 1 < count:
                     tangent_step[i + 1, axis] -= turn * (q * c - p * s)
                     curvature_step[i + 1, axis] += turn * turn * (p * c + q * s)
+        if is_curve(curves.bend, i):
+            for axis in range(axes):
+                curvature_step[i, axis] += bend_of(curves.bend, i, axis, 0.0, 2) * scale * scale
+                if i + 1 < count:
+                    tangent_step[i + 1, axis] -= bend_of(curves.bend, i, axis, 1.0, 1) * scale
+                    bent = bend_of(curves.bend, i, axis, 1.0, 2) * scale * scale
+                    curvature_step[i + 1, axis] -= bent
         for axis in range(axes):
             if i == 0 or abs(tangent_step[i, axis]) < STEP_NOISE:
                 tangent_step[i, axis] = 0.0

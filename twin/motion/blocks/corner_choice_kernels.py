@@ -19,7 +19,7 @@ from twin.motion.blocks.corner_kernels import BESIDE_STOP, MAX_NEIGHBOURS, NARRO
 from twin.motion.limits import MachineLimits
 from twin.motion.ramp_kernels import RampLimits, travel_time
 from twin.nc.canonical import FloatArray, IntArray
-from twin.toolpath.geometry_kernels import Curves
+from twin.toolpath.geometry_kernels import Curves, bend_of, is_curve
 
 CURVE_SHARE = 0.5
 """Of the limits of an axis that a rounding may use at constant velocity."""
@@ -317,8 +317,17 @@ def _block_limits(blocks: BlockMotion, i: int, machine: MachineLimits) -> RampLi
     velocity = blocks.velocity[i]
     per_length = 1.0 / blocks.length[i]
     turn = abs(blocks.curves.angle[i]) * per_length
+    curve, bends = is_curve(blocks.curves.bend, i), blocks.curves.bend
     for axis in range(len(machine.jerk)):
         slope = abs(blocks.curves.drift[i, axis]) * per_length
+        if curve:
+            end = blocks.curves.drift[i, axis] + bend_of(bends, i, axis, 1.0, 1)
+            slope = max(slope, abs(end) * per_length)
+            bend = abs(bend_of(bends, i, axis, 0.0, 2))
+            bend = max(bend, abs(bend_of(bends, i, axis, 1.0, 2)))
+            if bend > 0.0:
+                bend *= per_length * per_length
+                velocity = min(velocity, math.sqrt(machine.acceleration[axis] / bend))
         if turn > 0.0 and axis < 3:
             radius = math.hypot(blocks.curves.cosine[i, axis], blocks.curves.sine[i, axis])
             slope += turn * radius
@@ -380,6 +389,8 @@ def _overlap_distance(
     """
     curves = blocks.curves
     if curves.angle[i - 1] != 0.0 or curves.angle[i] != 0.0:
+        return 0.0
+    if is_curve(curves.bend, i - 1) or is_curve(curves.bend, i):
         return 0.0
     per_length, next_per_length = 1.0 / blocks.length[i - 1], 1.0 / blocks.length[i]
     squares, next_squares, away = 0.0, 0.0, math.inf

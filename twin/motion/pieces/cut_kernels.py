@@ -9,9 +9,10 @@ import math
 
 import numpy as np
 
-from twin.compilation.kernel import array_kernel
+from twin.compilation.kernel import array_kernel, kernel
 from twin.motion.pieces.rounding_kernels import Roundings, add_roundings
 from twin.nc.canonical import FloatArray, IntArray
+from twin.toolpath.geometry_kernels import is_curve
 
 PIECE_ANGLE = math.radians(5.0)
 """Longest piece of an arc: the limits of X and Y change little over it [rad]."""
@@ -23,20 +24,22 @@ grown by less than 1e-16 mm."""
 
 @array_kernel
 def cut_blocks(
-    length: FloatArray, angle: FloatArray, width: FloatArray, tangent_step: FloatArray, curvature_step: FloatArray,
+    length: FloatArray, angle: FloatArray, bend: FloatArray,
+    width: FloatArray, tangent_step: FloatArray, curvature_step: FloatArray,
 ) -> tuple[IntArray, FloatArray, FloatArray, FloatArray]:  # fmt: skip
     """Cut blocks where a rounding begins or ends, and arcs into short angles.
 
     Args:
         length: Of all blocks, shape (n,).
         angle: Sweep of all blocks, 0 for lines, shape (n,) [rad].
+        bend: Of all blocks, as in ``Geometry``, shape (n, k, 4).
         width: Of the rounding of the border before each block, shape (n,).
         tangent_step: Step of dq/dx there, shape (n, k).
         curvature_step: Step of d²q/dx² there, shape (n, k).
 
     Returns:
         Of each piece: its block, its begin from the block's begin, its length, and what its
-        roundings add, shapes (m,), (m,), (m,), (m, k, 6).
+        roundings and its curve add, shapes (m,), (m,), (m,), (m, k, 6).
     """
     count = len(length)
     place = np.zeros(count + 1)
@@ -78,7 +81,32 @@ def cut_blocks(
     else:
         roundings = Roundings(place, width, tangent_step, curvature_step)
         add_roundings(roundings, owner, offset, extent, ends, sources, rounding)
+    for piece in range(used):
+        i = owner[piece]
+        if is_curve(bend, i):
+            scale = 1.0 / float(length[i])
+            _add_curve(bend[i], offset[piece] * scale, scale, rounding[piece])
     return owner, offset, extent, rounding
+
+
+@kernel
+def _add_curve(bend: FloatArray, begin: float, scale: float, added: FloatArray) -> None:
+    """Add the polynomials of a curve, by powers of x from a piece's begin.
+
+    Args:
+        bend: Coefficients by powers 2 to 5 of u, shape (k, 4).
+        begin: u at the piece's begin.
+        scale: u per x.
+        added: Coefficients by powers of x, shape (k, 6).
+    """
+    for axis in range(len(bend)):
+        for power in range(2, 6):
+            # The terms of (begin + scale x)^power.
+            binomial = 1.0
+            for x_power in range(power + 1):
+                term = binomial * begin ** (power - x_power) * scale**x_power
+                added[axis, x_power] += bend[axis, power - 2] * term
+                binomial = binomial * (power - x_power) / (x_power + 1)
 
 
 @array_kernel

@@ -114,8 +114,9 @@ def cut(
     blocks, shapes = surroundings.blocks, surroundings.blocks.geometry
     # The neighbours are cut as well: they tell how fast a piece can be reached and left.
     owner, offset, length, rounding = cut_blocks(
-        blocks.length, shapes.angle, borders.width, borders.tangent_step, borders.curvature_step
-    )
+        blocks.length, shapes.angle, shapes.bend,
+        borders.width, borders.tangent_step, borders.curvature_step,
+    )  # fmt: skip
     scale, begin, entry, overlap = place_pieces(
         blocks.length, blocks.move, borders.entry, borders.overlap, owner, offset
     )

@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from twin.compilation.kernel import array_kernel, kernel
 from twin.nc.canonical import FloatArray, IntArray
-from twin.toolpath.geometry_kernels import Curves
+from twin.toolpath.geometry_kernels import Curves, is_curve
 
 SHORTEST_OVERLAP = 1e-9
 """Phases that overlap by less than this do so by rounding [s]."""
@@ -236,7 +236,7 @@ def _add_axes(
     Returns:
         The fraction of the move.
     """
-    base, drift, cosine, sine, angle, end = curves
+    base, drift, bend, cosine, sine, angle, end = curves
     _, position, velocity, acceleration = samples
     rounding = pieces.rounding
     x, v, a = at
@@ -245,6 +245,8 @@ def _add_axes(
     u = min(1.0, pieces.begin[i] + x * scale)
     du, ddu = v * scale, a * scale
     turn, turn_v, turn_a = angle[move] * u, angle[move] * du, angle[move] * ddu
+    # What a curve adds is in ``rounding``, also at its end.
+    ended = u >= 1.0 and not is_curve(bend, move)
     c, s = 1.0, 0.0
     if turn_v != 0.0 or turn != 0.0:
         c, s = math.cos(turn), math.sin(turn)
@@ -263,7 +265,7 @@ def _add_axes(
             here += across
             speed += along * turn_v
             gain += along * turn_a - across * turn_v * turn_v
-        if u >= 1.0:
+        if ended:
             here = end[move, axis]
         position[row, axis] += factor * (here + added)
         velocity[row, axis] += factor * (speed + slope * v)

@@ -32,6 +32,7 @@ from twin.nc.path.moves import (
 )
 from twin.nc.path.path import Path
 from twin.nc.path.segments import direction_of
+from twin.nc.path.tool_center import ToolCenter
 from twin.nc.text.blocks import Block
 from twin.nc.text.reporter import Reporter
 
@@ -193,7 +194,8 @@ class Motion:
             deceleration = _either(self.rapid_deceleration, deceleration)
         else:
             feed = self._feed_per_minute(end, length, arc is not None)
-            if self.feed_rule is not PATH_COUNTS and (arc is not None or self.feed_rule.degree):
+            by_rule = self.feed_rule is not PATH_COUNTS and self.path.tool_center is None
+            if by_rule and (arc is not None or self.feed_rule.degree):
                 feed = self._feed_by_rule(feed, end, length, arc)
         if not (self.axis_limits or self.axis_accelerations or self.axis_decelerations):
             return feed, acceleration, deceleration
@@ -255,8 +257,22 @@ class Motion:
         self.frame.set_shift(shift, list(map(moved_shift, values, self.part, here)))
         self.programmed = programmed
 
+    def lead_tip(self, center: ToolCenter | None) -> None:
+        """From now on positions are those of a tip that is led; None: of the axes. Nothing moves."""
+        self.path.flush()
+        before = self.path.tool_center
+        axes = self.part if before is None else before.axes(self.part)
+        self.part = self.path.position = axes if center is None else center.tip(axes)
+        self.path.tool_center = center
+        self.last = None
+        self.programmed = self.frame.to_programmed(self.part)
+
     def reframed(self) -> None:
         """The frame has changed: see where it is now."""
+        center = self.path.tool_center
+        if center is not None:
+            self.lead_tip(center.with_zero(self.frame.zero()))
+            return
         self.programmed = self.frame.to_programmed(self.part)
 
 

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from typing import Literal
 
 from twin.nc.canonical import Axes
+from twin.nc.path.tool_center import Setup
 from twin.nc.text.blocks import Block
 
 
@@ -65,6 +66,9 @@ class ControlSettings:
 
     offsets: Mapping[str, Mapping[str, float]] = dataclasses.field(default_factory=dict)
     """Work offsets by name (``G54``), each by axis, from part zero [mm or deg]."""
+
+    setup: Setup | None = None
+    """The part on the machine, for tool centre point control and tilted planes; None: not known."""
 
     machine_zero: Mapping[str, float] | None = None
     """Part coordinates of machine zero by axis [mm or deg]; None: not known, G53 is refused."""

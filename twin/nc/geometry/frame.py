@@ -27,6 +27,10 @@ SHIFTS = ("offset", "preset", "length", "increment", "rotation", "turns")
 """Every shift, in the order in which they are added."""
 
 
+SHIFTS_OF_ZERO = ("offset", "preset", "increment")
+"""Those that say where the zero of an axis is; turns of a table and of the plane do not."""
+
+
 @compilable
 def to_part(matrix: Matrix, total: Values, place: Vector) -> Vector:
     """Part coordinates of a point of X, Y, Z: mirrored, scaled and rotated, then shifted."""
@@ -146,6 +150,10 @@ class Frame:
     def shifts(self) -> list[list[float]]:
         """All of them in the order of ``SHIFTS``, shape (s, k)."""
         return [self.shift(name) for name in SHIFTS]
+
+    def zero(self) -> list[float]:
+        """Where the work offset puts the zeros of the axes, part coordinates, shape (k,) [mm or deg]."""
+        return list(map(sum, zip(*(self._shifts[name] for name in SHIFTS_OF_ZERO), strict=True)))
 
     def set_shifts(self, shifts: list[list[float]]) -> None:
         """Replace all of them, in this order."""

@@ -54,7 +54,9 @@ def draw_curve(
     control.line_to(goal, rapid=False)
 
 
-RAPID, FEED = straight(lambda control, rapid: control.line_to(control.target(), rapid=rapid))
+POSITIONING, LINEAR = straight(
+    lambda control, rapid: control.line_to(control.target(), rapid=rapid)
+)
 CLOCKWISE, COUNTER_CLOCKWISE = both_senses(iso_arc, ArcRule(bounds=BOUNDS))
 
 
@@ -138,8 +140,8 @@ UNITS = {
     71: modal("millimetres", "units", basis="decision", unit=1.0),
 }
 MOTION = {
-    0: motion_code("rapid positioning", RAPID, "decision"),
-    1: motion_code("straight line", FEED, "decision"),
+    0: motion_code("rapid positioning", POSITIONING, "decision"),
+    1: motion_code("straight line", LINEAR, "decision"),
     2: motion_code("arc clockwise", CLOCKWISE, "decision"),
     3: motion_code("arc counter-clockwise", COUNTER_CLOCKWISE, "decision"),
 }

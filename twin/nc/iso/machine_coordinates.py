@@ -1,7 +1,7 @@
 """Moves that count from machine zero: G53 for its block, G28 and G30.
 
 The coordinates are those of the axes: no work offset, preset, tool length, mirror, scale or rotation
-acts on them.
+acts on them, and no tip is led meanwhile.
 """
 
 from collections.abc import Iterator, Mapping
@@ -12,6 +12,7 @@ from twin.nc.control.control import Control
 from twin.nc.geometry.frame import SHIFTS
 from twin.nc.geometry.matrices import IDENTITY, Matrix
 from twin.nc.iso.offsets import machine_zero
+from twin.nc.path.tool_center import ToolCenter
 
 
 class PartFrame(NamedTuple):
@@ -20,10 +21,12 @@ class PartFrame(NamedTuple):
     Attributes:
         shifts: Of every kind, shape (s, k) [mm or deg].
         matrix: Mirror, scale and rotation.
+        tool_center: What leads the tip.
     """
 
     shifts: list[list[float]]
     matrix: Matrix
+    tool_center: ToolCenter | None
 
 
 def enter_machine_frame(
@@ -35,7 +38,10 @@ def enter_machine_frame(
         ProgramError: The job does not say where machine zero is.
     """
     zero, frame = machine_zero(control, code) if zero is None else zero, control.frame
-    kept, names = PartFrame(frame.shifts, frame.matrix), control.settings.axes.names
+    center, names = control.path.tool_center, control.settings.axes.names
+    kept = PartFrame(frame.shifts, frame.matrix, center)
+    if center is not None:
+        control.motion.lead_tip(None)
     frame.set_shifts([[0.0] * len(names) for _ in SHIFTS])
     frame.set_shift("offset", [zero.get(name, 0.0) for name in names])
     frame.set_matrix(IDENTITY)
@@ -47,6 +53,8 @@ def leave_machine_frame(control: Control, kept: PartFrame) -> None:
     """Let programmed coordinates be what they were."""
     control.frame.set_shifts(kept.shifts)
     control.frame.set_matrix(kept.matrix)
+    if kept.tool_center is not None:
+        control.motion.lead_tip(kept.tool_center)
     control.motion.reframed()
 
 

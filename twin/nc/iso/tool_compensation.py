@@ -52,7 +52,11 @@ def _length_by_table(sign: float) -> Action:
 
 
 def set_length(control: Control, difference: float) -> None:
-    """Move Z by what the tool is difference than the first [mm]."""
+    """Move Z, or the tip that is led, by what the tool is longer than the first [mm]."""
+    center = control.path.tool_center
+    if center is not None:
+        control.motion.lead_tip(center.with_length(difference))
+        return
     axes = range(len(control.settings.axes))
     control.frame.set_shift("length", [difference if axis == 2 else 0.0 for axis in axes])
     control.motion.reframed()

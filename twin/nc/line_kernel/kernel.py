@@ -20,7 +20,7 @@ from twin.nc.line_kernel.reading import (
     AXIS,
     CENTER,
     CODE,
-    FEED,
+    FEED_WORD,
     NOT_PLAIN,
     NUMBER,
     RADIUS,
@@ -194,11 +194,11 @@ def _run_line(
         if not is_whole(values[CODE], len(rules.kinds) - 1.0):
             return NOT_PLAIN
         kind = int(rules.kinds[int(values[CODE])])
-    if seen & 1 << FEED:
-        feed = float(values[FEED])
+    if seen & 1 << FEED_WORD:
+        feed = float(values[FEED_WORD])
     moves = seen >> RADIUS != 0
     fits = not seen & 1 << NUMBER or is_whole(values[NUMBER], LARGEST_LABEL)
-    fed = not seen & 1 << FEED or 0.0 < feed <= LARGEST_COORDINATE
+    fed = not seen & 1 << FEED_WORD or 0.0 < feed <= LARGEST_COORDINATE
     is_arc = kind >= CLOCKWISE
     if not fits or not fed or (not moves and seen & 1 << CODE):
         return NOT_PLAIN
@@ -226,7 +226,7 @@ def _run_line(
 @inlined
 def _has_feed(seen: int, feed: float, state: PlainState) -> bool:
     """Whether nothing is wrong with the feed rate of a line that moves with a feed."""
-    if needs_own_feed(state.feed_mode) and not seen & 1 << FEED:
+    if needs_own_feed(state.feed_mode) and not seen & 1 << FEED_WORD:
         return False
     finding = finding_of_feed(feed, state.feed_mode, state.spindle, state.spindle_turns)
     return finding == KNOWN_FEED or (finding == WITHOUT_FEED and state.feed_may_lack)

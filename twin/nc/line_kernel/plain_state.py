@@ -30,7 +30,7 @@ from twin.nc.line_kernel.reading import (
     AXIS,
     CENTER,
     CODE,
-    FEED,
+    FEED_WORD,
     NUMBER,
     OTHER,
     RADIUS,
@@ -233,7 +233,7 @@ def line_format(executor: Executor) -> LineFormat:
         *dialect.words.series,
     }
     roles = {each: role for each, role in letters.items() if each in dialect.words.motion - taken}
-    roles |= {**dict.fromkeys(dialect.words.feed, FEED), **codes}
+    roles |= {**dict.fromkeys(dialect.words.feed, FEED_WORD), **codes}
     pointed = dialect.rules.without_point(control.settings)
     return LineFormat(
         np.array([roles.get(letter, OTHER) for letter in string.ascii_uppercase]),

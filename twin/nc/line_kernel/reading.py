@@ -26,7 +26,7 @@ from twin.nc.text.plain_word import (
 
 ByteArray = npt.NDArray[np.uint8]
 
-OTHER, NUMBER, CODE, FEED, RADIUS, CENTER, AXIS = -1, 0, 1, 2, 3, 4, 7
+OTHER, NUMBER, CODE, FEED_WORD, RADIUS, CENTER, AXIS = -1, 0, 1, 2, 3, 4, 7
 """Roles of letters: none in a plain line; N, G, F, R; I, J, K from ``CENTER`` on; axes by their column from
 ``AXIS`` on."""
 NOT_PLAIN = -1

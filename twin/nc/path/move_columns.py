@@ -28,9 +28,24 @@ NAN = math.nan
 _NOWHERE = (NAN, NAN, NAN)
 """The centre of a line."""
 
-LINE, ARC = int(Shape.LINE), int(Shape.ARC)
+LINE, ARC, CURVE = int(Shape.LINE), int(Shape.ARC), int(Shape.CURVE)
 RAPID, FEED = Motion.RAPID, Motion.FEED
 """Members of enumerations by names of their own: CPython 3.11 looks each of them up by a call of Python."""
+
+
+class Curve(NamedTuple):
+    """How the axes go in a part of a move under tool centre point control.
+
+    Attributes:
+        coefficients: What is added to the start, by powers 1 to 5 of the path fraction, shape (k, 5)
+            [mm or deg].
+        length: Of the tip's way in the part [mm]; where it rests, of the rotary axes' [deg].
+        turning: The tip rests: F counts degrees.
+    """
+
+    coefficients: FloatArray
+    length: float
+    turning: bool
 
 
 @dataclasses.dataclass(slots=True)
@@ -49,6 +64,7 @@ class Segment:
         center: Centre of an arc at the height of its start [mm], or None for a line.
         normal: Unit normal of an arc.
         sweep: Signed angle of an arc [deg].
+        curve: How the axes go, where that is neither a line nor an arc; the arc is the tip's in the part then.
     """
 
     motion: Motion
@@ -65,6 +81,7 @@ class Segment:
     center: Vector | None = None
     normal: Vector = (NAN, NAN, NAN)
     sweep: float = 0.0
+    curve: Curve | None = None
 
 
 class Refused(NamedTuple):
@@ -118,6 +135,7 @@ class MoveColumns:
 
     def _clear(self) -> None:
         self._parts: list[tuple[IntArray, FloatArray, FloatArray]] = []
+        self._curves: list[tuple[int, Curve]] = []
         self.events: list[Event] = []
         self.count = 0
         self._clear_lists()
@@ -131,6 +149,9 @@ class MoveColumns:
         """Append a move."""
         center = move.center
         shape = LINE if center is None else ARC
+        if move.curve is not None:
+            shape = CURVE
+            self._curves.append((self.count, move.curve))
         self._codes += (move.motion, shape, move.line, move.block, move.corner)
         values, positions = self._values, self._positions
         values += _NOWHERE if center is None else center
@@ -184,18 +205,24 @@ class MoveColumns:
         none = (np.zeros((0, 5), np.int64), np.zeros((0, 11)), np.zeros((0, 3, k)))
         columns = zip(*(self._parts or [none]), strict=True)
         codes, values, positions = (np.concatenate(each) for each in columns)
+        curve, lengths, units = self._curve_columns(len(codes))
         events = self.events
         if refused is not None:
             kept = codes[:, 2] != refused.line
             kept[: refused.moves] = True
             events = refused.kept_events(events, kept)
             codes, values, positions = codes[kept], values[kept], positions[kept]
+            curve = None if curve is None else curve[kept]
+            lengths, units = lengths[kept], units[kept]
         self._clear()
         start, end = positions[:, 0], positions[:, 1]
         shape = codes[:, 1].astype(np.uint8)
         center, normal = values[:, 0:3], values[:, 3:6]
         radius = _norms(start[:, :3] - center)
         length, unit = self._measure(start, end, normal, radius, values[:, 6])
+        if curve is not None:
+            curved = shape == CURVE
+            length[curved], unit[curved] = lengths[curved], units[curved]
         moves = Moves(
             axes=self._axes,
             motion=codes[:, 0].astype(np.uint8),
@@ -216,8 +243,20 @@ class MoveColumns:
             corner_tolerance=values[:, 8].copy(),
             acceleration=values[:, 9].copy(),
             deceleration=values[:, 10].copy(),
+            curve=curve,
         )
         return Chunk(moves, tuple(events))
+
+    def _curve_columns(self, count: int) -> tuple[FloatArray | None, FloatArray, FloatArray]:
+        """Of so many moves the column of curves, their lengths and the units of their feeds."""
+        lengths, units = np.zeros(count), np.zeros(count)
+        if not self._curves:
+            return None, lengths, units
+        column = np.zeros((count, len(self._axes), 5))
+        for row, (coefficients, length, turning) in self._curves:
+            column[row], lengths[row] = coefficients, length
+            units[row] = FeedUnit.DEG_PER_MIN if turning else FeedUnit.MM_PER_MIN
+        return column, lengths, units
 
     def _measure(
         self,

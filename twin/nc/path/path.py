@@ -1,7 +1,8 @@
 """The way of moves from the control to the columns.
 
 The stages, in order: splines through points, blends at corners, tool radius compensation, loops cut
-out, additional axes that go evenly. Each is there only while a program asks for it, and holds few moves.
+out, additional axes that go evenly, tool centre point control. Each is there only while a program asks for it,
+and holds few moves. Under tool centre point control all others see the tip in the part.
 """
 
 from collections.abc import Callable
@@ -16,6 +17,7 @@ from twin.nc.path.rounding import Rounding
 from twin.nc.path.segments import MoveReport
 from twin.nc.path.splines import Spline
 from twin.nc.path.synchronous_axes import MOST_MOVES, SynchronousAxes
+from twin.nc.path.tool_center import ToolCenter
 from twin.nc.text.reporter import Reporter
 
 
@@ -27,6 +29,7 @@ class Path:
         defer: Takes an event that happens behind moves which a dialect holds back; False: it holds none.
         leads: Makes the moves that lead to the next one, told it, and says whether that is to be made; None: nothing
             does. The next move begins where they end on the contour, not where the path has come to.
+        tool_center: From the tip to the axes; None: moves are those of the axes.
     """
 
     def __init__(self, axes: Axes, start: list[float], report: Reporter) -> None:
@@ -41,6 +44,7 @@ class Path:
         self.position = start
         self.defer: Callable[[Event], bool] = holds_none
         self.leads: Callable[[Segment], bool] | None = None
+        self.tool_center: ToolCenter | None = None
 
     def finish(self) -> None:
         """Nothing follows: emit what the stages hold."""
@@ -69,7 +73,13 @@ class Path:
     @property
     def passes_on(self) -> bool:
         """No stage holds or changes moves: what is added is emitted as it is."""
-        stages = (self._spline, self._rounding, self._loops, self._synchronous)
+        stages = (
+            self._spline,
+            self._rounding,
+            self._loops,
+            self._synchronous,
+            self.tool_center,
+        )
         free = self.compensation.stage is OFF and self.leads is None
         return free and all(stage is None for stage in stages)
 
@@ -204,7 +214,7 @@ class Path:
         """From now on the axis of this column goes evenly over the moves that follow."""
         self.flush()
         if self._synchronous is None:
-            self._synchronous = SynchronousAxes(self.columns.add, self.columns.add_event)
+            self._synchronous = SynchronousAxes(self._write, self.columns.add_event)
         self._synchronous.begin(axis)
 
     def go_as_programmed(self, axis: int) -> None:
@@ -223,15 +233,27 @@ class Path:
             self._loops.add(move)
         elif self._synchronous is not None:
             self._out(move)
-        else:
+        elif self.tool_center is None:
             self.columns.add(move)
+        else:
+            self._write(move)
 
     def _out(self, move: Segment) -> None:
         if self._synchronous is None:
-            self.columns.add(move)
+            self._write(move)
         elif not self._synchronous.add(move):
             message = f"an axis cannot go evenly over more than {MOST_MOVES} moves"
             self._report.refuse(move, "even-axis", message)
+
+    def _write(self, move: Segment) -> None:
+        if self.tool_center is None:
+            self.columns.add(move)
+            return
+        try:
+            for part in self.tool_center.moves_of(move):
+                self.columns.add(part)
+        except ValueError as error:
+            self._report.refuse(move, "tool-center", str(error))
 
     def _record(self, event: Event) -> None:
         if self._loops is None:

@@ -5,7 +5,7 @@ import { act_on, key, label_key, light, make, write } from "./parts.js";
 const STEPS = [0.01, 0.1, 1, 10, null];
 const JOG_FEED = { mm: 2000, deg: 1800 };
 const JOG_KEYS = {
-  ArrowRight: ["X", 1], ArrowLeft: ["X", -1], ArrowUp: ["Y", 1], ArrowDown: ["Y", -1], PageUp: ["Z", 1], PageDown: ["Z", -1], Home: ["C", 1], End: ["C", -1],
+  ArrowRight: ["X", 1], ArrowLeft: ["X", -1], ArrowUp: ["Y", 1], ArrowDown: ["Y", -1], PageUp: ["Z", 1], PageDown: ["Z", -1], Home: ["", 1], End: ["", -1], // the rotary axis nearest to the part
 };
 const UNHEARD_MS = 600;
 const WHEEL_MS = 50;
@@ -158,9 +158,10 @@ export class ControlDesk {
     };
     this.scene.modes.forEach((mode, number) => { acts[`F${number + 1}`] = () => this.keys[`mode_${mode}`].click(); });
     STEPS.forEach((step, number) => { acts[`Digit${number + 1}`] = () => this.choose_step(step); });
-    if (jog && this.now.mode === "jog" && this.now.axes.includes(jog[0])) acts[event.code] = () => {
+    const axis = jog && (jog[0] || this.now.axes.slice(3).at(-1));
+    if (jog && this.now.mode === "jog" && this.now.axes.includes(axis)) acts[event.code] = () => {
       this.pressing = event.code;
-      this.jog(...jog);
+      this.jog(axis, jog[1]);
     };
     if (!acts[event.code]) return undefined;
     event.preventDefault();

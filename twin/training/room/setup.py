@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 
 from twin.cutting.tools import default_cell
-from twin.errors import UsageError
+from twin.errors import ConfigError, UsageError
 from twin.job.job_file import StockTable
 from twin.machine.simulation.growth import Growth
 from twin.machine.simulation.live import LiveMachine, moving
@@ -52,6 +52,10 @@ class Setup:
         self.part_frame = scene.preparation.machine.part_frame.at(
             tables.true_zero, self._first_tool.length
         )
+        if self._stock is not None and self.part_frame.chain is not None:
+            raise ConfigError(
+                "job key 'stock': a blank is cut live where the part turns about Z alone; put a fixture in its place"
+            )
         self.cut = LiveCut(machine, job, self.part_frame, tables.true_zero)
         self.work = self._clamped_blank()
         self._growth = Growth(machine.machine, self.cut.told_speed)

@@ -20,8 +20,8 @@ _PROFILE = "what it sets in the path preprocessing has no counterpart in the twi
 
 
 CODES: dict[float, GCode] = {
-    0: motion_code("positioning in a straight line; FF is its feed", base.RAPID),
-    1: motion_code("straight line", base.FEED, "control page"),
+    0: motion_code("positioning in a straight line; FF is its feed", base.POSITIONING),
+    1: motion_code("straight line", base.LINEAR, "control page"),
     2: motion_code("arc clockwise", CLOCKWISE, "control page"),
     3: motion_code("arc counter-clockwise", COUNTER_CLOCKWISE, "control page"),
     4: replacement(

@@ -219,7 +219,7 @@ def _arc_about_own_center(control: Control, *, clockwise: bool) -> None:
     control.arc_to(target, center, sweep)
 
 
-RAPID, FEED = base.straight(_line)
+POSITIONING, LINEAR = base.straight(_line)
 CLOCKWISE, COUNTER_CLOCKWISE = both_senses(_arc, ArcRule(bounds=BOUNDS, fits_radius=True))
 TANGENT = Interpolation(tangent_arc)
 THREE_POINTS = Interpolation(three_point_arc)

@@ -76,8 +76,8 @@ REPLACEMENTS: dict[float, str] = {
 """Codes of other controls, and what this one has for them."""
 
 CODES: dict[float, GCode] = {
-    0: motion_code("rapid positioning", arcs.RAPID),
-    1: motion_code("straight line", arcs.FEED),
+    0: motion_code("rapid positioning", arcs.POSITIONING),
+    1: motion_code("straight line", arcs.LINEAR),
     2: motion_code("arc clockwise, Cartesian or polar", arcs.CLOCKWISE, "control page"),
     3: motion_code(
         "arc counter-clockwise, Cartesian or polar", arcs.COUNTER_CLOCKWISE, "control page"

@@ -34,7 +34,7 @@ PASSED_OVER = _each(
 
 ENDED_ONLY = _each(
     {
-        "#RTCP, #TLC": _NO_TILT,
+        "#TLC": _NO_TILT,
         "#TCAM": "electronic cams are not simulated",
         "#CS, #ACS": "inclined planes are not simulated",
         "#CAX, #FACE": "a spindle as an axis is not simulated",

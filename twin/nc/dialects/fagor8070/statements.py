@@ -9,9 +9,11 @@ from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070 import flow, subroutines
 from twin.nc.dialects.fagor8070.known_statements import ENDED_ONLY, PASSED_OVER, REFUSED
 from twin.nc.dialects.fagor8070.machine_coordinates import machine_coordinates
+from twin.nc.dialects.fagor8070.polar import forget_polar
 from twin.nc.dialects.fagor8070.transformations import set_scale
 from twin.nc.dialects.fagor8070.variables import VARIABLE_STATEMENT, assign
 from twin.nc.iso.base import wait
+from twin.nc.iso.tool_center import begin_tool_center, end_tool_center
 from twin.nc.text.blocks import Location, Statement
 from twin.nc.text.expressions import Expression
 
@@ -125,6 +127,21 @@ def warn_of_missing_end(control: Control) -> None:
     control.report.warn("no-end", "the program ends without M30", hint="write M30 at its end")
 
 
+def _lead_tip(control: Control, statement: Statement) -> None:
+    """#RTCP ON, #RTCP ON[n], #RTCP OFF: the tip is led while rotary axes turn; F counts its way."""
+    match = _RTCP.fullmatch(statement.text)
+    if match is None:
+        message = "#RTCP is written as #RTCP ON or #RTCP OFF"
+        control.fail("unreadable-statement", message, statement, "#RTCP ON")
+    if match[1].upper() == "ON":
+        begin_tool_center(control, "#RTCP")
+    else:
+        end_tool_center(control, "#RTCP", keeps_length=True)
+    forget_polar(control)
+
+
+_RTCP = re.compile(r"[ \t]*(ON|OFF)(?:[ \t]*\[[ \t]*[0-9]+[ \t]*\])?[ \t]*", re.IGNORECASE)
+
 STATEMENTS: dict[str, StatementAction] = {
     **flow.STATEMENTS,
     **subroutines.STATEMENTS,
@@ -135,6 +152,7 @@ STATEMENTS: dict[str, StatementAction] = {
     ),
     "#MCS": machine_coordinates,
     "#SCALE": _scale,
+    "#RTCP": _lead_tip,
     "#ROUNDPAR": round_parameters,
     "#WARNING": warning,
     "#WARNINGSTOP": warning,

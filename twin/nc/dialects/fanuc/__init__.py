@@ -17,6 +17,7 @@ from twin.nc.dialects.fanuc import (
     programs,
     reference_points,
     tool_offsets,
+    tool_tips,
     variables,
 )
 from twin.nc.dialects.fanuc.cycles.canned_cycles import OVERRULED_CYCLE, as_read
@@ -44,6 +45,7 @@ def before_motion(control: Control, rapid: bool) -> None:
         ProgramError: G93 without F, or F of another feed mode.
     """
     reference_points.warn_of_cancelled_length(control)
+    tool_tips.require_orientation(control)
     if not rapid:
         base.require_feed_of_block(control)
         if memory_of(control).feed_lost and control.motion.feed is None:
@@ -179,6 +181,7 @@ HAAS = dataclasses.replace(
     codes=dataclasses.replace(
         FANUC.codes,
         last_of_group_counts=False,
+        groups=haas.GROUPS,
         g=haas.haas_codes(),
         replacements={**codes.REPLACEMENTS, **haas.REPLACEMENTS},
         start=haas.START,

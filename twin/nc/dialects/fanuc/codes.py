@@ -13,6 +13,7 @@ from twin.nc.dialects.fanuc import (
     offsets,
     programs,
     reference_points,
+    tool_tips,
     transformations,
 )
 from twin.nc.dialects.fanuc.cycles.canned_cycles import cycles
@@ -55,11 +56,10 @@ _NO_TILT = "the machine's tool does not tilt"
 _NO_ANGLE = "the twin's spindle has no angle"
 _UNKNOWN = "its effect on the path is not documented well enough to be followed"
 _LIMITS = "the limits are the machine file's"
-_NO_SPACE = "turning in space is not simulated"
 
 _MOTION: Mapping[float, GCode] = {
-    0: motion_code("rapid positioning", motion.RAPID),
-    1: motion_code("straight line", motion.FEED),
+    0: motion_code("rapid positioning", motion.POSITIONING),
+    1: motion_code("straight line", motion.LINEAR),
     2: motion_code("arc clockwise, by I J K or R", motion.CLOCKWISE),
     3: motion_code("arc counter-clockwise, by I J K or R", motion.COUNTER_CLOCKWISE),
     4: replacement(
@@ -112,6 +112,7 @@ _TOOL: Mapping[float, GCode] = {
     42: modal("compensation by D, tool right", "compensation", compensation_code(42, RIGHT)),
     43: modal("tool length by H", "length", length_code(43, 1.0)),
     44: modal("tool length by H, reversed", "length", length_code(44, -1.0)),
+    43.4: modal("length by H, the tip led while axes turn", "length", tool_tips.begin("G43.4")),
     49: modal("tool length off", "length", end_length),
 }
 _TRANSFORMATIONS: Mapping[float, GCode] = {
@@ -120,7 +121,9 @@ _TRANSFORMATIONS: Mapping[float, GCode] = {
     50.1: replacement("mirror off", transformations.end_mirror, "mirror"),
     51.1: replacement("mirror the axes at the places named", transformations.mirror, "mirror"),
     68: replacement("rotation by R about a point of the plane", transformations.rotate, "rotation"),
-    69: modal("rotation off", "rotation", transformations.end("rotation")),
+    68.2: replacement("tilted plane: origin and Euler's angles I J K", tool_tips.tilt, "rotation"),
+    53.1: replacement("rotary axes set the tool across the tilted plane", tool_tips.orient),
+    69: modal("rotation and tilted plane off", "rotation", tool_tips.level),
 }
 _FEEDS: Mapping[float, GCode] = {
     93: modal(
@@ -146,11 +149,9 @@ _REFUSED: Mapping[float, GCode] = {
     **refused(
         "tool position offset", "write the coordinates, or compensate by G41", 45, 46, 47, 48
     ),
-    **refused(
-        "tool centre point control", _NO_TILT, 43.1, 43.3, 43.4, 43.5, 43.8, 43.9, 53.1, 53.6
-    ),
+    **refused("tool centre point control", _NO_TILT, 43.1, 43.3, 43.5, 43.8, 43.9, 53.6),
     **refused("normal direction control", "the twin has no axis that turns the tool", 41.1, 42.1),
-    **refused("tilted plane, conversion in space", _NO_SPACE, 68.2, 68.3, 68.4),
+    **refused("tilted plane by other forms", "G68.2 X Y Z I J K is", 68.3, 68.4),
     **refused("single direction positioning", "the backlash is the machine file's", 60),
     **refused("constant cutting speed", "a mill's radius is the tool's", 96),
 }

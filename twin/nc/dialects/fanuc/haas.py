@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from twin.nc.control.codes import GCode, MCode
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Decision
-from twin.nc.dialects.fanuc import offsets, programs, transformations
+from twin.nc.dialects.fanuc import offsets, programs, tool_tips, transformations
+from twin.nc.dialects.fanuc.codes import GROUPS as FANUC_GROUPS
 from twin.nc.dialects.fanuc.codes import M_CODES, NO_PROBE, codes, passed_over
 from twin.nc.dialects.fanuc.cycles.bolt_holes import bolt_holes
 from twin.nc.dialects.fanuc.decisions import DECISIONS as FANUC_DECISIONS
@@ -16,7 +17,10 @@ from twin.nc.geometry.planes import XY
 from twin.nc.iso.declared import flow_function, modal, refused, replacement
 from twin.nc.iso.tool_change import change_tool_at
 
-_LACKING = (5, 5.1, 7.1, 8, 15, 16, 27, 30, 50.1, 51.1, 54.1, 62, 63, 87, 92.1)
+_LACKING = (
+    *(5, 5.1, 7.1, 8, 15, 16, 27, 30, 43.4, 50.1, 51.1, 53.1),
+    *(54.1, 62, 63, 68.2, 68.3, 68.4, 87, 92.1),
+)
 """Codes that the control lacks."""
 
 
@@ -127,10 +131,14 @@ _OWN: Mapping[float, GCode] = {
     **refused("bolt holes on a line", _FIRST_HOLE, 72),
     **refused("probing", NO_PROBE, 35, 36, 136),
     **refused("compensation in space", "the machine's tool does not tilt", 141, 143),
-    **refused("tool centre point control", "the machine's tool does not tilt", 234),
-    **refused("dynamic work offset, tilted plane", "turning in space is not simulated", 254, 268),
+    234: modal("length by H, the tip led while axes turn", "length", tool_tips.begin("G234")),
+    254: modal(
+        "work offset goes with the turned part", "dynamic offset", tool_tips.begin_dynamic_offset
+    ),
+    255: modal("G254 off", "dynamic offset", tool_tips.end_dynamic_offset),
+    **refused("tilted plane", "write G254, and what it turns", 268),
     **refused("feed on the cylinder", "write the rotary axis itself, with G93", 107),
-    **refused("return from a tilted plane", "turning in space is not simulated", 253, 255, 269),
+    **refused("tilted plane's own orientation", "write the rotary axes", 253, 269),
     **refused("left-hand and any-direction tapping", "the tool stays along Z", 174, 184),
     **refused("back boring, boring by hand", "write its moves", 77),
 }
@@ -142,7 +150,8 @@ def haas_codes() -> dict[float, GCode]:
     return {**shared, **_OWN}
 
 
-START = (0, 17, 21, 40, 49, 50, 54, 64, 67, 69, 80, 90, 94, 97, 98, 100)
+GROUPS = (*FANUC_GROUPS, "dynamic offset")
+START = (0, 17, 21, 40, 49, 50, 54, 64, 67, 69, 80, 90, 94, 97, 98, 100, 255)
 REPLACEMENTS: Mapping[float, str] = {
     15: "the control has no polar coordinates",
     16: "write X and Y: the control has no polar coordinates",

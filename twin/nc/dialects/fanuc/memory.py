@@ -8,6 +8,7 @@ from typing import NamedTuple
 from twin.nc.control.constructs import Structure
 from twin.nc.control.control import Control
 from twin.nc.geometry.arcs import Point
+from twin.nc.geometry.matrices import Matrix
 from twin.nc.geometry.planes import Vector
 from twin.nc.path.feed_rates import FeedMode
 from twin.nc.text.blocks import Word
@@ -193,6 +194,7 @@ class FanucMemory:
         scale: Factors of X, Y and Z, and their centre [mm].
         mirror: Coordinates of the axes of mirror images by column [mm].
         rotation: Angle [deg] and centre [mm] of a rotation in the plane, or None.
+        tilt: Directions of a tilted plane's axes, as columns, and its origin [mm], or None.
         cylinder: Column of the rotary axis and radius [mm] of G107, or None.
         loops: Those of the file; None before they were asked for.
         modal_call: G66 in force.
@@ -223,6 +225,7 @@ class FanucMemory:
     scale: tuple[Vector, Vector] | None = None
     mirror: dict[int, float] = dataclasses.field(default_factory=dict)
     rotation: tuple[float, Point] | None = None
+    tilt: tuple[Matrix, Vector] | None = None
     cylinder: tuple[int, float] | None = None
     loops: Structure | None = None
     modal_call: ModalCall | None = None
@@ -244,7 +247,7 @@ def acts_on_lines(control: Control) -> bool:
         return True
     if memory.feed_lost and control.motion.feed is None:
         return True
-    remembered = (memory.scale, memory.modal_call, memory.cylinder)
+    remembered = (memory.scale, memory.modal_call, memory.cylinder, memory.tilt)
     return memory.polar or any(each is not None for each in remembered)
 
 

@@ -105,5 +105,5 @@ def _arc(control: Control, rule: ArcRule) -> None:
     sweep_arc(control, goal, arc_center(control, goal, rule), clockwise=rule.clockwise)
 
 
-RAPID, FEED = base.straight(_as_often_as_l(_line))
+POSITIONING, LINEAR = base.straight(_as_often_as_l(_line))
 CLOCKWISE, COUNTER_CLOCKWISE = both_senses(_as_often_as_l(_arc), ArcRule(bounds=BOUNDS))

@@ -17,6 +17,7 @@ from twin.nc.control.compensation import (
 from twin.nc.control.control import Control
 from twin.nc.dialects.fanuc.memory import ToolOffset, memory_of
 from twin.nc.dialects.fanuc.programs import whole
+from twin.nc.iso.tool_center import end_tool_center
 from twin.nc.iso.tool_compensation import set_length
 from twin.nc.text.blocks import Word
 
@@ -33,10 +34,10 @@ def geometry_of(control: Control, number: int, field: str) -> float | None:
 def set_length_number(control: Control, word: Word) -> None:
     """H: the row of the tool length; alone it changes the length in force."""
     memory_of(control).length_number = whole(control, word, "tool-offset", "offset number")
-    if not any(code in (43.0, 44.0, 49.0) for code in _codes(control)):
+    if not any(code in (43.0, 43.4, 44.0, 49.0, 234.0) for code in _codes(control)):
         sign = {43: 1.0, 44: -1.0}.get(int(control.modal.active.get("length", 49)))
         if sign is not None:
-            _apply_length(control, sign, word)
+            apply_length(control, sign, word)
 
 
 def set_radius_number(control: Control, word: Word) -> None:
@@ -58,8 +59,9 @@ def length_code(number: int, sign: float) -> Action:
     """G43, G44: the row H moves Z, also the Z of its own block in G91 (manual)."""
 
     def action(control: Control) -> None:
+        end_tool_center_of_length(control)
         before = control.motion.programmed[2]
-        _apply_length(control, sign, control.code_word(number))
+        apply_length(control, sign, control.code_word(number))
         if control.modal.incremental and "Z" in control.words:
             control.motion.programmed[2] = before
 
@@ -69,10 +71,19 @@ def length_code(number: int, sign: float) -> Action:
 def end_length(control: Control) -> None:
     """G49."""
     memory_of(control).length_cancelled = ""
+    end_tool_center_of_length(control)
     set_length(control, 0.0)
 
 
-def _apply_length(control: Control, sign: float, word: Word | None) -> None:
+def end_tool_center_of_length(control: Control) -> None:
+    """G43, G44 and G49 end G43.4 and G234; in a tilted plane they change the length along it."""
+    center = control.path.tool_center
+    if center is not None and not center.tilted:
+        end_tool_center(control, "the tool length")
+
+
+def apply_length(control: Control, sign: float, word: Word | None) -> None:
+    """Put the length of the row H into force, or with the sign -1 its reverse; ``word`` asks for it."""
     memory_of(control).length_cancelled = ""
     number = memory_of(control).length_number
     if number is None:

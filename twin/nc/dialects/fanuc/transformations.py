@@ -14,6 +14,7 @@ from twin.nc.geometry.matrices import (
     SMALLEST_SCALE,
     Matrix,
     applied,
+    product,
     rotated,
     stretched,
 )
@@ -154,11 +155,21 @@ def _transformation(control: Control) -> tuple[Matrix, Vector]:
     return matrix, (x + behind[0], y + behind[1], z + behind[2])
 
 
+def set_tilt(control: Control, matrix: Matrix | None, origin: Vector = (0.0, 0.0, 0.0)) -> None:
+    """Tilt the plane of all the others by the directions of its axes, as columns, and its origin; None: no longer."""
+    memory_of(control).tilt = None if matrix is None else (matrix, origin)
+    _update(control)
+
+
 def _update(control: Control) -> None:
     if control.path.compensation.in_force:
         message = "mirror, scale and rotation cannot change while compensation is in force"
         control.fail("compensation-change", message, hint="end it by G40 first")
     matrix, shift = _transformation(control)
+    tilt = memory_of(control).tilt
+    if tilt is not None:
+        x, y, z = applied(tilt[0], shift)
+        matrix, shift = product(tilt[0], matrix), (x + tilt[1][0], y + tilt[1][1], z + tilt[1][2])
     control.frame.set_matrix(matrix)
     others = [0.0] * (len(control.settings.axes) - 3)
     control.frame.set_shift("rotation", [*shift, *others])

@@ -73,7 +73,9 @@ def _with_axes(meaning: str, action: Action, group: str = "not modal") -> GCode:
     return replacement(meaning, perform, group)
 
 
-RAPID, FEED = base.straight(lambda control, rapid: control.line_to(control.target(), rapid=rapid))
+POSITIONING, LINEAR = base.straight(
+    lambda control, rapid: control.line_to(control.target(), rapid=rapid)
+)
 
 
 def _arc(control: Control, rule: ArcRule) -> None:
@@ -88,8 +90,8 @@ def _arc(control: Control, rule: ArcRule) -> None:
 CLOCKWISE, COUNTER_CLOCKWISE = both_senses(_arc, ArcRule(bounds=BOUNDS), refuse_missing_center)
 
 CODES: dict[float, GCode] = {
-    0: motion_code("rapid positioning", RAPID),
-    1: motion_code("straight line", FEED),
+    0: motion_code("rapid positioning", POSITIONING),
+    1: motion_code("straight line", LINEAR),
     2: motion_code("arc clockwise", CLOCKWISE),
     3: motion_code("arc counter-clockwise", COUNTER_CLOCKWISE),
     4: modal(

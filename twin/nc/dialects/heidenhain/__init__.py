@@ -4,6 +4,7 @@ from twin.nc.control.codes import Codes, Words
 from twin.nc.control.control import Control, Rules
 from twin.nc.control.dialect import Dialect
 from twin.nc.dialects.heidenhain import corners, feeds, flow, parameters, paths, sides
+from twin.nc.dialects.heidenhain.cycles.planes import enter_plane
 from twin.nc.dialects.heidenhain.decisions import DECISIONS
 from twin.nc.dialects.heidenhain.functions import FUNCTIONS, take_shortest_way
 from twin.nc.dialects.heidenhain.memory import KlartextMemory, acts_on_lines, memory_of
@@ -25,6 +26,11 @@ def _nothing(_control: Control, _word: Word) -> None:
 def _prepare(control: Control) -> None:
     corners.prepare(control)
     control.modal.interpolation = paths.LINE
+
+
+def _before_motion(control: Control, rapid: bool) -> None:
+    take_shortest_way(control, rapid)
+    enter_plane(control)
 
 
 def _after_motion(control: Control) -> None:
@@ -96,7 +102,7 @@ HEIDENHAIN = Dialect(
     rules=Rules(
         memory=KlartextMemory,
         prepare=_prepare,
-        before_motion=take_shortest_way,
+        before_motion=_before_motion,
         after_motion=_after_motion,
         finish=flow.warn_of_missing_end,
         jog="L I{axis}{distance} F{feed}",

@@ -6,13 +6,11 @@ from collections.abc import Mapping
 from twin.nc.control.codes import Action, MCode
 from twin.nc.control.control import Control
 from twin.nc.dialects.heidenhain.cycles.calls import call_from_now_on, call_last
+from twin.nc.dialects.heidenhain.cycles.planes import begin_tcpm, end_tcpm, retract
 from twin.nc.dialects.heidenhain.flow import refuse_end_of_called
 from twin.nc.dialects.heidenhain.memory import memory_of
 from twin.nc.iso import base
 from twin.nc.iso.hole import turn_spindle
-from twin.nc.iso.machine_coordinates import machine_frame
-
-_HEIGHT = 2
 
 
 def _refused(number: int, meaning: str, reason: str) -> MCode:
@@ -111,19 +109,10 @@ def _retract(control: Control) -> None:
     if control.path.compensation.in_force or control.path.leads is not None:
         message = "the tool does not retract while radius compensation is in force"
         control.fail("compensation-change", message, hint="end it by R0 before")
-    if most is None:
-        target = list(control.motion.programmed)
-        target[_HEIGHT] += control.length(word)
-        control.line_to(target, rapid=not own)
-        return
-    with machine_frame(control, "M140 MB MAX"):
-        target = list(control.motion.programmed)
-        target[_HEIGHT] = 0.0
-        if target[_HEIGHT] > control.motion.programmed[_HEIGHT]:
-            control.line_to(target, rapid=not own)
+    retract(control, None if most is not None else control.length(word), rapid=not own)
 
 
-_TCPM = "the tool's tip is led while rotary axes move, which the twin's machines do not follow yet"
+_TCPM = "M128 or FUNCTION TCPM leads the tip"
 _REFUSED: Mapping[int, tuple[str, str]] = {
     **dict.fromkeys((90, 112), ("smoothed corners of old controls", "write CYCL DEF 32")),
     97: ("small steps of the contour", "a contour smaller than the tool is refused here"),
@@ -136,10 +125,9 @@ _REFUSED: Mapping[int, tuple[str, str]] = {
     116: ("feed of rotary axes in mm/min", "F counts degrees where rotary axes move alone"),
     118: ("the handwheel beside the path", "there is none"),
     124: ("points of the contour that are left out", "the path would not be the programmed one"),
-    128: ("the tool's tip is led (TCPM)", _TCPM),
-    130: ("points in the level system", "the working plane is never tilted"),
+    130: ("points in the level system", "only the tilted plane of PLANE is followed"),
     134: ("exact stop of rotary axes", "corners are those of CYCL DEF 32"),
-    138: ("rotary axes of the tilted plane", "the working plane is never tilted"),
+    138: ("rotary axes of the tilted plane", "only the tilted plane of PLANE is followed"),
     143: ("the end of a basic rotation", "the twin keeps none"),
     144: ("kinematics in the path", _TCPM),
     197: ("corners of the parallel path", "corners are rolled around"),
@@ -173,6 +161,8 @@ FUNCTIONS: Mapping[int, MCode] = {
     94: _silent("what is shown of rotary axes is brought below a turn", _reduce_rotary),
     99: _silent("the cycle runs", call_last, after_motion=True),
     126: _silent("rotary axes go the shorter way", _go_shortest(True)),
+    128: _silent("the tip is led while rotary axes turn", begin_tcpm),
+    129: _silent("M128 off", end_tcpm),
     127: _silent("rotary axes go as written", _go_shortest(False)),
     136: _silent("F per revolution of the spindle", _feed_per_turn(True)),
     137: _silent("F per minute", _feed_per_turn(False)),
@@ -187,7 +177,6 @@ FUNCTIONS: Mapping[int, MCode] = {
         "the contour is looked at ahead: LA; changes nothing of the path here",
         lambda control: control.words.pop("LA", None) and None,
     ),
-    129: _passed("M128 off"),
     141: _passed("the probe is not watched"),
     145: _passed("M144 off"),
     148: _passed("the tool is lifted where the program is stopped"),

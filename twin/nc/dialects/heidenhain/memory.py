@@ -6,6 +6,7 @@ from collections.abc import Callable
 from twin.nc.control.control import Control
 from twin.nc.control.settings import ToolData
 from twin.nc.dialects.heidenhain.cycle_values import Parameters
+from twin.nc.geometry.matrices import Matrix
 from twin.nc.geometry.planes import Plane, Vector
 from twin.nc.path.feed_rates import FeedMode
 from twin.nc.path.move_columns import Segment
@@ -84,6 +85,7 @@ class KlartextMemory:
     mirrored: Vector = (1.0, 1.0, 1.0)
     rotation: float = 0.0
     scale: float = 1.0
+    tilt: Matrix | None = None
     order: list[str] = dataclasses.field(default_factory=list)
     chamfered: Segment | None = None
     shortest: bool = False
@@ -96,12 +98,13 @@ def memory_of(control: Control) -> KlartextMemory:
 
 
 def acts_on_lines(control: Control) -> bool:
-    """A cycle behind every move, the shorter way of rotary axes, feeds that are none per minute, FMAX before."""
+    """A cycle behind every move, shortest ways, a tilted plane, feeds that are none per minute, FMAX before."""
     memory, modal = memory_of(control), control.modal
     counts_otherwise = modal.unit != 1.0 or modal.feed_mode != FeedMode.PER_MINUTE
     return (
         memory.calls_always
         or memory.shortest
+        or memory.tilt is not None
         or memory.was_rapid
         or memory.per_revolution
         or counts_otherwise

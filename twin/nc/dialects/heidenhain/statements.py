@@ -6,10 +6,8 @@ from collections.abc import Mapping
 from twin.nc.control.codes import StatementAction
 from twin.nc.control.control import Control
 from twin.nc.dialects.heidenhain import corners, flow, leads, parameters, paths, tools
-from twin.nc.dialects.heidenhain.cycles import calls, definitions, patterns
+from twin.nc.dialects.heidenhain.cycles import calls, definitions, patterns, planes
 from twin.nc.dialects.heidenhain.cycles.transformations import (
-    NOT_TILTED,
-    TILTED,
     Step,
     apply_transformations,
     shift_datum,
@@ -17,13 +15,7 @@ from twin.nc.dialects.heidenhain.cycles.transformations import (
 from twin.nc.dialects.heidenhain.memory import memory_of
 from twin.nc.text.blocks import Statement
 
-_LEVEL = re.compile(
-    r"[ \t]*(?:RESET\b|SPATIAL[ \t]+SPA[-+]?0*\.?0*[ \t]+SPB[-+]?0*\.?0*[ \t]+SPC[-+]?0*\.?0*(?![.0-9])"
-    r"|VECTOR[ \t]+BX[-+]?1[.0]*[ \t]+BY[-+]?[.0]+[ \t]+BZ[-+]?[.0]+[ \t]+NX[-+]?[.0]+[ \t]+NY[-+]?[.0]+[ \t]+NZ[-+]?1[.0]*(?![.0-9]))",
-    re.IGNORECASE,
-)
 _COMMENT = re.compile(r"[ \t]*(?:[0-9]+[ \t]*)?[;*]")
-_PASSED = re.compile(r"[ \t]*(?:RESET[ \t]+TCPM|MODE[ \t]+MILL)\b", re.IGNORECASE)
 _DATUM = re.compile(r"[ \t]*DATUM[ \t]+(RESET|AXIS(.*))[ \t]*", re.IGNORECASE)
 
 FREE_CONTOURS = (
@@ -72,29 +64,6 @@ def go_on(control: Control, statement: Statement) -> None:
         control.report.fail("continuation", message, 0, len(statement.text), hint)
 
 
-def plane(control: Control, statement: Statement) -> None:
-    """PLANE: only the level working plane.
-
-    Raises:
-        ProgramError: It is tilted.
-    """
-    if _LEVEL.match(statement.text) is None:
-        control.fail("tilted-plane", TILTED, statement, NOT_TILTED)
-
-
-def function(control: Control, statement: Statement) -> None:
-    """FUNCTION: what changes nothing here.
-
-    Raises:
-        ProgramError: It is another one.
-    """
-    if _PASSED.match(statement.text) is None:
-        name = " ".join(statement.text.split()[:2])
-        message = f"FUNCTION {name} is not followed"
-        hint = "FUNCTION RESET TCPM and FUNCTION MODE MILL are"
-        control.fail("unsupported-statement", message, statement, hint)
-
-
 def transform(control: Control, statement: Statement) -> None:
     """TRANS DATUM: as cycle 7."""
     match = _DATUM.fullmatch(statement.text)
@@ -135,8 +104,8 @@ STATEMENTS: Mapping[str, StatementAction] = {
     "CYCL CALL POS": calls.call_at,
     "CYCL CALL PAT": calls.call_pattern,
     "PATTERN DEF": patterns.define_pattern,
-    "PLANE": plane,
-    "FUNCTION": function,
+    "PLANE": planes.plane,
+    "FUNCTION": planes.function,
     "TRANS": transform,
     "*": pass_over,
     "~": go_on,

@@ -88,8 +88,8 @@ def _with_axes(meaning: str, action: Action, group: str = "not modal") -> GCode:
 
 
 MOTION = {
-    0: motion_code("rapid positioning", motion.RAPID),
-    1: motion_code("straight line", motion.FEED),
+    0: motion_code("rapid positioning", motion.POSITIONING),
+    1: motion_code("straight line", motion.LINEAR),
     2: motion_code("arc clockwise, P turns", CLOCKWISE),
     3: motion_code("arc counter-clockwise, P turns", COUNTER_CLOCKWISE),
     5: motion_code("cubic spline", curves.CUBIC),

@@ -86,7 +86,7 @@ def _straight(control: Control, rapid: bool) -> None:
         control.line_to(goal, rapid=rapid)
 
 
-RAPID, FEED = base.straight(_straight, lambda control: check_feed(control, False))
+POSITIONING, LINEAR = base.straight(_straight, lambda control: check_feed(control, False))
 
 
 def in_machine_coordinates(control: Control) -> None:
@@ -94,7 +94,7 @@ def in_machine_coordinates(control: Control) -> None:
     refuse_in_compensation(control)
     refuse_changed_unit(control)
     mode = control.modal.interpolation
-    if mode not in (RAPID, FEED) or control.modal.cycle is not None:
+    if mode not in (POSITIONING, LINEAR) or control.modal.cycle is not None:
         control.fail("machine-coordinates", "G53 moves with G0 or G1 only", hint="write G53 G0 Z0")
     if control.modal.incremental:
         message = "G53 counts from machine zero, not with G91"

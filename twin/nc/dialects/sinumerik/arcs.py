@@ -210,7 +210,7 @@ def _plane_through(
     return Plane(OWN_PLANE, abscissa, cross(unit, abscissa), unit)
 
 
-RAPID, FEED = base.straight(_line)
+POSITIONING, LINEAR = base.straight(_line)
 CLOCKWISE, COUNTER_CLOCKWISE = both_senses(_arc, ArcRule(bounds=BOUNDS))
 TANGENT = Interpolation(_tangent)
 THREE_POINTS = Interpolation(_three_points)

@@ -74,8 +74,8 @@ _SPINDLE = "the twin's spindle has no angle; CYCLE84 and CYCLE840 tap"
 _UNITS: Action = words.keep_feed
 
 CODES: dict[float, GCode] = {
-    0: motion_code("rapid positioning", arcs.RAPID),
-    1: motion_code("straight line; ANG= with one coordinate", arcs.FEED),
+    0: motion_code("rapid positioning", arcs.POSITIONING),
+    1: motion_code("straight line; ANG= with one coordinate", arcs.LINEAR),
     2: motion_code("arc clockwise: centre, CR=, AR= or polar; TURN=", arcs.CLOCKWISE),
     3: motion_code("arc counter-clockwise", arcs.COUNTER_CLOCKWISE),
     4: replacement("dwell, seconds in F or revolutions in S", words.dwell, consumes="FS"),

@@ -25,6 +25,7 @@ from twin.nc.geometry.matrices import (
 from twin.nc.geometry.planes import XY, YZ, ZX, Vector
 from twin.nc.iso.machine_coordinates import enter_machine_frame, leave_machine_frame
 from twin.nc.iso.offsets import machine_zero, offset_of_job
+from twin.nc.iso.tool_compensation import set_length
 from twin.nc.text.blocks import Word
 
 _NO_SHIFT: Vector = (0.0, 0.0, 0.0)
@@ -122,8 +123,7 @@ def leave_machine_position(control: Control) -> None:
         leave_machine_frame(control, memory.part_frame)
         memory.part_frame = memory.carried = None
         if length is not None:
-            frame.set_shift("length", length)
-            control.motion.reframed()
+            set_length(control, length[2])
         forget_polar(control)
 
 
@@ -156,8 +156,15 @@ def put_programmable(control: Control, matrix: Matrix, translation: Vector) -> N
     memory.matrix, memory.translation = matrix, translation
     lengths = [math.hypot(*row) for row in transposed(matrix)]
     memory.uneven = max(lengths) - min(lengths) > _SAME_SCALE * max(lengths)
-    control.frame.set_matrix(matrix)
     shift = [a + b for a, b in zip(translation, memory.fine, strict=True)]
+    if memory.swivel is not None:
+        directions, origin = memory.swivel
+        matrix, turned = (
+            product(directions, matrix),
+            applied(directions, (shift[0], shift[1], shift[2])),
+        )
+        shift = [a + b for a, b in zip(turned, origin, strict=True)]
+    control.frame.set_matrix(matrix)
     others = [memory.other_shifts.get(axis, 0.0) for axis in range(3, len(control.settings.axes))]
     control.frame.set_shift("rotation", [*shift, *others])
     frame_changed(control, before)

@@ -34,7 +34,6 @@ PASSED_CODES: Mapping[str, str] = {
     "CUT2D": "compensation in the working plane",
     "CP": "path motion",
     "ORIWKS, ORIMKS, ORIAXES, ORIVECT, ORIEULER, ORIRPY, ORIRPY2, ORIC, ORID, OSOF, OSC, OSS, OSSE": _ORIENTATION,
-    "TRAFOOF": "no transformation is in force",
     "SPCOF, ASPCOF": "no analogue spindle",
     "CPRECOF, CPRECON": "the twin keeps to the contour as its drives do",
     "PAROTOF, TOROTOF": "no frame of the tool's orientation is in force",
@@ -74,7 +73,6 @@ PASSED_STATEMENTS = each_name(
         "DELDTG": "nothing was left to go",
         "CDOF": "compensation looks as far ahead as it does",
         "PROTA, PROTS": "collisions are watched by the machine's model",
-        "TRAFOOF": "no transformation is in force",
         "CYCLE832": "tolerance and dynamics of high-speed settings; the machine file has its own",
         "UPATH, SPATH, FGROUP": "F counts the path in X, Y and Z",
         "ACTBLOCNO": "what the screen shows",
@@ -88,7 +86,7 @@ PASSED_STATEMENTS = each_name(
 
 REFUSED_STATEMENTS = each_name(
     {
-        "TRAORI, TRACON, TRAANG": _NO_TILT,
+        "TRACON, TRAANG": _NO_TILT,
         "TRANSMIT, TRACYL": "write the rotary axis itself",
         "DEFINE": "macros of texts are not followed; write the words that they stand for",
         "G291": "the ISO language of this control is another one",

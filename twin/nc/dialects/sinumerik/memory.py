@@ -68,6 +68,7 @@ class SinumerikMemory:
 
     Attributes:
         matrix: Of the programmable frame.
+        swivel: Directions of the axes of CYCLE800's plane, as columns, and its origin [mm]; None: there is none.
         uneven: It scales the axes differently.
         translation: Of the programmable frame, before it shifts by a work offset [mm].
         fine: Its fine part (G59), which TRANS ends [mm].
@@ -98,6 +99,7 @@ class SinumerikMemory:
     """
 
     matrix: Matrix = IDENTITY
+    swivel: tuple[Matrix, Vector] | None = None
     uneven: bool = False
     translation: Vector = (0.0, 0.0, 0.0)
     fine: Vector = (0.0, 0.0, 0.0)
@@ -141,6 +143,7 @@ def acts_on_lines(control: Control) -> bool:
         or memory.machine_pending
         or memory.carried is not None
         or memory.uneven
+        or memory.swivel is not None
         or control.modal.unit != 1.0
         or not math.isnan(memory.polar_radius)
     )

@@ -4,7 +4,7 @@ import re
 
 from twin.nc.control.codes import StatementAction
 from twin.nc.control.control import Control
-from twin.nc.dialects.sinumerik import flow, subprograms
+from twin.nc.dialects.sinumerik import flow, orientation, subprograms
 from twin.nc.dialects.sinumerik.codes import NUMBERS
 from twin.nc.dialects.sinumerik.cycles import CYCLES, call_cycle
 from twin.nc.dialects.sinumerik.known import PASSED_STATEMENTS, REFUSED_STATEMENTS
@@ -50,28 +50,6 @@ def _alarm(control: Control, statement: Statement) -> None:
     control.fail("program-error", message, statement, "the program's own checks have failed")
 
 
-def _swivel(control: Control, statement: Statement) -> None:
-    """CYCLE800() ends a swivelled plane, and none is ever in force here.
-
-    Raises:
-        ProgramError: It begins one.
-    """
-    inner, column, _ = subprograms.bracketed(control, statement.text, statement.text_column)
-    values = subprograms.split_values(inner)
-    plane = [(text, at) for text, at in values[_SWIVEL] if text.strip()]
-    if any(
-        control.compute(control.statements.expression(text, column + at), column + at)
-        for text, at in plane
-    ):
-        message = "CYCLE800 is known to the control and not simulated: it swivels the plane"
-        hint = "post the part for indexing by words of the rotary axes; CYCLE800() and angles of 0 are read"
-        control.fail("unsupported-statement", message, statement, hint)
-
-
-_SWIVEL = slice(4, 13)
-"""Parameters of CYCLE800 that shift and turn: _X0 to _Z1."""
-
-
 STATEMENTS: dict[str, StatementAction] = {
     **dict.fromkeys(PASSED_STATEMENTS, _pass_over),
     **dict.fromkeys(REFUSED_STATEMENTS, _refuse),
@@ -81,7 +59,9 @@ STATEMENTS: dict[str, StatementAction] = {
     "DEF": define,
     "REPEAT": _repeat,
     "SETAL": _alarm,
-    "CYCLE800": _swivel,
+    "CYCLE800": orientation.swivel,
+    "TRAORI": orientation.begin_transformation,
+    "TRAFOOF": orientation.end_transformation,
 }
 
 

@@ -6,7 +6,7 @@ import re
 from twin.nc.control.codes import Action
 from twin.nc.control.compensation import compensate, tool_named, tool_numbered
 from twin.nc.control.control import Control
-from twin.nc.dialects.sinumerik import frames
+from twin.nc.dialects.sinumerik import frames, orientation
 from twin.nc.dialects.sinumerik.leads import is_led
 from twin.nc.dialects.sinumerik.memory import memory_of
 from twin.nc.dialects.sinumerik.subprograms import call_after_motion
@@ -214,6 +214,7 @@ def modal_rounding(control: Control, word: Word) -> None:
 def before_motion(control: Control, _rapid: bool) -> None:
     """What holds for every motion block."""
     frames.require_machine_zero(control)
+    orientation.require_orientation(control)
 
 
 def after_motion(control: Control) -> None:

@@ -9,6 +9,7 @@ from twin.nc.dialects.heidenhain.cycle_values import Parameters
 from twin.nc.dialects.heidenhain.cycles import (
     holes,
     patterns,
+    planes,
     pockets,
     step_cycles,
     threads,
@@ -255,7 +256,7 @@ STEPS: Mapping[int, Callable[[Control, Step], None]] = {
     10: frames.rotate,
     11: frames.scale,
     13: frames.orient_spindle,
-    19: frames.tilt_plane,
+    19: planes.define_plane,
     32: frames.set_tolerance,
     **dict.fromkeys((1, 2, 4, 5), step_cycles.take),
 }

@@ -164,6 +164,8 @@ def apply_transformations(control: Control) -> None:
 
 def _matrix_of(control: Control, kind: str) -> Matrix:
     memory = memory_of(control)
+    if kind == "tilt":
+        return memory.tilt or IDENTITY
     if kind == "mirror":
         return stretched(memory.mirrored, 1.0)
     if kind == "scale":
@@ -188,20 +190,14 @@ def orient_spindle(control: Control, step: Step) -> None:
         control.function("M19", {"R": _last_value(control, step)[0]})
 
 
-def tilt_plane(control: Control, step: Step) -> None:
-    """19: the working plane; only the level one, without angles.
-
-    Raises:
-        ProgramError: An angle is not 0.
-    """
-    for match in _AXIS.finditer(step.text if step.step > 0 else ""):
-        value, _ = control.statements.operand(step.text, match.start(3), step.column)
-        if control.compute(value, step.column) != 0.0:
-            step.fail(control, "tilted-plane", TILTED, NOT_TILTED)
-
-
-TILTED = "the working plane is tilted, which the twin's machines do not follow yet"
-NOT_TILTED = "write the moves of the rotary axes as L C+90, or angles of 0"
+def axis_values(control: Control, step: Step, names: str) -> dict[str, float]:
+    """The values of axes in a block of a definition, by their names."""
+    found = {}
+    for match in _AXIS.finditer(step.text):
+        if match[2].upper() in names:
+            value, _ = control.statements.operand(step.text, match.start(3), step.column)
+            found[match[2].upper()] = control.compute(value, step.column)
+    return found
 
 
 def set_tolerance(control: Control, step: Step) -> None:

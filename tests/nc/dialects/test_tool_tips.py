@@ -1,0 +1,207 @@
+"""Tool centre point control and tilted planes in the controls that have them."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from tests.five_axes import head_and_table, on_machine, settings, trunnion
+from tests.nc.running import Outcome, run
+from twin.kinematics import tool_direction
+from twin.nc.canonical import Moves, Shape
+from twin.nc.control.settings import ControlSettings
+from twin.nc.path.tool_center import ToolCenter
+
+SETTINGS = settings(on_machine(trunnion()))
+TIP = ToolCenter(on_machine(trunnion()), 0.0, [0.0] * 5)
+
+LED = {
+    "fanuc": "O1\nT1 M6\nG43.4 H1\nG1 X10. Y20. Z5. F500.\nX40. Y-10. A30. C90.\nG49\nM30\n",
+    "haas": "O1\nG234 H1\nG1 X10. Y20. Z5. F500.\nX40. Y-10. A30. C90.\nG49\nM30\n",
+    "sinumerik": "T1 D1 M6\nTRAORI\nG1 X10 Y20 Z5 F500\nX40 Y-10 A30 C90\nTRAFOOF\nM30\n",
+    "heidenhain": "BEGIN PGM A MM\nTOOL CALL 1 Z S1000\nM128\nL X+10 Y+20 Z+5 F500\nL X+40 Y-10 A+30 C+90\nM129\nEND PGM A MM\n",
+    "fagor8070": "T1 D1\nM6\n#RTCP ON\nG1 X10 Y20 Z5 F500\nX40 Y-10 A30 C90\n#RTCP OFF\nM30\n",
+}
+"""The same in each: to X10 Y20 Z5, then to X40 Y-10 while A and C turn."""
+
+
+def _led(dialect: str, text: str, control: ControlSettings = SETTINGS) -> Outcome:
+    outcome = run(text, dialect, control)
+    assert outcome.error is None, outcome.error
+    return outcome
+
+
+def _tips(moves: Moves) -> np.ndarray:
+    return np.array([TIP.tip(place.tolist()) for place in moves.end])
+
+
+@pytest.mark.parametrize("dialect", LED)
+def test_every_control_leads_the_tip_the_same_way(dialect: str) -> None:
+    moves = _led(dialect, LED[dialect]).moves
+    expected = _led("fanuc", LED["fanuc"]).moves
+    assert np.array_equal(moves.shape, expected.shape)
+    assert moves.end == pytest.approx(expected.end, abs=1e-12)
+    assert moves.feed == pytest.approx(expected.feed)
+    curves = moves.shape == Shape.CURVE
+    assert curves.sum() > 20
+    assert _tips(moves)[-1] == pytest.approx((40.0, -10.0, 5.0, 30.0, 90.0), abs=1e-9)
+    assert moves.length[curves].sum() == pytest.approx(np.hypot(30.0, 30.0))
+
+
+@pytest.mark.parametrize("dialect", LED)
+def test_a_machine_without_rotary_axes_leads_no_tip(dialect: str) -> None:
+    outcome = run(LED[dialect], dialect, dataclasses.replace(SETTINGS, setup=None))
+    assert outcome.error is not None
+    assert outcome.error.code == "tool-center"
+
+
+def test_a_longer_tool_is_led_at_its_own_tip() -> None:
+    text = LED["fanuc"].replace("T1", "T2").replace("H1", "H2")
+    end = _led("fanuc", text).moves.end[-1]
+    longer = ToolCenter(on_machine(trunnion()), 15.0, [0.0] * 5)
+    assert longer.tip(end.tolist()) == pytest.approx([40.0, -10.0, 5.0, 30.0, 90.0], abs=1e-9)
+
+
+def test_behind_the_control_of_the_tip_positions_are_those_of_the_axes() -> None:
+    text = LED["fanuc"].replace("M30", "G1 Z200.\nM30")
+    outcome = _led("fanuc", text)
+    before, after = outcome.moves.end[-2], outcome.moves.end[-1]
+    assert after[2] == 200.0
+    assert np.array_equal(before[[0, 1, 3, 4]], after[[0, 1, 3, 4]])
+
+
+def test_a_head_is_led_as_a_table_is() -> None:
+    head = on_machine(head_and_table())
+    axes = dataclasses.replace(SETTINGS.axes, names=("X", "Y", "Z", "B", "C"))
+    text = LED["fanuc"].replace("A30.", "B30.")
+    outcome = _led("fanuc", text, settings(head, axes))
+    tip = ToolCenter(head, 0.0, [0.0] * 5).tip(outcome.moves.end[-1].tolist())
+    assert tip == pytest.approx([40.0, -10.0, 5.0, 30.0, 90.0], abs=1e-9)
+
+
+def test_machine_coordinates_count_the_axes() -> None:
+    text = LED["fanuc"].replace("G49", "G0 G53 Z-20.\nG0 G53 X-50. Y10.\nG49")
+    outcome = _led("fanuc", text)
+    assert outcome.moves.end[-1][:3] == pytest.approx((-50.0 - 15.0, 10.0 - 20.0, -20.0 + 430.0))
+
+
+PLANE = "G0 X0 Y0 Z20.\nG1 Z-1. F200.\nG3 X10. Y10. R10.\n"
+TILTED = {
+    "fanuc": f"O1\nT2 M6\nG0 Z100.\nG68.2 X10. Y0 Z0 I0 J30. K0\nG53.1\nG43 H2\n{PLANE}G69\nM30\n",
+    "sinumerik": 'T2 D1 M6\nG0 Z100\nCYCLE800(0,"T",0,57,10,0,0,30,0,0,0,0,0,1)\nG0 X0 Y0 Z20\nG1 Z-1 F200\nG3 X10 Y10 CR=10\nCYCLE800()\nM30\n',
+    "heidenhain": "BEGIN PGM A MM\nTOOL CALL 2 Z S1000\nL Z+100 FMAX\nCYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 X+10\nPLANE SPATIAL SPA+30 SPB+0 SPC+0 TURN FMAX SEQ+\nL X+0 Y+0 Z+20 FMAX\nL Z-1 F200\nCR X+10 Y+10 R+10 DR+\nPLANE RESET STAY\nEND PGM A MM\n",
+}
+
+
+@pytest.mark.parametrize("dialect", TILTED)
+def test_every_control_cuts_in_the_same_tilted_plane(dialect: str) -> None:
+    moves = _led(dialect, TILTED[dialect]).moves
+    longer = ToolCenter(on_machine(trunnion()), 15.0, [0.0] * 5)
+    tip = np.array(longer.tip(moves.end[-1].tolist()))
+    # 10 along and 10 up a plane that turns by 30 degrees about X through X10, 1 below it.
+    sine, cosine = 0.5, np.sqrt(0.75)
+    assert tip[:3] == pytest.approx((20.0, 10.0 * cosine + sine, 10.0 * sine - cosine), abs=1e-9)
+    direction = tool_direction(trunnion(), moves.end[-1:] + on_machine(trunnion()).zero)[0]
+    assert direction == pytest.approx((0.0, -sine, cosine), abs=1e-9)
+    assert moves.shape[-1] == Shape.ARC
+    assert moves.radius[-1] == pytest.approx(10.0)
+    assert not np.any(moves.shape == Shape.CURVE)
+
+
+def test_a_post_of_klartext_turns_the_axes_itself() -> None:
+    text = (
+        "BEGIN PGM A MM\nTOOL CALL 1 Z S1000\nL Z+100 FMAX\n"
+        "PLANE SPATIAL SPA90 SPB0 SPC180 STAY SEQ- TABLE ROT\n"
+        "L A+Q120 C+Q122 R0 FMAX M126\nL X+0 Y+0 Z+20 R0 FMAX\nEND PGM A MM\n"
+    )
+    end = _led("heidenhain", text).moves.end[-1]
+    assert end[3:] == pytest.approx((-90.0, 0.0), abs=1e-9)
+    # The plane's Z points along Y of the part.
+    assert TIP.tip(end.tolist())[:3] == pytest.approx((0.0, 20.0, 0.0), abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("words", "sign"), [("EULER EULPR+0 EULNU+30 EULROT+0", 1.0), ("AXIAL A+30", 1.0),
+     ("VECTOR BX+1 BY+0 BZ+0 NX+0 NY-0.5 NZ+0.8660254037844386", 1.0), ("RELATIV SPA+30", 1.0)],
+)  # fmt: skip
+def test_planes_of_klartext_by_other_words(words: str, sign: float) -> None:
+    spatial = TILTED["heidenhain"]
+    text = spatial.replace("SPATIAL SPA+30 SPB+0 SPC+0", words)
+    expected = _led("heidenhain", spatial).moves.end[-1]
+    assert sign * _led("heidenhain", text).moves.end[-1] == pytest.approx(expected, abs=1e-6)
+
+
+def test_move_keeps_the_tip_at_the_part_while_the_axes_turn() -> None:
+    text = TILTED["heidenhain"].replace("TURN FMAX", "MOVE FMAX")
+    moves = _led("heidenhain", text).moves
+    curves = moves[moves.shape == Shape.CURVE]
+    longer = ToolCenter(on_machine(trunnion()), 15.0, [0.0] * 5)
+    tips = np.array([longer.tip(place.tolist())[:3] for place in curves.end])
+    assert np.abs(tips - tips[0]).max() < 1e-9
+
+
+def test_angles_of_cycle800_one_after_the_other() -> None:
+    text = TILTED["sinumerik"].replace("57,10,0,0,30,0,0", "{}")
+    first = text.replace("{}", "57,0,0,0,20,30,40")
+    second = text.replace("{}", "27,0,0,0,40,30,20")
+    directions = [
+        tool_direction(trunnion(), _led("sinumerik", each).moves.end[-1:] + TIP_ZERO)[0]
+        for each in (first, second)
+    ]
+    # About X, the new Y, the new Z; and about Z, the new Y, the new X.
+    by_x_first = _turn(0, 20) @ _turn(1, 30) @ _turn(2, 40)
+    by_z_first = _turn(2, 40) @ _turn(1, 30) @ _turn(0, 20)
+    assert directions[0] == pytest.approx(by_x_first[:, 2], abs=1e-9)
+    assert directions[1] == pytest.approx(by_z_first[:, 2], abs=1e-9)
+
+
+def test_a_dynamic_work_offset_keeps_the_directions_of_the_machine() -> None:
+    text = "O1\nT1 M6\nG0 Z100.\nA30. C40.\nG254\nG0 X0 Y0 Z20.\nG1 X5. F100.\nG255\nM30\n"
+    moves = _led("haas", text).moves
+    assert moves.end[-1] - moves.start[-1] == pytest.approx((5.0, 0.0, 0.0, 0.0, 0.0), abs=1e-9)
+    # The origin is the part's, wherever the axes have brought it: 20 mm along the tool from it.
+    assert np.linalg.norm(TIP.tip(moves.start[-1].tolist())[:3]) == pytest.approx(20.0)
+
+
+TIP_ZERO = on_machine(trunnion()).zero
+
+
+def _turn(axis: int, angle: float) -> np.ndarray:
+    matrix = np.eye(3)
+    first, second = (axis + 1) % 3, (axis + 2) % 3
+    cosine, sine = np.cos(np.radians(angle)), np.sin(np.radians(angle))
+    matrix[first, first] = matrix[second, second] = cosine
+    matrix[first, second], matrix[second, first] = -sine, sine
+    return matrix
+
+
+@pytest.mark.parametrize(
+    ("dialect", "text", "code"),
+    [
+        ("fanuc", "O1\nG68.2 X0 Y0 Z0 I0 J30. K0\nG0 X5.\nM30\n", "tilted-plane"),
+        ("fanuc", "O1\nG53.1\nM30\n", "tilted-plane"),
+        ("fanuc", "O1\nG68.2 X0 Y0 Z0 I0 J130. K0\nG53.1\nM30\n", "tilted-plane"),
+        ("fanuc", "O1\nG68.2 X0 Y0 Z0 I0 J30. K0\nG53.1\nG0 A5.\nM30\n", "tool-center"),
+        ("fanuc", "O1\nT1 M6\nG41 D1\nG1 X5. F100.\nG43.4 H1\nM30\n", "compensation-change"),
+        ("sinumerik", 'CYCLE800(0,"",0,192,0,0,0,30,0,0,0,0,0,1)\nM30\n', "tilted-plane"),
+        ("sinumerik", 'CYCLE800(0,"",0,57,0,0,0,30,0,0,0,0,0,0)\nG0 X5\nM30\n', "tilted-plane"),
+        ("sinumerik", "TRAORI(2)\nM30\n", "tool-center"),
+        ("heidenhain", "BEGIN PGM A MM\nPLANE POINTS\nEND PGM A MM\n", "tilted-plane"),
+        (
+            "heidenhain",
+            "BEGIN PGM A MM\nPLANE SPATIAL SPA+30 SPB+0 SPC+0 STAY\nL X+5 FMAX\nEND PGM A MM\n",
+            "tilted-plane",
+        ),
+        (
+            "heidenhain",
+            "BEGIN PGM A MM\nPLANE SPATIAL SPA+30 SPB+0 SPC+0 MOVE DIST50 FMAX\nEND PGM A MM\n",
+            "tilted-plane",
+        ),
+        ("heidenhain", "BEGIN PGM A MM\nFUNCTION TCPM F CONT AXIS SPAT\nEND PGM A MM\n", "tool-center"),
+        ("fagor8070", "#RTCP\nM30\n", "unreadable-statement"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_followed_is_refused(dialect: str, text: str, code: str) -> None:
+    outcome = run(text, dialect, SETTINGS)
+    assert outcome.error is not None
+    assert outcome.error.code == code, outcome.error

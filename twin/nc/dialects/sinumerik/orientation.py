@@ -1,0 +1,134 @@
+"""TRAORI, which leads the tip of the tool, and CYCLE800, which swivels the plane.
+
+Sources: programming manuals "Job planning" (transformations) and "Measuring cycles, milling" (CYCLE800). In force are
+the machine's own rotary axes as they are programmed (ORIAXES, the axes interpolated evenly).
+"""
+
+from typing import NoReturn
+
+from twin.nc.control.control import Control
+from twin.nc.dialects.sinumerik import subprograms
+from twin.nc.dialects.sinumerik.frames import put_programmable
+from twin.nc.dialects.sinumerik.memory import memory_of
+from twin.nc.geometry.matrices import IDENTITY, Matrix, applied, product
+from twin.nc.geometry.planes import Vector
+from twin.nc.iso.machine_coordinates import machine_frame
+from twin.nc.iso.tilted_plane import about, point_tool
+from twin.nc.iso.tool_center import begin_tool_center, end_tool_center
+from twin.nc.text.blocks import Statement
+
+_RETRACT, _STATUS, _MODE, _ORIGIN, _ANGLES, _SHIFT, _DIRECTION = (
+    0, 2, 3, slice(4, 7), slice(7, 10), slice(10, 13), 13,
+)  # fmt: skip
+"""Places of CYCLE800's parameters: _FR, _ST, _MODE, _X0 to _Z0, _A to _C, _X1 to _Z1, _DIR."""
+
+_BY_AXES, _DIRECTLY = 0, 3
+"""Bits 6 and 7 of _MODE: angles about axes one after the other, or of the rotary axes themselves."""
+
+
+def begin_transformation(control: Control, statement: Statement) -> None:
+    """TRAORI, TRAORI(1): the tip is led; F counts its way.
+
+    Raises:
+        ProgramError: It asks for another transformation, or no axis turns.
+    """
+    inner = statement.text.strip().strip("()").strip()
+    if inner not in ("", "1"):
+        message = f"the machine has one transformation of orientation, TRAORI, not TRAORI({inner})"
+        control.fail("tool-center", message, statement)
+    begin_tool_center(control, "TRAORI")
+
+
+def end_transformation(control: Control, _statement: Statement) -> None:
+    """TRAFOOF: positions are those of the axes; the length of the tool acts along Z."""
+    end_tool_center(control, "TRAFOOF", keeps_length=True)
+
+
+def swivel(control: Control, statement: Statement) -> None:
+    """CYCLE800: the plane is turned about a point, and the rotary axes set the tool across it; () ends it.
+
+    Decisions: _FR retracts Z to machine zero before; _DIR is the sign of the axis next to the tool, and where it
+    is 0 only the frame turns, so that nothing moves until the tool stands across it.
+
+    Raises:
+        ProgramError: Its mode is not simulated, or the machine cannot.
+    """
+    inner, column, _ = subprograms.bracketed(control, statement.text, statement.text_column)
+    values = [
+        control.compute(control.statements.expression(text, column + at), column + at)
+        if text.strip() and not text.strip().startswith('"')
+        else 0.0
+        for text, at in subprograms.split_values(inner)
+    ]
+    values += [0.0] * (_DIRECTION + 1 - len(values))
+    memory = memory_of(control)
+    end_tool_center(control, "CYCLE800", keeps_length=True)
+    if not any(values[_ORIGIN] + values[_ANGLES] + values[_SHIFT]):
+        memory.swivel = None
+        put_programmable(control, memory.matrix, memory.translation)
+        if not inner.strip():
+            return
+    if control.settings.setup is None and any(values[_ANGLES]):
+        message = "CYCLE800 swivels the plane, and no axis of this machine turns"
+        control.fail("tilted-plane", message, statement)
+    if values[_RETRACT]:
+        _retract(control)
+    matrix = _matrix(control, statement, int(values[_MODE]), values[_ANGLES])
+    before: tuple[Matrix, Vector] = (IDENTITY, (0.0, 0.0, 0.0))
+    if int(values[_STATUS]) % 10 == 1 and memory.swivel is not None:
+        before = memory.swivel
+    turned = product(before[0], matrix)
+    x, y, z = applied(before[0], _vector(values[_ORIGIN]))
+    a, b, c = applied(turned, _vector(values[_SHIFT]))
+    o, p, q = before[1]
+    memory.swivel = turned, (o + x + a, p + y + b, q + z + c)
+    put_programmable(control, memory.matrix, memory.translation)
+    if values[_DIRECTION] and control.settings.setup is not None:
+        point_tool(control, "CYCLE800", sense=values[_DIRECTION], at=statement)
+
+
+def require_orientation(control: Control) -> None:
+    """In a swivelled plane X, Y and Z move when the tool stands across it.
+
+    Raises:
+        ProgramError: It does not.
+    """
+    swivelled = memory_of(control).swivel
+    word = next((control.words[each] for each in "XYZ" if each in control.words), None)
+    if swivelled and swivelled[0] != IDENTITY and word and control.path.tool_center is None:
+        message = "the tool does not stand across the swivelled plane"
+        control.fail("tilted-plane", message, word, "CYCLE800 with _DIR -1 or 1, or TRAORI")
+
+
+def _retract(control: Control) -> None:
+    with machine_frame(control, "the retraction of CYCLE800"):
+        there = list(control.motion.programmed)
+        if there[2] < 0.0:
+            there[2] = 0.0
+            control.line_to(there, rapid=True)
+
+
+def _matrix(control: Control, statement: Statement, mode: int, angles: list[float]) -> Matrix:
+    """The turn that the angles say; its columns are the directions of the swivelled axes."""
+    kind = mode >> 6
+    if kind != _BY_AXES and any(angles):
+        _refuse_mode(control, statement, mode)
+    matrix = IDENTITY
+    for place in range(3):
+        axis = (mode >> 2 * place & 3) - 1
+        if axis >= 0 and angles[place]:
+            # Bits 0 and 1 name the first axis; each turns about where those before it have left it.
+            matrix = product(matrix, about(axis, angles[place]))
+    return matrix
+
+
+def _refuse_mode(control: Control, statement: Statement, mode: int) -> NoReturn:
+    kind = mode >> 6
+    name = {1: "solid angles", 2: "projection angles", _DIRECTLY: "rotary axes"}.get(kind, "angles")
+    message = f"CYCLE800 by {name} (_MODE {mode}) is not simulated"
+    control.fail("tilted-plane", message, statement, "post angles axis by axis: _MODE 57 or 27")
+
+
+def _vector(values: list[float]) -> Vector:
+    x, y, z = values
+    return (x, y, z)

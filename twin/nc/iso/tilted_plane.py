@@ -1,0 +1,91 @@
+"""Tilted planes: a frame turned in space, and rotary axes that set the tool across it.
+
+Decision: where the tool stands across the plane, the rotary axes rest; moves count in the plane, the length of
+the tool acts along it, and whatever solution of the angles was taken, the cut is the same.
+"""
+
+import math
+
+from twin.nc.control.control import Control
+from twin.nc.geometry.arcs import direction
+from twin.nc.geometry.matrices import Matrix, applied
+from twin.nc.geometry.planes import Vector
+from twin.nc.iso.tool_center import begin_tool_center, end_tool_center
+from twin.nc.path.tool_center import ToolCenter
+from twin.nc.text.blocks import Statement
+
+_Z: Vector = (0.0, 0.0, 1.0)
+_ACROSS = 1e-4
+"""How far a tool that stands across a plane may lean, by what posts round angles to [rad]."""
+
+
+def about(axis: int, angle: float) -> Matrix:
+    """A turn about X, Y or Z, 0 to 2 [deg]."""
+    cosine, sine = direction(angle)
+    rows = [[0.0, 0.0, 0.0] for _ in range(3)]
+    first, second = (axis + 1) % 3, (axis + 2) % 3
+    rows[axis][axis] = 1.0
+    rows[first][first] = rows[second][second] = cosine
+    rows[first][second], rows[second][first] = -sine, sine
+    (a, b, c), (d, e, f), (g, h, i) = rows
+    return ((a, b, c), (d, e, f), (g, h, i))
+
+
+def point_tool(
+    control: Control, name: str, *, sense: float = 0.0, at: Statement | None = None
+) -> None:
+    """Turn the rotary axes until the tool stands across the plane of the frame, then count in it.
+
+    Args:
+        control: The control.
+        name: What the program calls it, for diagnostics.
+        sense: Sign of the axis next to the tool that is preferred; 0: whatever is nearest.
+        at: What asks for it; None: the block's code.
+
+    Raises:
+        ProgramError: The machine cannot, or radius compensation is in force.
+    """
+    end_tool_center(control, name, keeps_length=True)
+    target = list(control.motion.programmed)
+    target[3:] = rotary_axes_across(control, name, sense=sense, at=at)[3:]
+    control.line_to(target, rapid=True)
+    begin_tool_center(control, name, tilted=True)
+
+
+def rotary_axes_across(
+    control: Control, name: str, *, sense: float = 0.0, at: Statement | None = None
+) -> list[float]:
+    """Programmed position at which the tool stands across the plane of the frame, the tip not being led.
+
+    Raises:
+        ProgramError: The machine cannot.
+    """
+    setup = control.settings.setup
+    if setup is None:
+        message = f"{name} needs rotary axes, and no axis of this machine turns"
+        control.fail("tilted-plane", message, at, "run it on a machine with them")
+    center = ToolCenter(setup, 0.0, control.frame.zero())
+    across = applied(control.frame.matrix, _Z)
+    try:
+        there = center.pointing(across, control.motion.part, sense)
+    except ValueError as error:
+        control.fail("tilted-plane", f"{name}: {error}", at)
+    return [part - shift for part, shift in zip(there, control.frame.total, strict=True)]
+
+
+def stands_across(control: Control) -> bool:
+    """Whether the tool, whose tip is not led, stands across the plane of the frame."""
+    setup = control.settings.setup
+    if setup is None:
+        return control.frame.matrix[2] == _Z
+    center = ToolCenter(setup, 0.0, control.frame.zero())
+    across = applied(control.frame.matrix, _Z)
+    return math.dist(center.direction(control.motion.part), across) < _ACROSS
+
+
+def machine_directions(control: Control) -> Matrix:
+    """The directions of the machine's X, Y and Z as the part, whose tip is led, sees them; as columns."""
+    center = control.path.tool_center
+    assert center is not None
+    (a, b, c), (d, e, f), (g, h, i) = center.frame_there(control.motion.part).tolist()
+    return ((a, b, c), (d, e, f), (g, h, i))
