@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from twin.commands.interruption import let_interruption_stop
+from twin.commands.interruption import stop_on_sigint
 
 pytestmark = pytest.mark.processes
 
@@ -50,7 +50,7 @@ def test_the_first_stops_and_the_second_interrupts(number: signal.Signals) -> No
     before = {each: signal.signal(each, interrupt) for each in NUMBERS}
     stops: list[None] = []
     try:
-        with let_interruption_stop(lambda: stops.append(None)) as came:
+        with stop_on_sigint(lambda: stops.append(None)) as came:
             signal.raise_signal(number)
             assert came == [number]
             assert len(stops) == 1
@@ -64,7 +64,7 @@ def test_the_first_stops_and_the_second_interrupts(number: signal.Signals) -> No
 
 def test_what_interrupted_before_does_so_again() -> None:
     before = {each: signal.getsignal(each) for each in NUMBERS}
-    with let_interruption_stop(lambda: None) as came:
+    with stop_on_sigint(lambda: None) as came:
         assert all(signal.getsignal(each) != before[each] for each in NUMBERS)
     assert not came
     assert {each: signal.getsignal(each) for each in NUMBERS} == before

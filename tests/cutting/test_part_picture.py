@@ -6,7 +6,7 @@ import numpy as np
 from PIL import Image
 
 from twin.cutting.height_map import HeightMap, blank
-from twin.cutting.part_picture import part_picture
+from twin.cutting.part import part_picture
 from twin.job.job_file import StockTable
 
 

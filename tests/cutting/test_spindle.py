@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from twin.cutting.program_summary import SummaryBuilder
-from twin.cutting.spindle import standing
 from twin.job.job_file import JobFile
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Axes, Chunk, Dwell, Event, Function, Moves
@@ -33,7 +32,7 @@ def stands(chunks: list[Chunk], *places: tuple[int, float]) -> list[bool]:
     points = Setpoints(
         move * 1.0, move.astype(np.int64), move.astype(np.int64), fraction, none, none, none
     )
-    return standing(builder.summary(), points).tolist()
+    return builder.summary().standing(points).tolist()
 
 
 def function(before: int, word: str, at: float = 0.0, **arguments: float) -> Function:

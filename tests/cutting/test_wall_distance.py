@@ -10,7 +10,7 @@ import trimesh
 
 from tests.cutting.conftest import Motion
 from twin.cutting.cut import Cutter
-from twin.cutting.stock_contact import Head
+from twin.cutting.material import Head
 from twin.job.job_file import StockTable, ToolTable
 from twin.nc.canonical import FloatArray
 from twin.toolpath.part_frame import PartFrame

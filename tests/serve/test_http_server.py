@@ -15,9 +15,8 @@ import pytest
 
 from twin.job.job_file import ToolTable
 from twin.nc.canonical import Axes
-from twin.serve.agent import Agent, RequestError
+from twin.serve.agent import Agent, Clock, RequestError
 from twin.serve.buffer import NORMAL, Condition
-from twin.serve.clock import Clock
 from twin.serve.device import device_of
 from twin.serve.playback import Tick, feed
 

@@ -12,9 +12,8 @@ import pytest
 from pymtconnect import mtconnect_client as client
 
 from tests.serve.test_http_server import AXES, FAULT, served
-from twin.serve.agent import Agent
+from twin.serve.agent import Agent, Clock
 from twin.serve.buffer import NORMAL
-from twin.serve.clock import Clock
 from twin.serve.device import Component, DataItem, device_of
 from twin.serve.forms import JSON, XML, accepted_form
 from twin.serve.playback import Tick

@@ -19,9 +19,8 @@ from twin.recording.reader import open_recording
 from twin.run.preparation import prepare
 from twin.run.progress import no_progress
 from twin.run.run import Run
-from twin.serve.agent import Agent
+from twin.serve.agent import Agent, Clock
 from twin.serve.buffer import Condition
-from twin.serve.clock import Clock
 from twin.serve.device import device_of
 from twin.serve.playback import BEFORE_START_S, TICK_S, Production, Tick, coolant_of, feed, ticks
 

@@ -12,9 +12,8 @@ import pytest
 from tests.serve.schema_check import Schemas
 from twin.job.job_file import ToolTable
 from twin.nc.canonical import Axes
-from twin.serve.agent import Agent, RequestError
+from twin.serve.agent import Agent, Clock, RequestError
 from twin.serve.buffer import NORMAL, Condition, Value
-from twin.serve.clock import Clock
 from twin.serve.device import device_of
 from twin.serve.forms import XML
 

@@ -4,9 +4,8 @@ import asyncio
 
 import pytest
 
-from twin.serve.agent import Agent
+from twin.serve.agent import Agent, Clock
 from twin.serve.buffer import NORMAL, Condition
-from twin.serve.clock import Clock
 from twin.serve.device import device_of
 from twin.serve.room import RoomObserver, observe_room
 from twin.training.scene.scene_file import read_scene, scene_path

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 
 
 @contextlib.contextmanager
-def let_interruption_stop(stop: Callable[[], None]) -> Iterator[list[int]]:
+def stop_on_sigint(stop: Callable[[], None]) -> Iterator[list[int]]:
     """Let the first Ctrl+C, or an asked end, be the regular end, wherever the command is just then.
 
     The second interrupts whatever is being done, as everywhere else.

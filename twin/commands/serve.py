@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from twin.commands.interruption import let_interruption_stop
+from twin.commands.interruption import stop_on_sigint
 from twin.compilation.announcement import announce_compilation
 from twin.errors import ExitCode, UsageError
 from twin.extras import require_extra
@@ -77,8 +77,7 @@ def serve_job(path: Path, source: Source) -> ExitCode:
     require_extra("serve", "twin serve")
     if source.view:
         require_extra("train", "twin serve --view")
-    from twin.serve.agent import Agent
-    from twin.serve.clock import Clock
+    from twin.serve.agent import Agent, Clock
     from twin.serve.device import device_of
     from twin.serve.playback import Playhead, feed, ticks
 
@@ -102,7 +101,7 @@ def serve_job(path: Path, source: Source) -> ExitCode:
         with (
             _viewed(production, playhead, wanted=source.view),
             _served(agent, observe, listener, stop),
-            let_interruption_stop(stop.set),
+            stop_on_sigint(stop.set),
         ):
             typer.echo(_address(listener))
             while not stop.wait(_WAIT_S):
@@ -198,8 +197,7 @@ def _serve_room(
     line: "socket.socket | int | None" = None,
 ) -> None:  # fmt: skip
     """Open a room, tell monitors of its machine, and let senders drive it where there is a line for them."""
-    from twin.serve.agent import Agent
-    from twin.serve.clock import Clock
+    from twin.serve.agent import Agent, Clock
     from twin.serve.device import device_of
     from twin.serve.grbl.server import GrblLine
     from twin.serve.room import RoomObserver, observe_room
@@ -228,7 +226,7 @@ def _serve_room(
 
         with (
             _served(agent, observe, listener, stop, room.stop),
-            let_interruption_stop(leave),
+            stop_on_sigint(leave),
         ):
             typer.echo(_address(listener))
             for role, address in room.addresses.items():

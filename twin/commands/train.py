@@ -7,7 +7,7 @@ from pathlib import Path
 
 import typer
 
-from twin.commands.interruption import let_interruption_stop
+from twin.commands.interruption import stop_on_sigint
 from twin.errors import ExitCode, UsageError
 from twin.extras import require_extra
 from twin.training.scene.scene_file import read_scene, scene_names, scene_path
@@ -151,7 +151,7 @@ def train(name: str, place: Place, out: Path | None) -> ExitCode:
                 promptly=True,
             )
         )
-        interrupted = stack.enter_context(let_interruption_stop(room.stop))
+        interrupted = stack.enter_context(stop_on_sigint(room.stop))
         typer.echo(f"{scene.name}: open {room.addresses['operator']} in a browser; Ctrl+C ends")
         typer.echo(f"the trainer's own page: {room.addresses['trainer']}")
         typer.echo(f"to look on: {room.addresses['watcher']}")
@@ -201,7 +201,7 @@ def teach(
                 key=place.key,
             )
         )  # fmt: skip
-        interrupted = stack.enter_context(let_interruption_stop(over.set))
+        interrupted = stack.enter_context(stop_on_sigint(over.set))
         width = max(len(name) for name, _ in opened.pupils)
         for name, address in opened.pupils:
             typer.echo(f"{name:{width}}  {address}")

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import typer
 
-from twin.commands.interruption import let_interruption_stop
+from twin.commands.interruption import stop_on_sigint
 from twin.commands.run import run_and_print
 from twin.compilation.announcement import announce_compilation
 from twin.errors import ExitCode, UsageError
@@ -58,7 +58,7 @@ def view(path: Path, port: int) -> ExitCode:
             raise UsageError(f"{recording}: the recording has no samples: there is nothing to show")
         run = RecordedRun(scene, preparation.machine)
         address = stack.enter_context(open_view(run, port, report=report_of(scene, recording)))
-        stack.enter_context(let_interruption_stop(over.set))
+        stack.enter_context(stop_on_sigint(over.set))
         typer.echo(f"{recording}: open {address} in a browser; Ctrl+C ends")
         while not over.wait(0.2):
             pass

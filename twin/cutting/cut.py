@@ -12,38 +12,23 @@ from twin.cutting.events import CutEvent, EventLog, StockWatch, Stretches
 from twin.cutting.forces.direction import tool_force
 from twin.cutting.forces.materials import kienzle
 from twin.cutting.forces.mean_force import cutting_load, cutting_width
-from twin.cutting.height_map import BoolArray, blank
-from twin.cutting.kernels.sweep import Marks, Removal
-from twin.cutting.kernels.thin import thin
-from twin.cutting.kernels.wall_distance import note_walls
-from twin.cutting.stock_contact import EDGE, Head, Points, StockContact
-from twin.cutting.sweeping import sweep_lines, union
+from twin.cutting.height_map import BoolArray, HeightMap, blank
+from twin.cutting.height_map_material import HeightMapMaterial
+from twin.cutting.kernels.sweep import Removal
+from twin.cutting.material import AIR_MM, EDGE, Head, Material, Points
+from twin.cutting.sweeping import Rectangle
 from twin.cutting.tools import Profile, default_cell, profile
+from twin.cutting.tridexel import blanks
+from twin.cutting.tridexel.material import TriDexelMaterial
+from twin.errors import ConfigError
 from twin.job.job_file import StockTable, ToolTable
 from twin.nc.canonical import FloatArray, IntArray
 from twin.recording.reader import Samples
 from twin.toolpath.part_frame import PartFrame
 from twin.toolpath.tool_plan import ToolPlan
 
-STRAIGHT_SHARE = 0.01
-STRAIGHT_MM = 5e-4
-"""Samples that are off a straight line by no more than this share of a cell, and by no more than
-this, count as on it [mm]."""
-
-LONGEST_SHARE = 0.5
-"""Longest stretch that is swept at once, as a share of the tool's radius: it is also how finely
-cutting is told from air."""
-
-MOST_JOINED = 64
-"""Samples that one stretch may stand for."""
-
-WALL_SHARE = 0.02
-WALL_MM = 4e-3
-WALL_JOINED = 32
-"""The same for walls beside the way, which are looked at for more stretches together."""
-
-AIR_MM = 1e-3
-"""A stretch that takes less than this off one cell cuts air [mm]."""
+HEIGHT_MAP, TRI_DEXEL = "height map", "tri-dexel"
+"""What describes the material."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,8 +39,10 @@ class CutResult:
     """Material taken off [mm³]."""
     removed_by_tool_mm3: Mapping[int, float]
     """What each tool took off, by its number, in the order of use [mm³]."""
+    stock: str
+    """What described the material: ``HEIGHT_MAP`` where the tool kept to the part's Z, else ``TRI_DEXEL``."""
     cell_mm: float
-    """Side of a cell of the height map [mm]."""
+    """Side of a cell of it [mm]."""
     air_share: float
     """Share of the cutting feed's path that met no material."""
     gouges: tuple[CutEvent, ...]
@@ -90,15 +77,11 @@ class Cutter:
     """Cuts stock along recorded motion, chunk by chunk; memory does not grow with the time.
 
     Attributes:
-        map: The height map as cut so far; look, but let only the cutter change it.
+        material: The material as cut so far; look, but let only the cutter change it.
         plan: What is in the spindle when.
-        changed: Cells that changed in the last ``add``: row, row end, column, column end; none
-            when the rows end before they begin.
         tool: What is in the spindle after the last ``add``.
         force: Mean cutting force on the tool during each sample of the last ``add``, in the part's
             frame, shape (n, 3) [N]; 0 in the air and where it is not known.
-        marks: Way of the tool at which each cell was last cut, shape (ny, nx) [mm]: its lines are
-            the marks that a cutter leaves. Of no size unless asked for.
         halted: What met material that must not, at which cutting ended, if it shall.
         watch: What the cut should not do, though nothing stops at it.
         start_depth: How deep the tool stood in the material before anything moved [mm].
@@ -115,6 +98,7 @@ class Cutter:
         keep_marks: bool = False,
         halts: bool = False,
         head: Head | None = None,
+        tilts: bool = False,
     ) -> None:
         """Lay the uncut stock on the table.
 
@@ -129,6 +113,8 @@ class Cutter:
                 rapid, a feed with the spindle off, shank, holder or head. The part is then as it
                 was at that moment.
             head: What is above a tool's holder; None: nothing.
+            tilts: Whether the tool ever stands off the part's Z: the material is then described by
+                intervals along three directions, else by a height map.
 
         Raises:
             ConfigError: The stock is too large for its grid, its file cannot be read, or its
@@ -137,15 +123,18 @@ class Cutter:
         self.plan = tool if isinstance(tool, ToolPlan) else ToolPlan((tool,))
         self.tool = self.plan.tools[0]
         corner = part_frame.program_zero(part_zero)
-        self.map = blank(stock, corner, stock.cell or default_cell(self.plan.tools, stock))
-        self.changed = (0, 0, 0, 0)
+        cell = stock.cell or default_cell(self.plan.tools, stock)
+        self.material: Material
+        if tilts:
+            self.material = TriDexelMaterial(blanks.blank(stock, corner, cell))
+        else:
+            self.material = HeightMapMaterial(blank(stock, corner, cell), keep_marks=keep_marks)
         self.force = np.zeros((0, 3))
-        self.marks = np.zeros(self.map.heights.shape if keep_marks else (0, 0))
         self._travelled = 0.0
         self._material = kienzle(stock)
         self._along = along
         self._part_frame = part_frame
-        self._last: tuple[FloatArray, FloatArray, float] | None = None
+        self._last: tuple[Points, float] | None = None
         self._changes = 0
         self._stand: _Way | None = None
         self._removed: dict[int, float] = {}
@@ -159,7 +148,7 @@ class Cutter:
         self._halts, self._head = halts, head
         self.halted: CutEvent | None = None
         self._cut_log = CutLog()
-        self.watch = CutWatch(AIR_MM * self.map.cell**2)
+        self.watch = CutWatch(AIR_MM * self.material.cell**2)
         self.start_depth = 0.0
 
     def add(self, samples: Samples, rapid: BoolArray, standing: BoolArray | None = None) -> float:
@@ -174,7 +163,7 @@ class Cutter:
             Material that this chunk took off [mm³].
         """
         before = sum(self._removed.values())
-        self.changed = (0, 0, 0, 0)
+        self.material.begin_chunk()
         self.force = np.zeros((len(samples), 3))
         if not len(samples):
             return 0.0
@@ -187,7 +176,8 @@ class Cutter:
         off = np.zeros(len(samples), np.bool_) if standing is None else standing
         lag = np.abs(meant - points).sum(axis=1)
         turn = self._part_frame.direction(joints)
-        way = _Way(points, turn, lag, setpoint.time, setpoint.line, rapid, off)
+        axis = self._part_frame.tool_direction(joints) if self.tilts else None
+        way = _Way(points, turn, axis, lag, setpoint.time, setpoint.line, rapid, off)
         if self._stand is None:
             self.start_depth = self._depth_at(way[:1].lowered(self.plan.longer(self.tool)))
         self._stand = way[-1:]
@@ -205,6 +195,39 @@ class Cutter:
                 self.force[part.start : part.start + len(force)] = force
         return sum(self._removed.values()) - before
 
+    @property
+    def tilts(self) -> bool:
+        """Whether the tool may stand off the part's Z: there is no height map then."""
+        return isinstance(self.material, TriDexelMaterial)
+
+    @property
+    def map(self) -> HeightMap:
+        """The height map as cut so far.
+
+        Raises:
+            ConfigError: The part is cut from more sides than a height map can hold.
+        """
+        return self._of_height_map.map
+
+    @property
+    def marks(self) -> FloatArray:
+        """Way of the tool at which each cell was last cut, shape (ny, nx) [mm]; of no size unless asked for."""
+        return self._of_height_map.marks
+
+    @property
+    def changed(self) -> Rectangle:
+        """Cells of the height map that changed in the last ``add``."""
+        return self._of_height_map.changed
+
+    @property
+    def _of_height_map(self) -> HeightMapMaterial:
+        if not isinstance(self.material, HeightMapMaterial):
+            raise ConfigError(
+                "the program cuts the part from more than one side, of which there is no height map: "
+                "part.stl, the report and the film have the part"
+            )
+        return self.material
+
     def end_program(self) -> None:
         """Hold the tools that come behind the last move against the material where the axes stand."""
         if self._stand is not None and self.halted is None:
@@ -220,7 +243,8 @@ class Cutter:
         return CutResult(
             removed_mm3=sum(self._removed.values()),
             removed_by_tool_mm3=dict(self._removed),
-            cell_mm=self.map.cell,
+            stock=TRI_DEXEL if self.tilts else HEIGHT_MAP,
+            cell_mm=self.material.cell,
             air_share=self._air_path / self._feed_path if self._feed_path else 0.0,
             gouges=self._gouges.events(),
             rapid_into_stock=self._rapids.events(),
@@ -257,7 +281,7 @@ class Cutter:
             return
         removal = Removal(*np.zeros((3, 1)))
         tip = np.repeat(stand.points, 2, axis=0)
-        stretches = Stretches(tip, stand.time, np.array([line]), stand.rapid, *removal)
+        stretches = Stretches(tip, stand.time, np.array([line]), stand.rapid, *removal, stand.axis)
         self._gouges.note(("arrival", line), "arrival", stretches, 0, depth)
         if self._halts:
             self.halted = self._gouges.event(("arrival", line))
@@ -268,9 +292,9 @@ class Cutter:
         Args:
             stand: Where its tip is, one sample.
         """
-        here = Points(np.repeat(stand.points, 2, axis=0), np.repeat(stand.turn, 2, axis=0))
-        contact = StockContact(self.tool, profile(self.tool), self._head)
-        met = contact.measure(self.map, here, np.ones(1, np.bool_))
+        here = stand.ends[np.zeros(2, np.int64)]
+        contact = self.material.contact(self.tool, profile(self.tool), self._head)
+        met = contact.measure(here, np.ones(1, np.bool_))
         return max((float(overlap.depth[0]) for overlap in met.values()), default=0.0)
 
     def _cut(self, way: "_Way", *, edge: bool) -> FloatArray:
@@ -284,25 +308,17 @@ class Cutter:
         Returns:
             Force on the tool during each sample that was cut along, shape (m, 3) [N].
         """
-        before, turn, since = (
-            (way.points[:1], way.turn[:1], way.time[0]) if self._last is None else self._last
-        )
-        self._last = way.points[-1:].copy(), way.turn[-1:].copy(), float(way.time[-1])
-        points = np.concatenate([before, way.points])
-        turns = np.concatenate([turn, way.turn])
+        before, since = (way.ends[:1], way.time[0]) if self._last is None else self._last
+        self._last = way.ends[-1:].copy(), float(way.time[-1])
+        points = before.followed_by(way.ends)
         cutter = profile(self.tool)
         group = way.group
-        chosen = thin(
-            points,
-            np.concatenate([group[:1], group]),
-            min(STRAIGHT_SHARE * self.map.cell, STRAIGHT_MM),
-            LONGEST_SHARE * cutter.radius,
-            MOST_JOINED,
-        )
-        points, sample = Points(points[chosen], turns[chosen]), chosen[1:] - 1
+        chosen = self.material.straight(points, np.concatenate([group[:1], group]), cutter)
+        points, sample = points[chosen], chosen[1:] - 1
         rapid, off, lag = way.rapid[sample], way.standing[sample], way.lag[sample]
-        rapids = self._rapids.suspects(points.tip, rapid, lag)
-        standing = self._standing.suspects(points.tip, ~rapid & off, lag)
+        axis = None if points.axis is None else points.axis[1:]
+        rapids = self._rapids.suspects(points.tip, rapid, lag, axis)
+        standing = self._standing.suspects(points.tip, ~rapid & off, lag, axis)
         suspect = (rapids > 0) | (standing > 0)
         found, met = self._take_off(points, cutter, suspect, edge=edge)
         count = len(found.volume)
@@ -312,7 +328,8 @@ class Cutter:
         so_far = self._removed.get(self.tool.number, 0.0)
         self._removed[self.tool.number] = so_far + float(found.volume.sum())
         time, line = way.time[sample], way.line[sample]
-        stretches = Stretches(points.tip, time, line, rapid[:count], *found)
+        axis = None if points.axis is None else points.axis[1:]
+        stretches = Stretches(points.tip, time, line, rapid[:count], *found, axis)
         latest = self._note_contacts(stretches, met)
         reached = met.pop(EDGE, np.zeros(count))
         hits = reached > 0.0
@@ -340,8 +357,8 @@ class Cutter:
             What each stretch took off, and by name how deep something was in the material that
             must not be, shape (n,) [mm]; fewer than n stretches where cutting halted.
         """
-        contact = StockContact(self.tool, cutter, self._head)
-        doubtful = contact.measure(self.map, points, suspect, doubtful=True)
+        contact = self.material.contact(self.tool, cutter, self._head)
+        doubtful = contact.measure(points, suspect, doubtful=True)
         count, done = len(suspect), 0
         removal = Removal(*np.zeros((3, count)))
         met = {name: np.zeros(count) for name in doubtful}
@@ -350,48 +367,29 @@ class Cutter:
         # Against the material as the stretches before have left it.
         for k in flagged.tolist():
             if edge:
-                self._sweep(points.tip, cutter, removal, mark, slice(done, k))
+                self._sweep(points, cutter, removal, mark, slice(done, k))
             done = k
             here = slice(k, k + 1)
-            for name, overlap in contact.measure(
-                self.map, points[k : k + 2], suspect[here]
-            ).items():
+            for name, overlap in contact.measure(points[k : k + 2], suspect[here]).items():
                 met[name][here] = overlap.depth
             if self._halts and any(depth[k] for depth in met.values()):
                 count = k + 1
                 break
         if edge:
-            self._sweep(points.tip, cutter, removal, mark, slice(done, count))
+            self._sweep(points, cutter, removal, mark, slice(done, count))
         removal = Removal(*(column[:count] for column in removal))
         return removal, {name: depth[:count] for name, depth in met.items()}
 
     def _sweep(
-        self, tip: FloatArray, cutter: Profile, removal: Removal, mark: FloatArray, part: slice
+        self, points: Points, cutter: Profile, removal: Removal, mark: FloatArray, part: slice
     ) -> None:
         """Take off what lies in the way of some of the stretches."""
         if part.start >= part.stop:
             return
-        material, way = self.map, tip[part.start : part.stop + 1]
-        found = sweep_lines(
-            material,
-            way,
-            cutter,
-            Marks(self.marks, mark[part]),
-            stood=part.start > 0,
-        )
-        for column, swept in zip(removal, found.removal, strict=True):
+        way = points[part.start : part.stop + 1]
+        found = self.material.take_off(way, self.tool, cutter, mark[part], stood=part.start > 0)
+        for column, swept in zip(removal, found, strict=True):
             column[part] = swept
-        self.changed = union(self.changed, found.changed)
-        off = min(WALL_SHARE * material.cell, WALL_MM)
-        rows = thin(way, np.zeros(len(way), np.int64), off, cutter.radius, WALL_JOINED)
-        note_walls(
-            material.heights,
-            material.behind,
-            material.grid,
-            way[rows],
-            cutter.radius,
-            cutter.flat,
-        )
 
     def _note_contacts(
         self, stretches: Stretches, met: Mapping[str, FloatArray]
@@ -413,7 +411,7 @@ class Cutter:
             Mean force on the tool along each stretch, shape (n, 3) [N]; 0 where it is not known.
         """
         path = stretches.path
-        air = stretches.removed < AIR_MM * self.map.cell**2
+        air = stretches.removed < AIR_MM * self.material.cell**2
         self.watch.add(stretches, self.tool)
         self._feed_path += float(path[~stretches.rapid].sum())
         self._air_path += float(path[~stretches.rapid & air].sum())
@@ -434,6 +432,7 @@ class _Way:
 
     points: FloatArray
     turn: FloatArray
+    axis: FloatArray | None
     lag: FloatArray
     time: FloatArray
     line: IntArray
@@ -441,11 +440,26 @@ class _Way:
     standing: BoolArray
 
     def __getitem__(self, run: slice) -> "_Way":
-        return _Way(*(getattr(self, field.name)[run] for field in dataclasses.fields(self)))
+        return _Way(
+            self.points[run],
+            self.turn[run],
+            None if self.axis is None else self.axis[run],
+            self.lag[run],
+            self.time[run],
+            self.line[run],
+            self.rapid[run],
+            self.standing[run],
+        )
+
+    @property
+    def ends(self) -> Points:
+        """Where the tool was at each sample."""
+        return Points(self.points, self.turn, self.axis)
 
     def lowered(self, by: float) -> "_Way":
         """The way of a tool that is longer by so much [mm]."""
-        return dataclasses.replace(self, points=self.points - [0.0, 0.0, by])
+        down = np.array([0.0, 0.0, by]) if self.axis is None else by * self.axis
+        return dataclasses.replace(self, points=self.points - down)
 
     @property
     def group(self) -> IntArray:

@@ -62,7 +62,7 @@ class CutWatch:
         cuts = cuts & ~stretches.rapid
         if not cuts.any():
             return
-        way = np.diff(stretches.points, axis=0)
+        way = stretches.way
         advance = np.hypot(way[:, 0], way[:, 1])
         if tool.kind == "drill":
             self._watch_drill(stretches, cuts, advance, tool)

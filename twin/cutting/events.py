@@ -50,6 +50,7 @@ class Stretches:
         removed: Material taken off, shape (n,) [mm³].
         depth: Greatest depth of it, shape (n,) [mm].
         aside: How far left of the way it lay in the mean, shape (n,) [mm].
+        axis: Direction from the tool's tip to the spindle at the end of each, shape (n, 3); None: +Z.
     """
 
     points: FloatArray
@@ -59,11 +60,42 @@ class Stretches:
     removed: FloatArray
     depth: FloatArray
     aside: FloatArray
+    axis: FloatArray | None = None
+
+    @property
+    def way(self) -> FloatArray:
+        """From begin to end of each, in the tool's own frame, whose Z is its axis, shape (n, 3) [mm]."""
+        way = np.diff(self.points, axis=0)
+        return way if self.axis is None else in_tool_frame(way, self.axis)
+
+    def lowest(self, index: int) -> float:
+        """The lower of both places of the tip of one, along the tool's axis [mm]."""
+        ends = self.points[index : index + 2]
+        return float(min(ends[:, 2] if self.axis is None else ends @ self.axis[index]))
 
     @property
     def path(self) -> FloatArray:
         """Length of each, shape (n,) [mm]."""
         return np.linalg.norm(np.diff(self.points, axis=0), axis=1)
+
+
+def tool_frame(axis: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Unit vectors along X, Y and Z of tools, whose Z is their axis, shape (n, 3) each.
+
+    Of an upright tool they are those of the part (Duff et al., "Building an orthonormal basis, revisited", 2017).
+    """
+    x, y, z = axis.T
+    sign = np.copysign(1.0, z)
+    a = -1.0 / (sign + z)
+    b = x * y * a
+    along_x = np.stack([1.0 + sign * x * x * a, sign * b, -sign * x], axis=1)
+    along_y = np.stack([b, sign + y * y * a, -y], axis=1)
+    return along_x, along_y, axis
+
+
+def in_tool_frame(vectors: FloatArray, axis: FloatArray) -> FloatArray:
+    """Vectors of the part's frame as tools along given axes see them, shape (n, 3)."""
+    return np.stack([(vectors * each).sum(axis=1) for each in tool_frame(axis)], axis=1)
 
 
 EVENTS_TOLD = 1000
@@ -133,13 +165,20 @@ class StockWatch:
         self._tail = TAIL_MM
         self._surface: dict[tuple[int, int], float] = {}
 
-    def suspects(self, points: FloatArray, forbidden: BoolArray, lag: FloatArray) -> IntArray:
+    def suspects(
+        self,
+        points: FloatArray,
+        forbidden: BoolArray,
+        lag: FloatArray,
+        axis: FloatArray | None = None,
+    ) -> IntArray:
         """Number the runs of stretches that must not cut, in a chunk that follows the last one.
 
         Args:
             points: Tool tip positions at the ends of n stretches, shape (n + 1, 3) [mm].
             forbidden: Which stretches must take no material, shape (n,).
             lag: How far the tool trails its setpoint at the end of each, shape (n,) [mm].
+            axis: Direction from the tip to the spindle there, shape (n, 3); None: +Z.
 
         Returns:
             Number of the run that each stretch belongs to, from 1; 0 where it may cut, and on the
@@ -153,6 +192,8 @@ class StockWatch:
         start = np.where(latest[:, None] < 0, self._start, points[latest])
         tail = np.where(latest < 0, self._tail, TAIL_MM + lag[latest])
         way = points[1:] - start
+        if axis is not None:
+            way = in_tool_frame(way, axis)
         advance = np.hypot(way[:, 0], way[:, 1]) + np.maximum(0.0, -way[:, 2])
         self._runs, self._running = int(run[-1]), bool(forbidden[-1])
         self._start, self._tail = start[-1].copy(), float(tail[-1])
@@ -164,7 +205,7 @@ class StockWatch:
             key = (int(suspects[i]), int(stretches.line[i]))
             if self._surface and key[0] != next(iter(self._surface))[0]:
                 self._surface.clear()  # a move that has ended
-            tip = float(min(stretches.points[i : i + 2, 2]))
+            tip = stretches.lowest(int(i))
             surface = max(self._surface.get(key, tip), tip + float(stretches.depth[i]))
             self._surface[key] = surface
             self._log.note(key, self._what, stretches, int(i), surface - tip)

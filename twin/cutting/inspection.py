@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from twin.cutting.cut import WALL_MM
 from twin.cutting.height_map import HeightMap
+from twin.cutting.height_map_material import WALL_MM
 from twin.cutting.kernels.surface_distance import (
     BY_CELLS,
     BY_HEIGHT,

@@ -2,7 +2,7 @@
 
 import bisect
 import dataclasses
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Generic, TypeVar
 
 import numpy as np
@@ -11,6 +11,7 @@ import numpy.typing as npt
 from twin.cutting.tools import EMPTY_SPINDLE
 from twin.errors import ConfigError
 from twin.job.job_file import JobFile, ToolTable
+from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Chunk, FloatArray, Function, IntArray, Motion
 from twin.nc.functions import (
     PROGRAM_ENDS,
@@ -27,6 +28,8 @@ ValueT = TypeVar("ValueT")
 
 _OF_SPINDLE = SPINDLE_STARTS | SPINDLE_STOPS | {SPINDLE_SPEED}
 """Words of a program that speaks of the spindle."""
+_BEFORE_THE_NEXT = 1.0 - 1e-12
+"""The end of a move's path still belongs to it: a function between two moves is not yet in effect."""
 _ENDS_SPINDLE = PROGRAM_ENDS | {TOOL_CHANGE}
 """Words that stop a spindle that was spoken of."""
 
@@ -62,12 +65,14 @@ class ProgramSummary:
             is held to it from its first move on.
         shown: What the control's screen adds to the axes' positions, shape (k,) each [mm or deg];
             none: nothing ever.
+        tilts: Whether the tool ever stands off the part's Z.
     """
 
     tools: ToolPlan
     rapid: BoolArray = dataclasses.field(default_factory=lambda: np.zeros(0, np.bool_))
     spindle: Steps[float | None] = Steps((0,), (None,))
     shown: Steps[FloatArray] | None = None
+    tilts: bool = False
 
     def is_rapid(self, move: IntArray) -> BoolArray:
         """Which samples belong to rapids, by their move numbers, shape (n,); -1 does not."""
@@ -76,16 +81,30 @@ class ProgramSummary:
         result[known] = self.rapid[move[known]]
         return result
 
+    def standing(self, setpoint: Setpoints) -> BoolArray:
+        """During which setpoints the spindle is off, shape (n,)."""
+        place = setpoint.move + np.clip(setpoint.fraction, 0.0, _BEFORE_THE_NEXT)
+        off = np.array([speed == 0.0 for speed in self.spindle.values])
+        step = np.searchsorted(self.spindle.first_move, place, side="right") - 1
+        return off[np.maximum(step, 0)]
+
 
 class SummaryBuilder:
     """Reads a program along, chunk by chunk."""
 
-    def __init__(self, job: JobFile, spindle: SpindleState | None = None) -> None:
+    def __init__(
+        self,
+        job: JobFile,
+        spindle: SpindleState | None = None,
+        tilts: Callable[[FloatArray], bool] | None = None,
+    ) -> None:
         """Begin with the job's first tool in a spindle of which nothing was said.
 
         Args:
             job: Its tools are those that the program may bring.
             spindle: As the machine and the control have it; None: without a limit.
+            tilts: Whether the tool stands off the part's Z anywhere at program coordinates, shape (n, k);
+                None: it never does.
         """
         self._tools = {tool.number: tool for tool in job.tools}
         # Without a list of tools every number means the default tool, as in a run without one.
@@ -100,6 +119,7 @@ class SummaryBuilder:
         self._spindle: list[tuple[float, float | None]] = [(0.0, self._tool.speed)]
         self._shown: list[tuple[int, FloatArray]] = []
         self._rapid = bytearray()
+        self._stands_off, self._tilts = tilts, False
 
     def add(self, chunk: Chunk) -> None:
         """Take note of moves and functions that follow the last ones.
@@ -114,6 +134,9 @@ class SummaryBuilder:
                 self._function(event, before + event.before)
         if not len(moves):
             return
+        if self._stands_off is not None and not self._tilts:
+            way = moves.end - moves.start
+            self._tilts = any(self._stands_off(moves.start + share * way) for share in _WITHIN)
         added = moves.display - moves.end
         last = self._shown[-1][1] if self._shown else np.zeros(added.shape[1])
         steps = np.abs(np.diff(added, axis=0, prepend=last[None])).max(axis=1) > _SHOWN_STEP
@@ -133,6 +156,7 @@ class SummaryBuilder:
             rapid=np.frombuffer(bytes(self._rapid), np.bool_),
             spindle=_steps(self._spindle),
             shown=shown,
+            tilts=self._tilts,
         )
 
     def _function(self, event: Function, move: int) -> None:
@@ -172,6 +196,8 @@ class SummaryBuilder:
         self._plan.append((move, self._tool.model_copy(update={"speed": speed})))
 
 
+_WITHIN = (0.0, 0.381966, 1.0)
+"""Fractions of a move at which the direction of the tool is looked at: whole turns come back to where they began."""
 _SHOWN_STEP = 1e-9
 """Changes of what the screen adds that are the arithmetic's doing [mm or deg]."""
 

@@ -34,7 +34,14 @@ def recut(
         ConfigError: The stock is wrong.
     """
     header = recording.header
-    cutter = Cutter(stock, summary.tools, header.part_frame, header.part_zero, along=along)
+    cutter = Cutter(
+        stock,
+        summary.tools,
+        header.part_frame,
+        header.part_zero,
+        along=along,
+        tilts=summary.tilts,
+    )
     for samples in recording.chunks():
         cutter.add(samples, summary.is_rapid(samples.setpoint.move))
     return cutter

@@ -1,57 +1,20 @@
 """What must not go into the stock: shank, holder and head at any time, the edge in a rapid."""
 
 import dataclasses
-from collections.abc import Callable, Iterable
-from typing import Protocol
 
 import numpy as np
 
 from twin.cutting.events import SCRAPE_MM
-from twin.cutting.height_map import BoolArray, HeightMap
+from twin.cutting.height_map import HeightMap
 from twin.cutting.kernels.overlap import Overlap, Stood, box_overlap, round_overlap
+from twin.cutting.material import EDGE, Head, Points, Upright
 from twin.cutting.tools import Profile
 from twin.job.job_file import ToolTable
-from twin.nc.canonical import FloatArray
+from twin.nc.canonical import BoolArray
 
 BRUSH_MM = 0.03
 """How far a cutter may reach into a wall beside it without being said to meet it [mm]: its way back
 along a wall is off the way there by what the force bent, and cells of the wall go."""
-
-EDGE = "edge"
-"""The cutting edge, which may be in the material in a feed alone."""
-
-
-class Upright(Protocol):
-    """A solid above the tool's tip that goes where the tool goes and does not tilt."""
-
-    @property
-    def name(self) -> str:
-        """As an alarm calls it."""
-        ...
-
-    @property
-    def round(self) -> bool:
-        """A cylinder; else a box."""
-        ...
-
-    @property
-    def half(self) -> tuple[float, float]:
-        """Half of its size along machine X and Y [mm]."""
-        ...
-
-    @property
-    def offset(self) -> tuple[float, float]:
-        """Its middle off the tool's axis along machine X and Y [mm]."""
-        ...
-
-    @property
-    def above(self) -> float:
-        """Height of its lower end above the tip [mm]."""
-        ...
-
-
-Head = Callable[[ToolTable], Iterable[Upright]]
-"""What is above a tool's holder."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -70,61 +33,45 @@ class _Cylinder:
         return self.radius, self.radius
 
 
-@dataclasses.dataclass(frozen=True, slots=True)
-class Points:
-    """The ends of n stretches.
-
-    Attributes:
-        tip: Places of the tool's tip in the part's frame, shape (n + 1, 3) [mm].
-        turn: Direction of machine X there, shape (n + 1, 2).
-    """
-
-    tip: FloatArray
-    turn: FloatArray
-
-    def __getitem__(self, rows: slice) -> "Points":
-        return Points(self.tip[rows], self.turn[rows])
+def above_edge(tool: ToolTable, head: Head | None) -> list[Upright]:
+    """What is above a tool's edge: its shank, its holder, and the head."""
+    shank = tool.diameter if tool.shank is None else tool.shank
+    found: list[Upright] = [
+        _Cylinder("holder", 0.5 * max(tool.holder, shank), tool.below_holder),
+        *(() if head is None else head(tool)),
+    ]
+    if tool.flute < tool.below_holder:
+        name = "shank" if shank > tool.diameter else "flute"
+        found.append(_Cylinder(name, 0.5 * shank, tool.flute))
+    return found
 
 
 class StockContact:
     """Measures one tool against the material."""
 
-    def __init__(self, tool: ToolTable, edge: Profile, head: Head | None) -> None:
+    def __init__(
+        self, material: HeightMap, tool: ToolTable, edge: Profile, head: Head | None
+    ) -> None:
         """Say what is above the edge.
 
         Args:
+            material: The material.
             tool: The tool.
             edge: Its cutting edge.
             head: What is above its holder; None: nothing.
         """
+        self._material = material
         self._edge = dataclasses.astuple(edge)
-        shank = tool.diameter if tool.shank is None else tool.shank
-        self._uprights: list[Upright] = [
-            _Cylinder("holder", 0.5 * max(tool.holder, shank), tool.below_holder),
-            *(() if head is None else head(tool)),
-        ]
-        if tool.flute < tool.below_holder:
-            name = "shank" if shank > tool.diameter else "flute"
-            self._uprights.append(_Cylinder(name, 0.5 * shank, tool.flute))
+        self._uprights = above_edge(tool, head)
         self._most = {
             solid.name: BRUSH_MM if solid.name == "flute" else SCRAPE_MM for solid in self._uprights
         } | {EDGE: BRUSH_MM}
 
     def measure(
-        self, material: HeightMap, points: Points, suspect: BoolArray, *, doubtful: bool = False
+        self, points: Points, suspect: BoolArray, *, doubtful: bool = False
     ) -> dict[str, Overlap]:
-        """What reaches into the material as it is, along each stretch.
-
-        Args:
-            material: The material.
-            points: Ends of n stretches.
-            suspect: In which of them the edge must not cut, shape (n,).
-            doubtful: Whether they cut walls of their own that later ones meet: nothing that these may
-                meet is left out then.
-
-        Returns:
-            By name; zero where something reaches no further than it may.
-        """
+        """What reaches into the material as it is, along each stretch; see ``Contact``."""
+        material = self._material
         count = len(suspect)
         lowest = points.tip[:, 2].min()
         stood = Stood(material.heights, material.behind, material.grid, doubtful)

@@ -14,8 +14,8 @@ Conventions, once for all rooms:
   ``center + rotate(normal, u * sweep) (start - center) + u * advance * normal``, where ``advance``
   is the component of ``end - start`` along the normal; all other axes go linearly with u.
 * A curve is a part of a move under tool centre point control: the axes go by the polynomials of ``curve``,
-  and the tip goes straight in the part, or on the arc of ``center``, ``normal`` and ``sweep``, which
-  are the part's then. ``length`` is the tip's.
+  and the tip goes straight in the part, or on an arc: then ``normal`` is seen from the part, and so is
+  ``center``, which leads from the tip at the start to the arc's centre. ``length`` is the tip's.
 * ``length`` is what the feed counts: mm along the path of X Y Z, or, where these stand still, the
   length of the other linear axes, and where those stand still too, the degrees of the rotary axes
   (Euclidean where several move).

@@ -23,8 +23,6 @@ from twin.run.waits import with_waits
 MOVES_IN_MEMORY = 200_000
 """Of a longer program the further moves lie in a file, at some 200 bytes each: memory stays bounded."""
 
-_WITHIN = (0.0, 0.381966, 1.0)
-"""Fractions of a move at which the direction of the tool is looked at: whole turns come back to where they began."""
 
 NOTICES_KEPT = 100
 """Lines whose speed of the spindle was limited that are reported."""
@@ -107,7 +105,6 @@ class DryRun:
         summary: Its tools, speeds of the spindle and rapids.
         watch: Mistakes of its functions that no axis shows.
         lines_never_run: How many lines with motion it never came to.
-        tilts: Whether the tool ever stands off the part's Z.
     """
 
     program: InterpretedProgram
@@ -116,7 +113,6 @@ class DryRun:
     summary: ProgramSummary
     watch: ProgramWatch
     lines_never_run: int
-    tilts: bool = False
 
     @property
     def moves(self) -> int:
@@ -138,10 +134,12 @@ def interpret_all(preparation: Preparation, part_zero: FloatArray, clock: StageC
     """
     interpretation = preparation.interpretation()
     program, alarm = InterpretedProgram(preparation), None
-    builder = SummaryBuilder(preparation.job.file, preparation.spindle)
+    frame = preparation.machine.part_frame.at(part_zero, 0.0)
+    builder = SummaryBuilder(
+        preparation.job.file, preparation.spindle, lambda moves: frame.tilts(moves + part_zero)
+    )
     watch = ProgramWatch(preparation.job.file, preparation.spindle)
     limited: dict[int, str] = {}
-    frame, tilts = preparation.machine.part_frame.at(part_zero, 0.0), False
     chunks: Iterable[Chunk] = clock.watch("interpret", interpretation.chunks())
     for chunk in chunks:
         program.add(chunk)
@@ -150,9 +148,6 @@ def interpret_all(preparation: Preparation, part_zero: FloatArray, clock: StageC
         for event in chunk.events:
             if isinstance(event, Function) and (said := preparation.spindle.limited_by(event)):
                 limited.setdefault(event.line, said)
-        if frame.chain is not None and not tilts:
-            start, end = chunk.moves.start + part_zero, chunk.moves.end + part_zero
-            tilts = any(frame.tilts(start + u * (end - start)) for u in _WITHIN)
         if alarm is None:
             alarm = soft_limit_alarm(preparation.machine, chunk.moves, part_zero)
     return DryRun(
@@ -173,5 +168,4 @@ def interpret_all(preparation: Preparation, part_zero: FloatArray, clock: StageC
         summary=builder.summary(),
         watch=watch,
         lines_never_run=len(interpretation.coverage.never_run()),
-        tilts=tilts,
     )

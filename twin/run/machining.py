@@ -9,10 +9,7 @@ from twin.cutting.cut import CutResult, Cutter
 from twin.cutting.events import CutEvent
 from twin.cutting.inspection import Inspection, inspect
 from twin.cutting.nominal import NominalGouge, NominalWatch
-from twin.cutting.part import write_stl
-from twin.cutting.part_picture import part_picture
 from twin.cutting.program_summary import ProgramSummary
-from twin.cutting.spindle import standing
 from twin.job.job_file import JobFile, ToolTable
 from twin.machine.model.head_shape import HeadShape
 from twin.machine.model.model import MachineModel
@@ -43,8 +40,6 @@ class Machining(Observer):
         part_frame: PartFrame,
         part_zero: FloatArray,
         stops: Sequence[Stop] = (),
-        *,
-        tilts: bool = False,
     ) -> None:
         """Lay the blank on the table.
 
@@ -55,7 +50,6 @@ class Machining(Observer):
             part_frame: How the part turns under the tool.
             part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
             stops: Where the program stops spindle or tool, in order.
-            tilts: The tool stands off the part's Z, where no height map can be cut: nothing is.
         """
         self.stopped: list[Stop] = []
         self.ended_in_cut = False
@@ -66,12 +60,18 @@ class Machining(Observer):
         self._nominal: NominalWatch | None = None
         self._gouge_um = None if job.nominal is None else job.nominal.gouge_um
         self._gouge_stops = job.nominal is not None and job.nominal.gouge == "alarm"
-        if job.stock is not None and not tilts:
+        if job.stock is not None:
             head = HeadShape(model).above_tip
             self._cutter = Cutter(
-                job.stock, summary.tools, part_frame, part_zero, halts=True, head=head
+                job.stock,
+                summary.tools,
+                part_frame,
+                part_zero,
+                halts=True,
+                head=head,
+                tilts=summary.tilts,
             )
-            if job.nominal is not None:
+            if job.nominal is not None and not summary.tilts:
                 self._nominal = NominalWatch(job.nominal, self._cutter, part_frame, part_zero)
 
     @property
@@ -92,7 +92,7 @@ class Machining(Observer):
             return samples
         move = samples.setpoint.move
         rapid = self._summary.is_rapid(move)
-        cutter.add(samples, rapid, standing(self._summary, samples.setpoint))
+        cutter.add(samples, rapid, self._summary.standing(samples.setpoint))
         self._look_at_stops(samples)
         found = None if self._nominal is None else self._nominal.look(samples)
         if found is not None and self._gouge_stops:
@@ -139,7 +139,7 @@ class Machining(Observer):
 
     def picture(self) -> bytes:
         """The part from above by now, PNG; empty without a stock."""
-        return b"" if self._cutter is None else part_picture(self._cutter.map)
+        return b"" if self._cutter is None else self._cutter.material.picture()
 
     def write_part(self, folder: Path) -> None:
         """Write the part as ``part.stl``, if there is a stock.
@@ -148,7 +148,7 @@ class Machining(Observer):
             OSError: It cannot be written.
         """
         if self._cutter is not None:
-            write_stl(self._cutter.map, folder / "part.stl", self._zero)
+            self._cutter.material.write_stl(folder / "part.stl", self._zero)
 
     def result(self) -> CutResult | None:
         """What the cut came to; None without a stock."""

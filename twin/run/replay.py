@@ -8,7 +8,7 @@ from twin.cutting.program_summary import ProgramSummary, SummaryBuilder
 from twin.cutting.recut import recut
 from twin.errors import UsageError
 from twin.machine.model.model import build_spec
-from twin.recording.reader import Recording, open_recording
+from twin.recording.reader import Recording, RecordingHeader, open_recording
 from twin.render.scene.scene import Scene
 from twin.run.preparation import Preparation, prepare_recorded
 
@@ -17,14 +17,17 @@ EVENTS = ("end", "worst", "alarm", "rapid", "gouge")
 first alarm, the first rapid into stock, the first gouge by flutes, shank or holder."""
 
 
-def summary_of(preparation: Preparation) -> ProgramSummary:
-    """Tools, speeds of the spindle and rapids of a program.
+def summary_of(preparation: Preparation, header: RecordingHeader) -> ProgramSummary:
+    """Tools, speeds of the spindle and rapids of the program of a recording.
 
     Raises:
         ProgramError: The program is wrong.
         ConfigError: It brings a tool that the job does not list.
     """
-    builder = SummaryBuilder(preparation.job.file, preparation.spindle)
+    frame, zero = header.part_frame, header.part_zero
+    builder = SummaryBuilder(
+        preparation.job.file, preparation.spindle, lambda moves: frame.tilts(moves + zero)
+    )
     for chunk in preparation.interpretation().chunks():
         builder.add(chunk)
     return builder.summary()
@@ -58,7 +61,10 @@ def open_scene(path: Path, *, machine: str | None = None) -> Iterator[tuple[Scen
     """
     with open_recording(path) as recording:
         preparation = prepare_recorded(recording.header, machine=machine)
-        yield scene_of(recording, preparation, summary_of(preparation)), preparation
+        yield (
+            scene_of(recording, preparation, summary_of(preparation, recording.header)),
+            preparation,
+        )
 
 
 def event_time(scene: Scene, event: str) -> float | None:

@@ -138,7 +138,6 @@ class Run:
                 self.part_frame,
                 self.part_zero,
                 dry_run.watch.stops,
-                tilts=dry_run.tilts,
             ),
             reached=Reached(self.part_zero, dry_run.program.start),
             loads=Loads(),

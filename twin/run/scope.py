@@ -6,7 +6,7 @@ from typing import Any
 
 from twin.compare.figures import Figures
 from twin.compare.verdict import Check, Reason
-from twin.cutting.cut import CutResult
+from twin.cutting.cut import TRI_DEXEL, CutResult
 from twin.job.job_file import JobFile, ToleranceTable
 from twin.job.load import DEFAULT, Job
 from twin.machine.watching.alarms import Alarm
@@ -19,6 +19,7 @@ COLLISIONS = "tool, holder, spindle and head against fixtures and machine; the t
 STOCK = "rapids, standing spindle, shank, holder and head in the stock"
 FORCES = "force, chip, deflection and breakage of tools, load of the spindle"
 WALLS = "cuts into the nominal part"
+HEAD = "boxes of the head above the holder in the stock"
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -41,6 +42,7 @@ class Scope:
     Attributes:
         watched: What was watched, and every figure that was held to a tolerance.
         not_watched: What was not.
+        stock: What described the material, ``height map`` or ``tri-dexel``; None without a stock.
         removed_mm3: Material taken off [mm³]; None without a stock.
         air_share: Share of the feed path that met no material; None without a stock.
         tools_unused: Numbers of tools that the job lists and no move used.
@@ -51,6 +53,7 @@ class Scope:
 
     watched: tuple[str, ...]
     not_watched: tuple[Unwatched, ...]
+    stock: str | None
     removed_mm3: float | None
     air_share: float | None
     tools_unused: tuple[int, ...]
@@ -71,7 +74,8 @@ class Scope:
             air = (
                 "" if self.air_share is None else f", {self.air_share:.1%} of the feed path in air"
             )
-            yield f"cut: {self.removed_mm3:,.1f} mm³{air}"
+            sides = ", from several sides" if self.stock == TRI_DEXEL else ""
+            yield f"cut: {self.removed_mm3:,.1f} mm³{air}{sides}"
         if self.tools_unused:
             yield f"tools never used: {', '.join(map(str, self.tools_unused))}"
         if self.lines_never_run:
@@ -108,12 +112,12 @@ def scope_of(
     """
     file, watch = job.file, dry_run.watch
     watched = [DRIVES, COLLISIONS]
-    watched += [STOCK] if file.stock is not None and not dry_run.tilts else []
+    watched += [STOCK] if file.stock is not None else []
     watched += [FORCES] if forces else []
-    watched += [WALLS] if file.nominal is not None and not dry_run.tilts else []
+    watched += [WALLS] if file.nominal is not None and not dry_run.summary.tilts else []
     watched += sorted({check.what for check in checks})
     blind = (
-        *_blind(file, forces=forces, tilts=dry_run.tilts),
+        *_blind(file, forces=forces, tilts=dry_run.summary.tilts),
         *(_silent_spindle(file, watch)),
         *_unknown_functions(file),
         *(Unwatched(reason.what, reason.message) for reason in unjudged),
@@ -127,6 +131,7 @@ def scope_of(
     return Scope(
         watched=tuple(watched),
         not_watched=blind,
+        stock=None if cut is None else cut.stock,
         removed_mm3=None if cut is None else cut.removed_mm3,
         air_share=None if cut is None else cut.air_share,
         tools_unused=tuple(unused) if listed else (),
@@ -148,10 +153,13 @@ def _unknown_functions(job: JobFile) -> Iterator[Unwatched]:
 
 
 def _blind(job: JobFile, *, forces: bool, tilts: bool) -> Iterator[Unwatched]:
-    if job.stock is None or tilts:
-        why = "the job has no [stock]" if job.stock is None else _TILTS
-        yield Unwatched("stock, forces and walls", why)
+    if job.stock is None:
+        yield Unwatched("stock, forces and walls", "the job has no [stock]")
         return
+    if tilts:
+        yield Unwatched(HEAD, _TILTS)
+        if job.nominal is not None:
+            yield Unwatched(WALLS, _TILTS)
     if not forces:
         yield Unwatched(FORCES, _why_no_forces(job))
     if job.nominal is None:
@@ -198,7 +206,7 @@ def nothing_judged(
             yield Reason(key, message, 0, 0.0)
 
 
-_TILTS = "the tool comes to the part from several sides, and a height map is cut from one"
+_TILTS = "the tool comes to the part from several sides, and this is judged of a part cut from one"
 _NO_FIGURE = "the run holds nothing that it could be held against"
 _WHY = {
     "circular_deviation_um": "the program has no arc of 90 degrees or more with the table at rest",

@@ -1,6 +1,7 @@
 """What the agent answers: requests after MTConnect Part 1, without the network around them."""
 
 import dataclasses
+import datetime as dt
 import re
 import time
 import uuid
@@ -10,7 +11,6 @@ from collections.abc import Iterable, Mapping
 from twin.job.job_file import ToolTable
 from twin.serve.assets import chosen_assets, tool_assets
 from twin.serve.buffer import BUFFER_SIZE, Observation, ObservationBuffer, OutOfRangeError, Value
-from twin.serve.clock import Clock
 from twin.serve.device import Component
 from twin.serve.documents import (
     Header,
@@ -31,6 +31,37 @@ LEAST_INTERVAL_MS = 10
 LONGEST_PAUSE_MS = 600_000
 _LONGEST_PATH = 1000
 _NUMBER = re.compile(r"[+-]?[0-9]{1,18}")
+
+
+class Clock:
+    """Time of day as the twin sees it: it starts at the time of day and may run faster."""
+
+    def __init__(self, speed: float = 1.0) -> None:
+        """Start.
+
+        Args:
+            speed: Seconds of the twin for each second of the day.
+        """
+        self._speed = speed
+        self._began = dt.datetime.now(dt.UTC)
+        self._since = time.monotonic()
+
+    def elapsed_s(self) -> float:
+        """Seconds of the twin since the start."""
+        return (time.monotonic() - self._since) * self._speed
+
+    def at(self, elapsed_s: float) -> str:
+        """ISO 8601 in UTC, to the microsecond.
+
+        Args:
+            elapsed_s: Seconds of the twin since the start.
+        """
+        moment = self._began + dt.timedelta(seconds=elapsed_s)
+        return moment.strftime("%Y-%m-%dT%H:%M:%S.%fZ")
+
+    def now(self) -> str:
+        """The twin's time, ISO 8601 in UTC."""
+        return self.at(self.elapsed_s())
 
 
 class RequestError(Exception):

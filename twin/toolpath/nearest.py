@@ -13,7 +13,8 @@ contour error.
 
 On a machine that is more than a table about Z the moves are laid out as its chain of joints
 (``twin.kinematics``) carries them: where the rotary axes stand still they are lines and arcs in the part;
-where these move, every joint has its coordinate as a function of u.
+where these move, every joint has its coordinate as a function of u. Curves are parts of lines and arcs of the
+tip in the part.
 """
 
 from typing import NamedTuple
@@ -21,7 +22,7 @@ from typing import NamedTuple
 import numpy as np
 
 from twin.kinematics import Kinematics, with_rotary_at_rest
-from twin.nc.canonical import SPATIAL_AXES, CodeArray, FloatArray, Moves, Shape
+from twin.nc.canonical import SPATIAL_AXES, CodeArray, FloatArray, IntArray, Moves, Shape
 from twin.toolpath.nearest_kernels import derivatives
 from twin.toolpath.part_frame import PartFrame
 from twin.units import DEGREE
@@ -77,8 +78,46 @@ def path_columns(
         longer: How much longer than the first the tool of each move is, shape (n,) [mm]; looked at where a
             chain tilts it.
     """
-    if frame.chain is not None:
-        return _chain_columns(moves, frame, frame.chain, part_zero, longer)
+    if frame.chain is None:
+        columns = _turntable_columns(moves, frame, part_zero)
+    else:
+        columns = _chain_columns(moves, frame, frame.chain, part_zero, longer)
+    curves = np.flatnonzero(moves.shape == Shape.CURVE)
+    if len(curves):
+        by = np.broadcast_to(longer, len(moves))[curves] if frame.chain is not None else 0.0
+        _follow_tips(columns, curves, moves[curves], frame, part_zero, by)
+    return columns
+
+
+def _follow_tips(
+    columns: PathColumns,
+    rows: IntArray,
+    curves: Moves,
+    frame: PartFrame,
+    part_zero: FloatArray,
+    longer: FloatArray | float,
+) -> None:
+    """Put in what the tip does in the part along m curves: lines and arcs that no table turns any more."""
+    start, end = (frame.position(place + part_zero, longer) for place in (curves.start, curves.end))
+    arc = ~np.isnan(curves.radius)[:, None]
+    normal, spoke = (np.where(arc, each, 0.0) for each in (curves.normal, -curves.center))
+    lead = np.einsum("ij,ij->i", end - start, normal)[:, None] * normal
+    columns.along[rows] = np.where(arc, lead, end - start)
+    columns.origin[rows] = start - spoke
+    columns.first[rows], columns.second[rows] = spoke, np.cross(normal, spoke)
+    columns.sweep[rows] = np.where(arc[:, 0], np.deg2rad(curves.sweep), 0.0)
+    level = np.all(np.abs(lead) < _LEVEL, axis=1)
+    columns.kind[rows] = np.where(arc[:, 0], np.where(level, CIRCLE, CURVE), LINE)
+    columns.along[rows] = np.where(arc & level[:, None], 0.0, columns.along[rows])
+    columns.turn[rows], columns.turn_rate[rows], columns.facing[rows] = 0.0, 0.0, (1.0, 0.0)
+
+
+_LEVEL = 1e-9
+"""What an arc of a tip advances less is rounding [mm]."""
+
+
+def _turntable_columns(moves: Moves, frame: PartFrame, part_zero: FloatArray) -> PathColumns:
+    """The columns of a machine whose part turns about Z alone, or not at all."""
     shift = part_zero[:3] - np.array([*frame.center, 0.0])
     arc = moves.shape == Shape.ARC
     delta = moves.end[:, :3] - moves.start[:, :3]

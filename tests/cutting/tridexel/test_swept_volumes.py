@@ -42,7 +42,7 @@ def straight(start: tuple[float, ...], end: tuple[float, ...], axis: tuple[float
 def turned_bar(size: float) -> Case:
     """A flat end mill, its axis through that of a bar that turns once: a neck as wide as the tool."""
     bar = round_bar(np.zeros(3), 0, 5.0 * size, 14.0 * size, CELL_MM)
-    axis = directions(np.linspace(0.0, 2.0 * math.pi, 181))
+    axis = directions(np.linspace(0.0, 2.0 * math.pi, 241))
     removed = math.pi * (25.0 - 16.0) * 8.0 * size**3
     return bar, tool("flat", 8.0 * size), Poses(4.0 * size * axis, axis), removed
 

@@ -72,6 +72,14 @@ FOREIGN: dict[str, list[bytes]] = {
     "Python": [b"import math\nprint(1)\n"],
     "JSON": [b'{"moves": [1, 2]}', b"[[1, 2]]"],
     "C program": [b"#include <stdio.h>\nint main() {}\n"],
+    "RML plot": [b"^IN;!MC0;\n^PA;V15.0;\nZ0,0,100;Z100,100,-50;\n"],
+    "post processor": [
+        b'/**\n  A post.\n*/\ndescription = "Mill";\nvendor = "me";\n',
+        b'POST_NAME = "Mill (mm) (*.nc)"\nFILE_EXTENSION = "nc"\n',
+    ],
+    "parameters": [b"%\nN00000Q1P01000000\nN00001Q1P00000000\n%"],
+    "table of a Heidenhain": [b"BEGIN TOOL .T MM\nT NAME L R R2\n1 D10 100 5 0\n[END]\n"],
+    "NUM": [b"%100\nE80000=10\nG77 N10 N20\nM02\n"],
     "table": [b"time,X,Y\n0.0,1.0,2.0\n0.1,1.1,2.0\n"],
 }
 HEADS: dict[str, list[bytes]] = {
@@ -82,9 +90,10 @@ HEADS: dict[str, list[bytes]] = {
     "Mazak": [b"(MAZAK VCN-410A)\nG0 X1.\n"],
     "Mitsubishi": [b"(POST: MITSUBISHI M70)\nG0 X1.\n"],
     "Hurco": [b"(HURCO WINMAX)\nG0 X1.\n"],
-    "Centroid": [b"; CENTROID Acorn post\nG0 X1.\n"],
+    "Centroid": [b"; CENTROID Acorn post\nG0 X1.\n", b";Post Processor: centroid_post\nG0 X1.\n"],
+    "Marlin": [b"(Post Processor: marlin_post)\nG21\nG0 X1\n"],
     "prose": [b"Dear colleague, please mill this part tomorrow and tell me when it is ready.\n"],
-    "empty": [b"", b"\n\n"],
+    "empty": [b"", b"\n\n", b"(ONLY)\n; text\n%\n"],
 }
 
 

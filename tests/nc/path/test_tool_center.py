@@ -147,3 +147,13 @@ def test_a_work_offset_turns_the_frame_of_the_part_with_it() -> None:
     machine = ToolCenter(on_machine(trunnion()), 0.0, offset)
     at_zero = machine.tip([12.0, 7.0, 3.0, 0.0, 30.0])
     assert at_zero[:3] == pytest.approx((12.0, 7.0, 3.0))
+
+
+def test_the_arc_of_a_part_is_told_from_the_tip() -> None:
+    machine = ToolCenter(on_machine(trunnion()), 0.0, [0.0, 0.0, 0.0, 0.0, 30.0])
+    arc = _segment([10.0, 0.0, 0.0, 0.0, 0.0], [-10.0, 0.0, 0.0, 20.0, 0.0], center=(0.0, 0.0, 0.0), normal=(0.0, 0.0, 1.0), sweep=180.0)  # fmt: skip
+    first = next(iter(machine.moves_of(arc)))
+    # Seen from the part at its own zero, 30 degrees before that of the work offset.
+    assert first.center is not None
+    turned = (-10.0 * math.cos(math.radians(30.0)), -10.0 * math.sin(math.radians(30.0)), 0.0)
+    assert first.center == pytest.approx(turned, abs=1e-9)

@@ -15,9 +15,8 @@ from asyncua.common.events import get_filter_from_event_type
 from twin.errors import UsageError
 from twin.files.shipped import machine_file
 from twin.machine.load import read_machine
-from twin.serve.agent import Agent
+from twin.serve.agent import Agent, Clock
 from twin.serve.buffer import NORMAL, Condition
-from twin.serve.clock import Clock
 from twin.serve.device import device_of
 from twin.serve.opcua.machine_tool import NAMESPACE
 from twin.serve.opcua.node_sets import FOLDER, MACHINE_TOOL, MACHINERY

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from twin.cutting.events import Stretches
+from twin.cutting.events import Stretches, tool_frame
 from twin.cutting.forces.materials import Kienzle
 from twin.cutting.forces.mean_force import cutting_width
 from twin.job.job_file import ToolTable
@@ -40,7 +40,7 @@ def tool_force(
     Returns:
         Shape (n, 3) [N].
     """
-    way = np.diff(stretches.points, axis=0)
+    way = stretches.way
     length = np.maximum(np.linalg.norm(way, axis=1), 1e-30)
     level = np.hypot(way[:, 0], way[:, 1])
     ahead = way[:, :2] / np.maximum(level, 1e-30)[:, None]
@@ -60,4 +60,8 @@ def tool_force(
     point = tool.point_angle or 180.0
     upwards = plunging * math.sin(math.radians(0.5 * point))
     pushed = forwards[:, None] * ahead + sideways[:, None] * left
-    return np.column_stack([(1.0 - plunging)[:, None] * pushed, upwards]) * tangential[:, None]
+    force = np.column_stack([(1.0 - plunging)[:, None] * pushed, upwards]) * tangential[:, None]
+    if stretches.axis is None:
+        return force
+    along_x, along_y, along_z = tool_frame(stretches.axis)
+    return force[:, :1] * along_x + force[:, 1:2] * along_y + force[:, 2:] * along_z

@@ -61,3 +61,37 @@ def _straight(points: FloatArray, first: int, last: int, tolerance: float, longe
         if px * px + py * py + pz * pz > tolerance * tolerance:
             return False
     return True
+
+
+@array_kernel
+def thin_poses(
+    tips: FloatArray, tops: FloatArray, group: IntArray, tolerance: float, longest: float, most: int
+) -> IntArray:
+    """Choose samples between which two points of a tool moved straight; see ``thin``.
+
+    Args:
+        tips: One of them, shape (n, 3) [mm].
+        tops: The other.
+        group: As for ``thin``.
+        tolerance: As for ``thin``.
+        longest: As for ``thin``.
+        most: As for ``thin``.
+    """
+    count = len(tips)
+    chosen = np.zeros(count, np.int64)
+    kept, anchor = 1, 0
+    while anchor < count - 1:
+        last = anchor + 1
+        while last + 1 < count and last + 1 - anchor <= most:
+            following = last + 1
+            if group[following] != group[last]:
+                break
+            if not _straight(tips, anchor, following, tolerance, longest):
+                break
+            if not _straight(tops, anchor, following, tolerance, longest):
+                break
+            last = following
+        chosen[kept] = last
+        kept += 1
+        anchor = last
+    return chosen[:kept]

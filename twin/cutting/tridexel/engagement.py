@@ -94,13 +94,12 @@ def _swept(stock: TriDexel, poses: Poses, solids: Sequence[Solid], tool: int) ->
     short, step = in_short_steps(poses, solids)
     tally = np.zeros((len(step), COLUMNS))
     tally[:, LOWEST], tally[:, HIGHEST] = np.inf, -np.inf
-    for solid in solids:
-        body, done = Solid(*(float(value) for value in solid)), 0
-        while True:
-            done = sweep(stock.dexels, stock.lattice, short, body, tally, tool, done)
-            if done >= len(tally):
-                break
-            stock.dexels = stock.dexels.grown()
+    bodies, done = np.array(solids, np.float64), 0
+    while True:
+        done = sweep(stock.dexels, stock.lattice, short, bodies, tally, tool, done)
+        if done >= len(tally):
+            break
+        stock.dexels = stock.dexels.grown()
     if len(tally) < len(poses.tip):
         return tally
     first = np.flatnonzero(np.diff(step, prepend=-1))

@@ -66,18 +66,18 @@ def sweep(
     dexels: Dexels,
     lattice: Lattice,
     poses: Poses,
-    solid: Solid,
+    solids: FloatArray,
     tally: FloatArray,
     tool: int,
     first: int,
 ) -> int:
-    """Bring a solid along steps through the material.
+    """Bring solids along steps through the material.
 
     Args:
         dexels: The material.
         lattice: Where it lies.
         poses: Ends of n steps.
-        solid: What moves.
+        solids: What moves: the fields of each ``Solid``, shape (m, 5).
         tally: What each step did is added to it, shape (n, COLUMNS).
         tool: Which it is; ``MEASURE``: it cuts nothing, and what it meets is measured.
         first: Step to begin with.
@@ -87,13 +87,15 @@ def sweep(
     """
     for number in range(first, len(poses.tip) - 1):
         cuts = tool != MEASURE
-        step = Step(number, tool, cuts, cuts and number > first, _bend(poses, solid, number))
-        span = _within_box(lattice, poses, solid, number)
-        if span[0] > span[1]:
-            continue
-        for direction in range(3):
-            if not _sweep_lines(dexels, lattice, poses, solid, tally, step, span, direction):
-                return number
+        for each in solids:
+            solid = Solid(each[0], each[1], each[2], each[3], each[4])
+            step = Step(number, tool, cuts, cuts and number > first, _bend(poses, solid, number))
+            span = _within_box(lattice, poses, solid, number)
+            if span[0] > span[1]:
+                continue
+            for direction in range(3):
+                if not _sweep_lines(dexels, lattice, poses, solid, tally, step, span, direction):
+                    return number
     return len(poses.tip) - 1
 
 

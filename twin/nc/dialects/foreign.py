@@ -74,6 +74,25 @@ TEXTS: tuple[Foreign, ...] = (
     Foreign("an XML file", "an NC program is text of blocks", r"\A\s*<\?xml\b", comments=True),
     Foreign("an APT or CL file (ISO 4343)", _POST, r"(?m)^\s*(?:GOTO\s*/|FEDRAT\s*/|PARTNO\b)", 2),
     Foreign("an HP-GL plot", _MODEL, r"(?:\bP[UD](?:-?\d+,-?\d+)?;){2}", comments=True),
+    Foreign("an RML plot, for a Roland", _MODEL, r"\^(?:IN|PA|PR|DF);", 2, comments=True),
+    Foreign(
+        "a post processor, and no program",
+        "post a part by it in CAM",
+        r"(?m)^vendor = \"|^POST_NAME ?= ?\"|^function onOpen\(",
+        comments=True,
+    ),
+    Foreign(
+        "a list of a Fanuc control's parameters",
+        "it holds no moves",
+        r"(?m)^N\d{4,5}(?:Q\d)?(?:[AL]\d)?P-?\d",
+        2,
+    ),
+    Foreign(
+        "a table of a Heidenhain control",
+        "it holds no moves",
+        r"\ABEGIN +\S+ *\.[A-Z]+ +(?:MM|INCH)",
+    ),
+    Foreign("a program for a NUM", _POST, r"(?m)^\s*(?:N\d+ *)?E[3-9]\d{4} *=|\bG77 *N\d+ *N\d+"),
     Foreign(
         "a Heidenhain program in DIN/ISO",
         "post it as Klartext (.h), which --dialect heidenhain reads",

@@ -49,12 +49,16 @@ def reading_of(source: Source) -> Reading:
     for dialect in DIALECTS.values():
         if dialect.suffixes and source.name.lower().endswith(dialect.suffixes):
             return Reading((dialect.name,), "by the end of its file's name")
+    if not any(line.strip() for line in source.lines):
+        raise EmptyProgramError(f"{source.name}: the program is empty")
+    if not any(without_comments(line).strip() for line in source.lines):
+        raise EmptyProgramError(f"{source.name}: the program is empty: it holds comments alone")
     marks = {name: shown for name, shown in marks_found(source).items() if shown}
     everything = {mark for shown in marks.values() for mark in shown}
     complete = tuple(name for name, shown in marks.items() if everything <= set(shown))
     if len(complete) == 1:
         return Reading(complete, f"by {', '.join(marks[complete[0]])}")
-    head = head_of(source)
+    head = head_of(source).replace("_", " ")  # as in linuxcnc_post
     named = [name for name, pattern in _NAMES.items() if re.search(pattern, head, re.IGNORECASE)]
     if len(named) == 1 and (not marks or named[0] in marks):
         return Reading((named[0],), f"its head names {named[0]}")
@@ -67,10 +71,6 @@ def reading_of(source: Source) -> Reading:
         seen = "; ".join(f"{', '.join(shown)} ({name})" for name, shown in marks.items())
         return Reading(tuple(marks), f"words of several: {seen}")
     first = "\n".join(islice(source.lines, 2000))
-    if not first.strip():
-        raise EmptyProgramError(f"{source.name}: the program is empty")
-    if not any(without_comments(line).strip() for line in source.lines):
-        raise EmptyProgramError(f"{source.name}: the program is empty: it holds comments alone")
     if is_prose(first):
         raise UsageError(
             f"{source.name}: looks like prose: an NC program is text of blocks such as G1 X10 F100"

@@ -222,6 +222,7 @@ class MoveColumns:
         length, unit = self._measure(start, end, normal, radius, values[:, 6])
         if curve is not None:
             curved = shape == CURVE
+            radius[curved] = _norms(center[curved])
             length[curved], unit[curved] = lengths[curved], units[curved]
         moves = Moves(
             axes=self._axes,

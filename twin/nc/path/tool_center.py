@@ -84,6 +84,12 @@ class ToolCenter:
         counted[columns] = self._zero[columns] + np.array(rotary_zero)[columns]
         self._counted_zero = self._zero - counted
         self._chain = counted_from(setup.chain, counted, setup.length)
+        self._seen_from_part = np.eye(3)
+        if np.any(np.array(rotary_zero)[columns]):
+            # The part's frame is parallel to the machine's axes at part zero, not at the work offset's.
+            shifted = [0.0, 0.0, 0.0, *rotary_zero[3:]]
+            level = [0.0] * len(rotary_zero)
+            self._seen_from_part = ToolCenter(setup, longer, level).frame_there(shifted)
 
     def with_length(self, longer: float) -> "ToolCenter":
         """The same for a tool of another length."""
@@ -194,10 +200,11 @@ class ToolCenter:
         advance = _advance(move)
         for part in range(count):
             last = part + 1 == count
-            center = move.center
-            if center is not None:
+            center = None
+            if move.center is not None:
                 height = advance * fraction[part]
-                center = _vector(np.array(center) + height * np.array(move.normal))
+                from_tip = np.array(move.center) + height * np.array(move.normal) - tip.value[part]
+                center = _vector(self._seen_from_part @ from_tip)
             yield dataclasses.replace(
                 move,
                 start=rows[part].tolist(),
@@ -205,6 +212,7 @@ class ToolCenter:
                 display=(places[part + 1] + shown).tolist(),
                 corner=move.corner if last else Corner.EXACT_PATH,
                 center=center,
+                normal=_vector(self._seen_from_part @ np.array(move.normal)),
                 sweep=move.sweep * step,
                 curve=Curve(coefficients[part], length * step, turning),
             )

@@ -7,7 +7,7 @@ import numpy as np
 from twin.columns import join
 from twin.cutting.cut import Cutter
 from twin.cutting.height_map import BoolArray, HeightMap
-from twin.cutting.stock_contact import Head
+from twin.cutting.material import Head
 from twin.cutting.sweeping import Rectangle, union
 from twin.job.job_file import StockTable, ToolTable
 from twin.machine.watching.alarms import Alarm
@@ -66,11 +66,12 @@ class Workpiece:
     def mount(self, tool: ToolTable) -> None:
         """Go on with another tool."""
         self._uncut = []
-        before = self._cutter.map
+        before = self._cutter.material
         self._cutter = Cutter(
             self._stock, tool, self._frame, self._zero, halts=True, head=self._head
         )
-        self._cutter.map = before
+        before.begin_chunk()
+        self._cutter.material = before
 
     def cut(
         self, tips: Samples, rapid: BoolArray, standing: BoolArray, *, at_once: bool

@@ -1,0 +1,93 @@
+"""A height map as the material of a cut."""
+
+from pathlib import Path
+
+import numpy as np
+
+from twin.cutting.height_map import HeightMap
+from twin.cutting.kernels.sweep import Marks, Removal
+from twin.cutting.kernels.thin import thin
+from twin.cutting.kernels.wall_distance import note_walls
+from twin.cutting.material import (
+    LONGEST_SHARE,
+    MOST_JOINED,
+    STRAIGHT_MM,
+    STRAIGHT_SHARE,
+    Head,
+    Points,
+)
+from twin.cutting.part import part_picture, write_stl
+from twin.cutting.stock_contact import StockContact
+from twin.cutting.sweeping import Rectangle, sweep_lines, union
+from twin.cutting.tools import Profile
+from twin.job.job_file import ToolTable
+from twin.nc.canonical import FloatArray, IntArray
+
+WALL_SHARE = 0.02
+WALL_MM = 4e-3
+WALL_JOINED = 32
+"""As ``STRAIGHT_SHARE``, ``STRAIGHT_MM`` and ``MOST_JOINED``, for walls beside the way, which are looked at for more
+stretches together."""
+
+
+class HeightMapMaterial:
+    """Cuts a height map; see ``Material``.
+
+    Attributes:
+        map: The height map.
+        changed: Cells that changed since ``begin_chunk``: row, row end, column, column end; none when the rows
+            end before they begin.
+        marks: Way of the tool at which each cell was last cut, shape (ny, nx) [mm]: its lines are
+            the marks that a cutter leaves. Of no size unless asked for.
+    """
+
+    def __init__(self, height_map: HeightMap, *, keep_marks: bool = False) -> None:
+        self.map = height_map
+        self.changed: Rectangle = (0, 0, 0, 0)
+        self.marks = np.zeros(height_map.heights.shape if keep_marks else (0, 0))
+
+    @property
+    def cell(self) -> float:
+        """Side of a cell [mm]."""
+        return self.map.cell
+
+    @property
+    def corners(self) -> FloatArray:
+        """Two opposite corners of the box around the blank, shape (2, 3) [mm]."""
+        return self.map.corners
+
+    def begin_chunk(self) -> None:
+        """Forget what has changed so far."""
+        self.changed = (0, 0, 0, 0)
+
+    def straight(self, points: Points, group: IntArray, edge: Profile) -> IntArray:
+        """Choose samples between which the tool moved straight."""
+        tolerance = min(STRAIGHT_SHARE * self.cell, STRAIGHT_MM)
+        return thin(points.tip, group, tolerance, LONGEST_SHARE * edge.radius, MOST_JOINED)
+
+    def contact(self, tool: ToolTable, edge: Profile, head: Head | None) -> StockContact:
+        """What measures a tool with what is above it against the material."""
+        return StockContact(self.map, tool, edge, head)
+
+    def take_off(
+        self, points: Points, tool: ToolTable, edge: Profile, travelled: FloatArray, *, stood: bool
+    ) -> Removal:
+        """Cut what a tool meets, and note the walls that it leaves."""
+        del tool
+        material, way = self.map, points.tip
+        found = sweep_lines(material, way, edge, Marks(self.marks, travelled), stood=stood)
+        self.changed = union(self.changed, found.changed)
+        off = min(WALL_SHARE * material.cell, WALL_MM)
+        rows = thin(way, np.zeros(len(way), np.int64), off, edge.radius, WALL_JOINED)
+        note_walls(
+            material.heights, material.behind, material.grid, way[rows], edge.radius, edge.flat
+        )
+        return found.removal
+
+    def write_stl(self, path: Path, zero: FloatArray) -> None:
+        """Write the part as binary STL."""
+        write_stl(self.map, path, zero)
+
+    def picture(self) -> bytes:
+        """The part from above, PNG."""
+        return part_picture(self.map)
