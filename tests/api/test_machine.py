@@ -43,5 +43,5 @@ def test_a_specification_is_new_each_time():
 
 
 def test_no_such_machine_lists_those_that_there_are():
-    with pytest.raises(UsageError, match="shipped machines are mill4"):
+    with pytest.raises(UsageError, match=r"shipped machines are .*mill4"):
         twin.Machine("mill9")

@@ -90,7 +90,7 @@ def test_a_target_outside_the_travel_is_an_alarm_before_anything_moves(twin: Twi
     ("job", "said"),
     [
         ("toleranse = 3", "did you mean 'tolerance'?"),
-        ('machine = "mill5"', "shipped machines are"),
+        ('machine = "mill9"', "shipped machines are"),
         ('dialect = "mazatrol"', "gost"),
         ("[part_zero]\nW = 3.0", "X, Y, Z, C"),
         ('[tolerance]\ncontour_um = "small"', "tolerance.contour_um"),

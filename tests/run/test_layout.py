@@ -63,3 +63,23 @@ def test_a_stock_below_the_table_is_refused_with_the_height_that_fits(
     lifted = float(str(caught.value).split("part_zero.Z to ")[1].split(" ")[0])
     fitting = JobFile(program="a", part_zero={"Z": lifted + 1e-3}, stock=stock(200.0))
     assert lay_out(fitting, machine).part_zero[2] == pytest.approx(lifted + 1e-3)
+
+
+def test_on_a_table_along_x_program_zero_is_in_the_middle_of_the_faceplate() -> None:
+    machine = read_machine(machine_file("mill4a"))
+    job = JobFile.model_validate({"program": "p.nc", "tools": [{"number": 1, "length": 120.0}]})
+    layout = lay_out(job, machine)
+    np.testing.assert_allclose(layout.part_zero, [-150.0, 0.0, -525.0, 0.0])
+    assert machine.part_frame.over_table == (-150.0, 0.0)
+
+
+def test_on_a_trunnion_the_blank_is_over_the_table_with_its_axes_at_zero() -> None:
+    machine = read_machine(machine_file("mill5"))
+    stock = {"shape": "box", "size": [60.0, 60.0, 50.0]}
+    tools = [{"number": 1, "length": 100.0}]
+    job = JobFile.model_validate({"program": "p.nc", "stock": stock, "tools": tools})
+    layout = lay_out(job, machine)
+    # 630 mm from the nose to the table, 40 mm of work holding, a blank of 50 mm, a tool of 100 mm.
+    np.testing.assert_allclose(layout.part_zero, [0.0, 0.0, -440.0, 0.0, 0.0])
+    assert layout.blank is not None
+    np.testing.assert_allclose(layout.blank.center, [0.0, 0.0, 65.0], atol=1e-9)

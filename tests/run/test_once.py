@@ -60,5 +60,6 @@ def test_a_run_does_each_once(counts: Counter[str], job: str) -> None:
 
 def test_the_height_over_the_table_needs_no_model(counts: Counter[str]) -> None:
     made = prepare(Path(resource_root("programs") / ONE_TOOL))
+    counts.clear()
     twin.machine.model.model.spindle_over_table_mm(made.machine)
     assert not counts["compiled"]

@@ -356,8 +356,7 @@ def _zero_line(
     rotary = machine.axes.rotary()
     turns = len(moves) > 0 and bool((moves.start[:, rotary] != moves.end[:, rotary]).any())
     if top is not None and not turns and np.abs(top[:2]).max() > BELOW:
-        frame = machine.part_frame
-        center = frame.center if frame.chain is None else frame.chain.table
+        center = machine.part_frame.over_table
         zero["X"], zero["Y"] = float(center[0] - top[0]), float(center[1] - top[1])
     if decides_height is not None:
         text = "\n".join(['program = "x"', *decides_height])

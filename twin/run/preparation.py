@@ -307,6 +307,6 @@ def _machine_zero(job: Job, machine: Machine) -> dict[str, float] | None:
     if "Z" not in job.file.part_zero:
         return None
     zero = dict.fromkeys(machine.axes.names, 0.0)
-    zero["X"], zero["Y"] = machine.part_frame.center
+    zero["X"], zero["Y"] = machine.part_frame.over_table
     zero |= job.file.part_zero
     return {name: -value for name, value in zero.items()}

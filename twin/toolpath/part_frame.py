@@ -156,6 +156,13 @@ class PartFrame:
             return tool_direction(self.chain, self.counted(joints))
         return np.tile([0.0, 0.0, 1.0], (len(joints), 1))
 
+    @property
+    def over_table(self) -> tuple[float, float]:
+        """Machine X and Y at which the tool is over the middle of the table, rotary axes at zero [mm]."""
+        if self.chain is None:
+            return self.center
+        return float(self.chain.table[0]), float(self.chain.table[1])
+
     def table_about(self, coordinate: int) -> tuple[int, FloatArray] | None:
         """The table next to the part, if it turns about X, Y or Z while all other rotary axes are at zero.
 

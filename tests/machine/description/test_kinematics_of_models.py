@@ -159,3 +159,25 @@ def test_an_axis_whose_joint_moves_neither_is_named(tmp_path):
     )
     with pytest.raises(ConfigError, match="Z moves neither tool nor part"):
         _ = made_up(tmp_path, text).kinematics
+
+
+@pytest.mark.parametrize(
+    ("table", "told"),
+    [
+        ({"axis": "C", "center": (-0.02, 0.0)}, None),
+        ({"axis": "A"}, "C about X"),
+        ({"axis": "C", "center": (500.0, 0.0)}, "C about X"),
+    ],
+)
+def test_a_table_of_the_machine_file_must_be_that_of_the_model(tmp_path, table, told):
+    machine = made_up(tmp_path)
+    joint = machine.kinematics.anchor[machine.kinematics.rotary][-1]
+    center = table.get("center", (0.0, 0.0)) if told else (float(joint[0]), float(joint[1]))
+    data = machine.file.model_dump(by_alias=True)
+    data["table"] = {"axis": table["axis"], "center": center}
+    changed = Machine(machine.path, MachineFile.model_validate(data))
+    if told is None:
+        assert changed.part_frame.chain is not None
+        return
+    with pytest.raises(ConfigError, match=told):
+        _ = changed.part_frame

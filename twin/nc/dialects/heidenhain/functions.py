@@ -114,6 +114,7 @@ def _retract(control: Control) -> None:
 
 _TCPM = "M128 or FUNCTION TCPM leads the tip"
 _REFUSED: Mapping[int, tuple[str, str]] = {
+    **dict.fromkeys((90, 112), ("smoothed corners of old controls", "write CYCL DEF 32")),
     97: ("small steps of the contour", "a contour smaller than the tool is refused here"),
     98: ("open corners of the contour", "the path there is not known"),
     102: ("tool change at the end of its life", "the twin's tools do not wear"),
@@ -125,7 +126,9 @@ _REFUSED: Mapping[int, tuple[str, str]] = {
     118: ("the handwheel beside the path", "there is none"),
     124: ("points of the contour that are left out", "the path would not be the programmed one"),
     130: ("points in the level system", "only the tilted plane of PLANE is followed"),
+    134: ("exact stop of rotary axes", "corners are those of CYCL DEF 32"),
     138: ("rotary axes of the tilted plane", "only the tilted plane of PLANE is followed"),
+    143: ("the end of a basic rotation", "the twin keeps none"),
     144: ("kinematics in the path", _TCPM),
     197: ("corners of the parallel path", "corners are rolled around"),
 }

@@ -49,9 +49,18 @@ def _cycle(number: int) -> str:
     return f"{definition.meaning}: {needed}; also {others}{only}"
 
 
+_SOURCES: Mapping[str, str] = {
+    "L, C, CC, CR, CT, LP, CP, LBL": "worked examples of the TNC 426 user's manual, 6.4",
+    "262 to 265, 267": "TNC 426 user's manual, 8.3",
+    "APPR, DEP": "TNC 640 ISO programming, 6.3; CT: TNC7 user's manual",
+    "256, 257": "TNC 640 cycle programming, 5.6",
+    "207, 251, 253": "programs of Autodesk Fusion's post",
+}
+
 TABLES: Mapping[str, Mapping[str, str]] = {
     "Keywords": _KEYWORDS,
     "Cycles": {**_STEPS, **{str(number): _cycle(number) for number in definitions.DEFINITIONS}},
     "Keywords that are refused": {keyword: reason for keyword, (reason, _) in REFUSED.items()},
     "Cycles that are refused": {str(n): text for n, text in definitions.REFUSED.items()},
+    "What words were checked against": _SOURCES,
 }

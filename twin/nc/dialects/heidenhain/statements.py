@@ -34,6 +34,7 @@ REFUSED: Mapping[str, tuple[str, str]] = {
     "CALL SELECTED PGM": ("the program is selected where it runs", "write CALL PGM and its name"),
     "DECLARE": ("structures of texts are not followed", "write QS1 and its text"),
     "CONTOUR DEF": ("contours of subprograms are not followed", "write the moves themselves"),
+    "GLOBAL DEF": ("values of all cycles are not kept", "write them into each CYCL DEF"),
     "ERROR": ("the control's editor has marked this block as wrong", "write the block anew"),
     "POLARKIN": ("polar kinematics are not followed", "write X and Y"),
     **dict.fromkeys(

@@ -26,7 +26,7 @@ KEYWORDS = (
     r"|(?:APPR|DEP)[ \t]+P?(?:LCT|LT|LN|CT)\b|RND\b|CHF(?![A-Z_])"
     r"|CTP\b|CC\b|CR\b|CT\b|CP\b|LP\b|LN\b|L(?=[ \t]|$)"
     r"|C(?=[ \t]+(?![-+.0-9]|Q[LR]?[0-9])|$)|Q[LR]?[0-9]{1,4}[ \t]*(?==)|QS[0-9]{1,4}[ \t]*(?==)"
-    r"|PLANE\b|FUNCTION\b|TRANS\b|TCH[ \t]+PROBE|SEL[ \t]+[A-Z]+|CONTOUR[ \t]+DEF|DECLARE\b|ERROR\b"
+    r"|PLANE\b|FUNCTION\b|TRANS\b|TCH[ \t]+PROBE|SEL[ \t]+[A-Z]+|CONTOUR[ \t]+DEF|GLOBAL[ \t]+DEF|DECLARE\b|ERROR\b"
     r"|F(?:LT|CT|L|C|POL|SELECT)(?![A-Z0-9_=])|SPL\b|APPR\b|DEP\b|POLARKIN\b|TABDATA\b|OPEN\b|CLOSE\b"
 )
 """Keywords of Klartext, those that are refused among them; longer ones first."""

@@ -225,6 +225,12 @@ SINUMERIK = Dialect(
         shared_marks.SEMICOLON,
         shared_marks.ADDITIONAL_OFFSET,
     ),
+    tables={
+        "What words were checked against": {
+            "G147, G247, G347, DISR": "SINUMERIK 840D sl and 828D, fundamentals, 2.10.4",
+            "RND, RNDM, CHF, CHR": "SINUMERIK 828D programming manual, 9.15",
+        }
+    },
     suffixes=subprograms.SUFFIXES,
     library=subprograms.LIBRARY,
 )

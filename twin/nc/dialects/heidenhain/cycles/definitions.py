@@ -268,6 +268,7 @@ REFUSED: Mapping[int, str] = {
     **dict.fromkeys(
         (14, 20, 21, 22, 23, 24, 25, 270, 271, 272, 273, 274), "contours of subprograms (SL, OCM)"
     ),
+    17: "tapping of old controls: write CYCL DEF 207",
     18: "thread cutting",
     26: "a scale of its own for each axis: write CYCL DEF 11",
     **dict.fromkeys((27, 28, 29, 39), "the surface of a cylinder"),
@@ -275,9 +276,9 @@ REFUSED: Mapping[int, str] = {
     **dict.fromkeys(
         (210, 211, 212, 213, 214, 215), "an older pocket, slot or stud: write CYCL DEF 251 to 257"
     ),
-    225: "engraving",
+    **dict.fromkeys((224, 225), "engraving"),
     **dict.fromkeys((230, 231, 232, 233), "face milling"),
-    239: "the load of the table",
+    **dict.fromkeys((238, 239), "the state of the machine and the load of its table"),
     258: "a stud of many sides",
     **dict.fromkeys((275, 276, 277), "trochoidal milling and contours"),
     **dict.fromkeys((290, 291, 292, 880), "turning and gears"),
