@@ -180,6 +180,7 @@ def _turn(axis: int, angle: float) -> np.ndarray:
     [
         ("fanuc", "O1\nG68.2 X0 Y0 Z0 I0 J30. K0\nG0 X5.\nM30\n", "tilted-plane"),
         ("fanuc", "O1\nG53.1\nM30\n", "tilted-plane"),
+        ("fanuc", "O1\nG43.4 H1\nG1 X5. C40000. F100.\nM30\n", "tool-center"),
         ("fanuc", "O1\nG68.2 X0 Y0 Z0 I0 J130. K0\nG53.1\nM30\n", "tilted-plane"),
         ("fanuc", "O1\nG68.2 X0 Y0 Z0 I0 J30. K0\nG53.1\nG0 A5.\nM30\n", "tool-center"),
         ("fanuc", "O1\nT1 M6\nG41 D1\nG1 X5. F100.\nG43.4 H1\nM30\n", "compensation-change"),

@@ -150,8 +150,12 @@ def test_going_back_mends_a_tool_that_broke_since(tmp_path):
 
 def test_every_shipped_scene_cuts_a_named_material():
     for name in scene_names():
-        stock = read_scene(scene_path(name)).preparation.job.file.stock
-        assert stock is not None
+        preparation = read_scene(scene_path(name)).preparation
+        stock = preparation.job.file.stock
+        if stock is None:
+            # The room cuts height maps alone, which know a part from one side.
+            assert preparation.machine.part_frame.chain is not None, name
+            continue
         assert stock.material, name
 
 

@@ -24,6 +24,9 @@ from twin.units import DEGREE
 TIP_ERROR = 1e-10
 """How far the tip may leave its path between two places where it is exact [mm]."""
 
+FARTHEST_TURN = 36_000.0
+"""What an axis may turn in one move of a tip that is led [deg]: beyond it, it is a slip of the pen."""
+
 _HERMITE = 46080.0
 """``6! 2^6``: what the error of a polynomial of the fifth degree through both ends is divided by."""
 
@@ -153,6 +156,8 @@ class ToolCenter:
         turning = self._chain.column[self._chain.rotary]
         if self.tilted and np.any(rates[turning]):
             raise ValueError("a rotary axis would move, and the tool stands across a tilted plane")
+        if np.abs(rates[turning]).max(initial=0.0) > FARTHEST_TURN:
+            raise ValueError("the tip is led through 100 turns of an axis at most")
         if not np.any(rates[turning]):
             straight = self._at_rest(move)
             if straight is not None:
