@@ -25,7 +25,7 @@ needs_michigan = pytest.mark.skipif(
 
 def feeds(count: int = 400) -> MachineLog:
     """There and back at 40 mm/s, and one peck of 3 mm within a sample."""
-    time = np.arange(count) * PERIOD
+    time = np.asarray(np.arange(count) * PERIOD, np.float64)
     travelled = np.maximum(40.0 * (time - 4.0), 0.0)
     command = 60.0 - np.abs(60.0 - travelled % 120.0)
     command[15:25] = 3.0
