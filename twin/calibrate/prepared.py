@@ -1,7 +1,8 @@
 """A log that is ready to be fitted: looked through, and no faster than a fit needs it."""
 
 import dataclasses
-from collections.abc import Mapping
+import itertools
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
@@ -23,6 +24,8 @@ from twin.nc.canonical import BoolArray, FloatArray
 
 MOST_FITTED = 60_000
 """Samples that a fit runs along: more tell no more, and each of hundreds of runs takes longer."""
+_MOST_AT_ONCE = 200_000
+"""Samples that are looked at or judged at once: what a model has in place of them takes ten times their room."""
 _PART_S = 5.0
 """Time of a part of a long log that is fitted or left [s]."""
 Rows = tuple[tuple[int, int], ...]
@@ -64,6 +67,20 @@ class PreparedLog:
         sound = None if found is None else found.sound
         return stretches_of(self.log.axes[name], self.log.time, self.rows(name), sound)
 
+    def parts(self, name: str) -> Iterator[tuple[int, int]]:
+        """As ``rows``; a long stretch in parts, each with a beginning of its own."""
+        for begin, end in self.rows(name):
+            count = -(-(end - begin) // _MOST_AT_ONCE)
+            edges = [begin + (end - begin) * part // count for part in range(count + 1)]
+            yield from itertools.pairwise(edges)
+
+    def judged(self, name: str) -> Iterator[Stretch]:
+        """All of an axis, one part after the other."""
+        found = self.defects.get(name)
+        sound = None if found is None else found.sound
+        for part in self.parts(name):
+            yield from stretches_of(self.log.axes[name], self.log.time, (part,), sound)
+
     def fitted(self, name: str) -> list[Stretch]:
         """What a fit of an axis runs along: of a long log the parts in which it is told the most."""
         rows, period = self.rows(name), self.health.period_s
@@ -96,7 +113,7 @@ class PreparedLog:
     def is_filtered(self, name: str) -> bool:
         """Whether positions of an axis are logged behind a filter, as their noise shows."""
         begin, end = max(self.rows(name), key=lambda rows: rows[1] - rows[0])
-        axis = self.cleaned(name).of_rows(slice(begin, end))
+        axis = self.cleaned(name).of_rows(slice(begin, min(end, begin + _MOST_AT_ONCE)))
         return is_filtered(axis.command, axis.actual)
 
     def cleaned(self, name: str) -> AxisLog:
