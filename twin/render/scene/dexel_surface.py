@@ -8,7 +8,7 @@ from twin.cutting.tridexel.blanks import OWN
 from twin.cutting.tridexel.material import TriDexelMaterial
 from twin.cutting.tridexel.mesh import MOST_VERTICES, TRIANGLES, Surface, surface
 from twin.cutting.tridexel.normals import normals, tools
-from twin.nc.canonical import FloatArray
+from twin.nc.canonical import BoolArray, FloatArray
 from twin.render.drawing.canvas import Canvas
 from twin.render.scene.live_mesh import LiveMesh, add_live_mesh
 from twin.render.scene.placement import Placement
@@ -85,13 +85,16 @@ class DexelSurface:
     def _set(self) -> None:
         found = surface(self._material.stock, self._crossings, self._step)
         self._step = found.step
-        # A face's first corner is a crossing: what left the surface there is known.
-        machined = tools(found.skin[found.faces[:, 0]]) != OWN
-        texels = np.where(machined, MACHINED, RAW)
-        self._mesh.fill(found.points, found.faces, _corner_normals(found), texels)
+        texels = np.where(machined(found), MACHINED, RAW)
+        self._mesh.fill(found.points, found.faces, corner_normals(found), texels)
 
 
-def _corner_normals(found: Surface) -> FloatArray:
+def machined(found: Surface) -> BoolArray:
+    """Which faces a tool left, shape (m,): of a face's first corner, a crossing, it is known."""
+    return tools(found.skin[found.faces[:, 0]]) != OWN
+
+
+def corner_normals(found: Surface) -> FloatArray:
     """Normals of the corners of faces, shape (m, 3, 3): the surface's own, across an edge of it the face's."""
     faces = face_normals(found.points[found.faces])[:, None]
     smooth = normals(found.skin)[found.faces]
