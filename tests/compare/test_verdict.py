@@ -49,6 +49,7 @@ def figures(contour: float = 12.0, lag: float = 150.0, turn: float = 30.0) -> Fi
             time_s=np.array([0.1, 0.7, 1.25]),
         ),
         corners=CornerFigures(count=3, rounding_um=6.0, line=8, time_s=1.1),
+        direction=AxisTracking("rotary", 45.0, 20.0, 7, 1.2),
     )
 
 
@@ -61,7 +62,7 @@ def test_within_tolerance_passes_and_the_limit_itself_is_within():
 
 EVERY_LIMIT = {
     "contour_um": 12.0, "rapid_contour_um": 10.8, "corner_um": 6.0, "following_um": 150.0,
-    "following_mdeg": 30.0, "circular_deviation_um": 3.0, "cycle_time_s": 2.5,
+    "following_mdeg": 30.0, "direction_mdeg": 45.0, "circular_deviation_um": 3.0, "cycle_time_s": 2.5,
 }  # fmt: skip
 
 
@@ -106,6 +107,8 @@ def ranges(*parts: tuple[int, int, float]) -> tuple[BlocksToleranceTable, ...]:
         ({"corner_um": 6}, []),
         ({"circular_deviation_um": 2.9}, [("circular_deviation_um", 5)]),
         ({"circular_deviation_um": 3}, []),
+        ({"direction_mdeg": 44}, [("direction_mdeg", 7)]),
+        ({"direction_mdeg": 45}, []),
         ({"cycle_time_s": 2.4}, [("cycle_time_s", 0)]),
         ({"cycle_time_s": 2.5}, []),
     ],

@@ -1,22 +1,27 @@
 import json
+from pathlib import Path
 
 import pytest
 
 from twin.commands.machine import print_check, print_circle, print_machine, print_machines
 from twin.errors import ExitCode, UsageError
 
+MODELS = Path(__file__).resolve().parents[2] / "models"
+VARIANTS = ("mill4/as_built", "mill4/uncompensated")
+
 
 def test_the_list_names_every_machine_with_its_axes(capsys):
     print_machines("text")
     lines = capsys.readouterr().out.splitlines()
-    assert [line.split()[:5] for line in lines] == [
-        ["mill4", "X", "Y", "Z", "C"],
-        ["mill4/as_built", "X", "Y", "Z", "C"],
-        ["mill4/uncompensated", "X", "Y", "Z", "C"],
-        ["mill4_light", "X", "Y", "Z", "C"],
-    ]
+    told = {line.split()[0]: [word for word in line.split() if len(word) == 1] for line in lines}
+    assert set(told) == {*(path.parent.name for path in MODELS.glob("*/machine.toml")), *VARIANTS}
+    assert all(told[each] == list("XYZC") for each in ("mill4", *VARIANTS, "mill4_light"))
+    assert told["mill3"] == list("XYZ")
+    assert told["mill4a"] == list("XYZA")
+    assert told["mill5"] == list("XYZAC")
     print_machines("json")
-    assert json.loads(capsys.readouterr().out)[0] == {"name": "mill4", "axes": ["X", "Y", "Z", "C"]}
+    listed = {each["name"]: each["axes"] for each in json.loads(capsys.readouterr().out)}
+    assert listed == told
 
 
 def test_show_prints_the_lag_at_the_feed(capsys):
@@ -32,7 +37,7 @@ def test_show_prints_the_lag_at_the_feed(capsys):
 
 def test_check_tells_point_by_point(capsys):
     assert print_check("mill4_light") == ExitCode.OK
-    assert capsys.readouterr().out.count("ok ") == 7
+    assert capsys.readouterr().out.count("ok ") == 8
 
 
 def test_circle_writes_its_plot_and_prints_its_figures(capsys, tmp_path):
@@ -55,7 +60,7 @@ def test_wrong_arguments_are_refused(tmp_path):
         print_machine("mill4", feed=-1.0, form="text")
     with pytest.raises(
         UsageError,
-        match="shipped machines are mill4, mill4_light, mill4/as_built, mill4/uncompensated",
+        match=r"shipped machines are mill3, mill4, mill4_light, .*, mill4/as_built, mill4/uncompensated",
     ):
         print_check("mill9")
     with pytest.raises(UsageError, match=r"no plot of kind '\.txt'"):

@@ -73,6 +73,7 @@ class Comparison:
         self._duration = 0.0
         self._axis_errors = [Distribution() for _ in axes.names]
         self._axis_worst = [(0, 0.0) for _ in axes.names]
+        self._direction, self._direction_worst = Distribution(), (0, 0.0)
         self._contour = Distribution()
         self._arcs = ArcCollector()
         self._blocks = BlockCollector(apart)
@@ -126,6 +127,7 @@ class Comparison:
         self._duration = float(setpoint.time[-1])
         self._add_tracking(samples)
         real = samples.real(self._frame)
+        self._add_direction(real, setpoint)
         longer = self._lower(setpoint.move)
         point = np.ascontiguousarray(self._frame.position(real, longer))
         if int(setpoint.move.max()) >= self._first + len(self._moves):
@@ -187,6 +189,17 @@ class Comparison:
             if row is not None:
                 place = int(setpoint.line[row]), float(setpoint.time[row])
                 self._axis_worst[column] = place
+
+    def _add_direction(self, real: FloatArray, setpoint: Setpoints) -> None:
+        if self._frame.chain is None:
+            return
+        commanded = self._frame.tool_direction(setpoint.position)
+        simulated = self._frame.tool_direction(real)
+        across = np.linalg.norm(np.cross(commanded, simulated), axis=1)
+        along = np.einsum("ij,ij->i", commanded, simulated)
+        row = self._direction.add(np.rad2deg(np.arctan2(across, along)) * MDEG_PER_DEGREE)
+        if row is not None:
+            self._direction_worst = int(setpoint.line[row]), float(setpoint.time[row])
 
     def _follow(self, samples: Samples, point: FloatArray) -> Followed:
         setpoint, late = samples.setpoint, self._late
@@ -262,4 +275,12 @@ class Comparison:
             blocks=self._blocks.figures(),
             features=self._features.figures(),
             corners=self._corners.figures(self._moves),
+            direction=self._direction_figures(),
         )
+
+    def _direction_figures(self) -> AxisTracking | None:
+        size = self._direction
+        if not size.count:
+            return None
+        place = self._direction_worst
+        return AxisTracking("rotary", size.greatest, size.rms, *place, size.percentile(99.0))

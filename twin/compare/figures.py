@@ -209,6 +209,8 @@ class Figures:
         bidirectional: Full circles that were run both ways, by line.
         shares: What drives and every error of the geometry have of the greatest contour error, along
             it [µm]; empty where the machine has no such errors.
+        direction: Angle between the tool's commanded and simulated directions in the part, counted as a rotary
+            axis; None where nothing tilts the one against the other.
     """
 
     samples: int
@@ -222,3 +224,4 @@ class Figures:
     corners: CornerFigures = NO_CORNERS
     bidirectional: tuple[BidirectionalFigures, ...] = ()
     shares: Mapping[str, float] = dataclasses.field(default_factory=dict)
+    direction: AxisTracking | None = None

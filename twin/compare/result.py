@@ -88,6 +88,7 @@ def result(
         "tracking_mdeg": _tracking(figures, "rotary"),
         "contour_um": dataclasses.asdict(contour),
         "contour_shares_um": dict(figures.shares),
+        **({} if figures.direction is None else {"direction_mdeg": _axis(figures.direction)}),
         "features_um": {
             name: dataclasses.asdict(feature) for name, feature in figures.features.items()
         },

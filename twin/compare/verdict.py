@@ -231,3 +231,8 @@ def _following_checks(figures: Figures, tolerance: ToleranceTable) -> Iterator[C
         if limit is not None:
             figure = f"following error of {name}"
             yield Check(key, figure, axis.max, limit, unit, axis.line, axis.time_s)
+    direction, limit = figures.direction, tolerance.direction_mdeg
+    if limit is not None and direction is not None:
+        place = direction.line, direction.time_s
+        figure = "error of the tool's direction"
+        yield Check("direction_mdeg", figure, direction.max, limit, "mdeg", *place)

@@ -221,6 +221,9 @@ class ToleranceTable(Table):
     """Largest following error of a linear axis [µm]; none: not judged."""
     following_mdeg: Positive | None = None
     """Largest following error of a rotary axis [mdeg]; none: not judged."""
+    direction_mdeg: Positive | None = None
+    """Largest angle between the tool's commanded and simulated directions in the part, on machines whose axes tilt
+    the one against the other [mdeg]; none: not judged."""
     force_n: Positive | None = None
     """Greatest cutting force in a turn [N]; none: not judged; force must be simulated, as for the next three."""
     power_w: Positive | None = None

@@ -210,6 +210,7 @@ _WHY = {
     "circular_deviation_um": "the program has no arc of 90 degrees or more with the table at rest",
     "corner_um": "the program has no corner",
     "rapid_contour_um": "the program has no rapid",
+    "direction_mdeg": "no axis tilts the tool against the part",
     "contour_um": "nothing moves, or other tolerances hold for every line",
     "force_n": "no tool cut",
     "power_w": "no tool cut",

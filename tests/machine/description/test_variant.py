@@ -78,7 +78,7 @@ def test_a_joint_that_counts_the_other_way_is_turned_round_by_its_direction(tmp_
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ('base = "mill9"\n', "no machine 'mill9': shipped machines are mill4, mill4_light"),
+        ('base = "mill9"\n', "no machine 'mill9': shipped machines are mill3, mill4, mill4_light"),
         ("base = 4\n", "'base' must be a machine's name or a path"),
         ('base = "machine.toml"\n', "leads in a circle"),
         ('base = "mill4"\n[axes.X]\nspeed = 3\n', "unknown key 'axes.X.speed'"),

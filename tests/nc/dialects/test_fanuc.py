@@ -95,6 +95,51 @@ def test_subprograms_are_read_from_files_beside_the_program(tmp_path: Path) -> N
     assert (outcome.position["X"], outcome.position["Y"]) == (1.0, 4.0)
 
 
+def test_programs_are_called_by_name_in_the_file_and_beside_it(tmp_path: Path) -> None:
+    main = "%\nO<MAIN>\nM98 <pocket_1> L3\nG65<RIM-2.B>A5.\nM98 P7\nM98 <O30>\nM30\nO<POCKET_1>\nG91 G0 X1.\nG90\nM99\n"
+    (tmp_path / "main.nc").write_text(main)
+    (tmp_path / "Rim-2.b.nc").write_text("%\nO<Rim-2.b> (SUB)\nG0 Y#1\nM98 <LIFT>\nM99\n%\n")
+    (tmp_path / "lift.tap").write_text("G0 Z2.\nM99\n")
+    (tmp_path / "O0007.nc").write_text("G91 G0 X10.\nG90\nM99\n")
+    (tmp_path / "O30.nc").write_text("G91 G0 X20.\nG90\nM99\n")
+    fanuc = dialect_named("fanuc")
+    assert fanuc.library is not None
+    source = fanuc.library(read_source(tmp_path / "main.nc"), tmp_path, fanuc)
+    assert good(source.text, "fanuc").position == pytest.approx(
+        {"X": 33.0, "Y": 5.0, "Z": 2.0, "C": 0.0}
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        ("O<A>\nM98 <>\nM30", "call-values"),
+        (f"O<A>\nM98 <{'B' * 33}>\nM30", "call-values"),
+        ("O<A>\nG65 <A/B>\nM30", "call-values"),
+        ("O<A B>\nM30", "call-values"),
+        ("O<A>\nM98 <B>\nM30", "unknown-subprogram"),
+        ("O<A>\nG66 <B> Z1.\nM30", "unknown-subprogram"),
+        ("O<A>\nM98 <B\nM30", "unreadable"),
+        ("O<A>\nM98 <B> <B>\nM30\nO<B>\nM99", "duplicate-word"),
+        ("O<A>\nG0 X1. <B>\nM30", "unused-word"),
+        ("O<A>\nG0 X1.\nO<B>\nM99", "program-end"),
+        ("O<A>\nO<A>\nM30", "program-end"),
+        ("O<A> G0 X1.\nM30", "program-end"),
+    ],
+)
+def test_names_of_programs_are_refused(text: str, code: str) -> None:
+    assert bad(text, "fanuc").code == code
+
+
+def test_a_haas_has_names_of_programs_and_no_calls_by_them() -> None:
+    assert good("O<PLATE>\nG0 X1.\nM30", "haas").position["X"] == 1.0
+    assert bad("O1\nM98 <SUB>\nM30\nO<SUB>\nM99", "haas").code == "unreadable"
+
+
+def test_the_number_of_a_program_with_a_name_is_0() -> None:
+    assert good("O<A>\nG0 X[#4115+1.]\nM30", "fanuc").position["X"] == 1.0
+
+
 def test_blocks_are_skipped_by_their_number() -> None:
     text = "O1\n/G0 X1.\n/2 G0 Y1.\n/3 G0 Z1.\nM30"
     assert good(text, "fanuc", block_skip=True).position == pytest.approx({**ZERO, "C": 0.0})

@@ -24,7 +24,7 @@ class Word(NamedTuple):
         incremental: The word alone is incremental (``X20I``).
         without_point: A number without a decimal point.
         mark: What the program writes besides address and value: how the value counts (``IC``), the name of
-            a code, or a text in quotes.
+            a code, a name in angle brackets, or a text in quotes.
     """
 
     address: str
@@ -39,7 +39,8 @@ class Word(NamedTuple):
     def text(self) -> str:
         """The word as a programmer would write it."""
         if self.mark:
-            return self.mark if self.address == "G" else f"{self.address}={self.mark}"
+            whole = self.address == "G" or self.address.endswith("<")
+            return self.mark if whole else f"{self.address}={self.mark}"
         if self.value != self.value:
             return self.address
         value = f"{self.value:.10g}" if isinstance(self.value, float) else "..."

@@ -27,6 +27,7 @@ class Grammar:
             suffix: blanks, all of the word, address, number and suffix; behind the last, with none of
             these, what is left of the line.
         form: A name before a bracket that says how a value counts, or None.
+        named: A word that is a name in angle brackets, or None where the dialect has none.
         statement: The keyword of a statement, or None where the dialect has none.
         reader: Reads computed values, or None.
         unfinished: The end of a text that a bracket must follow as a value, or None.
@@ -61,6 +62,7 @@ class Grammar:
             if syntax.forms
             else None
         )
+        self.named = _compiled(syntax.names) if syntax.names is not None else None
         self.code = _compiled(rf"({'|'.join(syntax.codes)})\b") if syntax.codes else None
 
     def comment_end(self, line: str, at: int) -> int:

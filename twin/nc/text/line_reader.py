@@ -119,7 +119,7 @@ class LineReader:
             return True
         if self._block_skip() or self._named_label() or self._label_colon() or self._assignment():
             return True
-        if self._named_code() or self._quoted_word():
+        if self._named_code() or self._name_word() or self._quoted_word():
             return True
         if not self._computed_word():
             self._unreadable.refuse(self._at, self._words)
@@ -201,6 +201,17 @@ class LineReader:
         word = Word("G", self._syntax.codes[name], self._at, len(name), mark=name)
         self._words.append(word)
         self._at = match.end()
+        return True
+
+    def _name_word(self) -> bool:
+        """A word that is a name in angle brackets."""
+        pattern = self._grammar.named
+        match = pattern.match(self._line, self._at) if pattern is not None else None
+        if match is None:
+            return False
+        begin, self._at = self._at, match.end()
+        address = match[1].upper()
+        self._words.append(Word(address, 0.0, begin, self._at - begin, mark=match[0]))
         return True
 
     def _quoted_word(self) -> bool:

@@ -52,6 +52,8 @@ class Syntax:
         codes: Names of G codes that are written without a number, and the number that the dialect's table
             has for them.
         texts: Addresses whose value may be a text in quotes, such as ``T="MILL"``.
+        names: Regular expression of words that are a name in angle brackets, its group 1 their address; None:
+            there are none.
         computed_behind: What must end an address whose value is computed, such as ``=``; empty: nothing.
         aliases: Addresses that mean another one.
         assigned: Character that begins an assignment among the words, such as ``#1=5``; empty: there
@@ -86,6 +88,7 @@ class Syntax:
     forms: Mapping[str, bool] = dataclasses.field(default_factory=dict)
     codes: Mapping[str, float] = dataclasses.field(default_factory=dict)
     texts: frozenset[str] = frozenset()
+    names: str | None = None
     computed_behind: str = ""
     aliases: Mapping[str, str] = dataclasses.field(default_factory=dict)
     assigned: str = ""

@@ -76,8 +76,6 @@ _FAMILY = (
 
 BLOCK_END_ALONE = Comment(";", whole_line=True)
 """A line that begins with the end of a block is none."""
-PROGRAM_NAME = Comment("O<", ">", whole_line=True)
-"""The name of a program, which the twin calls by its number or its file."""
 
 FANUC = Dialect(
     name="fanuc",
@@ -85,9 +83,10 @@ FANUC = Dialect(
     code_page="cp1252",
     syntax=Syntax(
         address=r",[CR]|[A-Z]|:",
-        comments=(Comment("(", ")"), HEADING, BLOCK_END_ALONE, PROGRAM_NAME),
+        comments=(Comment("(", ")"), HEADING, BLOCK_END_ALONE),
         skip_levels=range(1, 10),
         block_end=";",
+        names=programs.NAMED,
         expressions=variables.EXPRESSIONS,
         statement=flow.PATTERN,
         assigned="#",
@@ -108,6 +107,7 @@ FANUC = Dialect(
         actions={
             "O": programs.heading,
             ":": programs.heading,
+            programs.NAMED_HEADING: programs.heading,
             "F": base.set_feed,
             "S": base.spindle_speed,
             "T": base.next_tool,
@@ -118,6 +118,8 @@ FANUC = Dialect(
         meanings={
             "O": "number of the program",
             ":": "number of the program, as a tape of the ISO code has it",
+            programs.NAMED_HEADING: "name of the program",
+            programs.NAME: "name of the program that is called",
             "N": "block number",
             "G": "preparatory code",
             **dict.fromkeys("XYZABCUVW", "axis"),
@@ -161,6 +163,7 @@ FANUC = Dialect(
         Mark(r"\bG0?5\.1[ \t]*Q|\bG0?5[ \t]*P10000\b", "G5.1 Q, G5 P10000"),
         Mark(r"\bG5[01]\.1\b", "G50.1, G51.1 (mirror)"),
         Mark(r"\bM98[ \t]*P[ \t]*[0-9]{6,}", "M98 P00021000"),
+        Mark(r"\b(?:M98|G6[56])[ \t]*<", "M98 <NAME>, G65 <NAME> (a call by name)"),
         Mark(r"\bG0?7\.1[ \t]*C", "G7.1 C"),
         Mark(r"\bG43\.4\b|\bG68\.2\b", "G43.4, G68.2"),
         shared_marks.CYLINDER,
@@ -178,6 +181,7 @@ HAAS = dataclasses.replace(
     FANUC,
     name="haas",
     title="Haas (mills)",
+    syntax=dataclasses.replace(FANUC.syntax, names=programs.NAMED_BEGIN),
     codes=dataclasses.replace(
         FANUC.codes,
         last_of_group_counts=False,
@@ -190,7 +194,7 @@ HAAS = dataclasses.replace(
     words=dataclasses.replace(
         FANUC.words,
         meanings={
-            **FANUC.words.meanings,
+            **{each: text for each, text in FANUC.words.meanings.items() if each != programs.NAME},
             "I": "centre along X, from the start of the arc; first radius of G12 and G13; first peck (G73, G83)",
             "J": "centre along Y; less depth of each peck (G73, G83); how fast a tap comes back (G74, G84)",
             "K": "centre along Z; last radius of G12 and G13; least peck (G73, G83)",

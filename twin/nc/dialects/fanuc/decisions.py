@@ -121,8 +121,8 @@ DECISIONS: tuple[Decision, ...] = (
         example="timers",
     ),
     Decision(
-        "What is a line that begins with ; or with O<NAME>?",
-        "The first is no block; the name is passed over: programs are called by their numbers or their files.",
+        "What is a line that begins with ;?",
+        "It is no block.",
         "; ends a block on the screen, and many files hold it before prose.",
         example="lines_of_screens",
     ),
@@ -158,6 +158,13 @@ DECISIONS: tuple[Decision, ...] = (
         "program of the whole number or L is written.",
         "It is the older form of the call.",
         example="repeats_in_p",
+    ),
+    Decision(
+        "Which program has a name?",
+        "Upper and lower case are the same in M98 <NAME>, G65 <NAME>, G66 <NAME> and O<NAME>; <O2000> and <2000> "
+        "are program O2000.",
+        "Names are files of the control's memory, and those beside a program stand on disks that differ in this.",
+        example="called_by_name",
     ),
     Decision(
         "What does M99 do in the main program?",

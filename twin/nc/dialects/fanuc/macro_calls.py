@@ -10,7 +10,7 @@ from twin.nc.control.codes import StatementAction
 from twin.nc.control.control import Control
 from twin.nc.dialects.fanuc import decimal_point
 from twin.nc.dialects.fanuc.memory import ModalCall, memory_of
-from twin.nc.dialects.fanuc.programs import line_of, whole
+from twin.nc.dialects.fanuc.programs import NAME, line_of, named, program_word, whole
 from twin.nc.text.blocks import Location, Statement, Word
 from twin.nc.text.expressions import Expression
 
@@ -25,7 +25,8 @@ def _words(control: Control, statement: Statement) -> tuple[Word, ...]:
     """The words behind G65 or G66."""
     blocks = control.statements.blocks(statement.text, statement.text_column, control.block.line)
     if not blocks:
-        control.fail("call-values", f"{statement.keyword} needs P", statement, "G65 P1000 A1.")
+        message = f"{statement.keyword} needs P, the number of the program"
+        control.fail("call-values", message, statement, f"{statement.keyword} P1000 A1.")
     if len(blocks) != 1 or blocks[0].statement is not None or blocks[0].assignments:
         control.fail("call-values", f"{statement.keyword} takes words only", statement)
     return blocks[0].words
@@ -35,7 +36,7 @@ def _arguments(control: Control, words: tuple[Word, ...]) -> Iterator[tuple[str,
     """The variables that words set, each with its word."""
     group, last = 0, -1
     for word in words:
-        if word.address in "PL":
+        if word.address in ("P", "L", NAME):
             continue
         if word.address in _REPEATED:
             place = _REPEATED.index(word.address)
@@ -62,19 +63,19 @@ def _one(control: Control, words: tuple[Word, ...], address: str) -> Word | None
 
 
 def _call(control: Control, statement: Statement) -> None:
-    """G65 P L: run a program with variables of its own."""
-    words = _words(control, statement)
-    if _one(control, words, "P") is None:
-        control.fail("call-values", "G65 needs P", statement, "G65 P1000 A1.")
-    _run(control, _modal_call(control, words), statement)
+    """G65 P L, G65 <NAME> L: run a program with variables of its own."""
+    _run(control, _modal_call(control, statement), statement)
 
 
-def _modal_call(control: Control, words: tuple[Word, ...]) -> ModalCall:
+def _modal_call(control: Control, statement: Statement) -> ModalCall:
     """What G65 or G66 asks for, computed."""
-    program, often = _one(control, words, "P"), _one(control, words, "L")
-    if program is None:
-        control.fail("call-values", "the number of the program is missing: P", None, "G66 P1000")
-    number = whole(control, _computed(control, program), "call-values", "program number")
+    words = _words(control, statement)
+    by_number, by_name, often = (_one(control, words, each) for each in ("P", NAME, "L"))
+    program = program_word(control, statement.keyword, (by_number, by_name), statement)
+    if program.mark:
+        key = named(control, program)
+    else:
+        key = whole(control, _computed(control, program), "call-values", "program number")
     count = 1
     if often is not None:
         count = whole(control, _computed(control, often), "repeat-count", "count")
@@ -83,7 +84,7 @@ def _modal_call(control: Control, words: tuple[Word, ...]) -> ModalCall:
     values: dict[str, float] = {}
     for name, word in _arguments(control, words):
         values[name] = control.number(_computed(control, decimal_point.argument(control, word)))
-    return ModalCall(line_of(control, number, program), count, values, program)
+    return ModalCall(line_of(control, key, program), count, values, program)
 
 
 def _computed(control: Control, word: Word) -> Word:
@@ -98,12 +99,12 @@ def _run(control: Control, asked: ModalCall, error_at: Word | Statement) -> None
 
 
 def call_modally(control: Control, statement: Statement) -> None:
-    """G66 P L: run a program behind every block that moves, until G67."""
+    """G66 P L, G66 <NAME> L: run a program behind every block that moves, until G67."""
     memory = memory_of(control)
     if memory.modal_call is not None:
         message = "a modal call is in force already, and one within another is not simulated"
         control.fail("call-values", message, statement, "end it by G67 first")
-    memory.modal_call = _modal_call(control, _words(control, statement))
+    memory.modal_call = _modal_call(control, statement)
     memory.modal_depth = control.program_counter.depth
     control.modal.active.put("modal call", 66.0)
 

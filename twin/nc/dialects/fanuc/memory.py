@@ -173,7 +173,7 @@ class FanucMemory:
     """Programs, offsets, transformations.
 
     Attributes:
-        programs: Line behind the heading of each program by its number, from 0.
+        programs: Line behind the heading of each program by its number or name, from 0.
         headings: Lines of all headings, from 0, in order.
         main: Line of the heading of the program that runs first, or None.
         offsets: Work offsets that the program has written, by name and axis, as those of the job.
@@ -204,7 +204,7 @@ class FanucMemory:
     """
 
     variant: Variant = FANUC
-    programs: dict[int, int] = dataclasses.field(default_factory=dict)
+    programs: dict[int | str, int] = dataclasses.field(default_factory=dict)
     headings: list[int] = dataclasses.field(default_factory=list)
     main: int | None = None
     offsets: dict[str, dict[str, float]] = dataclasses.field(default_factory=dict)

@@ -1,70 +1,97 @@
-"""Programs of a Fanuc control: O numbers (a tape of the ISO code has : for O), several in one file, M98, M99 and M97.
+"""Programs of a Fanuc control: O numbers and names, several in one file, M98, M99 and M97.
 
-The first program of the file runs first; each ends where the next begins or the file does. A
-subprogram that the file lacks is a file of its own beside it: O2000, O2000.nc or 2000.nc.
+A tape of the ISO code has : for O. The first program of the file runs first; each ends where the next begins or
+the file does. A subprogram that the file lacks is a file of its own beside it: O2000, O2000.nc or 2000.nc, and
+POCKET or POCKET.nc for <POCKET>. The name O2000 is the number 2000 (manual of the 30i).
 """
 
 import re
+import sys
 from collections.abc import Iterator
+from typing import TypeAlias
 
 from twin.nc.control.control import Control
 from twin.nc.dialects.fanuc.memory import holds_any, letter_patterns, memory_of
-from twin.nc.text.blocks import Location, Word
+from twin.nc.text.blocks import Location, Statement, Word
 from twin.nc.text.library import Library
 from twin.nc.text.lines import Lines
 from twin.nc.text.source import Source
 
-_HEADING = re.compile(r"[ \t]*[O:][ \t]*([0-9]{1,8})(?![0-9.])", re.IGNORECASE)
-_HEADING_SOMEWHERE = (*letter_patterns("O", rb"[ \t]*[0-9]"), re.compile(rb":[ \t]*[0-9]"))
+Key: TypeAlias = "int | str"
+"""What names a program: its number, or its name in upper case."""
+NAME, NAMED_HEADING = "<", "O<"
+"""Addresses of the words <NAME> and O<NAME>."""
+NAMED, NAMED_BEGIN = r"(O?<)[^<>]*>", r"(O<)[^<>]*>"
+"""How they are written; the second, where programs have names and are not called by them."""
+_HEADING = re.compile(r"[ \t]*(?:[O:][ \t]*([0-9]{1,8})(?![0-9.])|O<([^<>]*)>)", re.IGNORECASE)
+_HEADING_SOMEWHERE = (*letter_patterns("O", rb"(?:[ \t]*[0-9]|<)"), re.compile(rb":[ \t]*[0-9]"))
 _CALL = re.compile(
-    r"^[^(]*?(?:M0*98|G0*6[56])(?![0-9.])[^(]*?P[ \t]*([0-9]{1,8})(?![0-9.])", re.IGNORECASE
+    r"^[^(]*?(?:M0*98|G0*6[56])(?![0-9.])(?:[ \t]*<([^<>]*)>|[^(]*?P[ \t]*([0-9]{1,8})(?![0-9.]))",
+    re.IGNORECASE,
 )
 _CALL_SOMEWHERE = re.compile(rb"(?:M0*98|G0*6[56])(?![0-9.])", re.IGNORECASE)
-_FILE = re.compile(r"O?0*([0-9]{1,8})")
+_NUMBER = re.compile(r"O?0*([0-9]{1,8})")
+_NAME = re.compile(r"[-+_.A-Z0-9]{1,32}")
+"""Names of programs (manual of the 30i: 32 characters at most)."""
 _BLANK = re.compile(r"[ \t]*(?:%.*)?")
 _REPEATS = 10_000
 """P of M98 holds how often the subprogram runs in the digits above the last four."""
 
 
-def _number_of_file(name: str) -> str | None:
-    match = _FILE.fullmatch(name)
-    return None if match is None else match[1]
+def _key_of(name: str) -> Key:
+    """What a name calls: a number where it is one."""
+    number = _NUMBER.fullmatch(name.upper())
+    return name.upper() if number is None else int(number[1])
+
+
+def _shown(key: Key) -> str:
+    """A program as its heading names it."""
+    return f"O{key}" if isinstance(key, int) else f"O<{key}>"
+
+
+def _heading_of_file(name: str) -> str | None:
+    """What names a file's program behind the O of its heading."""
+    called = _NUMBER.fullmatch(name) or _NAME.fullmatch(name)
+    return None if called is None else _shown(_key_of(name)).removeprefix("O")
 
 
 def _calls(source: Source) -> Iterator[str]:
-    """Numbers of the programs that a text calls and does not hold."""
+    """What programs that a text calls and does not hold have behind their O."""
     if not source.lines.any_holds(_CALL_SOMEWHERE):
         return
-    held = {number for _, number in _headings(source.lines)}
+    held = {key for _, key in _headings(source.lines)}
     for line in source.lines:
         if (match := _CALL.match(line)) is not None:
-            number = int(match[1])
-            for each in {number, number % _REPEATS} - held:
-                yield str(each)
+            if match[1] is not None:
+                called = {_key_of(match[1])}
+            else:
+                called = {int(match[2]), int(match[2]) % _REPEATS}
+            for each in called - held:
+                yield _shown(each).removeprefix("O")
 
 
-def _headings(lines: Lines) -> Iterator[tuple[int, int]]:
-    """Lines of headings, from 0, and the numbers of the programs that they begin."""
+def _headings(lines: Lines) -> Iterator[tuple[int, Key]]:
+    """Lines of headings, from 0, and the programs that they begin."""
     if not holds_any(lines, _HEADING_SOMEWHERE):
         return
     for line, text in enumerate(lines):
         if (match := _HEADING.match(text)) is not None:
-            yield line, int(match[1])
+            yield line, _key_of(match[2]) if match[1] is None else int(match[1])
 
 
-LIBRARY = Library(_calls, "O", ("", ".nc", ".cnc", ".tap", ".prg", ".txt"), _number_of_file)
+LIBRARY = Library(_calls, "O", ("", ".nc", ".cnc", ".tap", ".prg", ".txt"), _heading_of_file)
 
 
 def begin(control: Control) -> None:
     """Find the programs of the file."""
     memory, lines = memory_of(control), control.program_counter.lines
     before: int | None = None
-    for line, number in _headings(lines):
+    for line, key in _headings(lines):
         memory.headings.append(line)
         if memory.main is None:
             memory.main = line
-        if number not in memory.programs or _follows(control, before, line, number):
-            memory.programs[number] = line + 1
+        if key not in memory.programs or _follows(control, before, line, key):
+            memory.programs[key] = line + 1
         before = line
     _warn_of_tape_end(control)
 
@@ -91,10 +118,10 @@ def _warn_of_tape_end(control: Control) -> None:
             return
 
 
-def _follows(control: Control, before: int | None, line: int, number: int) -> bool:
+def _follows(control: Control, before: int | None, line: int, key: Key) -> bool:
     """A file's own heading stands right behind the one that its name has given it."""
     lines = control.program_counter.lines
-    if before is None or memory_of(control).programs.get(number) != before + 1:
+    if before is None or memory_of(control).programs.get(key) != before + 1:
         return False
     return all(_BLANK.fullmatch(lines[each]) for each in range(before + 1, line))
 
@@ -103,8 +130,10 @@ def heading(control: Control, word: Word) -> None:
     """O: the heading of the program that runs first.
 
     Raises:
-        ProgramError: The program before has not ended.
+        ProgramError: The program before has not ended, or it has no possible name.
     """
+    if word.mark:
+        named(control, word)
     memory, line = memory_of(control), control.block.line - 1
     if line != memory.main:
         message = f"{word.text} begins here, and the program before it has not ended"
@@ -139,30 +168,75 @@ def called(control: Control, number: int, repeats: int | None) -> tuple[int, int
     return (short, count) if count else (number, 1)
 
 
-def line_of(control: Control, number: int, word: Word | None) -> int:
+def named(control: Control, word: Word) -> Key:
+    """The program that a word <NAME> or O<NAME> names.
+
+    Raises:
+        ProgramError: No program can have the name.
+    """
+    name = word.mark[word.mark.index("<") + 1 : -1]
+    if _NAME.fullmatch(name.upper()) is None:
+        message = f"{word.text} names no program"
+        hint = "a name has 1 to 32 letters, digits and - + _ ."
+        control.fail("call-values", message, word, hint)
+    return _key_of(name)
+
+
+def program_word(
+    control: Control,
+    caller: str,
+    words: tuple[Word | None, Word | None],
+    error_at: Statement | None,
+) -> Word:
+    """The one of P and a name that says which program a code calls.
+
+    Raises:
+        ProgramError: There is none or both.
+    """
+    number, name = words
+    word = name or number
+    if word is None:
+        message = f"{caller} needs P, the number of the program"
+        hint = f"{caller} P1000; a Fanuc control also takes a name, {caller} <POCKET>"
+        control.fail("call-values", message, error_at, hint)
+    if name is not None and number is not None:
+        message = f"{caller} calls one program, by its number or its name"
+        control.fail("call-values", message, name, "leave one out")
+    return word
+
+
+def line_of(control: Control, key: Key, word: Word | None) -> int:
     """The line behind the heading of a program, from 0.
 
     Raises:
-        ProgramError: There is none of this number.
+        ProgramError: There is none of this number or name.
     """
-    line = memory_of(control).programs.get(number)
+    programs = memory_of(control).programs
+    line = programs.get(key)
     if line is None:
-        known = ", ".join(f"O{each}" for each in sorted(memory_of(control).programs)) or "none"
-        message = f"there is no program O{number}"
-        hint = f"programs of this file: {known}; or a file O{number}.nc beside it"
+        known = ", ".join(map(_shown, sorted(programs, key=_order))) or "none"
+        file = f"O{key}.nc" if isinstance(key, int) else f"{key}.nc"
+        message = f"there is no program {_shown(key)}"
+        hint = f"programs of this file: {known}; or a file {file} beside it"
         control.fail("unknown-subprogram", message, word, hint=hint)
     return line
 
 
+def _order(key: Key) -> tuple[int, str]:
+    """Numbers come first."""
+    return (key, "") if isinstance(key, int) else (sys.maxsize, key)
+
+
 def call(control: Control) -> None:
-    """M98 P L: run a subprogram, L times."""
-    word, often = control.take("P"), control.take("L")
-    if word is None:
-        control.fail("call-values", "M98 needs P, the number of the program", None, "M98 P1000")
+    """M98 P L, M98 <NAME> L: run a subprogram, L times."""
+    word = program_word(control, "M98", (control.take("P"), control.take(NAME)), None)
+    often = control.take("L")
     repeats = None if often is None else whole(control, often, "repeat-count", "count")
-    number = whole(control, word, "call-values", "program number")
-    number, count = called(control, number, repeats)
-    run_part(control, Location(line_of(control, number, word), 0), count, word)
+    if word.mark:
+        key, count = named(control, word), 1 if repeats is None else repeats
+    else:
+        key, count = called(control, whole(control, word, "call-values", "program number"), repeats)
+    run_part(control, Location(line_of(control, key, word), 0), count, word)
 
 
 def call_block(control: Control) -> None:

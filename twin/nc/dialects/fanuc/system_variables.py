@@ -175,7 +175,7 @@ def _modal_word(control: Control, number: int) -> float:
         4109: control.motion.feed or 0.0,
         4111: memory.length_number or 0,
         4114: max(control.block.number, 0),
-        4115: next((each for each, line in memory.programs.items() if line - 1 == heading), 0),
+        4115: _number_of_program(control, heading),
         4119: control.motion.spindle or 0.0,
         4120: control.tools.selected or 0,
         4130: memory.extended_number,
@@ -184,6 +184,13 @@ def _modal_word(control: Control, number: int) -> float:
     if value is None:
         _refuse(number)
     return float(value)
+
+
+def _number_of_program(control: Control, heading: int) -> int:
+    """The number of the program with a heading in this line, from 0; 0 where it has none."""
+    programs = memory_of(control).programs
+    here = (key for key, line in programs.items() if line - 1 == heading and isinstance(key, int))
+    return next(here, 0)
 
 
 def tool_row(control: Control, number: int) -> tuple[int, str] | None:

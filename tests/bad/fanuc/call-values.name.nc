@@ -1,0 +1,3 @@
+O<MAIN>
+M98 <MY POCKET>
+M30
