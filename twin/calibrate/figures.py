@@ -69,9 +69,8 @@ def _slow_figures(item: PreparedLog, name: str, parameters: Parameters) -> LogFi
     ramps = None
     if len(logged) and _rms(logged):
         ramps = SlowFigures(_rms(logged), _rms(logged - model), len(logged))
-    whole = axis.command - axis.actual
+    whole = (axis.command - axis.actual)[slow.told]
     loop = (1.0 - parameters.velocity_feedforward) / kv_per_second(parameters.kv)
-    speed = axis.more.get("command_velocity", np.gradient(axis.command, item.log.time))
     force, moves = slow_force(slow, parameters, axis.kind)
     correlation, shown, current = None, _NOTHING, _NOTHING
     if "current" in axis.more:
@@ -80,9 +79,16 @@ def _slow_figures(item: PreparedLog, name: str, parameters: Parameters) -> LogFi
         correlation = _correlation(shown, current)
     rows = np.array([ramp.row for ramp in slow.ramps], np.int64)
     course = Course(
-        item.log.time[rows], logged, model, True, shown, current, item.log.time[moves], speed[rows]
+        item.log.time[rows],
+        logged,
+        model,
+        True,
+        shown,
+        current,
+        item.log.time[moves],
+        slow.speed[rows],
     )
-    left = whole - speed * (loop + parameters.delay)
+    left = whole - slow.speed[slow.told] * (loop + parameters.delay)
     return LogFigures(
         item.log.name, item.role, name, axis.kind, _rms(whole), _rms(left), None, correlation,
         ramps, course,

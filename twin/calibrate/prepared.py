@@ -7,15 +7,17 @@ import numpy as np
 
 from twin.calibrate.defects import Defects, find_defects
 from twin.calibrate.fit.ramps import axes_with_ramps, find_cycle, find_ramps
-from twin.calibrate.fit.slow import SlowLog
+from twin.calibrate.fit.slow import SlowLog, commanded_speed
 from twin.calibrate.fit.stretch import Sound, Stretch, stretches_of
 from twin.calibrate.health import (
+    GAP,
     SLOW_S,
     Health,
     is_filtered,
     look_at_clock,
     refuse_broken_clock,
 )
+from twin.calibrate.jumps import jumps_of, look_at_jumps
 from twin.logs.machine_log import AxisLog, MachineLog
 from twin.nc.canonical import BoolArray, FloatArray
 
@@ -86,7 +88,10 @@ class PreparedLog:
         ramps = []
         if name in axes_with_ramps(self.log):
             ramps = find_ramps(self.log, name, self.health.stretches, self.cycle_s)
-        return SlowLog(self.log.axes[name], self.health.stretches, ramps, self.health.period_s)
+        axis, time, period = self.log.axes[name], self.log.time, self.health.period_s
+        steps = np.diff(time)
+        whole = (steps > 0.0) & (steps < GAP * period) & ~jumps_of(self.log, period)
+        return SlowLog(axis, self.health.stretches, ramps, *commanded_speed(axis, time, whole))
 
     def is_filtered(self, name: str) -> bool:
         """Whether positions of an axis are logged behind a filter, as their noise shows."""
@@ -128,7 +133,9 @@ def prepared(log: MachineLog, role: str) -> PreparedLog:
     refuse_broken_clock(log, health)
     if health.period_s > SLOW_S:
         cycle = find_cycle(log, health.stretches) if axes_with_ramps(log) else 0.0
-        return PreparedLog(log, role, health, cycle, {})
+        jumps = look_at_jumps(log, jumps_of(log, health.period_s))
+        told = dataclasses.replace(health, findings=(*health.findings, *jumps))
+        return PreparedLog(log, role, told, cycle, {})
     defects = {
         name: find_defects(name, axis, log.time, health.stretches)
         for name, axis in log.axes.items()

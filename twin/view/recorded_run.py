@@ -130,7 +130,7 @@ class RecordedRun:
 
     def _cutter(self) -> Cutter | None:
         header, stock = self._scene.recording.header, self._scene.stock
-        if stock is None or not self._scene.from_one_side:
+        if stock is None or self._scene.summary.tilts:
             return None
         return Cutter(stock, self._scene.summary.tools, header.part_frame, header.part_zero)
 
