@@ -120,6 +120,15 @@ def test_ramps_of_a_real_mill_are_predicted_in_a_run_that_was_not_seen(tmp_path:
     assert held["X"] < 0.18
     assert held["Y"] < 0.22
     assert held["Z"] < 0.08
+    lines = [one.ramps_line for one in result.logs]
+    assert any(
+        "03.csv, X: lag of velocity within 19 ramps: 4.81 mm/s rms" in line for line in lines
+    )
+    assert "in 19 ramps of a log" in verdict_sentence("X", result.axes["X"], result.logs)
+    fit = result.axes["X"].fit
+    assert "kv" in fit.undetermined
+    assert fit.conditional["velocity_feedforward"][1] == ("kv",)
+    assert "holds for the base's kv" in fit.undetermined["velocity_feedforward"]
     assert "jump" in {one.code for one in result.findings[third.name]}
 
 
