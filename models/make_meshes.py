@@ -394,6 +394,44 @@ def mill5() -> dict[str, dict[str, list[Mesh]]]:
     return {"table": table, "cradle": cradle, "rotary_table": rotary}
 
 
+def mill5h() -> dict[str, dict[str, list[Mesh]]]:
+    """What ``mill5h`` has besides the parts of ``mill4``: a shorter head, and the swivel that carries the spindle."""
+    axis = 1.905
+    head = {
+        "cast": [
+            casting((-0.18, 0.18), (0.145, 0.60), (1.76, 2.33), 0.06, 0.02),
+            casting((-0.31, 0.31), (0.545, 0.625), (1.80, 2.38), 0.015, 0.008),
+        ],
+        "dark": [
+            *(box((min(s * 0.15, s * 0.318), max(s * 0.15, s * 0.318)), (0.60, 0.655), z, 0.004) for s in (-1, 1) for z in ((1.82, 1.92), (2.26, 2.36))),
+            *(box((s * 0.18 - 0.003, s * 0.18 + 0.003), (0.24, 0.46), (2.10 + 0.022 * i, 2.11 + 0.022 * i), 0.002) for s in (-1, 1) for i in range(7)),
+            rod(0.13, (0, 0.14, axis), (0, 0.155, axis), 64, 0.002),
+        ],
+        "accent": [
+            casting((-0.09, 0.09), (0.22, 0.40), (2.325, 2.50), 0.04, 0.012),
+            box((-0.184, 0.184), (0.22, 0.52), (1.985, 2.045), 0.004),
+        ],
+        "rotary": [rod(0.14, (0, 0.132, axis), (0, 0.146, axis), 64, 0.002)],
+    }  # fmt: skip
+    swivel = {
+        "cast": [
+            lathe([(0, 1.775), (0.085, 1.775), (0.105, 1.80), (0.105, 2.07), (0.09, 2.10), (0, 2.10)], sections=64),
+            casting((-0.095, 0.095), (0.0, 0.085), (axis - 0.085, axis + 0.105), 0.02, 0.006),
+        ],
+        "dark": [
+            lathe([(0, 2.10), (0.075, 2.10), (0.075, 2.112), (0.068, 2.119), (0, 2.119)], sections=48),
+            lathe([(0.10, 1.85), (0.1056, 1.85), (0.1056, 1.853), (0.10, 1.853), (0.10, 1.85)], sections=64),
+        ],
+        "rotary": [rod(0.14, (0, 0.06, axis), (0, 0.13, axis), 64, 0.004)],
+        "steel": [
+            *(rod(0.006, (s * 0.08, -0.045, 1.79), (s * 0.066, -0.035, 1.73), 12, 0.001) for s in (-1, 1)),
+            *(rod(0.007, (0.122 * math.cos(a), 0.056, axis + 0.122 * math.sin(a)), (0.122 * math.cos(a), 0.062, axis + 0.122 * math.sin(a)), 12, 0.001) for a in np.radians(np.arange(15, 360, 30))),
+        ],
+        "mark": [box((-0.003, 0.003), (0.08, 0.128), (axis + 0.1385, axis + 0.1406), 0.0005)],
+    }  # fmt: skip
+    return {"head": head, "swivel": swivel}
+
+
 def mill4_light() -> dict[str, dict[str, list[Mesh]]]:
     """Parts of ``mill4_light`` by body and material: a router on a bench, the tool moves over the bed."""
     table_top, nose, gantry_y = 0.18, 0.35, 0.14
@@ -511,13 +549,20 @@ ORIGINS = {
     },
     "mill4a": {"table": (0, 0, 0.8), "rotary_table": (-0.15, 0, 1.06)},
     "mill5": {"table": (0, 0, 0.8), "cradle": (0, 0, 1.1), "rotary_table": (0, 0, 1.075)},
+    "mill5h": {"head": (0, 0.6, 2.09), "swivel": (0, 0, 1.905)},
     "mill4_light": {
         "base": (0, 0, 0), "rotary_table": (0, 0, 0.18), "gantry": (0, 0.14, 0.46),
         "carriage": (0, 0.096, 0.52), "head": (0, 0.05, 0.46), "spindle": (0, 0, 0.35),
     },
 }  # fmt: skip
 """Frames of the bodies, as in the MJCF file."""
-MACHINES = {"mill4": mill4, "mill4a": mill4a, "mill5": mill5, "mill4_light": mill4_light}
+MACHINES = {
+    "mill4": mill4,
+    "mill4a": mill4a,
+    "mill5": mill5,
+    "mill5h": mill5h,
+    "mill4_light": mill4_light,
+}
 
 
 def main(names: list[str]) -> None:

@@ -38,6 +38,7 @@ PAGES: Mapping[str, str] = {
     "models/mill3/README.md": "machines/mill3.md",
     "models/mill4a/README.md": "machines/mill4a.md",
     "models/mill5/README.md": "machines/mill5.md",
+    "models/mill5h/README.md": "machines/mill5h.md",
     "CONTRIBUTING.md": "development/contributing.md",
     "scripts/README.md": "development/scripts.md",
     "CHANGELOG.md": "development/changelog.md",

@@ -28,6 +28,11 @@ def job_text(tmp_path: Path, text: str) -> Path:
             'program = "a.nc"\n[stock]\nshape = "cylinder"\ndiameter = 3.0',
             "needs diameter and height",
         ),
+        (
+            'program = "a.nc"\n[tools.2]\ndiameter = 6.0',
+            "'tools' is a list of tables: write [[tools]] and number = 2 in place of [tools.2]",
+        ),
+        ('program = "a.nc"\n[tools]\nnumber = 2', "write [[tools]] in place of [tools]"),
         ("program = [", "is not TOML"),
         ("program = " + "9" * 5000, "is not TOML"),
         ('program = "a\\u0000.nc"', "NUL"),

@@ -19,6 +19,7 @@ def test_the_list_names_every_machine_with_its_axes(capsys):
     assert told["mill3"] == list("XYZ")
     assert told["mill4a"] == list("XYZA")
     assert told["mill5"] == list("XYZAC")
+    assert told["mill5h"] == list("XYZBC")
     print_machines("json")
     listed = {each["name"]: each["axes"] for each in json.loads(capsys.readouterr().out)}
     assert listed == told

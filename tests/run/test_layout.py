@@ -83,3 +83,15 @@ def test_on_a_trunnion_the_blank_is_over_the_table_with_its_axes_at_zero() -> No
     np.testing.assert_allclose(layout.part_zero, [0.0, 0.0, -440.0, 0.0, 0.0])
     assert layout.blank is not None
     np.testing.assert_allclose(layout.blank.center, [0.0, 0.0, 65.0], atol=1e-9)
+
+
+def test_under_a_swivel_head_program_zero_is_measured_with_the_tool_upright() -> None:
+    machine = read_machine(machine_file("mill5h"))
+    stock = {"shape": "box", "size": [110.0, 110.0, 30.0]}
+    tools = [{"number": 1, "length": 100.0}]
+    job = JobFile.model_validate({"program": "p.nc", "stock": stock, "tools": tools})
+    layout = lay_out(job, machine)
+    # 620 mm from the nose to the table, 40 mm of work holding, a blank of 30 mm, a tool of 100 mm.
+    np.testing.assert_allclose(layout.part_zero, [0.0, 0.0, -450.0, 0.0, 0.0])
+    assert layout.blank is not None
+    np.testing.assert_allclose(layout.blank.center, [0.0, 0.0, 55.0], atol=1e-9)

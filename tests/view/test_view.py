@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 from browsers import CHROMIUM
 from panel_player import browser
 
@@ -122,6 +123,30 @@ def test_the_cuts_end_with_the_part_as_it_was_cut(recorded):
     assert len(times) > 20
     # A cut is reckoned a little otherwise where a chunk of samples ends.
     assert np.abs(heights - part.heights).max() < 1e-3
+
+
+@pytest.mark.seconds("a run on a machine with a rotary table")
+def test_a_part_that_is_cut_from_several_sides_is_there_when_it_is_finished(tmp_path):
+    shipped = (Path(__file__).parents[2] / "programs/fanuc/four_sides.toml").read_text("utf-8")
+    job, out = tmp_path / "turned.toml", tmp_path / "out"
+    job.write_text(shipped.replace("four_sides.nc", "turned.nc"), encoding="utf-8")
+    (tmp_path / "turned.nc").write_text(
+        "%\nO1\nG21 G90 G94 G54\nT1 M6\nG43 H1\nS3000 M3\nG0 X40. Y0 Z60.\nG0 A90.\n"
+        "G1 Z22. F800.\nG0 Z60.\nM30\n%\n",
+        encoding="utf-8",
+    )
+    run_and_print(job, out, dialect=None, machine=None, video=False, strict=False)
+    with open_scene(out / "recording.h5") as (scene, preparation):
+        run = RecordedRun(scene, preparation.machine)
+        assert run.description()["shows_finished_part"]
+        assert run.stock_grid() is None
+        drawn = run.drawn(1)
+        assert drawn is not None
+        assert drawn.part is not None
+        part = trimesh.Trimesh(drawn.part.points, drawn.part.faces)
+    taken = np.pi * 8.0**2 * 3.0
+    assert part.is_watertight
+    assert 345.0 * 50.0 * 50.0 - part.volume == pytest.approx(taken, rel=0.15)
 
 
 def test_what_cannot_be_viewed_is_refused(tmp_path):

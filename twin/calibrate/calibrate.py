@@ -155,9 +155,10 @@ def _limits(name: str, logs: Sequence[PreparedLog], base: AxisTable) -> Limits:
         return Limits({}, {})
     slow = all(item.is_slow for item in logs)
     pieces = [
-        (item.cleaned(name).of_rows(slice(begin, end)), item.health.period_s)
+        (axis.of_rows(slice(begin, end)), item.health.period_s)
         for item in logs
         if slow or not item.is_slow
-        for begin, end in item.rows(name)
+        for axis in [item.cleaned(name)]
+        for begin, end in item.parts(name)
     ]
     return planner_limits(pieces, base, slow=slow)

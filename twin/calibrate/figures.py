@@ -1,14 +1,16 @@
 """How well the fitted model predicts an axis of a log."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from twin.calibrate.fit.parameters import Parameters
 from twin.calibrate.fit.ramps import predict_ramp
 from twin.calibrate.fit.slow import slow_force
-from twin.calibrate.fit.stretch import Prediction, Stretch, predict
+from twin.calibrate.fit.stretch import Stretch, predict
 from twin.calibrate.prepared import PreparedLog
 from twin.calibrate.result import Course, LogFigures, SlowFigures
-from twin.nc.canonical import BoolArray, FloatArray
+from twin.nc.canonical import FloatArray
 from twin.units import kv_per_second
 
 _SEEN_MOVING = 0.02
@@ -26,40 +28,48 @@ def figures_of(item: PreparedLog, name: str, parameters: Parameters) -> LogFigur
     """
     if item.is_slow:
         return _slow_figures(item, name, parameters)
-    pieces = item.stretches(name)
-    predicted = [predict(parameters, piece) for piece in pieces]
-    lag = np.concatenate([piece.lag for piece in pieces])
-    model = np.concatenate([
-        (piece.asked - one.actual)[piece.seen] for piece, one in zip(pieces, predicted, strict=True)
-    ])  # fmt: skip
-    time = np.concatenate([piece.time[piece.seen] for piece in pieces])
-    speed = np.concatenate([piece.command.kinematics[piece.seen, 0] for piece in pieces])
-    force_time, logged, modelled, moves = _forces(pieces, predicted)
-    shown = all(piece.force is None for piece in pieces)
-    left = _rms(modelled - logged) / max(_rms(logged), 1e-12) if len(logged) else None
-    correlation = _correlation(logged[moves], modelled[moves]) if shown and len(logged) else None
-    course = Course(time, lag, model, False, logged, modelled, force_time, speed)
+    axis = item.log.axes[name]
+    parts = (_judged(parameters, piece) for piece in item.judged(name))
+    seen = _Judged(*(np.concatenate(values) for values in zip(*parts, strict=True)))
+    left, correlation = None, None
+    if len(seen.force):
+        left = _rms(seen.force_model - seen.force) / max(_rms(seen.force), 1e-12)
+    if len(seen.force) and "force" not in axis.more:
+        speed = np.abs(seen.force_speed)
+        moves = speed > _SEEN_MOVING * speed.max(initial=1e-9)
+        correlation = _correlation(seen.force[moves], seen.force_model[moves])
+    course = Course(
+        seen.time, seen.lag, seen.lag_model, False, seen.force, seen.force_model, seen.force_time,
+        seen.speed,
+    )  # fmt: skip
     return LogFigures(
-        item.log.name, item.role, name, item.log.axes[name].kind, _rms(lag), _rms(lag - model),
+        item.log.name, item.role, name, axis.kind, _rms(seen.lag), _rms(seen.lag - seen.lag_model),
         left, correlation, None, course,
     )  # fmt: skip
 
 
-def _forces(
-    pieces: list[Stretch], predicted: list[Prediction]
-) -> tuple[FloatArray, FloatArray, FloatArray, BoolArray]:
-    """Time, logged and predicted force (or current) of the rows that are looked at, and which move."""
-    columns = [piece.logged_force for piece in pieces]
-    known = [column for column in columns if column is not None]
-    if len(known) < len(pieces):
-        return _NOTHING, _NOTHING, _NOTHING, np.zeros(0, np.bool_)
-    time = np.concatenate([piece.time[piece.felt] for piece in pieces])
-    model = np.concatenate([
-        (one.current if piece.force is None else one.force)[piece.felt]
-        for piece, one in zip(pieces, predicted, strict=True)
-    ])  # fmt: skip
-    speed = np.abs(np.concatenate([piece.command.kinematics[piece.felt, 0] for piece in pieces]))
-    return time, np.concatenate(known), model, speed > _SEEN_MOVING * speed.max(initial=1e-9)
+class _Judged(NamedTuple):
+    """Rows that are looked at, logged and as the model has them; those of a force are others than those of a lag."""
+
+    time: FloatArray
+    lag: FloatArray
+    lag_model: FloatArray
+    speed: FloatArray
+    force_time: FloatArray
+    force: FloatArray
+    force_model: FloatArray
+    force_speed: FloatArray
+
+
+def _judged(parameters: Parameters, piece: Stretch) -> _Judged:
+    model, speed = predict(parameters, piece), piece.command.kinematics[:, 0]
+    lag_model = (piece.asked - model.actual)[piece.seen]
+    positions = (piece.time[piece.seen], piece.lag, lag_model, speed[piece.seen])
+    force = piece.logged_force
+    if force is None:
+        return _Judged(*positions, _NOTHING, _NOTHING, _NOTHING, _NOTHING)
+    given = model.current if piece.force is None else model.force
+    return _Judged(*positions, piece.time[piece.felt], force, given[piece.felt], speed[piece.felt])
 
 
 def _slow_figures(item: PreparedLog, name: str, parameters: Parameters) -> LogFigures:
@@ -69,9 +79,8 @@ def _slow_figures(item: PreparedLog, name: str, parameters: Parameters) -> LogFi
     ramps = None
     if len(logged) and _rms(logged):
         ramps = SlowFigures(_rms(logged), _rms(logged - model), len(logged))
-    whole = axis.command - axis.actual
+    whole = (axis.command - axis.actual)[slow.told]
     loop = (1.0 - parameters.velocity_feedforward) / kv_per_second(parameters.kv)
-    speed = axis.more.get("command_velocity", np.gradient(axis.command, item.log.time))
     force, moves = slow_force(slow, parameters, axis.kind)
     correlation, shown, current = None, _NOTHING, _NOTHING
     if "current" in axis.more:
@@ -80,9 +89,16 @@ def _slow_figures(item: PreparedLog, name: str, parameters: Parameters) -> LogFi
         correlation = _correlation(shown, current)
     rows = np.array([ramp.row for ramp in slow.ramps], np.int64)
     course = Course(
-        item.log.time[rows], logged, model, True, shown, current, item.log.time[moves], speed[rows]
+        item.log.time[rows],
+        logged,
+        model,
+        True,
+        shown,
+        current,
+        item.log.time[moves],
+        slow.speed[rows],
     )
-    left = whole - speed * (loop + parameters.delay)
+    left = whole - slow.speed[slow.told] * (loop + parameters.delay)
     return LogFigures(
         item.log.name, item.role, name, axis.kind, _rms(whole), _rms(left), None, correlation,
         ramps, course,

@@ -14,7 +14,7 @@ class Finding:
     Attributes:
         code: ``gap``, ``missing``, ``clock-jump``, ``slow``, ``coarse``, ``held``, ``uneven``, ``skew``,
             ``filtered``, ``scale``, ``offset``, ``unit``, ``spike``, ``repeated``, ``clipped``,
-            ``reference``, ``feed-forward``, ``force``, ``long``.
+            ``reference``, ``jump``, ``feed-forward``, ``force``, ``long``.
         message: In words, with what can still be fitted.
     """
 

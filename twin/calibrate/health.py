@@ -8,6 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from twin.calibrate.findings import Finding, resolution
+from twin.calibrate.fit.ramps import NEEDED
 from twin.calibrate.fit.solve import Interval
 from twin.calibrate.fit.stretch import stamp_step
 from twin.calibrate.refusal import straight_law
@@ -119,15 +120,23 @@ def look_at_clock(log: MachineLog) -> Health:
             )
         )
     if period > SLOW_S:
-        findings.append(
-            Finding(
-                "slow",
-                f"{1 / period:.3g} samples a second are too few for the dynamics of a drive; what "
-                "can still be fitted: the lag as a whole, friction where a force is logged, and "
-                "ramps where velocities are logged",
-            )
-        )
+        findings.append(_slow(log, period))
     return Health(period, tuple(long), tuple(findings))
+
+
+def _slow(log: MachineLog, period: float) -> Finding:
+    """What a slow log does not tell, and what else would have to be logged for it to tell more."""
+    told = (
+        f"{1 / period:.3g} samples a second are too few for the dynamics of a drive; what can still be "
+        "fitted: the lag as a whole, friction where a force is logged, and ramps where velocities are logged"
+    )
+    lacking = {
+        name: [role for role in NEEDED if role not in axis.more] for name, axis in log.axes.items()
+    }
+    without = "; ".join(f"{name} {', '.join(roles)}" for name, roles in lacking.items() if roles)
+    if without:
+        told += f"; columns for ramps that the map lacks: {without}"
+    return Finding("slow", told)
 
 
 def _period(rising: FloatArray) -> float:

@@ -1,26 +1,31 @@
 """A log that is ready to be fitted: looked through, and no faster than a fit needs it."""
 
 import dataclasses
-from collections.abc import Mapping
+import itertools
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
 from twin.calibrate.defects import Defects, find_defects
 from twin.calibrate.fit.ramps import axes_with_ramps, find_cycle, find_ramps
-from twin.calibrate.fit.slow import SlowLog
+from twin.calibrate.fit.slow import SlowLog, commanded_speed
 from twin.calibrate.fit.stretch import Sound, Stretch, stretches_of
 from twin.calibrate.health import (
+    GAP,
     SLOW_S,
     Health,
     is_filtered,
     look_at_clock,
     refuse_broken_clock,
 )
+from twin.calibrate.jumps import jumps_of, look_at_jumps
 from twin.logs.machine_log import AxisLog, MachineLog
 from twin.nc.canonical import BoolArray, FloatArray
 
 MOST_FITTED = 60_000
 """Samples that a fit runs along: more tell no more, and each of hundreds of runs takes longer."""
+_MOST_AT_ONCE = 200_000
+"""Samples that are looked at or judged at once: what a model has in place of them takes ten times their room."""
 _PART_S = 5.0
 """Time of a part of a long log that is fitted or left [s]."""
 Rows = tuple[tuple[int, int], ...]
@@ -62,6 +67,20 @@ class PreparedLog:
         sound = None if found is None else found.sound
         return stretches_of(self.log.axes[name], self.log.time, self.rows(name), sound)
 
+    def parts(self, name: str) -> Iterator[tuple[int, int]]:
+        """As ``rows``; a long stretch in parts, each with a beginning of its own."""
+        for begin, end in self.rows(name):
+            count = -(-(end - begin) // _MOST_AT_ONCE)
+            edges = [begin + (end - begin) * part // count for part in range(count + 1)]
+            yield from itertools.pairwise(edges)
+
+    def judged(self, name: str) -> Iterator[Stretch]:
+        """All of an axis, one part after the other."""
+        found = self.defects.get(name)
+        sound = None if found is None else found.sound
+        for part in self.parts(name):
+            yield from stretches_of(self.log.axes[name], self.log.time, (part,), sound)
+
     def fitted(self, name: str) -> list[Stretch]:
         """What a fit of an axis runs along: of a long log the parts in which it is told the most."""
         rows, period = self.rows(name), self.health.period_s
@@ -86,12 +105,15 @@ class PreparedLog:
         ramps = []
         if name in axes_with_ramps(self.log):
             ramps = find_ramps(self.log, name, self.health.stretches, self.cycle_s)
-        return SlowLog(self.log.axes[name], self.health.stretches, ramps, self.health.period_s)
+        axis, time, period = self.log.axes[name], self.log.time, self.health.period_s
+        steps = np.diff(time)
+        whole = (steps > 0.0) & (steps < GAP * period) & ~jumps_of(self.log, period)
+        return SlowLog(axis, self.health.stretches, ramps, *commanded_speed(axis, time, whole))
 
     def is_filtered(self, name: str) -> bool:
         """Whether positions of an axis are logged behind a filter, as their noise shows."""
         begin, end = max(self.rows(name), key=lambda rows: rows[1] - rows[0])
-        axis = self.cleaned(name).of_rows(slice(begin, end))
+        axis = self.cleaned(name).of_rows(slice(begin, min(end, begin + _MOST_AT_ONCE)))
         return is_filtered(axis.command, axis.actual)
 
     def cleaned(self, name: str) -> AxisLog:
@@ -128,7 +150,9 @@ def prepared(log: MachineLog, role: str) -> PreparedLog:
     refuse_broken_clock(log, health)
     if health.period_s > SLOW_S:
         cycle = find_cycle(log, health.stretches) if axes_with_ramps(log) else 0.0
-        return PreparedLog(log, role, health, cycle, {})
+        jumps = look_at_jumps(log, jumps_of(log, health.period_s))
+        told = dataclasses.replace(health, findings=(*health.findings, *jumps))
+        return PreparedLog(log, role, told, cycle, {})
     defects = {
         name: find_defects(name, axis, log.time, health.stretches)
         for name, axis in log.axes.items()

@@ -17,6 +17,8 @@ _RIGHT = 0.02
 _TOO_FAST = 3.0
 """Times the base's velocity that no log of such an axis reaches."""
 _TOO_SLOW = 1e-3
+_MOST_ROWS = 200_000
+"""Rows that a straight law is solved for: of a longer log they are every second, third and so on."""
 _OVER_S = 0.02
 """Speeds are taken over this time [s]."""
 _LEADS_S = 5e-4
@@ -136,10 +138,12 @@ def straight_law(axis: AxisLog, period_s: float) -> tuple[float, float, float]:
     speed = np.gradient(axis.command, period_s)
     law = [axis.command, speed, np.ones(len(speed))]
     found = []
+    every = slice(None, None, -(-len(speed) // _MOST_ROWS))
+    actual = axis.actual[every]
     for columns in (law, [*law, np.gradient(speed, period_s)]):
-        table = np.column_stack(columns)
-        parts, *_ = np.linalg.lstsq(table, axis.actual, rcond=None)
-        left = float(np.std(axis.actual - table @ parts) / max(np.std(axis.actual), 1e-12))
+        table = np.column_stack([column[every] for column in columns])
+        parts, *_ = np.linalg.lstsq(table, actual, rcond=None)
+        left = float(np.std(actual - table @ parts) / max(np.std(actual), 1e-12))
         found.append((float(parts[0]), float(parts[1]), left))
     return min(found, key=lambda one: abs(one[0] - 1.0))
 

@@ -16,7 +16,7 @@ from twin.units import AxisKind
 
 FIT, HOLD_OUT = "fit", "hold-out"
 _UNEXPLAINED = 0.5
-"""Share of a force that may be left."""
+"""Share of a lag or a force that may be left."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -113,6 +113,11 @@ class LogFigures:
             f"{self.ramps.logged_rms:.3g} {unit} rms logged, {self.ramps.left_rms:.3g} {unit} left "
             f"({100 * self.ramps.share:.1f} %)"
         )
+
+    @property
+    def lag_is_unexplained(self) -> bool:
+        """Whether more than half of the lag that the fit is judged by is left."""
+        return self.judged_share > _UNEXPLAINED
 
     @property
     def force_is_unexplained(self) -> bool:
@@ -265,7 +270,13 @@ def verdict_sentence(name: str, axis: AxisResult, logs: tuple[LogFigures, ...]) 
         return f"{name}: of a ball-bar alone, which tells {told}."
     shares = max((figures.judged_share for figures in judged), default=math.inf)
     seen = "of a log that it has not seen" if unseen else "of the fitted log"
-    sentence = f"{name}: predicts the {what} {seen} to {100 * shares:.2g} %"
+    left = f"{100 * shares:.3g} %"
+    if shares >= 1.0:
+        sentence = f"{name}: is worse than no model: of the {what} {seen} it leaves {left}"
+    elif shares > _UNEXPLAINED:
+        sentence = f"{name}: leaves {left} of the {what} {seen} unexplained"
+    else:
+        sentence = f"{name}: predicts the {what} {seen} to {100 * shares:.2g} %"
     forces = [figures for figures in judged if figures.force_is_unexplained]
     if forces:
         sentence += (

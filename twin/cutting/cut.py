@@ -177,6 +177,9 @@ class Cutter:
         lag = np.abs(meant - points).sum(axis=1)
         turn = self._part_frame.direction(joints)
         axis = self._part_frame.tool_direction(joints) if self.tilts else None
+        if axis is not None:
+            leant = axis - self._part_frame.tool_direction(setpoint.position)
+            lag += self.tool.flute * np.linalg.norm(leant, axis=1)
         way = _Way(points, turn, axis, lag, setpoint.time, setpoint.line, rapid, off)
         if self._stand is None:
             self.start_depth = self._depth_at(way[:1].lowered(self.plan.longer(self.tool)))
@@ -316,9 +319,9 @@ class Cutter:
         chosen = self.material.straight(points, np.concatenate([group[:1], group]), cutter)
         points, sample = points[chosen], chosen[1:] - 1
         rapid, off, lag = way.rapid[sample], way.standing[sample], way.lag[sample]
-        axis = None if points.axis is None else points.axis[1:]
-        rapids = self._rapids.suspects(points.tip, rapid, lag, axis)
-        standing = self._standing.suspects(points.tip, ~rapid & off, lag, axis)
+        tip, ends, reach = points.tip, points.axis, self.tool.flute
+        rapids = self._rapids.suspects(tip, rapid, lag, ends, reach)
+        standing = self._standing.suspects(tip, ~rapid & off, lag, ends, reach)
         suspect = (rapids > 0) | (standing > 0)
         found, met = self._take_off(points, cutter, suspect, edge=edge)
         count = len(found.volume)

@@ -161,7 +161,7 @@ class StockWatch:
         self._log = EventLog()
         self._runs = 0
         self._running = False
-        self._start = np.zeros(3)
+        self._start, self._start_axis = np.zeros(3), np.array([0.0, 0.0, 1.0])
         self._tail = TAIL_MM
         self._surface: dict[tuple[int, int], float] = {}
 
@@ -171,6 +171,7 @@ class StockWatch:
         forbidden: BoolArray,
         lag: FloatArray,
         axis: FloatArray | None = None,
+        reach: float = 0.0,
     ) -> IntArray:
         """Number the runs of stretches that must not cut, in a chunk that follows the last one.
 
@@ -178,7 +179,8 @@ class StockWatch:
             points: Tool tip positions at the ends of n stretches, shape (n + 1, 3) [mm].
             forbidden: Which stretches must take no material, shape (n,).
             lag: How far the tool trails its setpoint at the end of each, shape (n,) [mm].
-            axis: Direction from the tip to the spindle there, shape (n, 3); None: +Z.
+            axis: Direction from the tip to the spindle at the same places, shape (n + 1, 3); None: +Z.
+            reach: How far above the tip the edge ends, which a tool that turns about its tip moves [mm].
 
         Returns:
             Number of the run that each stretch belongs to, from 1; 0 where it may cut, and on the
@@ -192,9 +194,13 @@ class StockWatch:
         start = np.where(latest[:, None] < 0, self._start, points[latest])
         tail = np.where(latest < 0, self._tail, TAIL_MM + lag[latest])
         way = points[1:] - start
+        turning = np.zeros(len(forbidden))
         if axis is not None:
-            way = in_tool_frame(way, axis)
-        advance = np.hypot(way[:, 0], way[:, 1]) + np.maximum(0.0, -way[:, 2])
+            way = in_tool_frame(way, axis[1:])
+            before = np.where(latest[:, None] < 0, self._start_axis, axis[latest])
+            self._start_axis = before[-1].copy()
+            turning = reach * np.linalg.norm(axis[1:] - before, axis=1)
+        advance = np.hypot(way[:, 0], way[:, 1]) + np.maximum(0.0, -way[:, 2]) + turning
         self._runs, self._running = int(run[-1]), bool(forbidden[-1])
         self._start, self._tail = start[-1].copy(), float(tail[-1])
         return np.where(forbidden & (advance > tail), run, 0)

@@ -112,6 +112,10 @@ def _explain(detail: ErrorDetails, table: type[pydantic.BaseModel]) -> str:
     key = _key(detail) or "(file)"
     if detail["type"] == "missing":
         return f"'{key}' is missing"
+    if detail["type"] == "tuple_type" and isinstance(detail["input"], dict):
+        known = _known_keys(table, detail["loc"])
+        if known:
+            return _as_list_of_tables(key, detail["input"], known)
     if detail["type"] != "extra_forbidden":
         message = detail["msg"].removeprefix("Value error, ")
         whole_table = isinstance(detail["input"], dict)
@@ -120,6 +124,15 @@ def _explain(detail: ErrorDetails, table: type[pydantic.BaseModel]) -> str:
     nearest = difflib.get_close_matches(str(detail["loc"][-1]), known, n=1)
     hint = f"did you mean '{nearest[0]}'?" if nearest else f"known keys: {', '.join(sorted(known))}"
     return f"unknown key '{key}'; {hint}"
+
+
+def _as_list_of_tables(key: str, written: Data, known: Sequence[str]) -> str:
+    """What to write in place of a table, or of a table of tables by their numbers."""
+    number = next((each for each in written if each.isdecimal()), None)
+    said = f"'{key}' is a list of tables: write [[{key}]]"
+    if number is None or "number" not in known:
+        return f"{said} in place of [{key}]"
+    return f"{said} and number = {int(number)} in place of [{key}.{number}]"
 
 
 def _key(detail: ErrorDetails) -> str:

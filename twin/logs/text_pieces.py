@@ -6,7 +6,7 @@ from pathlib import Path
 
 from twin.errors import UsageError
 
-_PIECE = 1 << 23
+_PIECE = 1 << 21
 """Bytes that are read at a time."""
 _LONGEST_LINE = 1 << 22
 """Bytes of a line, above which a file is no table."""

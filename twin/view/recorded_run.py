@@ -1,5 +1,6 @@
 """What a page shows of a recording: its samples, thinned where they are many, and the stock's cuts."""
 
+import functools
 import itertools
 import struct
 from collections.abc import Iterator
@@ -9,6 +10,9 @@ import numpy as np
 
 from twin.cutting.cut import Cutter
 from twin.cutting.patches import grid_of, patch_message
+from twin.cutting.recut import recut
+from twin.cutting.tridexel.material import TriDexelMaterial
+from twin.cutting.tridexel.mesh import Surface, surface
 from twin.machine.description.config import Machine
 from twin.nc.canonical import FloatArray, IntArray
 from twin.recording.reader import Samples
@@ -20,6 +24,8 @@ MOST_SAMPLES = 100_000
 """Samples that a page gets; of more every n-th, and the greatest contour error of each group."""
 CUTS = 200
 """Moments between which the stock is cut: so finely it is seen when it is scrubbed."""
+PART_CROSSINGS = 15_000
+"""Crossings of the lattice by the mesh of a part that is cut from several sides: 60,000 triangles, 2 MB."""
 
 
 class RecordedRun:
@@ -53,6 +59,7 @@ class RecordedRun:
             "error_scale_um": scene.error_scale,
             "has_error": recording.contour_um(0, 0) is not None,
             "tools": [tool.number for tool in scene.summary.tools.tools],
+            "shows_finished_part": scene.stock is not None and scene.summary.tilts,
         }
 
     def samples(self) -> bytes:
@@ -130,9 +137,19 @@ class RecordedRun:
 
     def _cutter(self) -> Cutter | None:
         header, stock = self._scene.recording.header, self._scene.stock
-        if stock is None or not self._scene.from_one_side:
+        if stock is None or self._scene.summary.tilts:
             return None
         return Cutter(stock, self._scene.summary.tools, header.part_frame, header.part_zero)
+
+    @functools.cached_property
+    def _part(self) -> Surface | None:
+        """The part at the end of the run, where it was cut from several sides; else its cuts are shown."""
+        scene = self._scene
+        if scene.stock is None or not scene.summary.tilts:
+            return None
+        material = recut(scene.recording, scene.summary, scene.stock).material
+        assert isinstance(material, TriDexelMaterial)
+        return surface(material.stock, PART_CROSSINGS)
 
     def drawn(self, number: int) -> DrawnMachine | None:
         """The machine with one of the run's tools; None where there is no such tool."""
@@ -145,6 +162,7 @@ class RecordedRun:
                     header.part_frame,
                     self._scene.stock,
                     header.part_zero,
+                    self._part,
                 )
         return None
 

@@ -114,6 +114,25 @@ def test_turning_the_part_at_cutting_height_is_a_rapid_into_the_stock() -> None:
     assert (cutter.halted.what, cutter.halted.line) == ("rapid", 7)
 
 
+def test_leaning_about_a_tip_at_rest_is_a_rapid_into_the_stock() -> None:
+    """A swivel head turns the tool about its tip beside a block: the tip takes no way, the edge does."""
+    zero = np.array([0.0, 0.0, -450.0, 0.0, 0.0])
+    frame = read_machine(machine_file("mill5h")).part_frame.at(zero, LENGTH_MM)
+    stock = StockTable(shape="box", size=(30.0, 20.0, 8.0), cell=0.2)
+    angle = np.arange(0.0, -30.0, -0.5)
+    pivot = 200.0 + LENGTH_MM
+    lean = np.deg2rad(angle)
+    places = np.zeros((len(angle), 5))
+    places[:, 0] = 18.5 + pivot * np.sin(lean)
+    places[:, 2] = -6.0 - pivot * (1.0 - np.cos(lean))
+    places[:, 3] = angle
+    for rapid, met in ((False, None), (True, ("rapid", 7))):
+        cutter = Cutter(stock, FLAT, frame, zero, halts=True, tilts=True)
+        cutter.add(samples(places + zero, line=7), np.full(len(places), rapid))
+        halted = cutter.halted
+        assert (None if halted is None else (halted.what, halted.line)) == met
+
+
 def test_turning_beside_the_stock_is_none() -> None:
     cutter = bar(FLAT)
     cut(cutter, way((15.0, 0.0, 15.0, 0.0), (15.0, 0.0, 15.0, 360.0), step=1.0), rapid=True)

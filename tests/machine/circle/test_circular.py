@@ -34,7 +34,9 @@ def test_a_perfect_machine_draws_a_perfect_circle(plane):
     assert max(np.abs(result.radial_deviation_um)) < 0.1
 
 
-@pytest.mark.parametrize(("name", "plane"), [("mill4a", "YZA"), ("mill5", "XYC"), ("mill3", "YZ")])
+@pytest.mark.parametrize(
+    ("name", "plane"), [("mill4a", "YZA"), ("mill5", "XYC"), ("mill5h", "XYC"), ("mill3", "YZ")]
+)
 def test_a_circle_with_the_table_of_any_machine_is_round(name, plane):
     """Loops of one gain: the table follows the circle without an error of its own, to the simulator's own."""
     result = circular_test(read_machine(machine_file(name)), 40.0, 1000.0, plane)

@@ -57,7 +57,7 @@ def built_to_pass(model: mujoco.MjModel, one: int, two: int) -> bool:
     return not names.intersection(CLAMPED) and (not any(tool) or gantry)
 
 
-MACHINES = ("mill4", "mill4_light", "mill3", "mill4a", "mill5")
+MACHINES = ("mill4", "mill4_light", "mill3", "mill4a", "mill5", "mill5h")
 PAIRS = [pair for name in MACHINES for pair in all_pairs(name)]
 
 

@@ -3,6 +3,7 @@
 import dataclasses
 import math
 import random
+from typing import Literal
 
 import numpy as np
 import pytest
@@ -62,7 +63,14 @@ def outcome(
 
 def number(chance: random.Random, value: float) -> str:
     return chance.choice(
-        (f"{value:.3f}", f"{value:.3f}", f"{value:.0f}.", f"{value:+.6f}", f"{value:.13f}")
+        (
+            f"{value:.3f}",
+            f"{value:.3f}",
+            f"{value:.0f}.",
+            f"{value:+.6f}",
+            f"{value:.13f}",
+            f"{value * 1000:.0f}",
+        )
     )
 
 
@@ -167,8 +175,9 @@ def test_the_compiled_kernel_computes_the_same_bits(dialect: str) -> None:
     chance = random.Random(dialect)  # noqa: S311 (the same)
     for _ in range(20):
         source = source_from_text(cam_program(chance, dialect))
-        python = outcome(source, dialect, POINTED, None)
-        assert outcome(source, dialect, POINTED, compiled_kernel()) == python
+        settings = chance.choice((WITH_TABLES, POINTED))
+        python = outcome(source, dialect, settings, None)
+        assert outcome(source, dialect, settings, compiled_kernel()) == python
 
 
 @pytest.mark.seconds("compiles the kernel where it was not compiled before")
@@ -204,38 +213,53 @@ LONG = {
 }
 
 
+def moves_in_the_kernel(text: str, dialect: str, settings: ControlSettings = SETTINGS) -> int:
+    """How many moves of a program the kernel makes; all are those of Python."""
+    source, ran = source_from_text(text), 0
+
+    def counting(*arguments: object) -> int:
+        nonlocal ran
+        made = run_lines(*arguments)  # pyright: ignore[reportArgumentType]  # handed on
+        ran += made
+        return made
+
+    assert outcome(source, dialect, settings, counting) == outcome(source, dialect, settings, None)
+    return ran
+
+
 @pytest.mark.parametrize("dialect", WITH_CODES)
 def test_a_file_of_lines_runs_in_the_kernel_in_every_dialect(dialect: str) -> None:
     lines = [LONG[dialect].format(x=row % 97, y=row % 89) for row in range(1000)]
     centers = ("I-0.500 J0", "I0.500 J0") if dialect == "sinumerik" else ("R5.000", "R5.000")
     arcs = (f"G2 X{row % 2}.000 Y0.000 {centers[row % 2]}" for row in range(1000))
     lines = [*lines, "X1.000 Y0.000", *arcs]
-    source = source_from_text("\n".join(["G90 G17", "G1 X5. F100.", *lines, "M30"]))
-    ran = 0
-
-    def counting(*arguments: object) -> int:
-        nonlocal ran
-        made = run_lines(*arguments)  # pyright: ignore[reportArgumentType]  # handed on
-        ran += made
-        return made
-
-    outcome(source, dialect, SETTINGS, counting)
-    assert ran >= 1990
+    text = "\n".join(["G90 G17", "G1 X5. F100.", *lines, "M30"])
+    assert moves_in_the_kernel(text, dialect) >= 1990
 
 
 def test_a_file_of_klartext_runs_in_the_kernel() -> None:
     lines = [f"{row} L X{row % 97:+.3f} Y{row % 89:+.3f}" for row in range(1000)]
-    source = source_from_text("\n".join(["BEGIN PGM P MM", "L Z+5 F100", *lines, "END PGM P MM"]))
-    ran = 0
+    text = "\n".join(["BEGIN PGM P MM", "L Z+5 F100", *lines, "END PGM P MM"])
+    assert moves_in_the_kernel(text, "heidenhain") >= 990
 
-    def counting(*arguments: object) -> int:
-        nonlocal ran
-        made = run_lines(*arguments)  # pyright: ignore[reportArgumentType]  # handed on
-        ran += made
-        return made
 
-    outcome(source, "heidenhain", SETTINGS, counting)
-    assert ran >= 990
+@pytest.mark.parametrize("decimal_point", ["increments", "calculator"])
+@pytest.mark.parametrize("dialect", ["fanuc", "haas"])
+@pytest.mark.parametrize("begin", ["G21 G94", "G20 G94", "G21 G95 M3 S1000", "G20 G95 M3 S1000"])
+def test_numbers_without_a_point_run_in_the_kernel(
+    dialect: str, decimal_point: Literal["increments", "calculator"], begin: str
+) -> None:
+    settings = dataclasses.replace(WITH_TABLES, decimal_point=decimal_point)
+    lines = [f"X{row % 97} Y-{row % 89 + 1} F{500 + row % 7}" for row in range(500)]
+    text = "\n".join([begin, "G1 X5 F100.", *lines, "G3 X9 Y-9 R50", "X-0 Y5", "M30"])
+    assert moves_in_the_kernel(text, dialect, settings) >= 495
+
+
+def test_the_kernel_goes_on_behind_a_change_of_the_length() -> None:
+    part = [f"X{row % 97}. Y{row % 89}." for row in range(100)]
+    lines = [line for _ in range(5) for line in ("G43 H1 Z50.", *part, "G49", *part)]
+    text = "\n".join(["G90 T1 M6", "G1 X5. F100.", *lines, "M30"])
+    assert moves_in_the_kernel(text, "fanuc", WITH_TABLES) >= 980  # a change costs a line or two
 
 
 KLARTEXT_LETTERS = st.text("LlXYF1205.+- \t;~,CR", max_size=16)
@@ -259,7 +283,7 @@ def assert_read_alike(name: str, line: str) -> None:
     control = Executor(dialect, SETTINGS, source_from_text(line))
     values, data = np.zeros(AXIS + len(MILL)), np.frombuffer(line.encode(), np.uint8)
     form = line_format(control)
-    seen = read_line(data, 0, len(data), form, values)
+    seen = read_line(data, 0, len(data), form, np.ones(26), values)
     if seen == NOT_PLAIN:
         return
     blocks = Lexer(dialect, Reporter(source_from_text(line), strict=False)).blocks(line, 1)

@@ -132,7 +132,9 @@ def test_cut_stock_and_trail_are_seen(scene: Scene) -> None:
 
 @pytest.mark.usefixtures("filament_driver")
 def test_a_picture_is_bright_but_not_burnt_out(scene: Scene) -> None:
-    with stage(scene, SIZE, Quality(passes=2, drawn_cells=60), renderer="filament") as play:
+    with stage(
+        scene, SIZE, Quality(passes=2, drawn_cells=60, drawn_crossings=6_000), renderer="filament"
+    ) as play:
         pixels: Pixels = play.picture("part")
         machine = pixels[play.objects("part") >= 0]
     assert 60 < machine.mean() < 220

@@ -113,10 +113,17 @@ def groove(before: Pixels, after: Pixels) -> np.ndarray[tuple[int, int], np.dtyp
     return np.abs(after.astype(int) - before.astype(int)).max(axis=2) > 12
 
 
-def test_groove_is_where_the_tool_was(scene: Scene) -> None:
-    with stage(scene, SIZE, DRAFT) as play:
+@pytest.fixture(params=[False, True], ids=["height map", "tri-dexel"])
+def stocked(scene: Scene, request: pytest.FixtureRequest) -> Scene:
+    """The same cuts with either description of the material."""
+    summary = dataclasses.replace(scene.summary, tilts=request.param)
+    return dataclasses.replace(scene, summary=summary)
+
+
+def test_groove_is_where_the_tool_was(stocked: Scene) -> None:
+    with stage(stocked, SIZE, DRAFT) as play:
         blank, stock = play.picture("top"), stock_pixels(play, "top")
-        play_to(play, scene.recording, moment(scene.recording, line=3))
+        play_to(play, stocked.recording, moment(stocked.recording, line=3))
         # Away from tool and trail: the slot is 10 mm wide along X from -40 to 40.
         cut = groove(blank, play.picture("top"))
         body = play.data.body("rotary_table")
@@ -136,13 +143,13 @@ def test_groove_is_where_the_tool_was(scene: Scene) -> None:
     assert stock_now.sum() > 0.5 * stock.sum()
 
 
-def test_stock_turns_with_the_table(scene: Scene) -> None:
-    with stage(scene, SIZE, DRAFT) as play:
-        play_to(play, scene.recording, moment(scene.recording, line=1))
+def test_stock_turns_with_the_table(stocked: Scene) -> None:
+    with stage(stocked, SIZE, DRAFT) as play:
+        play_to(play, stocked.recording, moment(stocked.recording, line=1))
         rows, columns = np.nonzero(stock_pixels(play, "top"))
         lying = np.ptp(columns) / np.ptp(rows)
-        play_to(play, scene.recording, 0)
-        play.advance(next(iter(scene.recording.chunks()))[-1:])
+        play_to(play, stocked.recording, 0)
+        play.advance(next(iter(stocked.recording.chunks()))[-1:])
         rows, columns = np.nonzero(stock_pixels(play, "top"))
         standing = np.ptp(columns) / np.ptp(rows)
     assert lying > 1.2
@@ -216,27 +223,28 @@ def test_part_cameras_see_the_stock_in_the_middle(scene: Scene, camera: str) -> 
     assert turned == (camera == "part"), "the riding camera turns with the stock"
 
 
-def test_a_hole_through_the_stock_shows_the_table(scene: Scene) -> None:
+@pytest.mark.seconds("two stages are built and drawn")
+def test_a_hole_through_the_stock_shows_the_table(stocked: Scene) -> None:
     thin = StockTable(shape="box", size=(100.0, 100.0, 4.0), position=(0, 0, -4), cell=0.5)
-    with stage(dataclasses.replace(scene, stock=thin), SIZE, DRAFT) as play:
+    with stage(dataclasses.replace(stocked, stock=thin), SIZE, DRAFT) as play:
         plate = int(play.model.geom("plate").id)
         before = (play.objects("top") == plate).sum()
-        play_to(play, scene.recording, moment(scene.recording, line=3))
+        play_to(play, stocked.recording, moment(stocked.recording, line=3))
         after = (play.objects("top") == plate).sum()
     assert after < before, "the sheet floats over the plate, and the slot is not through yet"
     through = thin.model_copy(update={"position": (0.0, 0.0, -3.0), "size": (100.0, 100.0, 1.5)})
-    with stage(dataclasses.replace(scene, stock=through), SIZE, DRAFT) as play:
+    with stage(dataclasses.replace(stocked, stock=through), SIZE, DRAFT) as play:
         before = (play.objects("top") == plate).sum()
-        play_to(play, scene.recording, moment(scene.recording, line=3))
+        play_to(play, stocked.recording, moment(stocked.recording, line=3))
         after = (play.objects("top") == plate).sum()
     assert after > before + 100
 
 
-def test_a_stock_that_is_cut_away_is_seen_no_more(scene: Scene) -> None:
+def test_a_stock_that_is_cut_away_is_seen_no_more(stocked: Scene) -> None:
     sliver = StockTable(shape="box", size=(60.0, 6.0, 3.0), position=(0.0, 0.0, -1.0), cell=0.5)
-    with stage(dataclasses.replace(scene, stock=sliver), SIZE, DRAFT) as play:
+    with stage(dataclasses.replace(stocked, stock=sliver), SIZE, DRAFT) as play:
         before = stock_pixels(play, "top").sum()
-        play_to(play, scene.recording, moment(scene.recording, line=3))
+        play_to(play, stocked.recording, moment(stocked.recording, line=3))
         after = stock_pixels(play, "top").sum()
     assert before > 50
     assert after == 0

@@ -38,13 +38,33 @@ class SlowLog:
         axis: Its columns.
         rows: First and last row, exclusive, of each stretch.
         ramps: Its samples that fell into ramps.
-        period_s: Between samples [s].
+        speed: Commanded, of every row, 0 where it is not told [mm/s or deg/s].
+        told: Rows whose speed is told.
     """
 
     axis: AxisLog
     rows: tuple[tuple[int, int], ...]
     ramps: list[Ramp]
-    period_s: float
+    speed: FloatArray
+    told: BoolArray
+
+
+def commanded_speed(
+    axis: AxisLog, time: FloatArray, whole: BoolArray
+) -> tuple[FloatArray, BoolArray]:
+    """Commanded velocity of every row, 0 where it is not told, and where it is; shape (n,) each.
+
+    Args:
+        axis: Of a slow log.
+        time: Of its rows [s].
+        whole: Whether positions go on from each row to the next, shape (n - 1,).
+    """
+    if "command_velocity" in axis.more:
+        return axis.more["command_velocity"], np.ones(len(time), np.bool_)
+    told = np.append(True, whole) & np.append(whole, True)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        speed = np.gradient(axis.command, time)
+    return np.where(told, speed, 0.0), told
 
 
 def fit_slow(kind: AxisKind, logs: Sequence[SlowLog], base: Parameters, fastest: float) -> AxisFit:
@@ -77,7 +97,7 @@ def fit_slow(kind: AxisKind, logs: Sequence[SlowLog], base: Parameters, fastest:
             f"{parameters.kv:.4g}"
         )
     if all("current" in log.axis.more for log in logs):
-        reached = max(float(np.abs(_speed(log)).max(initial=0.0)) for log in logs)
+        reached = max(float(np.abs(log.speed).max(initial=0.0)) for log in logs)
         reaches = reached >= _REACHES * fastest
         parameters, conditional = _fit_friction(kind, logs, parameters, viscous=reaches)
         told |= {
@@ -123,13 +143,12 @@ def _fit_ramps(kind: AxisKind, ramps: list[Ramp], base: Parameters) -> Solution:
 
 def _fit_trail(kind: AxisKind, logs: Sequence[SlowLog], base: Parameters) -> Solution:
     """Delay of the columns, from the lag of position over the speed."""
-    lags, speeds, batches = [], [], []
+    lags, speeds = [], []
     for log in logs:
         for begin, end in log.rows:
-            part = slice(begin, end)
+            part = np.arange(begin, end)[log.told[begin:end]]
             lags.append((log.axis.command - log.axis.actual)[part])
-            speeds.append(_speed(log)[part])
-            batches.append(end - begin)
+            speeds.append(log.speed[part])
     lag, speed = np.concatenate(lags), np.concatenate(speeds)
     typical = max(float(np.std(lag)), 1e-9)
     loop = (1.0 - base.velocity_feedforward) / kv_per_second(base.kv)
@@ -141,16 +160,9 @@ def _fit_trail(kind: AxisKind, logs: Sequence[SlowLog], base: Parameters) -> Sol
     return solve(Problem(residuals, batch, coordinates(kind, 1.0)), base, ["delay"])
 
 
-def _speed(log: SlowLog) -> FloatArray:
-    """Commanded velocity of every row."""
-    if "command_velocity" in log.axis.more:
-        return log.axis.more["command_velocity"]
-    return np.gradient(log.axis.command, log.period_s)
-
-
 def kinematics(log: SlowLog, parameters: Parameters) -> tuple[FloatArray, FloatArray]:
     """Speed and acceleration of every row, as the model has them; shape (n,) each."""
-    speed = _speed(log).copy()
+    speed = log.speed.copy()
     change = np.zeros(len(speed))
     for ramp in log.ramps:
         seen = predict_ramp(parameters, ramp)

@@ -38,9 +38,11 @@ class Margins(NamedTuple):
 def autocorrelation(course: Course) -> FloatArray:
     """Of what is left, at shifts from 1 on, shape (_LAGS,); empty where it is too short."""
     left = course.logged - course.predicted
+    if len(left) < 4 * _LAGS:
+        return np.zeros(0)
     left = left - left.mean()
     power = float(left @ left)
-    if len(left) < 4 * _LAGS or power == 0.0:
+    if power == 0.0:
         return np.zeros(0)
     return np.array([float(left[shift:] @ left[:-shift]) / power for shift in range(1, _LAGS + 1)])
 

@@ -79,16 +79,25 @@ def calibration_page(result: Calibration, record: Record | None = None) -> str:
     )
 
 
-def _unexplained(logs: tuple[LogFigures, ...]) -> str:
-    """What a page says first, of which more than half of a force is left; empty where none is."""
-    bad = [f"{Path(one.log).name}, {one.axis}" for one in logs if one.force_is_unexplained]
-    if not bad:
-        return ""
-    return (
-        f"More than half of the logged force is left unexplained ({'; '.join(bad)}): mass and friction "
-        "are not to be relied upon. Is the column this axis's force, is its unit right, is something "
-        "injected that the map does not name (external_force)?"
-    )
+def _unexplained(logs: tuple[LogFigures, ...]) -> list[str]:
+    """What a page says first: of which logs more than half of the lag or of the force is left."""
+
+    def places(bad: Sequence[LogFigures]) -> str:
+        return "; ".join(f"{Path(one.log).name}, {one.axis}" for one in bad)
+
+    told = []
+    if lags := [one for one in logs if one.lag_is_unexplained]:
+        told.append(
+            f"More than half of the logged lag is left unexplained ({places(lags)}): what was fitted is "
+            "not to be relied upon. What the log lacks stands below."
+        )
+    if forces := [one for one in logs if one.force_is_unexplained]:
+        told.append(
+            f"More than half of the logged force is left unexplained ({places(forces)}): mass and "
+            "friction are not to be relied upon. Is the column this axis's force, is its unit right, is "
+            "something injected that the map does not name (external_force)?"
+        )
+    return told
 
 
 def _axis(name: str, axis: AxisResult, logs: tuple[LogFigures, ...]) -> dict[str, Any]:

@@ -13,7 +13,11 @@ if TYPE_CHECKING:
     import trimesh
 
 MESH_CROSSINGS = 250_000
-"""Crossings of the finest mesh that is written, four triangles each; a finer stock is thinned to it."""
+"""Crossings of the finest mesh that is written; a finer stock is thinned to it."""
+TRIANGLES = 4
+"""Triangles of a mesh for each crossing."""
+MOST_VERTICES = 7 / 3
+"""Vertices for each crossing at most: itself, and of the patches in four cubes, which have three or more, a share."""
 MARKED_NODES = 100_000_000
 """Nodes that are marked at a time: as many bytes."""
 
@@ -24,24 +28,26 @@ class Surface(NamedTuple):
     Attributes:
         points: Vertices, shape (n, 3) [mm].
         skin: Normal and tool at each (``normals``), shape (n,).
-        faces: Triangles, counter-clockwise from outside, shape (m, 3).
+        faces: Triangles, counter-clockwise from outside, the first corner a crossing, shape (m, 3).
+        step: From one node of the lattice that was taken to the next, 1 for all of them.
     """
 
     points: FloatArray
     skin: SkinArray
     faces: IntArray
+    step: int
 
 
-def surface(stock: TriDexel, crossings: int = MESH_CROSSINGS) -> Surface:
+def surface(stock: TriDexel, crossings: int = MESH_CROSSINGS, step: int = 1) -> Surface:
     """The surface of the material, with sharp edges where the lines have seen both sides of them.
 
     What is thinner than the distance of the nodes that are taken may be left out, on both sides.
 
     Args:
         stock: The material.
-        crossings: About as many edges of the lattice may be crossed; if there are more, nodes are left out.
+        crossings: So many edges of the lattice may be crossed; if there are more, nodes are left out.
+        step: From one node to the next at least, in nodes.
     """
-    step = 1
     while np.prod(-(-stock.lattice.shape // step) + 2.0) > MARKED_NODES:
         step += 1
     while True:
@@ -58,7 +64,7 @@ def surface(stock: TriDexel, crossings: int = MESH_CROSSINGS) -> Surface:
     )
     patches = find_surface(stock.dexels, stock.lattice, coarse, inside, cell_loops(), found, count)
     vertices = count + patches
-    return Surface(found.point[:vertices], found.skin[:vertices], _faces(found.segment))
+    return Surface(found.point[:vertices], found.skin[:vertices], _faces(found.segment), step)
 
 
 def _marked(stock: TriDexel, coarse: Coarse) -> tuple[np.ndarray, int]:

@@ -42,7 +42,9 @@ class HeadSolid:
 class HeadShape:
     """The solids around the spindle, as the model's collision geoms say.
 
-    A geom that is neither an upright cylinder nor an upright box counts as the box around it.
+    A geom that is neither an upright cylinder nor an upright box counts as the box around it. So does what
+    carries a swivel head: it stands so above the spindle only while the head is upright, and boxes are held
+    against the stock only then.
     """
 
     def __init__(self, whole: MachineModel) -> None:
@@ -51,13 +53,13 @@ class HeadShape:
         data = mujoco.MjData(model)
         mujoco.mj_forward(model, data)
         nose = data.site("spindle_nose")
-        body = int(model.site("spindle_nose").bodyid[0])
+        inner, *outer = _above_nose(model, data)
         self._solids = tuple(
-            _solid(model, data, geom, nose.xpos)
+            _solid(model, data, geom, nose.xpos, swivels=body == inner)
             for geom in range(model.ngeom)
             if model.geom_group[geom] == COLLISION_GROUP
             and model.geom_contype[geom] & TOOL_SIDE
-            and model.body_weldid[model.geom_bodyid[geom]] == model.body_weldid[body]
+            and (body := int(model.body_weldid[model.geom_bodyid[geom]])) in (inner, *outer)
             and model.geom(geom).name not in TOOL_NAMES
         )
 
@@ -81,9 +83,30 @@ class HeadShape:
         return (*flange, *raised)
 
 
-def _solid(model: mujoco.MjModel, data: mujoco.MjData, geom: int, nose: FloatArray) -> HeadSolid:
+def _above_nose(model: mujoco.MjModel, data: mujoco.MjData) -> list[int]:
+    """Bodies that move with the spindle while its swivels stand at zero, from the spindle outwards."""
+    nose = model.site("spindle_nose")
+    along = data.site("spindle_nose").xmat.reshape(3, 3)[:, 2]
+    found = [int(model.body_weldid[int(nose.bodyid[0])])]
+    while found[-1] and all(
+        model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_HINGE
+        and abs(data.xaxis[joint] @ along) < _UPRIGHT
+        for joint in _joints_of(model, found[-1])
+    ):
+        found.append(int(model.body_weldid[model.body_parentid[found[-1]]]))
+    return found
+
+
+def _joints_of(model: mujoco.MjModel, body: int) -> range:
+    first = int(model.body_jntadr[body])
+    return range(first, first + int(model.body_jntnum[body]))
+
+
+def _solid(
+    model: mujoco.MjModel, data: mujoco.MjData, geom: int, nose: FloatArray, *, swivels: bool
+) -> HeadSolid:
     turn = data.geom_xmat[geom].reshape(3, 3)
-    upright = abs(turn[2, 2]) > _UPRIGHT
+    upright = bool(abs(turn[2, 2]) > _UPRIGHT)
     form = mujoco.mjtGeom(model.geom_type[geom])
     aabb = model.geom_aabb[geom]
     middle = data.geom_xpos[geom] + turn @ aabb[:3] - nose
@@ -91,7 +114,7 @@ def _solid(model: mujoco.MjModel, data: mujoco.MjData, geom: int, nose: FloatArr
     x, y, lower = (float(value) / MM for value in (middle[0], middle[1], middle[2] - half[2]))
     return HeadSolid(
         model.geom(geom).name,
-        upright and form == mujoco.mjtGeom.mjGEOM_CYLINDER,
+        swivels and upright and form == mujoco.mjtGeom.mjGEOM_CYLINDER,
         (float(half[0]) / MM, float(half[1]) / MM),
         (x, y),
         lower,

@@ -24,6 +24,8 @@ from twin.nc.text.reporter import Reporter
 from twin.nc.text.source import Source
 from twin.nc.text.syntax import Language
 
+WITHOUT_POINT = "decimal-point"
+"""The warning that a number without a decimal point counts increments."""
 MOST_CALLS = 64
 """Parts of a program within each other: more than any control allows."""
 
@@ -44,6 +46,7 @@ class Rules:
         given_variable: The value of a variable among those of the job, or None.
         place_switches: Reports the block's switch points, given the length of its move.
         without_point: Addresses whose numbers without a decimal point ``count`` must look at.
+        increment: What 1 without a decimal point counts behind an address, in a block of a plain move.
         count: Gives words without a decimal point their value in the units of the others.
         feed_rule: Which part of a move F counts, by the parameters of the control.
         length_by_code: Nothing but a code puts a tool's length into force; else the tool change may.
@@ -66,6 +69,7 @@ class Rules:
     )
     place_switches: Callable[["Control", float], None] | None = None
     without_point: Callable[[ControlSettings], frozenset[str]] = lambda _settings: frozenset()
+    increment: Callable[["Control", str], float] = lambda _control, _address: 1.0
     count: Callable[["Control", Block], Block] = lambda _control, block: block
     feed_rule: Callable[[ControlSettings], FeedRule] = lambda _settings: PATH_COUNTS
     length_by_code: bool = False

@@ -114,6 +114,7 @@ class PlainState(NamedTuple):
         feed: F, NaN for none; written to, shape (1,).
         position: Programmed and part position; written to, shape (2, k) [mm or deg].
         values: Room for the words of a line, shape (roles,).
+        increments: What numbers without a decimal point count, as ``reading.read_line`` has it, shape (26,).
         total: Sum of all shifts, shape (k,) [mm or deg].
         matrix: Mirror, rotation and scale.
         turned: That is not the identity.
@@ -134,6 +135,7 @@ class PlainState(NamedTuple):
     feed: FloatArray
     position: FloatArray
     values: FloatArray
+    increments: FloatArray
     total: FloatArray
     matrix: Matrix
     turned: bool
@@ -170,7 +172,7 @@ def run_lines(page: PageColumns, rules: PlainRules, state: PlainState, rows: Mov
         begin, end = int(page.starts[at]), int(page.ends[at])
         if made == len(rows.codes) or end - begin > rules.form.longest:
             break
-        seen = read_line(page.data, begin, end, rules.form, state.values)
+        seen = read_line(page.data, begin, end, rules.form, state.increments, state.values)
         if seen == NOT_PLAIN:
             break
         moved = _run_line(line + 1, seen, rules, state, rows, made)

@@ -9,7 +9,9 @@ from collections.abc import Callable
 import numpy as np
 
 from twin.compilation.speed import Speed, usual_speed
+from twin.nc.canonical import FloatArray
 from twin.nc.control.codes import GCode
+from twin.nc.control.control import WITHOUT_POINT
 from twin.nc.control.executor import Executor
 from twin.nc.control.modal import ArcRule, LineRule, MotionMode
 from twin.nc.geometry.arcs import Bounds
@@ -58,6 +60,8 @@ class LineRuns:
         self._control = executor.control
         self._kernel = kernel
         self._rules = plain_rules(executor)
+        looked_at = executor.dialect.rules.without_point(executor.control.settings)
+        self._without_point = looked_at.intersection(string.ascii_uppercase)
         axes = len(self._control.settings.axes)
         self._values = np.zeros(AXIS + axes)
         self._rows = MoveRows(
@@ -112,6 +116,7 @@ class LineRuns:
             feed=np.array([math.nan if motion.feed is None else motion.feed]),
             position=np.array([motion.programmed, motion.part]),
             values=self._values,
+            increments=self._increments(),
             total=np.array(frame.total),
             matrix=frame.matrix,
             turned=not frame.is_identity,
@@ -128,6 +133,15 @@ class LineRuns:
             corner=int(modal.corner),
             limits=(modal.corner_tolerance, motion.acceleration, motion.deceleration),
         )
+
+    def _increments(self) -> FloatArray:
+        """What numbers without a decimal point count now; NaN where Python must still warn of it."""
+        control, factors = self._control, np.ones(len(string.ascii_uppercase))
+        warned = control.report.has_said(WITHOUT_POINT)
+        for letter in self._without_point:
+            factor = self._executor.dialect.rules.increment(control, letter)
+            factors[ord(letter) - ord("A")] = factor if warned or factor == 1.0 else math.nan
+        return factors
 
     def _take_back(self, state: PlainState, line: int, rows: MoveRows) -> None:
         """The control stands where the run has come to."""
@@ -234,10 +248,8 @@ def line_format(executor: Executor) -> LineFormat:
     }
     roles = {each: role for each, role in letters.items() if each in dialect.words.motion - taken}
     roles |= {**dict.fromkeys(dialect.words.feed, FEED_WORD), **codes}
-    pointed = dialect.rules.without_point(control.settings)
     return LineFormat(
         np.array([roles.get(letter, OTHER) for letter in string.ascii_uppercase]),
-        np.array([letter in pointed for letter in string.ascii_uppercase]),
         comment_marks(dialect.syntax.comments).columns,
         dialect.syntax.longest_line,
         string.ascii_uppercase.find(dialect.syntax.line_keyword or " "),

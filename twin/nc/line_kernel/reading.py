@@ -12,6 +12,7 @@ import numpy.typing as npt
 from twin.compilation.compilable import compilable, inlined
 from twin.nc.canonical import FloatArray, IntArray
 from twin.nc.text.comments import CommentMarks, comment_end
+from twin.nc.text.expressions import LARGEST_NUMBER
 from twin.nc.text.plain_word import (
     ADDRESS,
     BEGIN,
@@ -49,7 +50,6 @@ class LineFormat(NamedTuple):
 
     Attributes:
         roles: Of each letter, shape (26,).
-        pointed: Numbers of the letter are plain with a decimal point only, unless 0, shape (26,).
         comments: How comments are marked.
         longest: Bytes of a line that may be plain.
         keyword: Letter, from 0, that a line may begin with behind a bare block number; -1: none, and no such numbers.
@@ -57,7 +57,6 @@ class LineFormat(NamedTuple):
     """
 
     roles: IntArray
-    pointed: npt.NDArray[np.bool_]
     comments: CommentMarks
     longest: int
     keyword: int = -1
@@ -65,7 +64,14 @@ class LineFormat(NamedTuple):
 
 
 @compilable
-def read_line(data: ByteArray, begin: int, end: int, form: LineFormat, values: FloatArray) -> int:
+def read_line(
+    data: ByteArray,
+    begin: int,
+    end: int,
+    form: LineFormat,
+    increments: FloatArray,
+    values: FloatArray,
+) -> int:
     """Read a line.
 
     Args:
@@ -73,6 +79,7 @@ def read_line(data: ByteArray, begin: int, end: int, form: LineFormat, values: F
         begin: First byte of the line.
         end: Behind its last byte.
         form: How lines are written.
+        increments: What 1 without a decimal point counts behind each letter; NaN: the line is not plain, shape (26,).
         values: Filled with the value of each role that the line has, shape (roles,).
 
     Returns:
@@ -95,8 +102,12 @@ def read_line(data: ByteArray, begin: int, end: int, form: LineFormat, values: F
         role = form.roles[letter]
         if role == OTHER or seen >> role & 1 or (role == NUMBER and seen):
             return NOT_PLAIN
-        if at == NOT_PLAIN or (stage != FRACTION and value != 0.0 and form.pointed[letter]):
+        if at == NOT_PLAIN or abs(value) > LARGEST_NUMBER:
             return NOT_PLAIN
+        if stage != FRACTION and value != 0.0:
+            value *= increments[letter]
+            if value != value:
+                return NOT_PLAIN
         seen |= 1 << role
         values[role] = value
 

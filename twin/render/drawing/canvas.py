@@ -44,12 +44,14 @@ class Quality:
     Attributes:
         passes: Pictures that are averaged, each with the lamps and the grid of pixels a little
             elsewhere: shadows become soft and edges smooth. One alone has neither.
-        drawn_cells: Most vertices of the drawn stock along its longer side.
+        drawn_cells: Most vertices of the drawn stock along its longer side, where it is a height map.
+        drawn_crossings: Edges of a tri-dexel stock's lattice that its drawn surface may cross at most.
         shadow_map: Side of the shadow map [px].
     """
 
     passes: int
     drawn_cells: int
+    drawn_crossings: int
     shadow_map: int = 2048
 
     @property
@@ -68,8 +70,8 @@ class Quality:
 STILL_PASSES = 4
 """Passes of a still for every one of a film's frame."""
 
-DRAFT = Quality(passes=1, drawn_cells=160)
-FINAL = Quality(passes=6, drawn_cells=640)
+DRAFT = Quality(passes=1, drawn_cells=160, drawn_crossings=40_000)
+FINAL = Quality(passes=6, drawn_cells=640, drawn_crossings=120_000)
 QUALITIES = {"draft": DRAFT, "final": FINAL}
 
 

@@ -41,7 +41,7 @@ def add_live_mesh(
         shadow: Whether it casts one.
     """
     turn = _GOLDEN_ANGLE * np.arange(len(texels))
-    stand_in = np.stack([np.cos(turn), np.sin(turn), turn / 50], 1)
+    stand_in = np.stack([np.cos(turn), np.sin(turn), np.arange(len(texels)) / len(texels)], 1)
     spec.add_mesh(
         name=name,
         uservert=stand_in.ravel().tolist(),
@@ -79,6 +79,7 @@ class LiveMesh:
         first, count = int(model.mesh_faceadr[self.id]), int(model.mesh_facenum[self.id])
         self._faces = model.mesh_face[first : first + count]
         model.mesh_facenormal[first : first + count] = np.arange(3 * count).reshape(-1, 3)
+        self._face_texels = model.mesh_facetexcoord[first : first + count]
         first, vertices = int(model.mesh_vertadr[self.id]), int(model.mesh_vertnum[self.id])
         self._vertices = model.mesh_vert[first : first + vertices]
         first = int(model.mesh_normaladr[self.id])
@@ -97,6 +98,23 @@ class LiveMesh:
     def put_faces(self, faces: IntArray) -> None:
         """Change the faces, shape (m, 3); one with equal corners is not seen."""
         self._faces[:] = faces
+
+    def fill(
+        self, vertices: FloatArray, faces: IntArray, normals: FloatArray, texels: IntArray
+    ) -> None:
+        """Change all of it, to at most as many vertices and faces as it has; the others are not seen.
+
+        Args:
+            vertices: Shape (n, 3) [mm], in the part's frame.
+            faces: Shape (m, 3).
+            normals: One for each corner of each face, shape (m, 3, 3).
+            texels: Vertex whose place in the texture each face has, shape (m,).
+        """
+        self._vertices[: len(vertices)] = MM * vertices
+        self._faces[: len(faces)] = faces
+        self._faces[len(faces) :] = 0
+        self._normals[: 3 * len(faces)] = normals.reshape(-1, 3)
+        self._face_texels[: len(faces)] = texels[:, None]
 
     def show(self, shown: bool) -> None:
         """Whether pictures show it."""

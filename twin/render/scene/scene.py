@@ -29,14 +29,6 @@ class Scene:
     error_scale_um: float | None = None
     """Contour error that has the trail's last colour [µm]; none: the greatest."""
 
-    @property
-    def from_one_side(self) -> bool:
-        """Whether the tool keeps to the part's Z, where a height map can be cut."""
-        frame = self.recording.header.part_frame
-        if frame.chain is None:
-            return True
-        return not any(frame.tilts(chunk.setpoint.position) for chunk in self.recording.chunks())
-
     def camera_names(self) -> list[str]:
         """Names of the cameras that can be asked for."""
         own = [camera.name for camera in self.spec.cameras if camera.name]

@@ -10,7 +10,9 @@ import numpy as np
 
 from twin.cutting.colours import Colours
 from twin.cutting.cut import Cutter
-from twin.cutting.sweeping import Rectangle, union
+from twin.cutting.height_map_material import HeightMapMaterial
+from twin.cutting.material import Material
+from twin.cutting.tridexel.material import TriDexelMaterial
 from twin.machine.description.kinematics import part_carrier
 from twin.nc.canonical import FloatArray
 from twin.recording.reader import Samples
@@ -18,13 +20,14 @@ from twin.render.drawing.canvas import Canvas, Focus, Pixels, Quality
 from twin.render.drawing.chips import Chips, chips
 from twin.render.drawing.renderer import Renderer, open_canvas, prepare
 from twin.render.scene.cameras import PART_CAMERAS, SMALLEST_MM, add_part_cameras, framed
+from twin.render.scene.dexel_surface import DexelSurface
 from twin.render.scene.placement import Joints, Placement, place, tip_position
 from twin.render.scene.scene import Scene
 from twin.render.scene.skin import Skin
 from twin.render.scene.stock_surface import StockSurface
 from twin.render.scene.tool_body import ToolBodies
 from twin.render.scene.trail import Trail, trail_points
-from twin.render.scene.work_holding import add_uncut, add_work_holding
+from twin.render.scene.work_holding import add_work_holding
 from twin.units import MM
 
 WARNINGS = {
@@ -60,7 +63,7 @@ class _Props(NamedTuple):
 
     placement: Placement
     cutter: Cutter | None
-    surface: StockSurface | None
+    surface: StockSurface | DexelSurface | None
     trail: Trail
     tools: ToolBodies
     seen: tuple[FloatArray, float]
@@ -96,7 +99,6 @@ class Stage:
         self._joints = Joints(scene.machine, model)
         self._samples = 0
         self._rate = 0.0
-        self._changed: Rectangle = (0, 0, 0, 0)
         self._position = self._start = np.zeros(len(scene.machine.axes))
         mujoco.mj_forward(model, self.data)
 
@@ -123,8 +125,9 @@ class Stage:
     def _cut(self, samples: Samples) -> float:
         """Take the samples' material off; returns how much [mm³]."""
         assert self._cutter is not None
+        assert self._surface is not None
         removed = self._cutter.add(samples, self._scene.summary.is_rapid(samples.setpoint.move))
-        self._changed = union(self._changed, self._cutter.changed)
+        self._surface.note_cut()
         return removed
 
     def warning(self, line: int) -> str:
@@ -177,9 +180,9 @@ class Stage:
         return frame.position(self._position[None], longer(self._tool))[0]
 
     def _spray(self) -> Chips:
-        """Chips of what was removed of late; out of a slot they fly from its upper edge."""
+        """Chips of what was removed of late; out of a slot of a height map they fly from its upper edge."""
         tip = tip_position(self.model, self.data, self._tool.length)
-        if self._cutter is not None:
+        if self._cutter is not None and not self._cutter.tilts:
             tip[2] += MM * max(0.0, self._cutter.map.top - self._tip[2])
         return chips(tip, MM * self._tool.diameter, self._rate, self._samples)
 
@@ -200,8 +203,7 @@ class Stage:
         self._joints.set(self.data, self._position)
         mujoco.mj_forward(self.model, self.data)
         if self._surface is not None:
-            self._surface.update(self._drawing, self._changed)
-            self._changed = (0, 0, 0, 0)
+            self._surface.update(self._drawing)
         if self._samples:
             self._trail.show(self._drawing, self._samples, self._tip)
 
@@ -249,18 +251,20 @@ def _build_props(
     placement = place(scene.machine, spec.compile(), length, header.part_frame)
     cutter = surface = None
     corner = header.part_frame.program_zero(header.part_zero)
-    if scene.stock is not None and not scene.from_one_side:
-        add_uncut(spec, scene.stock, placement, corner)
-    elif scene.stock is not None:
+    if scene.stock is not None:
         cutter = Cutter(
-            scene.stock, scene.summary.tools, header.part_frame, header.part_zero, keep_marks=True
+            scene.stock,
+            scene.summary.tools,
+            header.part_frame,
+            header.part_zero,
+            keep_marks=True,
+            tilts=scene.summary.tilts,
         )
-        step = max(1, -(-max(cutter.map.heights.shape) // quality.drawn_cells))
-        surface = StockSurface(cutter.map, Skin(cutter.map, cutter.marks, step, paint), step)
+        surface = _stock_surface(cutter.material, quality, paint)
         surface.add_to(spec)
         add_work_holding(spec, scene.stock, placement, corner)
     points = trail_points(scene.recording, scene.summary)
-    seen = framed(points.position if cutter is None else cutter.map.corners)
+    seen = framed(points.position if cutter is None else cutter.material.corners)
     add_part_cameras(spec, placement, *seen)
     way = Trail(
         points if trail else points[_NO_POINTS], _trail_radius(points.position), scene.error_scale
@@ -269,6 +273,18 @@ def _build_props(
     tools = ToolBodies(scene.summary.tools, scene.machine.file.spindle.flange_diameter)
     tools.add_to(spec)
     return _Props(placement, cutter, surface, way, tools, seen)
+
+
+def _stock_surface(
+    material: Material, quality: Quality, paint: Colours | None
+) -> StockSurface | DexelSurface:
+    """What draws the stock, by what describes it."""
+    if isinstance(material, TriDexelMaterial):
+        return DexelSurface(material, quality.drawn_crossings)
+    assert isinstance(material, HeightMapMaterial)
+    cells = material.map.heights.shape
+    step = max(1, -(-max(cells) // quality.drawn_cells))
+    return StockSurface(material, Skin(material.map, material.marks, step, paint), step)
 
 
 def _trail_radius(points: FloatArray) -> float:

@@ -12,9 +12,9 @@ import numpy as np
 import numpy.typing as npt
 
 from twin.cutting.colours import RAW_RGB
-from twin.cutting.height_map import HeightMap
+from twin.cutting.height_map_material import HeightMapMaterial
 from twin.cutting.net import Net, net, open_edges
-from twin.cutting.sweeping import Rectangle
+from twin.cutting.sweeping import Rectangle, union
 from twin.nc.canonical import FloatArray, IntArray
 from twin.render.drawing.canvas import Canvas
 from twin.render.scene.live_mesh import LiveMesh, add_live_mesh
@@ -63,22 +63,24 @@ class _Tile:
 class StockSurface:
     """Draws a height map on the rotary table.
 
-    Use in this order: make it, ``add_to`` the specification, compile, ``bind``, then ``update``
-    before every picture.
+    Use in this order: make it, ``add_to`` the specification, compile, ``bind``, then ``note_cut``
+    after every cut and ``update`` before every picture.
     """
 
-    def __init__(self, height_map: HeightMap, skin: Skin, step: int) -> None:
+    def __init__(self, material: HeightMapMaterial, skin: Skin, step: int) -> None:
         """Lay the drawn net.
 
         Args:
-            height_map: The stock before it is cut.
+            material: The stock before it is cut.
             skin: What paints it.
             step: Cells from one vertex to the next.
         """
-        self._map = height_map
+        self._material = material
+        self._map = material.map
+        self._changed: Rectangle = (0, 0, 0, 0)
         self._skin = skin
         self._step = step
-        self._net = net(height_map, step)
+        self._net = net(self._map, step)
         self._look()
         self._tiles = _tiles(self._net)
         self._edges = open_edges(self._net.patches)
@@ -113,13 +115,13 @@ class StockSurface:
             self._set_tile(tile)
         self._set_side()
 
-    def update(self, canvas: Canvas, changed: Rectangle) -> None:
-        """Draw the map as it is now.
+    def note_cut(self) -> None:
+        """Remember which cells the last chunk changed."""
+        self._changed = union(self._changed, self._material.changed)
 
-        Args:
-            canvas: What draws the model that was bound.
-            changed: Cells of the height map that changed since the last update.
-        """
+    def update(self, canvas: Canvas) -> None:
+        """Draw the map as it is now, where it was cut since the last time."""
+        changed, self._changed = self._changed, (0, 0, 0, 0)
         row, row_end, column, column_end = changed
         if row >= row_end:
             return

@@ -36,27 +36,6 @@ def add_work_holding(
         _add(spec, f"{support.name} seen", kind, size, middle + aside, placement)
 
 
-def add_uncut(
-    spec: mujoco.MjSpec, stock: StockTable, placement: Placement, part_corner: FloatArray
-) -> None:
-    """Put the blank as it was clamped, and what carries it, where no tool is shown to cut it.
-
-    Args:
-        spec: The drawn model; it is changed.
-        stock: The blank; of an STL the box around it.
-        placement: Where the part's frame lies on the body that carries it.
-        part_corner: Program zero in the part's frame, shape (3,) [mm].
-    """
-    x, y, z = (0.5 * size for size in stock.extent)
-    middle = placement.points((part_corner + np.array(stock.position) - [0.0, 0.0, z])[None])[0]
-    if stock.shape in ("cylinder", "tube"):
-        kind, size = mujoco.mjtGeom.mjGEOM_CYLINDER, [x * MM, z * MM, 0.0]
-    else:
-        kind, size = mujoco.mjtGeom.mjGEOM_BOX, [x * MM, y * MM, z * MM]
-    _add(spec, "uncut stock seen", kind, size, middle, placement)
-    add_work_holding(spec, stock, placement, part_corner)
-
-
 def _add(
     spec: mujoco.MjSpec,
     name: str,

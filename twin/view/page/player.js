@@ -22,6 +22,7 @@ const button = (text, act, pressed = null) => {
 const banner = (text) => { at("banner").textContent = text; at("banner").hidden = !text; };
 
 const run = await (await fetch("run.json")).json();
+if (run.shows_finished_part) SHOWN.stock = "Finished part";
 const base = new URL("./", location.href).pathname;
 const view = new View(at("canvas"), base, (what, detail) => {
   document.body.dataset.view = what;

@@ -118,17 +118,17 @@ async function load(tool) {
 
 function assemble(described, root) {
   const named = (name) => root.getObjectByName(THREE.PropertyBinding.sanitizeNodeName(name));
-  const collision = THREE.PropertyBinding.sanitizeNodeName(described.collision);
-  const bodies = [];
+  const belongs = (node, prefix) => [node.name, node.parent?.name].some((name) => name?.startsWith(THREE.PropertyBinding.sanitizeNodeName(prefix)));
+  const bodies = [], faces_of_part = [];
   root.traverse((node) => {
     if (node.isMesh) {
       node.castShadow = node.receiveShadow = true;
       if (!fine) node.material = matt(node.material);
-      const hidden = [node.name, node.parent?.name].some((name) => name?.startsWith(collision));
-      if (hidden) {
+      if (belongs(node, described.collision)) {
         node.material = new THREE.MeshBasicMaterial({ color: 0xff5544, wireframe: true });
         bodies.push(node);
       }
+      if (belongs(node, described.part_as_cut)) faces_of_part.push(node);
     }
   });
   const joints = described.joints.map((joint) => {
@@ -137,7 +137,7 @@ function assemble(described, root) {
   });
   const part = frame(described.part, named);
   const tip = frame(described.tip, named);
-  const found = { root, joints, part, tip, bodies, cutter: named(described.cutter), tool: described.tool, collision: described.collision, radius: described.tool.diameter / 2, stock: null };
+  const found = { root, joints, part, tip, bodies, faces_of_part, cutter: named(described.cutter), tool: described.tool, collision: described.collision, radius: described.tool.diameter / 2, stock: null };
   if (described.stock) {
     found.stock = machine?.stock ?? new Stock(described.stock, by_processor ? 3 : 1, fine);
     part.add(found.stock.mesh, found.stock.face);
@@ -173,6 +173,7 @@ function show(target) {
     target.stock.mesh.visible = shown.stock;
     target.stock.byTool.value = shown.by_tool;
   }
+  for (const face of target.faces_of_part) face.visible = shown.stock;
   for (const body of target.bodies) body.visible = shown.collision;
   dirty = true;
 }
@@ -204,6 +205,7 @@ function centre(what) {
   machine.root.updateMatrixWorld(true);
   if (what === "tool") return machine.tip.getWorldPosition(point);
   if (what === "part") {
+    if (machine.faces_of_part.length) return around_part().getCenter(point);
     const grid = machine.stock?.grid;
     if (grid) point.set(grid.origin[0] + 0.5 * grid.cell * grid.columns, grid.origin[1] + 0.5 * grid.cell * grid.rows, grid.top);
     return machine.part.localToWorld(point);
@@ -211,11 +213,18 @@ function centre(what) {
   return new THREE.Box3().setFromObject(machine.root).getCenter(point);
 }
 
+/** The box around a part that is drawn as a mesh. */
+function around_part() {
+  const box = new THREE.Box3();
+  for (const face of machine.faces_of_part) box.expandByObject(face);
+  return box;
+}
+
 /** Choose a view by its name. */
 function look(name) {
   if (!machine) return;
   const grid = machine.stock?.grid;
-  const part = grid ? 0.001 * grid.cell * Math.hypot(grid.rows, grid.columns) : 0.2;
+  const part = grid ? 0.001 * grid.cell * Math.hypot(grid.rows, grid.columns) : machine.faces_of_part.length ? around_part().getSize(new THREE.Vector3()).length() : 0.2;
   const views = {
     start: ["part", -1.12, 0.5, 5.5 * part], front: ["part", -Math.PI / 2, 0.12, 5.5 * part], top: ["part", -Math.PI / 2, 1.5533, 2.6 * part],
     tool: ["tool", -1.0, 0.35, 0.42], part: ["part", -1.05, 0.62, 3.0 * part], fit: ["fit", -1.05, 0.32, 6.2],

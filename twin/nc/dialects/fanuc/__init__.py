@@ -151,6 +151,7 @@ FANUC = Dialect(
         finish=programs.finish,
         acts_on_lines=acts_on_lines,
         without_point=decimal_point.addresses_without_point,
+        increment=decimal_point.increment_of_plain_move,
         count=as_read,
         feed_rule=feeds.fanuc_rule,
         length_by_code=True,

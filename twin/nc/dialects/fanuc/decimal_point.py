@@ -9,7 +9,7 @@ milliseconds on either. The first number that is changed so is warned of.
 
 import operator
 
-from twin.nc.control.control import Control
+from twin.nc.control.control import WITHOUT_POINT, Control
 from twin.nc.control.settings import ControlSettings
 from twin.nc.dialects.fanuc.memory import memory_of
 from twin.nc.dialects.fanuc.variables import rounding_to, rounds
@@ -94,8 +94,14 @@ def _counted(
         f"{word.text} has no decimal point: it counts {factor:g} {unit}, so it is {value:g} {unit}"
     )
     hint = f'write {word.text}. for whole units, or decimal_point = "calculator" into the job'
-    control.report.warn_once("decimal-point", message, word.column, word.width, hint=hint)
+    control.report.warn_once(WITHOUT_POINT, message, word.column, word.width, hint=hint)
     return word._replace(value=value)
+
+
+def increment_of_plain_move(control: Control, address: str) -> float:
+    """What 1 without a point counts where no code of the block and no cycle says more."""
+    factor, _ = _increment(control, address, set())
+    return factor
 
 
 def _is_number(control: Control, address: str, codes: set[float | Expression]) -> bool:

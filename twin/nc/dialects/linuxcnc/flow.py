@@ -62,7 +62,7 @@ def _condition_of(control: Control, statement: Statement, word: OWord) -> tuple[
     """The one value behind a keyword, and its column."""
     found = values_of(control, word, statement)
     if len(found) != 1:
-        hint = f"write o{word.label} {word.keyword.lower()} [#1 LT 5]"
+        hint = f"write {word.shown} [#1 LT 5]"
         message = f"{word.keyword.lower()} needs one value in square brackets"
         refuse(control, statement, "expression", message, hint)
     return found[0]
@@ -72,7 +72,7 @@ def _construct_of(control: Control, statement: Statement, word: OWord) -> Constr
     """The construct that a line belongs to."""
     construct = structure(control).by_line.get(control.block.line - 1)
     if construct is None or construct.end is None:
-        message = f"o{word.label} {word.keyword.lower()} has no counterpart"
+        message = f"{word.shown} has no counterpart"
         hint = "every if needs its endif, every loop and every sub its end, with the same label"
         refuse(control, statement, "open-structure", message, hint)
     for line in memory_of(control).garbled:
@@ -114,7 +114,7 @@ def _declare(control: Control, statement: Statement, word: OWord) -> None:
         return
     before = memory_of(control).labels.setdefault(f"{own}{word.label}", line)
     if before != line:
-        message = f"o{word.label} is the label of line {before + 1} already"
+        message = f"{word.name} is the label of line {before + 1} already"
         refuse(control, statement, "ambiguous-label", message, "give each its own label")
 
 
@@ -196,7 +196,7 @@ def _enclosing(control: Control, statement: Statement, word: OWord) -> Construct
                 message = f"the control leaves while and do loops by {leave}, no repeat"
                 refuse(control, statement, "open-structure", message, hint)
             return each
-    message = f"no loop o{word.label} lies around this line"
+    message = f"no loop {word.name} lies around this line"
     refuse(control, statement, "open-structure", message)
 
 
@@ -276,7 +276,7 @@ def _sub(control: Control, statement: Statement, word: OWord) -> None:
         hint = "end the one before by its endsub"
         refuse(control, statement, "open-structure", message, hint)
     if word.label in memory_of(control).called:
-        message = f"o{word.label} was called before this line, which defines it again"
+        message = f"{word.name} was called before this line, which defines it again"
         hint = "end the program by M2 before it"
         refuse(control, statement, "ambiguous-label", message, hint)
     control.jump(construct.behind)
@@ -325,8 +325,11 @@ def run_o_word(control: Control, statement: Statement) -> None:
     if word.label[0] in "#[" and word.keyword != "CALL":
         refuse(control, statement, "o-word", "only call can compute its label")
     if word.keyword not in WITH_VALUES and word.text.strip():
-        message = f"nothing may follow o{word.label} {word.keyword.lower()}"
-        refuse(control, statement, "o-word", message, "write it on a line of its own")
+        message = f"nothing may follow {word.shown}"
+        hint = "write it on a line of its own"
+        if not word.keyword and word.text.startswith("["):
+            hint = f"a subroutine is called by {word.shown} call {word.text.rstrip()}"
+        refuse(control, statement, "o-word", message, hint)
     run(control, statement, word)
 
 

@@ -51,6 +51,17 @@ class OWord(NamedTuple):
     text: str
     column: int
 
+    @property
+    def name(self) -> str:
+        """O and label as a program writes them."""
+        plain = self.label.isdigit() or self.label.startswith(("#", "["))
+        return f"o{self.label}" if plain else f"o<{self.label}>"
+
+    @property
+    def shown(self) -> str:
+        """The same with the keyword."""
+        return f"{self.name} {self.keyword.lower()}".rstrip()
+
 
 def name_of_label(label: str) -> str:
     """One spelling for all ways to write a label."""
