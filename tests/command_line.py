@@ -21,9 +21,9 @@ class Finished:
 Twin = Callable[..., Finished]
 
 
-def machine_with_gain(folder: Path, factor: float) -> Path:
-    """A copy of mill4 whose position loops are turned up or down."""
-    shipped = read_machine(machine_file("mill4"))
+def machine_with_gain(folder: Path, factor: float, machine: str = "mill4") -> Path:
+    """A copy of a machine whose position loops are turned up or down."""
+    shipped = read_machine(machine_file(machine))
     text = shipped.path.read_text(encoding="utf-8")
     text = text.replace(f'model = "{shipped.file.model}"', f'model = "{shipped.model_path}"')
     text = re.sub(

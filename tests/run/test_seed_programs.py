@@ -9,6 +9,7 @@ from command_line import Twin, machine_with_gain
 from twin.check.runner import check_program
 from twin.check.task import CheckSettings
 from twin.files.shipped import resource_root
+from twin.job.load import load_job
 
 pytestmark = pytest.mark.seconds("each program that ships is run whole")
 
@@ -67,7 +68,8 @@ def test_it_runs_and_ends_where_it_shall(twin: Twin, tmp_path: Path, job: Path):
 @pytest.mark.thorough
 @each_job
 def test_it_fails_with_half_the_gain(tmp_path: Path, job: Path):
-    dull = check_program(job, CheckSettings(machine=str(machine_with_gain(tmp_path, 0.5))))
+    machine = machine_with_gain(tmp_path, 0.5, load_job(job).file.machine)
+    dull = check_program(job, CheckSettings(machine=str(machine)))
     assert (dull.verdict, dull.exit_code) == ("fail", 1)
     assert any(f"{job.stem}." in str(finding) for finding in dull.findings)
     assert dull.worst_line > 0
