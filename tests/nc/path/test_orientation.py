@@ -9,8 +9,6 @@ from tests.five_axes import TRAVEL, head_and_table, trunnion
 from twin.kinematics import Kinematics, tool_direction
 from twin.nc.path.orientation import rotary_axes_for
 
-FOUND = 4e-9
-"""Next to a singularity each of the two turns may be left out by the 1e-9 from which directions differ."""
 _CHAINS = st.sampled_from((trunnion(), head_and_table()))
 
 
@@ -22,10 +20,17 @@ def test_what_some_angles_point_at_is_found(
     direction = tool_direction(chain, np.array([[0.0, 0.0, 0.0, tilt, turn]]))[0]
     here = np.array([1.0, 2.0, 3.0, 0.0, now])
     found = rotary_axes_for(chain, direction, here, TRAVEL)
-    assert np.linalg.norm(tool_direction(chain, found[None])[0] - direction) < FOUND
+    assert np.linalg.norm(tool_direction(chain, found[None])[0] - direction) < 1e-9
     assert np.all(found[:3] == here[:3])
     assert TRAVEL[3, 0] - 1e-6 <= found[3] <= TRAVEL[3, 1] + 1e-6
     assert abs(found[4] - now) <= 180.0 + 1e-6
+
+
+@pytest.mark.parametrize("tilt", [1e-10, 1.2e-7, 1e-6, 1e-3])
+def test_next_to_the_axis_of_the_table_the_tilt_is_found(tilt: float) -> None:
+    direction = tool_direction(trunnion(), np.array([[0.0, 0.0, 0.0, tilt, 20.0]]))[0]
+    found = rotary_axes_for(trunnion(), direction, np.zeros(5), TRAVEL)
+    assert np.linalg.norm(tool_direction(trunnion(), found[None])[0] - direction) < 2e-11
 
 
 def test_an_axis_that_changes_nothing_stays() -> None:

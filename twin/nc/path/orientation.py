@@ -11,6 +11,9 @@ from twin.nc.canonical import FloatArray
 _SAME = 1e-9
 """Directions, of unit length, that differ by no more are the same."""
 
+_ON_AXIS = 1e-12
+"""What is nearer to an axis of unit vectors is on it: rounding alone."""
+
 _SAME_ANGLE = 1e-7
 """Angles [deg]."""
 
@@ -96,16 +99,17 @@ def _two_axes(
     if 1.0 - abs(cosine) < _SAME:
         return []
     found: list[list[float]] = []
-    a, b = float(outer @ goal), float(inner @ tool)
-    square = 1.0 - cosine * cosine
-    along_outer, along_inner = (a - cosine * b) / square, (b - cosine * a) / square
-    rest = 1.0 - along_outer**2 - along_inner**2 - 2.0 * along_outer * along_inner * cosine
-    if rest < -_SAME:
+    height, share = float(outer @ goal), math.sqrt(1.0 - cosine * cosine)
+    # The distance from the outer axis by the vector itself: next to the axis its sine by the cosine is lost in rounding.
+    distance = float(np.linalg.norm(goal - height * outer))
+    toward = (float(inner @ tool) - cosine * height) / share
+    if abs(toward) > distance + _SAME:
         return []
-    height = math.sqrt(max(0.0, rest) / square)
-    across = np.cross(outer, inner)
+    toward = min(distance, max(-distance, toward))
+    aside = math.sqrt(distance * distance - toward * toward)
+    first_side, second_side = (inner - cosine * outer) / share, np.cross(outer, inner) / share
     for sign in (1.0, -1.0):
-        between = along_outer * outer + along_inner * inner + sign * height * across
+        between = height * outer + toward * first_side + sign * aside * second_side
         first, second = _angle_about(inner, tool, between), _angle_about(outer, between, goal)
         if first is None:
             first = now[0]
@@ -116,7 +120,7 @@ def _two_axes(
 def _angle_about(axis: FloatArray, start: FloatArray, goal: FloatArray) -> float | None:
     """The turn about an axis that brings one vector to another [deg]; None where any or none does."""
     from_axis, to_axis = start - (axis @ start) * axis, goal - (axis @ goal) * axis
-    if min(np.linalg.norm(from_axis), np.linalg.norm(to_axis)) < _SAME:
+    if min(np.linalg.norm(from_axis), np.linalg.norm(to_axis)) < _ON_AXIS:
         return None
     if abs(float(axis @ (start - goal))) > _SAME:
         return None
