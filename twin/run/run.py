@@ -152,7 +152,8 @@ class Run:
         expect = followers.compared.comparison.expect
         if given is None:
             setpoints = planned(program, self.machine, self.part_zero, expect)
-            forces = cutting_forces(job, self.machine, dry_run, self.layout)
+            laid = followers.machining.laid
+            forces = cutting_forces(job, self.machine, dry_run, self.layout, laid)
             watched = self.clock.watch("plan", setpoints)
             motion = ProgramMotion(watched, self.model, summary, forces)
         else:
