@@ -122,7 +122,9 @@ def test_a_post_of_klartext_turns_the_axes_itself() -> None:
 
 @pytest.mark.parametrize(
     ("words", "sign"), [("EULER EULPR+0 EULNU+30 EULROT+0", 1.0), ("AXIAL A+30", 1.0),
-     ("VECTOR BX+1 BY+0 BZ+0 NX+0 NY-0.5 NZ+0.8660254037844386", 1.0), ("RELATIV SPA+30", 1.0)],
+     ("VECTOR BX+1 BY+0 BZ+0 NX+0 NY-0.5 NZ+0.8660254037844386", 1.0), ("RELATIV SPA+30", 1.0),
+     ("PROJECTED PROPR+0 PROMIN+30 ROT+0", 1.0),
+     ("POINTS P1X+5 P1Y+0 P1Z+2 P2X+9 P2Y+0 P2Z+2 P3X-3 P3Y+0.8660254037844386 P3Z+2.5", 1.0)],
 )  # fmt: skip
 def test_planes_of_klartext_by_other_words(words: str, sign: float) -> None:
     spatial = TILTED["heidenhain"]
@@ -138,6 +140,54 @@ def test_move_keeps_the_tip_at_the_part_while_the_axes_turn() -> None:
     longer = ToolCenter(on_machine(trunnion()), 15.0, [0.0] * 5)
     tips = np.array([longer.tip(place.tolist())[:3] for place in curves.end])
     assert np.abs(tips - tips[0]).max() < 1e-9
+
+
+def test_move_turns_about_the_place_below_the_tip_that_dist_says() -> None:
+    text = TILTED["heidenhain"].replace("TURN FMAX", "MOVE DIST25 FMAX").split("L X+0 Y+0 Z+20")[0]
+    moves = _led("heidenhain", text + "\nEND PGM A MM").moves
+    below = ToolCenter(on_machine(trunnion()), 15.0 + 25.0, [0.0] * 5)
+    places = np.array([below.tip(place.tolist())[:3] for place in moves.end[moves.shape == Shape.CURVE]])
+    assert np.abs(places - places[0]).max() < 1e-9
+
+
+@pytest.mark.parametrize(("how", "turned"), [("TABLE ROT", 40.0), ("COORD ROT", 0.0), ("", 0.0)])
+def test_table_rot_turns_a_table_that_the_tool_would_not_need(how: str, turned: float) -> None:
+    text = (
+        "BEGIN PGM A MM\nTOOL CALL 1 Z S1000\nL Z+100 FMAX\n"
+        f"PLANE SPATIAL SPA+0 SPB+0 SPC+40 TURN FMAX {how}\nL X+10 Y+0 Z+20 FMAX\nEND PGM A MM\n"
+    )
+    end = _led("heidenhain", text).moves.end[-1]
+    assert end[3:] == pytest.approx((0.0, turned), abs=1e-9)
+    # The same place of the part in both cases: 10 mm along the turned X.
+    assert TIP.tip(end.tolist())[:2] == pytest.approx(10.0 * _turn(2, 40.0)[:2, 0], abs=1e-9)
+
+
+@pytest.mark.parametrize(("words", "sign"), [("SEQ+", 1.0), ("SEQ-", -1.0), ("SYM-", -1.0)])
+def test_seq_is_the_sign_of_the_axis_next_to_the_tool(words: str, sign: float) -> None:
+    text = TILTED["heidenhain"].replace("SEQ+", words)
+    moves = _led("heidenhain", text).moves
+    assert moves.end[-1, 3] == pytest.approx(30.0 * sign)
+    expected = _led("heidenhain", TILTED["heidenhain"]).moves.end[-1]
+    longer = ToolCenter(on_machine(trunnion()), 15.0, [0.0] * 5)
+    assert longer.tip(moves.end[-1].tolist())[:3] == pytest.approx(
+        longer.tip(expected.tolist())[:3], abs=1e-9
+    )
+
+
+def test_a_plane_that_is_level_again_lets_the_axes_turn() -> None:
+    text = "BEGIN PGM A MM\nTOOL CALL 1 Z S1000\nPLANE SPATIAL SPA+0 SPB+0 SPC+0 TURN FMAX\nL C+90 FMAX\nEND PGM A MM\n"
+    assert _led("heidenhain", text).moves.end[-1, 4] == 90.0
+
+
+def test_spatial_angles_of_tcpm_point_the_tool_whatever_axes_there_are() -> None:
+    text = (
+        "BEGIN PGM A MM\nTOOL CALL 1 Z S1000\nFUNCTION TCPM F TCP AXIS SPAT PATHCTRL AXIS\n"
+        "L X+10 Y+20 Z+5 A+20 B+0 C+0 F500\nL X+40 B+10\nFUNCTION RESET TCPM\nEND PGM A MM\n"
+    )
+    end = _led("heidenhain", text).moves.end[-1]
+    assert TIP.tip(end.tolist())[:3] == pytest.approx((40.0, 20.0, 5.0), abs=1e-9)
+    direction = tool_direction(trunnion(), end[None] + TIP_ZERO)[0]
+    assert direction == pytest.approx((_turn(1, 10.0) @ _turn(0, 20.0))[:, 2], abs=1e-9)
 
 
 def test_angles_of_cycle800_one_after_the_other() -> None:
@@ -193,11 +243,8 @@ def _turn(axis: int, angle: float) -> np.ndarray:
             "BEGIN PGM A MM\nPLANE SPATIAL SPA+30 SPB+0 SPC+0 STAY\nL X+5 FMAX\nEND PGM A MM\n",
             "tilted-plane",
         ),
-        (
-            "heidenhain",
-            "BEGIN PGM A MM\nPLANE SPATIAL SPA+30 SPB+0 SPC+0 MOVE DIST50 FMAX\nEND PGM A MM\n",
-            "tilted-plane",
-        ),
+        ("heidenhain", "BEGIN PGM A MM\nPLANE SPATIAL SPA+0 SPB+150 SPC+0 STAY\nEND PGM A MM\n", "tilted-plane"),
+        ("heidenhain", "BEGIN PGM A MM\nPLANE PROJECTED PROPR+90 PROMIN+0 ROT+0\nEND PGM A MM\n", "tilted-plane"),
         ("heidenhain", "BEGIN PGM A MM\nFUNCTION TCPM F CONT AXIS SPAT\nEND PGM A MM\n", "tool-center"),
         ("fagor8070", "#RTCP\nM30\n", "unreadable-statement"),
     ],

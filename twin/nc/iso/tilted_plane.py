@@ -6,6 +6,7 @@ the tool acts along it, and whatever solution of the angles was taken, the cut i
 
 import math
 
+from twin.kinematics import turns_part
 from twin.nc.control.control import Control
 from twin.nc.geometry.arcs import direction
 from twin.nc.geometry.matrices import Matrix, applied
@@ -15,6 +16,7 @@ from twin.nc.path.tool_center import ToolCenter
 from twin.nc.text.blocks import Statement
 
 _Z: Vector = (0.0, 0.0, 1.0)
+_QUARTER = 90.0
 _ACROSS = 1e-4
 """How far a tool that stands across a plane may lean, by what posts round angles to [rad]."""
 
@@ -53,9 +55,21 @@ def point_tool(
 
 
 def rotary_axes_across(
-    control: Control, name: str, *, sense: float = 0.0, at: Statement | None = None
+    control: Control,
+    name: str,
+    *,
+    sense: float = 0.0,
+    only: bool = False,
+    at: Statement | None = None,
 ) -> list[float]:
     """Programmed position at which the tool stands across the plane of the frame, the tip not being led.
+
+    Args:
+        control: The control.
+        name: As for ``point_tool``.
+        sense: Likewise.
+        only: A solution with another sign is none.
+        at: As for ``point_tool``.
 
     Raises:
         ProgramError: The machine cannot.
@@ -67,10 +81,37 @@ def rotary_axes_across(
     center = ToolCenter(setup, 0.0, control.frame.zero())
     across = applied(control.frame.matrix, _Z)
     try:
-        there = center.pointing(across, control.motion.part, sense)
+        there = center.pointing(across, control.motion.part, sense, only=only)
     except ValueError as error:
         control.fail("tilted-plane", f"{name}: {error}", at)
     return [part - shift for part, shift in zip(there, control.frame.total, strict=True)]
+
+
+def turned_with_plane(control: Control, axes: list[float]) -> list[float]:
+    """The same position with a table that turns about the tool turned until X of the plane lies along the machine's X.
+
+    Where no axis of the table turns about the tool, as it stands there, it is the same.
+    """
+    setup = control.settings.setup
+    assert setup is not None
+    center = ToolCenter(setup, 0.0, control.frame.zero())
+    there = [value + shift for value, shift in zip(axes, control.frame.total, strict=True)]
+    tool = center.direction(there)
+    abscissa = applied(control.frame.matrix, (1.0, 0.0, 0.0))
+
+    for column in setup.chain.column[turns_part(setup.chain)].tolist():
+        turned = list(there)
+        turned[column] += _QUARTER
+        if math.dist(center.direction(turned), tool) > _ACROSS:
+            continue
+        x, y, _ = (center.frame_there(there).T @ abscissa).tolist()
+        angle = math.degrees(math.atan2(y, x))
+        for signed in (angle, -angle):
+            turned[column] = there[column] + signed
+            x, y, _ = (center.frame_there(turned).T @ abscissa).tolist()
+            if abs(y) < _ACROSS < x:
+                return [*axes[:column], axes[column] + signed, *axes[column + 1 :]]
+    return axes
 
 
 def stands_across(control: Control) -> bool:

@@ -114,13 +114,16 @@ class ToolCenter:
         """Which way the tool points from its tip to the spindle, seen from the part, shape (3,)."""
         return tool_direction(self._chain, np.array([axes]) + self._counted_zero)[0]
 
-    def pointing(self, direction: Vector, axes: list[float], sense: float = 0.0) -> list[float]:
+    def pointing(
+        self, direction: Vector, axes: list[float], sense: float = 0.0, *, only: bool = False
+    ) -> list[float]:
         """Where the rotary axes point the tool in a direction of the part, the others as they are, shape (k,).
 
         Args:
             direction: The direction.
             axes: Where the axes are.
             sense: Sign of the axis next to the tool that is preferred; 0: whatever is nearest.
+            only: A solution with another sign is none.
 
         Raises:
             ValueError: None do, within their travel (``orientation``).
@@ -128,7 +131,8 @@ class ToolCenter:
         offset = self._counted_zero
         travel = self._setup.travel - (self._zero - offset)[:, None]
         here = np.array(axes) + offset
-        found = rotary_axes_for(self._chain, np.array(direction), here, travel, sense)
+        goal = np.array(direction)
+        found = rotary_axes_for(self._chain, goal, here, travel, sense, only=only)
         return (found - offset).tolist()
 
     def axes(self, tip: list[float]) -> list[float]:
