@@ -13,7 +13,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twin.kinematics import Kinematics, counted_from, tool_direction, tool_point, turned, turns_part
+from twin.kinematics import (
+    Kinematics,
+    counted_from,
+    rotated,
+    tool_direction,
+    tool_point,
+    turned,
+    turns_part,
+)
 from twin.nc.canonical import Corner, FloatArray
 from twin.nc.geometry.planes import Vector
 from twin.nc.path.move_columns import Curve, Segment
@@ -149,6 +157,11 @@ class ToolCenter:
         """Directions of the machine's X, Y and Z as the part sees them, as columns, shape (3, 3)."""
         _, steps = self._carried(np.array([axes]), np.zeros(len(axes)))
         return np.stack([step.value[0] for step in steps], axis=1)
+
+    def tool_frame(self, axes: list[float]) -> FloatArray:
+        """Directions of X, Y and Z of the spindle, which its rotary axes carry, as the part sees them; as columns."""
+        joints = np.tile(np.array(axes) + self._counted_zero, (3, 1))
+        return rotated(self._chain, np.eye(3), joints).T
 
     def moves_of(self, move: Segment) -> Iterator[Segment]:
         """What the axes do for a move of the tip.

@@ -46,7 +46,9 @@ def function(control: Control, statement: Statement) -> None:
         match = _TCPM.fullmatch(text.removeprefix("TCPM"))
         if match is None:
             message = "FUNCTION TCPM is simulated as F TCP AXIS POS or SPAT PATHCTRL AXIS"
-            hint = "the axes go evenly between blocks, and the tip's own path is led (REFPNT TIP-TIP)"
+            hint = (
+                "the axes go evenly between blocks, and the tip's own path is led (REFPNT TIP-TIP)"
+            )
             control.fail("tool-center", message, statement, hint)
         begin_tool_center(control, "FUNCTION TCPM")
         memory_of(control).spatial = (0.0, 0.0, 0.0) if match["axis"] == "SPAT" else None

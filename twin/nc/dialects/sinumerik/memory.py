@@ -13,14 +13,26 @@ from twin.nc.geometry.planes import Vector
 from twin.nc.iso.machine_coordinates import PartFrame
 from twin.nc.text.blocks import Statement
 
+DEEPEST_CALL = 16
+"""Subprograms that may call each other (manual)."""
+
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Formal:
-    """A parameter of a subprogram: its name, its type, and whether it writes the caller's variable (VAR)."""
+    """A parameter of a subprogram.
+
+    Attributes:
+        name: Its name.
+        type: Its type.
+        is_reference: VAR: it writes the caller's variable.
+        is_table: It is a table of the caller's, as large as that is.
+        default: Its value where the call gives none.
+    """
 
     name: str
     type: VariableType
     is_reference: bool = False
+    is_table: bool = False
     default: float = 0.0
 
 
@@ -85,6 +97,7 @@ class SinumerikMemory:
         tool_on: The tool in the spindle has its offset D.
         unit: Of lengths, as it was before the block [mm].
         allowance: OFFN [mm].
+        sharp_corners: DISC=100: G450 goes to the intersection, too.
         lead_side: Of the contour that the last lead has come to.
         lead_offset: How far beside it the tool's centre goes [mm].
         rounding: RNDM [mm].
@@ -115,6 +128,7 @@ class SinumerikMemory:
     tool_on: bool = True
     unit: float = 1.0
     allowance: float = 0.0
+    sharp_corners: bool = False
     lead_side: float = 0.0
     lead_offset: float = 0.0
     rounding: float = 0.0

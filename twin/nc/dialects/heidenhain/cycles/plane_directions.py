@@ -4,21 +4,17 @@ Source: user's manuals Klartext of the TNC 640 ("Tilting the working plane"). Sp
 Y, then Z.
 """
 
-import math
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 from twin.nc.control.control import Control
 from twin.nc.dialects.heidenhain.memory import memory_of
 from twin.nc.geometry.arcs import direction
-from twin.nc.geometry.matrices import IDENTITY, Matrix, product, transposed
+from twin.nc.geometry.matrices import IDENTITY, Matrix, product
 from twin.nc.geometry.planes import Vector, cross
-from twin.nc.iso.tilted_plane import about
-from twin.nc.path.tool_center import ToolCenter
+from twin.nc.iso.tilted_plane import about, directions_of, plane_of_axes
 from twin.nc.text.blocks import Statement
 
-_SMALLEST = 1e-9
-"""Vectors shorter than this have no direction."""
 _STEEPEST = 89.9999
 """Of a projection angle (manual) [deg]."""
 
@@ -66,60 +62,48 @@ def _by_projection(control: Control, statement: Statement, words: PlaneWords) ->
         message = f"projection angles lie between -{_STEEPEST} and {_STEEPEST}"
         control.fail("tilted-plane", message, statement)
     (cosine, sine), (level, rise) = direction(first), direction(second)
-    along, up = (cosine, 0.0, -sine), (0.0, level, rise)
-    return product(_directions(control, statement, along, cross(along, up)), about(2, turn))
+    plane = _directions(control, statement, (cosine, 0.0, -sine), (0.0, level, rise))
+    return product(plane, about(2, turn))
 
 
 def _by_vectors(control: Control, statement: Statement, words: PlaneWords) -> Matrix:
+    """By the normal, and a vector that X goes along as far as the normal lets it."""
     normal, base = words.vector("NX", "NY", "NZ"), words.vector("BX", "BY", "BZ")
-    return _directions(control, statement, base, normal)
+    ordinate = cross(normal, base)
+    return _directions(control, statement, cross(ordinate, normal), ordinate)
 
 
 def _by_points(control: Control, statement: Statement, words: PlaneWords) -> Matrix:
     """By three points of it: X leads from the first to the second, and Y to the side of the third."""
-    first, second, third = (
+    (a, b, c), *others = (
         words.vector(*(f"P{number}{axis}" for axis in "XYZ")) for number in (1, 2, 3)
     )
-    along, aside = _between(first, second), _between(first, third)
-    return _directions(control, statement, along, cross(along, aside))
+    along, aside = ((x - a, y - b, z - c) for x, y, z in others)
+    return _directions(control, statement, along, aside)
 
 
-def _between(start: Vector, end: Vector) -> Vector:
-    return (end[0] - start[0], end[1] - start[1], end[2] - start[2])
-
-
-def _directions(control: Control, statement: Statement, base: Vector, normal: Vector) -> Matrix:
-    """The directions of a plane by its normal and a vector that its X goes along, as columns.
+def _directions(
+    control: Control, statement: Statement, abscissa: Vector, ordinate: Vector
+) -> Matrix:
+    """As ``directions_of``.
 
     Raises:
         ProgramError: They name no plane.
     """
-    y = cross(normal, base)
-    length, width = math.hypot(*normal), math.hypot(*y)
-    if length < _SMALLEST or width < _SMALLEST * math.hypot(*base):
-        message = "the vectors or points of PLANE name no plane: two directions that differ"
-        control.fail("tilted-plane", message, statement)
-    z = (normal[0] / length, normal[1] / length, normal[2] / length)
-    y = (y[0] / width, y[1] / width, y[2] / width)
-    return transposed((cross(y, z), y, z))
+    try:
+        return directions_of(abscissa, ordinate)
+    except ValueError as error:
+        control.fail("tilted-plane", f"PLANE: {error}", statement)
 
 
 def _by_axes(control: Control, statement: Statement, words: PlaneWords) -> Matrix:
-    setup = control.settings.setup
     names = control.settings.axes.names
-    lacking = [name for name in "ABC" if name in words.values and name not in names]
-    if setup is None or lacking:
+    given = {name: words.values[name] for name in "ABC" if name in words.values}
+    lacking = [name for name in given if name not in names]
+    if control.settings.setup is None or lacking:
         message = f"the machine has no axis {lacking[0] if lacking else 'that turns'}"
         control.fail("tilted-plane", message, statement)
-    there = list(control.motion.part)
-    for name in "ABC":
-        if name in words.values:
-            column = names.index(name)
-            there[column] = words.values[name] + control.frame.total[column]
-    (a, b, c), (d, e, f), (g, h, i) = (
-        ToolCenter(setup, 0.0, control.frame.zero()).frame_there(there).tolist()
-    )
-    return ((a, b, c), (d, e, f), (g, h, i))
+    return plane_of_axes(control, {names.index(name): value for name, value in given.items()})
 
 
 def _by_increment(control: Control, statement: Statement, words: PlaneWords) -> Matrix:
