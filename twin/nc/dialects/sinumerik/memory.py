@@ -2,7 +2,6 @@
 
 import dataclasses
 import math
-from collections.abc import Mapping
 
 from twin.nc.control.constructs import Structure
 from twin.nc.control.control import Control
@@ -69,7 +68,7 @@ class CallFrame:
     types: dict[str, VariableType] = dataclasses.field(default_factory=dict)
     sizes: dict[str, tuple[int, int]] = dataclasses.field(default_factory=dict)
     texts: dict[str, str] = dataclasses.field(default_factory=dict)
-    references: Mapping[str, str] = dataclasses.field(default_factory=dict)
+    references: dict[str, str] = dataclasses.field(default_factory=dict)
     programmable: tuple[Matrix, Vector] | None = None
     depth: int = 0
 

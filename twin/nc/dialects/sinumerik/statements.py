@@ -4,12 +4,13 @@ import re
 
 from twin.nc.control.codes import StatementAction
 from twin.nc.control.control import Control
-from twin.nc.dialects.sinumerik import calls, flow, orientation
+from twin.nc.dialects.sinumerik import orientation
 from twin.nc.dialects.sinumerik.assignments import assign, define
 from twin.nc.dialects.sinumerik.codes import NUMBERS
 from twin.nc.dialects.sinumerik.cycles import CYCLES, call_cycle
+from twin.nc.dialects.sinumerik.flow import calls, structures
+from twin.nc.dialects.sinumerik.flow.repeats import repeat_blocks
 from twin.nc.dialects.sinumerik.known import PASSED_STATEMENTS, REFUSED_STATEMENTS
-from twin.nc.dialects.sinumerik.repeats import repeat_blocks
 from twin.nc.dialects.sinumerik.values import bracketed
 from twin.nc.text.blocks import Statement
 
@@ -55,7 +56,7 @@ def _repeat(control: Control, statement: Statement) -> None:
     if statement.text.strip():
         repeat_blocks(control, statement)
     else:
-        flow.begin_repeat(control, statement)
+        structures.begin_repeat(control, statement)
 
 
 def _alarm(control: Control, statement: Statement) -> None:
@@ -71,7 +72,7 @@ def _alarm(control: Control, statement: Statement) -> None:
 STATEMENTS: dict[str, StatementAction] = {
     **dict.fromkeys(PASSED_STATEMENTS, _pass_over),
     **dict.fromkeys(REFUSED_STATEMENTS, _refuse),
-    **flow.STATEMENTS,
+    **structures.STATEMENTS,
     **calls.STATEMENTS,
     **dict.fromkeys(CYCLES, call_cycle),
     "DEF": define,

@@ -7,7 +7,7 @@ from twin.nc.control.codes import Action
 from twin.nc.control.compensation import compensate, tool_named, tool_numbered
 from twin.nc.control.control import Control
 from twin.nc.dialects.sinumerik import frames, orientation
-from twin.nc.dialects.sinumerik.calls import call_after_motion
+from twin.nc.dialects.sinumerik.flow.calls import call_after_motion
 from twin.nc.dialects.sinumerik.leads import is_led
 from twin.nc.dialects.sinumerik.memory import memory_of
 from twin.nc.dialects.sinumerik.targets import (

@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from twin.nc.control.codes import Action, StatementAction
 from twin.nc.control.control import Control
 from twin.nc.dialects.sinumerik.expressions import NAME
+from twin.nc.dialects.sinumerik.flow.programs import heading, name_of_file, procedure
+from twin.nc.dialects.sinumerik.flow.repeats import call_part, repeat_blocks
 from twin.nc.dialects.sinumerik.frames import put_programmable
 from twin.nc.dialects.sinumerik.memory import (
     DEEPEST_CALL,
@@ -14,8 +16,6 @@ from twin.nc.dialects.sinumerik.memory import (
     Subprogram,
     memory_of,
 )
-from twin.nc.dialects.sinumerik.programs import heading, name_of_file, procedure
-from twin.nc.dialects.sinumerik.repeats import call_part, repeat_blocks
 from twin.nc.dialects.sinumerik.types import TEXTS, VariableType
 from twin.nc.dialects.sinumerik.values import bracketed, split_values
 from twin.nc.dialects.sinumerik.variables import axis_of_value, text_named, write_variable
