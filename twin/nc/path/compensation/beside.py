@@ -15,6 +15,7 @@ from twin.nc.geometry.planes import (
     world,
 )
 from twin.nc.path.move_columns import Segment
+from twin.nc.path.segments import shown_at
 
 
 def arc_moves(
@@ -38,7 +39,7 @@ def arc_moves(
         made.append(driven(move, here, there, center, plane[2], piece[4]))
         if number < len(pieces):
             made[-1].corner = Corner.EXACT_PATH
-            made[-1].display = _shown(move, there)
+            made[-1].display = shown_at(move, there)
         here = there
     return made
 
@@ -49,12 +50,8 @@ def level_arc(move: Segment, plane: Directions, arc: Curve, start: list[float]) 
     height = along(vector_of(start), plane[2])
     put_point(plane, arc[2], height, end)
     made = driven(move, start, end, world(plane, arc[3], height), plane[2], arc[4])
-    made.display = _shown(move, end)
+    made.display = shown_at(move, end)
     return made
-
-
-def _shown(move: Segment, end: list[float]) -> list[float]:
-    return [a + s - e for a, s, e in zip(end, move.display, move.end, strict=True)]
 
 
 def driven(
@@ -81,4 +78,6 @@ def driven(
         center,
         normal,
         sweep,
+        None,
+        move.screen,
     )
