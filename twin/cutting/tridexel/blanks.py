@@ -8,9 +8,9 @@ from twin.compilation.kernel import arithmetic_kernel
 from twin.cutting.tridexel.closed_mesh import mesh_dexels
 from twin.cutting.tridexel.dexels import Dexels, Lattice, TriDexel, lattice_around, no_material
 from twin.cutting.tridexel.engagement import cut
+from twin.cutting.tridexel.moving_solid import Poses, surface, within
 from twin.cutting.tridexel.normals import packed
 from twin.cutting.tridexel.solids import Solid, cylinder
-from twin.cutting.tridexel.sweep import Poses, surface, within
 from twin.errors import ConfigError
 from twin.files.stl import read_stl
 from twin.job.job_file import StockTable
@@ -42,9 +42,12 @@ def blank(stock: StockTable, corner: FloatArray, cell: float) -> TriDexel:
     if stock.shape == "box":
         return box(low, high, cell)
     middle = 0.5 * (low + high)
-    part = round_bar(middle, 2, 0.5 * extent[0], extent[2], cell)
+    assert stock.diameter is not None
+    direction = stock.direction
+    height = float(extent[direction])
+    part = round_bar(middle, direction, 0.5 * stock.diameter, height, cell)
     if stock.bore is not None:
-        _bore(part, middle, 2, 0.5 * stock.bore, extent[2])
+        _bore(part, middle, direction, 0.5 * stock.bore, height)
     return part
 
 
