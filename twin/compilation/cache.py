@@ -95,14 +95,9 @@ class KernelCache(_Cache):
 
     def __init__(self, function: Callable[..., Any], file: Path, form: Form[Any]) -> None:
         self._name = f"{function.__module__}.{function.__qualname__}"
-        self._file = file
+        self._folder = content_key(file)
         self._form = form
         self._locks: dict[str, int] = {}
-
-    @functools.cached_property
-    def _folder(self) -> str:
-        """Reads many files: a kernel that is not called needs none."""
-        return content_key(self._file)
 
     @property
     def cache_path(self) -> Any:

@@ -5,6 +5,7 @@ tool that goes to and fro between two blocks, as it does when it rings about a c
 the same two.
 """
 
+import enum
 import math
 from typing import NamedTuple
 
@@ -15,10 +16,19 @@ from twin.nc.canonical import BoolArray, FloatArray, IntArray
 COARSER = 3
 """Passages are told apart by bins 2 to this power times wider than those of a whole run: 0.8 %."""
 PASSAGE_BINS = (BINS >> COARSER) + 1
-ROW, COUNT, LOW, HIGH = 0, 1, 2, 3
-"""Columns of an open passage: its row, its samples, the least and greatest bin in use."""
 NOBODY = -1
 """Row of a passage that has not begun."""
+
+
+class Passage(enum.IntEnum):
+    """Columns of an open passage."""
+
+    ROW = 0
+    COUNT = 1
+    """Samples."""
+    LOW = 2
+    """Least bin in use."""
+    HIGH = 3
 
 
 class BlockColumns(NamedTuple):
@@ -47,7 +57,7 @@ class OpenPassages(NamedTuple):
     """The two passages that the tool was in last.
 
     Attributes:
-        rows: Of each its row, its samples, its least and greatest bin, shape (2, 4).
+        rows: A ``Passage`` each, shape (2, 4).
         bins: Their histograms, shape (2, PASSAGE_BINS).
     """
 
@@ -65,18 +75,18 @@ def close(passage, bins, greatest, p99):
         greatest: By row: greatest error, shape (m,).
         p99: By row: greatest percentile so far, shape (m,); written.
     """
-    if passage[COUNT] == 0:
+    if passage[Passage.COUNT] == 0:
         return
-    row, index, above = passage[ROW], passage[HIGH], 0
-    while above + bins[index] <= passage[COUNT] // 100:
+    row, index, above = passage[Passage.ROW], passage[Passage.HIGH], 0
+    while above + bins[index] <= passage[Passage.COUNT] // 100:
         above += bins[index]
         index -= 1
     code = (index << COARSER) + (1 << COARSER) - 1 + FIRST_CODE
     octave = 1 << MANTISSA_BITS
     edge = math.ldexp(1.0 + (code & (octave - 1)) / octave, (code >> MANTISSA_BITS) - 1023)
     p99[row] = max(p99[row], min(edge, greatest[row]))
-    bins[passage[LOW] : passage[HIGH] + 1] = 0
-    passage[COUNT] = 0
+    bins[passage[Passage.LOW] : passage[Passage.HIGH] + 1] = 0
+    passage[Passage.COUNT] = 0
 
 
 @kernel
@@ -97,18 +107,21 @@ def collect(row, error, bits, time, latest, passages, blocks):
     """
     for i in range(len(row)):
         r, size = row[i], error[i]
-        if passages.rows[latest, ROW] != r:
+        if passages.rows[latest, Passage.ROW] != r:
             latest = 1 - latest
-            if passages.rows[latest, ROW] != r:
+            if passages.rows[latest, Passage.ROW] != r:
                 close(passages.rows[latest], passages.bins[latest], blocks.greatest, blocks.p99)
-                passages.rows[latest, ROW] = r
+                passages.rows[latest, Passage.ROW] = r
         index = bin_of(bits[i]) >> COARSER
         passage = passages.rows[latest]
         passages.bins[latest, index] += 1
-        if passage[COUNT] == 0:
-            passage[LOW], passage[HIGH] = index, index
-        passage[COUNT] += 1
-        passage[LOW], passage[HIGH] = min(passage[LOW], index), max(passage[HIGH], index)
+        if passage[Passage.COUNT] == 0:
+            passage[Passage.LOW], passage[Passage.HIGH] = index, index
+        passage[Passage.COUNT] += 1
+        passage[Passage.LOW], passage[Passage.HIGH] = (
+            min(passage[Passage.LOW], index),
+            max(passage[Passage.HIGH], index),
+        )
         blocks.samples[r] += 1
         blocks.squares[r] += size * size
         if blocks.samples[r] == 1 or size > blocks.greatest[r]:

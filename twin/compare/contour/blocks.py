@@ -7,9 +7,9 @@ import numpy as np
 from twin.compare.contour.block_kernels import (
     NOBODY,
     PASSAGE_BINS,
-    ROW,
     BlockColumns,
     OpenPassages,
+    Passage,
     close,
     collect,
 )
@@ -114,7 +114,7 @@ class BlockCollector:
         kept = np.isin(block, needed)
         kept[worst_first[: self._remembered]] = True
         kept[worst_first[worst_apart]] = True
-        open_row = self._open.rows[:, ROW]
+        open_row = self._open.rows[:, Passage.ROW]
         used = open_row != NOBODY
         kept[open_row[used]] = True
         rows = np.flatnonzero(kept)
@@ -144,7 +144,7 @@ class BlockCollector:
         known = self.columns
         p99 = known.p99.copy()
         for passage, bins in zip(self._open.rows.copy(), self._open.bins.copy(), strict=True):
-            if passage[ROW] != NOBODY:
+            if passage[Passage.ROW] != NOBODY:
                 close(passage, bins, known.greatest, p99)
         row = np.argsort(known.block[: len(self._row_of)])
         return BlockFigures(
