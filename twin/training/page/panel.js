@@ -102,6 +102,7 @@ function show_soon() {
       score.show(now, words);
       preview.show(now, changed);
       trouble.show(now);
+      if (changed.has("finder")) view.say("finder", now.finder);
       help.show(now, words);
       editor.show(now, words, changed);
       show_hand_over();

@@ -15,11 +15,10 @@ from twin.nc.canonical import FloatArray
 from twin.recording.reader import Samples
 from twin.run.machining import stock_alarm
 from twin.toolpath.part_frame import PartFrame
+from twin.training.room.touch import Touch, touch
 
 CUT_AT_ONCE = 30
 """Samples of a feed that are cut together: most of what cutting costs is asked once for each call."""
-CONTACT_MM = 0.02
-"""Distance at which the feeler lamp is lit [mm]: a strip of paper drags."""
 
 
 class Workpiece:
@@ -131,14 +130,15 @@ class Workpiece:
         """An alarm has been cleared: only what comes from now on counts."""
         self.mount(self._cutter.tool)
 
-    def touches(self, tip: FloatArray) -> bool:
-        """Whether the tool touches the uncut blank.
+    def touch(self, tip: FloatArray) -> Touch:
+        """How the end of the tool stands to the part.
 
         Args:
             tip: Machine coordinates of the tip, shape (k,) [mm or deg].
         """
-        x, y, z = (float(value) for value in self._frame.position(tip[None])[0])
-        map_, tool = self._cutter.map, self._cutter.tool
-        inside = map_.outline.snap(np.array([x]), np.array([y]))
-        beside = math.hypot(x - float(inside[0][0]), y - float(inside[1][0])) - 0.5 * tool.diameter
-        return max(beside, z - map_.top) <= CONTACT_MM
+        place = self._frame.position(tip[None])[0]
+        return touch(self._cutter.map, place, self._cutter.tool.diameter)
+
+    def touches(self, tip: FloatArray) -> bool:
+        """Whether the end of the tool touches the part; see ``touch``."""
+        return self.touch(tip).meets

@@ -23,6 +23,7 @@ from twin.nc.iso.base import jog_block
 from twin.nc.text.diagnostics import Diagnostic
 from twin.render.machine_glb import DrawnMachine, drawn_machine
 from twin.training.program.preview import Preview
+from twin.training.room.edge_finder import BODY_MM
 from twin.training.room.run_settings import path_to_come
 from twin.training.scene.fault_table import FAULT_DEFAULTS
 from twin.training.scene.phrases import finding_in, translated
@@ -217,6 +218,9 @@ class RoomApp:
         work = self._driver.session.room.setup.work
         if work is not None:
             described["stock"] = grid_of(work.map)
+        tables = self._driver.session.room.setup.tables
+        if request.query_params["tool"] == str(tables.finder):
+            described["finder"] = {"body": 0.5 * BODY_MM}
         return JSONResponse(described)
 
     async def _glb(self, request: Request) -> Response:

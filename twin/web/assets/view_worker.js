@@ -5,6 +5,7 @@ import * as THREE from "./three/three.module.js";
 import { GLTFLoader } from "./three/GLTFLoader.js";
 import { RoomEnvironment } from "./three/RoomEnvironment.js";
 import { Chips, Coolant, Trail } from "./effects.js";
+import { Finder } from "./finder.js";
 import { Happened } from "./happened.js";
 import { Measure } from "./measure.js";
 import { Stock } from "./stock.js";
@@ -30,7 +31,7 @@ let section = { axis: null, share: 0.5 }, section_plane = null;
 const section_in_world = new THREE.Plane();
 const trail = new Trail();
 trail.line.position.z = ABOVE_MM;
-let path = null;
+let path = null, pushed = [];
 const preview = [];
 
 function open({ canvas, width, height, ratio, address, quality }) {
@@ -144,6 +145,10 @@ function assemble(described, root) {
   }
   part.add(measure.lines);
   part.add(trail.line);
+  if (described.finder) {
+    found.finder = new Finder(tip, named(`${described.cutter} of ${described.cutter}`), found.radius, described.finder.body);
+    found.finder.push(pushed);
+  }
   if (path) part.add(path);
   if (preview.length) part.add(...preview);
   found.chips = new Chips(0xe8d9b0, 0.0014);
@@ -196,7 +201,7 @@ function take(seen, follows = true) {
   if (before && state.time < before.time) trail.clear();
   if (follows) trail.add(state.tip);
   const still = before && before.machine.every((value, i) => Math.abs(value - state.machine[i]) < 1e-5);
-  if (!still || state.turns || state.coolant) dirty = true;
+  if (!still || state.turns || state.coolant || before.touches !== state.touches) dirty = true;
   move(state.machine);
 }
 
@@ -303,6 +308,7 @@ function draw() {
   if (sharp !== was_sharp) refine();
   aim();
   happened.follow(machine, camera);
+  machine.finder?.follow(machine.part, machine.tip, state?.touches);
   if (section_plane) section_in_world.copy(section_plane).applyMatrix4(machine.part.matrixWorld);
   const began = performance.now();
   renderer.render(scene, camera);
@@ -400,6 +406,11 @@ const heard = {
   look,
   turn,
   happen,
+  finder(shift) {
+    pushed = shift;
+    machine?.finder?.push(shift);
+    dirty = true;
+  },
   section(given) { section = given; cut_open(); },
   measure(where) {
     if (where) postMessage({ measured: machine ? measure.point(machine, camera, where) : [] });
