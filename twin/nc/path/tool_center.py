@@ -15,6 +15,7 @@ import numpy as np
 
 from twin.kinematics import Kinematics, counted_from, tool_direction, tool_point, turned, turns_part
 from twin.nc.canonical import Corner, FloatArray
+from twin.nc.geometry.matrices import Matrix
 from twin.nc.geometry.planes import Vector
 from twin.nc.path.move_columns import Curve, Segment
 from twin.nc.path.moves import arc_length, line_length
@@ -172,12 +173,17 @@ class ToolCenter:
         frame = self.frame_there(move.start)
         if np.abs(frame.T @ frame - np.eye(3)).max() > _SQUARE:
             return None
-        center, normal = move.center, move.normal
+        center, normal, level = move.center, move.normal, np.array_equal(frame, np.eye(3))
         if center is not None:
             there = self.axes([*center, *move.start[3:]])
             center, normal = _vector(there), _vector(frame.T @ np.array(normal))
         return dataclasses.replace(
-            move, start=self.axes(move.start), end=self.axes(move.end), center=center, normal=normal
+            move,
+            start=self.axes(move.start),
+            end=self.axes(move.end),
+            center=center,
+            normal=normal,
+            screen=move.screen if level else _screen(move, frame),
         )
 
     # --- rotary axes in motion
@@ -201,7 +207,11 @@ class ToolCenter:
         coefficients = np.zeros((count, len(rates), 5))
         coefficients[:, 3:, 0] = np.diff(rows[:, 3:], axis=0)
         coefficients[:, :3] = _hermite(axes.value, axes.first * step, axes.second * step * step)
-        shown = np.array(move.display) - np.array(move.end)
+        matrix = np.eye(3) if move.screen is None else np.array(move.screen)
+        shown = places - places[-1]
+        shown[:, :3] = shown[:, :3] @ matrix.T
+        shown += move.display
+        screen = _screen(move, self._seen_from_part.T)
         advance = _advance(move)
         for part in range(count):
             last = part + 1 == count
@@ -214,12 +224,13 @@ class ToolCenter:
                 move,
                 start=rows[part].tolist(),
                 end=rows[part + 1].tolist(),
-                display=(places[part + 1] + shown).tolist(),
+                display=shown[part + 1].tolist(),
                 corner=move.corner if last else Corner.EXACT_PATH,
                 center=center,
                 normal=_vector(self._seen_from_part @ np.array(move.normal)),
                 sweep=move.sweep * step,
                 curve=Curve(coefficients[part], length * step, turning),
+                screen=screen,
             )
 
     def _parts(self, move: Segment, rates: FloatArray) -> int:
@@ -348,6 +359,12 @@ def _length(move: Segment) -> float:
     if move.center is None:
         return line_length(move.start[:3], list(move.end[:3]))
     return arc_length(move.start, move.end, move.center, move.normal, move.sweep)
+
+
+def _screen(move: Segment, frame: FloatArray) -> Matrix:
+    """What a move whose X, Y and Z are told in another frame adds to what the screen shows (``Segment.screen``)."""
+    rows = frame if move.screen is None else np.array(move.screen) @ frame
+    return (_vector(rows[0]), _vector(rows[1]), _vector(rows[2]))
 
 
 def _vector(values: FloatArray | list[float]) -> Vector:

@@ -29,7 +29,7 @@ from twin.nc.geometry.planes import (
 )
 from twin.nc.path.compensation.gouge import Passed
 from twin.nc.path.move_columns import Segment
-from twin.nc.path.segments import IN_PLANE, MoveReport
+from twin.nc.path.segments import IN_PLANE, MoveReport, shown_at
 
 _NO_CURVE: Curve = (False, (0.0, 0.0), (0.0, 0.0), (0.0, 0.0), 0.0)
 _NO_PLANE: Directions = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
@@ -272,7 +272,7 @@ class Compensation:
         height = along(vector_of(start), plane[2])
         put_point(plane, arc[2], height, end)
         made = _driven(move, start, end, world(plane, arc[3], height), plane[2], arc[4])
-        made.display = [a + s - e for a, s, e in zip(end, move.display, move.end, strict=True)]
+        made.display = shown_at(move, end)
         return made
 
     # --- leads
@@ -370,4 +370,6 @@ def _driven(
         center,
         normal,
         sweep,
+        None,
+        move.screen,
     )
