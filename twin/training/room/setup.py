@@ -16,7 +16,7 @@ from twin.recording.reader import Samples
 from twin.training.program.program_run import ProgramRun
 from twin.training.room.edge_finder import EdgeFinder, broken_alarm, edge_finder
 from twin.training.room.live_cut import LiveCut
-from twin.training.room.tables import MAGAZINE_PLACES, Tables
+from twin.training.room.tables import Tables
 from twin.training.room.workpiece import Workpiece
 from twin.training.scene.scene_file import Scene
 
@@ -54,9 +54,10 @@ class Setup:
         self.part_frame = scene.preparation.machine.part_frame.at(
             tables.true_zero, self._first_tool.length
         )
-        if self._stock is not None and self.part_frame.chain is not None:
+        chain = self.part_frame.chain
+        if self._stock is not None and chain is not None and (chain.rotary & chain.on_tool).any():
             raise ConfigError(
-                "job key 'stock': a blank is cut live where the part turns about Z alone; put a fixture in its place"
+                "job key 'stock': a blank is cut live where the tool does not swivel; put a fixture in its place"
             )
         self.cut = LiveCut(machine, job, self.part_frame, tables.true_zero)
         self.work = self._clamped_blank()
@@ -164,7 +165,8 @@ class Setup:
         """An alarm has been cleared: only what comes from now on counts."""
         if self.work is not None:
             self.work.forgive()
-            self.cut.resume(self.work.map.heights)
+            if self.work.map is not None:
+                self.cut.resume(self.work.map.heights)
 
     @property
     def tip(self) -> FloatArray:
@@ -189,7 +191,7 @@ def scene_tables(scene: Scene, zero: FloatArray) -> Tables:
     """
     start, machine = scene.file.start, scene.preparation.machine
     tables = Tables(zero, scene.preparation.job.file.tools, _offsets(scene))
-    if scene.preparation.job.file.stock is not None and len(tables.tools) < MAGAZINE_PLACES:
+    if scene.preparation.job.file.stock is not None:
         tables.add_finder(edge_finder(tables.tools))
     for axis, error in start.zero_error.items():
         tables.shift_zero(machine.axes.index(axis), error)
@@ -213,6 +215,6 @@ def _offsets(scene: Scene) -> dict[str, dict[str, float]]:
 def _fine(stock: StockTable, scene: Scene) -> StockTable:
     """The stock with a grid that is as fine as the scene is looked at closely."""
     cell = stock.cell or default_cell(scene.preparation.job.file.tools, stock)
-    if scene.cells_across:
+    if scene.cells_across and scene.preparation.machine.part_frame.chain is None:
         cell = min(cell, min(stock.extent[:2]) / scene.cells_across)
     return stock.model_copy(update={"cell": cell})

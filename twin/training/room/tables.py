@@ -9,7 +9,7 @@ from twin.job.job_file import ToolTable
 from twin.nc.canonical import FloatArray
 
 MAGAZINE_PLACES = 40
-"""Tools that fit."""
+"""Tools that fit, beside the edge finder."""
 
 
 class Tables:
@@ -104,15 +104,18 @@ class Tables:
         """
         if tool.number in self.tools:
             raise UsageError(f"T{tool.number} is in the table already: choose another number")
-        if len(self.tools) >= MAGAZINE_PLACES:
+        if len(self.tools) - (self.finder is not None) >= MAGAZINE_PLACES:
             raise UsageError(f"the magazine has {MAGAZINE_PLACES} places, and all are taken")
+        self._enter(tool)
+
+    def _enter(self, tool: ToolTable) -> None:
         self.tools[tool.number] = tool
         self.lengths[tool.number] = tool.length
         self.radii[tool.number] = tool.diameter / 2.0
 
     def add_finder(self, finder: ToolTable) -> None:
-        """Put an edge finder into the magazine; errors as for ``add_tool``."""
-        self.add_tool(finder)
+        """Put an edge finder into a place of its own, under a number that is free."""
+        self._enter(finder)
         self.finder = finder.number
 
     def set_offset(self, name: str, axis: str, value: float) -> float:

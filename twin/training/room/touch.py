@@ -12,7 +12,7 @@ CONTACT_MM = 0.02
 """Distance at which the feeler lamp is lit [mm]: a strip of paper drags."""
 _CELLS_NEAR = 1.5
 """So many cells the middle of one may lie behind the edge of the blank that it belongs to."""
-_FAR = 1e3
+FAR_MM = 1e3
 """Farther than anything that is asked for [mm]."""
 
 
@@ -54,7 +54,7 @@ def touch(stock: HeightMap, tip: FloatArray, diameter: float) -> Touch:
     high = cells > max(z - CONTACT_MM, stock.bottom)
     near = high & (distance <= radius + slack)
     if not near.any():
-        return Touch(_FAR)
+        return Touch(FAR_MM)
     side = float(distance[near].min()) - radius
     if side - slack <= beside:
         side, way = beside, np.array([x, y]) - edge

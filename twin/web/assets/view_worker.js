@@ -8,9 +8,10 @@ import { Chips, Coolant, Trail } from "./effects.js";
 import { Finder } from "./finder.js";
 import { Happened } from "./happened.js";
 import { Measure } from "./measure.js";
+import { PartMesh } from "./part_mesh.js";
 import { Stock } from "./stock.js";
 import { wideLine } from "./wide_line.js";
-import { readPatch, readState } from "./wire.js";
+import { MESH, readMesh, readPatch, readState } from "./wire.js";
 
 const SOFTWARE = /swiftshader|llvmpipe|software|basic render/i;
 const BACKGROUND = 0x76838f, FLOOR = 0xa3aeb8;
@@ -138,7 +139,12 @@ function assemble(described, root) {
   });
   const part = frame(described.part, named);
   const tip = frame(described.tip, named);
-  const found = { root, joints, part, tip, bodies, faces_of_part, cutter: named(described.cutter), tool: described.tool, collision: described.collision, radius: described.tool.diameter / 2, stock: null };
+  const found = { root, joints, part, tip, bodies, faces_of_part, cutter: named(described.cutter), tool: described.tool, collision: described.collision, radius: described.tool.diameter / 2, stock: null, part_mesh: null };
+  if (described.part_mesh) {
+    found.part_mesh = machine?.part_mesh ?? new PartMesh(fine);
+    found.faces_of_part.push(found.part_mesh.mesh);
+    part.add(found.part_mesh.mesh);
+  }
   if (described.stock) {
     found.stock = machine?.stock ?? new Stock(described.stock, by_processor ? 3 : 1, fine);
     part.add(found.stock.mesh, found.stock.face);
@@ -179,6 +185,7 @@ function show(target) {
     target.stock.byTool.value = shown.by_tool;
   }
   for (const face of target.faces_of_part) face.visible = shown.stock;
+  target.part_mesh?.show(shown.by_tool);
   for (const body of target.bodies) body.visible = shown.collision;
   dirty = true;
 }
@@ -242,10 +249,11 @@ function look(name) {
 
 /** Cut the part open, or close it again. */
 function cut_open() {
-  if (!machine?.stock) return;
-  section_plane = machine.stock.section(section.axis, section.share);
-  machine.stock.mesh.material.clippingPlanes = section_plane ? [section_in_world] : null;
-  machine.stock.mesh.material.needsUpdate = true;
+  const part = machine?.stock ?? machine?.part_mesh;
+  if (!part) return;
+  section_plane = part.section(section.axis, section.share);
+  part.mesh.material.clippingPlanes = section_plane ? [section_in_world] : null;
+  part.mesh.material.needsUpdate = true;
   dirty = true;
 }
 
@@ -394,9 +402,12 @@ const heard = {
   cuts: (given) => { cuts = given.map((one) => ({ ...one, before: null })); },
   patch(buffer) {
     // Inflated beside each other, put in their order.
-    const read = readPatch(buffer);
+    const of_mesh = new Uint8Array(buffer, 0, 1)[0] === MESH, read = of_mesh ? readMesh(buffer) : readPatch(buffer);
     patches = patches.then(async () => {
-      machine?.stock?.put(await read);
+      const given = await read, first = of_mesh && !machine?.part_mesh?.by.length;
+      (of_mesh ? machine?.part_mesh : machine?.stock)?.put(given);
+      if (first) look("start");
+      if (of_mesh) cut_open();
       dirty = true;
     }).catch((error) => postMessage({ failed: String(error) }));
   },
