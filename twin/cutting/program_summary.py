@@ -105,7 +105,8 @@ class ProgramSummary:
             is held to it from its first move on.
         screen: What the control's screen shows; None: always where the axes are.
         part: Where the part is on the machine; None: its screen never shows the tip.
-        tilts: Whether the tool ever stands off the part's Z.
+        tilts: Whether a height map does not hold the part: the tool stands off the part's Z somewhere, or the blank is a
+            cylinder that lies.
     """
 
     tools: ToolPlan
@@ -178,7 +179,7 @@ class SummaryBuilder:
         self._spindle: list[tuple[float, float | None]] = [(0.0, self._tool.speed)]
         self._shown: list[tuple[int, Screen]] = []
         self._rapid = bytearray()
-        self._part, self._tilts = part, False
+        self._part, self._tilts = part, job.stock is not None and job.stock.lies
 
     def add(self, chunk: Chunk) -> None:
         """Take note of moves and functions that follow the last ones.
