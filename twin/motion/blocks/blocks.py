@@ -241,7 +241,7 @@ class WithNeighbours(Step[Blocks, Surroundings]):
 
     Groups are counted from the start of the program, whatever parts the blocks come in. They are
     smaller, and less is known beside them, where arcs turn by more than ``most_angle`` together
-    [rad], that of the last one left out. More is known beside them, up to half a batch, where lines that go on
+    [rad], that of the last one left out, and where they can end at a stop, so that more is between stops. More is known beside them, up to half a batch, where lines that go on
     without a stop are so short that ``context`` of them are less than ``view`` [mm or deg].
     """
 
@@ -274,6 +274,8 @@ class WithNeighbours(Step[Blocks, Surroundings]):
         window = join(self._waiting)
         angle = np.abs(window.geometry.angle)
         last = first + _within(angle[first : None if most is None else first + most], most_angle)
+        if last < self._count:
+            last = _at_stop(window.corner, first, last)
         context = self._beside(window[max(0, first - self._most) : first][::-1])
         before = _within(angle[max(0, first - context) : first][::-1], most_angle)
         context = self._beside(window[last : last + self._most])
@@ -291,6 +293,13 @@ class WithNeighbours(Step[Blocks, Surroundings]):
         ends = (blocks.corner == Corner.EXACT_STOP) | (blocks.geometry.angle != 0.0)
         goes_on = (np.cumsum(blocks.length) < self._view) & ~np.logical_or.accumulate(ends)
         return max(self._context, int(np.count_nonzero(goes_on)) + 1)
+
+
+def _at_stop(corner: CodeArray, first: int, last: int) -> int:
+    """The last stop in the second half of a group; its end where there is none."""
+    behind = (first + last) // 2 + 1
+    stops = np.flatnonzero(corner[behind : last + 1] == Corner.EXACT_STOP)
+    return behind + int(stops[-1]) if len(stops) else last
 
 
 def _within(angle: FloatArray, most: float) -> int:
