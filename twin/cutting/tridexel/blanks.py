@@ -42,9 +42,12 @@ def blank(stock: StockTable, corner: FloatArray, cell: float) -> TriDexel:
     if stock.shape == "box":
         return box(low, high, cell)
     middle = 0.5 * (low + high)
-    part = round_bar(middle, 2, 0.5 * extent[0], extent[2], cell)
+    assert stock.diameter is not None
+    direction = stock.direction
+    height = float(extent[direction])
+    part = round_bar(middle, direction, 0.5 * stock.diameter, height, cell)
     if stock.bore is not None:
-        _bore(part, middle, 2, 0.5 * stock.bore, extent[2])
+        _bore(part, middle, direction, 0.5 * stock.bore, height)
     return part
 
 

@@ -3,7 +3,12 @@
 import math
 
 from twin.nc.control.codes import Action
-from twin.nc.control.compensation import compensate, tool_numbered
+from twin.nc.control.compensation import (
+    change_side,
+    compensate,
+    side_in_force,
+    tool_numbered,
+)
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.machine_coordinates import refuse_change
 from twin.nc.dialects.fagor8070.memory import memory_of
@@ -14,6 +19,7 @@ from twin.nc.iso.declared import refuse_compensated_plane
 from twin.nc.iso.offsets import programmed_shift
 from twin.nc.iso.tool_change import go_to_change_height
 from twin.nc.iso.tool_compensation import radius_in_spindle, set_length
+from twin.nc.path.compensation.stage import SideChange
 from twin.nc.text.blocks import Word
 
 
@@ -106,7 +112,11 @@ def compensation_by_tool(side: float) -> Action:
 
     def action(control: Control) -> None:
         radius = radius_in_spindle(control)
-        compensate(control, side, radius if memory_of(control).offset_on else 0.0)
+        if control.path.compensation.in_force and side != side_in_force(control):
+            word = control.code_word(41 if side > 0.0 else 42)
+            change_side(control, side, radius, word, SideChange.CROSSING)
+        else:
+            compensate(control, side, radius if memory_of(control).offset_on else 0.0)
 
     return action
 
