@@ -9,7 +9,13 @@ from hypothesis import strategies as st
 from tests.compare.paths import arc, line, moves_of
 from twin.nc.canonical import FloatArray, Moves
 from twin.toolpath.nearest import drop_moves, join_paths, path_columns
-from twin.toolpath.nearest_kernels import PathKind, derivatives, nearest_between, nearest_on_move, walk
+from twin.toolpath.nearest_kernels import (
+    PathKind,
+    derivatives,
+    nearest_between,
+    nearest_on_move,
+    walk,
+)
 from twin.toolpath.part_frame import PartFrame
 
 FRAME = PartFrame(rotary=3, center=(3.0, -2.0), turn_zero=10.0)

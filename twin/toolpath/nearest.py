@@ -104,7 +104,9 @@ def _follow_tips(
     columns.first[rows], columns.second[rows] = spoke, np.cross(normal, spoke)
     columns.sweep[rows] = np.where(arc[:, 0], np.deg2rad(curves.sweep), 0.0)
     level = np.all(np.abs(lead) < _LEVEL, axis=1)
-    columns.kind[rows] = np.where(arc[:, 0], np.where(level, PathKind.CIRCLE, PathKind.CURVE), PathKind.LINE)
+    columns.kind[rows] = np.where(
+        arc[:, 0], np.where(level, PathKind.CIRCLE, PathKind.CURVE), PathKind.LINE
+    )
     columns.along[rows] = np.where(arc & level[:, None], 0.0, columns.along[rows])
     columns.turn[rows], columns.turn_rate[rows], columns.facing[rows] = 0.0, 0.0, (1.0, 0.0)
 
@@ -174,7 +176,9 @@ def _chain_columns(
 
     circle = arc & ~np.any(along, axis=1)
     kind = np.where(
-        turns, PathKind.CHAIN, np.where(circle, PathKind.CIRCLE, np.where(arc, PathKind.CURVE, PathKind.LINE))
+        turns,
+        PathKind.CHAIN,
+        np.where(circle, PathKind.CIRCLE, np.where(arc, PathKind.CURVE, PathKind.LINE)),
     )
     unit = np.where(chain.rotary, DEGREE, np.where(chain.column < len(SPATIAL_AXES), 0.0, 1.0))
     coordinate = np.where(chain.rotary | (chain.column >= len(SPATIAL_AXES)), -1, chain.column)
