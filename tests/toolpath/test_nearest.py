@@ -10,7 +10,7 @@ from tests.compare.paths import arc, line, moves_of
 from twin.nc.canonical import FloatArray, Moves
 from twin.toolpath.nearest import drop_moves, join_paths, path_columns
 from twin.toolpath.nearest_kernels import (
-    PathForm,
+    PathKind,
     derivatives,
     nearest_between,
     nearest_on_move,
@@ -108,7 +108,7 @@ def test_kinds_are_told_apart():
         line(zero, np.array([1.0, 0, 0, 30.0])),
     ]
     path = path_columns(moves_of(*rows), FRAME, PART_ZERO)
-    assert path.kind.tolist() == [PathForm.LINE, PathForm.CIRCLE, PathForm.CURVE, PathForm.CURVE]
+    assert path.kind.tolist() == [PathKind.LINE, PathKind.CIRCLE, PathKind.CURVE, PathKind.CURVE]
 
 
 def test_walking_measures_the_path_over_its_moves():
