@@ -45,22 +45,6 @@ class Profile(NamedTuple):
 
 
 @array_kernel
-def below_capsule(
-    x: float, y: float, z: float, a: FloatArray, b: FloatArray, radius: float
-) -> bool:
-    """Whether a point no higher than a swept ball's centres is outside of it: a cheap refusal."""
-    dx, dy, dz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
-    px, py, pz = x - a[0], y - a[1], z - a[2] - radius
-    if pz > min(0.0, dz):
-        return False
-    squared = dx * dx + dy * dy + dz * dz
-    if squared > 0.0:
-        t = min(1.0, max(0.0, (px * dx + py * dy + pz * dz) / squared))
-        px, py, pz = px - t * dx, py - t * dy, pz - t * dz
-    return px * px + py * py + pz * pz >= radius * radius
-
-
-@array_kernel
 def lowest_height(x: float, y: float, a: FloatArray, b: FloatArray, profile: Profile) -> float:
     """Lowest height over (x, y) of a tool that moves straight from a to b; inf if it misses.
 
