@@ -5,7 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from twin.cutting.cut import CutResult, Cutter
+from twin.cutting.cut import Cutter
+from twin.cutting.cut_log import CutResult
 from twin.cutting.events import CutEvent
 from twin.cutting.height_map import HeightMap
 from twin.cutting.inspection import Inspection

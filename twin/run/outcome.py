@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from twin.compare.figures import Figures
 from twin.compare.verdict import Check, Reason, Verdict, judge
-from twin.cutting.cut import CutResult
+from twin.cutting.cut_log import CutResult
 from twin.cutting.forces.load_log import LoadLog
 from twin.cutting.inspection import Inspection
 from twin.cutting.nominal import NominalGouge
