@@ -45,11 +45,13 @@ class Wish(NamedTuple):
             it; None: LinuxCNC is given the prepared program's moves.
         display: Command of the screen from which somebody works LinuxCNC as he likes; None: the
             program is run, and that is all.
+        opens: Whether the screen opens with the program.
         following_error_limit: LinuxCNC's own limit [mm or deg]; None: the machine's.
     """
 
     own_program: Path | None = None
     display: str | None = None
+    opens: bool = False
     following_error_limit: float | None = None
 
 
@@ -99,6 +101,7 @@ def run_on_twin(
                 display=wish.display or _operator_command(own, len(axes)),
                 port=motion.port,
                 programs=(wish.own_program or preparation.job.program).resolve().parent,
+                opened=own / PROGRAM_NAME if wish.opens else None,
                 following_error_limit=wish.following_error_limit,
                 part_zero=run.part_zero,
                 job=preparation.job.file,
