@@ -202,7 +202,9 @@ def test_a_program_that_the_screen_opens_with_is_the_one_that_is_judged(
     assert (home / "program.ngc").read_text() == SQUARE
     assert told["dialect"] == "linuxcnc"
     assert {block["line"] for block in told["blocks"]} >= {4, 5, 6, 7, 8, 9, 10, 11, 12}
-    assert [block["motion"] for block in told["blocks"] if block["line"] in (3, 12)] == ["rapid"] * 2
+    assert [block["motion"] for block in told["blocks"] if block["line"] in (3, 12)] == [
+        "rapid"
+    ] * 2
 
 
 def test_a_program_that_linuxcnc_refuses_ends_with_its_line(folder: Path, twin: Twin):

@@ -51,6 +51,6 @@ def _read(path: Path) -> xmlschema.XMLSchema11:
     """
     schema = xmlschema.XMLSchema11(str(path), allow="local", validation="lax")
     for error in schema.all_errors:
-        if not error.validator.local_name.endswith(TIME_SERIES):
+        if not str(getattr(error.validator, "local_name", "")).endswith(TIME_SERIES):
             raise error
     return schema

@@ -199,8 +199,11 @@ def process_name(number: int) -> str:
 
 
 def _lasts(name: str, number: int) -> bool:
-    """Whether a process is the part itself: each ``loadrt`` is an ``rtapi_app`` too, which hands it to the
-    first one and ends; that one leads a session of its own."""
+    """Whether a process is the part itself.
+
+    Each ``loadrt`` starts an ``rtapi_app`` too, which hands the module to the first one and ends; that first
+    one leads a session of its own.
+    """
     with contextlib.suppress(OSError):
         return name != _REALTIME or os.getsid(number) == number
     return False
