@@ -14,8 +14,8 @@ from twin.cutting.sweeping import sweep_lines
 from twin.cutting.tools import profile
 from twin.cutting.tridexel import engagement
 from twin.cutting.tridexel.blanks import box
+from twin.cutting.tridexel.moving_solid import Poses
 from twin.cutting.tridexel.solids import cutting_edge
-from twin.cutting.tridexel.sweep import Poses
 from twin.files.shipped import resource_root
 from twin.job.job_file import StockTable, ToolTable, VideoTable
 from twin.nc.canonical import FloatArray

@@ -18,7 +18,7 @@ LATER = ("twin.machine", "twin.cutting", "twin.compare", "twin.coupling")
 """Packages behind the planner."""
 FEW = 3
 """Kernels of circles and of a program's end, which a piece of one move may not come to."""
-JOBS = ("gallery/fagor8070/medallion", "mefi/helix")
+JOBS = (pytest.param("gallery/fagor8070/medallion", marks=pytest.mark.thorough), "mefi/helix")
 
 
 def gone_through(job: Path) -> Outcome:

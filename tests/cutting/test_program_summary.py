@@ -3,16 +3,19 @@
 import numpy as np
 import pytest
 
-from twin.cutting.program_summary import ProgramSummary, SummaryBuilder
+from tests.five_axes import FIRST_LENGTH, TRUNNION_AXES, on_machine, settings, trunnion
+from twin.cutting.program_summary import PlacedPart, ProgramSummary, SummaryBuilder
 from twin.cutting.tools import EMPTY_SPINDLE, default_cell
 from twin.errors import ConfigError
 from twin.job.job_file import JobFile, StockTable, ToolTable
-from twin.nc.canonical import Axes
+from twin.nc.canonical import Axes, concatenate
 from twin.nc.control.settings import ControlSettings, ToolData
 from twin.nc.dialects import dialect_named
 from twin.nc.functions import SpindleState
 from twin.nc.interpreter import Interpretation
 from twin.nc.text.source import source_from_text
+from twin.toolpath.geometry import geometry
+from twin.toolpath.part_frame import PartFrame
 
 AXES = Axes(("X", "Y", "Z", "C"), ("linear", "linear", "linear", "rotary"))
 TOOLS = (ToolTable(number=1), ToolTable(number=4, diameter=6.0, length=75.0, speed=500.0))
@@ -77,9 +80,8 @@ def test_a_program_that_never_speaks_of_the_spindle_has_the_jobs_speed() -> None
 
 def test_what_the_screen_adds_is_noted_where_it_changes() -> None:
     found = summary("G0 C0\nG102 C360\nG1 C721 F1200\nG1 C10\nG1 C20\nM30\n")
-    assert found.shown is not None
-    assert [found.shown.at(move)[3] for move in range(3)] == [0.0, -720.0, -720.0]
-    assert summary("G1 X1 F100\nM30\n").shown is None
+    assert [found.shown(move, np.zeros(4))[3] for move in range(3)] == [0.0, -720.0, -720.0]
+    assert summary("G1 X1 F100\nM30\n").screen is None
 
 
 def test_an_unlisted_tool_is_refused_where_something_is_cut() -> None:
@@ -114,3 +116,56 @@ def test_a_start_without_s_stands_where_the_control_has_a_word_for_it_and_the_jo
     assert [found.spindle.at(move) for move in range(2)] == [0, 500]
     found = summary("M3\nG1 X1 F100\nS9000\nG1 X2\nM30\n", spindle=SpindleState(fastest=8000.0))
     assert [found.spindle.at(move) for move in range(2)] == [None, 8000]
+
+
+LED = """G54 G90 G0 X0 Y0 Z30 A0 C0
+T2 M6
+G43.4 H2
+G1 X10 Y5 Z20 A20 C30 F500
+G1 X30 Y-5 Z12 A-35 C80
+G2 X10 Y-5 I-10 J0
+G1 C40
+X12 Y8 Z15
+G3 X12 Y8 I-4 J0
+G68 X3 Y2 R25
+G1 X20 Y8 Z14 A10
+X0 Y0
+G69
+G49
+G0 Z80
+G68.2 X5 Y6 Z7 I20 J30 K-10
+G53.1
+G1 X10 Y4 Z3 F300
+G2 X10 Y4 I-6 J2
+G1 G41 D2 X20 Y9
+X30 Y9
+X40 Y-20
+G40 X60 Y-30
+G69
+M30
+"""
+
+
+@pytest.mark.seconds("every code of five axes, and its planning tables")
+def test_the_screen_shows_programmed_coordinates_all_along_a_led_or_tilted_move() -> None:
+    setup = on_machine(trunnion())
+    frame = PartFrame(None, (0.0, 0.0), chain=setup.chain).at(setup.zero, FIRST_LENGTH)
+    tools = tuple(ToolTable(number=n, length=FIRST_LENGTH + 15.0 * (n - 1)) for n in (1, 2))
+    builder = SummaryBuilder(
+        JobFile(program="p.nc", tools=tools), part=PlacedPart(frame, setup.zero)
+    )
+    source, dialect = source_from_text(LED), dialect_named("fanuc")
+    chunks = list(Interpretation(source, dialect, settings(setup)).chunks())
+    for chunk in chunks:
+        builder.add(chunk)
+    found, moves = builder.summary(), concatenate([each.moves for each in chunks], TRUNNION_AXES)
+    path, shares = geometry(moves), np.linspace(0.0, 1.0, 5)
+    for row in range(len(moves)):
+        axes = path.position(np.full(len(shares), row), shares)
+        shown = np.array([found.shown(row, each) for each in axes])
+        np.testing.assert_allclose(shown[-1], moves.display[row], atol=1e-7)
+        steps = np.linalg.norm(np.diff(shown[:, :3], axis=0), axis=1)
+        assert np.ptp(steps) < 1e-7
+        if moves.sweep[row] == 0.0:
+            straight = shown[0] + shares[:, None] * (shown[-1] - shown[0])
+            np.testing.assert_allclose(shown[:, :3], straight[:, :3], atol=1e-7)

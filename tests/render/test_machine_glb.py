@@ -11,8 +11,8 @@ from trimesh.transformations import rotation_matrix
 from twin.cutting.tridexel.blanks import box
 from twin.cutting.tridexel.engagement import cut, volume
 from twin.cutting.tridexel.mesh import surface
+from twin.cutting.tridexel.moving_solid import Poses
 from twin.cutting.tridexel.solids import cylinder
-from twin.cutting.tridexel.sweep import Poses
 from twin.files.shipped import machine_file
 from twin.job.job_file import StockTable, ToolTable
 from twin.machine.load import read_machine

@@ -10,7 +10,7 @@ from PIL import Image
 
 from tests.render.conftest import SOURCE, STOCK, SUMMARY, Record
 from twin.cutting.forces.tool_strength import tool_strength
-from twin.cutting.program_summary import Steps
+from twin.cutting.program_summary import Screen, Steps
 from twin.errors import RenderError
 from twin.job.job_file import ToolTable
 from twin.machine.description.config import Machine
@@ -89,7 +89,10 @@ def test_display_reads_contour_spindle_tool_and_the_screens_own_position(
     summary = dataclasses.replace(
         SUMMARY,
         spindle=Steps((0, 2), (None, -800.0)),
-        shown=Steps((0, 2), (np.zeros(4), np.array([0.0, 0.0, 0.0, -360.0]))),
+        screen=Steps(
+            (0, 2),
+            (Screen(np.eye(3), np.zeros(4)), Screen(np.eye(3), np.array([0.0, 0.0, 0.0, -360.0]))),
+        ),
     )
     with open_recording(make_recording(np.arange(1001.0))) as recording:
         scene = Scene(

@@ -34,7 +34,7 @@ def both_ways() -> str:
     )
 
 
-@pytest.mark.seconds("a program and a circular test are run")
+@pytest.mark.thorough
 def test_the_run_and_the_circular_test_agree(tmp_path: Path):
     program = tmp_path / "both_ways.nc"
     program.write_text(both_ways(), encoding="utf-8")

@@ -10,7 +10,7 @@ from twin.run.preparation import prepare
 from twin.run.progress import no_progress
 from twin.run.run import Run
 
-BATCH = 10
+A_FEW, BATCH = 2, 10
 
 
 def drawn(folder: Path, seed: int) -> dict[str, int]:
@@ -22,9 +22,9 @@ def drawn(folder: Path, seed: int) -> dict[str, int]:
     return codes(chain.execute(chain.dry_run(), None, no_progress))
 
 
-@pytest.mark.seconds("a program of each dialect is run whole")
+@pytest.mark.seconds("programs are run whole")
 def test_a_few_ordinary_programs_draw_nothing(tmp_path: Path) -> None:
-    assert {seed: found for seed in range(7) if (found := drawn(tmp_path, seed))} == {}
+    assert {seed: found for seed in range(A_FEW) if (found := drawn(tmp_path, seed))} == {}
 
 
 @pytest.mark.thorough

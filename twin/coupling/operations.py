@@ -118,7 +118,9 @@ def cutting_process(
     part_frame: PartFrame,
     part_zero: FloatArray,
 ) -> CuttingProcess | None:
-    """What tools do to a stock; None where its material is not named, or the machine turns it about more than Z.
+    """What tools do to a stock.
+
+    None where its material is not named, where the machine turns it about more than Z, or where it is a cylinder that lies.
 
     Args:
         stock: The blank.
@@ -132,7 +134,7 @@ def cutting_process(
         ConfigError: As for ``program_process``.
     """
     resists = kienzle(stock)
-    if resists is None or part_frame.chain is not None:
+    if resists is None or part_frame.chain is not None or stock.lies:
         return None
     corner = part_frame.program_zero(part_zero)
     material = blank(stock, corner, cell)

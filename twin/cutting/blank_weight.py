@@ -33,15 +33,17 @@ def blank_weight(stock: StockTable) -> Weight | None:
     density *= _KG_PER_MM3
     if stock.file is not None:
         return _mesh_weight(Path(stock.file), density)
-    width, depth, height = stock.extent
-    is_round = stock.diameter is not None
-    volume = width * depth * height
-    bore = stock.bore or 0.0
-    if is_round:
-        volume = 0.25 * math.pi * (width**2 - bore**2) * height
-    return upright_weight(
-        density * volume, stock.extent, (0.0, 0.0, -0.5 * height), is_round=is_round, bore=bore
-    )
+    size = stock.extent
+    center = (0.0, 0.0, -0.5 * size[2])
+    if stock.diameter is None or stock.height is None:
+        return upright_weight(density * math.prod(size), size, center, is_round=False)
+    bore, height = stock.bore or 0.0, stock.height
+    mass = density * 0.25 * math.pi * (stock.diameter**2 - bore**2) * height
+    standing = (stock.diameter, stock.diameter, height)
+    weight = upright_weight(mass, standing, center, is_round=True, bore=bore)
+    about = list(weight.inertia)
+    about[stock.direction], about[2] = about[2], about[stock.direction]
+    return weight._replace(inertia=(about[0], about[1], about[2], 0.0, 0.0, 0.0))
 
 
 def _mesh_weight(path: Path, density: float) -> Weight:

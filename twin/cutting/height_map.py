@@ -102,8 +102,13 @@ def blank(stock: StockTable, corner: FloatArray, cell: float) -> HeightMap:
         cell: Side of a cell [mm].
 
     Raises:
-        ConfigError: The map would have more cells than ``CELL_LIMIT``, or an STL file is wrong.
+        ConfigError: The map would have more cells than ``CELL_LIMIT``, an STL file is wrong, or the blank is a
+            cylinder that lies.
     """
+    if stock.lies:
+        raise ConfigError(
+            f"a blank that lies along {stock.axis} is cut by a run, not here: stock.axis = 'Z' stands it up"
+        )
     center = np.asarray(stock.position) + corner
     width, depth, height = stock.extent
     count_x, count_y = max(1, round(width / cell)), max(1, round(depth / cell))

@@ -16,7 +16,7 @@ from twin.cutting.material import (
     Head,
     Points,
 )
-from twin.cutting.part import part_picture, write_stl
+from twin.cutting.part import part_picture, write_glb, write_stl
 from twin.cutting.stock_contact import StockContact
 from twin.cutting.sweeping import Rectangle, sweep_lines, union
 from twin.cutting.tools import Profile
@@ -63,7 +63,7 @@ class HeightMapMaterial:
     def straight(self, points: Points, group: IntArray, edge: Profile) -> IntArray:
         """Choose samples between which the tool moved straight."""
         tolerance = min(STRAIGHT_SHARE * self.cell, STRAIGHT_MM)
-        return thin(points.tip, group, tolerance, LONGEST_SHARE * edge.radius, MOST_JOINED)
+        return thin(points.tip[None], group, tolerance, LONGEST_SHARE * edge.radius, MOST_JOINED)
 
     def contact(self, tool: ToolTable, edge: Profile, head: Head | None) -> StockContact:
         """What measures a tool with what is above it against the material."""
@@ -78,7 +78,7 @@ class HeightMapMaterial:
         found = sweep_lines(material, way, edge, Marks(self.marks, travelled), stood=stood)
         self.changed = union(self.changed, found.changed)
         off = min(WALL_SHARE * material.cell, WALL_MM)
-        rows = thin(way, np.zeros(len(way), np.int64), off, edge.radius, WALL_JOINED)
+        rows = thin(way[None], np.zeros(len(way), np.int64), off, edge.radius, WALL_JOINED)
         note_walls(
             material.heights, material.behind, material.grid, way[rows], edge.radius, edge.flat
         )
@@ -87,6 +87,10 @@ class HeightMapMaterial:
     def write_stl(self, path: Path, zero: FloatArray) -> None:
         """Write the part as binary STL."""
         write_stl(self.map, path, zero)
+
+    def write_glb(self, path: Path) -> None:
+        """Write the part as binary glTF."""
+        write_glb(self.map, path)
 
     def picture(self) -> bytes:
         """The part from above, PNG."""

@@ -2,8 +2,8 @@
 
 import bisect
 import dataclasses
-from collections.abc import Callable, Sequence
-from typing import Generic, TypeVar
+from collections.abc import Sequence
+from typing import Generic, NamedTuple, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -12,7 +12,7 @@ from twin.cutting.tools import EMPTY_SPINDLE
 from twin.errors import ConfigError
 from twin.job.job_file import JobFile, ToolTable
 from twin.motion.setpoints.setpoints import Setpoints
-from twin.nc.canonical import Chunk, FloatArray, Function, IntArray, Motion
+from twin.nc.canonical import Chunk, FloatArray, Function, IntArray, Motion, Moves, Shape
 from twin.nc.functions import (
     PROGRAM_ENDS,
     SPINDLE_SPEED,
@@ -21,6 +21,7 @@ from twin.nc.functions import (
     TOOL_CHANGE,
     SpindleState,
 )
+from twin.toolpath.part_frame import PartFrame
 from twin.toolpath.tool_plan import ToolChange, ToolPlan
 
 BoolArray = npt.NDArray[np.bool_]
@@ -52,6 +53,45 @@ class Steps(Generic[ValueT]):
         return self.values[bisect.bisect_right(self.first_move, max(move, 0)) - 1]
 
 
+class Screen(NamedTuple):
+    """What the control's screen shows: ``matrix · place + shift``, further axes shifted only.
+
+    Attributes:
+        matrix: Of the place, X, Y and Z of the axes in part coordinates, shape (3, 3).
+        shift: Shape (k,) [mm or deg].
+        led: The place is that of the tip in the part.
+    """
+
+    matrix: FloatArray
+    shift: FloatArray
+    led: bool = False
+
+
+class PlacedPart(NamedTuple):
+    """A part on a machine.
+
+    Attributes:
+        frame: How it turns under the tool.
+        zero: Machine coordinates of program zero, shape (k,) [mm or deg].
+    """
+
+    frame: PartFrame
+    zero: FloatArray
+
+    def tilts(self, axes: FloatArray) -> bool:
+        """Whether the tool ever stands off the part's Z, part coordinates of shape (n, k) [mm or deg]."""
+        return self.frame.tilts(axes + self.zero)
+
+    def tip(self, axes: FloatArray, longer: FloatArray | float) -> FloatArray:
+        """Where the tip of a tool is in the part, from program zero, shape (n, 3) [mm].
+
+        Args:
+            axes: Part coordinates, shape (n, k).
+            longer: How much longer than the first the tool is, one or shape (n,) [mm].
+        """
+        return self.frame.position(axes + self.zero, longer) - self.frame.program_zero(self.zero)
+
+
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
 class ProgramSummary:
     """What a whole program says beside its moves.
@@ -63,15 +103,17 @@ class ProgramSummary:
             None where nothing is known of it. A program that never speaks of the spindle has one
             value: it runs with it turning, since someone has switched it on by hand. One that does
             is held to it from its first move on.
-        shown: What the control's screen adds to the axes' positions, shape (k,) each [mm or deg];
-            none: nothing ever.
-        tilts: Whether the tool ever stands off the part's Z.
+        screen: What the control's screen shows; None: always where the axes are.
+        part: Where the part is on the machine; None: its screen never shows the tip.
+        tilts: Whether a height map does not hold the part: the tool stands off the part's Z somewhere, or the blank is a
+            cylinder that lies.
     """
 
     tools: ToolPlan
     rapid: BoolArray = dataclasses.field(default_factory=lambda: np.zeros(0, np.bool_))
     spindle: Steps[float | None] = Steps((0,), (None,))
-    shown: Steps[FloatArray] | None = None
+    screen: Steps[Screen] | None = None
+    part: PlacedPart | None = None
     tilts: bool = False
 
     def is_rapid(self, move: IntArray) -> BoolArray:
@@ -80,6 +122,25 @@ class ProgramSummary:
         result = np.zeros(len(move), np.bool_)
         result[known] = self.rapid[move[known]]
         return result
+
+    def shown(self, move: int, axes: FloatArray) -> FloatArray:
+        """What the control's screen shows during a move while the axes are in a place, shape (k,) [mm or deg].
+
+        Args:
+            move: Number of the move.
+            axes: Part coordinates, shape (k,).
+        """
+        if self.screen is None:
+            return axes
+        screen, place = self.screen.at(move), axes.copy()
+        if screen.led and self.part is not None:
+            place[:3] = self.part.tip(axes[None], self.tools.longer(self.tools.at(move)))[0]
+        place[:3] = screen.matrix @ place[:3]
+        return place + screen.shift
+
+    def leads_tip(self, move: int) -> bool:
+        """Whether the tip is led during a move while rotary axes turn: feed and place are its own."""
+        return self.screen is not None and self.screen.at(move).led
 
     def standing(self, setpoint: Setpoints) -> BoolArray:
         """During which setpoints the spindle is off, shape (n,)."""
@@ -96,15 +157,14 @@ class SummaryBuilder:
         self,
         job: JobFile,
         spindle: SpindleState | None = None,
-        tilts: Callable[[FloatArray], bool] | None = None,
+        part: PlacedPart | None = None,
     ) -> None:
         """Begin with the job's first tool in a spindle of which nothing was said.
 
         Args:
             job: Its tools are those that the program may bring.
             spindle: As the machine and the control have it; None: without a limit.
-            tilts: Whether the tool stands off the part's Z anywhere at program coordinates, shape (n, k);
-                None: it never does.
+            part: Where the part is on the machine; None: the tool never stands off its Z.
         """
         self._tools = {tool.number: tool for tool in job.tools}
         # Without a list of tools every number means the default tool, as in a run without one.
@@ -117,9 +177,9 @@ class SummaryBuilder:
         self._plan: list[tuple[int, ToolTable]] = [(0, self._tool)]
         self._changes: list[ToolChange] = []
         self._spindle: list[tuple[float, float | None]] = [(0.0, self._tool.speed)]
-        self._shown: list[tuple[int, FloatArray]] = []
+        self._shown: list[tuple[int, Screen]] = []
         self._rapid = bytearray()
-        self._stands_off, self._tilts = tilts, False
+        self._part, self._tilts = part, job.stock is not None and job.stock.lies
 
     def add(self, chunk: Chunk) -> None:
         """Take note of moves and functions that follow the last ones.
@@ -134,20 +194,39 @@ class SummaryBuilder:
                 self._function(event, before + event.before)
         if not len(moves):
             return
-        if self._stands_off is not None and not self._tilts:
+        if self._part is not None and not self._tilts:
             way = moves.end - moves.start
-            self._tilts = any(self._stands_off(moves.start + share * way) for share in _WITHIN)
-        added = moves.display - moves.end
-        last = self._shown[-1][1] if self._shown else np.zeros(added.shape[1])
-        steps = np.abs(np.diff(added, axis=0, prepend=last[None])).max(axis=1) > _SHOWN_STEP
-        self._shown += [(before + int(i), added[i].copy()) for i in np.flatnonzero(steps)]
+            self._tilts = any(self._part.tilts(moves.start + share * way) for share in _WITHIN)
+        self._note_screen(moves, before)
+
+    def _note_screen(self, moves: Moves, before: int) -> None:
+        """Note where the screen begins to show something else."""
+        place, led = moves.end, moves.shape == Shape.CURVE
+        turned = np.tile(np.eye(3), (len(moves), 1, 1)) if moves.screen is None else moves.screen
+        if self._part is not None and led.any():
+            rows = np.flatnonzero(led)
+            first_move, tools = zip(*self._plan, strict=True)
+            longer = ToolPlan(tools, first_move).lower(before + rows)
+            place = place.copy()
+            place[rows, :3] = self._part.tip(place[rows], longer)
+        shift = moves.display - place
+        if moves.screen is not None:
+            shift[:, :3] = moves.display[:, :3] - np.einsum("nij,nj->ni", turned, place[:, :3])
+        last = self._shown[-1][1] if self._shown else Screen(np.eye(3), np.zeros(shift.shape[1]))
+        changes = np.abs(np.diff(shift, axis=0, prepend=last.shift[None])).max(axis=1) > _SHOWN_STEP
+        changes |= np.diff(led, prepend=last.led)
+        changes |= (np.diff(turned, axis=0, prepend=last.matrix[None]) != 0.0).any(axis=(1, 2))
+        self._shown += [
+            (before + i, Screen(turned[i].copy(), shift[i].copy(), bool(led[i])))
+            for i in np.flatnonzero(changes).tolist()
+        ]
 
     def summary(self) -> ProgramSummary:
         """All that was noted."""
-        shown = None
+        screen = None
         if self._shown:
-            zero = np.zeros_like(self._shown[0][1])
-            shown = _steps([(0, zero), *self._shown])
+            plain = Screen(np.eye(3), np.zeros_like(self._shown[0][1].shift))
+            screen = _steps([(0, plain), *self._shown])
         first_move, tools = zip(*self._plan, strict=True)
         if self._speaks:
             self._spindle[0] = (0.0, 0.0)
@@ -155,7 +234,8 @@ class SummaryBuilder:
             tools=ToolPlan(tools, first_move, tuple(self._changes)),
             rapid=np.frombuffer(bytes(self._rapid), np.bool_),
             spindle=_steps(self._spindle),
-            shown=shown,
+            screen=screen,
+            part=self._part,
             tilts=self._tilts,
         )
 
@@ -198,7 +278,7 @@ class SummaryBuilder:
 
 _WITHIN = (0.0, 0.381966, 1.0)
 """Fractions of a move at which the direction of the tool is looked at: whole turns come back to where they began."""
-_SHOWN_STEP = 1e-9
+_SHOWN_STEP = 1e-7
 """Changes of what the screen adds that are the arithmetic's doing [mm or deg]."""
 
 

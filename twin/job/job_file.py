@@ -31,10 +31,13 @@ class StockTable(Table):
     """Cylinder and tube [mm]."""
     bore: Positive | None = None
     """Tube: diameter of its hole [mm]."""
+    axis: Literal["X", "Y", "Z"] | None = None
+    """Cylinder and tube: along which axis of the program it lies, such as a bar in the chuck of a rotary table A; none:
+    Z, it stands."""
     file: str | None = None
     """STL: its file [mm], relative to the job file."""
     position: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """Centre of the top face in program coordinates [mm]; of the box around an STL."""
+    """Centre of the top face in program coordinates [mm]; of the box around an STL, or a cylinder that lies."""
     cell: Positive | None = None
     """Grid of the height map [mm]; none: a tenth of the smallest tool's radius, or a fortieth of the
     stock's shorter side where that is less, 0.1 at the finest."""
@@ -58,7 +61,24 @@ class StockTable(Table):
             raise ValueError("specific_force and exponent are given together")
         if self.bore is not None and self.diameter is not None and self.bore >= self.diameter:
             raise ValueError("the bore of a tube must be smaller than its diameter")
+        if self.axis is not None and self.diameter is None:
+            raise ValueError("axis is for shapes 'cylinder' and 'tube'")
         return self
+
+    @property
+    def direction(self) -> int:
+        """Along which axis its height counts: 0, 1, 2 for X, Y, Z."""
+        return "XYZ".index(self.axis or "Z")
+
+    @property
+    def lies(self) -> bool:
+        """Whether it is a cylinder or a tube that does not stand on its end."""
+        return self.axis in ("X", "Y")
+
+    @property
+    def on_post(self) -> bool:
+        """Whether a post carries it where it does not lie on the table; else two parallels."""
+        return self.shape != "box" and not self.lies
 
     @property
     def extent(self) -> tuple[float, float, float]:
@@ -73,7 +93,9 @@ class StockTable(Table):
             return stl_extent(Path(self.file))
         assert self.diameter is not None
         assert self.height is not None
-        return (self.diameter, self.diameter, self.height)
+        along = [self.diameter] * 3
+        along[self.direction] = self.height
+        return (along[0], along[1], along[2])
 
 
 _DIMENSIONS = ("size", "diameter", "height", "bore", "file")

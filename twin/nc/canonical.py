@@ -141,6 +141,8 @@ class Moves:
             shape (n,).
         curve: What curves add to ``start``, coefficients by powers 1 to 5 of u, 0 for other shapes, shape
             (n, k, 5) [mm or deg]; None: there is no curve.
+        screen: What a millimetre of X, Y and Z, of a curve of the tip in the part, adds to what the screen shows, as
+            columns, shape (n, 3, 3); None: everywhere the same.
     """
 
     axes: Axes
@@ -163,6 +165,7 @@ class Moves:
     acceleration: FloatArray
     deceleration: FloatArray
     curve: FloatArray | None = None
+    screen: FloatArray | None = None
 
     def __len__(self) -> int:
         return len(self.line)
@@ -170,7 +173,9 @@ class Moves:
     def __getitem__(self, index: slice | npt.NDArray[np.bool_] | IntArray) -> "Moves":
         """A selection of the moves, as columns again."""
         columns = {name: getattr(self, name)[index] for name in _COLUMNS}
-        return Moves(self.axes, **columns, curve=None if self.curve is None else self.curve[index])
+        curve = None if self.curve is None else self.curve[index]
+        screen = None if self.screen is None else self.screen[index]
+        return Moves(self.axes, **columns, curve=curve, screen=screen)
 
     def __iter__(self) -> Iterator[dict[str, float | int]]:
         """One flat row a move, for people and data frames; calculations take the columns."""
@@ -197,7 +202,9 @@ class Moves:
 
 
 _COLUMNS = tuple(
-    field.name for field in dataclasses.fields(Moves) if field.name not in ("axes", "curve")
+    field.name
+    for field in dataclasses.fields(Moves)
+    if field.name not in ("axes", "curve", "screen")
 )
 _CODES = ("motion", "shape", "feed_unit", "corner")
 _INTEGERS = ("line", "block")
@@ -212,16 +219,21 @@ def concatenate(parts: Iterable[Moves], axes: Axes) -> Moves:
     for name in _COLUMNS:
         arrays = [getattr(part, name) for part in parts]
         columns[name] = np.concatenate(arrays) if arrays else _empty_column(name, len(axes))
-    return Moves(axes, **columns, curve=_joined_curves(parts, len(axes)))
+    curve = _joined(parts, [part.curve for part in parts], np.zeros((len(axes), 5)))
+    screen = _joined(parts, [part.screen for part in parts], np.eye(3))
+    return Moves(axes, **columns, curve=curve, screen=screen)
 
 
-def _joined_curves(parts: Sequence[Moves], axis_count: int) -> FloatArray | None:
-    if all(part.curve is None for part in parts):
+def _joined(
+    parts: Sequence[Moves], columns: Sequence[FloatArray | None], usual: FloatArray
+) -> FloatArray | None:
+    """A column that some parts lack, with a row's usual value there; None where all of them do."""
+    if all(column is None for column in columns):
         return None
     return np.concatenate(
         [
-            np.zeros((len(part), axis_count, 5)) if part.curve is None else part.curve
-            for part in parts
+            np.tile(usual, (len(part), 1, 1)) if column is None else column
+            for part, column in zip(parts, columns, strict=True)
         ]
     )
 

@@ -13,6 +13,9 @@ from twin.render.hud import Display, LoadBar, Reading
 from twin.render.scene.scene import Scene
 from twin.units import SECONDS_PER_MINUTE, UM_PER_MM
 
+_INSTANT_S = 1e-6
+"""Time for which axes are taken to keep their speed [s]."""
+
 
 class Gauge:
     """Follows a scene's recording, sample by sample."""
@@ -52,29 +55,37 @@ class Gauge:
         assert self._last is not None
         header, last = self._scene.recording.header, self._last
         setpoint = last.setpoint
+        line, move, time = int(setpoint.line[0]), int(setpoint.move[0]), float(setpoint.time[0])
+        summary = self._scene.summary
+        tool = summary.tools.at(move)
         velocity = SECONDS_PER_MINUTE * last.joint_velocity[0]
         feed = float(np.linalg.norm(velocity[:3]))
-        rotary = header.axes.rotary()
-        turning = float(np.linalg.norm(velocity[rotary]))
+        if summary.leads_tip(move):
+            feed = SECONDS_PER_MINUTE * self._tip_speed(summary.tools.longer(tool))
+        turning = float(np.linalg.norm(velocity[header.axes.rotary()]))
         only_turns = feed < 1.0 < turning
-        line, move, time = int(setpoint.line[0]), int(setpoint.move[0]), float(setpoint.time[0])
-        tool = self._scene.summary.tools.at(move)
         raised = [text for since, text in self._alarms if since <= time]
-        position = last.joint_position[0] - header.part_zero
-        if self._scene.summary.shown is not None:
-            position = position + self._scene.summary.shown.at(move)
         return Reading(
             line=line,
-            position=position,
+            position=summary.shown(move, last.joint_position[0] - header.part_zero),
             feed=turning if only_turns else feed,
             feed_unit="°/min" if only_turns else "mm/min",
-            spindle=self._scene.summary.spindle.at(move),
+            spindle=summary.spindle.at(move),
             tool=tool.number,
             error_um=self._error(),
             time_s=time,
             loads=() if last.tool is None else load_bars(last.tool, tool),
             alarm=raised[-1] if raised else warning(line),
         )
+
+    def _tip_speed(self, longer: float) -> float:
+        """How fast the tip of a tool, so much longer than the first [mm], goes over the part [mm/s]."""
+        assert self._last is not None
+        here, way = self._last.joint_position, _INSTANT_S * self._last.joint_velocity
+        tips = self._scene.recording.header.part_frame.position(
+            np.concatenate([here - way, here + way]), longer
+        )
+        return float(np.linalg.norm(tips[1] - tips[0])) / (2.0 * _INSTANT_S)
 
     def _error(self) -> float:
         """Contour error now, or the lag where nobody compared [µm]."""

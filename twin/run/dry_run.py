@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from itertools import islice
 from typing import IO
 
-from twin.cutting.program_summary import ProgramSummary, SummaryBuilder
+from twin.cutting.program_summary import PlacedPart, ProgramSummary, SummaryBuilder
 from twin.machine.watching.alarms import Alarm
 from twin.machine.watching.travel import soft_limit_alarm
 from twin.nc.canonical import Chunk, FloatArray, Function
@@ -134,11 +134,10 @@ def interpret_all(preparation: Preparation, part_zero: FloatArray, clock: StageC
     """
     interpretation = preparation.interpretation()
     program, alarm = InterpretedProgram(preparation), None
-    frame = preparation.machine.part_frame.at(part_zero, 0.0)
-    builder = SummaryBuilder(
-        preparation.job.file, preparation.spindle, lambda moves: frame.tilts(moves + part_zero)
-    )
-    watch = ProgramWatch(preparation.job.file, preparation.spindle)
+    job = preparation.job.file
+    frame = preparation.machine.part_frame.at(part_zero, job.tools[0].length)
+    builder = SummaryBuilder(job, preparation.spindle, PlacedPart(frame, part_zero))
+    watch = ProgramWatch(job, preparation.spindle)
     limited: dict[int, str] = {}
     chunks: Iterable[Chunk] = clock.watch("interpret", interpretation.chunks())
     for chunk in chunks:

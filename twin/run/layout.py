@@ -71,9 +71,10 @@ def _blank(job: JobFile, frame: PartFrame, zero: FloatArray, over_table: float) 
     return Blank(
         size,
         (float(x), float(y), float(top) - size[2] / 2.0),
-        round=job.stock.shape in ("cylinder", "tube"),
+        round=job.stock.diameter is not None,
         weight=None if weight is None else weight.moved((float(x), float(y), float(top))),
-        on_post=job.stock.shape != "box",
+        on_post=job.stock.on_post,
+        direction=job.stock.direction,
     )
 
 

@@ -251,11 +251,8 @@ def _load_checks(tolerance: ToleranceTable, loads: LoadLog) -> Iterator[Check]:
 
 def _as_shown(figures: Figures, summary: ProgramSummary) -> Figures:
     """Figures whose positions are those of the control's screen."""
-    screen = summary.shown
-    if screen is None:
-        return figures
     worst = tuple(
-        dataclasses.replace(place, position=place.position + screen.at(place.move))
+        dataclasses.replace(place, position=summary.shown(place.move, place.position))
         for place in figures.worst
     )
     return dataclasses.replace(figures, worst=worst)

@@ -4,7 +4,7 @@ import contextlib
 from collections.abc import Iterator
 from pathlib import Path
 
-from twin.cutting.program_summary import ProgramSummary, SummaryBuilder
+from twin.cutting.program_summary import PlacedPart, ProgramSummary, SummaryBuilder
 from twin.cutting.recut import recut
 from twin.errors import UsageError
 from twin.machine.model.model import build_spec
@@ -24,10 +24,8 @@ def summary_of(preparation: Preparation, header: RecordingHeader) -> ProgramSumm
         ProgramError: The program is wrong.
         ConfigError: It brings a tool that the job does not list.
     """
-    frame, zero = header.part_frame, header.part_zero
-    builder = SummaryBuilder(
-        preparation.job.file, preparation.spindle, lambda moves: frame.tilts(moves + zero)
-    )
+    part = PlacedPart(header.part_frame, header.part_zero)
+    builder = SummaryBuilder(preparation.job.file, preparation.spindle, part)
     for chunk in preparation.interpretation().chunks():
         builder.add(chunk)
     return builder.summary()

@@ -73,8 +73,8 @@ class RecordedRun:
         frame = recording.header.part_frame
         for samples in recording.chunks(self._every * 16384):
             chosen = slice(self._every - 1, None, self._every)
-            tools, longer = self._tools(samples)
-            tips = frame.position(samples.real(frame)) - longer
+            tools, lower = self._tools(samples)
+            tips = frame.position(samples.real(frame), lower)
             setpoint = samples.setpoint
             rows.append(
                 [column[chosen] for column in (setpoint.time, setpoint.line, tools)]
@@ -94,14 +94,12 @@ class RecordedRun:
         return np.array(speeds)[place]
 
     def _tools(self, samples: Samples) -> tuple[IntArray, FloatArray]:
-        """Number of the tool of each sample, and how much longer it is than the first, along Z."""
-        plan = self._scene.summary.tools
+        """Number of the tool of each sample, and how much longer it is than the first [mm]."""
+        plan, move = self._scene.summary.tools, samples.setpoint.move
         numbers = np.zeros(len(samples), np.int64)
-        longer = np.zeros((len(samples), 3))
-        for run, tool in plan.runs(samples.setpoint.move):
+        for run, tool in plan.runs(move):
             numbers[run] = tool.number
-            longer[run, 2] = plan.longer(tool)
-        return numbers, longer
+        return numbers, plan.lower(move)
 
     def _errors(self, count: int) -> FloatArray:
         """The greatest contour error of each group of samples [µm]; 0 where it is not known."""

@@ -10,8 +10,8 @@ from twin.cutting.tools import profile
 from twin.cutting.tridexel.blanks import box, round_bar
 from twin.cutting.tridexel.engagement import cut, volume
 from twin.cutting.tridexel.mesh import part_mesh
+from twin.cutting.tridexel.moving_solid import Poses
 from twin.cutting.tridexel.solids import cutting_edge
-from twin.cutting.tridexel.sweep import Poses
 from twin.job.job_file import ToolTable
 from twin.nc.canonical import FloatArray
 

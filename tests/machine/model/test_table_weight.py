@@ -3,16 +3,19 @@
 import math
 from pathlib import Path
 
+import mujoco
 import numpy as np
 import pytest
 import trimesh
 
 from tests.machine.machine_fixtures import PERIOD, setpoints, shipped_machine, with_fixtures
 from twin.cutting.blank_weight import blank_weight
+from twin.files.shipped import resource_root
 from twin.job.fixture import FixtureTable
 from twin.job.job_file import JobFile, StockTable
 from twin.machine.description.config import Blank, Machine
-from twin.machine.model.model import build_spec, drives, moved, physics_model
+from twin.machine.load import read_machine
+from twin.machine.model.model import BLANK, build_spec, drives, moved, physics_model
 from twin.machine.simulation.servo import Servo
 from twin.run.layout import lay_out
 
@@ -120,3 +123,25 @@ def test_a_shape_from_a_file_weighs_what_its_solid_does(tmp_path: Path, closed: 
     assert moments == pytest.approx(box, rel=1e-4)
     height = mesh.extents[2]
     assert math.isclose(found.center[2], -0.5 * height, rel_tol=1e-4)
+
+
+@pytest.mark.parametrize(("axis", "moment"), [("X", 0.5), ("Y", 1.0 / 3.0 + 0.25)])
+def test_a_bar_that_lies_is_turned_about_its_axis_or_across_it(axis: str, moment: float) -> None:
+    """Of a bar as long as twice its radius r: m r²/2 about its axis, m (3 r² + h²) / 12 across it."""
+    machine = read_machine(resource_root("models") / "mill4a" / "machine.toml")
+    bar = StockTable(
+        shape="cylinder", diameter=60.0, height=60.0, axis=axis, density=7.85, position=(0, 0, 30.0)
+    )
+    mass = 7850.0 * math.pi * 0.03**2 * 0.06
+    layout = lay_out(JobFile(program="part.nc", stock=bar, part_zero={"Z": -525.0}), machine)
+    blank = layout.blank
+    assert blank is not None
+    off = blank.center[1] ** 2 + blank.center[2] ** 2
+    before, after = felt(machine), felt(machine, blank)
+    about = moment * mass * 0.03**2 + mass * off * 1e-6
+    assert after["A"] - before["A"] == pytest.approx(about, rel=1e-6)
+    model = build_spec(machine, blank=blank).compile()
+    turned = np.zeros(9)
+    mujoco.mju_quat2Mat(turned, model.geom(BLANK).quat)
+    assert turned.reshape(3, 3)[:, 2] == pytest.approx(np.eye(3)["XYZ".index(axis)], abs=1e-12)
+    assert model.geom(BLANK).size[:2] == pytest.approx([0.03, 0.03])

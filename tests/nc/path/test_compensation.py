@@ -154,3 +154,43 @@ def test_any_number_of_plunges_waits_for_the_end_of_an_element() -> None:
     heights = outcome.moves.end[:, 2].tolist()
     assert heights == [0.0, 0.0, *(-float(number) for number in range(1, 41)), -40.0, -40.0]
     assert [event.before for event in outcome.events] == list(range(3, 43))
+
+
+@settings(max_examples=20, derandomize=True, deadline=None)
+@given(turn=st.floats(5.0, 175.0), left=st.booleans(), first_side=st.booleans())
+def test_sides_change_where_the_extended_parallels_cross(
+    turn: float, left: bool, first_side: bool
+) -> None:
+    """Two lines of 200 mm that turn by an angle: the parallels cross ``r cot(turn / 2)`` from the corner along one
+    of them, square to it by the radius."""
+    sign = 1.0 if left else -1.0
+    x, y = math.cos(math.radians(turn)), sign * math.sin(math.radians(turn))
+    one, other = ("G41", "G42") if first_side else ("G42", "G41")
+    text = (
+        f"G0 X-220.\n{one} D1 G1 X-200. Y0. F100.\nX0.\n{other} X{200.0 * x:.9f} Y{200.0 * y:.9f}\n"
+        f"X{300.0 * x:.9f} Y{300.0 * y:.9f}\nG40 X{400.0 * x:.9f} Y{400.0 * y:.9f}\nM30\n"
+    )
+    moves = good(text, "fanuc", tools=TOOLS).moves
+    crossing = moves.end[moves.line == 3][-1, :2]
+    far = RADIUS / math.tan(math.radians(turn / 2.0))
+    side = RADIUS if first_side else -RADIUS
+    along = far if left == first_side else -far
+    np.testing.assert_allclose(crossing, [along, side], atol=1e-6)
+    behind = moves.end[moves.line == 4][-1, :2]
+    np.testing.assert_allclose(behind @ [-y, x], -side, atol=1e-6)
+
+
+@pytest.mark.parametrize("sense", ["G2", "G3"])
+def test_the_radius_changes_evenly_with_the_angle_of_an_arc(sense: str) -> None:
+    """Half a circle of 40 mm about X0 Y0, the tool 3 mm beside its start and 1 mm beside its end."""
+    way = 1.0 if sense == "G3" else -1.0
+    text = (
+        f"#13002=1.\nG0 X40. Y{-60.0 * way}\nG41 D1 G1 Y{-20.0 * way} F100.\nY0.\n"
+        f"D2 {sense} X-40. I-40. J0.\nG1 Y{-40.0 * way}\nG40 Y{-60.0 * way}\nM30\n"
+    )
+    moves = good(text, "fanuc", tools=TOOLS).moves
+    path = sampled(moves[moves.line == 5])[:, :2]
+    radius = np.linalg.norm(path, axis=1)
+    angle = np.abs(np.degrees(np.arctan2(path[:, 1], path[:, 0])))
+    side = -way
+    np.testing.assert_allclose(radius, 40.0 + side * (3.0 - 2.0 * angle / 180.0), atol=1e-3)

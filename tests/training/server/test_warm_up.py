@@ -38,7 +38,7 @@ def main() -> int:
     return late
 
 
-@pytest.mark.seconds("a process of its own: what other tests have loaded would hide a cold key")
+@pytest.mark.thorough
 def test_no_key_waits_for_a_kernel_behind_the_warming_up():
     done = subprocess.run([sys.executable, __file__], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr[-2000:]

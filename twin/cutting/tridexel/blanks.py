@@ -1,6 +1,7 @@
 """The uncut stock as intervals along three directions: box, cylinder, tube, the shape of an STL file."""
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -8,16 +9,17 @@ from twin.compilation.kernel import arithmetic_kernel
 from twin.cutting.tridexel.closed_mesh import mesh_dexels
 from twin.cutting.tridexel.dexels import Dexels, Lattice, TriDexel, lattice_around, no_material
 from twin.cutting.tridexel.engagement import cut
-from twin.cutting.tridexel.normals import packed
+from twin.cutting.tridexel.moving_solid import Poses, surface, within
+from twin.cutting.tridexel.normals import OWN, packed
 from twin.cutting.tridexel.solids import Solid, cylinder
-from twin.cutting.tridexel.sweep import Poses, surface, within
 from twin.errors import ConfigError
 from twin.files.stl import read_stl
 from twin.job.job_file import StockTable
 from twin.nc.canonical import FloatArray
 
-OWN = 0
-"""In place of a tool's number: the blank's own surface."""
+if TYPE_CHECKING:
+    import trimesh
+
 THROUGH_MM = 1.0
 """How far a tube's bore reaches beyond its ends, so that nothing is left there [mm]."""
 
@@ -42,9 +44,12 @@ def blank(stock: StockTable, corner: FloatArray, cell: float) -> TriDexel:
     if stock.shape == "box":
         return box(low, high, cell)
     middle = 0.5 * (low + high)
-    part = round_bar(middle, 2, 0.5 * extent[0], extent[2], cell)
+    assert stock.diameter is not None
+    direction = stock.direction
+    height = float(extent[direction])
+    part = round_bar(middle, direction, 0.5 * stock.diameter, height, cell)
     if stock.bore is not None:
-        _bore(part, middle, 2, 0.5 * stock.bore, extent[2])
+        _bore(part, middle, direction, 0.5 * stock.bore, height)
     return part
 
 
@@ -119,13 +124,22 @@ def _fill(dexels: Dexels, lattice: Lattice, poses: Poses, solid: Solid) -> None:
                     dexels.skin[place, end] = surface(poses, solid, (d, t, x, y), 0, 0.0, 1.0, OWN)
 
 
-def _from_stl(path: Path, top: FloatArray, cell: float) -> TriDexel:
-    """The shape of an STL file, the middle of whose box's top face is at a place, shape (3,) [mm]."""
-    mesh = read_stl(path)
+def require_closed(mesh: "trimesh.Trimesh", path: Path) -> "trimesh.Trimesh":
+    """The mesh of a file.
+
+    Raises:
+        ConfigError: Its surface is not closed.
+    """
     if not mesh.is_watertight:
         raise ConfigError(
             f"{path}: its surface is not closed, which a part cut from any side needs"
         )
+    return mesh
+
+
+def _from_stl(path: Path, top: FloatArray, cell: float) -> TriDexel:
+    """The shape of an STL file, the middle of whose box's top face is at a place, shape (3,) [mm]."""
+    mesh = require_closed(read_stl(path), path)
     low, high = mesh.bounds
     shift = top - [*(0.5 * (low + high))[:2], high[2]]
     triangles = np.ascontiguousarray(mesh.triangles + shift, np.float64)

@@ -7,6 +7,7 @@ import numpy as np
 
 from twin.cutting.tridexel.dexels import DIRECTIONS, TriDexel
 from twin.cutting.tridexel.intervals import Node, total_worth
+from twin.cutting.tridexel.moving_solid import Poses
 from twin.cutting.tridexel.poses import in_short_steps
 from twin.cutting.tridexel.solids import Solid
 from twin.cutting.tridexel.sweep import (
@@ -18,7 +19,6 @@ from twin.cutting.tridexel.sweep import (
     MEASURE,
     MOMENT,
     VOLUME,
-    Poses,
     sweep,
 )
 from twin.nc.canonical import BoolArray, FloatArray

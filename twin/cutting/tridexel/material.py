@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from twin.cutting.events import SCRAPE_MM
 from twin.cutting.kernels.overlap import Overlap
 from twin.cutting.kernels.sweep import Removal
-from twin.cutting.kernels.thin import thin_poses
+from twin.cutting.kernels.thin import thin
 from twin.cutting.material import (
     AIR_MM,
     EDGE,
@@ -20,14 +20,15 @@ from twin.cutting.material import (
     Head,
     Points,
 )
+from twin.cutting.part import export_glb
 from twin.cutting.stock_contact import BRUSH_MM, above_edge
 from twin.cutting.tools import Profile
 from twin.cutting.tridexel.dexels import TriDexel
 from twin.cutting.tridexel.engagement import cut, met
-from twin.cutting.tridexel.mesh import surface
+from twin.cutting.tridexel.mesh import part_mesh, skin_colours, surface
+from twin.cutting.tridexel.moving_solid import Poses
 from twin.cutting.tridexel.normals import MOST_TOOLS
 from twin.cutting.tridexel.solids import Solid, cutting_edge, cylinder, thinner
-from twin.cutting.tridexel.sweep import Poses
 from twin.files.atomic import complete_or_absent
 from twin.files.stl import stl_text
 from twin.job.job_file import ToolTable
@@ -68,9 +69,8 @@ class TriDexelMaterial:
         """Choose samples between which tip and edge moved straight: a turning tool keeps no direction."""
         poses = _poses(points)
         reach = np.linalg.norm(np.diff(self.stock.corners, axis=0))
-        return thin_poses(
-            poses.tip,
-            poses.tip + reach * poses.axis,
+        return thin(
+            np.stack([poses.tip, poses.tip + reach * poses.axis]),
             group,
             min(STRAIGHT_SHARE * self.cell, STRAIGHT_MM),
             LONGEST_SHARE * edge.radius,
@@ -111,6 +111,10 @@ class TriDexelMaterial:
         text = stl_text((found.points - np.asarray(zero))[found.faces])
         with complete_or_absent(path) as temporary:
             temporary.write_bytes(text)
+
+    def write_glb(self, path: Path) -> None:
+        """Write the part as binary glTF."""
+        export_glb(part_mesh(self.stock, skin_colours), path)
 
     def picture(self) -> bytes:
         """None: from above a part that was cut from several sides is not seen whole."""

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from twin.cutting.tridexel.moving_solid import Poses
 from twin.cutting.tridexel.solids import Solid
-from twin.cutting.tridexel.sweep import Poses
 from twin.nc.canonical import FloatArray, IntArray
 
 STEP_SHARE = 0.1

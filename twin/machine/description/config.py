@@ -315,9 +315,10 @@ class Blank(NamedTuple):
     Attributes:
         size: Of the box around it [mm].
         center: Of that box over the middle of the table [mm].
-        round: An upright cylinder; else the box itself.
+        round: A cylinder; else the box itself.
         weight: What it weighs, seen from the middle of the table; None: not known.
         on_post: A post carries it where it does not lie on the table; else two parallels.
+        direction: Of the cylinder's axis: 0, 1, 2 for X, Y, Z.
     """
 
     size: tuple[float, float, float]
@@ -325,6 +326,7 @@ class Blank(NamedTuple):
     round: bool
     weight: Weight | None = None
     on_post: bool = False
+    direction: int = 2
 
 
 class Machine:

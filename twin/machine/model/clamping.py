@@ -113,7 +113,7 @@ def what_carries(clamped: MachineModel) -> str | None:
             away = mujoco.mj_geomDistance(model, data, stock, geom, _FAR, None) / MM
             if away <= TOUCHES:
                 return None
-        below = min(below, _depth_below(model, data, stock, geom))
+        below = min(below, _depth_below(model, data, 0.5 * MM * clamped.blank.size[2], geom))
     if below <= TALLEST:
         return None
     if below == np.inf:
@@ -127,12 +127,19 @@ TOUCHES = 0.5
 """A fixture so near to the stock holds it [mm]: jaws are given to the millimetre."""
 
 
-def _depth_below(model: mujoco.MjModel, data: mujoco.MjData, stock: int, geom: int) -> float:
-    """How far a geom lies under the middle of the stock's lower face [mm]; infinite where it does not."""
-    half = float(model.geom_size[stock][1 if _is_round(model, stock) else 2])
-    down = -data.geom_xmat[stock].reshape(3, 3)[:, 2]
+def _depth_below(model: mujoco.MjModel, data: mujoco.MjData, half: float, geom: int) -> float:
+    """How far a geom lies under the middle of the stock's lower face [mm]; infinite where it does not.
+
+    Args:
+        model: The machine with the stock.
+        data: Where all of it is.
+        half: Half the stock's height [m].
+        geom: The geom.
+    """
+    stock = data.geom(BLANK)
+    down = -data.xmat[part_carrier(model)].reshape(3, 3)[:, 2]
     # From a little within the stock, so that what it lies on is met.
-    start = data.geom_xpos[stock] + (half - _WITHIN) * down
+    start = stock.xpos + (half - _WITHIN) * down
     if model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_MESH:
         found = mujoco.mj_rayMesh(model, data, geom, start, down, None)
     else:
@@ -145,7 +152,3 @@ def _depth_below(model: mujoco.MjModel, data: mujoco.MjData, stock: int, geom: i
 
 _WITHIN = 1e-3
 """[m]"""
-
-
-def _is_round(model: mujoco.MjModel, geom: int) -> bool:
-    return model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_CYLINDER

@@ -225,10 +225,12 @@ def _add_blank(spec: mujoco.MjSpec, blank: Blank) -> None:
     if blank.weight is not None:
         _add_weight(spec, blank.weight)
     top, half = spec.site(TABLE_TOP), np.array(blank.size) / 2.0 * MM
+    along = blank.direction
     top.parent.add_geom(
         name=BLANK,
         type=mujoco.mjtGeom.mjGEOM_CYLINDER if blank.round else mujoco.mjtGeom.mjGEOM_BOX,
-        size=[half[0], half[2], 0.0] if blank.round else list(half),
+        size=[half[along - 1], half[along], 0.0] if blank.round else list(half),
+        quat=_Z_TURNED_TO[along],
         pos=list(top.pos + np.array(blank.center) * MM),
         group=COLLISION_GROUP,
         contype=STOCK_SIDE | CLAMPED_SIDE,
@@ -236,6 +238,10 @@ def _add_blank(spec: mujoco.MjSpec, blank: Blank) -> None:
         mass=0.0,
     )
     _add_work_holding(spec, blank)
+
+
+_Z_TURNED_TO = ([0.5, 0.5, 0.5, 0.5], [0.5, -0.5, -0.5, -0.5], [1.0, 0.0, 0.0, 0.0])
+"""Turns in which Z points along X, Y and Z: X, Y and Z change places in their order."""
 
 
 def _add_work_holding(spec: mujoco.MjSpec, blank: Blank) -> None:

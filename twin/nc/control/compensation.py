@@ -4,7 +4,7 @@ import math
 
 from twin.nc.control.control import Control, integer_of
 from twin.nc.geometry.matrices import handedness
-from twin.nc.path.compensation.stage import LEADING_OUT, OFF
+from twin.nc.path.compensation.stage import LEADING_OUT, OFF, SideChange
 from twin.nc.text.blocks import Word
 
 NEEDS_TOOL = "give the job a tool with its radius and length: [[tools]]"
@@ -59,15 +59,28 @@ def side_in_force(control: Control) -> float:
     return math.copysign(1.0, control.path.compensation.signed_offset * turned)
 
 
-def change_radius(control: Control, radius: float, word: Word) -> None:
+def change_radius(control: Control, radius: float, word: Word | None) -> None:
     """Another radius of the compensation that is in force, on the same side [mm]."""
+    _change(control, side_in_force(control), radius, word, None)
+
+
+def change_side(
+    control: Control, side: float, radius: float, word: Word | None, way: SideChange
+) -> None:
+    """Compensation that is in force goes on on another side, or on the same with another radius [mm]."""
+    same = side == side_in_force(control)
+    _change(control, side, radius, word, None if same else way)
+
+
+def _change(
+    control: Control, side: float, radius: float, word: Word | None, way: SideChange | None
+) -> None:
     if not radius > 0.0:
         message = f"compensation that is in force cannot take the radius {radius:g}"
         control.fail("compensation-change", message, word, "end it by G40")
     control.path.flush()
-    control.path.compensation.change(
-        side_in_force(control) * radius * handedness(control.motion.frame.matrix)
-    )
+    signed = side * radius * handedness(control.motion.frame.matrix)
+    control.path.compensation.change(signed, way)
 
 
 def compensate(control: Control, side: float, radius: float, *, led: bool = False) -> None:

@@ -159,6 +159,8 @@ class Motion:
             center,
             normal,
             sweep,
+            None,
+            self.frame.screen,
         )
         if add is None:
             self.path.add(move)
@@ -170,7 +172,7 @@ class Motion:
 
     def take_rows(self, rows: Iterable[Any], programmed: list[float], part: list[float]) -> None:
         """Moves that were made elsewhere, rows as ``Path.add_rows`` takes them, lead to these positions, shape (k,)."""
-        last = self.path.add_rows(*rows)
+        last = self.path.add_rows(*rows, screen=self.frame.screen)
         self.programmed, self.part = programmed, part
         if last is not None:
             self.last = last

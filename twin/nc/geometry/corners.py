@@ -59,6 +59,41 @@ def _inside_corner(before: Before, behind: Behind) -> Passage:
     return (fits, False, at, at)
 
 
+def side_change(before: Before, behind: Behind, *, extended: bool) -> Point | None:
+    """Where a tool goes over from the parallel of one element to that of the next, which lies on the other side.
+
+    Args:
+        before: As ``corner_of`` has it.
+        behind: The next element and its parallel on the new side.
+        extended: The parallels go on beyond the corner.
+
+    Returns:
+        Where they cross, nearest to the corner, the first of two that are as near; None: nowhere on the way of both.
+    """
+    contour, parallel, begin = before
+    beside = behind[1]
+    count, *places = curves.meetings(parallel, beside)
+    from_begin = curves.along(parallel, begin)
+    crossings = [
+        place
+        for place in places[:count]
+        if curves.along(parallel, place) >= from_begin
+        and curves.along(beside, place) < 1.0
+        and (extended or _on_both(parallel, beside, place))
+    ]
+
+    def nearest_first(place: Point) -> tuple[float, float]:
+        return (round(distance(place, contour[2]), 6), curves.along(parallel, place))
+
+    return min(crossings, key=nearest_first, default=None)
+
+
+def _on_both(first: Curve, second: Curve, place: Point) -> bool:
+    return curves.within(first, curves.along(first, place)) and curves.within(
+        second, curves.along(second, place)
+    )
+
+
 ALLOWED_DEPTH = 0.01
 """How far a lead may cut into the contour without a warning [mm]."""
 

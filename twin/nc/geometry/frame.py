@@ -128,6 +128,7 @@ class Frame:
         total: Sum of all shifts, shape (k,) [mm or deg].
         matrix: Mirror, rotation and scale of X, Y, Z.
         is_identity: The matrix is the identity.
+        screen: The inverse of the matrix; None where it is the identity.
     """
 
     def __init__(self, axes: int) -> None:
@@ -136,6 +137,7 @@ class Frame:
         self.total = [0.0] * axes
         self.matrix: Matrix = IDENTITY
         self.is_identity = True
+        self.screen: Matrix | None = None
 
     def shift(self, name: str) -> list[float]:
         """The named shift, shape (k,)."""
@@ -171,6 +173,7 @@ class Frame:
         """Replace mirror, rotation and scale."""
         self.matrix = matrix
         self.is_identity = matrix == IDENTITY
+        self.screen = None if self.is_identity else inverse(matrix)
 
     def to_part(self, programmed: list[float]) -> list[float]:
         """Part coordinates of a programmed position, shape (k,)."""

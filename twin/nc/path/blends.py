@@ -10,7 +10,8 @@ import math
 from collections.abc import Sequence
 
 from twin.nc.geometry import curves
-from twin.nc.geometry.arcs import Point, center_tangent, distance, sweep_between
+from twin.nc.geometry.arcs import Point, distance, sweep_between
+from twin.nc.geometry.biarcs import biarc
 from twin.nc.geometry.curves import Curve
 from twin.nc.geometry.planes import Plane, Vector, cross, plane_with_normal
 from twin.nc.path.move_columns import Segment
@@ -97,7 +98,7 @@ def blend_corner(
         sweep = sweep_between(begin, end, center, clockwise=turn < 0.0)
         return head, _arcs(with_feed, tail, plane, [curves.arc(begin, end, center, sweep)]), tail
     leaving, arriving = curves.tangent_at(before, left), curves.tangent_at(behind, right)
-    return head, _arcs(head, tail, plane, _biarc(begin, end, leaving, arriving)), tail
+    return head, _arcs(head, tail, plane, biarc(begin, end, leaving, arriving)), tail
 
 
 def _cut(before: Curve, behind: Curve, blend: Blend) -> tuple[float, float]:
@@ -138,39 +139,6 @@ def _fillet(before: Curve, behind: Curve, turn: float, radius: float) -> tuple[f
     if not fitting:
         raise NoBlendError(f"the radius {radius:g} is too large for the moves beside the corner")
     return min(fitting, key=lambda each: distance(each[2], before[2]))
-
-
-def _biarc(begin: Point, end: Point, first: Point, last: Point) -> list[Curve]:
-    """One or two arcs from ``begin`` along ``first`` to ``end`` along ``last``."""
-    vx, vy = end[0] - begin[0], end[1] - begin[1]
-    tx, ty = first[0] + last[0], first[1] + last[1]
-    together, chord = vx * tx + vy * ty, vx * vx + vy * vy
-    bend = 2.0 * (1.0 - first[0] * last[0] - first[1] * last[1])
-    reach = (math.sqrt(together * together + bend * chord) - together) / bend
-    joint = (
-        (begin[0] + end[0] + reach * (first[0] - last[0])) / 2.0,
-        (begin[1] + end[1] + reach * (first[1] - last[1])) / 2.0,
-    )
-    left = center_tangent(begin, joint, first)
-    right = center_tangent(end, joint, (-last[0], -last[1]))
-    pieces = [
-        _arc_or_line(begin, joint, left, begin, first),
-        _arc_or_line(joint, end, right, end, last),
-    ]
-    if left is not None and right is not None and distance(left, right) < 1e-7:
-        return [curves.arc(begin, end, left, pieces[0][4] + pieces[1][4])]
-    return pieces
-
-
-def _arc_or_line(
-    begin: Point, end: Point, center: Point | None, point: Point, along: Point
-) -> Curve:
-    """The arc about a centre that goes along a direction at one of its ends; without a centre the line."""
-    if center is None:
-        return curves.line(begin, end)
-    arm = (point[0] - center[0], point[1] - center[1])
-    clockwise = arm[0] * along[1] - arm[1] * along[0] < 0.0
-    return curves.arc(begin, end, center, sweep_between(begin, end, center, clockwise))
 
 
 def _arcs(before: Segment, behind: Segment, plane: Plane, pieces: list[Curve]) -> list[Segment]:

@@ -19,6 +19,7 @@ from twin.nc.canonical import (
     Moves,
     Shape,
 )
+from twin.nc.geometry.matrices import IDENTITY, Matrix
 from twin.nc.geometry.planes import Vector
 
 CHUNK = 4096
@@ -65,6 +66,8 @@ class Segment:
         normal: Unit normal of an arc.
         sweep: Signed angle of an arc [deg].
         curve: How the axes go, where that is neither a line nor an arc; the arc is the tip's in the part then.
+        screen: What a millimetre of X, Y and Z, of a curve of the tip in the part, adds to what the screen shows, as
+            columns; None: the same.
     """
 
     motion: Motion
@@ -82,6 +85,7 @@ class Segment:
     normal: Vector = (NAN, NAN, NAN)
     sweep: float = 0.0
     curve: Curve | None = None
+    screen: Matrix | None = None
 
 
 class Refused(NamedTuple):
@@ -136,6 +140,7 @@ class MoveColumns:
     def _clear(self) -> None:
         self._parts: list[tuple[IntArray, FloatArray, FloatArray]] = []
         self._curves: list[tuple[int, Curve]] = []
+        self._screens: list[tuple[int, int, Matrix]] = []
         self.events: list[Event] = []
         self.count = 0
         self._clear_lists()
@@ -152,6 +157,8 @@ class MoveColumns:
         if move.curve is not None:
             shape = CURVE
             self._curves.append((self.count, move.curve))
+        if move.screen is not None:
+            self._screens.append((self.count, self.count + 1, move.screen))
         self._codes += (move.motion, shape, move.line, move.block, move.corner)
         values, positions = self._values, self._positions
         values += _NOWHERE if center is None else center
@@ -168,7 +175,13 @@ class MoveColumns:
         positions += move.display
         self.count += 1
 
-    def add_rows(self, codes: IntArray, values: FloatArray, positions: FloatArray) -> None:
+    def add_rows(
+        self,
+        codes: IntArray,
+        values: FloatArray,
+        positions: FloatArray,
+        screen: Matrix | None = None,
+    ) -> None:
         """Append moves that are columns already.
 
         Args:
@@ -176,8 +189,11 @@ class MoveColumns:
             values: Centre, normal, sweep, feed, corner tolerance, acceleration and deceleration,
                 shape (n, 11).
             positions: Start, end and display, shape (n, 3, k).
+            screen: As for ``Segment``.
         """
         self._close_lists()
+        if screen is not None:
+            self._screens.append((self.count, self.count + len(codes), screen))
         self._parts.append((codes.copy(), values.copy(), positions.copy()))
         self.count += len(codes)
 
@@ -206,6 +222,7 @@ class MoveColumns:
         columns = zip(*(self._parts or [none]), strict=True)
         codes, values, positions = (np.concatenate(each) for each in columns)
         curve, lengths, units = self._curve_columns(len(codes))
+        screen = self._screen_column(len(codes))
         events = self.events
         if refused is not None:
             kept = codes[:, 2] != refused.line
@@ -213,6 +230,7 @@ class MoveColumns:
             events = refused.kept_events(events, kept)
             codes, values, positions = codes[kept], values[kept], positions[kept]
             curve = None if curve is None else curve[kept]
+            screen = None if screen is None else screen[kept]
             lengths, units = lengths[kept], units[kept]
         self._clear()
         start, end = positions[:, 0], positions[:, 1]
@@ -245,6 +263,7 @@ class MoveColumns:
             acceleration=values[:, 9].copy(),
             deceleration=values[:, 10].copy(),
             curve=curve,
+            screen=screen,
         )
         return Chunk(moves, tuple(events))
 
@@ -258,6 +277,15 @@ class MoveColumns:
             column[row], lengths[row] = coefficients, length
             units[row] = FeedUnit.DEG_PER_MIN if turning else FeedUnit.MM_PER_MIN
         return column, lengths, units
+
+    def _screen_column(self, count: int) -> FloatArray | None:
+        """Of so many moves what their X, Y and Z add to what the screen shows; None: of all of them the same."""
+        if not self._screens:
+            return None
+        column = np.tile(np.array(IDENTITY), (count, 1, 1))
+        for first, end, screen in self._screens:
+            column[first:end] = screen
+        return column
 
     def _measure(
         self,

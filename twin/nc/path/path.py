@@ -8,6 +8,7 @@ and holds few moves. Under tool centre point control all others see the tip in t
 from collections.abc import Callable
 
 from twin.nc.canonical import Axes, Event, FloatArray, IntArray, Motion
+from twin.nc.geometry.matrices import Matrix
 from twin.nc.geometry.planes import Plane
 from twin.nc.path.blends import Blend
 from twin.nc.path.compensation.stage import OFF, Compensation
@@ -84,13 +85,18 @@ class Path:
         return free and all(stage is None for stage in stages)
 
     def add_rows(
-        self, codes: IntArray, values: FloatArray, positions: FloatArray
+        self,
+        codes: IntArray,
+        values: FloatArray,
+        positions: FloatArray,
+        screen: Matrix | None = None,
     ) -> Segment | None:
         """Programmed moves as ``MoveColumns`` takes them, while ``passes_on``; the last of them."""
         if not len(codes):
             return None
-        self.columns.add_rows(codes, values, positions)
+        self.columns.add_rows(codes, values, positions, screen)
         self._before = segment_of(codes[-1], values[-1], positions[-1])
+        self._before.screen = screen
         self.position = self._before.end
         return self._before
 

@@ -8,7 +8,7 @@ from typing import NoReturn
 from twin.nc.geometry import curves
 from twin.nc.geometry.arcs import SAME_POINT, Point, distance
 from twin.nc.geometry.curves import Curve
-from twin.nc.geometry.matrices import dot
+from twin.nc.geometry.matrices import applied, dot
 from twin.nc.geometry.planes import Plane, Vector, cross
 from twin.nc.path.move_columns import Segment
 from twin.nc.text.reporter import Reporter
@@ -94,7 +94,7 @@ def part_of(move: Segment, element: Curve, plane: Plane, first: float, last: flo
         move,
         start=start,
         end=end,
-        display=_shown(move, end),
+        display=shown_at(move, end),
         center=plane.world(*center, plane.local(start).height) if is_arc else move.center,
         normal=plane.normal if is_arc else move.normal,
         sweep=sweep * (last - first),
@@ -107,9 +107,15 @@ def _at(move: Segment, plane: Plane, point: Point, share: float) -> list[float]:
     return [*plane.world(*point, height), *whole[3:]]
 
 
-def _shown(move: Segment, here: list[float]) -> list[float]:
-    """What the screen shows before the move has ended: shifted by as much as at its end."""
-    return [a + s - e for a, s, e in zip(here, move.display, move.end, strict=True)]
+def shown_at(move: Segment, here: list[float]) -> list[float]:
+    """What the screen shows where the move has not ended: as far from what it shows at its end as the axes are."""
+    shown = [a + s - e for a, s, e in zip(here, move.display, move.end, strict=True)]
+    if move.screen is not None:
+        x, y, z = applied(
+            move.screen, (here[0] - move.end[0], here[1] - move.end[1], here[2] - move.end[2])
+        )
+        shown[:3] = [move.display[0] + x, move.display[1] + y, move.display[2] + z]
+    return shown
 
 
 def line_between(move: Segment, start: list[float], end: list[float]) -> Segment:
@@ -118,7 +124,7 @@ def line_between(move: Segment, start: list[float], end: list[float]) -> Segment
         move,
         start=start,
         end=end,
-        display=_shown(move, end),
+        display=shown_at(move, end),
         center=None,
         normal=(math.nan, math.nan, math.nan),
         sweep=0.0,

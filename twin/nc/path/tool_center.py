@@ -13,8 +13,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twin.kinematics import Kinematics, counted_from, tool_direction, tool_point, turned, turns_part
+from twin.kinematics import (
+    Kinematics,
+    counted_from,
+    rotated,
+    tool_direction,
+    tool_point,
+    turned,
+    turns_part,
+)
 from twin.nc.canonical import Corner, FloatArray
+from twin.nc.geometry.matrices import Matrix
 from twin.nc.geometry.planes import Vector
 from twin.nc.path.move_columns import Curve, Segment
 from twin.nc.path.moves import arc_length, line_length
@@ -114,13 +123,16 @@ class ToolCenter:
         """Which way the tool points from its tip to the spindle, seen from the part, shape (3,)."""
         return tool_direction(self._chain, np.array([axes]) + self._counted_zero)[0]
 
-    def pointing(self, direction: Vector, axes: list[float], sense: float = 0.0) -> list[float]:
+    def pointing(
+        self, direction: Vector, axes: list[float], sense: float = 0.0, *, only: bool = False
+    ) -> list[float]:
         """Where the rotary axes point the tool in a direction of the part, the others as they are, shape (k,).
 
         Args:
             direction: The direction.
             axes: Where the axes are.
             sense: Sign of the axis next to the tool that is preferred; 0: whatever is nearest.
+            only: A solution with another sign is none.
 
         Raises:
             ValueError: None do, within their travel (``orientation``).
@@ -128,7 +140,8 @@ class ToolCenter:
         offset = self._counted_zero
         travel = self._setup.travel - (self._zero - offset)[:, None]
         here = np.array(axes) + offset
-        found = rotary_axes_for(self._chain, np.array(direction), here, travel, sense)
+        goal = np.array(direction)
+        found = rotary_axes_for(self._chain, goal, here, travel, sense, only=only)
         return (found - offset).tolist()
 
     def axes(self, tip: list[float]) -> list[float]:
@@ -145,6 +158,11 @@ class ToolCenter:
         """Directions of the machine's X, Y and Z as the part sees them, as columns, shape (3, 3)."""
         _, steps = self._carried(np.array([axes]), np.zeros(len(axes)))
         return np.stack([step.value[0] for step in steps], axis=1)
+
+    def tool_frame(self, axes: list[float]) -> FloatArray:
+        """Directions of X, Y and Z of the spindle, which its rotary axes carry, as the part sees them; as columns."""
+        joints = np.tile(np.array(axes) + self._counted_zero, (3, 1))
+        return rotated(self._chain, np.eye(3), joints).T
 
     def moves_of(self, move: Segment) -> Iterator[Segment]:
         """What the axes do for a move of the tip.
@@ -172,12 +190,17 @@ class ToolCenter:
         frame = self.frame_there(move.start)
         if np.abs(frame.T @ frame - np.eye(3)).max() > _SQUARE:
             return None
-        center, normal = move.center, move.normal
+        center, normal, level = move.center, move.normal, np.array_equal(frame, np.eye(3))
         if center is not None:
             there = self.axes([*center, *move.start[3:]])
             center, normal = _vector(there), _vector(frame.T @ np.array(normal))
         return dataclasses.replace(
-            move, start=self.axes(move.start), end=self.axes(move.end), center=center, normal=normal
+            move,
+            start=self.axes(move.start),
+            end=self.axes(move.end),
+            center=center,
+            normal=normal,
+            screen=move.screen if level else _screen(move, frame),
         )
 
     # --- rotary axes in motion
@@ -201,7 +224,11 @@ class ToolCenter:
         coefficients = np.zeros((count, len(rates), 5))
         coefficients[:, 3:, 0] = np.diff(rows[:, 3:], axis=0)
         coefficients[:, :3] = _hermite(axes.value, axes.first * step, axes.second * step * step)
-        shown = np.array(move.display) - np.array(move.end)
+        matrix = np.eye(3) if move.screen is None else np.array(move.screen)
+        shown = places - places[-1]
+        shown[:, :3] = shown[:, :3] @ matrix.T
+        shown += move.display
+        screen = _screen(move, self._seen_from_part.T)
         advance = _advance(move)
         for part in range(count):
             last = part + 1 == count
@@ -214,12 +241,13 @@ class ToolCenter:
                 move,
                 start=rows[part].tolist(),
                 end=rows[part + 1].tolist(),
-                display=(places[part + 1] + shown).tolist(),
+                display=shown[part + 1].tolist(),
                 corner=move.corner if last else Corner.EXACT_PATH,
                 center=center,
                 normal=_vector(self._seen_from_part @ np.array(move.normal)),
                 sweep=move.sweep * step,
                 curve=Curve(coefficients[part], length * step, turning),
+                screen=screen,
             )
 
     def _parts(self, move: Segment, rates: FloatArray) -> int:
@@ -348,6 +376,12 @@ def _length(move: Segment) -> float:
     if move.center is None:
         return line_length(move.start[:3], list(move.end[:3]))
     return arc_length(move.start, move.end, move.center, move.normal, move.sweep)
+
+
+def _screen(move: Segment, frame: FloatArray) -> Matrix:
+    """What a move whose X, Y and Z are told in another frame adds to what the screen shows (``Segment.screen``)."""
+    rows = frame if move.screen is None else np.array(move.screen) @ frame
+    return (_vector(rows[0]), _vector(rows[1]), _vector(rows[2]))
 
 
 def _vector(values: FloatArray | list[float]) -> Vector:

@@ -73,7 +73,7 @@ class TrailPoints:
         if not len(self.position):
             return self
         group = self.rapid.astype(np.int64)
-        return self[thin(self.position, group, tolerance, np.inf, MOST_JOINED)]
+        return self[thin(self.position[None], group, tolerance, np.inf, MOST_JOINED)]
 
 
 def trail_points(recording: Recording, summary: ProgramSummary) -> TrailPoints:

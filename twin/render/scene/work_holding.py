@@ -28,7 +28,7 @@ def add_work_holding(
     foot = placement.points((top - [0.0, 0.0, stock.extent[2]])[None])[0]
     height = foot[2] - spec.site(TABLE_TOP).pos[2]
     middle = foot - [0.0, 0.0, height / 2]
-    for support in supports(stock.extent, height / MM, box=stock.shape == "box"):
+    for support in supports(stock.extent, height / MM, box=not stock.on_post):
         half = [each * MM for each in support.half]
         kind = mujoco.mjtGeom.mjGEOM_CYLINDER if support.round else mujoco.mjtGeom.mjGEOM_BOX
         size = [half[0], half[2], 0.0] if support.round else half

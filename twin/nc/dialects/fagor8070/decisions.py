@@ -73,6 +73,13 @@ DECISIONS = (
         example="leads",
     ),
     Decision(
+        "How does the tool change sides, G42 while G41 is in force?",
+        "Where the compensated paths of the move before and behind cross; where they do not, straight from the end of "
+        "the one, square to it, to the beginning of the other, square to that.",
+        "The manual says so.",
+        example="side_changes",
+    ),
+    Decision(
         "What do G36 and G39 do?",
         "In a block of their own between two moves with a feed: G36 rounds the corner by the radius "
         "I, G39 cuts both moves at the distance I; I stays for the next of them; compensation acts "

@@ -107,11 +107,19 @@ DECISIONS: tuple[Decision, ...] = (
     ),
     Decision(
         "What does another D do while compensation is in force?",
-        "The next straight move begins beside the contour by the old radius and ends beside it by the new one; an "
-        "arc, D0 and the other side are refused: end it by G40.",
-        "The manual draws the vector at a block's end with the value of that block; it leaves the spiral of an arc "
-        "and the crossing of the contour to figures that the twin does not follow.",
+        "The next move begins beside the contour by the old radius and ends beside it by the new one, an arc along a "
+        "spiral; D0 ends compensation as G40 does, and another D behind it starts it again.",
+        "The manual draws the vector at a block's end with the value of that block; between start and end of an arc "
+        "of different radii it lets the radius grow evenly with the angle.",
         example="radius_changes",
+    ),
+    Decision(
+        "How does the tool change sides, G42 while G41 is in force?",
+        "Where the path on the old side of the one move and that on the new side of the next cross, both extended; "
+        "where they do not, the one move ends square to the beginning of the next, an arc along a spiral. In the "
+        "first move behind the lead-in the side cannot change.",
+        "The manual says all three; what it does not say: a crossing counts that lies ahead on both.",
+        example="side_changes",
     ),
     Decision(
         "What do timers, date and probe show?",

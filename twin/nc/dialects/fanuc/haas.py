@@ -322,5 +322,12 @@ DECISIONS: tuple[Decision, ...] = (
         "Setting 73, G68 incremental angle, is OFF when a control comes from its maker.",
         example="rotation_is_absolute",
     ),
+    Decision(
+        "How does the tool change sides, G42 while G41 is in force?",
+        "Along the move of G42: it begins beside the contour on the old side and ends beside it on the new one; an "
+        "arc is a spiral then.",
+        "The manual says so of a move; it names no arc.",
+        example="side_changes",
+    ),
     *(each for each in FANUC_DECISIONS if each.example in _SHARED_EXAMPLES),
 )

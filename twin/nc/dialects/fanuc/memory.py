@@ -10,6 +10,7 @@ from twin.nc.control.control import Control
 from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.matrices import Matrix
 from twin.nc.geometry.planes import Vector
+from twin.nc.path.compensation.stage import SideChange
 from twin.nc.path.feed_rates import FeedMode
 from twin.nc.text.blocks import Word
 from twin.nc.text.lines import Lines
@@ -70,6 +71,7 @@ class Variant(NamedTuple):
         repeats_motion: L repeats the motion of its block.
         adds_rotation: When controls of this kind add the R of G68 in G91 to the rotation in force.
         reference_cancels_any_length: G28 cancels the tool length whatever axes it names, not with Z alone.
+        side_change: How the tool goes over to the other side of a contour.
         transformed_keeps_origin: Neither work offsets nor presets nor moves to reference points stand under
             a scale, a mirror or a rotation.
     """
@@ -91,6 +93,7 @@ class Variant(NamedTuple):
     common_by_thousands: bool = False
     then_takes_words: bool = False
     repeats_motion: bool = False
+    side_change: SideChange = SideChange.EXTENDED
     adds_rotation: str = "a control with parameter 5400 #0 at 1 adds it"
     tool_variables: tuple[tuple[int, int, str], ...] = (
         (2001, 2200, "length_wear"),
@@ -113,6 +116,7 @@ HAAS = Variant(
     machine_by_motion=True,
     reference_cancels_any_length=True,
     last_code_counts=False,
+    side_change=SideChange.ALONG,
     transformed_keeps_origin=False,
     modal_groups={
         **{number: name for number, name in MODAL_GROUPS.items() if number <= 11},

@@ -10,15 +10,15 @@ from twin.nc.control.codes import Action
 from twin.nc.control.compensation import (
     NEEDS_TOOL,
     change_radius,
+    change_side,
     compensate,
-    side_in_force,
     tool_numbered,
 )
 from twin.nc.control.control import Control
 from twin.nc.dialects.fanuc.memory import ToolOffset, memory_of
 from twin.nc.dialects.fanuc.programs import whole
 from twin.nc.iso.tool_center import end_tool_center
-from twin.nc.iso.tool_compensation import set_length
+from twin.nc.iso.tool_compensation import LEFT, RIGHT, set_length
 from twin.nc.text.blocks import Word
 
 LARGEST_OFFSET = 999
@@ -41,14 +41,20 @@ def set_length_number(control: Control, word: Word) -> None:
 
 
 def set_radius_number(control: Control, word: Word) -> None:
-    """D: the row of the radius; while compensation is in force the next line leads from the one to the other."""
+    """D: the row of the radius; D0 ends compensation, and another D starts it again (manual)."""
     number = whole(control, word, "tool-offset", "offset number")
     memory = memory_of(control)
-    starts = any(code in (41.0, 42.0) for code in _codes(control))
-    changes = control.path.compensation.in_force and number != memory.radius_number
+    changes = number != memory.radius_number
     memory.radius_number = number
-    if changes and not starts:
+    if not changes or any(code in (40.0, 41.0, 42.0) for code in _codes(control)):
+        return
+    side = {41: LEFT, 42: RIGHT}.get(int(control.modal.active.get("compensation", 40)))
+    if control.path.compensation.in_force and number:
         change_radius(control, _radius(control, number), word)
+    elif control.path.compensation.in_force:
+        control.path.end_compensation()
+    elif side is not None and number:
+        compensate(control, side, _radius(control, number))
 
 
 def _codes(control: Control) -> list[float]:
@@ -128,12 +134,14 @@ def compensation_code(number: int, side: float) -> Action:
         if row_number is None:
             message = f"G{number} needs D, the number of the radius"
             control.fail("tool-offset", message, control.code_word(number), f"G{number} D1")
-        word = control.code_word(number)
-        in_force = control.path.compensation.in_force and side_in_force(control) == side
-        if word is not None and in_force:
-            change_radius(control, _radius(control, row_number), word)
-            return
-        compensate(control, side, _radius(control, row_number))
+        radius = _radius(control, row_number)
+        if not control.path.compensation.in_force:
+            compensate(control, side, radius)
+        elif row_number == 0:
+            control.path.end_compensation()
+        else:
+            way = memory_of(control).variant.side_change
+            change_side(control, side, radius, control.code_word(number), way)
 
     return begin
 

@@ -21,12 +21,10 @@ from twin.nc.geometry.planes import (
     Directions,
     Plane,
     aim,
-    along,
     point_of,
-    put_point,
     vector_of,
-    world,
 )
+from twin.nc.path.compensation.beside import arc_moves, driven, level_arc
 from twin.nc.path.compensation.gouge import Passed
 from twin.nc.path.move_columns import Segment
 from twin.nc.path.segments import IN_PLANE, MoveReport
@@ -46,6 +44,16 @@ class Stage(enum.Enum):
 
 
 OFF, STARTED, LEADING_IN, FOLLOWING, LEADING_OUT = Stage
+
+
+class SideChange(enum.Enum):
+    """How the tool goes over to the other side of the contour."""
+
+    EXTENDED = "where the parallels of both moves cross, else to the beginning of the second one's"
+    CROSSING = (
+        "where the parallels of both moves cross, else straight from the end of one to the next"
+    )
+    ALONG = "along the next move"
 
 
 class Compensation:
@@ -70,6 +78,8 @@ class Compensation:
         self.plane = _NO_PLANE
         self._signed_offset = 0.0
         self._next_offset: float | None = None
+        self._side_change: SideChange | None = None
+        """How the offset that comes next puts the tool on the other side; None: it does not."""
         self._square = self._indirect = self._led = False
         self._held: list[Segment] = []
         """The move that waits for its successor, and moves along the normal that wait for its end."""
@@ -122,15 +132,21 @@ class Compensation:
         """
         self.plane, self._signed_offset = plane, signed_offset
         self._square, self._indirect, self._led = square, indirect, led
-        self.stage, self._here, self._next_offset = STARTED, None, None
+        self.stage, self._here = STARTED, None
+        self._next_offset = self._side_change = None
         self._passed.clear()
 
-    def change(self, signed_offset: float) -> None:
-        """Another radius, signed likewise, from the next move's end on: that line leads from the one to the other."""
+    def change(self, signed_offset: float, side: SideChange | None = None) -> None:
+        """Another radius, signed likewise.
+
+        On the same side, and with ``SideChange.ALONG``, the next move leads from the one to the other; the path
+        of an arc is a spiral then.
+        """
         if self.stage is STARTED:
             self._signed_offset = signed_offset
         else:
             self._next_offset = signed_offset
+            self._side_change = None if side is SideChange.ALONG else side
 
     def event(self, event: Event) -> None:
         """Something that happens where the path has come to."""
@@ -171,11 +187,10 @@ class Compensation:
         if self.stage is STARTED and not self._led:
             self._take_lead(move, curve)
             return
-        if not curves.leaves_room(curve, self._signed_offset):
-            self._refuse_radius(
-                move, "compensation-radius", f"into the arc of radius {curves.radius_of(curve):.4f}"
-            )
-        element = curves.parallel_of(curve, self._signed_offset)
+        if self._side_change is not None and self._next_offset is not None:
+            self._change_side(move, curve, self._next_offset, self._side_change)
+            return
+        element = self._parallel_of(move, curve, self._signed_offset)
         if self.stage is STARTED:
             self._here = position
             self._hold(move, curve, element[1])
@@ -189,11 +204,40 @@ class Compensation:
 
     def _take_next_offset(self, move: Segment, curve: Curve, offset: float) -> None:
         """The kept move ends beside the contour by another radius than it began with."""
-        if curve[0]:
-            message = "the radius changes along a straight move, and this is an arc"
-            self._report.refuse(move, "compensation-change", message)
+        self._parallel = self._parallel_of(move, curve, offset)
+        if offset * self._signed_offset < 0.0:
+            self._passed.clear()
         self._signed_offset, self._next_offset = offset, None
-        self._parallel = curves.parallel_of(curve, offset)
+
+    def _change_side(self, move: Segment, curve: Curve, offset: float, way: SideChange) -> None:
+        """The contour's next element, along which the tool goes on the other side."""
+        if self.stage is not FOLLOWING:
+            message = "the side cannot change in the move behind the one that leads in"
+            self._report.refuse(move, "compensation-change", message)
+        held, before, element = (
+            self._contour,
+            self._parallel,
+            self._parallel_of(move, curve, offset),
+        )
+        extended = way is SideChange.EXTENDED
+        crossing = corners.side_change(
+            (held, before, self._start), (curve, element), extended=extended
+        )
+        at = crossing or (element[1] if extended else before[2])
+        around = self._held[0]
+        self._let_go(before, curves.cut(before, self._start, at), at)
+        if at != element[1] and crossing is None:
+            self._go_straight(around, element[1])
+        self._passed.clear()
+        self._signed_offset, self._next_offset, self._side_change = offset, None, None
+        self._hold(move, curve, crossing or element[1])
+        self._parallel = element
+
+    def _parallel_of(self, move: Segment, curve: Curve, offset: float) -> Curve:
+        if not curves.leaves_room(curve, offset):
+            where = f"into the arc of radius {curves.radius_of(curve):.4f}"
+            self._refuse_radius(move, "compensation-radius", where)
+        return curves.parallel_of(curve, offset)
 
     # --- from move to move
 
@@ -249,31 +293,30 @@ class Compensation:
             aim(plane, at, end)
             here = end
             if number == 0 and before[0]:
-                center = world(plane, before[3], along(vector_of(move.start), plane[2]))
-                self._drive(_driven(move, start, end, center, plane[2], part[4]))
+                for piece in arc_moves(move, plane, part, start, end):
+                    self._drive(piece)
             elif start != end:
-                self._drive(_driven(move, start, end, move.center, move.normal, move.sweep))
+                self._drive(driven(move, start, end, move.center, move.normal, move.sweep))
             for event in events:
                 self._happen(event)
         self._here = here
         self._held, self._events = [], []
 
+    def _go_straight(self, move: Segment, at: Point) -> None:
+        """Go straight to a point in the plane, as a kept move goes."""
+        assert self._here is not None
+        end = list(self._here)
+        aim(self.plane, at, end)
+        self._drive(driven(move, self._here, end, None, move.normal, move.sweep))
+        self._here = end
+
     def _go_around(self, move: Segment, corner: Curve) -> None:
         """Go around a corner where the path has come to, as a kept move goes."""
         assert self._here is not None
-        arc = self._level_arc(move, corner, self._here)
+        arc = level_arc(move, self.plane, corner, self._here)
         arc.corner = Corner.EXACT_PATH
         self._here = arc.end
         self._drive(arc)
-
-    def _level_arc(self, move: Segment, arc: Curve, start: list[float]) -> Segment:
-        """An arc at one height with all else of a move; further axes stand still."""
-        plane, end = self.plane, list(start)
-        height = along(vector_of(start), plane[2])
-        put_point(plane, arc[2], height, end)
-        made = _driven(move, start, end, world(plane, arc[3], height), plane[2], arc[4])
-        made.display = [a + s - e for a, s, e in zip(end, move.display, move.end, strict=True)]
-        return made
 
     # --- leads
 
@@ -316,19 +359,19 @@ class Compensation:
             self._warn_of_cut(move, "from", lead, contour)
             self.stage = OFF
         if turns:
-            back = self._level_arc(move, (True, here, arc[1], arc[3], -arc[4]), stand)
+            back = level_arc(move, plane, (True, here, arc[1], arc[3], -arc[4]), stand)
             self._drive(back)
             stand = back.end
         there = list(move.end)
         if not leads:
             aim(plane, here, there)
         if stand != there:
-            self._drive(_driven(move, stand, there, None, move.normal, move.sweep))
+            self._drive(driven(move, stand, there, None, move.normal, move.sweep))
 
     # --- what does not fit
 
     def _refuse_radius(self, move: Segment, code: str, where: str) -> NoReturn:
-        message = f"the tool's radius {abs(self._signed_offset):g} does not fit {where}"
+        message = f"the tool's radius {abs(self.signed_offset):g} does not fit {where}"
         self._report.refuse(move, code, message)
 
     def _pass(self, element: Curve, own: Curve | None) -> None:
@@ -344,30 +387,3 @@ class Compensation:
         if depth > 0.0:
             message = f"on its way {way} the contour the tool cuts {depth:.3f} mm into it"
             self._report.warn(move, "compensation-lead", message)
-
-
-def _driven(
-    move: Segment,
-    start: list[float],
-    end: list[float],
-    center: tuple[float, float, float] | None,
-    normal: tuple[float, float, float],
-    sweep: float,
-) -> Segment:
-    """A move elsewhere, with all else of another."""
-    return Segment(
-        move.motion,
-        move.line,
-        move.block,
-        start,
-        end,
-        move.display,
-        move.feed,
-        move.corner,
-        move.corner_tolerance,
-        move.acceleration,
-        move.deceleration,
-        center,
-        normal,
-        sweep,
-    )
