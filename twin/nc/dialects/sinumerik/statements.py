@@ -9,6 +9,7 @@ from twin.nc.dialects.sinumerik.codes import NUMBERS
 from twin.nc.dialects.sinumerik.cycles import CYCLES, call_cycle
 from twin.nc.dialects.sinumerik.known import PASSED_STATEMENTS, REFUSED_STATEMENTS
 from twin.nc.dialects.sinumerik.variables import assign, define
+from twin.nc.dialects.sinumerik.workpiece import workpiece
 from twin.nc.text.blocks import Statement
 
 _ASSIGNED = re.compile(r"[ \t]*(?:\[[^\]]*\])?[ \t]*=(?!=)")
@@ -62,6 +63,7 @@ STATEMENTS: dict[str, StatementAction] = {
     "CYCLE800": orientation.swivel,
     "TRAORI": orientation.begin_transformation,
     "TRAFOOF": orientation.end_transformation,
+    "WORKPIECE": workpiece,
 }
 
 
