@@ -290,6 +290,13 @@ DEPTHS = {
         "CYCL DEF 201 REAMING Q200=2 Q201=-5 Q206=100 Q211=0 Q208=250 Q203=3 Q204=20\nL X+10 FMAX M99",
         [10, 5, -2, 5, 23],
     ),
+    "204 bores from below, its tooth above its tip": (
+        (
+            "CYCL DEF 204 BACK BORING Q200=2 Q249=5 Q250=20 Q251=3.5 Q252=15 Q253=750 Q254=200 Q255=0.5 Q203=0 Q204=50 "
+            "Q214=1 Q336=0\nL X+30 FMAX M99"
+        ),
+        [10, 2, 2, -37, -37, -30, -37, -37, 2, 50, 50],
+    ),
     "Q201=0 drills nothing": (DRILL.replace("Q201=-15", "Q201=0") + "L X+30 FMAX M99", [10]),
 }
 
@@ -299,6 +306,30 @@ def test_depths(says: str) -> None:
     text, expected = DEPTHS[says]
     heights = read(text).moves.end[1:, 2]
     assert list(heights) == pytest.approx(expected)
+
+
+def test_204_passes_the_hole_beside_its_axis() -> None:
+    text = "CYCL DEF 204 BACK BORING Q200=2 Q249=5 Q250=20 Q251=3.5 Q252=15 Q253=750 Q254=200 Q203=0 Q214=2\nL X+30 FMAX M99"
+    moves = read(text).moves
+    down = next(row for row in range(len(moves.end)) if moves.end[row, 2] == -37.0)
+    assert moves.start[down, :2].tolist() == [30.0, -3.5]
+    assert moves.end[-1, :2].tolist() == [30.0, 0.0]
+
+
+def test_fn_17_writes_the_radius_of_a_tool() -> None:
+    begin = BEGIN.replace("TOOL CALL", "FN 17: SYSWRITE ID50 NR2 IDX1 = +7\nTOOL CALL")
+    made = read("L X-20 Y+0 FMAX\nL X+0 Y+0 RL F100\nL Y+30", begin)
+    assert made.position["X"] == pytest.approx(-7.0)
+
+
+def test_m94_of_one_axis() -> None:
+    assert read("L C+400 FMAX\nM94 C\nL C+41 FMAX").position["C"] == pytest.approx(401.0)
+
+
+def test_places_of_a_pattern_count_on_from_the_one_before() -> None:
+    made = read(DRILL + "PATTERN DEF POS1 (X+25 Y+33.5 Z+0) POS2 (X+15 IY+6.5 Z+0)\nCYCL CALL PAT")
+    bottoms = made.moves.end[made.moves.end[:, 2] == -15.0]
+    assert bottoms[:, :2].tolist() == [[25.0, 33.5], [15.0, 40.0]]
 
 
 def test_cycle_9_dwells_where_it_is_defined() -> None:
@@ -344,6 +375,12 @@ REFUSED = {
     "TCPM": ("FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS", "TCPM"),
     "M128": ("M128", "M128"),
     "normal vectors": ("LN X+1 Y+2 Z+3 NX0 NY0 NZ1 F100", "LN"),
+    "a table of points": ('SEL PATTERN "A.PNT"', "SEL PATTERN"),
+    "a datum that FN 17 cannot write": ("FN 17: SYSWRITE ID210 NR4 IDX3 = +1", "ID50"),
+    "back boring without a direction": (
+        "CYCL DEF 204 BACK BORING Q200=2 Q249=5 Q250=20 Q251=3 Q252=15 Q253=750 Q254=200 Q203=0 Q214=0\nCYCL CALL",
+        "Q214",
+    ),
     "a contour of cycle 14": ("CYCL DEF 14.0 CONTOUR GEOMETRY", "14"),
     "a probe": ("TCH PROBE 400 BASIC ROTATION", "TCH PROBE"),
     "a label that is not there": ("CALL LBL 7", "7"),

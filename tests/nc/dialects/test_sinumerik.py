@@ -73,6 +73,25 @@ LEADS: dict[str, tuple[str, dict[str, float]]] = {
     "REPEATB runs one block again": ("G91\nONE: G0 X1\nREPEATB ONE P=3", {"X": 4}),
     "REPEAT runs up to its own block": ("G91\nONE: G0 X1\nY1\nREPEAT ONE P=2", {"X": 3, "Y": 3}),
     "M17 in the main program ends it": ("G0 X1\nM17\nX5", {"X": 1}),
+    # what a line holds besides a statement
+    "words behind a message are a block": ('MSG("A;B") G0 X10 ; X99', {"X": 10}),
+    "words behind STOPRE too": ("STOPRE G0 X5", {"X": 5}),
+    "several limits of acceleration": ("ACC[X]=50 ACC[Y]=60 G0 X3", {"X": 3}),
+    # calls
+    "CALL by a text that a variable holds": ('DEF STRING[20] PP="SUB"\nCALL PP\nM30\n%_N_SUB_SPF\nG0 X1\nRET', {"X": 1}),
+    "CALL of a part of another program": (
+        'CALL "SUB" BLOCK LA TO LB\nM30\n%_N_SUB_SPF\nG0 X5\nLA: G91 G0 X1\nLB: Y2\nG90 G0 X7\nRET', {"X": 1, "Y": 2}),
+    "PCALL with its path and values": (
+        "PCALL /_N_WKS_DIR/_N_SUB_SPF(3)\nM30\n%_N_SUB_SPF\nPROC SUB(REAL AA)\nG0 X=AA\nRET", {"X": 3}),
+    "EXTCALL with a folder": ('EXTCALL "DIR/SUB.SPF"\nM30\n%_N_SUB_SPF\nG0 X1\nRET', {"X": 1}),
+    "VAR of a table changes the caller's": (
+        "DEF REAL TT[3]=SET(1,2,3)\nSUB(TT)\nG0 X=TT[0] Y=TT[2]\nM30\n%_N_SUB_SPF\nPROC SUB(VAR REAL AA[3])\nAA[0]=9\nRET",
+        {"X": 9, "Y": 3}),
+    "a table by its values stays": (
+        "DEF REAL TT[2,2]=SET(1,2,3,4)\nSUB(TT)\nG0 X=TT[0,0]\nM30\n%_N_SUB_SPF\nPROC SUB(REAL AA[,])\nG0 Y=AA[1,0]\nAA[0,0]=9\nRET",
+        {"X": 1, "Y": 3}),
+    "a text for a parameter": (
+        'SUB("ABC",1)\nM30\n%_N_SUB_SPF\nPROC SUB(STRING[20] NAME, REAL AA)\nG0 X=AA\nRET', {"X": 1}),
     # feeds and planes
     "G70 counts lengths in inches": ("G70 G0 X1", {"X": 25.4}),
     "the length acts along Z in every plane": ("T2 M6\nG18 G0 Z0", {"Z": 12.5}),
@@ -100,6 +119,11 @@ REFUSED: dict[str, tuple[str, str]] = {
     "a cycle that would go up": ("CYCLE81(10,0,2,5)", "cycle-depth"),
     "CYCLE63": ('CYCLE63("CONTOUR",10,0,2,-5)', "unsupported-statement"),
     "a synchronised action": ("WHEN TRUE DO M8", "unsupported-statement"),
+    "a curve between arc and intersection": ("DISC=50", "unsupported-word"),
+    "a number for a text": ("SUB(5)\nM30\n%_N_SUB_SPF\nPROC SUB(STRING[9] AA)\nM17", "text-value"),
+    "a number for a table": ("SUB(5)\nM30\n%_N_SUB_SPF\nPROC SUB(REAL AA[3])\nM17", "call-values"),
+    "a call of a variable that holds nothing": ("CALL NOPE", "call-values"),
+    "the feed of one axis": ("FL[X]=500", "unsupported-statement"),
     "two spindles": ("S2=500", "expression"),
 }  # fmt: skip
 
@@ -128,6 +152,22 @@ def test_corners_by_their_codes() -> None:
     moves = good("F100\nG1 X1\nG9 X2\nG64 X3\nG9 X4\nX5\nG60 X6\nM30", "sinumerik").moves
     stop, round_ = Corner.EXACT_STOP, Corner.CONTINUOUS
     assert moves.corner.tolist() == [stop, stop, round_, stop, round_, stop]
+
+
+def test_disc_100_passes_corners_as_g451_does() -> None:
+    text = "T1 M6\nG41 {} G1 X10 F100\nY20\nX30\nG40 X50\nM30"
+    ends = {words: good(text.format(words), "sinumerik", settings=WITH_TABLES).moves
+            for words in ("G450", "G451", "G450 DISC=100", "G450 DISC=0")}  # fmt: skip
+    assert ends["G450 DISC=100"].end.tolist() == ends["G451"].end.tolist()
+    assert ends["G450 DISC=0"].end.tolist() == ends["G450"].end.tolist()
+    assert len(ends["G450"].end) == len(ends["G451"].end) + 1
+
+
+def test_d_of_the_block_gives_g41_its_radius() -> None:
+    moves = good(
+        "T1 M6 D0\nG41 D1 OFFN=1 G1 X10 F100\nY20\nG40 X0\nM30", "sinumerik", settings=WITH_TABLES
+    ).moves
+    assert moves.end[1, 0] == pytest.approx(10.0 - 2.0 - 1.0)
 
 
 def test_turns_are_further_ones() -> None:

@@ -122,7 +122,9 @@ def test_a_post_of_klartext_turns_the_axes_itself() -> None:
 
 @pytest.mark.parametrize(
     ("words", "sign"), [("EULER EULPR+0 EULNU+30 EULROT+0", 1.0), ("AXIAL A+30", 1.0),
-     ("VECTOR BX+1 BY+0 BZ+0 NX+0 NY-0.5 NZ+0.8660254037844386", 1.0), ("RELATIV SPA+30", 1.0)],
+     ("VECTOR BX+1 BY+0 BZ+0 NX+0 NY-0.5 NZ+0.8660254037844386", 1.0), ("RELATIV SPA+30", 1.0),
+     ("PROJECTED PROPR+0 PROMIN+30 ROT+0", 1.0),
+     ("POINTS P1X+5 P1Y+0 P1Z+2 P2X+9 P2Y+0 P2Z+2 P3X-3 P3Y+0.8660254037844386 P3Z+2.5", 1.0)],
 )  # fmt: skip
 def test_planes_of_klartext_by_other_words(words: str, sign: float) -> None:
     spatial = TILTED["heidenhain"]
@@ -140,6 +142,56 @@ def test_move_keeps_the_tip_at_the_part_while_the_axes_turn() -> None:
     assert np.abs(tips - tips[0]).max() < 1e-9
 
 
+def test_move_turns_about_the_place_below_the_tip_that_dist_says() -> None:
+    text = TILTED["heidenhain"].replace("TURN FMAX", "MOVE DIST25 FMAX").split("L X+0 Y+0 Z+20")[0]
+    moves = _led("heidenhain", text + "\nEND PGM A MM").moves
+    below = ToolCenter(on_machine(trunnion()), 15.0 + 25.0, [0.0] * 5)
+    places = np.array(
+        [below.tip(place.tolist())[:3] for place in moves.end[moves.shape == Shape.CURVE]]
+    )
+    assert np.abs(places - places[0]).max() < 1e-9
+
+
+@pytest.mark.parametrize(("how", "turned"), [("TABLE ROT", 40.0), ("COORD ROT", 0.0), ("", 0.0)])
+def test_table_rot_turns_a_table_that_the_tool_would_not_need(how: str, turned: float) -> None:
+    text = (
+        "BEGIN PGM A MM\nTOOL CALL 1 Z S1000\nL Z+100 FMAX\n"
+        f"PLANE SPATIAL SPA+0 SPB+0 SPC+40 TURN FMAX {how}\nL X+10 Y+0 Z+20 FMAX\nEND PGM A MM\n"
+    )
+    end = _led("heidenhain", text).moves.end[-1]
+    assert end[3:] == pytest.approx((0.0, turned), abs=1e-9)
+    # The same place of the part in both cases: 10 mm along the turned X.
+    assert TIP.tip(end.tolist())[:2] == pytest.approx(10.0 * _turn(2, 40.0)[:2, 0], abs=1e-9)
+
+
+@pytest.mark.parametrize(("words", "sign"), [("SEQ+", 1.0), ("SEQ-", -1.0), ("SYM-", -1.0)])
+def test_seq_is_the_sign_of_the_axis_next_to_the_tool(words: str, sign: float) -> None:
+    text = TILTED["heidenhain"].replace("SEQ+", words)
+    moves = _led("heidenhain", text).moves
+    assert moves.end[-1, 3] == pytest.approx(30.0 * sign)
+    expected = _led("heidenhain", TILTED["heidenhain"]).moves.end[-1]
+    longer = ToolCenter(on_machine(trunnion()), 15.0, [0.0] * 5)
+    assert longer.tip(moves.end[-1].tolist())[:3] == pytest.approx(
+        longer.tip(expected.tolist())[:3], abs=1e-9
+    )
+
+
+def test_a_plane_that_is_level_again_lets_the_axes_turn() -> None:
+    text = "BEGIN PGM A MM\nTOOL CALL 1 Z S1000\nPLANE SPATIAL SPA+0 SPB+0 SPC+0 TURN FMAX\nL C+90 FMAX\nEND PGM A MM\n"
+    assert _led("heidenhain", text).moves.end[-1, 4] == 90.0
+
+
+def test_spatial_angles_of_tcpm_point_the_tool_whatever_axes_there_are() -> None:
+    text = (
+        "BEGIN PGM A MM\nTOOL CALL 1 Z S1000\nFUNCTION TCPM F TCP AXIS SPAT PATHCTRL AXIS\n"
+        "L X+10 Y+20 Z+5 A+20 B+0 C+0 F500\nL X+40 B+10\nFUNCTION RESET TCPM\nEND PGM A MM\n"
+    )
+    end = _led("heidenhain", text).moves.end[-1]
+    assert TIP.tip(end.tolist())[:3] == pytest.approx((40.0, 20.0, 5.0), abs=1e-9)
+    direction = tool_direction(trunnion(), end[None] + TIP_ZERO)[0]
+    assert direction == pytest.approx((_turn(1, 10.0) @ _turn(0, 20.0))[:, 2], abs=1e-9)
+
+
 def test_angles_of_cycle800_one_after_the_other() -> None:
     text = TILTED["sinumerik"].replace("57,10,0,0,30,0,0", "{}")
     first = text.replace("{}", "57,0,0,0,20,30,40")
@@ -155,14 +207,6 @@ def test_angles_of_cycle800_one_after_the_other() -> None:
     assert directions[1] == pytest.approx(by_z_first[:, 2], abs=1e-9)
 
 
-def test_a_dynamic_work_offset_keeps_the_directions_of_the_machine() -> None:
-    text = "O1\nT1 M6\nG0 Z100.\nA30. C40.\nG254\nG0 X0 Y0 Z20.\nG1 X5. F100.\nG255\nM30\n"
-    moves = _led("haas", text).moves
-    assert moves.end[-1] - moves.start[-1] == pytest.approx((5.0, 0.0, 0.0, 0.0, 0.0), abs=1e-9)
-    # The origin is the part's, wherever the axes have brought it: 20 mm along the tool from it.
-    assert np.linalg.norm(TIP.tip(moves.start[-1].tolist())[:3]) == pytest.approx(20.0)
-
-
 TIP_ZERO = on_machine(trunnion()).zero
 
 
@@ -175,6 +219,66 @@ def _turn(axis: int, angle: float) -> np.ndarray:
     return matrix
 
 
+SOLID = _turn(2, 30.0) @ _turn(1, 20.0)
+ACROSS_TRACES = np.cross((np.cos(np.radians(20.0)), 0.0, -np.sin(np.radians(20.0))),
+                         (0.0, np.cos(np.radians(10.0)), np.sin(np.radians(10.0))))  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("mode", "angles", "across"),
+    [
+        (64, "30,20,0", SOLID[:, 2]),
+        (185, "10,20,0", ACROSS_TRACES / np.linalg.norm(ACROSS_TRACES)),
+        (182, "20,10,0", ACROSS_TRACES / np.linalg.norm(ACROSS_TRACES)),
+        (192, "25,40,0", None),
+    ],
+)
+def test_modes_of_cycle800(mode: int, angles: str, across: np.ndarray | None) -> None:
+    """Solid angles, projection angles about X and Y or about Y and X, and the rotary axes themselves."""
+    text = TILTED["sinumerik"].replace("57,10,0,0,30,0,0", f"{mode},0,0,0,{angles}")
+    end = _led("sinumerik", text).moves.end[-1:]
+    if across is None:
+        here = np.array([0.0, 0.0, 0.0, 25.0, 40.0])
+        across = tool_direction(trunnion(), here[None] + TIP_ZERO)[0]
+    assert tool_direction(trunnion(), end + TIP_ZERO)[0] == pytest.approx(across, abs=1e-9)
+
+
+HEAD = on_machine(head_and_table())
+HEAD_SETTINGS = settings(HEAD, dataclasses.replace(SETTINGS.axes, names=("X", "Y", "Z", "B", "C")))
+BY_AXES = {
+    "heidenhain": "BEGIN PGM A MM\nTOOL CALL 1 Z S1000\nL Z+100 FMAX\nPLANE AXIAL B+20 C+30 TURN FMAX\nL X+0 Y+0 Z+25 FMAX\nEND PGM A MM\n",
+    "sinumerik": 'T1 D1 M6\nG0 Z100\nCYCLE800(0,"T",0,192,0,0,0,20,30,0,0,0,0,1)\nG0 X0 Y0 Z25\nM30\n',
+}
+
+
+@pytest.mark.parametrize("dialect", BY_AXES)
+def test_a_plane_by_the_axes_of_a_head_is_that_across_its_tool(dialect: str) -> None:
+    end = _led(dialect, BY_AXES[dialect], HEAD_SETTINGS).moves.end[-1]
+    assert end[3:] == pytest.approx((20.0, 30.0))
+    tip = ToolCenter(HEAD, 0.0, [0.0] * 5).tip(end.tolist())[:3]
+    assert tip == pytest.approx(25.0 * tool_direction(head_and_table(), end[None] + HEAD.zero)[0])
+
+
+@pytest.mark.parametrize("control", [SETTINGS, HEAD_SETTINGS], ids=["trunnion", "head"])
+def test_vectors_of_traori_point_the_tool(control: ControlSettings) -> None:
+    text = "T1 D1 M6\nTRAORI\nG1 X10 Y20 Z5 A3=0.1 B3=-0.2 C3=2 F500\nX40\nTRAFOOF\nM30\n"
+    setup = control.setup
+    assert setup is not None
+    moves = _led("sinumerik", text, control).moves
+    tip = ToolCenter(setup, 0.0, [0.0] * 5)
+    assert tip.tip(moves.end[-1].tolist())[:3] == pytest.approx((40.0, 20.0, 5.0), abs=1e-9)
+    wanted = np.array([0.1, -0.2, 2.0]) / np.linalg.norm([0.1, -0.2, 2.0])
+    assert tip.direction(moves.end[-1].tolist()) == pytest.approx(wanted, abs=1e-9)
+
+
+def test_a_dynamic_work_offset_keeps_the_directions_of_the_machine() -> None:
+    text = "O1\nT1 M6\nG0 Z100.\nA30. C40.\nG254\nG0 X0 Y0 Z20.\nG1 X5. F100.\nG255\nM30\n"
+    moves = _led("haas", text).moves
+    assert moves.end[-1] - moves.start[-1] == pytest.approx((5.0, 0.0, 0.0, 0.0, 0.0), abs=1e-9)
+    # The origin is the part's, wherever the axes have brought it: 20 mm along the tool from it.
+    assert np.linalg.norm(TIP.tip(moves.start[-1].tolist())[:3]) == pytest.approx(20.0)
+
+
 @pytest.mark.parametrize(
     ("dialect", "text", "code"),
     [
@@ -184,7 +288,10 @@ def _turn(axis: int, angle: float) -> np.ndarray:
         ("fanuc", "O1\nG68.2 X0 Y0 Z0 I0 J130. K0\nG53.1\nM30\n", "tilted-plane"),
         ("fanuc", "O1\nG68.2 X0 Y0 Z0 I0 J30. K0\nG53.1\nG0 A5.\nM30\n", "tool-center"),
         ("fanuc", "O1\nT1 M6\nG41 D1\nG1 X5. F100.\nG43.4 H1\nM30\n", "compensation-change"),
-        ("sinumerik", 'CYCLE800(0,"",0,192,0,0,0,30,0,0,0,0,0,1)\nM30\n', "tilted-plane"),
+        ("sinumerik", 'CYCLE800(0,"",0,158,0,0,0,30,20,0,0,0,0,1)\nM30\n', "tilted-plane"),
+        ("sinumerik", "G1 X5 A3=0 B3=1 C3=1 F100\nM30\n", "tool-center"),
+        ("sinumerik", "TRAORI\nG1 X5 A3=0 B3=0 C3=0 F100\nM30\n", "tool-center"),
+        ("sinumerik", "TRAORI\nG1 X5 A3=0 B3=0 C3=-1 F100\nM30\n", "tool-center"),
         ("sinumerik", 'CYCLE800(0,"",0,57,0,0,0,30,0,0,0,0,0,0)\nG0 X5\nM30\n', "tilted-plane"),
         ("sinumerik", "TRAORI(2)\nM30\n", "tool-center"),
         ("heidenhain", "BEGIN PGM A MM\nPLANE POINTS\nEND PGM A MM\n", "tilted-plane"),
@@ -193,11 +300,8 @@ def _turn(axis: int, angle: float) -> np.ndarray:
             "BEGIN PGM A MM\nPLANE SPATIAL SPA+30 SPB+0 SPC+0 STAY\nL X+5 FMAX\nEND PGM A MM\n",
             "tilted-plane",
         ),
-        (
-            "heidenhain",
-            "BEGIN PGM A MM\nPLANE SPATIAL SPA+30 SPB+0 SPC+0 MOVE DIST50 FMAX\nEND PGM A MM\n",
-            "tilted-plane",
-        ),
+        ("heidenhain", "BEGIN PGM A MM\nPLANE SPATIAL SPA+0 SPB+150 SPC+0 STAY\nEND PGM A MM\n", "tilted-plane"),
+        ("heidenhain", "BEGIN PGM A MM\nPLANE PROJECTED PROPR+90 PROMIN+0 ROT+0\nEND PGM A MM\n", "tilted-plane"),
         ("heidenhain", "BEGIN PGM A MM\nFUNCTION TCPM F CONT AXIS SPAT\nEND PGM A MM\n", "tool-center"),
         ("fagor8070", "#RTCP\nM30\n", "unreadable-statement"),
     ],

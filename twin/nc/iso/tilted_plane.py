@@ -6,15 +6,20 @@ the tool acts along it, and whatever solution of the angles was taken, the cut i
 
 import math
 
+from twin.kinematics import turns_part
+from twin.nc.canonical import FloatArray
 from twin.nc.control.control import Control
 from twin.nc.geometry.arcs import direction
-from twin.nc.geometry.matrices import Matrix, applied
-from twin.nc.geometry.planes import Vector
+from twin.nc.geometry.matrices import Matrix, applied, transposed
+from twin.nc.geometry.planes import Vector, cross
 from twin.nc.iso.tool_center import begin_tool_center, end_tool_center
 from twin.nc.path.tool_center import ToolCenter
 from twin.nc.text.blocks import Statement
 
 _Z: Vector = (0.0, 0.0, 1.0)
+_QUARTER = 90.0
+_PARALLEL = 1e-9
+"""The sine between two directions below which they are one."""
 _ACROSS = 1e-4
 """How far a tool that stands across a plane may lean, by what posts round angles to [rad]."""
 
@@ -28,6 +33,40 @@ def about(axis: int, angle: float) -> Matrix:
     rows[first][first] = rows[second][second] = cosine
     rows[first][second], rows[second][first] = -sine, sine
     (a, b, c), (d, e, f), (g, h, i) = rows
+    return ((a, b, c), (d, e, f), (g, h, i))
+
+
+def directions_of(abscissa: Vector, ordinate: Vector) -> Matrix:
+    """The directions of a plane whose X goes along a vector, and whose Y lies on the side of another one; as columns.
+
+    Raises:
+        ValueError: Both lie along one line.
+    """
+    normal = cross(abscissa, ordinate)
+    x, z = math.hypot(*abscissa), math.hypot(*normal)
+    if z <= _PARALLEL * x * math.hypot(*ordinate):
+        raise ValueError("two directions that differ name a plane")
+    along = (abscissa[0] / x, abscissa[1] / x, abscissa[2] / x)
+    up = (normal[0] / z, normal[1] / z, normal[2] / z)
+    return transposed((along, cross(up, along), up))
+
+
+def plane_of_axes(control: Control, angles: dict[int, float]) -> Matrix:
+    """The directions of the plane that the tool stands across while rotary axes stand at angles; as columns.
+
+    Args:
+        control: The control, of a machine with rotary axes.
+        angles: Programmed, by column [deg]; the other axes are where they are.
+    """
+    setup, there = control.settings.setup, list(control.motion.part)
+    assert setup is not None
+    for column, angle in angles.items():
+        there[column] = angle + control.frame.total[column]
+    return _matrix(ToolCenter(setup, 0.0, control.frame.zero()).tool_frame(there))
+
+
+def _matrix(rows: FloatArray) -> Matrix:
+    (a, b, c), (d, e, f), (g, h, i) = rows.tolist()
     return ((a, b, c), (d, e, f), (g, h, i))
 
 
@@ -53,9 +92,21 @@ def point_tool(
 
 
 def rotary_axes_across(
-    control: Control, name: str, *, sense: float = 0.0, at: Statement | None = None
+    control: Control,
+    name: str,
+    *,
+    sense: float = 0.0,
+    only: bool = False,
+    at: Statement | None = None,
 ) -> list[float]:
     """Programmed position at which the tool stands across the plane of the frame, the tip not being led.
+
+    Args:
+        control: The control.
+        name: As for ``point_tool``.
+        sense: Likewise.
+        only: A solution with another sign is none.
+        at: As for ``point_tool``.
 
     Raises:
         ProgramError: The machine cannot.
@@ -67,10 +118,37 @@ def rotary_axes_across(
     center = ToolCenter(setup, 0.0, control.frame.zero())
     across = applied(control.frame.matrix, _Z)
     try:
-        there = center.pointing(across, control.motion.part, sense)
+        there = center.pointing(across, control.motion.part, sense, only=only)
     except ValueError as error:
         control.fail("tilted-plane", f"{name}: {error}", at)
     return [part - shift for part, shift in zip(there, control.frame.total, strict=True)]
+
+
+def turned_with_plane(control: Control, axes: list[float]) -> list[float]:
+    """The same position with a table that turns about the tool turned until X of the plane lies along the machine's X.
+
+    Where no axis of the table turns about the tool, as it stands there, it is the same.
+    """
+    setup = control.settings.setup
+    assert setup is not None
+    center = ToolCenter(setup, 0.0, control.frame.zero())
+    there = [value + shift for value, shift in zip(axes, control.frame.total, strict=True)]
+    tool = center.direction(there)
+    abscissa = applied(control.frame.matrix, (1.0, 0.0, 0.0))
+
+    for column in setup.chain.column[turns_part(setup.chain)].tolist():
+        turned = list(there)
+        turned[column] += _QUARTER
+        if math.dist(center.direction(turned), tool) > _ACROSS:
+            continue
+        x, y, _ = (center.frame_there(there).T @ abscissa).tolist()
+        angle = math.degrees(math.atan2(y, x))
+        for signed in (angle, -angle):
+            turned[column] = there[column] + signed
+            x, y, _ = (center.frame_there(turned).T @ abscissa).tolist()
+            if abs(y) < _ACROSS < x:
+                return [*axes[:column], axes[column] + signed, *axes[column + 1 :]]
+    return axes
 
 
 def stands_across(control: Control) -> bool:
@@ -87,5 +165,4 @@ def machine_directions(control: Control) -> Matrix:
     """The directions of the machine's X, Y and Z as the part, whose tip is led, sees them; as columns."""
     center = control.path.tool_center
     assert center is not None
-    (a, b, c), (d, e, f), (g, h, i) = center.frame_there(control.motion.part).tolist()
-    return ((a, b, c), (d, e, f), (g, h, i))
+    return _matrix(center.frame_there(control.motion.part))

@@ -8,8 +8,13 @@ Decisions:
 * Rotary axes go evenly between the angles of two blocks; the tip goes straight or on its arc also in rapids.
 """
 
+import math
+
 from twin.nc.control.control import Control
+from twin.nc.geometry.matrices import applied
+from twin.nc.geometry.planes import Vector
 from twin.nc.path.tool_center import ToolCenter
+from twin.nc.text.blocks import Word
 
 
 def begin_tool_center(control: Control, name: str, *, tilted: bool = False) -> None:
@@ -51,6 +56,34 @@ def end_tool_center(control: Control, name: str, *, keeps_length: bool = False) 
         axes = range(len(control.settings.axes))
         control.frame.set_shift("length", [center.longer if axis == 2 else 0.0 for axis in axes])
     control.motion.lead_tip(None)
+
+
+def point_by_words(control: Control, direction: Vector, at: Word) -> None:
+    """Let the block's words of rotary axes be those that point the tool, whose tip is led, in a direction.
+
+    Args:
+        control: The control.
+        direction: From the tip to the spindle, programmed coordinates, of any length above 0.
+        at: Which word says it.
+
+    Raises:
+        ProgramError: The machine cannot, or the direction has no length.
+    """
+    center, names = control.path.tool_center, control.settings.axes.names
+    assert center is not None
+    turned = applied(control.frame.matrix, direction)
+    length = math.hypot(*turned)
+    if length == 0.0:
+        control.fail("tool-center", "the direction of the tool has no length", at)
+    x, y, z = turned
+    try:
+        there = center.pointing((x / length, y / length, z / length), control.motion.part)
+    except ValueError as error:
+        control.fail("tool-center", str(error), at)
+    for column, name in enumerate(names):
+        if column > 2 and there[column] != control.motion.part[column]:
+            value = there[column] - control.frame.total[column]
+            control.words[name] = Word(name, value, at.column, at.width, mark="AC")
 
 
 def length_in_force(control: Control) -> float:

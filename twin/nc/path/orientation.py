@@ -27,6 +27,8 @@ def rotary_axes_for(
     here: FloatArray,
     travel: FloatArray,
     sense: float = 0.0,
+    *,
+    only: bool = False,
 ) -> FloatArray:
     """Where the rotary axes point the tool in a direction.
 
@@ -39,8 +41,8 @@ def rotary_axes_for(
         direction: From the tip to the spindle, seen from the part, unit vector, shape (3,).
         here: Where the axes are, as the chain counts them, shape (k,) [mm or deg].
         travel: Of each axis, as the chain counts them, shape (k, 2) [mm or deg]; of endless axes infinite.
-
         sense: Sign of the axis next to the tool that is preferred; 0: none is.
+        only: A solution with another sign is none.
 
     Returns:
         ``here`` with the rotary axes put in, shape (k,).
@@ -54,12 +56,15 @@ def rotary_axes_for(
         for angles in _solutions(chain, joints, direction, here)
         for row in _within_travel(chain, joints, angles, here, travel)
     ]
+    first = int(chain.column[joints[0]]) if joints else 0
+    if only:
+        found = [row for row in found if float(row[first]) * sense >= -_SAME_ANGLE]
     if not found:
         x, y, z = direction
+        signed = " with that sign of their first one" if only else ""
         raise ValueError(
-            f"the machine's rotary axes do not point the tool along {x:.4g}, {y:.4g}, {z:.4g} of the part"
+            f"the machine's rotary axes do not point the tool along {x:.4g}, {y:.4g}, {z:.4g} of the part{signed}"
         )
-    first = int(chain.column[joints[0]])
 
     def cost(row: FloatArray) -> tuple[bool, float, float]:
         way = round(float(np.abs(row - here).sum()) / _SAME_ANGLE)

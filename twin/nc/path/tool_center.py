@@ -13,7 +13,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twin.kinematics import Kinematics, counted_from, tool_direction, tool_point, turned, turns_part
+from twin.kinematics import (
+    Kinematics,
+    counted_from,
+    rotated,
+    tool_direction,
+    tool_point,
+    turned,
+    turns_part,
+)
 from twin.nc.canonical import Corner, FloatArray
 from twin.nc.geometry.matrices import Matrix
 from twin.nc.geometry.planes import Vector
@@ -115,13 +123,16 @@ class ToolCenter:
         """Which way the tool points from its tip to the spindle, seen from the part, shape (3,)."""
         return tool_direction(self._chain, np.array([axes]) + self._counted_zero)[0]
 
-    def pointing(self, direction: Vector, axes: list[float], sense: float = 0.0) -> list[float]:
+    def pointing(
+        self, direction: Vector, axes: list[float], sense: float = 0.0, *, only: bool = False
+    ) -> list[float]:
         """Where the rotary axes point the tool in a direction of the part, the others as they are, shape (k,).
 
         Args:
             direction: The direction.
             axes: Where the axes are.
             sense: Sign of the axis next to the tool that is preferred; 0: whatever is nearest.
+            only: A solution with another sign is none.
 
         Raises:
             ValueError: None do, within their travel (``orientation``).
@@ -129,7 +140,8 @@ class ToolCenter:
         offset = self._counted_zero
         travel = self._setup.travel - (self._zero - offset)[:, None]
         here = np.array(axes) + offset
-        found = rotary_axes_for(self._chain, np.array(direction), here, travel, sense)
+        goal = np.array(direction)
+        found = rotary_axes_for(self._chain, goal, here, travel, sense, only=only)
         return (found - offset).tolist()
 
     def axes(self, tip: list[float]) -> list[float]:
@@ -146,6 +158,11 @@ class ToolCenter:
         """Directions of the machine's X, Y and Z as the part sees them, as columns, shape (3, 3)."""
         _, steps = self._carried(np.array([axes]), np.zeros(len(axes)))
         return np.stack([step.value[0] for step in steps], axis=1)
+
+    def tool_frame(self, axes: list[float]) -> FloatArray:
+        """Directions of X, Y and Z of the spindle, which its rotary axes carry, as the part sees them; as columns."""
+        joints = np.tile(np.array(axes) + self._counted_zero, (3, 1))
+        return rotated(self._chain, np.eye(3), joints).T
 
     def moves_of(self, move: Segment) -> Iterator[Segment]:
         """What the axes do for a move of the tip.

@@ -16,6 +16,8 @@ from twin.nc.text.expressions import ExpressionSyntax
 from twin.nc.text.plain_word import BLANKS, BLANKS_BETWEEN, SIGNED_NUMBER
 from twin.nc.text.syntax import Language
 
+_QUOTED = re.compile(r'"[^"]*"')
+
 
 class Grammar:
     """What reading a line needs, made once per dialect and program.
@@ -52,6 +54,7 @@ class Grammar:
         self.comment_openings = {comment.opening[0] for comment in syntax.comments}
         self.address = _compiled(rf"{BLANKS}({syntax.address}){BLANKS_BETWEEN}")
         self.suffix = _compiled(suffix)
+        self._has_texts = bool(syntax.texts)
         self.flag = _compiled(rf"{BLANKS}({syntax.flag})") if syntax.flag is not None else None
         self.statement = (
             _compiled(rf"{BLANKS}({syntax.statement})") if syntax.statement is not None else None
@@ -70,7 +73,9 @@ class Grammar:
         return comment_end(line.encode("ascii", "replace"), 0, at, len(line), self._comments)
 
     def end_comment(self, line: str, start: int) -> int:
-        """Where behind a place the comment begins that the end of the line closes, or that end."""
+        """Where behind a place the comment begins that the end of the line closes, or that end; none does in a text."""
+        if self._has_texts:
+            line = _QUOTED.sub(lambda text: " " * len(text[0]), line)
         begins = (begin for begin, _ in comments_of(line, self._comments) if begin >= start)
         return next((at for at in begins if line.startswith(self._endless, at)), len(line))
 

@@ -6,11 +6,12 @@ from twin.nc.control.dialect import Dialect
 from twin.nc.dialects.heidenhain import corners, feeds, flow, parameters, paths, sides
 from twin.nc.dialects.heidenhain.cycles.planes import enter_plane
 from twin.nc.dialects.heidenhain.decisions import DECISIONS
-from twin.nc.dialects.heidenhain.functions import FUNCTIONS, take_shortest_way
+from twin.nc.dialects.heidenhain.functions import FUNCTIONS, reduce_rotary, take_shortest_way
 from twin.nc.dialects.heidenhain.memory import KlartextMemory, acts_on_lines, memory_of
 from twin.nc.dialects.heidenhain.page import TABLES
 from twin.nc.dialects.heidenhain.statements import STATEMENTS, other_statement
 from twin.nc.dialects.heidenhain.syntax import SYNTAX
+from twin.nc.dialects.heidenhain.tool_tip import take_spatial_angles
 from twin.nc.iso import shared_marks
 from twin.nc.iso.base import spindle_speed
 from twin.nc.text.blocks import Word
@@ -29,6 +30,7 @@ def _prepare(control: Control) -> None:
 
 
 def _before_motion(control: Control, rapid: bool) -> None:
+    take_spatial_angles(control)
     take_shortest_way(control, rapid)
     enter_plane(control)
 
@@ -62,6 +64,7 @@ HEIDENHAIN = Dialect(
             "FMAX": feeds.go_rapidly,
             "S": spindle_speed,
             **{name: sides.compensation_word(side) for name, side in sides.SIDES.items()},
+            **dict.fromkeys(("M94A", "M94B", "M94C"), reduce_rotary),
             "R+": sides.refuse_paraxial,
             "R-": sides.refuse_paraxial,
         },
@@ -93,6 +96,7 @@ HEIDENHAIN = Dialect(
             "M": "machine function",
             "MB": "way of M140; as MB MAX",
             "MBMAX": "M140 to the end of the travel",
+            **{f"M94{axis}": f"M94 of the axis {axis} alone" for axis in "ABC"},
             "LA": "blocks that M120 looks ahead",
             "D": "diameter of BLK FORM CYLINDER",
             "DIST": "top of BLK FORM CYLINDER above the datum",

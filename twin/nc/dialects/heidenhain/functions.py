@@ -6,11 +6,13 @@ from collections.abc import Mapping
 from twin.nc.control.codes import Action, MCode
 from twin.nc.control.control import Control
 from twin.nc.dialects.heidenhain.cycles.calls import call_from_now_on, call_last
-from twin.nc.dialects.heidenhain.cycles.planes import begin_tcpm, end_tcpm, retract
+from twin.nc.dialects.heidenhain.cycles.planes import retract
 from twin.nc.dialects.heidenhain.flow import refuse_end_of_called
 from twin.nc.dialects.heidenhain.memory import memory_of
+from twin.nc.dialects.heidenhain.tool_tip import begin_tcpm, end_tcpm
 from twin.nc.iso import base
 from twin.nc.iso.hole import turn_spindle
+from twin.nc.text.blocks import Word
 
 
 def _refused(number: int, meaning: str, reason: str) -> MCode:
@@ -55,11 +57,17 @@ def _from_machine(code: str) -> Action:
     return action
 
 
-def _reduce_rotary(control: Control) -> None:
-    """M94: what the screen shows of rotary axes is brought below a turn before the block moves."""
+def reduce_rotary(control: Control, word: Word | None = None) -> None:
+    """M94, M94 C: what the screen shows of rotary axes is brought below a turn before the block moves."""
+    names = control.settings.axes.names if word is None else word.address[-1]
     programmed = [
-        value if linear else value % 360.0
-        for value, linear in zip(control.motion.programmed, control.motion.linear, strict=True)
+        value if linear or name not in names else value % 360.0
+        for name, value, linear in zip(
+            control.settings.axes.names,
+            control.motion.programmed,
+            control.motion.linear,
+            strict=True,
+        )
     ]
     control.motion.set_position(programmed, "turns")
 
@@ -158,7 +166,7 @@ FUNCTIONS: Mapping[int, MCode] = {
     ),
     91: _silent("this block counts from machine zero", _from_machine("M91")),
     92: _silent("this block counts from the datum M92 of the job", _from_machine("M92")),
-    94: _silent("what is shown of rotary axes is brought below a turn", _reduce_rotary),
+    94: _silent("what is shown of rotary axes is brought below a turn", reduce_rotary),
     99: _silent("the cycle runs", call_last, after_motion=True),
     126: _silent("rotary axes go the shorter way", _go_shortest(True)),
     128: _silent("the tip is led while rotary axes turn", begin_tcpm),

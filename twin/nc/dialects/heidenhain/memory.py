@@ -56,6 +56,8 @@ class KlartextMemory:
         mirrored: Signs of cycle 8.
         rotation: Of cycle 10 [deg].
         scale: Of cycle 11.
+        tilt: Directions of the axes of the tilted plane, as columns; None: it is level.
+        spatial: Of FUNCTION TCPM AXIS SPAT, the last angles A, B and C [deg]; None: they are axes.
         order: In which of these the program has put them into force.
         chamfered: The move whose end CHF cuts off, or None.
         shortest: M126: rotary axes go the shorter way.
@@ -86,6 +88,7 @@ class KlartextMemory:
     rotation: float = 0.0
     scale: float = 1.0
     tilt: Matrix | None = None
+    spatial: Vector | None = None
     order: list[str] = dataclasses.field(default_factory=list)
     chamfered: Segment | None = None
     shortest: bool = False
@@ -98,13 +101,14 @@ def memory_of(control: Control) -> KlartextMemory:
 
 
 def acts_on_lines(control: Control) -> bool:
-    """A cycle behind every move, shortest ways, a tilted plane, feeds that are none per minute, FMAX before."""
+    """A cycle behind every move, shortest ways, a tilted plane, spatial angles, feeds that are none per minute, FMAX before."""
     memory, modal = memory_of(control), control.modal
     counts_otherwise = modal.unit != 1.0 or modal.feed_mode != FeedMode.PER_MINUTE
     return (
         memory.calls_always
         or memory.shortest
         or memory.tilt is not None
+        or memory.spatial is not None
         or memory.was_rapid
         or memory.per_revolution
         or counts_otherwise

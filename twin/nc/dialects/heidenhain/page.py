@@ -21,12 +21,13 @@ _KEYWORDS: Mapping[str, str] = {
     "FN 0 to FN 8, FN 13, Q1 =": "Q, QL and QR parameters and their formulas",
     "FN 9 to FN 12, IF": "jump where a condition holds",
     "FN 14": "the program stops itself",
-    "FN 18": "number, length and radius of tools, positions of axes",
+    "FN 17, FN 18": "length and radius of tools; number, positions of axes",
     "QS1 =": "text, joined by ||",
     "STOP": "program stop",
     "CYCL DEF, CYCL CALL": "cycle, its call, also POS and PAT; M99, M89",
     "PATTERN DEF": "places of CYCL CALL PAT: POS, ROW, PAT, FRAME, CIRC, PITCHCIRC",
-    "PLANE, FUNCTION": "level plane alone; RESET TCPM, MODE MILL",
+    "PLANE": "tilted plane: SPATIAL, PROJECTED, EULER, VECTOR, POINTS, RELATIV, AXIAL, RESET; MOVE, TURN, STAY, SEQ, TABLE ROT, COORD ROT",
+    "FUNCTION": "TCPM with AXIS POS or SPAT, RESET TCPM, MODE MILL",
     "TRANS DATUM": "datum shift, AXIS and RESET",
 }
 
@@ -35,7 +36,7 @@ _STEPS: Mapping[str, str] = {
     "7, 8, 10, 11": "datum shift, mirror, rotation, scale",
     "9": "dwell",
     "13": "spindle orientation",
-    "19": "level plane alone",
+    "19": "tilted plane by spatial angles",
     "32": "tolerance of corners",
     "247": "preset",
 }

@@ -1,8 +1,10 @@
 """Q parameters: FN 0 to FN 20, formulas, texts, and what the control itself puts into them."""
 
+import dataclasses
 import re
 
 from twin.nc.control.control import Control
+from twin.nc.control.settings import ToolData
 from twin.nc.dialects.heidenhain.cycles.parameters import continued
 from twin.nc.dialects.heidenhain.memory import memory_of
 from twin.nc.dialects.heidenhain.values import text_of, value_at
@@ -16,11 +18,15 @@ _TEXT = re.compile(
     r"[ \t]*=[ \t]*((?:\"[^\"]*\"|QS[0-9]+)(?:[ \t]*\|\|[ \t]*(?:\"[^\"]*\"|QS[0-9]+))*)[ \t]*",
     re.IGNORECASE,
 )
-_SYSTEM = re.compile(
-    r"[ \t]*SYSREAD[ \t]*(?P<name>Q[LR]?[0-9]{1,4})[ \t]*=[ \t]*ID[ \t]*(?P<id>[0-9]+)[ \t]*NR[ \t]*(?P<number>[0-9]+)"
-    r"(?:[ \t]*IDX[ \t]*(?P<index>Q[LR]?[0-9]+|[0-9]+))?[ \t]*",
-    re.IGNORECASE,
+_DATUM = (
+    r"ID[ \t]*(?P<id>[0-9]+)[ \t]*NR[ \t]*(?P<number>[0-9]+)"
+    r"(?:[ \t]*IDX[ \t]*(?P<index>Q[LR]?[0-9]+|[0-9]+))?[ \t]*"
 )
+"""What FN 17 and FN 18 call a datum of the control."""
+_READ = re.compile(
+    rf"[ \t]*SYSREAD[ \t]*(?P<name>Q[LR]?[0-9]{{1,4}})[ \t]*=[ \t]*{_DATUM}", re.IGNORECASE
+)
+_WRITE = re.compile(rf"[ \t]*SYSWRITE[ \t]*{_DATUM}=", re.IGNORECASE)
 _PIECE = re.compile(r"\"[^\"]*\"|QS[0-9]+", re.IGNORECASE)
 
 _AXES = "XYZABCUVW"
@@ -31,12 +37,11 @@ _PASSED = {
     15: "prints, and moves nothing",
     16: "writes a file, and moves nothing",
     19: "tells the PLC values, and moves nothing",
+    20: "waits for the PLC or the look-ahead, and the twin has none of both",
     37: "exports values, and moves nothing",
     38: "writes to the log, and moves nothing",
 }
 _REFUSED = {
-    17: "writes data of the control, which the twin does not keep",
-    20: "waits for the PLC, which the twin has none of",
     26: "opens a table, which the twin has none of",
     27: "writes into a table, which the twin has none of",
     28: "reads a table, which the twin has none of",
@@ -87,8 +92,8 @@ def function(control: Control, statement: Statement) -> None:
         match = _ERROR.match(statement.text)
         told = statement.text.strip() if match is None else f"error {match[1].strip()}"
         control.fail("program-alarm", f"the program stops itself: {told}", statement)
-    if number == 18:
-        _read_system(control, statement)
+    if number in (17, 18):
+        (_write_system if number == 17 else _read_system)(control, statement)
         return
     match = _ASSIGNMENT.match(statement.text)
     if number not in COMPUTING or match is None:
@@ -108,7 +113,7 @@ def _read_system(control: Control, statement: Statement) -> None:
     Raises:
         ProgramError: It asks for something else.
     """
-    match = _SYSTEM.fullmatch(statement.text)
+    match = _READ.fullmatch(statement.text)
     index, tool = 0.0, control.tools.spindle or 0
     if match is not None and match["index"]:
         index, _ = value_at(control, statement, match.start("index"))
@@ -128,6 +133,26 @@ def _read_system(control: Control, statement: Statement) -> None:
         )
         control.fail("unsupported-statement", message, statement, hint)
     control.variables.write(match["name"].upper(), value)
+
+
+def _write_system(control: Control, statement: Statement) -> None:
+    """FN 17: the length and the radius of a tool, from its next call on.
+
+    Raises:
+        ProgramError: It writes something else.
+    """
+    match = _WRITE.match(statement.text)
+    number = 0 if match is None or match["id"] != "50" else int(match["number"])
+    if match is None or number not in (1, 2) or match["index"] is None:
+        message = "FN 17 writes data of the control that the twin does not keep"
+        hint = "known: FN 17: SYSWRITE ID50 NR1 IDX5 = +60, the length of tool 5; NR2, its radius"
+        control.fail("unsupported-statement", message, statement, hint)
+    index, _ = value_at(control, statement, match.start("index"))
+    column, text = statement.text_column + match.end(), statement.text[match.end() :]
+    value = control.compute(control.statements.expression(text, column), column)
+    change = {("length", "radius")[number - 1]: value * control.modal.unit}
+    old = control.tools.data(int(index)) or ToolData(0.0, 0.0)
+    control.tools.table = {**control.tools.table, int(index): dataclasses.replace(old, **change)}
 
 
 def _position(control: Control, axis: str, *, of_machine: bool) -> float | None:

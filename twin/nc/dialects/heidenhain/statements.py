@@ -5,7 +5,7 @@ from collections.abc import Mapping
 
 from twin.nc.control.codes import StatementAction
 from twin.nc.control.control import Control
-from twin.nc.dialects.heidenhain import corners, flow, leads, parameters, paths, tools
+from twin.nc.dialects.heidenhain import corners, flow, leads, parameters, paths, tool_tip, tools
 from twin.nc.dialects.heidenhain.cycles import calls, definitions, patterns, planes
 from twin.nc.dialects.heidenhain.cycles.transformations import (
     Step,
@@ -34,6 +34,10 @@ REFUSED: Mapping[str, tuple[str, str]] = {
     "CALL SELECTED PGM": ("the program is selected where it runs", "write CALL PGM and its name"),
     "DECLARE": ("structures of texts are not followed", "write QS1 and its text"),
     "CONTOUR DEF": ("contours of subprograms are not followed", "write the moves themselves"),
+    "SEL PATTERN": ("tables of points are not kept", "write PATTERN DEF and its places"),
+    "SEL TABLE": ("datum tables are not kept", "write CYCL DEF 7 or TRANS DATUM AXIS"),
+    "SEL PGM": ("the program is selected where it runs", "write CALL PGM and its name"),
+    "SEL CONTOUR": ("contours of subprograms are not followed", "write the moves themselves"),
     "GLOBAL DEF": ("values of all cycles are not kept", "write them into each CYCL DEF"),
     "ERROR": ("the control's editor has marked this block as wrong", "write the block anew"),
     "POLARKIN": ("polar kinematics are not followed", "write X and Y"),
@@ -105,7 +109,7 @@ STATEMENTS: Mapping[str, StatementAction] = {
     "CYCL CALL PAT": calls.call_pattern,
     "PATTERN DEF": patterns.define_pattern,
     "PLANE": planes.plane,
-    "FUNCTION": planes.function,
+    "FUNCTION": tool_tip.function,
     "TRANS": transform,
     "*": pass_over,
     "~": go_on,

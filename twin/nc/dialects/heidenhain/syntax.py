@@ -31,11 +31,14 @@ KEYWORDS = (
 )
 """Keywords of Klartext, those that are refused among them; longer ones first."""
 
+_OF_AXIS = r"M[ \t]*94[ \t]+[ABC](?![ \t]*[-+.0-9Q])"
+"""M94 with the axis that it is for."""
 _ADDRESS = (
     rf"I?(?:PR|PA){_VALUE}|LIN_[XYZ]|I[{_AXES}]{_VALUE}|LEN|CCA|DL|DR{_VALUE}|DR2|DIST|RI|MB{_VALUE}|LA"
-    rf"|FU|FZ|FT|R(?!0(?![.,0-9]))|L{_VALUE}|[{_AXES}FSMDN]"
+    rf"|FU|FZ|FT|R(?!0(?![.,0-9]))|L{_VALUE}|(?!{_OF_AXIS})[{_AXES}FSMDN]"
 )
 _FLAG = (
+    rf"{_OF_AXIS}|"
     r"R(?=[ \t]|$)|R[LR](?![A-Z0-9_])|R0(?![.,0-9])|R[-+](?![ \t]*[.0-9Q])|DR[ \t]*[-+](?![ \t]*[.0-9Q])|F[ \t]*MAX|F[ \t]*AUTO"
     r"|MB[ \t]*MAX|[FM](?=[ \t]|$)"
 )

@@ -3,9 +3,11 @@
 from twin.nc.control.codes import Codes, MCode, WordAction, Words
 from twin.nc.control.control import Control, Rules
 from twin.nc.control.dialect import Dialect
-from twin.nc.dialects.sinumerik import frames, statements, subprograms, variables, words
+from twin.nc.dialects.sinumerik import frames, statements, variables, words
 from twin.nc.dialects.sinumerik.codes import CODES, NUMBERS, REPLACEMENTS
 from twin.nc.dialects.sinumerik.decisions import DECISIONS
+from twin.nc.dialects.sinumerik.expressions import EXPRESSIONS, NAME
+from twin.nc.dialects.sinumerik.flow import calls, programs
 from twin.nc.dialects.sinumerik.memory import SinumerikMemory, acts_on_lines
 from twin.nc.iso import base, shared_marks
 from twin.nc.iso.declared import flow_function
@@ -19,7 +21,7 @@ _OFFSET = r"G5(?=(?:0[5-9]|[1-9][0-9])(?![0-9.]))"
 
 
 def _prepare(control: Control) -> None:
-    subprograms.begin(control)
+    programs.begin(control)
     words.prepare_corners(control)
 
 
@@ -42,11 +44,11 @@ SINUMERIK = Dialect(
     title="SINUMERIK 840D sl, ONE, 828D (milling)",
     code_page="cp1252",
     syntax=Syntax(
-        address=rf"AX[ \t]*\[[^\]]*\][ \t]*=|(?:{_LONG})[ \t]*=|[MS]1[ \t]*=|[XYZABC]1?[ \t]*=|[A-Z][ \t]*=|{_OFFSET}|[A-Z]|:",
+        address=rf"AX[ \t]*\[[^\]]*\][ \t]*=|(?:{_LONG})[ \t]*=|[MS]1[ \t]*=|[XYZABC]1?[ \t]*=|[ABC]3[ \t]*=|[A-Z][ \t]*=|{_OFFSET}|[A-Z]|:",
         comments=(Comment(";"),),
-        expressions=variables.EXPRESSIONS,
+        expressions=EXPRESSIONS,
         statement=statements.PATTERN,
-        label=rf"({variables.NAME})[ \t]*:(?!=)",
+        label=rf"({NAME})[ \t]*:(?!=)",
         skip_levels=range(10),
         forms={"IC": True, **dict.fromkeys(("AC", "DC", "ACP", "ACN", "QU"), False)},
         codes=NUMBERS,
@@ -85,7 +87,7 @@ SINUMERIK = Dialect(
         m={
             **base.M_CODES,
             **{
-                number: flow_function(meaning, subprograms.end_of_program(number), "stop")
+                number: flow_function(meaning, calls.end_of_program(number), "stop")
                 for number, meaning in (
                     (2, "end of program, or of a subprogram"),
                     (17, "end of subprogram"),
@@ -102,7 +104,7 @@ SINUMERIK = Dialect(
     ),
     words=Words(
         motion=frozenset("XYZABCUVWIJK")
-        | {"CR", "AR", "AP", "RP", "TURN", "I1", "J1", "K1", "ANG"},
+        | {"CR", "AR", "AP", "RP", "TURN", "I1", "J1", "K1", "ANG", "A3", "B3", "C3"},
         indexed=variables.indexed_axis,
         actions={
             "F": words.set_feed,
@@ -161,13 +163,14 @@ SINUMERIK = Dialect(
             "CHF": "length of the chamfer to the next move",
             "CHR": "width of that chamfer along the moves",
             "OFFN": "allowance of the contour under compensation",
-            "DISC": "how G450 passes corners; 0 alone",
+            "DISC": "how G450 passes corners: 0 on an arc, 100 by the intersection",
             "SPOS": "angle at which the spindle stops",
             "SPOSA": "the same, without waiting for it",
             "LIMS": "largest speed of G96: no change here",
             **dict.fromkeys(("CTOL", "OTOL"), "tolerance of the compressor: no change here"),
             "FP": "number of the fixed point of G75",
             **{f"{axis}1": f"axis {axis} of the machine, of G74 and G75" for axis in "XYZABC"},
+            **{f"{axis}3": "direction of the tool, from its tip, under TRAORI" for axis in "ABC"},
             "AX": "axis that a variable holds: DEF AXIS NAME=X, AX[NAME]=10",
             "FRC": "refused: feed of a corner",
             "FRCM": "refused: feed of corners",
@@ -231,6 +234,6 @@ SINUMERIK = Dialect(
             "RND, RNDM, CHF, CHR": "SINUMERIK 828D programming manual, 9.15",
         }
     },
-    suffixes=subprograms.SUFFIXES,
-    library=subprograms.LIBRARY,
+    suffixes=programs.SUFFIXES,
+    library=programs.LIBRARY,
 )

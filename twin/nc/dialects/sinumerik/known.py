@@ -12,7 +12,10 @@ def each_name(of_names: Mapping[str, str]) -> dict[str, str]:
 
 
 _DYNAMICS = "acceleration and jerk are the machine file's"
-_ORIENTATION = "it says how a tool is oriented, and no orientation is transformed here"
+_ORIENTATION = (
+    "between two blocks the rotary axes go evenly, as ORIAXES says, and vectors count in the part"
+)
+_TOOL_FRAME = "the twin's tools stand along Z"
 _NO_TILT = "the twin transforms no orientation; post the part for the axes that the machine has"
 _SPLINES = "splines of this control are not simulated; write lines and arcs"
 _PROBE = "the twin has no probe to touch with"
@@ -33,12 +36,12 @@ PASSED_CODES: Mapping[str, str] = {
     "WALIMON, WALIMOF": "the working area is the machine's travel",
     "CUT2D": "compensation in the working plane",
     "CP": "path motion",
-    "ORIWKS, ORIMKS, ORIAXES, ORIVECT, ORIEULER, ORIRPY, ORIRPY2, ORIC, ORID, OSOF, OSC, OSS, OSSE": _ORIENTATION,
+    "ORIWKS, ORIAXES, ORIVECT, ORIC, ORID, OSOF, OSC, OSS, OSSE": _ORIENTATION,
     "SPCOF, ASPCOF": "no analogue spindle",
     "CPRECOF, CPRECON": "the twin keeps to the contour as its drives do",
     "PAROTOF, TOROTOF": "no frame of the tool's orientation is in force",
     "RMB, RMI, RME, RMN": "where a stopped program is resumed",
-    "TCOABS, TCOFR": _ORIENTATION,
+    "TCOABS, TCOFR": _TOOL_FRAME,
     "LFOF, SPOF, CUTCONOF": "what it ends is not in force",
     "SBLON, SBLOF": "single block",
     "DISPLOF, DISPLON": "what the screen shows",
@@ -56,6 +59,8 @@ REFUSED_CODES: Mapping[str, str] = {
     "FLIN, FCUB, FPO": "feeds that change along a block are not simulated",
     "RTLIOF": "rapids of single axes: every move of the twin goes straight",
     "CDON, CDOF2": "the search for narrow places cannot be chosen",
+    "ORIMKS": "vectors count in the part; write ORIWKS",
+    "ORIEULER, ORIRPY, ORIRPY2": "A2=, B2= and C2= are not followed; post vectors A3= B3= C3=, or the rotary axes",
     "ORICURVE, ORIPLANE, ORICONCW, ORICONCCW, ORICONIO, ORICONTO, ORIVIRT1, ORIVIRT2": _NO_TILT,
     "PON, PONS, SON, SONS": "a mill does not punch",
     "RTLIOF1": "every move of the twin goes straight",
@@ -73,6 +78,7 @@ PASSED_STATEMENTS = each_name(
         "CDOF": "compensation looks as far ahead as it does",
         "PROTA, PROTS": "collisions are watched by the machine's model",
         "CYCLE832": "tolerance and dynamics of high-speed settings; the machine file has its own",
+        "ACC, JERKLIM, VELOLIM, ACCLIMA, VELOLIMA, JERKLIMA": _DYNAMICS,
         "UPATH, SPATH, FGROUP": "F counts the path in X, Y and Z",
         "ACTBLOCNO": "what the screen shows",
         "SYNR, SYNW, SYNRW": "when variables are written",
@@ -86,6 +92,9 @@ PASSED_STATEMENTS = each_name(
 REFUSED_STATEMENTS = each_name(
     {
         "TRACON, TRAANG": _NO_TILT,
+        "FGREF": "F counts degrees where rotary axes move alone",
+        "FL, FA": "the machine file limits the axes; F is the feed of the path",
+        "ISOCALL": "programs of the ISO mode are another language; --dialect fanuc reads them",
         "TRANSMIT, TRACYL": "write the rotary axis itself",
         "DEFINE": "macros of texts are not followed; write the words that they stand for",
         "G291": "the ISO language of this control is another one",

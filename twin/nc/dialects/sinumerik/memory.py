@@ -2,7 +2,6 @@
 
 import dataclasses
 import math
-from collections.abc import Mapping
 
 from twin.nc.control.constructs import Structure
 from twin.nc.control.control import Control
@@ -13,14 +12,26 @@ from twin.nc.geometry.planes import Vector
 from twin.nc.iso.machine_coordinates import PartFrame
 from twin.nc.text.blocks import Statement
 
+DEEPEST_CALL = 16
+"""Subprograms that may call each other (manual)."""
+
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Formal:
-    """A parameter of a subprogram: its name, its type, and whether it writes the caller's variable (VAR)."""
+    """A parameter of a subprogram.
+
+    Attributes:
+        name: Its name.
+        type: Its type.
+        is_reference: VAR: it writes the caller's variable.
+        is_table: It is a table of the caller's, as large as that is.
+        default: Its value where the call gives none.
+    """
 
     name: str
     type: VariableType
     is_reference: bool = False
+    is_table: bool = False
     default: float = 0.0
 
 
@@ -57,7 +68,7 @@ class CallFrame:
     types: dict[str, VariableType] = dataclasses.field(default_factory=dict)
     sizes: dict[str, tuple[int, int]] = dataclasses.field(default_factory=dict)
     texts: dict[str, str] = dataclasses.field(default_factory=dict)
-    references: Mapping[str, str] = dataclasses.field(default_factory=dict)
+    references: dict[str, str] = dataclasses.field(default_factory=dict)
     programmable: tuple[Matrix, Vector] | None = None
     depth: int = 0
 
@@ -85,6 +96,7 @@ class SinumerikMemory:
         tool_on: The tool in the spindle has its offset D.
         unit: Of lengths, as it was before the block [mm].
         allowance: OFFN [mm].
+        sharp_corners: DISC=100: G450 goes to the intersection, too.
         lead_side: Of the contour that the last lead has come to.
         lead_offset: How far beside it the tool's centre goes [mm].
         rounding: RNDM [mm].
@@ -115,6 +127,7 @@ class SinumerikMemory:
     tool_on: bool = True
     unit: float = 1.0
     allowance: float = 0.0
+    sharp_corners: bool = False
     lead_side: float = 0.0
     lead_offset: float = 0.0
     rounding: float = 0.0

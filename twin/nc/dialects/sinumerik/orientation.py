@@ -1,20 +1,19 @@
 """TRAORI, which leads the tip of the tool, and CYCLE800, which swivels the plane.
 
 Sources: programming manuals "Job planning" (transformations) and "Measuring cycles, milling" (CYCLE800). In force are
-the machine's own rotary axes as they are programmed (ORIAXES, the axes interpolated evenly).
+the machine's own rotary axes as they are programmed, or a vector (A3=, B3=, C3=) for which they are computed.
 """
 
-from typing import NoReturn
-
 from twin.nc.control.control import Control
-from twin.nc.dialects.sinumerik import subprograms
 from twin.nc.dialects.sinumerik.frames import put_programmable
 from twin.nc.dialects.sinumerik.memory import memory_of
+from twin.nc.dialects.sinumerik.values import bracketed, split_values
+from twin.nc.geometry.arcs import direction
 from twin.nc.geometry.matrices import IDENTITY, Matrix, applied, product
 from twin.nc.geometry.planes import Vector
 from twin.nc.iso.machine_coordinates import machine_frame
-from twin.nc.iso.tilted_plane import about, point_tool
-from twin.nc.iso.tool_center import begin_tool_center, end_tool_center
+from twin.nc.iso.tilted_plane import about, directions_of, plane_of_axes, point_tool
+from twin.nc.iso.tool_center import begin_tool_center, end_tool_center, point_by_words
 from twin.nc.text.blocks import Statement
 
 _RETRACT, _STATUS, _MODE, _ORIGIN, _ANGLES, _SHIFT, _DIRECTION = (
@@ -22,8 +21,12 @@ _RETRACT, _STATUS, _MODE, _ORIGIN, _ANGLES, _SHIFT, _DIRECTION = (
 )  # fmt: skip
 """Places of CYCLE800's parameters: _FR, _ST, _MODE, _X0 to _Z0, _A to _C, _X1 to _Z1, _DIR."""
 
-_BY_AXES, _DIRECTLY = 0, 3
-"""Bits 6 and 7 of _MODE: angles about axes one after the other, or of the rotary axes themselves."""
+_BY_AXES, _BY_SOLID_ANGLES, _BY_PROJECTION, _DIRECTLY = range(4)
+"""Bits 6 and 7 of _MODE: angles about axes one after the other; about Z and the new Y; of the plane's traces; of the
+machine's rotary axes themselves."""
+_UPRIGHT = 90.0
+"""Projection angles lie below it [deg]."""
+_VECTOR = ("A3", "B3", "C3")
 
 
 def begin_transformation(control: Control, statement: Statement) -> None:
@@ -39,7 +42,7 @@ def begin_transformation(control: Control, statement: Statement) -> None:
     begin_tool_center(control, "TRAORI")
 
 
-def end_transformation(control: Control, _statement: Statement) -> None:
+def end_transformation(control: Control) -> None:
     """TRAFOOF: positions are those of the axes; the length of the tool acts along Z."""
     end_tool_center(control, "TRAFOOF", keeps_length=True)
 
@@ -53,12 +56,12 @@ def swivel(control: Control, statement: Statement) -> None:
     Raises:
         ProgramError: Its mode is not simulated, or the machine cannot.
     """
-    inner, column, _ = subprograms.bracketed(control, statement.text, statement.text_column)
+    inner, column, _ = bracketed(control, statement.text, statement.text_column)
     values = [
         control.compute(control.statements.expression(text, column + at), column + at)
         if text.strip() and not text.strip().startswith('"')
         else 0.0
-        for text, at in subprograms.split_values(inner)
+        for text, at in split_values(inner)
     ]
     values += [0.0] * (_DIRECTION + 1 - len(values))
     memory = memory_of(control)
@@ -110,23 +113,63 @@ def _retract(control: Control) -> None:
 
 def _matrix(control: Control, statement: Statement, mode: int, angles: list[float]) -> Matrix:
     """The turn that the angles say; its columns are the directions of the swivelled axes."""
-    kind = mode >> 6
-    if kind != _BY_AXES and any(angles):
-        _refuse_mode(control, statement, mode)
+    axes = [(mode >> 2 * place & 3) - 1 for place in range(3)]
+    kind = mode >> 6 if any(angles) else _BY_AXES
+    if kind == _BY_SOLID_ANGLES:
+        return product(about(2, angles[0]), about(1, angles[1]))
+    if kind == _BY_PROJECTION:
+        return _by_projection(control, statement, axes, angles)
+    if kind == _DIRECTLY:
+        return _directly(control, statement, angles)
     matrix = IDENTITY
-    for place in range(3):
-        axis = (mode >> 2 * place & 3) - 1
-        if axis >= 0 and angles[place]:
+    for axis, angle in zip(axes, angles, strict=True):
+        if axis >= 0 and angle:
             # Bits 0 and 1 name the first axis; each turns about where those before it have left it.
-            matrix = product(matrix, about(axis, angles[place]))
+            matrix = product(matrix, about(axis, angle))
     return matrix
 
 
-def _refuse_mode(control: Control, statement: Statement, mode: int) -> NoReturn:
-    kind = mode >> 6
-    name = {1: "solid angles", 2: "projection angles", _DIRECTLY: "rotary axes"}.get(kind, "angles")
-    message = f"CYCLE800 by {name} (_MODE {mode}) is not simulated"
-    control.fail("tilted-plane", message, statement, "post angles axis by axis: _MODE 57 or 27")
+def _by_projection(
+    control: Control, statement: Statement, axes: list[int], angles: list[float]
+) -> Matrix:
+    """The plane whose traces in Y/Z and Z/X lie at angles; its X lies in Z/X, and the third angle turns it (manual)."""
+    if sorted(axes[:2]) != [0, 1] or max(abs(angle) for angle in angles[:2]) >= _UPRIGHT:
+        message = (
+            "CYCLE800 by projection angles is simulated about X and Y, below 90, and the new Z"
+        )
+        control.fail("tilted-plane", message, statement, "_MODE 185 or 182")
+    (level, rise), (ahead, fall) = (direction(angles[axes.index(axis)]) for axis in (0, 1))
+    return product(directions_of((ahead, 0.0, -fall), (0.0, level, rise)), about(2, angles[2]))
+
+
+def _directly(control: Control, statement: Statement, angles: list[float]) -> Matrix:
+    """The plane across the tool while the first and the second rotary axis, from the tool on, stand at angles."""
+    setup = control.settings.setup
+    if setup is None:
+        control.fail(
+            "tilted-plane", "CYCLE800 turns axes, and none of this machine does", statement
+        )
+    columns = setup.chain.column[setup.chain.rotary].tolist()
+    return plane_of_axes(control, dict(zip(columns, angles, strict=False)))
+
+
+def point_by_vector(control: Control) -> None:
+    """A3=, B3= and C3= of a block: the direction of the tool, from its tip to the spindle, in the part.
+
+    Decision: between two blocks the rotary axes go evenly.
+
+    Raises:
+        ProgramError: TRAORI is not in force.
+    """
+    words = [control.take(name) for name in _VECTOR]
+    first = next((word for word in words if word is not None), None)
+    if first is None:
+        return
+    if control.path.tool_center is None:
+        message = "a direction of the tool needs TRAORI"
+        control.fail("tool-center", message, first, "write TRAORI before, or the rotary axes")
+    x, y, z = (control.number(word) for word in words)
+    point_by_words(control, (x, y, z), first)
 
 
 def _vector(values: list[float]) -> Vector:

@@ -4,22 +4,41 @@ import re
 
 from twin.nc.control.codes import StatementAction
 from twin.nc.control.control import Control
-from twin.nc.dialects.sinumerik import flow, orientation, subprograms
+from twin.nc.dialects.sinumerik import orientation
+from twin.nc.dialects.sinumerik.assignments import assign, define
 from twin.nc.dialects.sinumerik.codes import NUMBERS
 from twin.nc.dialects.sinumerik.cycles import CYCLES, call_cycle
+from twin.nc.dialects.sinumerik.flow import calls, structures
+from twin.nc.dialects.sinumerik.flow.repeats import repeat_blocks
 from twin.nc.dialects.sinumerik.known import PASSED_STATEMENTS, REFUSED_STATEMENTS
-from twin.nc.dialects.sinumerik.variables import assign, define
+from twin.nc.dialects.sinumerik.values import bracketed
 from twin.nc.dialects.sinumerik.workpiece import workpiece
 from twin.nc.text.blocks import Statement
 
+_INDEXED = re.compile(r"[ \t]*\[[^\]]*\][ \t]*=[ \t]*[-+.\w]+")
+"""What ``ACC[X]=50`` is set to."""
 _ASSIGNED = re.compile(r"[ \t]*(?:\[[^\]]*\])?[ \t]*=(?!=)")
 
 
 def _pass_over(control: Control, statement: Statement) -> None:
-    """A statement that changes nothing of the path: told once."""
-    keyword = statement.keyword
+    """A statement that changes nothing of the path: told once; words behind it are a block."""
+    keyword, text, column = statement.keyword, statement.text, statement.text_column
     message = f"{keyword} does not change the path here: {PASSED_STATEMENTS[keyword]}"
     control.report.notice(keyword, message, statement.column, len(keyword))
+    index = _INDEXED.match(text)
+    _run_rest(control, statement, bracketed(control, text, column)[2] if not index else index.end())
+
+
+def _run_rest(control: Control, statement: Statement, at: int) -> None:
+    """Run what stands in a line behind a statement as a block."""
+    text, column = statement.text[at:], statement.text_column + at
+    for block in control.statements.blocks(text, column, control.block.line):
+        control.run(block)
+
+
+def _end_transformation(control: Control, statement: Statement) -> None:
+    orientation.end_transformation(control)
+    _run_rest(control, statement, 0)
 
 
 def _refuse(control: Control, statement: Statement) -> None:
@@ -36,9 +55,9 @@ def _refuse(control: Control, statement: Statement) -> None:
 def _repeat(control: Control, statement: Statement) -> None:
     """REPEAT alone begins a loop; with a label it runs blocks again."""
     if statement.text.strip():
-        subprograms.repeat_blocks(control, statement)
+        repeat_blocks(control, statement)
     else:
-        flow.begin_repeat(control, statement)
+        structures.begin_repeat(control, statement)
 
 
 def _alarm(control: Control, statement: Statement) -> None:
@@ -54,15 +73,15 @@ def _alarm(control: Control, statement: Statement) -> None:
 STATEMENTS: dict[str, StatementAction] = {
     **dict.fromkeys(PASSED_STATEMENTS, _pass_over),
     **dict.fromkeys(REFUSED_STATEMENTS, _refuse),
-    **flow.STATEMENTS,
-    **subprograms.STATEMENTS,
+    **structures.STATEMENTS,
+    **calls.STATEMENTS,
     **dict.fromkeys(CYCLES, call_cycle),
     "DEF": define,
     "REPEAT": _repeat,
     "SETAL": _alarm,
     "CYCLE800": orientation.swivel,
     "TRAORI": orientation.begin_transformation,
-    "TRAFOOF": orientation.end_transformation,
+    "TRAFOOF": _end_transformation,
     "WORKPIECE": workpiece,
 }
 
@@ -73,9 +92,9 @@ def other_statement(control: Control, statement: Statement) -> None:
     if keyword[0] == "$" or keyword == "R" or _ASSIGNED.match(statement.text) is not None:
         assign(control, statement)
     elif keyword[0] == "L" and keyword[1:].isdigit():
-        subprograms.numbered(control, statement)
+        calls.numbered(control, statement)
     else:
-        subprograms.call_named(control, statement, keyword, statement.text, statement.text_column)
+        calls.call_named(control, statement, keyword, statement.text, statement.text_column)
 
 
 LONG_WORDS = (

@@ -22,3 +22,7 @@ class VariableType(enum.Enum):
         if self in (VariableType.INT, VariableType.CHAR):
             return nearest_whole_away(value)
         return value
+
+
+TEXTS = (VariableType.STRING, VariableType.AXIS)
+"""Types whose values are texts."""

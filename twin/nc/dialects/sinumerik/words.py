@@ -7,9 +7,9 @@ from twin.nc.control.codes import Action
 from twin.nc.control.compensation import compensate, tool_named, tool_numbered
 from twin.nc.control.control import Control
 from twin.nc.dialects.sinumerik import frames, orientation
+from twin.nc.dialects.sinumerik.flow.calls import call_after_motion
 from twin.nc.dialects.sinumerik.leads import is_led
 from twin.nc.dialects.sinumerik.memory import memory_of
-from twin.nc.dialects.sinumerik.subprograms import call_after_motion
 from twin.nc.dialects.sinumerik.targets import (
     forget_polar,
     frame_changed,
@@ -28,6 +28,7 @@ from twin.nc.text.blocks import Word
 
 _BLENDING = re.compile(rb"[RrCc](?:[Nn][Dd]|[Hh][FfRr])")
 _BLENDS = {"RND": BlendKind.FILLET, "CHR": BlendKind.CHAMFER, "CHF": BlendKind.CHAMFER_LENGTH}
+_CORNERS, _INTERSECTION = "compensation corners", 451.0
 _LARGEST_H = 99_999.0
 
 
@@ -112,10 +113,14 @@ def _apply_offset(control: Control, *, on: bool) -> None:
 
 
 def compensation(side: float) -> Action:
-    """G41, G42: by the radius of the tool in the spindle and OFFN."""
+    """G41, G42: by the radius of the tool in the spindle and OFFN; D, OFFN= and DISC= of the block count already."""
 
     def action(control: Control) -> None:
-        memory = memory_of(control)
+        memory, modal = memory_of(control), control.modal
+        for name, act in (("D", tool_offset), ("OFFN", set_allowance), ("DISC", circumvention)):
+            if (word := control.take(name)) is not None:
+                act(control, word)
+        modal.square_corners = memory.sharp_corners or modal.active.get(_CORNERS) == _INTERSECTION
         radius = radius_in_spindle(control) if memory.tool_on else 0.0
         if not is_led(control):
             compensate(control, side, radius + memory.allowance)
@@ -163,10 +168,18 @@ def position_spindle(control: Control, word: Word) -> None:
 
 
 def circumvention(control: Control, word: Word) -> None:
-    """DISC=: how outside corners are passed with G450; 0, the arc, is what the twin follows."""
-    if control.number(word) != 0.0:
-        message = "only DISC=0 is followed: an arc around the corner"
-        control.fail("unsupported-word", message, word, "G451 goes to the intersection")
+    """DISC=: how outside corners are passed with G450: 0 on an arc, 100 by the intersection (manual).
+
+    Raises:
+        ProgramError: It asks for a curve between both, which the manual does not give.
+    """
+    number = control.number(word)
+    if number not in (0.0, 100.0):
+        message = (
+            "only DISC=0, an arc around the corner, and DISC=100, the intersection, are followed"
+        )
+        control.fail("unsupported-word", message, word)
+    memory_of(control).sharp_corners = number == 100.0
 
 
 def corner_distance(control: Control, word: Word) -> None:
@@ -214,6 +227,7 @@ def modal_rounding(control: Control, word: Word) -> None:
 def before_motion(control: Control, _rapid: bool) -> None:
     """What holds for every motion block."""
     frames.require_machine_zero(control)
+    orientation.point_by_vector(control)
     orientation.require_orientation(control)
 
 

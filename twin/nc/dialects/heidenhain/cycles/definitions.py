@@ -63,8 +63,13 @@ MEANINGS: Mapping[int, str] = {
     246: "last angle",
     247: "step of the angle",
     248: "angle of a slot",
+    249: "depth of the counterbore",
+    250: "thickness of the part",
+    251: "how far the tooth reaches beyond the shank",
+    252: "height of the tooth above the tip",
     253: "feed of positioning",
-    254: "feed of countersinking",
+    254: "feed of countersinking or back boring",
+    255: "seconds in the counterbore",
     256: "lift that breaks the chip",
     257: "depth that breaks the chip",
     258: "upper advanced stop",
@@ -153,6 +158,12 @@ DEFINITIONS: Mapping[int, Definition] = {
         (200, 201, 206, 202, 203),
         (204, 205, 208, 210, 211, 212, 213, 256, 395),
         only={395: 0},
+    ),
+    204: Definition(
+        "back boring",
+        holes.back_boring,
+        (200, 249, 250, 251, 252, 253, 254, 203, 214),
+        (204, 255, 336),
     ),
     205: Definition(
         "universal pecking",
@@ -272,7 +283,6 @@ REFUSED: Mapping[int, str] = {
     18: "thread cutting",
     26: "a scale of its own for each axis: write CYCL DEF 11",
     **dict.fromkeys((27, 28, 29, 39), "the surface of a cylinder"),
-    204: "back boring",
     **dict.fromkeys(
         (210, 211, 212, 213, 214, 215), "an older pocket, slot or stud: write CYCL DEF 251 to 257"
     ),

@@ -11,6 +11,8 @@ from twin.nc.iso.plane_moves import at_feed, descend, go, go_to_height
 
 ADVANCE = 0.2
 """How far above its last depth a rapid return ends [mm]."""
+_ASIDE = {0: (0.0, 0.0), 1: (-1.0, 0.0), 2: (0.0, -1.0), 3: (1.0, 0.0), 4: (0.0, 1.0)}
+"""Which way the tool leaves the wall, by Q214."""
 
 
 def heights(control: Control, given: Parameters) -> tuple[float, float, float, float]:
@@ -144,8 +146,7 @@ def _break_chips(control: Control, given: Parameters, hole: Hole, breaking: floa
 
 def boring(control: Control, given: Parameters) -> None:
     """202: at the bottom the spindle stands, the tool leaves the wall by Q214, and comes back with Q208."""
-    aside = {0: (0.0, 0.0), 1: (-1.0, 0.0), 2: (0.0, -1.0), 3: (1.0, 0.0), 4: (0.0, 1.0)}
-    way = aside.get(int(given.number(214)))
+    way = _ASIDE.get(int(given.number(214)))
     if way is None:
         control.fail("cycle-word", f"Q214 is 0 to 4, not {given.number(214):g}")
     _, reference, bottom, back = heights(control, given)
@@ -160,6 +161,41 @@ def boring(control: Control, given: Parameters) -> None:
         go(control, (x + ADVANCE * way[0], y + ADVANCE * way[1]))
     descend(control, reference, up if up is None else up or down)
     go_to_height(control, back)
+    turn_spindle(control, "M3")
+    go(control, (x, y), rapid=True)
+
+
+def back_boring(control: Control, given: Parameters) -> None:
+    """204: beside its axis, the spindle standing at Q336, the tool goes through the hole, and bores from below.
+
+    Its tooth lies Q252 above its tip and reaches Q251 beyond its shank. Decision: it comes out of the counterbore with
+    the feed of positioning, Q253.
+    """
+    way, thickness, deep = _ASIDE.get(int(given.number(214))), given.length(250), given.length(249)
+    if not way or way == _ASIDE[0] or not 0.0 < deep <= thickness or given.length(200) < 0.0:
+        message = "cycle 204 needs Q214 1 to 4, and a depth Q249 above 0, in the thickness Q250"
+        control.fail("cycle-word", message)
+    surface, clearance, offset = given.length(203), given.length(200), given.length(251)
+    reference, under = surface + clearance, surface - thickness - given.length(252)
+    x, y = control.modal.plane.point(control.motion.programmed)
+    beside = (x + offset * way[0], y + offset * way[1])
+    positioning, stands = given.feed(253), {"R": given.number(336)}
+    go_to_height(control, reference)
+    control.function("M19", stands)
+    go(control, beside, rapid=True)
+    descend(control, under - clearance, positioning)
+    with at_feed(control, positioning):
+        go(control, (x, y), rapid=positioning is None)
+    turn_spindle(control, "M3")
+    descend(control, under + deep, _drilling_feed(control, given.feed(254)))
+    if (seconds := _seconds(control, given, 255)) > 0.0:
+        control.dwell(seconds)
+    descend(control, under - clearance, positioning)
+    control.function("M19", stands)
+    with at_feed(control, positioning):
+        go(control, beside, rapid=positioning is None)
+    descend(control, reference, positioning)
+    go_to_height(control, max(reference, surface + given.length(204)))
     turn_spindle(control, "M3")
     go(control, (x, y), rapid=True)
 

@@ -72,7 +72,7 @@ def _machine(control: Control, given: Parameters, places: list[Point]) -> None:
 
 _PIECE = re.compile(r"(POS|ROW|PAT|FRAME|CIRC|PITCHCIRC)[0-9]*[ \t]*\(([^()]*)\)", re.IGNORECASE)
 _WORD = re.compile(
-    r"(NUMX|NUMY|NUM|ROTX|ROTY|ROT|START|STEP|DX|DY|D|X|Y|Z)[ \t]*([-+]?[ \t]*(?:[.0-9]+|Q[LR]?[0-9]+))",
+    r"(I(?=[XY])|)(NUMX|NUMY|NUM|ROTX|ROTY|ROT|START|STEP|DX|DY|D|X|Y|Z)[ \t]*([-+]?[ \t]*(?:[.0-9]+|Q[LR]?[0-9]+))",
     re.IGNORECASE,
 )
 
@@ -106,8 +106,10 @@ def define_pattern(control: Control, statement: Statement) -> None:
 def _words(control: Control, text: str, column: int) -> dict[str, float]:
     words: dict[str, float] = {}
     for match in _WORD.finditer(text):
-        value, _ = control.statements.operand(text, match.start(2), column)
-        words[match[1].upper()] = control.compute(value, column + match.start(2))
+        value, _ = control.statements.operand(text, match.start(3), column)
+        name, last = match[2].upper(), memory_of(control).pattern[-1:]
+        before = last[0]["XY".index(name)] / control.modal.unit if match[1] and last else 0.0
+        words[name] = before + control.compute(value, column + match.start(3))
     if _WORD.sub("", text).strip() or "X" not in words or "Y" not in words:
         message = f"({text}) is no place of a pattern"
         control.report.fail("unreadable-statement", message, column, len(text), "(X+10 Y+20 Z+0)")

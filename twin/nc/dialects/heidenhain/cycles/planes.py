@@ -1,19 +1,17 @@
-"""PLANE, cycle 19, M128 and FUNCTION TCPM: the tilted working plane, and the tip that is led while axes turn.
+"""PLANE and cycle 19: the tilted working plane.
 
-Sources: user's manuals Klartext of the TNC 640 ("Tilting the working plane", "FUNCTION TCPM"). Spatial angles turn
-about the fixed X, then Y, then Z. Decisions:
+Source: user's manuals Klartext of the TNC 640 ("Tilting the working plane"). Decisions:
 
 * The master axis of SEQ and SYM is the one next to the tool; where TURN and MOVE leave the solution open, it is
   the nearest.
+* COORD ROT holds where the program says neither it nor TABLE ROT.
 * M128 ends where PLANE turns the axes, and comes back when the program says so.
 """
 
-import math
 import re
-from collections.abc import Callable, Mapping
-from typing import NamedTuple
 
 from twin.nc.control.control import Control
+from twin.nc.dialects.heidenhain.cycles.plane_directions import MATRICES, PlaneWords, spatial
 from twin.nc.dialects.heidenhain.cycles.transformations import (
     Step,
     apply_transformations,
@@ -21,44 +19,22 @@ from twin.nc.dialects.heidenhain.cycles.transformations import (
 )
 from twin.nc.dialects.heidenhain.memory import memory_of
 from twin.nc.dialects.heidenhain.values import refuse_rest, value_at
-from twin.nc.geometry.matrices import IDENTITY, Matrix, product, transposed
-from twin.nc.geometry.planes import Vector, cross
+from twin.nc.geometry.matrices import IDENTITY, Matrix
 from twin.nc.iso.machine_coordinates import machine_frame
-from twin.nc.iso.tilted_plane import about, point_tool, rotary_axes_across, stands_across
+from twin.nc.iso.plane_moves import at_feed
+from twin.nc.iso.tilted_plane import rotary_axes_across, stands_across, turned_with_plane
 from twin.nc.iso.tool_center import begin_tool_center, end_tool_center
-from twin.nc.path.tool_center import ToolCenter
 from twin.nc.text.blocks import Statement
 
 _WORD = re.compile(
-    r"[ \t]*(?:(?P<value>SP[ABC]|EUL(?:PR|NU|ROT)|[BN][XYZ]|DIST|MB(?![ \t]*MAX)|F(?![ \t]*(?:MAX|AUTO))|[ABC])(?=[ \t]*[-+.\dQ])"
+    r"[ \t]*(?:(?P<value>SP[ABC]|EUL(?:PR|NU|ROT)|PROPR|PROMIN|ROT|P[123][XYZ]|[BN][XYZ]|DIST|ABST"
+    r"|MB(?![ \t]*MAX)|F(?![ \t]*(?:MAX|AUTO))|[ABC])(?=[ \t]*[-+.\dQ])"
     r"|(?P<flag>SEQ[-+]|SYM[-+]|TABLE[ \t]+ROT|COORD[ \t]+ROT|MOVE|TURN|STAY|MB[ \t]*MAX|F[ \t]*MAX|F[ \t]*AUTO))",
     re.IGNORECASE,
 )
 _KIND = re.compile(r"[ \t]*([A-Z]+)", re.IGNORECASE)
-_TCPM = re.compile(r"[ \t]*F[ \t]+TCP[ \t]+AXIS[ \t]+POS[ \t]+PATHCTRL[ \t]+AXIS\b", re.IGNORECASE)
 _ROTARY_PARAMETERS = {"A": "Q120", "B": "Q121", "C": "Q122"}
-_SMALLEST = 1e-9
 _HEIGHT = 2
-
-M128 = "M128"
-
-
-class _Plane(NamedTuple):
-    """What a PLANE says: values by word, and words without values."""
-
-    values: Mapping[str, float]
-    flags: frozenset[str]
-
-    def vector(self, *names: str) -> Vector:
-        """Three values, 0 where they are left out."""
-        x, y, z = (self.values.get(name, 0.0) for name in names)
-        return (x, y, z)
-
-    @property
-    def sense(self) -> float:
-        """The sign of the master axis that SEQ or SYM asks for; 0: either."""
-        signs = {flag[-1] for flag in self.flags if flag[:3] in ("SEQ", "SYM")}
-        return 1.0 if "+" in signs else -1.0 if "-" in signs else 0.0
 
 
 def plane(control: Control, statement: Statement) -> None:
@@ -69,18 +45,20 @@ def plane(control: Control, statement: Statement) -> None:
     """
     kind = _KIND.match(statement.text)
     name = "" if kind is None else kind[1].upper()
-    if name == "RESET":
-        assert kind is not None
-        _reset(control, _words(control, statement, kind.end()))
-        return
-    if kind is None or name not in _MATRICES:
-        known = ", ".join((*_MATRICES, "RESET"))
+    if kind is None or (name != "RESET" and name not in MATRICES):
+        known = ", ".join((*MATRICES, "RESET"))
         message = f"PLANE {name or '...'} is not simulated"
         control.fail("tilted-plane", message, statement, f"these are: {known}")
     words = _words(control, statement, kind.end())
-    matrix = _MATRICES[name](control, statement, words)
-    _leave(control)
+    if len(words.flags & {"TURN", "MOVE", "STAY"}) > 1:
+        control.fail("tilted-plane", "PLANE takes one of TURN, MOVE and STAY", statement)
+    matrix = None if name == "RESET" else MATRICES[name](control, statement, words)
+    end_tool_center(control, "PLANE", keeps_length=True)
     _tilt(control, matrix)
+    if "MBMAX" in words.flags:
+        retract(control, None)
+    elif "MB" in words.values:
+        retract(control, words.values["MB"] * control.modal.unit)
     _turn(control, statement, words)
 
 
@@ -89,11 +67,11 @@ def define_plane(control: Control, step: Step) -> None:
     if step.step == 0:
         return
     angles = axis_values(control, step, "ABC")
-    _leave(control)
+    end_tool_center(control, "PLANE", keeps_length=True)
     if not any(angles.values()):
         _tilt(control, None)
         return
-    _tilt(control, _spatial(*(angles.get(name, 0.0) for name in "ABC")))
+    _tilt(control, spatial(*(angles.get(name, 0.0) for name in "ABC")))
     _write_angles(control, rotary_axes_across(control, "cycle 19"))
 
 
@@ -109,40 +87,6 @@ def retract(control: Control, way: float | None, *, rapid: bool = True) -> None:
         target[_HEIGHT] = 0.0
         if target[_HEIGHT] > control.motion.programmed[_HEIGHT]:
             control.line_to(target, rapid=rapid)
-
-
-def begin_tcpm(control: Control) -> None:
-    """M128: the tip is led while rotary axes turn; F counts its way."""
-    begin_tool_center(control, M128)
-
-
-def end_tcpm(control: Control) -> None:
-    """M129."""
-    center = control.path.tool_center
-    if center is not None and not center.tilted:
-        end_tool_center(control, "M129", keeps_length=True)
-
-
-def function(control: Control, statement: Statement) -> None:
-    """FUNCTION TCPM, RESET TCPM; MODE MILL changes nothing here.
-
-    Raises:
-        ProgramError: It is another one.
-    """
-    text = " ".join(statement.text.upper().split())
-    if text.startswith("RESET TCPM"):
-        end_tcpm(control)
-    elif text.startswith("TCPM"):
-        rest = statement.text[statement.text.upper().index("TCPM") + 4 :]
-        if _TCPM.match(rest) is None:
-            message = "FUNCTION TCPM is simulated as F TCP AXIS POS PATHCTRL AXIS"
-            control.fail("tool-center", message, statement)
-        begin_tool_center(control, "FUNCTION TCPM")
-    elif not text.startswith("MODE MILL"):
-        name = " ".join(statement.text.split()[:2])
-        message = f"FUNCTION {name} is not followed"
-        hint = "FUNCTION TCPM, FUNCTION RESET TCPM and FUNCTION MODE MILL are"
-        control.fail("unsupported-statement", message, statement, hint)
 
 
 def enter_plane(control: Control) -> None:
@@ -163,7 +107,7 @@ def enter_plane(control: Control) -> None:
     begin_tool_center(control, "PLANE", tilted=True)
 
 
-def _words(control: Control, statement: Statement, at: int) -> _Plane:
+def _words(control: Control, statement: Statement, at: int) -> PlaneWords:
     values: dict[str, float] = {}
     flags = set()
     while statement.text[at:].strip():
@@ -173,86 +117,11 @@ def _words(control: Control, statement: Statement, at: int) -> _Plane:
             refuse_rest(control, statement.text_column + statement.text.index(rest, at), rest)
         at = match.end()
         if match["value"]:
-            values[match["value"].upper()], at = value_at(control, statement, at)
+            name = match["value"].upper().replace("ABST", "DIST")
+            values[name], at = value_at(control, statement, at)
         else:
             flags.add("".join(match["flag"].upper().split()))
-    return _Plane(values, frozenset(flags))
-
-
-# --- directions
-
-
-def _spatial(a: float, b: float, c: float) -> Matrix:
-    return product(about(2, c), product(about(1, b), about(0, a)))
-
-
-def _by_spatial(_control: Control, _statement: Statement, words: _Plane) -> Matrix:
-    return _spatial(*words.vector("SPA", "SPB", "SPC"))
-
-
-def _by_euler(_control: Control, _statement: Statement, words: _Plane) -> Matrix:
-    first, second, third = words.vector("EULPR", "EULNU", "EULROT")
-    return product(about(2, first), product(about(0, second), about(2, third)))
-
-
-def _by_vectors(control: Control, statement: Statement, words: _Plane) -> Matrix:
-    normal, base = words.vector("NX", "NY", "NZ"), words.vector("BX", "BY", "BZ")
-    length = math.hypot(*normal)
-    if length < _SMALLEST:
-        control.fail("tilted-plane", "PLANE VECTOR needs its normal NX NY NZ", statement)
-    z = (normal[0] / length, normal[1] / length, normal[2] / length)
-    y = cross(z, base)
-    width = math.hypot(*y)
-    if width < _SMALLEST:
-        message = "the base vector BX BY BZ must not stand across the plane"
-        control.fail("tilted-plane", message, statement)
-    y = (y[0] / width, y[1] / width, y[2] / width)
-    return transposed((cross(y, z), y, z))
-
-
-def _by_axes(control: Control, statement: Statement, words: _Plane) -> Matrix:
-    setup = control.settings.setup
-    names = control.settings.axes.names
-    lacking = [name for name in "ABC" if name in words.values and name not in names]
-    if setup is None or lacking:
-        message = f"the machine has no axis {lacking[0] if lacking else 'that turns'}"
-        control.fail("tilted-plane", message, statement)
-    there = list(control.motion.part)
-    for name in "ABC":
-        if name in words.values:
-            column = names.index(name)
-            there[column] = words.values[name] + control.frame.total[column]
-    (a, b, c), (d, e, f), (g, h, i) = (
-        ToolCenter(setup, 0.0, control.frame.zero()).frame_there(there).tolist()
-    )
-    return ((a, b, c), (d, e, f), (g, h, i))
-
-
-def _by_increment(control: Control, statement: Statement, words: _Plane) -> Matrix:
-    given = [
-        (axis, words.values[name])
-        for axis, name in enumerate(("SPA", "SPB", "SPC"))
-        if name in words.values
-    ]
-    if len(given) != 1:
-        control.fail("tilted-plane", "PLANE RELATIV needs one of SPA, SPB and SPC", statement)
-    return product(memory_of(control).tilt or IDENTITY, about(*given[0]))
-
-
-_MATRICES: Mapping[str, Callable[[Control, Statement, _Plane], Matrix]] = {
-    "SPATIAL": _by_spatial,
-    "EULER": _by_euler,
-    "VECTOR": _by_vectors,
-    "AXIAL": _by_axes,
-    "RELATIV": _by_increment,
-}
-
-
-# --- what turns
-
-
-def _leave(control: Control) -> None:
-    end_tool_center(control, "PLANE", keeps_length=True)
+    return PlaneWords(values, frozenset(flags))
 
 
 def _tilt(control: Control, matrix: Matrix | None) -> None:
@@ -264,43 +133,43 @@ def _tilt(control: Control, matrix: Matrix | None) -> None:
     apply_transformations(control)
 
 
-def _turn(control: Control, statement: Statement, words: _Plane) -> None:
-    how = words.flags & {"TURN", "MOVE", "STAY"}
-    if len(how) > 1:
-        control.fail("tilted-plane", "PLANE takes one of TURN, MOVE and STAY", statement)
-    if "MBMAX" in words.flags:
-        retract(control, None)
-    elif "MB" in words.values:
-        retract(control, words.values["MB"])
-    if not how or "STAY" in how:
-        if memory_of(control).tilt is not None:
-            axes = rotary_axes_across(control, "PLANE", sense=words.sense, at=statement)
-            _write_angles(control, axes)
+def _turn(control: Control, statement: Statement, words: PlaneWords) -> None:
+    """TURN, MOVE and STAY; without them as STAY."""
+    tilted, turns = memory_of(control).tilt is not None, words.flags & {"TURN", "MOVE"}
+    if not tilted and (not turns or control.settings.setup is None):
         return
-    if "MOVE" in how:
-        if words.values.get("DIST", 0.0):
-            message = "PLANE ... MOVE is simulated about the tip itself, without DIST"
-            control.fail("tilted-plane", message, statement, "write TURN, or STAY and the axes")
-        target = rotary_axes_across(control, "PLANE", sense=words.sense, at=statement)
-        begin_tool_center(control, "PLANE")
-        here = list(control.motion.programmed)
-        control.line_to([*here[:3], *target[3:]], rapid=True)
-    point_tool(control, "PLANE", sense=words.sense, at=statement)
-
-
-def _reset(control: Control, words: _Plane) -> None:
-    """PLANE RESET: the level plane; TURN and MOVE bring the rotary axes to 0."""
-    _leave(control)
-    _tilt(control, None)
-    if "MBMAX" in words.flags:
-        retract(control, None)
-    elif "MB" in words.values:
-        retract(control, words.values["MB"])
-    if words.flags & {"TURN", "MOVE"} and control.settings.setup is not None:
-        target = list(control.motion.programmed)
+    axes = rotary_axes_across(
+        control, "PLANE", sense=words.sense, only=words.sense != 0.0, at=statement
+    )
+    if not tilted:
         turning = (name in "ABC" for name in control.settings.axes.names)
-        level = [0.0 if turns else value for value, turns in zip(target, turning, strict=True)]
-        control.line_to(level, rapid=True)
+        axes = [0.0 if each else value for value, each in zip(axes, turning, strict=True)]
+    elif "TABLEROT" in words.flags:
+        axes = turned_with_plane(control, axes)
+    if not turns:
+        _write_angles(control, axes)
+        return
+    feed = words.values.get("F")
+    with at_feed(control, feed if feed is not None else control.motion.feed):
+        if "MOVE" in turns:
+            distance = words.values.get("DIST", 0.0) * control.modal.unit
+            _turn_about(control, axes, distance, rapid=feed is None)
+        else:
+            here = control.motion.programmed[:3]
+            control.line_to([*here, *axes[3:]], rapid=feed is None)
+    if tilted:
+        begin_tool_center(control, "PLANE", tilted=True)
+
+
+def _turn_about(control: Control, axes: list[float], distance: float, *, rapid: bool) -> None:
+    """MOVE: the axes turn about the point that lies so far below the tip [mm], where the part is."""
+    begin_tool_center(control, "PLANE")
+    center = control.path.tool_center
+    assert center is not None
+    control.motion.lead_tip(center.with_length(center.longer + distance))
+    control.line_to([*control.motion.programmed[:3], *axes[3:]], rapid=rapid)
+    control.motion.lead_tip(center)
+    end_tool_center(control, "PLANE", keeps_length=True)
 
 
 def _write_angles(control: Control, axes: list[float]) -> None:

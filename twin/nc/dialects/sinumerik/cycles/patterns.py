@@ -3,8 +3,8 @@
 import math
 
 from twin.nc.dialects.sinumerik.cycles.calls import CycleCall, CycleForm
+from twin.nc.dialects.sinumerik.flow.calls import call_after_motion
 from twin.nc.dialects.sinumerik.memory import memory_of
-from twin.nc.dialects.sinumerik.subprograms import call_after_motion
 from twin.nc.geometry.arcs import Point
 from twin.nc.iso.places import along, circle, grid, row
 from twin.nc.iso.plane_moves import go

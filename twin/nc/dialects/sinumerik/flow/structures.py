@@ -7,9 +7,10 @@ from typing import NoReturn
 from twin.nc.control.codes import StatementAction
 from twin.nc.control.constructs import Construct, Structure
 from twin.nc.control.control import Control
+from twin.nc.dialects.sinumerik.expressions import NAME
+from twin.nc.dialects.sinumerik.flow.programs import lines_around
 from twin.nc.dialects.sinumerik.memory import memory_of
-from twin.nc.dialects.sinumerik.subprograms import lines_around
-from twin.nc.dialects.sinumerik.variables import NAME, write_variable
+from twin.nc.dialects.sinumerik.variables import write_variable
 from twin.nc.text.blocks import Location, Statement
 from twin.nc.text.expressions import Expression, ExpressionError, NumberedVariable, Tree, Variable
 
