@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from importlib.util import find_spec
 
 import pytest
+from browsers import missing_for_browsers, missing_for_pages
 from command_line import Finished, Twin
 from hypothesis import HealthCheck, settings
 
@@ -49,9 +50,16 @@ _COST = "processor_seconds"
 
 @pytest.hookimpl(trylast=True)
 def pytest_itemcollected(item: pytest.Item) -> None:
-    """Mark what is of one of the kinds, so that one word leaves all of them out."""
+    """Mark what is of one of the kinds, so that one word leaves all of them out; and what cannot run here."""
     if any(item.get_closest_marker(kind) for kind in KINDS):
         item.add_marker("exhaustive")
+    missing: dict[str, str] = {}
+    if item.get_closest_marker("browser"):
+        missing = missing_for_browsers()
+    elif item.get_closest_marker("three_js"):
+        missing = missing_for_pages()
+    for what, how in missing.items():
+        item.add_marker(pytest.mark.skip(f"{what} is missing: {how}"))
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

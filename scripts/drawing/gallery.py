@@ -1,4 +1,4 @@
-"""Draw the pictures that README shows: ``python scripts/gallery.py [NAME ...]``.
+"""Draw the pictures that README shows: ``scripts/gallery [NAME ...]``.
 
 Every picture is a moment of a shipped program's run, in final quality, made small enough for a
 repository.
@@ -62,6 +62,10 @@ PICTURES = {
         program="fagor8070/bolt_hole_ring", camera="overview", share=0.8, machine="mill4_light"
     ),
     "arc_in_xz": Picture(program="codesys/arc_in_xz_then_xy", camera="part", share=0.5),
+    "cone": Picture(program="fanuc/cone", camera="part", share=0.6),
+    "five_sides": Picture(program="haas/five_sides", camera="part", share=0.97),
+    "helix_on_bar": Picture(program="linuxcnc/helix_on_bar", camera="part", share=0.8),
+    "leaning_contour": Picture(program="sinumerik/leaning_contour", camera="part", share=0.7),
 }
 
 

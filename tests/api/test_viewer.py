@@ -1,27 +1,15 @@
 """The viewer in a notebook's cell."""
 
 import http.server
-import importlib.util
 import threading
 from collections.abc import Iterator
 
 import pytest
-from browsers import CHROMIUM
 from panel_player import browser
 
 import twin
-from twin.web.server import THREE
 
-pytestmark = [
-    pytest.mark.browser,
-    pytest.mark.skipif(
-        CHROMIUM is None, reason="no Chromium here; Debian has it in the package chromium"
-    ),
-    pytest.mark.skipif(importlib.util.find_spec("playwright") is None, reason="no playwright"),
-    pytest.mark.skipif(
-        not THREE.is_dir(), reason="three.js is missing: run scripts/fetch_three.py"
-    ),
-]
+pytestmark = pytest.mark.browser
 
 
 @pytest.fixture

@@ -123,6 +123,21 @@ def never_slower(first: int, last: int) -> None:
         assert times[1] <= times[2] * SLACK, seed
 
 
+def test_long_chains_of_chords_are_no_slower_for_being_continuous() -> None:
+    """Two of them, more blocks than are cut together."""
+    times = []
+    for corner in (Corner.CONTINUOUS, Corner.EXACT_PATH):
+        program = Program(20.0, 0.0, 0.0, 0.0)
+        for turn in (1.0, 2.0):
+            for angle in turn - 1.0 + np.linspace(0.0, 1.0, 2801)[1:]:
+                program.corner = corner if angle < turn else Corner.EXACT_STOP
+                x, y = np.round(20.0 * np.array([np.cos(angle), np.sin(angle)]), 4)
+                program.line(x, y, 0.0, 0.0, feed=9000.0)
+        machine = motion_limits(read_machine(machine_file("mill4")))
+        times.append(seconds(program.chunks(), machine, program.start))
+    assert times[0] <= times[1] * SLACK
+
+
 @pytest.mark.seconds("40 programs are planned in three ways")
 def test_each_freer_way_through_corners_is_no_slower() -> None:
     never_slower(7000, 7040)

@@ -6,12 +6,13 @@ import pytest
 from tests.five_axes import FIRST_LENGTH, on_machine, settings, trunnion
 from tests.nc.running import run
 from twin.nc.canonical import Shape
-from twin.toolpath.nearest import CIRCLE, LINE, ends_of, path_columns
+from twin.toolpath.nearest import ends_of, path_columns
+from twin.toolpath.nearest_kernels import PathKind
 from twin.toolpath.part_frame import PartFrame
 
 PROGRAMS = {
-    "a line": ("G1 X40. Y-10. Z3. A30. C90. F500.", LINE),
-    "a circle": ("G3 X0 Y0 I-12. J5. A20. C360. F500.", CIRCLE),
+    "a line": ("G1 X40. Y-10. Z3. A30. C90. F500.", PathKind.LINE),
+    "a circle": ("G3 X0 Y0 I-12. J5. A20. C360. F500.", PathKind.CIRCLE),
 }
 
 
@@ -33,6 +34,6 @@ def test_the_path_in_the_part_is_the_programmed_one(block: str, kind: int, longe
     # Consecutive parts go on where, and in the direction in which, the one before has ended.
     assert np.abs(path.origin[1:] + path.first[1:] - ends.point[:-1]).max() < 1e-9
     assert np.abs(ends.leaving[:-1] - ends.arriving[1:]).max() < 1e-9
-    if kind == CIRCLE:
+    if kind == PathKind.CIRCLE:
         middle = frame.program_zero(setup.zero) + np.array((-12.0, 5.0, 0.0))
         assert np.abs(path.origin - middle).max() < 1e-9

@@ -8,8 +8,14 @@ from hypothesis import strategies as st
 
 from tests.compare.paths import arc, line, moves_of
 from twin.nc.canonical import FloatArray, Moves
-from twin.toolpath.nearest import CIRCLE, CURVE, LINE, drop_moves, join_paths, path_columns
-from twin.toolpath.nearest_kernels import derivatives, nearest_between, nearest_on_move, walk
+from twin.toolpath.nearest import drop_moves, join_paths, path_columns
+from twin.toolpath.nearest_kernels import (
+    PathKind,
+    derivatives,
+    nearest_between,
+    nearest_on_move,
+    walk,
+)
 from twin.toolpath.part_frame import PartFrame
 
 FRAME = PartFrame(rotary=3, center=(3.0, -2.0), turn_zero=10.0)
@@ -102,7 +108,7 @@ def test_kinds_are_told_apart():
         line(zero, np.array([1.0, 0, 0, 30.0])),
     ]
     path = path_columns(moves_of(*rows), FRAME, PART_ZERO)
-    assert path.kind.tolist() == [LINE, CIRCLE, CURVE, CURVE]
+    assert path.kind.tolist() == [PathKind.LINE, PathKind.CIRCLE, PathKind.CURVE, PathKind.CURVE]
 
 
 def test_walking_measures_the_path_over_its_moves():

@@ -9,8 +9,8 @@ from test_nearest import PART_ZERO, any_move, line, move_position, moves_of
 
 from twin.kinematics import Kinematics
 from twin.nc.canonical import FloatArray, Moves
-from twin.toolpath.nearest import CHAIN, path_columns
-from twin.toolpath.nearest_kernels import derivatives, nearest_on_move
+from twin.toolpath.nearest import path_columns
+from twin.toolpath.nearest_kernels import PathKind, derivatives, nearest_on_move
 from twin.toolpath.part_frame import PartFrame, chain_from_text
 
 X, Y, Z = np.eye(3)
@@ -121,4 +121,6 @@ def test_no_place_of_a_dense_scan_is_nearer(frame: PartFrame, moves: Moves, u: f
 
 def test_what_a_chain_turns_is_told_apart():
     moves = moves_of(line(np.zeros(4), np.array([0.0, 0.0, 0.0, 90.0])))
-    assert path_columns(moves, FRAMES[0].at(PART_ZERO, 0.0), PART_ZERO).kind.tolist() == [CHAIN]
+    assert path_columns(moves, FRAMES[0].at(PART_ZERO, 0.0), PART_ZERO).kind.tolist() == [
+        PathKind.CHAIN
+    ]

@@ -16,7 +16,6 @@ from typer.testing import CliRunner
 from twin.cli import app
 from twin.errors import TwinError
 from twin.training.scene.scene_file import scene_names
-from twin.web.server import THREE
 
 PATIENCE_S = 120.0
 
@@ -60,7 +59,7 @@ def test_what_cannot_be_opened_is_refused(arguments: list[str], message: str) ->
         assert not message
 
 
-@pytest.mark.skipif(not THREE.is_dir(), reason="three.js is missing: run scripts/fetch_three.py")
+@pytest.mark.three_js
 @pytest.mark.parametrize(
     ("number", "visited"),
     [

@@ -1,10 +1,7 @@
 """A run that goes on, on the page of a recorded one."""
 
-import importlib.util
-
 import numpy as np
 import pytest
-from browsers import CHROMIUM
 from panel_player import browser
 from test_view import JOB, PROGRAM
 
@@ -12,15 +9,9 @@ from twin.run.preparation import prepare
 from twin.run.run import Run
 from twin.view.app import open_view
 from twin.view.live_run import LiveRun, Moment
-from twin.web.server import THREE
 
 
 @pytest.mark.browser
-@pytest.mark.skipif(
-    CHROMIUM is None, reason="no Chromium here; Debian has it in the package chromium"
-)
-@pytest.mark.skipif(importlib.util.find_spec("playwright") is None, reason="no playwright")
-@pytest.mark.skipif(not THREE.is_dir(), reason="three.js is missing: run scripts/fetch_three.py")
 def test_a_machine_that_moves_is_shown_where_it_is(tmp_path):
     (tmp_path / "square.nc").write_text(PROGRAM, encoding="utf-8")
     (tmp_path / "square.toml").write_text(JOB, encoding="utf-8")

@@ -1,6 +1,5 @@
 """A recorded run on a page: what it is sent, and that it can be played and scrubbed."""
 
-import importlib.util
 import struct
 import zlib
 from pathlib import Path
@@ -8,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
-from browsers import CHROMIUM
 from panel_player import browser
 
 from twin.commands.run import run_and_print
@@ -19,7 +17,6 @@ from twin.errors import UsageError
 from twin.run.replay import open_scene
 from twin.view.app import open_view
 from twin.view.recorded_run import RecordedRun, _feeds
-from twin.web.server import THREE
 
 SCREENS = ((1440, 900), (1280, 640), (800, 600), (390, 844), (844, 390))
 """Width and height of the pages that are looked at [px]."""
@@ -155,11 +152,6 @@ def test_what_cannot_be_viewed_is_refused(tmp_path):
 
 
 @pytest.mark.browser
-@pytest.mark.skipif(
-    CHROMIUM is None, reason="no Chromium here; Debian has it in the package chromium"
-)
-@pytest.mark.skipif(importlib.util.find_spec("playwright") is None, reason="no playwright")
-@pytest.mark.skipif(not THREE.is_dir(), reason="three.js is missing: run scripts/fetch_three.py")
 def test_a_run_is_played_and_scrubbed_on_its_page(recorded):
     run, _ = recorded
     wrong: list[str] = []
@@ -211,11 +203,6 @@ def test_a_run_is_played_and_scrubbed_on_its_page(recorded):
 
 
 @pytest.mark.browser
-@pytest.mark.skipif(
-    CHROMIUM is None, reason="no Chromium here; Debian has it in the package chromium"
-)
-@pytest.mark.skipif(importlib.util.find_spec("playwright") is None, reason="no playwright")
-@pytest.mark.skipif(not THREE.is_dir(), reason="three.js is missing: run scripts/fetch_three.py")
 def test_the_report_leads_to_its_places_in_the_viewer(recorded, report):
     run, scene = recorded
     wrong: list[str] = []
@@ -240,11 +227,6 @@ def test_the_report_leads_to_its_places_in_the_viewer(recorded, report):
 
 
 @pytest.mark.browser
-@pytest.mark.skipif(
-    CHROMIUM is None, reason="no Chromium here; Debian has it in the package chromium"
-)
-@pytest.mark.skipif(importlib.util.find_spec("playwright") is None, reason="no playwright")
-@pytest.mark.skipif(not THREE.is_dir(), reason="three.js is missing: run scripts/fetch_three.py")
 def test_a_machine_that_makes_the_run_again_is_followed_until_somebody_scrubs(recorded):
     run, _ = recorded
     place = [0.2005]

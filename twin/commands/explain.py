@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from twin.cutting.forces.materials import materials
 from twin.errors import UsageError
-from twin.nc.text.explain import Finding, findings
+from twin.nc.text.explain import Explanation, findings
 
 _FILE = Path(__file__).with_name("codes.toml")
 
@@ -83,7 +83,7 @@ def explain(code: str) -> str:
     raise UsageError(f"no code '{code}': {hint}")
 
 
-def _program_text(code: str, finding: Finding) -> str:
+def _program_text(code: str, finding: Explanation) -> str:
     example = "\n".join(f"    {line}" for line in finding.example.splitlines())
     return (
         f"{code}\n\n{finding.text}\n{finding.remedy}\n\n"

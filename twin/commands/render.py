@@ -12,9 +12,8 @@ import typer
 from twin.commands.pictures import FILM_STEM
 from twin.commands.run import run_and_print
 from twin.compilation.announcement import announce_compilation
-from twin.cutting.colours import deviation_colours
 from twin.cutting.inspection import Inspection
-from twin.cutting.part import write_glb
+from twin.cutting.material import Material
 from twin.cutting.recut import COMMANDED, inspect_recorded, recut
 from twin.errors import ExitCode, UsageError
 from twin.files.atomic import write_text
@@ -26,7 +25,6 @@ from twin.render.scene.scene import Scene
 from twin.render.still import Shot, moment, stills
 from twin.run.progress import shown_progress
 from twin.run.replay import event_time, open_scene
-from twin.units import UM_PER_MM
 
 RECORDING_SUFFIX = ".h5"
 
@@ -121,7 +119,7 @@ class _Maker:
         if wanted.inspect is not None:
             found = self._measure(wanted.inspect, wanted.tolerance_um or default_tolerance_um)
         if wanted.glb and found is None:
-            self._write(folder / "part.glb", lambda out: write_glb(self._part(), out))
+            self._write(folder / "part.glb", lambda out: self._part().write_glb(out))
         if shots:
             stills(
                 scene,
@@ -161,10 +159,10 @@ class _Maker:
         ]
         return [Shot(self._folder / f"still-{name}.png", end) for name, end in dict(named).items()]
 
-    def _part(self) -> Any:
+    def _part(self) -> Material:
         if self._scene.stock is None:
             raise UsageError("the job has no [stock]: there is no part to write or to measure")
-        return recut(self._scene.recording, self._scene.summary, self._scene.stock).map
+        return recut(self._scene.recording, self._scene.summary, self._scene.stock).material
 
     def _measure(self, nominal: str, tolerance_um: float) -> Inspection:
         scene = self._scene
@@ -172,26 +170,26 @@ class _Maker:
             raise UsageError("the job has no [stock]: there is no part to write or to measure")
         if nominal != COMMANDED and not Path(nominal).is_file():
             raise UsageError(f"--inspect {nominal}: give '{COMMANDED}' or an STL file")
-        found, part = inspect_recorded(
+        part = inspect_recorded(
             scene.recording,
             scene.summary,
             scene.stock,
             COMMANDED if nominal == COMMANDED else Path(nominal),
             tolerance_um,
         )
+        found = part.found
         figures = found.as_json()
         self._write(
             self._folder / "inspection.json",
             lambda out: write_text(out, json.dumps(figures, indent=2) + "\n"),
         )
         if self._wanted.glb:
-            colours = deviation_colours(found.deviation_mm, tolerance_um / UM_PER_MM)
-            self._write(self._folder / "part.glb", lambda out: write_glb(part, out, colours))
+            self._write(self._folder / "part.glb", part.write_glb)
         self._write(
             self._folder / "inspection.png",
             lambda out: inspection_still(
                 scene,
-                found,
+                part,
                 out=out,
                 size=self._video.size,
                 quality=self._video.quality,

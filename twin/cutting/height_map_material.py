@@ -16,7 +16,7 @@ from twin.cutting.material import (
     Head,
     Points,
 )
-from twin.cutting.part import part_picture, write_stl
+from twin.cutting.part import part_picture, write_glb, write_stl
 from twin.cutting.stock_contact import StockContact
 from twin.cutting.sweeping import Rectangle, sweep_lines, union
 from twin.cutting.tools import Profile
@@ -87,6 +87,10 @@ class HeightMapMaterial:
     def write_stl(self, path: Path, zero: FloatArray) -> None:
         """Write the part as binary STL."""
         write_stl(self.map, path, zero)
+
+    def write_glb(self, path: Path) -> None:
+        """Write the part as binary glTF."""
+        write_glb(self.map, path)
 
     def picture(self) -> bytes:
         """The part from above, PNG."""

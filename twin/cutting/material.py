@@ -174,6 +174,14 @@ class Material(Protocol):
         """
         ...
 
+    def write_glb(self, path: Path) -> None:
+        """Write the part as binary glTF, raw and machined surface in colours of their own, complete or not at all.
+
+        Raises:
+            OSError: The file cannot be written.
+        """
+        ...
+
     def picture(self) -> bytes:
         """The part from above, PNG; empty where there is no such picture."""
         ...

@@ -2,7 +2,7 @@
 
 import dataclasses
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from twin.cutting.kernels.surface_distance import (
     surface_distances,
 )
 from twin.cutting.kernels.wall_distance import KNOWN
+from twin.cutting.tridexel.dexels import TriDexel
 from twin.errors import ConfigError
 from twin.files.stl import read_stl
 from twin.job.job_file import NominalTable
@@ -51,6 +52,14 @@ class NominalGouge:
         return dataclasses.asdict(self)
 
 
+def lies_beside(file: str) -> ConfigError:
+    """That a nominal part has nothing in common with the stock."""
+    return ConfigError(
+        f"job key 'nominal.file': {file} has nothing over the stock: it counts in "
+        "program coordinates, in mm"
+    )
+
+
 def nominal_map(
     part: HeightMap, file: Path, part_frame: PartFrame, part_zero: FloatArray
 ) -> HeightMap:
@@ -75,14 +84,37 @@ def nominal_map(
     return result
 
 
-class NominalWatch:
+class NominalWatch(Protocol):
+    """Looks after every chunk whether what it cut reaches into the nominal part."""
+
+    worst: NominalGouge | None
+    """The deepest so far, None without any."""
+
+    @property
+    def nominal(self) -> HeightMap | TriDexel:
+        """The nominal part on the grid of the machined one."""
+        ...
+
+    def look(self, samples: Samples) -> tuple[NominalGouge, int] | None:
+        """Look at what the cutter's last chunk cut.
+
+        Args:
+            samples: That chunk.
+
+        Returns:
+            Where it first went too deep, and in which sample; None where it did not.
+        """
+        ...
+
+
+class HeightMapNominalWatch:
     """Looks after every chunk whether what it cut reaches into the nominal part.
 
     What counts is how far from what is left of the part the nominal surface is, straight down or sideways.
     A gouge into a wall whose place is not known closer than by cells is seen from a cell more on.
 
     Attributes:
-        surface: The nominal part on the grid of the machined one.
+        nominal: The nominal part on the grid of the machined one.
         worst: The deepest so far, None without any.
     """
 
@@ -100,26 +132,16 @@ class NominalWatch:
         Raises:
             ConfigError: Its file cannot be read, or it lies beside the blank.
         """
-        self.surface = nominal_map(cutter.map, Path(nominal.file), part_frame, part_zero)
-        if not self.surface.solid().any():
-            raise ConfigError(
-                f"job key 'nominal.file': {nominal.file} has nothing over the stock: it counts in "
-                "program coordinates, in mm"
-            )
+        self.nominal = nominal_map(cutter.map, Path(nominal.file), part_frame, part_zero)
+        if not self.nominal.solid().any():
+            raise lies_beside(nominal.file)
         self._allowed = nominal.gouge_um / UM_PER_MM
         self._cutter, self._frame = cutter, part_frame
         self._corner = part_frame.program_zero(part_zero)
         self.worst: NominalGouge | None = None
 
     def look(self, samples: Samples) -> tuple[NominalGouge, int] | None:
-        """Look at what the cutter's last chunk cut.
-
-        Args:
-            samples: That chunk.
-
-        Returns:
-            Where it first went too deep, and in which sample; None where it did not.
-        """
+        """Look at what the cutter's last chunk cut; see ``NominalWatch``."""
         row, row_end, column, column_end = self._cutter.changed
         if row >= row_end:
             return None
@@ -147,7 +169,7 @@ class NominalWatch:
         """How deep it is cut into the nominal part over the cells of a window [mm]."""
         cut, cell = self._cutter.map, self._cutter.map.cell
         heights, behind = cut.heights[rows, columns], cut.behind[rows, columns]
-        nominal, walls = self.surface.heights[rows, columns], self.surface.behind[rows, columns]
+        nominal, walls = self.nominal.heights[rows, columns], self.nominal.behind[rows, columns]
         before = (walls[..., 0] - behind[..., 0]) * cell
         before[(walls[..., 0] <= KNOWN) | (behind[..., 0] <= KNOWN)] = 0.0
         inside = cut.outline.inside(cut.x[columns], cut.y[rows, None]) / cell
@@ -179,13 +201,13 @@ class NominalWatch:
         cut = self._cutter.map
         found = np.full(len(cells), len(tip) - 1)
         for index, (row, column) in enumerate(cells):
-            top = self.surface.heights[row, column]
+            top = self.nominal.heights[row, column]
             below = np.full(len(tip), top - self._allowed)
             reach = radius
             if cut.heights[row, column] >= below[0]:
                 # It stands, and the wall before it is where it should not be.
                 below[:] = top - SAME_MM
-                behind = self.surface.behind[row, column, 0] - KNOWN
+                behind = self.nominal.behind[row, column, 0] - KNOWN
                 reach = radius + behind * cut.cell - self._allowed
             away = np.hypot(tip[:, 0] - cut.x[column], tip[:, 1] - cut.y[row]) - reach
             low = tip[:, 2] <= below + 1e-6

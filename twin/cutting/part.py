@@ -110,7 +110,16 @@ def write_glb(height_map: HeightMap, path: Path, colours: Colours | None = None)
     Raises:
         OSError: The file cannot be written.
     """
-    mesh = part_mesh(height_map, surface_colours(height_map) if colours is None else colours)
+    colours = surface_colours(height_map) if colours is None else colours
+    export_glb(part_mesh(height_map, colours), path)
+
+
+def export_glb(mesh: "trimesh.Trimesh", path: Path) -> None:
+    """Write a mesh [mm], which is changed, as binary glTF, complete or not at all.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
     mesh.apply_transform(_TO_GLTF)
     with complete_or_absent(path) as temporary:
         mesh.export(temporary, file_type="glb")

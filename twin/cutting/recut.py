@@ -4,10 +4,10 @@ from pathlib import Path
 from typing import Literal
 
 from twin.cutting.cut import Cutter
-from twin.cutting.height_map import HeightMap
-from twin.cutting.inspection import Inspection, inspect
-from twin.cutting.nominal import nominal_map
+from twin.cutting.height_map_material import HeightMapMaterial
+from twin.cutting.measured_part import MeasuredPart, measured, nominal_of
 from twin.cutting.program_summary import ProgramSummary
+from twin.cutting.tridexel.material import TriDexelMaterial
 from twin.job.job_file import StockTable
 from twin.recording.reader import Recording
 
@@ -53,7 +53,7 @@ def inspect_recorded(
     stock: StockTable,
     nominal: Path | Commanded,
     tolerance_um: float,
-) -> tuple[Inspection, HeightMap]:
+) -> MeasuredPart:
     """Measure the part of a recording.
 
     Args:
@@ -63,17 +63,15 @@ def inspect_recorded(
         nominal: STL of the nominal part in program coordinates, or ``COMMANDED``.
         tolerance_um: Deviation that is still good [µm].
 
-    Returns:
-        What was found, and the machined part.
-
     Raises:
         ConfigError: The stock or the nominal part is wrong.
     """
-    part = recut(recording, summary, stock).map
+    cutter = recut(recording, summary, stock)
     if nominal == COMMANDED:
-        ideal = recut(recording, summary, stock, "setpoints").map
+        ideal = recut(recording, summary, stock, "setpoints").material
+        assert isinstance(ideal, HeightMapMaterial | TriDexelMaterial)
+        wanted = ideal.map if isinstance(ideal, HeightMapMaterial) else ideal.stock
     else:
-        ideal = nominal_map(
-            part, Path(nominal), recording.header.part_frame, recording.header.part_zero
-        )
-    return inspect(part, ideal, tolerance_um), part
+        header = recording.header
+        wanted = nominal_of(cutter, Path(nominal), header.part_frame, header.part_zero)
+    return measured(cutter.material, wanted, tolerance_um)

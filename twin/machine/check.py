@@ -36,7 +36,7 @@ _ROUNDED = 0.01
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Finding:
+class PointResult:
     """One point of the contract.
 
     Attributes:
@@ -48,14 +48,14 @@ class Finding:
     faults: tuple[str, ...]
 
 
-def check_machine(machine: Machine) -> tuple[Finding, ...]:
+def check_machine(machine: Machine) -> tuple[PointResult, ...]:
     """Check every point of the contract.
 
     Args:
         machine: The machine, its folder that of its machine file.
 
     Returns:
-        One finding per point, faults or none.
+        One result per point, faults or none.
     """
     points: tuple[tuple[str, Callable[[Machine], list[str]]], ...] = (
         ("the folder is complete", _folder),
@@ -67,14 +67,14 @@ def check_machine(machine: Machine) -> tuple[Finding, ...]:
         ("the machine survives pseudo-random commands", _survives_shaking),
         ("its axes are those of a mill", _carries_tool_and_part),
     )
-    findings = []
+    results = []
     for point, look in points:
         try:
             faults = look(machine)
         except (TwinError, OSError, ET.ParseError) as error:
             faults = [str(error)]
-        findings.append(Finding(point, tuple(faults)))
-    return tuple(findings)
+        results.append(PointResult(point, tuple(faults)))
+    return tuple(results)
 
 
 def _folder(machine: Machine) -> list[str]:

@@ -25,7 +25,7 @@ from twin.nc.canonical import Chunk, Corner, FloatArray, IntArray
 MOST_BLOCKS = 64
 """Between two stops: of more, stops do not make up for what passing their corners gains."""
 
-MOST_LINES = 1000
+MOST_LINES = BATCH
 """Between two stops that are asked for, of lines alone, which are planned thirty times as fast as arcs."""
 
 

@@ -6,7 +6,9 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from twin.cutting.colours import deviation_colours
+from twin.cutting.height_map import HeightMap
 from twin.cutting.inspection import Inspection
+from twin.cutting.measured_part import MeasuredPart
 from twin.render.drawing.canvas import quality_named
 from twin.render.drawing.renderer import Renderer
 from twin.render.hud import INK, MUTED, PAPER, font, lay_over
@@ -14,12 +16,11 @@ from twin.render.scene.cameras import PART
 from twin.render.scene.scene import Scene
 from twin.render.scene.stage import stage
 from twin.render.still import save
-from twin.units import UM_PER_MM
 
 
 def inspection_still(
     scene: Scene,
-    found: Inspection,
+    part: MeasuredPart,
     *,
     out: Path,
     camera: str = PART,
@@ -31,7 +32,7 @@ def inspection_still(
 
     Args:
         scene: The run; it must have a stock.
-        found: Deviations on the grid of that stock; the tolerance has the last colours.
+        part: The measured part of that stock; the tolerance has the last colours.
         out: The picture (PNG), complete or not at all.
         camera: Name of the camera.
         size: Width and height [px].
@@ -43,8 +44,10 @@ def inspection_still(
         ConfigError: The stock is wrong.
     """
     scene.require((camera,))
-    colours = deviation_colours(found.deviation_mm, found.tolerance_um / UM_PER_MM)
-    paint = np.dstack([colours, 255 * found.measured.astype(np.uint8)])
+    found, paint = part.found, part.deviations
+    if isinstance(part.nominal, HeightMap):
+        colours = deviation_colours(found.deviation_mm, part.scale_mm)
+        paint = np.dstack([colours, 255 * found.measured.astype(np.uint8)])
     cost = quality_named(quality).for_still
     with stage(scene, size, cost, renderer=renderer, paint=paint, trail=False) as play:
         for samples in scene.recording.chunks():

@@ -33,7 +33,9 @@ COLLISION_PREFIX = "collision "
 _SHAPES = {
     mujoco.mjtGeom.mjGEOM_BOX: lambda s: trimesh.creation.box(extents=2.0 * s),
     mujoco.mjtGeom.mjGEOM_SPHERE: lambda s: trimesh.creation.icosphere(radius=s[0]),
-    mujoco.mjtGeom.mjGEOM_CYLINDER: lambda s: trimesh.creation.cylinder(s[0], height=2.0 * s[1]),
+    mujoco.mjtGeom.mjGEOM_CYLINDER: lambda s: trimesh.creation.cylinder(
+        s[0], height=2.0 * s[1], sections=64
+    ),
     mujoco.mjtGeom.mjGEOM_CAPSULE: lambda s: trimesh.creation.capsule(2.0 * s[1], s[0]),
 }
 

@@ -7,10 +7,11 @@ import numpy as np
 
 from twin.cutting.cut import CutResult, Cutter
 from twin.cutting.events import CutEvent
-from twin.cutting.inspection import Inspection, inspect
-from twin.cutting.nominal import NominalGouge, NominalWatch
+from twin.cutting.inspection import Inspection
+from twin.cutting.measured_part import measured
+from twin.cutting.nominal import HeightMapNominalWatch, NominalGouge, NominalWatch
 from twin.cutting.program_summary import ProgramSummary
-from twin.errors import ConfigError
+from twin.cutting.tridexel.nominal_watch import TriDexelNominalWatch
 from twin.job.job_file import JobFile, ToolTable
 from twin.machine.model.head_shape import HeadShape
 from twin.machine.model.model import MachineModel
@@ -53,8 +54,7 @@ class Machining(Observer):
             stops: Where the program stops spindle or tool, in order.
 
         Raises:
-            ConfigError: The stock or the nominal part is wrong, or the part is cut from several sides and has
-                a nominal one.
+            ConfigError: The stock or the nominal part is wrong.
         """
         self.stopped: list[Stop] = []
         self.ended_in_cut = False
@@ -76,13 +76,9 @@ class Machining(Observer):
                 head=head,
                 tilts=summary.tilts,
             )
-            if job.nominal is not None and summary.tilts:
-                raise ConfigError(
-                    "job key 'nominal': the tool comes to the part from several sides, and a nominal part "
-                    "is compared with one that is cut from one side: leave it out"
-                )
             if job.nominal is not None:
-                self._nominal = NominalWatch(job.nominal, self._cutter, part_frame, part_zero)
+                watch = TriDexelNominalWatch if summary.tilts else HeightMapNominalWatch
+                self._nominal = watch(job.nominal, self._cutter, part_frame, part_zero)
 
     @property
     def gouge(self) -> NominalGouge | None:
@@ -93,7 +89,7 @@ class Machining(Observer):
         """How far the part is from the nominal one by now; None where the job names none."""
         if self._cutter is None or self._nominal is None or self._gouge_um is None:
             return None
-        return inspect(self._cutter.map, self._nominal.surface, self._gouge_um)
+        return measured(self._cutter.material, self._nominal.nominal, self._gouge_um).found
 
     def add(self, samples: Samples) -> Samples:
         """Cut along a chunk; see ``Observer``."""

@@ -23,19 +23,16 @@ import numpy as np
 
 from twin.kinematics import Kinematics, with_rotary_at_rest
 from twin.nc.canonical import SPATIAL_AXES, CodeArray, FloatArray, IntArray, Moves, Shape
-from twin.toolpath.nearest_kernels import derivatives
+from twin.toolpath.nearest_kernels import PathKind, derivatives
 from twin.toolpath.part_frame import PartFrame
 from twin.units import DEGREE
-
-LINE, CIRCLE, CURVE, CHAIN = 0, 1, 2, 3
-"""How the nearest point is found: closed form for the first two, Newton's method for the rest."""
 
 
 class PathColumns(NamedTuple):
     """The geometry of n moves in the part's frame; every column is C-contiguous.
 
     Attributes:
-        kind: ``LINE``, ``CIRCLE`` (an arc without lead), ``CURVE``, or ``CHAIN`` where a chain turns, shape (n,).
+        kind: ``PathKind`` of each, shape (n,).
         origin: Start of a line, centre of an arc at its start, shape (n, 3) [mm].
         along: What is added linearly over the move, shape (n, 3) [mm].
         first: From the centre to the start, shape (n, 3) [mm]; 0 for lines.
@@ -44,7 +41,7 @@ class PathColumns(NamedTuple):
         turn: How far the table has turned the part at the start, shape (n,) [rad].
         turn_rate: How far the table turns during the move, shape (n,) [rad].
         facing: Cosine and sine of ``turn``, shape (n, 2).
-        tip: Of ``CHAIN``: where the tip is with all axes at zero, shape (n, 3) [mm].
+        tip: Of ``PathKind.CHAIN``: where the tip is with all axes at zero, shape (n, 3) [mm].
         begin: Where each of m joints begins; of X, Y and Z nothing, shape (n, m) [rad or mm].
         rate: How far it moves during the move, shape (n, m) [rad or mm].
         joint: What each joint does: the number of X, Y or Z, or -1; whether it turns; its axis; its anchor [mm];
@@ -107,7 +104,9 @@ def _follow_tips(
     columns.first[rows], columns.second[rows] = spoke, np.cross(normal, spoke)
     columns.sweep[rows] = np.where(arc[:, 0], np.deg2rad(curves.sweep), 0.0)
     level = np.all(np.abs(lead) < _LEVEL, axis=1)
-    columns.kind[rows] = np.where(arc[:, 0], np.where(level, CIRCLE, CURVE), LINE)
+    columns.kind[rows] = np.where(
+        arc[:, 0], np.where(level, PathKind.CIRCLE, PathKind.CURVE), PathKind.LINE
+    )
     columns.along[rows] = np.where(arc & level[:, None], 0.0, columns.along[rows])
     columns.turn[rows], columns.turn_rate[rows], columns.facing[rows] = 0.0, 0.0, (1.0, 0.0)
 
@@ -131,9 +130,9 @@ def _turntable_columns(moves: Moves, frame: PartFrame, part_zero: FloatArray) ->
         turn = np.deg2rad(moves.start[:, frame.rotary] + zero)
         turn_rate = np.deg2rad(moves.end[:, frame.rotary] - moves.start[:, frame.rotary])
     circle = arc & ~np.any(along, axis=1)
-    kind = np.where(circle, CIRCLE, np.where(arc, CURVE, LINE))
+    kind = np.where(circle, PathKind.CIRCLE, np.where(arc, PathKind.CURVE, PathKind.LINE))
     return PathColumns(
-        kind=np.where(turn_rate != 0.0, CURVE, kind).astype(np.uint8),
+        kind=np.where(turn_rate != 0.0, PathKind.CURVE, kind).astype(np.uint8),
         origin=np.where(arc[:, None], moves.center, moves.start[:, :3]) + shift,
         along=np.ascontiguousarray(along),
         first=first,
@@ -176,7 +175,11 @@ def _chain_columns(
         return np.ascontiguousarray(np.einsum("nij,nj->ni", carried, vectors))
 
     circle = arc & ~np.any(along, axis=1)
-    kind = np.where(turns, CHAIN, np.where(circle, CIRCLE, np.where(arc, CURVE, LINE)))
+    kind = np.where(
+        turns,
+        PathKind.CHAIN,
+        np.where(circle, PathKind.CIRCLE, np.where(arc, PathKind.CURVE, PathKind.LINE)),
+    )
     unit = np.where(chain.rotary, DEGREE, np.where(chain.column < len(SPATIAL_AXES), 0.0, 1.0))
     coordinate = np.where(chain.rotary | (chain.column >= len(SPATIAL_AXES)), -1, chain.column)
     turns_or_not = chain.rotary.astype(np.float64)
@@ -241,7 +244,7 @@ def _at(path: PathColumns, u: float) -> tuple[FloatArray, FloatArray, FloatArray
     slope[:, 0] -= path.turn_rate * point[:, 1]
     slope[:, 1] += path.turn_rate * point[:, 0]
     angle = path.turn + u * path.turn_rate
-    for move in np.flatnonzero(path.kind == CHAIN):
+    for move in np.flatnonzero(path.kind == PathKind.CHAIN):
         seen = derivatives(path, move, u)
         point[move], slope[move] = seen[:3], seen[3:6]
     speed = np.linalg.norm(slope, axis=1)

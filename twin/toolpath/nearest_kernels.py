@@ -5,13 +5,25 @@ are in the part's frame [mm]. Lines and circles with the table at rest are solve
 helices, and whatever the table or a chain of joints turns, by Newton's method kept inside brackets.
 """
 
+import enum
 import math
 
 from twin.compilation.compilable import inlined
 from twin.compilation.kernel import kernel
 
-_LINE, _CIRCLE, _CHAIN = 0, 1, 3
-"""``twin.toolpath.nearest.LINE``, ``CIRCLE`` and ``CHAIN``."""
+
+class PathKind(enum.IntEnum):
+    """What a move's tip traces in the part, by which its nearest point is found."""
+
+    LINE = 0
+    CIRCLE = 1
+    """An arc without lead: as a line, in closed form."""
+    CURVE = 2
+    """An arc with lead, or what a turntable turns: by Newton's method, as a chain's."""
+    CHAIN = 3
+    """What a chain of joints carries."""
+
+
 _RESOLUTION_MM = 1e-9
 """A piece of a curve that can hold nothing nearer by more than this is left out."""
 _STEP_MM = 1e-10
@@ -41,7 +53,7 @@ def derivatives(path, move, u):
     ddx = -sweep * sweep * (cosine * f[0] + sine * s[0])
     ddy = -sweep * sweep * (cosine * f[1] + sine * s[1])
     ddz = -sweep * sweep * (cosine * f[2] + sine * s[2])
-    if path.kind[move] == _CHAIN:
+    if path.kind[move] == PathKind.CHAIN:
         return _carried(path, move, u, (px, dx, ddx), (py, dy, ddy), (pz, dz, ddz))
     rate = path.turn_rate[move]
     vx, vy = dx - rate * py, dy + rate * px
@@ -126,12 +138,12 @@ def _facing(path, move, u):
 @inlined
 def _point_at(path, move, u):
     """The point alone, at a third of the cost of its derivatives [mm]."""
-    if path.kind[move] == _CHAIN:
+    if path.kind[move] == PathKind.CHAIN:
         cx, cy, cz, _, _, _, _, _, _ = derivatives(path, move, u)
         return cx, cy, cz
     f, s, o, a = path.first[move], path.second[move], path.origin[move], path.along[move]
     px, py, pz = o[0] + u * a[0], o[1] + u * a[1], o[2] + u * a[2]
-    if path.kind[move] != _LINE:
+    if path.kind[move] != PathKind.LINE:
         angle = u * path.sweep[move]
         cosine, sine = math.cos(angle), math.sin(angle)
         px += cosine * f[0] + sine * s[0]
@@ -151,10 +163,10 @@ def distance_at(path, move, u, x, y, z):
 @inlined
 def speed_at(path, move, u):
     """How fast the place moves with the fraction, seen from the part [mm]."""
-    if path.kind[move] == _LINE:
+    if path.kind[move] == PathKind.LINE:
         a = path.along[move]
         return math.sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
-    if path.kind[move] == _CIRCLE:
+    if path.kind[move] == PathKind.CIRCLE:
         f = path.first[move]
         return abs(path.sweep[move]) * math.sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2])
     _, _, _, dx, dy, dz, _, _, _ = derivatives(path, move, u)
@@ -196,12 +208,12 @@ def nearest_on_move(path, move, low, high, guess, x, y, z):
         Its distance [mm] and its fraction. Of several equally near places on a circle, the last.
     """
     kind = path.kind[move]
-    if kind != _LINE and kind != _CIRCLE:
+    if kind != PathKind.LINE and kind != PathKind.CIRCLE:
         return _nearest_on_curve(path, move, low, high, guess, x, y, z)
     c, t = path.facing[move, 0], path.facing[move, 1]
     o = path.origin[move]
     rx, ry, rz = c * x + t * y - o[0], c * y - t * x - o[1], z - o[2]
-    if kind == _LINE:
+    if kind == PathKind.LINE:
         u = _project_on_line(path.along[move], low, high, rx, ry, rz)
     else:
         u = _project_on_circle(path, move, low, high, rx, ry, rz)
@@ -291,7 +303,7 @@ def _bounds(path, move):
     speed = straight + sweep * radius
     second = sweep**2 * radius
     third = sweep**3 * radius
-    if path.kind[move] == _CHAIN:
+    if path.kind[move] == PathKind.CHAIN:
         far = math.sqrt(o[0] ** 2 + o[1] ** 2 + o[2] ** 2) + straight + radius
         return _bounds_of_chain(path, move, far, speed, second, third)
     return (

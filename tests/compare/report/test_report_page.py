@@ -11,12 +11,7 @@ from playwright.sync_api import Browser, Page, sync_playwright
 from tests.compare.report.test_report import MOVES, report_of
 from twin.compare.report.report import write_report
 
-pytestmark = [
-    pytest.mark.browser,
-    pytest.mark.skipif(
-        CHROMIUM is None, reason="no Chromium here; Debian has it in the package chromium"
-    ),
-]
+pytestmark = pytest.mark.browser
 
 
 @pytest.fixture(scope="module")

@@ -11,14 +11,11 @@ import pytest
 from class_server import ClassServer, class_server, stream, until
 
 from twin.training.classroom.marks import ClassFile
-from twin.web.server import THREE
 
 pytestmark = [
     pytest.mark.processes,
     pytest.mark.skipif(sys.platform != "linux", reason="looks for processes in /proc"),
-    pytest.mark.skipif(
-        not THREE.is_dir(), reason="three.js is missing: run scripts/fetch_three.py"
-    ),
+    pytest.mark.three_js,
 ]
 
 NAMES = ("Anna", "<b>Bob</b>", "../teacher")

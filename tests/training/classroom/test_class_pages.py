@@ -1,29 +1,15 @@
 """A class of six in a real browser: two scenes each, one who leaves and comes back, a server that is restarted."""
 
-import importlib.util
 import re
 from pathlib import Path
 
 import pytest
-from browsers import CHROMIUM
 from class_server import ClassServer, until
 from panel_player import PATIENCE_S, browser, without_view
 
 from twin.training.classroom.marks import ClassFile
-from twin.web.server import THREE
 
-pytestmark = [
-    pytest.mark.browser,
-    pytest.mark.skipif(
-        CHROMIUM is None, reason="no Chromium here; Debian has it in the package chromium"
-    ),
-    pytest.mark.skipif(
-        importlib.util.find_spec("playwright") is None, reason="no playwright to lead the browser"
-    ),
-    pytest.mark.skipif(
-        not THREE.is_dir(), reason="three.js is missing: run scripts/fetch_three.py"
-    ),
-]
+pytestmark = pytest.mark.browser
 NAMES = ["Anna", "Bob <i>x</i>", "Čeněk", "Дарья", "Emma, jr.", "=F"]
 AXE = Path(__file__).resolve().parents[3] / ".axe" / "axe.min.js"
 FINDINGS = """async () => (await axe.run()).violations

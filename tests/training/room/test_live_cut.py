@@ -134,7 +134,7 @@ def test_a_rapid_of_a_broken_tool_into_the_stock_is_an_alarm(tmp_path):
     assert room.alarm is not None
     assert (room.alarm.code, room.alarm.line) == ("rapid-into-stock", 8)
     assert room.setup.work is not None
-    assert room.setup.work.height_at(0.0, 0.0) == 0.0
+    assert room.setup.work.measured(0.0, 0.0, 0.0) == 0.0
 
 
 def test_going_back_mends_a_tool_that_broke_since(tmp_path):

@@ -55,14 +55,13 @@ def test_a_script_that_ends_otherwise_is_told(tmp_path):
     assert mistake.score < 10
 
 
-def test_a_blank_that_no_height_map_can_show_is_refused(tmp_path):
-    shipped = scene_path("fanuc_index_and_lift")
-    text = shipped.read_text(encoding="utf-8").replace(
-        '[[job.fixtures]]\nname = "bar"', '[job.stock]\nshape = "box"'
-    )
+def test_a_blank_under_a_tool_that_swivels_is_refused(tmp_path):
+    shipped = scene_path("fanuc_second_side")
+    text = shipped.read_text(encoding="utf-8").replace('machine = "mill5"', 'machine = "mill5h"')
+    text = text.replace("part_zero = { X = 0.0, Y = 0.0, Z = -440.0 }\n", "")
     (tmp_path / shipped.name).write_text(text, encoding="utf-8")
     (tmp_path / f"{shipped.stem}.nc").write_text(shipped.with_suffix(".nc").read_text())
-    with pytest.raises(ConfigError, match="where the part turns about Z alone"):
+    with pytest.raises(ConfigError, match="where the tool does not swivel"):
         rehearse(read_scene(tmp_path / shipped.name))
 
 

@@ -1,31 +1,18 @@
 """The whole room in a browser: what is pressed on the page happens at the machine."""
 
-import importlib.util
 import json
 import time
 from pathlib import Path
 
 import numpy as np
 import pytest
-from browsers import CHROMIUM, FIREFOX
+from browsers import FIREFOX
 from panel_player import Player, open_page, opened_browser, play, served, without_view
 
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.server.attempts import next_scene
-from twin.web.server import THREE
 
-pytestmark = [
-    pytest.mark.browser,
-    pytest.mark.skipif(
-        CHROMIUM is None, reason="no Chromium here; Debian has it in the package chromium"
-    ),
-    pytest.mark.skipif(
-        importlib.util.find_spec("playwright") is None, reason="no playwright to lead the browser"
-    ),
-    pytest.mark.skipif(
-        not THREE.is_dir(), reason="three.js is missing: run scripts/fetch_three.py"
-    ),
-]
+pytestmark = pytest.mark.browser
 
 SIZES = [(1024, 768, 1), (1280, 720, 1), (1366, 768, 1), (1920, 1080, 1), (1280, 720, 2), (820, 1180, 2), (1180, 820, 2)]  # fmt: skip
 INSIDE = """() => [...document.querySelectorAll(

@@ -1,31 +1,17 @@
 """A crash and a break as the page shows them: where they happened, in red, and cut open to be measured."""
 
-import importlib.util
 import io
 import re
 import time
 
 import numpy as np
 import pytest
-from browsers import CHROMIUM
 from panel_player import browser, open_page, served
 from PIL import Image
 
 from twin.training.scene.scene_file import read_scene, scene_path
-from twin.web.server import THREE
 
-pytestmark = [
-    pytest.mark.browser,
-    pytest.mark.skipif(
-        CHROMIUM is None, reason="no Chromium here; Debian has it in the package chromium"
-    ),
-    pytest.mark.skipif(
-        importlib.util.find_spec("playwright") is None, reason="no playwright to lead the browser"
-    ),
-    pytest.mark.skipif(
-        not THREE.is_dir(), reason="three.js is missing: run scripts/fetch_three.py"
-    ),
-]
+pytestmark = pytest.mark.browser
 RED, ORANGE = (255, 42, 31), (217, 130, 43)
 PATIENCE_S = 90.0
 

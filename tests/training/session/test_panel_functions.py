@@ -696,7 +696,7 @@ def test_a_tool_that_is_added_is_mounted_and_cuts(session):
 def test_a_full_magazine_takes_no_more_tools(session):
     for number in range(2, MAGAZINE_PLACES + 1):
         do(session, "add_tool", number=number, kind="drill", diameter=3.0, length=50.0)
-    more = refused(session, "add_tool", number=99, kind="drill", diameter=3.0, length=50.0)
+    more = refused(session, "add_tool", number=98, kind="drill", diameter=3.0, length=50.0)
     assert more == f"the magazine has {MAGAZINE_PLACES} places, and all are taken"
 
 

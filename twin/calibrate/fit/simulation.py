@@ -70,7 +70,7 @@ class Command:
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Motion:
+class Response:
     """What came of a command, at its inputs; shape (n,).
 
     Attributes:
@@ -145,7 +145,7 @@ def _start(since: FloatArray, actual: FloatArray, first: FloatArray) -> tuple[fl
     return float(origin), float(slope)
 
 
-def simulate_axis(parameters: Parameters, command: Command) -> Motion:
+def simulate_axis(parameters: Parameters, command: Command) -> Response:
     """Run an axis along a command.
 
     Args:
@@ -172,7 +172,7 @@ def simulate_axis(parameters: Parameters, command: Command) -> Motion:
     if shown is not None:
         position = states[:, shown]
         rate = (states[:, 0] - position) / parameters.measuring_filter
-    return Motion(position=position, velocity=rate, speed=states[:, 1], force=drive * inertia)
+    return Response(position=position, velocity=rate, speed=states[:, 1], force=drive * inertia)
 
 
 def _held(told: FloatArray, step: float) -> FloatArray:

@@ -9,7 +9,8 @@ from twin.compare.circular.circle import CirclePath, circle_figures
 from twin.compare.circular.circle_kernels import into_planes
 from twin.compare.figures import ArcFigures, BidirectionalFigures
 from twin.nc.canonical import BoolArray, FloatArray, IntArray, Moves, Shape
-from twin.toolpath.nearest import CHAIN, PathColumns
+from twin.toolpath.nearest import PathColumns
+from twin.toolpath.nearest_kernels import PathKind
 from twin.units import UM_PER_MM
 
 SMALLEST_SWEEP = 90.0 - 1e-6
@@ -139,7 +140,7 @@ class ArcCollector:
 def _wanted(moves: Moves, path: PathColumns) -> BoolArray:
     """Which moves have circular figures, shape (n,)."""
     wide = (moves.shape == Shape.ARC) & (np.abs(moves.sweep) >= SMALLEST_SWEEP)
-    return wide & (moves.radius > 0.0) & (path.turn_rate == 0.0) & (path.kind != CHAIN)
+    return wide & (moves.radius > 0.0) & (path.turn_rate == 0.0) & (path.kind != PathKind.CHAIN)
 
 
 def _in_their_planes(

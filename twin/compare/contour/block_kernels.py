@@ -15,8 +15,6 @@ from twin.nc.canonical import BoolArray, FloatArray, IntArray
 COARSER = 3
 """Passages are told apart by bins 2 to this power times wider than those of a whole run: 0.8 %."""
 PASSAGE_BINS = (BINS >> COARSER) + 1
-ROW, COUNT, LOW, HIGH = 0, 1, 2, 3
-"""Columns of an open passage: its row, its samples, the least and greatest bin in use."""
 NOBODY = -1
 """Row of a passage that has not begun."""
 
@@ -47,36 +45,43 @@ class OpenPassages(NamedTuple):
     """The two passages that the tool was in last.
 
     Attributes:
-        rows: Of each its row, its samples, its least and greatest bin, shape (2, 4).
+        row: Of the block of each; ``NOBODY``: it has not begun, shape (2,).
+        samples: How many, shape (2,).
+        lowest: Least bin in use, shape (2,).
+        highest: Greatest bin in use, shape (2,).
         bins: Their histograms, shape (2, PASSAGE_BINS).
     """
 
-    rows: IntArray
+    row: IntArray
+    samples: IntArray
+    lowest: IntArray
+    highest: IntArray
     bins: IntArray
 
 
 @kernel
-def close(passage, bins, greatest, p99):
+def close(passages, which, greatest, p99):
     """Enter the 99th percentile of a passage (nearest rank) into its row, and empty it.
 
     Args:
-        passage: Its row, count, least and greatest bin, shape (4,); read and written.
-        bins: Its histogram, shape (PASSAGE_BINS,); read and written.
+        passages: The open passages; read and written.
+        which: Of the two.
         greatest: By row: greatest error, shape (m,).
         p99: By row: greatest percentile so far, shape (m,); written.
     """
-    if passage[COUNT] == 0:
+    if passages.samples[which] == 0:
         return
-    row, index, above = passage[ROW], passage[HIGH], 0
-    while above + bins[index] <= passage[COUNT] // 100:
+    bins = passages.bins[which]
+    row, index, above = passages.row[which], passages.highest[which], 0
+    while above + bins[index] <= passages.samples[which] // 100:
         above += bins[index]
         index -= 1
     code = (index << COARSER) + (1 << COARSER) - 1 + FIRST_CODE
     octave = 1 << MANTISSA_BITS
     edge = math.ldexp(1.0 + (code & (octave - 1)) / octave, (code >> MANTISSA_BITS) - 1023)
     p99[row] = max(p99[row], min(edge, greatest[row]))
-    bins[passage[LOW] : passage[HIGH] + 1] = 0
-    passage[COUNT] = 0
+    bins[passages.lowest[which] : passages.highest[which] + 1] = 0
+    passages.samples[which] = 0
 
 
 @kernel
@@ -97,18 +102,18 @@ def collect(row, error, bits, time, latest, passages, blocks):
     """
     for i in range(len(row)):
         r, size = row[i], error[i]
-        if passages.rows[latest, ROW] != r:
+        if passages.row[latest] != r:
             latest = 1 - latest
-            if passages.rows[latest, ROW] != r:
-                close(passages.rows[latest], passages.bins[latest], blocks.greatest, blocks.p99)
-                passages.rows[latest, ROW] = r
+            if passages.row[latest] != r:
+                close(passages, latest, blocks.greatest, blocks.p99)
+                passages.row[latest] = r
         index = bin_of(bits[i]) >> COARSER
-        passage = passages.rows[latest]
         passages.bins[latest, index] += 1
-        if passage[COUNT] == 0:
-            passage[LOW], passage[HIGH] = index, index
-        passage[COUNT] += 1
-        passage[LOW], passage[HIGH] = min(passage[LOW], index), max(passage[HIGH], index)
+        if passages.samples[latest] == 0:
+            passages.lowest[latest], passages.highest[latest] = index, index
+        passages.samples[latest] += 1
+        passages.lowest[latest] = min(passages.lowest[latest], index)
+        passages.highest[latest] = max(passages.highest[latest], index)
         blocks.samples[r] += 1
         blocks.squares[r] += size * size
         if blocks.samples[r] == 1 or size > blocks.greatest[r]:

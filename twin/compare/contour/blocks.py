@@ -7,7 +7,6 @@ import numpy as np
 from twin.compare.contour.block_kernels import (
     NOBODY,
     PASSAGE_BINS,
-    ROW,
     BlockColumns,
     OpenPassages,
     close,
@@ -53,7 +52,10 @@ class BlockCollector:
         self._forgotten = 0
         self._latest = 0
         self._open = OpenPassages(
-            rows=np.array([[NOBODY, 0, 0, 0]] * 2, np.int64),
+            row=np.full(2, NOBODY, np.int64),
+            samples=np.zeros(2, np.int64),
+            lowest=np.zeros(2, np.int64),
+            highest=np.zeros(2, np.int64),
             bins=np.zeros((2, PASSAGE_BINS), np.int64),
         )
 
@@ -114,7 +116,7 @@ class BlockCollector:
         kept = np.isin(block, needed)
         kept[worst_first[: self._remembered]] = True
         kept[worst_first[worst_apart]] = True
-        open_row = self._open.rows[:, ROW]
+        open_row = self._open.row
         used = open_row != NOBODY
         kept[open_row[used]] = True
         rows = np.flatnonzero(kept)
@@ -143,9 +145,9 @@ class BlockCollector:
         """The blocks so far, those that the tool is in as far as it got."""
         known = self.columns
         p99 = known.p99.copy()
-        for passage, bins in zip(self._open.rows.copy(), self._open.bins.copy(), strict=True):
-            if passage[ROW] != NOBODY:
-                close(passage, bins, known.greatest, p99)
+        passages = OpenPassages._make(column.copy() for column in self._open)
+        for which in np.flatnonzero(passages.row != NOBODY):
+            close(passages, which, known.greatest, p99)
         row = np.argsort(known.block[: len(self._row_of)])
         return BlockFigures(
             line=known.block[row] // 2,

@@ -1,6 +1,7 @@
 """The uncut stock as intervals along three directions: box, cylinder, tube, the shape of an STL file."""
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -9,15 +10,16 @@ from twin.cutting.tridexel.closed_mesh import mesh_dexels
 from twin.cutting.tridexel.dexels import Dexels, Lattice, TriDexel, lattice_around, no_material
 from twin.cutting.tridexel.engagement import cut
 from twin.cutting.tridexel.moving_solid import Poses, surface, within
-from twin.cutting.tridexel.normals import packed
+from twin.cutting.tridexel.normals import OWN, packed
 from twin.cutting.tridexel.solids import Solid, cylinder
 from twin.errors import ConfigError
 from twin.files.stl import read_stl
 from twin.job.job_file import StockTable
 from twin.nc.canonical import FloatArray
 
-OWN = 0
-"""In place of a tool's number: the blank's own surface."""
+if TYPE_CHECKING:
+    import trimesh
+
 THROUGH_MM = 1.0
 """How far a tube's bore reaches beyond its ends, so that nothing is left there [mm]."""
 
@@ -122,13 +124,22 @@ def _fill(dexels: Dexels, lattice: Lattice, poses: Poses, solid: Solid) -> None:
                     dexels.skin[place, end] = surface(poses, solid, (d, t, x, y), 0, 0.0, 1.0, OWN)
 
 
-def _from_stl(path: Path, top: FloatArray, cell: float) -> TriDexel:
-    """The shape of an STL file, the middle of whose box's top face is at a place, shape (3,) [mm]."""
-    mesh = read_stl(path)
+def require_closed(mesh: "trimesh.Trimesh", path: Path) -> "trimesh.Trimesh":
+    """The mesh of a file.
+
+    Raises:
+        ConfigError: Its surface is not closed.
+    """
     if not mesh.is_watertight:
         raise ConfigError(
             f"{path}: its surface is not closed, which a part cut from any side needs"
         )
+    return mesh
+
+
+def _from_stl(path: Path, top: FloatArray, cell: float) -> TriDexel:
+    """The shape of an STL file, the middle of whose box's top face is at a place, shape (3,) [mm]."""
+    mesh = require_closed(read_stl(path), path)
     low, high = mesh.bounds
     shift = top - [*(0.5 * (low + high))[:2], high[2]]
     triangles = np.ascontiguousarray(mesh.triangles + shift, np.float64)

@@ -20,11 +20,12 @@ from twin.cutting.material import (
     Head,
     Points,
 )
+from twin.cutting.part import export_glb
 from twin.cutting.stock_contact import BRUSH_MM, above_edge
 from twin.cutting.tools import Profile
 from twin.cutting.tridexel.dexels import TriDexel
 from twin.cutting.tridexel.engagement import cut, met
-from twin.cutting.tridexel.mesh import surface
+from twin.cutting.tridexel.mesh import part_mesh, skin_colours, surface
 from twin.cutting.tridexel.moving_solid import Poses
 from twin.cutting.tridexel.normals import MOST_TOOLS
 from twin.cutting.tridexel.solids import Solid, cutting_edge, cylinder, thinner
@@ -110,6 +111,10 @@ class TriDexelMaterial:
         text = stl_text((found.points - np.asarray(zero))[found.faces])
         with complete_or_absent(path) as temporary:
             temporary.write_bytes(text)
+
+    def write_glb(self, path: Path) -> None:
+        """Write the part as binary glTF."""
+        export_glb(part_mesh(self.stock, skin_colours), path)
 
     def picture(self) -> bytes:
         """None: from above a part that was cut from several sides is not seen whole."""

@@ -1,11 +1,14 @@
 """The material of a tri-dexel stock as a closed mesh."""
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from twin.cutting.colours import MACHINED_RGB, RAW_RGB, Colours
 from twin.cutting.tridexel.cell_loops import cell_loops
 from twin.cutting.tridexel.dexels import SkinArray, TriDexel
+from twin.cutting.tridexel.normals import OWN, tools
 from twin.cutting.tridexel.surface import Coarse, Crossings, find_surface, mark_inside
 from twin.nc.canonical import FloatArray, IntArray
 
@@ -36,6 +39,10 @@ class Surface(NamedTuple):
     skin: SkinArray
     faces: IntArray
     step: int
+
+
+Paint = Callable[[Surface], Colours]
+"""Colours of the vertices of a surface, shape (n, 3)."""
 
 
 def surface(stock: TriDexel, crossings: int = MESH_CROSSINGS, step: int = 1) -> Surface:
@@ -102,9 +109,21 @@ def _faces(segments: np.ndarray) -> IntArray:
     return faces.reshape(-1, 3)
 
 
-def part_mesh(stock: TriDexel) -> "trimesh.Trimesh":
-    """The material as a mesh; nothing left gives an empty one."""
+def part_mesh(stock: TriDexel, colours: Paint | None = None) -> "trimesh.Trimesh":
+    """The material as a mesh; nothing left gives an empty one.
+
+    Args:
+        stock: The material.
+        colours: Of its vertices; None: none.
+    """
     import trimesh  # As long to load as the rest of a run, and most runs cut no part.
 
     found = surface(stock)
-    return trimesh.Trimesh(found.points, found.faces, process=False)
+    painted = None if colours is None else colours(found)
+    return trimesh.Trimesh(found.points, found.faces, vertex_colors=painted, process=False)
+
+
+def skin_colours(found: Surface) -> Colours:
+    """Raw where the blank's own surface is untouched, machined elsewhere, shape (n, 3)."""
+    machined = (tools(found.skin) != OWN)[:, None]
+    return np.where(machined, MACHINED_RGB, RAW_RGB).astype(np.uint8)

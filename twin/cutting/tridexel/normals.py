@@ -13,7 +13,9 @@ _STEPS = 2047
 _BITS = 11
 _LARGEST = (1 << _BITS) - 1
 MOST_TOOLS = 511
-"""Tools that are told apart; 0 is the blank's own surface."""
+"""Tools that are told apart."""
+OWN = 0
+"""In place of a tool's number: the blank's own surface."""
 
 
 @arithmetic_kernel

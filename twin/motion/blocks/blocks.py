@@ -241,14 +241,17 @@ class WithNeighbours(Step[Blocks, Surroundings]):
 
     Groups are counted from the start of the program, whatever parts the blocks come in. They are
     smaller, and less is known beside them, where arcs turn by more than ``most_angle`` together
-    [rad], that of the last one left out.
+    [rad], that of the last one left out, and where they can end at a stop, so that more is between stops. More is known beside them, up to half a batch, where lines that go on
+    without a stop are so short that ``context`` of them are less than ``view`` [mm or deg].
     """
 
     def __init__(
-        self, parts: Iterable[Blocks], batch: int, context: int, most_angle: float = np.inf
-    ) -> None:
+        self, parts: Iterable[Blocks], batch: int, context: int, most_angle: float = np.inf,
+        view: float = 0.0,
+    ) -> None:  # fmt: skip
         super().__init__(parts)
-        self._batch, self._context, self._most_angle = batch, context, most_angle
+        self._batch, self._context, self._most_angle, self._view = batch, context, most_angle, view
+        self._most = max(context, batch // 2) if view else context
         self._waiting: list[Blocks] = []
         self._count = self._first = 0
 
@@ -257,7 +260,7 @@ class WithNeighbours(Step[Blocks, Surroundings]):
         if len(part):
             self._waiting.append(part)
             self._count += len(part)
-        while self._count - self._first >= self._batch + self._context:
+        while self._count - self._first >= self._batch + self._most:
             yield self._group(self._batch, at_end=False)
 
     def finish(self) -> Iterator[Surroundings]:
@@ -267,17 +270,36 @@ class WithNeighbours(Step[Blocks, Surroundings]):
 
     def _group(self, most: int | None, *, at_end: bool) -> Surroundings:
         """The next group, of so many blocks at most."""
-        first, context, most_angle = self._first, self._context, self._most_angle
+        first, most_angle = self._first, self._most_angle
         window = join(self._waiting)
         angle = np.abs(window.geometry.angle)
         last = first + _within(angle[first : None if most is None else first + most], most_angle)
+        if last < self._count:
+            last = _at_stop(window.corner, first, last)
+        context = self._beside(window[max(0, first - self._most) : first][::-1])
         before = _within(angle[max(0, first - context) : first][::-1], most_angle)
+        context = self._beside(window[last : last + self._most])
         behind = _within(angle[last : last + context], most_angle)
-        kept = max(0, last - context)
+        kept = max(0, last - self._most)
         to_the_end = at_end and last + behind == self._count
         self._waiting, self._count, self._first = [window[kept:]], self._count - kept, last - kept
         known = window[first - before : last + behind]
         return Surroundings(known, before, before + last - first, to_the_end)
+
+    def _beside(self, blocks: Blocks) -> int:
+        """How many blocks are to be known on one side, of those that may be, from the nearest on."""
+        if len(blocks) <= self._context:
+            return self._context
+        ends = (blocks.corner == Corner.EXACT_STOP) | (blocks.geometry.angle != 0.0)
+        goes_on = (np.cumsum(blocks.length) < self._view) & ~np.logical_or.accumulate(ends)
+        return max(self._context, int(np.count_nonzero(goes_on)) + 1)
+
+
+def _at_stop(corner: CodeArray, first: int, last: int) -> int:
+    """The last stop in the second half of a group; its end where there is none."""
+    behind = (first + last) // 2 + 1
+    stops = np.flatnonzero(corner[behind : last + 1] == Corner.EXACT_STOP)
+    return behind + int(stops[-1]) if len(stops) else last
 
 
 def _within(angle: FloatArray, most: float) -> int:

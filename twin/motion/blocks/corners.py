@@ -15,7 +15,6 @@ from twin.motion.blocks.blocks import Blocks, BoolArray
 from twin.motion.blocks.border_kernels import (
     border_steps,
     border_velocities,
-    slow_dense_knees,
     tolerance_shares,
 )
 from twin.motion.blocks.corner_choice_kernels import (
@@ -25,6 +24,12 @@ from twin.motion.blocks.corner_choice_kernels import (
     clip_widths,
 )
 from twin.motion.blocks.corner_kernels import MAX_NEIGHBOURS, find_widths
+from twin.motion.blocks.knee_kernels import (
+    LONGEST_VIEW,
+    Chain,
+    slow_bending_chords,
+    slow_dense_knees,
+)
 from twin.motion.limits import MotionLimits
 from twin.nc.canonical import Corner, FloatArray
 
@@ -32,6 +37,10 @@ CONTEXT = 7 * MAX_NEIGHBOURS
 """Blocks on either side that the path along a block can depend on: roundings reach that far, stops
 narrow them from as far again and are chosen by what is as far beyond, their widths depend on others'
 widths thrice as far, and those on the tolerances as far again."""
+
+VIEW = 2.0 * LONGEST_VIEW
+"""Length of path on either side that the path along a block can depend on where chords are short [mm or deg]: the
+velocities at knees, and what those beyond them allow."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -95,13 +104,25 @@ def find_borders(blocks: Blocks, limits: MotionLimits, largest_override: float =
         np.broadcast_to(limits.junction_acceleration_step, axes),
     )  # fmt: skip
     if np.any(corner == Corner.EXACT_PATH):
-        acceleration = limits.acceleration.copy()
-        acceleration[:3] = np.minimum(acceleration[:3], limits.path_acceleration)
-        slow_dense_knees(
-            entry, tangent_step, blocks.length, shapes.angle,
-            np.broadcast_to(limits.junction_velocity_step, axes), acceleration,
-        )  # fmt: skip
+        _slow_close_knees(blocks, entry, tangent_step, width, limits)
     return Borders(tangent_step, curvature_step, width, entry, overlap)
+
+
+def _slow_close_knees(
+    blocks: Blocks, entry: FloatArray, tangent_step: FloatArray, width: FloatArray, limits: MotionLimits
+) -> None:  # fmt: skip
+    """Lower the velocities of knees that follow one another closely, in place."""
+    shapes, axes = blocks.geometry, len(limits)
+    acceleration = limits.acceleration.copy()
+    acceleration[:3] = np.minimum(acceleration[:3], limits.path_acceleration)
+    step = np.broadcast_to(limits.junction_velocity_step, axes)
+    slow_dense_knees(entry, tangent_step, blocks.length, shapes.angle, step, acceleration)
+    straight = (shapes.angle == 0.0) & ~shapes.bend.any(axis=(1, 2))
+    joined = straight & (entry > 0.0) & (width == 0.0)
+    joined[1:] &= straight[:-1]
+    place = np.append(0.0, np.cumsum(blocks.length))
+    chain = Chain(place, np.vstack([shapes.base, shapes.end[-1:]]), joined)
+    slow_bending_chords(entry, chain, step, limits.jerk)
 
 
 def _tolerances(blocks: Blocks, rounded: BoolArray, limits: MotionLimits) -> FloatArray:

@@ -23,7 +23,7 @@ from twin.motion.blocks.blocks import (
     Surroundings,
     WithNeighbours,
 )
-from twin.motion.blocks.corners import CONTEXT, Borders
+from twin.motion.blocks.corners import CONTEXT, VIEW, Borders
 from twin.motion.limits import MotionLimits
 from twin.motion.pieces.bound_kernels import bound_derivatives
 from twin.motion.pieces.cut_kernels import cut_blocks, place_pieces
@@ -97,7 +97,7 @@ def blocks_to_cut(
     Raises:
         ValueError: A move does not begin where the one before it ended.
     """
-    return WithNeighbours(BlocksOfChunks(chunks, start), batch, CONTEXT, MAX_ANGLE)
+    return WithNeighbours(BlocksOfChunks(chunks, start), batch, CONTEXT, MAX_ANGLE, VIEW)
 
 
 def cut(

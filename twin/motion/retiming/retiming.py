@@ -13,7 +13,7 @@ import numpy as np
 from twin.motion.limits import MachineLimits
 from twin.motion.pieces.pieces import Pieces
 from twin.motion.retiming.retimed_kernels import retimed_phases, uses_of_limits
-from twin.motion.retiming.run_kernels import LONG, RunEnds, RunPieces, find_runs, run_ends
+from twin.motion.retiming.run_kernels import RunEnds, RunKind, RunPieces, find_runs, run_ends
 from twin.motion.retiming.solver_kernels import fastest_rate
 from twin.motion.retiming.table_kernels import cut_run, first_rate, run_table, tightened
 from twin.nc.canonical import FloatArray, IntArray
@@ -135,7 +135,7 @@ def retime(
         reference = phases[first:last].shifted(-gained)
         ends = run_ends(reference.rows, reference.rows_pieces)
         begin = float(reference.rows[0, 0])
-        share = JERK_SHARE if kind == LONG else SHORT_JERK_SHARE
+        share = JERK_SHARE if kind == RunKind.LONG else SHORT_JERK_SHARE
         faster = drive_run(ends, pieces, machine, override, begin, share)
         if faster is None or faster.end > reference.end - LEAST_GAIN * (reference.end - begin):
             continue

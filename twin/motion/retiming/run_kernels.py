@@ -1,5 +1,6 @@
 """Runs: stretches of a plan along smooth arcs, where nothing steps and nothing stands still."""
 
+import enum
 import math
 from typing import NamedTuple
 
@@ -23,8 +24,16 @@ HOLD_TURN = 0.5 * math.pi
 AT_FEED = 0.999
 """Share of the programmed feed from which on it is the feed that bounds a phase, not its curve."""
 
-KEPT, SHORT, LONG = 0, 1, 2
-"""Kinds of runs: not worth a new time law, of less than ``LEAST_TURN``, and the others."""
+
+class RunKind(enum.IntEnum):
+    """What becomes of a run."""
+
+    KEPT = 0
+    """It is not worth a new time law."""
+    SHORT = 1
+    """It turns by less than ``LEAST_TURN``."""
+    LONG = 2
+
 
 REST = 1e-9
 """What is slower at a run's end is rounding [mm/s]."""
@@ -96,7 +105,9 @@ def find_runs(
                 rests |= _end_velocity(phases[ends - 1]) < REST
                 least = LEAST_TURN_FROM_REST if rests else LEAST_TURN
                 if freely >= least * (1.0 - BARELY):
-                    found[used, 2] = LONG if turned >= LEAST_TURN * (1.0 - BARELY) else SHORT
+                    found[used, 2] = (
+                        RunKind.LONG if turned >= LEAST_TURN * (1.0 - BARELY) else RunKind.SHORT
+                    )
                 used += 1
             inside = inside and not holds
             first, turned, freely = row if inside else -1, 0.0, 0.0

@@ -10,7 +10,7 @@ import pydantic
 _FILE = Path(__file__).with_name("findings.toml")
 
 
-class Finding(pydantic.BaseModel):
+class Explanation(pydantic.BaseModel):
     """One kind of diagnostic."""
 
     model_config = pydantic.ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
@@ -28,7 +28,7 @@ class Finding(pydantic.BaseModel):
 
 
 @functools.cache
-def findings() -> Mapping[str, Finding]:
+def findings() -> Mapping[str, Explanation]:
     """Every kind of diagnostic by its code."""
     data = tomllib.loads(_FILE.read_text(encoding="utf-8"))
-    return {code: Finding.model_validate(entry) for code, entry in data.items()}
+    return {code: Explanation.model_validate(entry) for code, entry in data.items()}

@@ -5,7 +5,7 @@ byte to byte.
 """
 
 import string
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -43,7 +43,7 @@ def _repeated(stage: int) -> str:
     return f"[{characters[0]}]*" if characters else ""
 
 
-def _onward(stage: int, ends: Collection[int]) -> str:
+def _onward(stage: int) -> str:
     """Regular expression of what leads on, up to the end of the word."""
     steps = {kind: to for kind, to in _STEPS[stage].items() if to != stage}
     ways: list[str] = []
@@ -51,20 +51,18 @@ def _onward(stage: int, ends: Collection[int]) -> str:
         one = f"[{_CHARACTERS[kind]}]"
         rest = {other: behind for other, behind in steps.items() if other != kind}
         if rest and rest == _STEPS[to]:  # may be left out
-            return f"{one}?{_onward(to, ends)}"
+            return f"{one}?{_onward(to)}"
         several = _repeated(to)
-        ways.append((f"{one}+" if several == f"{one}*" else one + several) + _onward(to, ends))
-    if stage in ends and ways:
+        ways.append((f"{one}+" if several == f"{one}*" else one + several) + _onward(to))
+    if stage in _ENDS and ways:
         return f"(?:{'|'.join(ways)})?"
     return f"(?:{'|'.join(ways)})" if len(ways) > 1 else "".join(ways)
 
 
 BLANKS, BLANKS_BETWEEN = _repeated(BEGIN), _repeated(ADDRESS)
 """What may be before an address, and behind it; as all others, for regular expressions."""
-NUMBER, SIGNED_NUMBER = _onward(SIGNED, _ENDS), _onward(ADDRESS, _ENDS)
+NUMBER, SIGNED_NUMBER = _onward(SIGNED), _onward(ADDRESS)
 """A number without a sign, and a word's, which may have one."""
-SIGNED_POINTED_NUMBER = _onward(ADDRESS, (FRACTION,))
-"""That of a word, with a decimal point."""
 
 
 def _scan_table() -> np.ndarray[tuple[int], np.dtype[np.uint8]]:

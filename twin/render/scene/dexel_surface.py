@@ -1,13 +1,14 @@
 """The stock as it is drawn where it is cut from several sides: the surface of its intervals, laid anew when it was cut."""
 
+from collections.abc import Callable
+
 import mujoco
 import numpy as np
 
-from twin.cutting.colours import MACHINED_RGB, RAW_RGB
-from twin.cutting.tridexel.blanks import OWN
+from twin.cutting.colours import MACHINED_RGB, RAW_RGB, deviation_colours
 from twin.cutting.tridexel.material import TriDexelMaterial
 from twin.cutting.tridexel.mesh import MOST_VERTICES, TRIANGLES, Surface, surface
-from twin.cutting.tridexel.normals import normals, tools
+from twin.cutting.tridexel.normals import OWN, normals, tools
 from twin.nc.canonical import BoolArray, FloatArray
 from twin.render.drawing.canvas import Canvas
 from twin.render.scene.live_mesh import LiveMesh, add_live_mesh
@@ -18,7 +19,14 @@ from twin.render.scene.skin import MATERIAL
 MESH = "stock_from_all_sides"
 RAW, MACHINED = 0, 1
 """Texels of the two kinds of skin."""
-_TEXELS = 2
+_SKIN = np.array([RAW_RGB, MACHINED_RGB], np.uint8)
+_ROWS = 2
+"""Of the texture, all alike."""
+_DEVIATIONS = np.linspace(-1.0, 1.0, 255)
+"""Shares of the scale whose colours are told apart."""
+
+Deviations = Callable[[Surface], FloatArray]
+"""How far the vertices of a surface are off, as shares of a scale, shape (n,); NaN: as metal looks."""
 _ROOM_TO_GROW = 0.6
 """Share of the crossings that the blank may take up: cuts add to them, and a net that becomes coarser is seen."""
 
@@ -30,15 +38,21 @@ class DexelSurface:
     every cut and ``update`` before every picture.
     """
 
-    def __init__(self, material: TriDexelMaterial, crossings: int) -> None:
-        """Choose how finely the stock is drawn.
+    def __init__(
+        self, material: TriDexelMaterial, crossings: int, paint: Deviations | None = None
+    ) -> None:
+        """Choose how finely the stock is drawn, and how.
 
         Args:
             material: The stock before it is cut.
             crossings: Edges of the lattice that the drawn surface may cross; nodes are left out until
                 it does not cross more.
+            paint: What colours it; None: all looks like metal.
         """
-        self._material = material
+        self._material, self._paint = material, paint
+        self._colours = _SKIN
+        if paint is not None:
+            self._colours = np.concatenate([_SKIN, deviation_colours(_DEVIATIONS, 1.0)])
         self._crossings = crossings
         self._step = surface(material.stock, int(_ROOM_TO_GROW * crossings)).step
         self._changed = False
@@ -48,8 +62,8 @@ class DexelSurface:
         spec.add_texture(
             name=MATERIAL,
             type=mujoco.mjtTexture.mjTEXTURE_2D,
-            width=_TEXELS,
-            height=_TEXELS,
+            width=len(self._colours),
+            height=_ROWS,
             builtin=mujoco.mjtBuiltin.mjBUILTIN_FLAT,
         )
         material = spec.add_material(
@@ -58,7 +72,8 @@ class DexelSurface:
         material.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = MATERIAL
         vertices = int(MOST_VERTICES * self._crossings)
         texels = np.full((vertices, 2), 0.5)
-        texels[[RAW, MACHINED], 0] = (np.array([RAW, MACHINED]) + 0.5) / _TEXELS
+        count = len(self._colours)
+        texels[:count, 0] = (np.arange(count) + 0.5) / count
         first = np.arange(TRIANGLES * self._crossings)
         stand_in = np.stack([first, first + 1, first + 2], 1) % vertices
         add_live_mesh(spec, MESH, MATERIAL, texels, stand_in)
@@ -66,7 +81,7 @@ class DexelSurface:
     def bind(self, model: mujoco.MjModel, placement: Placement) -> None:
         """Take over the compiled mesh, lay it where the part's frame is and give it the blank's form."""
         first = int(model.tex_adr[model.texture(MATERIAL).id])
-        colours = np.tile([RAW_RGB, MACHINED_RGB], (_TEXELS, 1)).ravel()
+        colours = np.tile(self._colours, (_ROWS, 1)).ravel()
         model.tex_data[first : first + len(colours)] = colours
         self._mesh = LiveMesh(model, MESH, placement)
         self._set()
@@ -86,6 +101,11 @@ class DexelSurface:
         found = surface(self._material.stock, self._crossings, self._step)
         self._step = found.step
         texels = np.where(machined(found), MACHINED, RAW)
+        if self._paint is not None:
+            share = self._paint(found)[found.faces[:, 0]]
+            colour = np.rint(0.5 * (np.clip(share, -1.0, 1.0) + 1.0) * (len(_DEVIATIONS) - 1))
+            known = np.isfinite(share)
+            texels[known] = len(_SKIN) + colour[known].astype(np.int64)
         self._mesh.fill(found.points, found.faces, corner_normals(found), texels)
 
 

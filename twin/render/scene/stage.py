@@ -20,7 +20,7 @@ from twin.render.drawing.canvas import Canvas, Focus, Pixels, Quality
 from twin.render.drawing.chips import Chips, chips
 from twin.render.drawing.renderer import Renderer, open_canvas, prepare
 from twin.render.scene.cameras import PART_CAMERAS, SMALLEST_MM, add_part_cameras, framed
-from twin.render.scene.dexel_surface import DexelSurface
+from twin.render.scene.dexel_surface import Deviations, DexelSurface
 from twin.render.scene.placement import Joints, Placement, place, tip_position
 from twin.render.scene.scene import Scene
 from twin.render.scene.skin import Skin
@@ -215,7 +215,7 @@ def stage(
     quality: Quality,
     *,
     renderer: Renderer = "opengl",
-    paint: Colours | None = None,
+    paint: Colours | Deviations | None = None,
     trail: bool = True,
 ) -> Iterator[Stage]:
     """Build the drawn machine and open the canvas.
@@ -225,8 +225,8 @@ def stage(
         size: Width and height of the pictures [px].
         quality: What a picture may cost.
         renderer: What draws.
-        paint: Colours of the stock's cells, shape (ny, nx, 4); as metal looks where the fourth is 0,
-            or without any.
+        paint: Colours of the stock's cells, shape (ny, nx, 4), as metal looks where the fourth is 0; or, of one
+            that is cut from several sides, what colours its surface; None: all looks like metal.
         trail: Whether the way of the tool is seen.
 
     Raises:
@@ -243,7 +243,12 @@ def stage(
 
 
 def _build_props(
-    spec: mujoco.MjSpec, scene: Scene, quality: Quality, paint: Colours | None, *, trail: bool
+    spec: mujoco.MjSpec,
+    scene: Scene,
+    quality: Quality,
+    paint: Colours | Deviations | None,
+    *,
+    trail: bool,
 ) -> _Props:
     """Add stock, work holding, cameras, trail and tools to a machine's specification."""
     header = scene.recording.header
@@ -276,12 +281,14 @@ def _build_props(
 
 
 def _stock_surface(
-    material: Material, quality: Quality, paint: Colours | None
+    material: Material, quality: Quality, paint: Colours | Deviations | None
 ) -> StockSurface | DexelSurface:
     """What draws the stock, by what describes it."""
     if isinstance(material, TriDexelMaterial):
-        return DexelSurface(material, quality.drawn_crossings)
+        assert paint is None or callable(paint)
+        return DexelSurface(material, quality.drawn_crossings, paint)
     assert isinstance(material, HeightMapMaterial)
+    assert not callable(paint)
     cells = material.map.heights.shape
     step = max(1, -(-max(cells) // quality.drawn_cells))
     return StockSurface(material, Skin(material.map, material.marks, step, paint), step)

@@ -1,7 +1,7 @@
 // The page of a room: fetches the scene, follows the machine, hands what is heard to the parts.
 
 import { View } from "../view/view.js";
-import { PATCH, readState, STATE } from "../view/wire.js";
+import { MESH, PATCH, readState, STATE } from "../view/wire.js";
 import { Connection } from "./connection.js";
 import { ControlDesk } from "./control_desk.js";
 import { Editor } from "./editor.js";
@@ -79,7 +79,7 @@ function hear(data) {
     return show_soon();
   }
   const kind = new Uint8Array(data, 0, 1)[0];
-  if (kind === PATCH) return view.patch(data);
+  if (kind === PATCH || kind === MESH) return view.patch(data);
   if (kind !== STATE) return undefined;
   const state = readState(data);
   view.say("state", data);
@@ -102,6 +102,7 @@ function show_soon() {
       score.show(now, words);
       preview.show(now, changed);
       trouble.show(now);
+      if (changed.has("finder")) view.say("finder", now.finder);
       help.show(now, words);
       editor.show(now, words, changed);
       show_hand_over();

@@ -51,7 +51,7 @@ export class Sheets {
     for (const tab of tabs.children) tab.setAttribute("aria-selected", tab.id === `tab-${this.sheet}`);
     sheet.setAttribute("aria-labelledby", `tab-${this.sheet}`);
     const acts = now.role === "trainer" || now.has_panel;
-    const what = { tasks: [now.verdicts, now.answers, now.hints, now.score, now.over, now.signature, this.asking], manual: [now.spindle, now.counter_clockwise, now.spindle_override, now.suspended, this.desk.hand], run: [now.optional_stop, now.block_skip, now.dry_run, now.searched, now.changed, this.screen.chosen], offsets: [now.zero, now.offsets, now.tool, now.tools], tools: [now.tools, now.tool, now.broken], history: [now.alarms], display: [], trainer: [now.faults, now.frozen, now.replaying, now.made] };
+    const what = { tasks: [now.verdicts, now.answers, now.hints, now.score, now.over, now.signature, this.asking], manual: [now.spindle, now.counter_clockwise, now.spindle_override, now.suspended, this.desk.hand], run: [now.optional_stop, now.block_skip, now.dry_run, now.searched, now.changed, this.screen.chosen], offsets: [now.zero, now.offsets, now.tool, now.tools, now.broken], tools: [now.tools, now.tool, now.broken], history: [now.alarms], display: [], trainer: [now.faults, now.frozen, now.replaying, now.made] };
     const drawn = JSON.stringify([this.sheet, words.language, acts, now.refusals, what[this.sheet]]);
     if (drawn === this.drawn) return;
     // What is being typed stays; what has been sent is shown as the machine has it.
@@ -118,7 +118,16 @@ export class Sheets {
       return ["X", "Y"].includes(axis) ? [row, this.touched(axis)] : [row];
     }).flat();
     const table = now.offsets.length ? [make("h3", {}, words.label("work_offsets")), ...now.offsets.flatMap((row) => this.offset_row(...row))] : [];
-    return [make("p", { class: "quiet" }, words.label("preset_help")), ...rows, ...table];
+    return [...this.finder(), make("p", { class: "quiet" }, words.label("preset_help")), ...rows, ...table];
+  }
+
+  /** The edge finder, and how it is used. */
+  finder() {
+    const { now, words, line } = this, finder = now.tools.find(({ kind }) => kind === "edge_finder");
+    if (!finder) return [];
+    const here = finder.number === now.tool;
+    const put = here && !now.broken ? [] : [make("div", { class: "row" }, this.button("edge finder", words.label(here ? "new_finder" : "finder_in"), () => line.say({ do: "change_tool", number: finder.number })))];
+    return [make("p", { class: here ? "" : "quiet" }, words.label(here ? "finder_help" : "finder_hint")), ...put];
   }
 
   /** An edge that the tool touches is zero: its middle stands off it by its radius. */

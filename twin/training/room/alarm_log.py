@@ -65,6 +65,11 @@ class AlarmLog:
         """A tool has lost its edge: the machine does not measure it, and goes on without."""
         self.broken[tool] = self.enter(room, notice)
 
+    def note_broken(self, tool: int) -> None:
+        """What the active alarm tells of is a tool that has broken."""
+        if self.active is not None:
+            self.broken.setdefault(tool, self.active)
+
     def renew_tool(self, number: int) -> None:
         """A new tool has come into the place of one that may have lost its edge."""
         self.broken.pop(number, None)

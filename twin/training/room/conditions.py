@@ -77,7 +77,8 @@ def _zero(_evidence: Evidence, room: Observed, task: TaskTable, _number: int) ->
 
 def _tool_length(_evidence: Evidence, room: Observed, task: TaskTable, _number: int) -> State:
     tables = room.setup.tables
-    off = abs(tables.lengths[tables.spindle] - tables.tool.length)
+    # Of another one, put in by hand, the table's length may be right by itself.
+    off = abs(tables.lengths[tables.first] - tables.tools[tables.first].length)
     return "done" if task.tool_length and off <= task.tool_length else "open"
 
 

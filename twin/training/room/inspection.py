@@ -97,11 +97,10 @@ def moment_of(room: Observed, alarm: Notice) -> Moment:
     tool = setup.tables.tool
     if setup.work is None:
         return Moment(alarm, text, setup.tip, tool, np.zeros((0, 0)), (0.0, 0.0), 1.0, (0.0, 0.0))
-    stock = setup.work.map
-    every = max(1, -(-max(stock.heights.shape) // FINEST))
-    heights = stock.heights[::every, ::every].copy()
-    ends = stock.bottom, stock.top
-    return Moment(alarm, text, setup.tip, tool, heights, stock.origin, stock.cell * every, ends)
+    heights, origin, cell = setup.work.view_from_above()
+    every = max(1, -(-max(heights.shape) // FINEST))
+    kept = heights[::every, ::every].copy()
+    return Moment(alarm, text, setup.tip, tool, kept, origin, cell * every, setup.work.ends)
 
 
 class MeasuredPlace(NamedTuple):
@@ -155,7 +154,7 @@ def measured_places(room: Observed) -> tuple[MeasuredPlace, ...]:
         return ()
     found = []
     for x, y, wanted in part.points:
-        height = work.height_at(x, y)
+        height = work.measured(x, y, wanted)
         good = abs(height - wanted) <= part.tolerance
         found.append(MeasuredPlace(x, y, wanted, height if math.isfinite(height) else None, good))
     return tuple(found)

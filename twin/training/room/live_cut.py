@@ -58,7 +58,8 @@ class LiveCut:
         """
         self.process: CuttingProcess | None = None
         self._machine = machine
-        self._simulated = job.cutting_force == "teeth"
+        # Teeth are felt in a height map alone.
+        self._simulated = job.cutting_force == "teeth" and part_frame.chain is None
         self._operation = OperatorOperation(job.tools[0])
         self._frame, self._zero = part_frame, zero
         self._told: set[int] = set()

@@ -149,6 +149,8 @@ class Room:
             self.auxiliaries.follow(function)
         self.slot.relabel(self.machine.setpoint)
         self._latch(self.machine.alarm)
+        if self.setup.finder is not None and self.setup.finder.broken:
+            self.alarms.note_broken(self.setup.finder.number)
         for found in self.setup.cut.new_breaks():
             line = found.alarm.line if self.slot.running == "program" else 0
             notice = Notice(found.alarm.code, found.alarm.message, line=line)
@@ -177,8 +179,10 @@ class Room:
     def _latch(self, alarm: Alarm | None) -> None:
         # An axis that is jogged off its switch may meet the next alarm while the first one is active.
         if alarm is not None and (self.alarm is None or self.slot.run is not None):
+            # A move by hand is a block of its own, which nobody has written.
+            line = 0 if self.slot.running == "jog" else alarm.line
             self.raise_alarm(
-                Notice(alarm.code, alarm.message, alarm.axis, alarm.line, between=alarm.between)
+                Notice(alarm.code, alarm.message, alarm.axis, line, between=alarm.between)
             )
 
     def raise_alarm(self, notice: Notice) -> None:

@@ -14,6 +14,7 @@ from twin.nc.canonical import FloatArray
 from twin.nc.functions import SpindleState
 from twin.recording.reader import Samples
 from twin.training.program.program_run import ProgramRun
+from twin.training.room.edge_finder import EdgeFinder, broken_alarm, edge_finder
 from twin.training.room.live_cut import LiveCut
 from twin.training.room.tables import Tables
 from twin.training.room.workpiece import Workpiece
@@ -31,6 +32,7 @@ class Setup:
         part_frame: How the part turns under the tool.
         work: The stock, if there is one.
         cut: The force of the cut.
+        finder: The edge finder in the magazine; None: there is nothing to be found with it.
     """
 
     def __init__(self, scene: Scene, machine: LiveMachine, tables: Tables) -> None:
@@ -52,12 +54,14 @@ class Setup:
         self.part_frame = scene.preparation.machine.part_frame.at(
             tables.true_zero, self._first_tool.length
         )
-        if self._stock is not None and self.part_frame.chain is not None:
+        chain = self.part_frame.chain
+        if self._stock is not None and chain is not None and (chain.rotary & chain.on_tool).any():
             raise ConfigError(
-                "job key 'stock': a blank is cut live where the part turns about Z alone; put a fixture in its place"
+                "job key 'stock': a blank is cut live where the tool does not swivel; put a fixture in its place"
             )
         self.cut = LiveCut(machine, job, self.part_frame, tables.true_zero)
         self.work = self._clamped_blank()
+        self.finder = None if tables.finder is None else EdgeFinder(tables.finder)
         self._growth = Growth(machine.machine, self.cut.told_speed)
 
     def _clamped_blank(self) -> Workpiece | None:
@@ -97,6 +101,29 @@ class Setup:
         """The samples of a slice, with what the machine has grown."""
         return self._growth.warm(samples)
 
+    def renew(self, number: int) -> None:
+        """Put a new tool into the place of one that may have broken."""
+        self.cut.renew(number)
+        if self.finder is not None and number == self.finder.number:
+            self.finder.renew()
+
+    @property
+    def sound_finder(self) -> EdgeFinder | None:
+        """The edge finder, where it is in the spindle and not broken."""
+        finder = self.finder
+        here = finder is not None and finder.number == self.tables.spindle and not finder.broken
+        return finder if here else None
+
+    def _push_finder(
+        self, finder: EdgeFinder, work: Workpiece, samples: Samples, turns: bool
+    ) -> Alarm | None:
+        """Let the edge finder give way; the alarm with which it breaks."""
+        last = samples.joint_position[-1] - self.tables.longer
+        said = finder.push(work.touch(last), turns=turns)
+        setpoint = samples.setpoint
+        alarm = broken_alarm(said, int(setpoint.line[-1]), float(setpoint.time[-1]))
+        return alarm if said else None
+
     def cut_along(
         self, samples: Samples, run: ProgramRun | None, *, edges_stand: bool
     ) -> Alarm | None:
@@ -112,6 +139,9 @@ class Setup:
         """
         if self.work is None:
             return None
+        finder = self.sound_finder
+        if finder is not None:
+            return self._push_finder(finder, self.work, samples, turns=not edges_stand)
         longer = self.tables.longer
         tips = dataclasses.replace(
             samples,
@@ -135,7 +165,8 @@ class Setup:
         """An alarm has been cleared: only what comes from now on counts."""
         if self.work is not None:
             self.work.forgive()
-            self.cut.resume(self.work.map.heights)
+            if self.work.map is not None:
+                self.cut.resume(self.work.map.heights)
 
     @property
     def tip(self) -> FloatArray:
@@ -144,8 +175,9 @@ class Setup:
         return self.part_frame.position(place[None])[0]
 
     def touches(self, spindle: SpindleState) -> bool:
-        """Whether the feeler lamp is lit: the tool stands still and touches the blank."""
-        if self.work is None or spindle.turns:
+        """Whether the feeler lamp is lit: the tool, which is whole, stands still and touches the part."""
+        finder_is_gone = self.tables.spindle == self.tables.finder and self.sound_finder is None
+        if self.work is None or spindle.turns or finder_is_gone:
             return False
         return self.work.touches(self._machine.position - self.tables.longer)
 
@@ -159,6 +191,8 @@ def scene_tables(scene: Scene, zero: FloatArray) -> Tables:
     """
     start, machine = scene.file.start, scene.preparation.machine
     tables = Tables(zero, scene.preparation.job.file.tools, _offsets(scene))
+    if scene.preparation.job.file.stock is not None:
+        tables.add_finder(edge_finder(tables.tools))
     for axis, error in start.zero_error.items():
         tables.shift_zero(machine.axes.index(axis), error)
     length = tables.lengths[tables.spindle] + start.tool_length_error
@@ -181,6 +215,6 @@ def _offsets(scene: Scene) -> dict[str, dict[str, float]]:
 def _fine(stock: StockTable, scene: Scene) -> StockTable:
     """The stock with a grid that is as fine as the scene is looked at closely."""
     cell = stock.cell or default_cell(scene.preparation.job.file.tools, stock)
-    if scene.cells_across:
+    if scene.cells_across and scene.preparation.machine.part_frame.chain is None:
         cell = min(cell, min(stock.extent[:2]) / scene.cells_across)
     return stock.model_copy(update={"cell": cell})

@@ -9,7 +9,7 @@ from twin.job.job_file import ToolTable
 from twin.nc.canonical import FloatArray
 
 MAGAZINE_PLACES = 40
-"""Tools that fit."""
+"""Tools that fit, beside the edge finder."""
 
 
 class Tables:
@@ -26,6 +26,8 @@ class Tables:
         offsets: Work offsets by name, each by axis, from part zero [mm or deg].
         tools: The tools as they are, by number.
         spindle: Number of the tool in the spindle.
+        first: Number of the tool that the job begins with.
+        finder: Number of the edge finder; None: the magazine has none.
     """
 
     def __init__(
@@ -40,7 +42,8 @@ class Tables:
         self.lengths = {tool.number: tool.length for tool in tools}
         self.radii = {tool.number: tool.diameter / 2.0 for tool in tools}
         self.offsets = {name: dict(values) for name, values in offsets.items()}
-        self.spindle = tools[0].number
+        self.spindle = self.first = tools[0].number
+        self.finder: int | None = None
         self._reference = tools[0].length
 
     @property
@@ -101,11 +104,19 @@ class Tables:
         """
         if tool.number in self.tools:
             raise UsageError(f"T{tool.number} is in the table already: choose another number")
-        if len(self.tools) >= MAGAZINE_PLACES:
+        if len(self.tools) - (self.finder is not None) >= MAGAZINE_PLACES:
             raise UsageError(f"the magazine has {MAGAZINE_PLACES} places, and all are taken")
+        self._enter(tool)
+
+    def _enter(self, tool: ToolTable) -> None:
         self.tools[tool.number] = tool
         self.lengths[tool.number] = tool.length
         self.radii[tool.number] = tool.diameter / 2.0
+
+    def add_finder(self, finder: ToolTable) -> None:
+        """Put an edge finder into a place of its own, under a number that is free."""
+        self._enter(finder)
+        self.finder = finder.number
 
     def set_offset(self, name: str, axis: str, value: float) -> float:
         """Write a work offset of an axis [mm or deg].

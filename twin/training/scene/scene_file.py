@@ -19,6 +19,7 @@ from twin.training.scene.confinement import Confinement, leaves_folder
 from twin.training.scene.fault_table import FaultTable
 from twin.training.scene.tasks import TaskTable
 from twin.training.scene.vocabulary import Language, Text
+from twin.training.scene.work_holding import with_work_holding
 
 Mode = Literal["auto", "single", "jog", "mdi"]
 """Automatic, single block, manual jog, manual data input."""
@@ -220,7 +221,7 @@ def read_scene(path: Path) -> Scene:
     Confinement(path).require(file.job)
     if not (folder / file.job.program).is_file():
         raise ConfigError(f"{path}: no NC program '{file.job.program}' beside it")
-    scene = Scene(path.stem, file, prepare_job(Job(folder, file.job)))
+    scene = Scene(path.stem, file, prepare_job(with_work_holding(Job(folder, file.job))))
     axes = scene.preparation.machine.axes.names
     named = [*file.start.position, *file.start.zero_error, *(f.axis for f in file.faults if f.axis)]
     for task in file.tasks:

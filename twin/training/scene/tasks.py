@@ -75,7 +75,7 @@ class TaskTable(Table):
     """Holds to the end."""
     zero: ZeroTable | None = None
     tool_length: Annotated[float, Field(gt=0)] | None = None
-    """The table's length of the tool in the spindle is right within this [mm]."""
+    """The table's length of the tool that the job begins with is right within this [mm]."""
     finished: bool = False
     """The program has run to its end, without an alarm on the way."""
     single_block: tuple[Annotated[int, Field(ge=1)], ...] = ()

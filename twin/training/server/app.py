@@ -23,6 +23,7 @@ from twin.nc.iso.base import jog_block
 from twin.nc.text.diagnostics import Diagnostic
 from twin.render.machine_glb import DrawnMachine, drawn_machine
 from twin.training.program.preview import Preview
+from twin.training.room.edge_finder import BODY_MM
 from twin.training.room.run_settings import path_to_come
 from twin.training.scene.fault_table import FAULT_DEFAULTS
 from twin.training.scene.phrases import finding_in, translated
@@ -44,6 +45,7 @@ from twin.training.server.frames import (
     path_message,
     state_message,
 )
+from twin.training.server.part_mesh import PartMesh
 from twin.training.server.program_check import ProgramCheck
 from twin.training.server.scene_maker import scene_of, write_scene
 from twin.training.session.commands import LONGEST_TEXT
@@ -99,7 +101,7 @@ class RoomApp:
         self.connections = Connections()
         self.bytes_sent = 0
         self.messages = 0
-        self._stock = StockFeed()
+        self._stock, self._mesh = StockFeed(), PartMesh(driver)
         self._spoken: tuple[Look | None, dict[str, str]] = None, {}
         # A page that was open before a restart must see that its attempt is another one.
         self._opening = secrets.token_hex(4)
@@ -216,7 +218,10 @@ class RoomApp:
         described = drawn[0].description()
         work = self._driver.session.room.setup.work
         if work is not None:
-            described["stock"] = grid_of(work.map)
+            described |= {"part_mesh": True} if work.map is None else {"stock": grid_of(work.map)}
+        tables = self._driver.session.room.setup.tables
+        if request.query_params["tool"] == str(tables.finder):
+            described["finder"] = {"body": 0.5 * BODY_MM}
         return JSONResponse(described)
 
     async def _glb(self, request: Request) -> Response:
@@ -333,23 +338,23 @@ class RoomApp:
     async def _tell(self, socket: WebSocket, page: Page) -> None:
         """Show a page the machine, no faster than it reads."""
         changes = Changes()
-        epoch = version = -1
+        epoch = version = mesh_version = -1
         shown: tuple[Look | None, dict[str, Any]] = None, {}
         while True:
             began = asyncio.get_running_loop().time()
             look = self._driver.look
             self._stock.note(self._driver.seen)
             patch, epoch, version = self._stock.patch(epoch, version)
+            mesh, mesh_version = await self._mesh.newer(mesh_version)
             own = self.connections.words(page) | {
                 "attempt": f"{self._opening} {self.attempt.number}"
             }
             messages: list[bytes | str] = []
-            if patch is not None or look is not shown[0] or own != shown[1]:
+            if patch or mesh or look is not shown[0] or own != shown[1]:
                 shown = look, own
                 words = changes.since_last(self._words_of(look) | as_texts(own))
-                messages = [state_message(look, cutting=patch is not None)]
-                messages += [words] if words else []
-                messages += [] if patch is None else [patch]
+                messages = [state_message(look, cutting=bool(patch or mesh))]
+                messages += [part for part in (words, patch, mesh) if part]
             for message in messages:
                 self.bytes_sent += len(message)
                 send = socket.send_bytes if isinstance(message, bytes) else socket.send_text

@@ -147,20 +147,21 @@ class StockFeed:
     def note(self, room: Room) -> None:
         """Look at the stock of the room that is seen."""
         work = room.setup.work
-        if work is None:
+        stock = None if work is None else work.map
+        if work is None or stock is None:
             return
         with self._lock:
-            if work.map is not self._map:
-                self._map = work.map
+            if stock is not self._map:
+                self._map = stock
                 self.epoch += 1
                 self.version += 1
                 self._changes.clear()
-                self._begin_tools(work.map)
+                self._begin_tools(stock)
             changed = work.take_changed()
             if changed[0] < changed[1]:
                 self.version += 1
                 self._changes.append((self.version, changed))
-                self._note_tool(work.map, changed, room.setup.tables.spindle)
+                self._note_tool(stock, changed, room.setup.tables.spindle)
 
     def _begin_tools(self, stock: HeightMap) -> None:
         """Of a stock as it was earlier, what is cut was cut by whom it is known of."""

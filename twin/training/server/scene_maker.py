@@ -141,7 +141,10 @@ def _start(room: Room) -> dict[str, Any]:
 
 def _part(work: Workpiece) -> dict[str, Any]:
     """What the part on the table is known by: its volume, and places in the middle of what is flat."""
+    removed = [round(work.removed * (1.0 - SLACK), 1), round(work.removed * (1.0 + SLACK), 1)]
     stock = work.map
+    if stock is None:
+        return {"removed_mm3": removed}
     rows, columns = np.nonzero(stock.machined() & (stock.heights > stock.bottom))
     chosen: list[list[float]] = []
     for number in np.random.default_rng(0).permutation(len(rows)):
@@ -152,10 +155,9 @@ def _part(work: Workpiece) -> dict[str, Any]:
         ]
         if around.size == (2 * FLAT_CELLS + 1) ** 2 and np.ptp(around) < FLAT_MM:
             x, y = work.program_place(row, column)
-            chosen.append([round(x, 2), round(y, 2), round(work.height_at(x, y), 3)])
+            chosen.append([round(x, 2), round(y, 2), round(work.measured(x, y, 0.0), 3)])
         if len(chosen) == PLACES:
             break
-    removed = [round(work.removed * (1.0 - SLACK), 1), round(work.removed * (1.0 + SLACK), 1)]
     return {"removed_mm3": removed, "points": chosen}
 
 

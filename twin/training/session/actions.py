@@ -259,7 +259,7 @@ def _change_tool(room: Room, command: c.ChangeTool) -> None:
     if room.auxiliaries.spindle.turns:
         raise UsageError("the spindle turns: stop it before the tool is changed")
     room.mount(command.number)
-    room.setup.cut.renew(command.number)
+    room.setup.renew(command.number)
     room.alarms.renew_tool(command.number)
 
 

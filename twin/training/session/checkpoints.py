@@ -192,7 +192,7 @@ def checkpoint(room: Room, done: int, before: tuple[KeptMap, ...]) -> Checkpoint
 
 def _stocks(room: Room) -> Iterator[HeightMap]:
     """What is cut: the part, and what the force of the cut is felt from."""
-    if room.setup.work is not None:
+    if room.setup.work is not None and room.setup.work.map is not None:
         yield room.setup.work.map
     if room.setup.cut.process is not None:
         yield room.setup.cut.process.material

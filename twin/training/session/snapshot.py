@@ -92,6 +92,9 @@ class Snapshot:
     """Where the control's program zero is, seen from the part, X Y Z [mm]."""
     touches: bool
     """The feeler lamp."""
+    finder: Row
+    """How far the edge finder's tip is pushed aside, seen from the part, X and Y [mm]; empty: there is no sound one in
+    the spindle."""
     verdicts: tuple[Verdict, ...]
     answers: tuple[tuple[int, str], ...]
     hints: int
@@ -166,7 +169,7 @@ def take_snapshot(room: Room) -> Snapshot:
         tools=tuple(
             ToolRow(
                 number,
-                tool.kind,
+                "edge_finder" if number == room.setup.tables.finder else tool.kind,
                 tool.diameter,
                 room.setup.tables.lengths[number],
                 room.setup.tables.radii[number],
@@ -176,6 +179,7 @@ def take_snapshot(room: Room) -> Snapshot:
         zero=_row(room.setup.tables.zero),
         origin=_row(room.setup.part_frame.position(zero[None])[0]),
         touches=room.setup.touches(room.auxiliaries.spindle),
+        finder=_finder(room),
         verdicts=tuple(room.judge.verdicts),
         answers=tuple(room.judge.evidence.answers.items()),
         hints=room.judge.hints,
@@ -184,6 +188,11 @@ def take_snapshot(room: Room) -> Snapshot:
         faults=tuple(room.faults.active),
         trail=_row(tip),
     )
+
+
+def _finder(room: Room) -> Row:
+    finder = room.setup.sound_finder
+    return () if finder is None else tuple(round(value, 2) for value in finder.deflection)
 
 
 def _from_run(room: Room, zero: FloatArray) -> tuple[FloatArray, ModalState | None]:

@@ -5,11 +5,13 @@ import * as THREE from "./three/three.module.js";
 import { GLTFLoader } from "./three/GLTFLoader.js";
 import { RoomEnvironment } from "./three/RoomEnvironment.js";
 import { Chips, Coolant, Trail } from "./effects.js";
+import { Finder } from "./finder.js";
 import { Happened } from "./happened.js";
 import { Measure } from "./measure.js";
+import { PartMesh } from "./part_mesh.js";
 import { Stock } from "./stock.js";
 import { wideLine } from "./wide_line.js";
-import { readPatch, readState } from "./wire.js";
+import { MESH, readMesh, readPatch, readState } from "./wire.js";
 
 const SOFTWARE = /swiftshader|llvmpipe|software|basic render/i;
 const BACKGROUND = 0x76838f, FLOOR = 0xa3aeb8;
@@ -30,7 +32,7 @@ let section = { axis: null, share: 0.5 }, section_plane = null;
 const section_in_world = new THREE.Plane();
 const trail = new Trail();
 trail.line.position.z = ABOVE_MM;
-let path = null;
+let path = null, pushed = [];
 const preview = [];
 
 function open({ canvas, width, height, ratio, address, quality }) {
@@ -137,13 +139,22 @@ function assemble(described, root) {
   });
   const part = frame(described.part, named);
   const tip = frame(described.tip, named);
-  const found = { root, joints, part, tip, bodies, faces_of_part, cutter: named(described.cutter), tool: described.tool, collision: described.collision, radius: described.tool.diameter / 2, stock: null };
+  const found = { root, joints, part, tip, bodies, faces_of_part, cutter: named(described.cutter), tool: described.tool, collision: described.collision, radius: described.tool.diameter / 2, stock: null, part_mesh: null };
+  if (described.part_mesh) {
+    found.part_mesh = machine?.part_mesh ?? new PartMesh(fine);
+    found.faces_of_part.push(found.part_mesh.mesh);
+    part.add(found.part_mesh.mesh);
+  }
   if (described.stock) {
     found.stock = machine?.stock ?? new Stock(described.stock, by_processor ? 3 : 1, fine);
     part.add(found.stock.mesh, found.stock.face);
   }
   part.add(measure.lines);
   part.add(trail.line);
+  if (described.finder) {
+    found.finder = new Finder(tip, named(`${described.cutter} of ${described.cutter}`), found.radius, described.finder.body);
+    found.finder.push(pushed);
+  }
   if (path) part.add(path);
   if (preview.length) part.add(...preview);
   found.chips = new Chips(0xe8d9b0, 0.0014);
@@ -174,6 +185,7 @@ function show(target) {
     target.stock.byTool.value = shown.by_tool;
   }
   for (const face of target.faces_of_part) face.visible = shown.stock;
+  target.part_mesh?.show(shown.by_tool);
   for (const body of target.bodies) body.visible = shown.collision;
   dirty = true;
 }
@@ -196,7 +208,7 @@ function take(seen, follows = true) {
   if (before && state.time < before.time) trail.clear();
   if (follows) trail.add(state.tip);
   const still = before && before.machine.every((value, i) => Math.abs(value - state.machine[i]) < 1e-5);
-  if (!still || state.turns || state.coolant) dirty = true;
+  if (!still || state.turns || state.coolant || before.touches !== state.touches) dirty = true;
   move(state.machine);
 }
 
@@ -237,10 +249,11 @@ function look(name) {
 
 /** Cut the part open, or close it again. */
 function cut_open() {
-  if (!machine?.stock) return;
-  section_plane = machine.stock.section(section.axis, section.share);
-  machine.stock.mesh.material.clippingPlanes = section_plane ? [section_in_world] : null;
-  machine.stock.mesh.material.needsUpdate = true;
+  const part = machine?.stock ?? machine?.part_mesh;
+  if (!part) return;
+  section_plane = part.section(section.axis, section.share);
+  part.mesh.material.clippingPlanes = section_plane ? [section_in_world] : null;
+  part.mesh.material.needsUpdate = true;
   dirty = true;
 }
 
@@ -303,6 +316,7 @@ function draw() {
   if (sharp !== was_sharp) refine();
   aim();
   happened.follow(machine, camera);
+  machine.finder?.follow(machine.part, machine.tip, state?.touches);
   if (section_plane) section_in_world.copy(section_plane).applyMatrix4(machine.part.matrixWorld);
   const began = performance.now();
   renderer.render(scene, camera);
@@ -388,9 +402,12 @@ const heard = {
   cuts: (given) => { cuts = given.map((one) => ({ ...one, before: null })); },
   patch(buffer) {
     // Inflated beside each other, put in their order.
-    const read = readPatch(buffer);
+    const of_mesh = new Uint8Array(buffer, 0, 1)[0] === MESH, read = of_mesh ? readMesh(buffer) : readPatch(buffer);
     patches = patches.then(async () => {
-      machine?.stock?.put(await read);
+      const given = await read, first = of_mesh && !machine?.part_mesh?.by.length;
+      (of_mesh ? machine?.part_mesh : machine?.stock)?.put(given);
+      if (first) look("start");
+      if (of_mesh) cut_open();
       dirty = true;
     }).catch((error) => postMessage({ failed: String(error) }));
   },
@@ -400,6 +417,11 @@ const heard = {
   look,
   turn,
   happen,
+  finder(shift) {
+    pushed = shift;
+    machine?.finder?.push(shift);
+    dirty = true;
+  },
   section(given) { section = given; cut_open(); },
   measure(where) {
     if (where) postMessage({ measured: machine ? measure.point(machine, camera, where) : [] });

@@ -1,7 +1,8 @@
-// The binary messages of a machine: its state, and patches of the stock.
+// The binary messages of a machine: its state, patches of the stock, the mesh of a part that is cut from any side.
 
 export const STATE = 1;
 export const PATCH = 2;
+export const MESH = 3;
 
 const NAMES = ["position", "machine", "toGo", "lag", "load"];
 const LOADS = ["spindleSpeed", "spindle", "force", "forceShare", "bend", "chip", "chipShare"];
@@ -27,8 +28,18 @@ export function readState(buffer) {
 export async function readPatch(buffer) {
   const head = new DataView(buffer);
   const [epoch, row, column, rows, columns] = [head.getUint32(4, true), ...[8, 10, 12, 14].map((at) => head.getUint16(at, true))];
-  const inflated = new Blob([new Uint8Array(buffer, 16)]).stream().pipeThrough(new DecompressionStream("deflate"));
-  const cells = rows * columns, bytes = await new Response(inflated).arrayBuffer();
+  const cells = rows * columns, bytes = await inflated(buffer, 16);
   const levels = new Uint16Array(bytes, 0, cells), tools = bytes.byteLength > 2 * cells ? new Uint8Array(bytes, 2 * cells, cells) : null;
   return { epoch, row, column, rows, columns, levels, tools };
+}
+
+/** A mesh: its vertices, three of them for each triangle, and the tool that left it. */
+export async function readMesh(buffer) {
+  const head = new DataView(buffer), [vertices, faces] = [4, 8].map((at) => head.getUint32(at, true));
+  const bytes = await inflated(buffer, 12);
+  return { points: new Float32Array(bytes, 0, 3 * vertices), corners: new Uint32Array(bytes, 12 * vertices, 3 * faces), by: new Uint8Array(bytes, 12 * (vertices + faces), faces) };
+}
+
+function inflated(buffer, begin) {
+  return new Response(new Blob([new Uint8Array(buffer, begin)]).stream().pipeThrough(new DecompressionStream("deflate"))).arrayBuffer();
 }

@@ -118,7 +118,7 @@ CODESYS = Dialect(
         },
     ),
     rules=Rules(
-        memory=program.Variables,
+        memory=program.CodesysMemory,
         before_motion=words.before_motion,
         read_variable=program.read_variable,
         is_local=program.is_local,

@@ -6,7 +6,7 @@ from twin.nc.control.codes import Action
 from twin.nc.control.compensation import compensate
 from twin.nc.control.control import Control, refuse_axis
 from twin.nc.control.modal import LineRule
-from twin.nc.dialects.codesys.program import variables
+from twin.nc.dialects.codesys.program import memory_of
 from twin.nc.geometry.planes import XY, plane_with_normal
 from twin.nc.iso import offsets
 from twin.nc.iso.declared import refuse_compensated_plane
@@ -49,7 +49,7 @@ def compensation_by_radius(side: float) -> Action:
     """G41, G42: compensation by the radius D, else by the one that was given last."""
 
     def action(control: Control) -> None:
-        word, memory = control.take("D"), variables(control)
+        word, memory = control.take("D"), memory_of(control)
         if word is not None:
             memory.radius = control.length(word)
         compensate(control, side, memory.radius)
@@ -75,7 +75,7 @@ def smooth_corners(kind: BlendKind) -> Action:
     """
 
     def action(control: Control) -> None:
-        memory = variables(control)
+        memory = memory_of(control)
         word = control.take("D")
         if word is not None:
             memory.smoothing = control.length(word)
@@ -87,13 +87,13 @@ def smooth_corners(kind: BlendKind) -> Action:
 
 def set_smoothing(control: Control, word: Word) -> None:
     """D elsewhere: the distance of the corners that follow (manual, from 4.18)."""
-    variables(control).smoothing = control.length(word)
-    if variables(control).smoothed_by is not None:
+    memory_of(control).smoothing = control.length(word)
+    if memory_of(control).smoothed_by is not None:
         _smooth(control, word)
 
 
 def _smooth(control: Control, word: Word | None) -> None:
-    memory = variables(control)
+    memory = memory_of(control)
     assert memory.smoothed_by is not None
     if memory.smoothing < 0.0:
         control.fail("blend", "the distance of smoothing cannot be negative", word)
@@ -103,7 +103,7 @@ def _smooth(control: Control, word: Word | None) -> None:
 
 def keep_corners(control: Control) -> None:
     """G50."""
-    variables(control).smoothed_by = None
+    memory_of(control).smoothed_by = None
     control.path.blend_always(None)
 
 
@@ -162,7 +162,7 @@ def length_vector(control: Control) -> None:
     if control.path.compensation.in_force:
         message = "the tool's length cannot change while radius compensation is in force"
         control.fail("compensation-change", message, hint="end it by G40 first")
-    memory, old = variables(control), control.frame.shift("length")
+    memory, old = memory_of(control), control.frame.shift("length")
     x, y, z = (
         pending + new - before
         for pending, new, before in zip(memory.length_ramp, vector, old[:3], strict=True)
@@ -177,7 +177,7 @@ def lead_into_length(control: Control) -> None:
     Raises:
         ProgramError: It is an arc, whose radius the vector would change on the way.
     """
-    memory = variables(control)
+    memory = memory_of(control)
     across = memory.length_ramp
     memory.length_ramp = (0.0, 0.0, 0.0)
     normal, mode = control.modal.plane.normal, control.modal.interpolation
@@ -190,7 +190,7 @@ def lead_into_length(control: Control) -> None:
 
 def _keep_ramp(control: Control) -> None:
     """The frame has changed: a length that no move has led into yet still lies before the control."""
-    for axis, pending in enumerate(variables(control).length_ramp):
+    for axis, pending in enumerate(memory_of(control).length_ramp):
         control.motion.programmed[axis] += pending
 
 

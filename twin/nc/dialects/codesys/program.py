@@ -90,8 +90,8 @@ class Subprogram:
 
 
 @dataclasses.dataclass(slots=True)
-class Variables:
-    """What a program knows by name.
+class CodesysMemory:
+    """What the dialect keeps beside the state that all have in common.
 
     Attributes:
         radius: That D has given compensation last [mm].
@@ -110,15 +110,15 @@ class Variables:
     subprograms: dict[str, Subprogram] | None = None
 
 
-def variables(control: Control) -> Variables:
+def memory_of(control: Control) -> CodesysMemory:
     """The dialect's memory."""
-    assert isinstance(control.memory, Variables)
+    assert isinstance(control.memory, CodesysMemory)
     return control.memory
 
 
 def acts_on_lines(control: Control) -> bool:
     """A period, or a length that the next move leads into."""
-    memory = variables(control)
+    memory = memory_of(control)
     return bool(memory.periods) or any(memory.length_ramp)
 
 

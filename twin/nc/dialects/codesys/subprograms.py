@@ -4,7 +4,7 @@ import re
 from collections.abc import Container, Iterator
 
 from twin.nc.control.control import Control
-from twin.nc.dialects.codesys.program import COUNTER, Subprogram, assign, read_variable, variables
+from twin.nc.dialects.codesys.program import COUNTER, Subprogram, assign, memory_of, read_variable
 from twin.nc.text.blocks import Location, Statement, Word
 from twin.nc.text.library import Library
 from twin.nc.text.source import Source
@@ -50,7 +50,7 @@ def own_lines(control: Control) -> Container[int]:
 
 
 def _subprograms(control: Control) -> dict[str, Subprogram]:
-    known = variables(control)
+    known = memory_of(control)
     if known.subprograms is None:
         known.subprograms = {}
         lines = control.program_counter.lines

@@ -5,7 +5,7 @@ import math
 from twin.nc.control.codes import WordAction
 from twin.nc.control.control import Control
 from twin.nc.dialects.codesys.actions import axis_named, lead_into_length
-from twin.nc.dialects.codesys.program import variables
+from twin.nc.dialects.codesys.program import memory_of
 from twin.nc.text.blocks import Word
 
 LARGEST_SWITCH = 32_767
@@ -51,7 +51,7 @@ def before_motion(control: Control, _rapid: bool) -> None:
     """What holds for every motion block: slopes, and the shortest way of modulo axes."""
     _refuse_slopes(control)
     take_shortest_way(control)
-    if any(variables(control).length_ramp):
+    if any(memory_of(control).length_ramp):
         lead_into_length(control)
 
 
@@ -72,7 +72,7 @@ def set_period(letter: str) -> WordAction:
         period = control.number(word)
         if period < 0.0:
             control.fail("period", f"{word.text} is no period", word)
-        variables(control).periods[index] = period
+        memory_of(control).periods[index] = period
 
     return action
 
@@ -123,7 +123,7 @@ def take_shortest_way(control: Control) -> None:
     """Axes with a period go the shorter path around: the start is relabelled by whole periods."""
     if control.modal.incremental:
         return
-    for index, period in variables(control).periods.items():
+    for index, period in memory_of(control).periods.items():
         word = control.words.get(control.settings.axes.names[index])
         if word is None or period == 0.0:
             continue

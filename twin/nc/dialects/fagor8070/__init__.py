@@ -8,7 +8,6 @@ from twin.nc.dialects.fagor8070 import (
     arcs,
     corners,
     frames,
-    offset_table,
     statements,
     subroutines,
     variables,
@@ -93,7 +92,7 @@ FAGOR8070 = Dialect(
             "D": frames.tool_offset,
             "H": auxiliary,
             "G04": plain_dwell,
-            "G159": offset_table.numbered_offset,
+            "G159": frames.numbered_offset,
             "G263": arcs.set_circle_radius,
         },
         meanings={

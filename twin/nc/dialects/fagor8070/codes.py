@@ -7,7 +7,6 @@ from twin.nc.dialects.fagor8070 import arcs, frames, polar, transformations
 from twin.nc.dialects.fagor8070.corners import blend_code
 from twin.nc.dialects.fagor8070.cycles.canned_cycles import CYCLES
 from twin.nc.dialects.fagor8070.machine_coordinates import refuse_change
-from twin.nc.dialects.fagor8070.offset_table import offset_code
 from twin.nc.geometry.planes import XY, YZ, ZX
 from twin.nc.iso import base, fixed_cycles, offsets
 from twin.nc.iso.declared import modal, motion_code, plane_code, refused, replacement
@@ -132,7 +131,7 @@ CODES: dict[float, GCode] = {
         _forgetting_polar(offsets.cancel_offset),
     ),
     **{
-        n: modal(f"work offset G{n} of the job", "offset", _forgetting_polar(offset_code(n)))
+        n: modal(f"work offset G{n} of the job", "offset", _forgetting_polar(frames.offset_code(n)))
         for n in range(54, 60)
     },
     60: modal("square corner, this block", non_modal=True, corner=Corner.EXACT_STOP),

@@ -11,12 +11,12 @@ from twin.nc.control.compensation import (
 )
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.machine_coordinates import refuse_change
-from twin.nc.dialects.fagor8070.memory import memory_of
+from twin.nc.dialects.fagor8070.memory import OFFSETS_BY_NUMBER, memory_of, offset_name
 from twin.nc.dialects.fagor8070.polar import forget_polar
 from twin.nc.geometry.planes import OWN_PLANE, Plane, Vector, cross
 from twin.nc.iso import base
 from twin.nc.iso.declared import refuse_compensated_plane
-from twin.nc.iso.offsets import programmed_shift
+from twin.nc.iso.offsets import programmed_shift, select_offset, shift_by
 from twin.nc.iso.tool_change import go_to_change_height
 from twin.nc.iso.tool_compensation import radius_in_spindle, set_length
 from twin.nc.path.compensation.stage import SideChange
@@ -62,6 +62,29 @@ def any_plane(control: Control) -> None:
         control.fail("plane-axes", "G20 needs abscissa and ordinate", hint="write G20 X1 Y2")
     normal = cross(roles[1], roles[2])
     control.modal.plane = Plane(OWN_PLANE, roles[1], roles[2], normal)
+
+
+def offset_code(number: int) -> Action:
+    """G54 to G59, by the number of the G code."""
+    return lambda control: _select_offset(control, f"G{number}", control.code_word(number))
+
+
+def numbered_offset(control: Control, word: Word) -> None:
+    """G159=2: the work offset by its number; 1 to 6 are G54 to G59."""
+    number = control.number(word)
+    if number != int(number) or not 1 <= number <= OFFSETS_BY_NUMBER:
+        control.fail("no-offset", f"there is no work offset {number:g}", word)
+    refuse_change(control)
+    _select_offset(control, offset_name(int(number)), word)
+    forget_polar(control)
+
+
+def _select_offset(control: Control, name: str, word: Word | None) -> None:
+    written = memory_of(control).offsets.get(name)
+    if written is None:
+        select_offset(control, name, word)
+    else:
+        shift_by(control, written)
 
 
 def incremental_offset(control: Control) -> None:

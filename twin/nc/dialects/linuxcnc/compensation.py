@@ -7,6 +7,7 @@ for which it is kept until its successor is known. Behind G40 a straight move le
 
 import dataclasses
 import math
+from collections.abc import Callable
 from typing import NoReturn
 
 from twin.nc.canonical import Event
@@ -14,6 +15,15 @@ from twin.nc.control.codes import Action
 from twin.nc.control.compensation import tool_numbered
 from twin.nc.control.control import Control
 from twin.nc.dialects.linuxcnc.memory import memory_of
+from twin.nc.dialects.linuxcnc.offset_paths import (
+    QUARTER,
+    OffsetArc,
+    along,
+    arc_meets_arc,
+    arc_meets_line,
+    line_meets_arc,
+    swept_angle,
+)
 from twin.nc.geometry.arcs import Point, distance, sweep_between
 from twin.nc.geometry.planes import YZ
 from twin.nc.path.path import holds_none
@@ -21,7 +31,6 @@ from twin.nc.text.blocks import Block
 
 CORNER = 0.05
 """Angle [rad] from which a corner counts as one (``rs274``)."""
-_QUARTER = math.pi / 2.0
 _SAME = 1e-4
 _TURNED_BACK, _TURNED_BACK_INCH = 0.0254, 0.001
 """How much further an arc may sweep when its end is moved [rad]: with G20 less (``rs274``)."""
@@ -82,7 +91,7 @@ class Compensation:
         if not self.entered:
             self._enter_by_line(start, end, goal, rapid=rapid)
         elif start == end:
-            self._hold_line(goal, self._here, (0.0, 0.0), rapid=rapid)
+            self._hold(goal, self._here, rapid=rapid)
         else:
             self._line_behind(start, end, goal, rapid=rapid)
         self._control.motion.programmed = goal
@@ -96,7 +105,7 @@ class Compensation:
         if inside and radius <= self.radius:
             self._refuse("the arc's radius must exceed the tool's, which runs inside it")
         outward = math.atan2(end[1] - center[1], end[0] - center[0])
-        beside = _along(end, outward + math.pi if inside else outward, self.radius)
+        beside = along(end, outward + math.pi if inside else outward, self.radius)
         if self.entered:
             self._arc_behind((start, end, beside), goal, center, turns)
         else:
@@ -121,10 +130,10 @@ class Compensation:
     def _enter_by_line(self, start: Point, end: Point, goal: list[float], *, rapid: bool) -> None:
         if distance(start, end) <= self.radius:
             self._refuse("the entry must be longer than the tool's radius")
-        aside = math.atan2(end[1] - start[1], end[0] - start[0]) + self.side * _QUARTER
+        aside = math.atan2(end[1] - start[1], end[0] - start[0]) + self.side * QUARTER
         self._endpoint = start
-        beside = _along(end, aside, self.radius)
-        self._hold_line(goal, beside, (math.cos(aside), math.sin(aside)), rapid=rapid)
+        beside = along(end, aside, self.radius)
+        self._hold(goal, beside, direction=(math.cos(aside), math.sin(aside)), rapid=rapid)
         self.entered = True
 
     def _enter_by_arc(
@@ -139,8 +148,8 @@ class Compensation:
         if abs(math.cos(corner)) < _SAME:
             self._refuse("no arc leads from here beside its end")
         away = distance(start, beside) / 2.0 / math.cos(corner)
-        moved = _along(beside, inward, away)
-        self._hold_arc(goal, beside, moved, turns, _sweep(start, beside, moved, turns))
+        moved = along(beside, inward, away)
+        self._hold(goal, beside, arc=(moved, turns, swept_angle(start, beside, moved, turns)))
         self.entered = True
 
     # --- moves behind others
@@ -150,29 +159,30 @@ class Compensation:
         before = math.atan2(self._here[1] - start[1], self._here[0] - start[0])
         heading = math.atan2(end[1] - start[1], end[0] - start[0])
         turn = (before - heading) if side > 0.0 else (heading - before)
-        turn = turn % (2.0 * math.pi) - _QUARTER
-        aside = heading + side * _QUARTER
-        beside, middle = _along(end, aside, radius), _along(start, aside, radius)
+        turn = turn % (2.0 * math.pi) - QUARTER
+        aside = heading + side * QUARTER
+        beside, middle = along(end, aside, radius), along(start, aside, radius)
         held = self._held
         held_arc = held.center is not None
         concave = turn < -CORNER or turn > math.pi + CORNER
         if turn > math.pi - CORNER and held_arc and not self._is_inside(held.turns):
             concave = True
         if concave and held_arc:
-            self._move_ends(self._arc_meets_line(held, start, heading))
+            self._meet(lambda: arc_meets_line(self._path_of(held), radius, start, heading))
         elif concave:
             half = (turn + math.pi) / 2.0
             if math.tan(half) == 0.0:
                 self._refuse("the contour turns back on itself")
             back = radius / math.tan(half)
-            self._move_ends(_along(self._here, before + side * _QUARTER, back))
+            self._move_ends(along(self._here, before + side * QUARTER, back))
         elif turn > CORNER:
             self._move_ends(self._here)
             self._turn_around(start, middle, rapid=rapid)
         else:
             self._let_go()
             self._endpoint = self._here
-        self._hold_line(goal, beside, (end[0] - start[0], end[1] - start[1]), rapid=rapid)
+        direction = (end[0] - start[0], end[1] - start[1])
+        self._hold(goal, beside, direction=direction, rapid=rapid)
 
     def _arc_behind(
         self, points: tuple[Point, Point, Point], goal: list[float], center: Point, turns: int
@@ -180,87 +190,57 @@ class Compensation:
         start, end, beside = points
         inside = self._is_inside(turns)
         before = math.atan2(self._here[1] - start[1], self._here[0] - start[0])
-        before -= self.side * _QUARTER
+        before -= self.side * QUARTER
         inward = math.atan2(center[1] - start[1], center[0] - start[0])
-        heading = inward - _QUARTER if turns > 0 else inward + _QUARTER
+        heading = inward - QUARTER if turns > 0 else inward + QUARTER
         turn = (before - heading) if self.side > 0.0 else (heading - before)
-        turn = (turn + _QUARTER) % (2.0 * math.pi) - _QUARTER
+        turn = (turn + QUARTER) % (2.0 * math.pi) - QUARTER
         concave = turn < -CORNER or turn > math.pi + CORNER
         if abs(turn - math.pi) < CORNER and not inside:
             concave = True
         if concave:
             held, radius = self._held, distance(center, end)
             new = radius - self.radius if inside else radius + self.radius
+            arc = OffsetArc(center, new, inside, turns > 0)
             if held.center is None:
-                meeting = self._line_meets_arc(center, before, turn, (radius, new), turns)
+                self._meet(lambda: line_meets_arc(before, turn, arc, self.radius, radius))
             else:
-                meeting = self._arc_meets_arc(held, center, new, turns)
-            self._move_ends(meeting)
+                self._meet(lambda: arc_meets_arc(self._path_of(held), arc))
         elif turn > CORNER:
             aside = inward if inside else inward + math.pi
             self._let_go()  # before an arc nothing asks whether the moves went back (``rs274``)
-            self._turn_around(start, _along(start, aside, self.radius), rapid=False)
+            self._turn_around(start, along(start, aside, self.radius), rapid=False)
         else:
             self._let_go()
             self._endpoint = self._here
-        self._hold_arc(goal, beside, center, turns, _sweep(start, end, center, turns))
+        self._hold(goal, beside, arc=(center, turns, swept_angle(start, end, center, turns)))
 
     def _turn_around(self, point: Point, middle: Point, *, rapid: bool) -> None:
         """Turn around a convex corner of the contour."""
         control = self._control
         goal = self._place(control.motion.programmed, middle)
         if rapid:
-            self._hold_line(goal, middle, (0.0, 0.0), rapid=True)
+            self._hold(goal, middle, rapid=True)
         else:
-            self._hold_arc(goal, middle, point, -1 if self.side > 0.0 else 1, 0.0)
+            self._hold(goal, middle, arc=(point, -1 if self.side > 0.0 else 1, 0.0))
         self._let_go()
         self._endpoint = middle
 
-    # --- where offset paths meet
-
-    def _arc_meets_line(self, held: Held, start: Point, heading: float) -> Point:
-        assert held.center is not None
-        inside, ccw = self._is_inside(held.turns), held.turns > 0
-        radius = distance(held.center, held.end)
-        across = heading + (_QUARTER if ccw else -_QUARTER)
-        inward = math.atan2(held.center[1] - start[1], held.center[0] - start[0])
-        uncompensated = radius + self.radius if inside else radius - self.radius
-        away = uncompensated * math.cos(across - inward)
-        share = (away - self.radius if inside else away + self.radius) / radius
-        if abs(share) > 1.0:
-            self._refuse("arc and line make a corner that the tool does not fit into")
-        angle = math.acos(share) * (-1.0 if ccw == inside else 1.0)
-        return _along(held.center, angle + across + math.pi, radius)
-
-    def _line_meets_arc(
-        self, center: Point, before: float, turn: float, radii: tuple[float, float], turns: int
-    ) -> Point:
-        radius, new = radii
-        inside, ccw = self._is_inside(turns), turns > 0
-        nominal = radius * math.sin(turn - _QUARTER)
-        share = (nominal + self.radius if inside else nominal - self.radius) / new
-        if abs(share) > 1.0:
-            self._refuse("line and arc make a corner that the tool does not fit into")
-        angle = math.asin(share)
-        if inside:
-            return _along(center, before + (angle if ccw else -angle), new)
-        return _along(center, before + math.pi + (-angle if ccw else angle), new)
-
-    def _arc_meets_arc(self, held: Held, center: Point, new: float, turns: int) -> Point:
-        assert held.center is not None
-        old, apart = distance(held.center, held.end), distance(held.center, center)
-        if old == 0.0 or apart == 0.0:
-            self._refuse("two arcs with the same centre follow each other")
-        share = (old * old + apart * apart - new * new) / (2.0 * old * apart)
-        if abs(share) > 1.0:
-            self._refuse("two arcs make a corner that the tool does not fit into")
-        towards = math.atan2(center[1] - held.center[1], center[0] - held.center[0])
-        back = math.acos(share)
-        if self._is_inside(held.turns) != (turns > 0):
-            back = -back
-        return _along(held.center, towards + back, old)
-
     # --- the moves that wait
+
+    def _path_of(self, held: Held) -> OffsetArc:
+        """The tool's path on an arc that waits."""
+        assert held.center is not None
+        radius = distance(held.center, held.end)
+        return OffsetArc(held.center, radius, self._is_inside(held.turns), held.turns > 0)
+
+    def _meet(self, place: Callable[[], Point]) -> None:
+        """All moves that wait end where the next one's path begins, which says why it cannot."""
+        try:
+            meeting = place()
+        except ValueError as error:
+            self._refuse(str(error))
+        self._move_ends(meeting)
 
     @property
     def _held(self) -> Held:
@@ -271,19 +251,18 @@ class Compensation:
         """The tool runs on the inner side of an arc."""
         return (self.side > 0.0) == (turns > 0)
 
-    def _hold_line(self, goal: list[float], end: Point, direction: Point, *, rapid: bool) -> None:
-        control = self._control
-        held = Held(goal, end, rapid, direction, None, 0, 0.0, control.block, control.motion.feed)
-        self._queue.append(held)
-        self._here = end
-
-    def _hold_arc(
-        self, goal: list[float], end: Point, center: Point, turns: int, sweep: float
+    def _hold(
+        self,
+        goal: list[float],
+        end: Point,
+        *,
+        rapid: bool = False,
+        direction: Point = (0.0, 0.0),
+        arc: tuple[Point | None, int, float] = (None, 0, 0.0),
     ) -> None:
+        """Keep a move until its successor is known: a line, or an arc by its centre, turns and sweep."""
         control = self._control
-        held = Held(
-            goal, end, False, (0.0, 0.0), center, turns, sweep, control.block, control.motion.feed
-        )
+        held = Held(goal, end, rapid, direction, *arc, control.block, control.motion.feed)
         self._queue.append(held)
         self._here = end
 
@@ -295,26 +274,23 @@ class Compensation:
         """
         for held in self._queue:
             if isinstance(held, Held):
-                self._move_end(held, end)
+                if not self._may_end(held, end):
+                    self._refuse("the tool does not reach into this concave corner", held)
+                held.end = end
         self._let_go()
         self._endpoint = end
 
-    def _move_end(self, held: Held, end: Point) -> None:
+    def _may_end(self, held: Held, end: Point) -> bool:
         start = self._endpoint
         if held.center is None:
-            if start is not None:
-                x, y = held.direction
-                if x * (end[0] - start[0]) + y * (end[1] - start[1]) < 0.0:
-                    self._refuse("the tool does not reach into this concave corner", held)
-        else:
-            if abs(distance(held.center, held.end) - distance(held.center, end)) > _MISMATCH:
-                self._refuse("the tool does not reach into this concave corner", held)
-            if held.sweep and start is not None:
-                swept = abs(_sweep(start, end, held.center, held.turns))
-                metric = self._control.modal.unit == 1.0
-                if swept > abs(held.sweep) + (_TURNED_BACK if metric else _TURNED_BACK_INCH):
-                    self._refuse("the tool does not reach into this concave corner", held)
-        held.end = end
+            x, y = held.direction
+            return start is None or x * (end[0] - start[0]) + y * (end[1] - start[1]) >= 0.0
+        if abs(distance(held.center, held.end) - distance(held.center, end)) > _MISMATCH:
+            return False
+        if not held.sweep or start is None:
+            return True
+        more = _TURNED_BACK if self._control.modal.unit == 1.0 else _TURNED_BACK_INCH
+        return abs(swept_angle(start, end, held.center, held.turns)) <= abs(held.sweep) + more
 
     def _let_go(self) -> None:
         """Make the moves that wait."""
@@ -424,14 +400,3 @@ def end(control: Control) -> None:
         memory.leading_out = compensation.entered
         memory.compensation = None
         control.path.defer = holds_none
-
-
-def _along(point: Point, angle: float, way: float) -> Point:
-    """A point further on in a direction [rad]."""
-    return point[0] + way * math.cos(angle), point[1] + way * math.sin(angle)
-
-
-def _sweep(start: Point, end: Point, center: Point, turns: int) -> float:
-    """How far an arc goes around, all turns counted [rad]."""
-    angle = math.radians(sweep_between(start, end, center, clockwise=turns < 0))
-    return angle + 2.0 * math.pi * (turns + 1 if turns < 0 else turns - 1)
