@@ -151,9 +151,10 @@ def _assign_text(control: Control, each: Assignment, name: str) -> None:
 
 
 def _named_text(call: CallFrame, each: Assignment) -> str | None:
-    (value, _), *_rest = each.values
-    named = value is not None and isinstance(value.tree, Variable)
-    return call.texts.get(value.tree.name) if named else None
+    value = each.values[0][0]
+    if value is None or not isinstance(value.tree, Variable):
+        return None
+    return call.texts.get(value.tree.name)
 
 
 # --- DEF
