@@ -367,6 +367,8 @@ class JobFile(Table):
     decimal_point: Literal["calculator", "increments"] | None = None
     """``fanuc``, ``haas``: ``X10`` is 10 mm ("calculator"), or 0.010 mm ("increments"); missing: as
     the machine file says, else as the control does when it comes from its maker."""
+    units: Literal["mm", "inch"] | None = None
+    """In which units the program begins where it names none; missing: as the machine file says, else mm."""
     step_limit: Annotated[int, Field(gt=0)] = 20_000
     """Blocks that may be run again through jumps and loops before the program counts as endless."""
     expect: Annotated[str, Field(pattern="^[a-z0-9_-]+$")] | None = None

@@ -252,6 +252,7 @@ def _control_settings(job: Job, machine: Machine, *, strict: bool) -> ControlSet
         block_skip=job.file.block_skip is True,
         block_skip_levels=_block_skip_levels(job.file),
         decimal_point=job.file.decimal_point or control.decimal_point,
+        units=job.file.units or control.units,
         step_limit=job.file.step_limit,
         strict=strict,
     )

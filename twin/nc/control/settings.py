@@ -119,6 +119,9 @@ class ControlSettings:
     """What a number without a point counts: whole units, or least increments (0.001 mm); None: as
     the control does when it comes from its maker."""
 
+    units: Literal["mm", "inch"] | None = None
+    """In which units a program begins that names none; None: as the control does when it comes from its maker."""
+
     def skips(self, block: Block) -> bool:
         """Whether a block is left out."""
         return block.skippable and (self.block_skip or block.skip_level in self.block_skip_levels)

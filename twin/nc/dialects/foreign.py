@@ -92,6 +92,18 @@ TEXTS: tuple[Foreign, ...] = (
         "it holds no moves",
         r"\ABEGIN +\S+ *\.[A-Z]+ +(?:MM|INCH)",
     ),
+    Foreign(
+        "a program for a Philips or Maho control",
+        _POST,
+        r"(?m)^%(?:PM|MM)\s*$|\bN1=\d+ +N2=\d+|\(\s*(?:PHILIPS|MAHO)\b",
+        comments=True,
+    ),
+    Foreign(
+        "a program for a SINUMERIK before the 840D",
+        _POST,
+        r"(?m)^\s*(?:N\d+ *)?@\d{2,3}\b|\bSINUMERIK *8(?:05|10|20|50|80)(?![D\d])",
+        comments=True,
+    ),
     Foreign("a program for a NUM", _POST, r"(?m)^\s*(?:N\d+ *)?E[3-9]\d{4} *=|\bG77 *N\d+ *N\d+"),
     Foreign(
         "a Heidenhain program in DIN/ISO",
@@ -114,7 +126,7 @@ TEXTS: tuple[Foreign, ...] = (
         "a program for Marlin, a 3D printer's control",
         "post it for one of: twin dialects",
         r"(?m)^\s*;\s*FLAVOR:|^\s*;\s*(?:generated (?:by|with) )?(?:PrusaSlicer|Cura_SteamEngine|Slic3r|Marlin)"
-        r"|^\s*M(?:104|109|140|190|82|83|106|107|204|205|400|420) ?(?:S|T|P|;|$)"
+        r"|^\s*M(?:10[49]|140|190|106) ?[ST]\d|^\s*M20[45] ?[SPTXYZ]|^\s*M(?:8[23]|107|400|420) *(?:;|$)"
         r"|^\s*M(?:18|84|280|300)\b(?! *[A-RT-Z])",
         2,
         comments=True,
@@ -133,7 +145,7 @@ TEXTS: tuple[Foreign, ...] = (
     Foreign(
         "a program for a lathe",
         "the machines here are mills",
-        r"(?m)^[^(\n]*G28 *[UW]-?0|G96 *S|G50 *S\d|\bT(\d\d)\1\b",
+        r"(?m)^[^(\n]*G28 *[UW]-?0|G96(?!\d)|G50 *S\d|(?<![A-Z])T(\d\d)\1(?!\d)",
         2,
     ),
     Foreign("a list of Grbl's settings", "it holds no moves", r"(?m)^\$\d+ ?= ?[\d.]+", 3),

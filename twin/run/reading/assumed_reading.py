@@ -24,6 +24,15 @@ _OFFSET = re.compile(
 _FUNCTION = re.compile(r"(?<![A-Z_#\[])M[ \t]*([0-9]{1,4})(?![0-9.\[#])", re.IGNORECASE)
 _TOOL = re.compile(r"(?<![A-Z#\[])T[ \t]*([0-9]{1,4})(?![0-9.])", re.IGNORECASE)
 _INCHES = re.compile(r"(?<![A-Z0-9.])G[ \t]*[27]0(?![0-9.])", re.IGNORECASE)
+_UNITS = re.compile(r"(?<![A-Z0-9.])G[ \t]*(?:2[01]|7[01]0?)(?![0-9.])", re.IGNORECASE)
+_TOOL_IN_INCHES = re.compile(
+    r"(?:[0-9]+/[0-9]+|[0-9.]+ ?(?:IN(?:CH)?\b|\"))(?=.*(?:MILL|DRILL|TAP|REAM|CUTTER))"
+    r"|(?:MILL|DRILL|TAP|REAM|CUTTER)\b[^0-9]*(?:[0-9]+/[0-9]+|[0-9.]+ ?(?:IN(?:CH)?\b|\"))",
+    re.IGNORECASE,
+)
+_MILLIMETRES = re.compile(r"[0-9] ?MM\b|\bMETRIC\b|\bMILLIMET", re.IGNORECASE)
+_FARTHEST_INCHES = 40.0
+"""Programs that go farther do not count inches: it is as far as the larger mills go [inch]."""
 _USUAL_OFFSET = "G54"
 UNKNOWN_FUNCTION = "not known here: taken to do nothing"
 
@@ -69,15 +78,38 @@ def assumed_reading(source: Source) -> AssumedReading:
         (offset,) = offsets
         keys["offsets"] = {offset: {}}
         notes.append(f"{offset} lies at program zero: the program names no other work offset")
-    return AssumedReading(keys, tuple(notes), _commented_tools(source))
+    tool = _tool_in_inches(source)
+    if tool:
+        keys["units"] = "inch"
+        notes.append(f"inches: the program names no units, and its tools are in inches ({tool})")
+    return AssumedReading(keys, tuple(notes), _commented_tools(source, inches=bool(tool)))
 
 
-def _commented_tools(source: Source) -> dict[int, ToolData]:
+def _tool_in_inches(source: Source) -> str:
+    """The first comment of a tool in inches of a program that names no units; empty: its lengths are millimetres."""
+    if any(_UNITS.search(line) for line in _blocks(source)):
+        return ""
+    comments = list(_comments(source))
+    if any(map(_MILLIMETRES.search, comments)) or _farthest(source) > _FARTHEST_INCHES:
+        return ""
+    return next(filter(_TOOL_IN_INCHES.search, comments), "")
+
+
+def _farthest(source: Source) -> float:
+    """The largest number behind X, Y or Z."""
+    numbers = (found for line in _blocks(source) for found in _LENGTH.finditer(line))
+    return max((float(each[2]) for each in numbers if each[1] in "XYZxyz"), default=0.0)
+
+
+def _comments(source: Source) -> Iterator[str]:
+    return (each for line in islice(source.lines, _MOST_LINES) for each in comments_of(line))
+
+
+def _commented_tools(source: Source, *, inches: bool) -> dict[int, ToolData]:
     blocks = list(_blocks(source))
     numbers = {int(found[1]) for line in blocks for found in _TOOL.finditer(line)}
-    inches = any(_INCHES.search(line) for line in blocks)
-    comments = (each for line in islice(source.lines, _MOST_LINES) for each in comments_of(line))
-    listed = listed_tools(comments, numbers, inches=inches)
+    inches = inches or any(_INCHES.search(line) for line in blocks)
+    listed = listed_tools(_comments(source), numbers, inches=inches)
     return {
         number: ToolData(radius=tool.diameter / 2.0, length=USUAL_LENGTH)
         for number, tool in listed.items()
