@@ -22,7 +22,7 @@ from tests.machine.machine_fixtures import three_axis_machine
 from twin.columns import join
 from twin.files.shipped import machine_file
 from twin.link.component import COMPILER, is_installed, module_folder
-from twin.link.linuxcnc import LOCK, process_name, processes_at_home
+from twin.link.linuxcnc import LOCK, OPERATOR, process_name, processes_at_home
 from twin.machine.load import read_machine
 from twin.machine.model.model import MachineModel
 from twin.machine.simulation.simulate import simulate
@@ -182,6 +182,31 @@ def test_the_twins_alarm_arrives_as_an_amplifier_fault_with_its_reason(folder: P
     assert "following-error: X trails its setpoint" in log
 
 
+def test_a_program_that_the_screen_opens_with_is_the_one_that_is_judged(
+    folder: Path, twin: Twin, monkeypatch: pytest.MonkeyPatch
+):
+    """What works LinuxCNC without a screen stands in for one here: it does what somebody at AXIS does."""
+    monkeypatch.setenv("DISPLAY", ":0")
+    (folder / "part.ngc").write_text(SQUARE)
+    screen, home = folder / "screen.py", folder / "out" / "linuxcnc"
+    screen.write_text(OPERATOR.read_text())
+    screen.chmod(0o755)
+    worked = f"--program {home}/program.ngc --joints 4 --twin {os.getpid()} --log {home}/screen.log"
+    ran = twin(
+        "link", "linuxcnc", "--machine", "mill4", "--out", folder / "out",
+        "--open", folder / "part.ngc", "--display", f"{screen} {worked}",
+    )  # fmt: skip
+    told = result(folder)
+    assert ran.code in (0, 1), ran.stderr
+    assert f"OPEN_FILE = {home}/program.ngc\n" in (home / "linuxcnc.ini").read_text()
+    assert (home / "program.ngc").read_text() == SQUARE
+    assert told["dialect"] == "linuxcnc"
+    assert {block["line"] for block in told["blocks"]} >= {4, 5, 6, 7, 8, 9, 10, 11, 12}
+    assert [block["motion"] for block in told["blocks"] if block["line"] in (3, 12)] == [
+        "rapid"
+    ] * 2
+
+
 def test_a_program_that_linuxcnc_refuses_ends_with_its_line(folder: Path, twin: Twin):
     ran = linked(twin, folder, "G21\nG1 X1 F100\nG1 X2 Q\nM2\n")
     assert ran.code == 3
@@ -255,7 +280,7 @@ def test_the_first_run_of_an_installation_compiles_before_linuxcnc_waits(
         capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert ran.returncode in (0, 1), ran.stderr
-    assert "compiling kernels" in ran.stderr
+    assert "compiling what this run needs" in ran.stderr
     assert result(folder)["alarms"] == []
 
 

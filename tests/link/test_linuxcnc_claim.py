@@ -79,3 +79,29 @@ def test_a_g64_without_p_is_explained_with_its_line(
     program.write_text(f"G21\n{block}\nM2\n", encoding="utf-8")
     _explain_blending(program)
     assert ("part.ngc:2: G64 without P" in capsys.readouterr().err) == explained
+
+
+def test_a_part_that_only_hands_on_what_it_is_told_is_none(tmp_path: Path):
+    """``loadrt`` starts an ``rtapi_app`` that ends at once: only the one that stays is watched."""
+    program = tmp_path / "rtapi_app"
+    shutil.copy("/bin/sleep", program)
+    start = subprocess.Popen(["/bin/sleep", "60"])
+    control = linuxcnc.LinuxCnc(start, tmp_path, tmp_path / "log")
+    environment = {"HOME": str(tmp_path)}
+    handing, staying = (
+        subprocess.Popen([program, "60"], env=environment, start_new_session=leads)
+        for leads in (False, True)
+    )
+    try:
+        assert control.goes_on()
+        handing.kill()
+        handing.wait()
+        assert control.goes_on()
+        staying.kill()
+        staying.wait()
+        assert not control.goes_on()
+        assert control.lost == "rtapi_app"
+    finally:
+        for process in (start, handing, staying):
+            process.kill()
+            process.wait()

@@ -1,5 +1,6 @@
 """Canonical moves written for LinuxCNC, and found again in its commands."""
 
+import dataclasses
 import shutil
 import subprocess
 from pathlib import Path
@@ -13,7 +14,7 @@ from twin.errors import UsageError
 from twin.link.linuxcnc_program import linuxcnc_program
 from twin.link.place import Places
 from twin.motion.planner import plan
-from twin.nc.canonical import Chunk, Corner, Dwell, Function
+from twin.nc.canonical import Chunk, Corner, Dwell, Function, Shape
 
 pytestmark = pytest.mark.oracle
 
@@ -68,6 +69,15 @@ def test_an_inclined_arc_is_refused():
     program = Program(1.0, 0.0, 0.0, 0.0).arc((0.0, 0.0, 0.0), (0.0, 0.6, 0.8), 90.0)
     with pytest.raises(UsageError, match="inclined"):
         linuxcnc_program([Chunk(program.moves)], AXES)
+
+
+def test_a_tip_that_is_led_is_refused_with_its_place():
+    program = Program(0.0, 0.0, 0.0, 0.0).line(1.0, 0.0, 0.0, 5.0, feed=300.0)
+    led = dataclasses.replace(program.moves, shape=np.full(1, Shape.CURVE))
+    with pytest.raises(
+        UsageError, match=r"^cone\.nc:\d+: the tip of the tool is led while axes turn"
+    ):
+        linuxcnc_program([Chunk(led)], AXES, "cone.nc:{}".format)
 
 
 @NEEDS_RS274

@@ -18,6 +18,12 @@ def linuxcnc(
         Path | None,
         typer.Option("--headless", metavar="PROGRAM|JOB.toml", help="Run this and end."),
     ] = None,
+    opened: Annotated[
+        Path | None,
+        typer.Option(
+            "--open", metavar="PROGRAM|JOB.toml", help="Open LinuxCNC's screen with this loaded."
+        ),
+    ] = None,
     machine: MachineOption = None,
     period_us: Annotated[
         int, typer.Option("--period-us", min=100, max=20000, help="Servo period [µs].")
@@ -38,7 +44,7 @@ def linuxcnc(
     from twin.commands.link import link_linuxcnc
 
     code = link_linuxcnc(
-        out, headless, machine=machine, dialect=dialect, period_us=period_us, display=display,
+        out, headless, opened=opened, machine=machine, dialect=dialect, period_us=period_us, display=display,
         following_error_limit=ferror, view=view,
     )  # fmt: skip
     raise typer.Exit(code)

@@ -44,8 +44,9 @@ SESSION = "session.nc"
 
 def link_linuxcnc(
     out: Path,
-    program: Path | None,
+    headless: Path | None,
     *,
+    opened: Path | None = None,
     machine: str | None,
     dialect: str | None,
     period_us: int,
@@ -57,7 +58,8 @@ def link_linuxcnc(
 
     Args:
         out: Folder for the results.
-        program: NC program or job file to run; None: LinuxCNC's screen opens.
+        headless: NC program or job file to run without a screen.
+        opened: The same, which LinuxCNC's screen opens with; neither: it opens without one.
         machine: Overrides the job's machine.
         dialect: Overrides the job's dialect.
         period_us: Servo period of both [µs].
@@ -68,6 +70,9 @@ def link_linuxcnc(
     Raises:
         TwinError: Something is wrong before the run could end; see each error's exit code.
     """
+    if headless is not None and opened is not None:
+        raise UsageError("--headless runs a program without a screen, --open with one: give one")
+    program = headless or opened
     if view:
         require_extra("train", "twin link --view")
     from twin.link.session import Wish, run_on_twin
@@ -76,8 +81,9 @@ def link_linuxcnc(
     changes: list[Change] = [("machine.servo_period_s", period_us * SECONDS_PER_US)]
     own = None if dialect or program is None else _linuxcnc_program(program, changes)
     with run_folder(out, RESULT_FILES):
-        if program is None:
+        if headless is None:
             _require_screen(display)
+        if program is None:
             write_text(out / SESSION, "M30\n")
             preparation = prepare(out / SESSION, dialect="gost", machine=machine, changes=changes)
         elif own is None:
@@ -88,7 +94,8 @@ def link_linuxcnc(
         dry_run = run.dry_run()
         wish = Wish(
             own_program=None if own is None else own.program,
-            display=display if program is None else None,
+            display=display if headless is None else None,
+            opens=opened is not None,
             following_error_limit=following_error_limit,
         )
         with shown_progress() as progress:

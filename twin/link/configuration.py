@@ -26,6 +26,7 @@ class Settings:
         display: The command line of LinuxCNC's screen.
         port: UDP port of the twin.
         programs: Folder in which LinuxCNC looks for programs and subprograms.
+        opened: The program that its screen opens with; None: its own.
         following_error_limit: LinuxCNC's own limit [mm or deg]; None: the machine's.
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
         job: Its tools go into the tool table.
@@ -34,6 +35,7 @@ class Settings:
     display: str
     port: int
     programs: Path
+    opened: Path | None
     following_error_limit: float | None
     part_zero: FloatArray
     job: JobFile
@@ -61,6 +63,7 @@ def write_configuration(folder: Path, machine: Machine, settings: Settings) -> P
         "display": settings.display,
         "port": settings.port,
         "programs": settings.programs,
+        "opened": settings.opened,
         "period_ns": round(machine.file.servo_period_s * _NANOSECONDS),
         "axes": [_axis(machine, name, settings) for name in machine.axes.names],
         "coordinates": "".join(machine.axes.names),

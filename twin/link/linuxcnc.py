@@ -31,7 +31,8 @@ _NOT_PLAIN = re.compile(r"[^\w/.+-]")
 _LEAVING_TIMEOUT_S = 30.0
 """How long LinuxCNC may take from its component's farewell to its end [s]."""
 _END_TIMEOUT_S = 10.0
-_PARTS = ("milltask", "rtapi_app")
+_REALTIME = "rtapi_app"
+_PARTS = ("milltask", _REALTIME)
 """Processes without which the others wait for ever: the task controller and the realtime part."""
 
 
@@ -67,7 +68,9 @@ class LinuxCnc:
         )
         if not self.lost and len(self._parts) < len(_PARTS):
             names = {process_name(number): number for number in processes_at_home(self.folder)}
-            self._parts = {name: names[name] for name in _PARTS if name in names}
+            self._parts = {
+                name: names[name] for name in _PARTS if name in names and _lasts(name, names[name])
+            }
         return not self.lost
 
     def events(self) -> list[Event]:
@@ -193,6 +196,17 @@ def process_name(number: int) -> str:
         return ""
     name, _, rest = text.partition("(")[2].rpartition(")")
     return "" if rest.split()[:1] == ["Z"] else name
+
+
+def _lasts(name: str, number: int) -> bool:
+    """Whether a process is the part itself.
+
+    Each ``loadrt`` starts an ``rtapi_app`` too, which hands the module to the first one and ends; that first
+    one leads a session of its own.
+    """
+    with contextlib.suppress(OSError):
+        return name != _REALTIME or os.getsid(number) == number
+    return False
 
 
 def operator_log(folder: Path) -> Path:

@@ -6,7 +6,7 @@ changed on the twin's side alone; program stops are passed.
 """
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
 import numpy as np
@@ -33,17 +33,20 @@ class LinuxcncProgram(NamedTuple):
     line_of_move: IntArray
 
 
-def linuxcnc_program(chunks: Iterable[Chunk], axes: Axes) -> LinuxcncProgram:
+def linuxcnc_program(
+    chunks: Iterable[Chunk], axes: Axes, named: Callable[[int], str] = "line {}".format
+) -> LinuxcncProgram:
     """Write canonical moves for LinuxCNC.
 
     Args:
         chunks: Of the program, part coordinates.
         axes: Of the machine; their names are LinuxCNC's.
+        named: What a source line is called in messages.
 
     Raises:
         UsageError: LinuxCNC has no words for a move.
     """
-    writer = _Writer(axes)
+    writer = _Writer(axes, named)
     for chunk in chunks:
         events = list(chunk.events)
         for row in range(len(chunk.moves)):
@@ -56,8 +59,8 @@ def linuxcnc_program(chunks: Iterable[Chunk], axes: Axes) -> LinuxcncProgram:
 
 
 class _Writer:
-    def __init__(self, axes: Axes) -> None:
-        self._axes = axes
+    def __init__(self, axes: Axes, named: Callable[[int], str]) -> None:
+        self._axes, self._named = axes, named
         self._lines = ["G90 G21 G17 G94 G91.1 G40 G49 G80 G54"]
         self._line_of_move: list[int] = []
         self._plane, self._corner = "G17", ""
@@ -69,7 +72,8 @@ class _Writer:
             self._corner = corner
         if moves.shape[row] == Shape.CURVE:
             raise UsageError(
-                f"line {moves.line[row]}: the tip of the tool is led while axes turn; LinuxCNC does not do it so"
+                f"{self._named(int(moves.line[row]))}: the tip of the tool is led while axes turn, which LinuxCNC "
+                "has no words for: turn the axes before, or run the program with twin run"
             )
         if moves.shape[row] == Shape.ARC:
             words += self._arc(moves, row)
@@ -106,7 +110,7 @@ class _Writer:
         principal = (int(x), int(y), int(z))
         if principal not in _PLANES or np.max(np.abs(np.abs(normal) - principal)) > _TURN_ROUNDING:
             raise UsageError(
-                f"line {moves.line[row]}: an arc in an inclined plane; LinuxCNC has them in the "
+                f"{self._named(int(moves.line[row]))}: an arc in an inclined plane; LinuxCNC has them in the "
                 "planes of X Y, Z X and Y Z alone"
             )
         if (plane := _PLANES[principal]) != self._plane:

@@ -25,9 +25,10 @@ from twin.link.place import Places
 from twin.link.rehearsal import rehearse
 from twin.machine.simulation.live import LiveMachine
 from twin.machine.watching.alarms import Alarm, AlarmCode
-from twin.nc.canonical import Axes, concatenate
+from twin.nc.canonical import concatenate
 from twin.run.dry_run import DryRun, InterpretedProgram
 from twin.run.outcome import Outcome
+from twin.run.preparation import Preparation
 from twin.run.progress import Progress
 from twin.run.run import Run
 
@@ -45,11 +46,13 @@ class Wish(NamedTuple):
             it; None: LinuxCNC is given the prepared program's moves.
         display: Command of the screen from which somebody works LinuxCNC as he likes; None: the
             program is run, and that is all.
+        opens: Whether the screen opens with the program.
         following_error_limit: LinuxCNC's own limit [mm or deg]; None: the machine's.
     """
 
     own_program: Path | None = None
     display: str | None = None
+    opens: bool = False
     following_error_limit: float | None = None
 
 
@@ -92,13 +95,14 @@ def run_on_twin(
         tool, position = preparation.job.file.tools[0], dry_run.program.start + run.part_zero
         rehearse(run, dry_run, tool, position)
         live = LiveMachine(run.machine, tool, position, run.model.blank)
-        places = _write_program(dry_run.program, axes, own / PROGRAM_NAME, wish.own_program)
+        places = _write_program(dry_run.program, preparation, own / PROGRAM_NAME, wish.own_program)
         session = wish.display is not None
         with LockstepMotion(live, places, run.part_zero, session=session) as motion:
             settings = Settings(
                 display=wish.display or _operator_command(own, len(axes)),
                 port=motion.port,
                 programs=(wish.own_program or preparation.job.program).resolve().parent,
+                opened=own / PROGRAM_NAME if wish.opens else None,
                 following_error_limit=wish.following_error_limit,
                 part_zero=run.part_zero,
                 job=preparation.job.file,
@@ -128,15 +132,17 @@ def run_on_twin(
 
 
 def _write_program(
-    program: InterpretedProgram, axes: Axes, path: Path, own_program: Path | None
+    program: InterpretedProgram, preparation: Preparation, path: Path, own_program: Path | None
 ) -> Places:
     """Write what LinuxCNC reads, and tell where its lines lie in the prepared program."""
-    chunks = list(program.chunks())
+    chunks, axes = list(program.chunks()), preparation.machine.axes
     moves = concatenate([chunk.moves for chunk in chunks], axes)
     if own_program is not None:
         write_text(path, own_program.read_text(encoding="utf-8", errors="replace"))
         return Places(moves, moves.block)
-    written = linuxcnc_program(chunks, axes)
+    written = linuxcnc_program(
+        chunks, axes, lambda line: "{}:{}".format(*preparation.source.place(line))
+    )
     write_text(path, written.text)
     return Places(moves, written.line_of_move)
 

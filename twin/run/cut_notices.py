@@ -41,12 +41,7 @@ def cut_notices(
         yield Notice("ends-in-cut", watch.last_line, "the program ends with the tool in the cut")
     for slip in cutter.watch.slips:
         yield _slip_notice(slip)
-    if (
-        cut.removed_mm3
-        and watch.changed_at
-        and not watch.spindle_line
-        and job.tools[0].speed is None
-    ):
+    if cut.removed_mm3 and watch.changed_at and watch.taken_to_turn and job.tools[0].speed is None:
         yield Notice(
             "spindle-never-started",
             watch.changed_at,

@@ -8,8 +8,8 @@ from twin.compare.figures import Figures
 from twin.compare.verdict import Check, Reason, Verdict, judge
 from twin.cutting.cut_log import CutResult
 from twin.cutting.forces.load_log import LoadLog
-from twin.cutting.inspection import Inspection
-from twin.cutting.nominal import NominalGouge
+from twin.cutting.measuring.inspection import Inspection
+from twin.cutting.measuring.nominal import NominalGouge
 from twin.cutting.program_summary import ProgramSummary
 from twin.errors import ConfigError
 from twin.job.job_file import JobFile, ToleranceTable

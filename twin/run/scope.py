@@ -167,8 +167,8 @@ def _blind(job: JobFile, *, forces: bool, tilts: bool) -> Iterator[Unwatched]:
 
 
 def _silent_spindle(job: JobFile, watch: ProgramWatch) -> Iterator[Unwatched]:
-    if job.stock is not None and not watch.spindle_line:
-        why = "the program never speaks of it, so that it is taken to turn"
+    if job.stock is not None and watch.taken_to_turn:
+        why = "the program never starts it, so that it is taken to turn"
         yield Unwatched("a standing spindle", why)
 
 

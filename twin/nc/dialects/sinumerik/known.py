@@ -71,7 +71,6 @@ PASSED_STATEMENTS = each_name(
     {
         "MSG": "a message to the operator",
         "STOPRE": "nothing is read ahead here",
-        "WORKPIECE": "the stock is the job's",
         "GROUP_BEGIN, GROUP_END, GROUP_ADDEND": "the editor's groups of blocks",
         "WAITP, WAITS": "every move has ended before the next block",
         "SETMS": "the machine has one spindle",
