@@ -44,7 +44,7 @@ class Edge(enum.IntEnum):
     BY_THRUST = 5
 
 
-class Number(enum.IntEnum):
+class CutNumber(enum.IntEnum):
     """Columns of ``Memory.numbers``."""
 
     ANGLE = 0
@@ -105,7 +105,7 @@ class Memory(NamedTuple):
     """What is carried from one period to the next.
 
     Attributes:
-        numbers: By ``Number``.
+        numbers: By ``CutNumber``.
         rigid: Where the tip would be, were the tool rigid, part's frame, shape (3,) [mm].
         swept: Where the material was cut up to, shape (2, 3); the second row is the later [mm].
         trace: Where it has left walls up to, of ``leave_walls``.
@@ -205,8 +205,8 @@ def _go_to(physics: Physics, state: FloatArray, cut: Cut, memory: Memory) -> tup
     # A chip is as thick as the way between two teeth: the speed in the mean of that time.
     share = _share_of_tooth(cut, memory, drives.period)
     for k in range(3):
-        if numbers[Number.FRESH] > 0.0:
-            numbers[Number.STOOD] = 0.0
+        if numbers[CutNumber.FRESH] > 0.0:
+            numbers[CutNumber.STOOD] = 0.0
             lose_trace(memory.trace)
             memory.speed[k] = 0.0
             memory.swept[0, k] = memory.swept[1, k] = tip[k]
@@ -214,7 +214,7 @@ def _go_to(physics: Physics, state: FloatArray, cut: Cut, memory: Memory) -> tup
             now = (tip[k] - memory.rigid[k]) / drives.period
             memory.speed[k] += share * (now - memory.speed[k])
         memory.rigid[k] = tip[k]
-    numbers[Number.FRESH] = 0.0
+    numbers[CutNumber.FRESH] = 0.0
     return cosine, sine
 
 
@@ -230,7 +230,7 @@ def _axis(drives: Drives, state: FloatArray, axis: int) -> float:
 @kernel
 def _share_of_tooth(cut: Cut, memory: Memory, period: float) -> float:
     """How far a mean over the time between two teeth follows in a period, 0 to 1."""
-    rate = max(abs(memory.numbers[Number.SPEED]) * cut.cutter.teeth, 1.0 / _LONGEST_MEAN_S)
+    rate = max(abs(memory.numbers[CutNumber.SPEED]) * cut.cutter.teeth, 1.0 / _LONGEST_MEAN_S)
     return 1.0 - math.exp(-rate * period)
 
 
@@ -238,20 +238,22 @@ def _share_of_tooth(cut: Cut, memory: Memory, period: float) -> float:
 def _turn_and_cut(period: float, commanded: float, cut: Cut, memory: Memory) -> None:
     """Turn the spindle, cut, and find what the teeth feel until the next period."""
     numbers = memory.numbers
-    torque = memory.bench.figures[1] * MM if numbers[Number.MET] > 0.0 else 0.0
+    torque = memory.bench.figures[1] * MM if numbers[CutNumber.MET] > 0.0 else 0.0
     told = 0.0 if math.isnan(commanded) else commanded
-    numbers[Number.SPEED] = next_speed(cut.spindle, numbers[Number.SPEED], told, torque, period)
+    numbers[CutNumber.SPEED] = next_speed(
+        cut.spindle, numbers[CutNumber.SPEED], told, torque, period
+    )
     memory.force[:] = 0.0
-    if math.isnan(commanded) or numbers[Number.EDGE] != Edge.WHOLE.value:
+    if math.isnan(commanded) or numbers[CutNumber.EDGE] != Edge.WHOLE.value:
         # What cuts nothing goes where it will: the next cut begins where the tool is then.
-        numbers[Number.MET], numbers[Number.FRESH] = 0.0, 1.0
+        numbers[CutNumber.MET], numbers[CutNumber.FRESH] = 0.0, 1.0
         return
-    turned = numbers[Number.SPEED] * period
-    if abs(numbers[Number.SPEED]) > cut.strength.speed / SECONDS_PER_MINUTE:
-        _break(memory, Edge.BY_SPEED, abs(numbers[Number.SPEED]) * SECONDS_PER_MINUTE)
+    turned = numbers[CutNumber.SPEED] * period
+    if abs(numbers[CutNumber.SPEED]) > cut.strength.speed / SECONDS_PER_MINUTE:
+        _break(memory, Edge.BY_SPEED, abs(numbers[CutNumber.SPEED]) * SECONDS_PER_MINUTE)
         return
     _look(period, cut, memory)
-    if numbers[Number.MET] > 0.0:
+    if numbers[CutNumber.MET] > 0.0:
         if memory.bench.figures[2] > cut.strength.chip:
             _break(memory, Edge.BY_CHIP, memory.bench.figures[2])
         elif memory.bench.figures[0] > cut.strength.force:
@@ -262,16 +264,16 @@ def _turn_and_cut(period: float, commanded: float, cut: Cut, memory: Memory) -> 
             _break(memory, Edge.BY_THRUST, memory.bench.mean[2])
         else:
             add_force_between(
-                cut.cutter, memory.bench, numbers[Number.ANGLE], -turned, memory.force
+                cut.cutter, memory.bench, numbers[CutNumber.ANGLE], -turned, memory.force
             )
-    numbers[Number.ANGLE] -= turned
-    numbers[Number.ANGLE] -= math.floor(numbers[Number.ANGLE])
+    numbers[CutNumber.ANGLE] -= turned
+    numbers[CutNumber.ANGLE] -= math.floor(numbers[CutNumber.ANGLE])
 
 
 @kernel
 def _break(memory: Memory, why: Edge, value: float) -> None:
-    memory.numbers[Number.EDGE], memory.numbers[Number.VALUE] = why.value, value
-    memory.numbers[Number.MET] = 0.0
+    memory.numbers[CutNumber.EDGE], memory.numbers[CutNumber.VALUE] = why.value, value
+    memory.numbers[CutNumber.MET] = 0.0
 
 
 @array_kernel
@@ -279,12 +281,12 @@ def _look(period: float, cut: Cut, memory: Memory) -> None:
     """Cut up to where the tool is and look at what is before it, where it has gone far enough."""
     numbers, swept, looked, feed = memory.numbers, memory.swept, memory.looked, memory.feed
     pace = math.sqrt(memory.speed[0] ** 2 + memory.speed[1] ** 2 + memory.speed[2] ** 2)
-    if numbers[Number.MET] <= 0.0:
-        numbers[Number.CONTACT] = 0.0
-    numbers[Number.CONTACT] += pace * period
-    teeth = max(abs(numbers[Number.SPEED]) * cut.cutter.teeth, _STILL)
+    if numbers[CutNumber.MET] <= 0.0:
+        numbers[CutNumber.CONTACT] = 0.0
+    numbers[CutNumber.CONTACT] += pace * period
+    teeth = max(abs(numbers[CutNumber.SPEED]) * cut.cutter.teeth, _STILL)
     # The first tooth cuts no more than the tool has come into the material.
-    share = min(1.0 / teeth, numbers[Number.CONTACT] / max(pace, _STILL))
+    share = min(1.0 / teeth, numbers[CutNumber.CONTACT] / max(pace, _STILL))
     moved, changed, before = 0.0, 0.0, 0.0
     for k in range(3):
         feed[k] = memory.speed[k] * share
@@ -299,25 +301,25 @@ def _look(period: float, cut: Cut, memory: Memory) -> None:
         swept[1, k] = memory.rigid[k] + memory.bend[k]
         looked[k] = feed[k]
     if min(swept[0, 2], swept[1, 2]) >= cut.material.grid.top:
-        numbers[Number.MET] = 0.0
+        numbers[CutNumber.MET] = 0.0
         lose_trace(memory.trace)
         return
     material = cut.material
     sweep(
         material.heights, material.grid, swept, cut.cutter.profile,
-        memory.tally, memory.marks, numbers[Number.STOOD] > 0.0, ALL_ROWS,
+        memory.tally, memory.marks, numbers[CutNumber.STOOD] > 0.0, ALL_ROWS,
     )  # fmt: skip
-    numbers[Number.STOOD] = 1.0
+    numbers[CutNumber.STOOD] = 1.0
     leave_walls(material, memory.trace, swept[1], cut.cutter.profile.radius, cut.cutter.side_from)
-    sense = 1.0 if numbers[Number.SPEED] >= 0.0 else -1.0
+    sense = 1.0 if numbers[CutNumber.SPEED] >= 0.0 else -1.0
     met = tooth_forces(material, swept[1], feed, cut.cutter, cut.law, sense, memory.bench)
-    numbers[Number.MET] = 1.0 if met else 0.0
+    numbers[CutNumber.MET] = 1.0 if met else 0.0
 
 
 @kernel
 def _bend(period: float, cut: Cut, memory: Memory) -> None:
     """Bend the tool by the mean force of a turn."""
-    met = memory.numbers[Number.MET] > 0.0
+    met = memory.numbers[CutNumber.MET] > 0.0
     share = _share_of_tooth(cut, memory, period) if met else 1.0
     for k in range(2):
         wanted = cut.strength.compliance * memory.bench.mean[k] if met else 0.0
@@ -339,8 +341,8 @@ def _load_axes(place: Place, memory: Memory, cosine: float, sine: float) -> None
 def _note(cut: Cut, memory: Memory, felt: Felt, row: int, turn: tuple[float, float]) -> None:
     """Enter what the tool feels."""
     numbers, bend = memory.numbers, memory.bend
-    met = numbers[Number.MET] > 0.0
-    speed = numbers[Number.SPEED]
+    met = numbers[CutNumber.MET] > 0.0
+    speed = numbers[CutNumber.SPEED]
     torque = memory.bench.figures[1] * MM if met else 0.0
     for k in range(3):
         felt.force[row, k] = memory.load[k]
@@ -353,4 +355,4 @@ def _note(cut: Cut, memory: Memory, felt: Felt, row: int, turn: tuple[float, flo
     felt.chip[row] = memory.bench.figures[2] if met else 0.0
     felt.spindle_speed[row] = speed * SECONDS_PER_MINUTE
     felt.spindle_load[row] = torque / lasting_torque(cut.spindle, speed)
-    felt.broken[row] = numbers[Number.EDGE]
+    felt.broken[row] = numbers[CutNumber.EDGE]

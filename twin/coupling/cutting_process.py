@@ -9,10 +9,10 @@ import numpy as np
 
 from twin.coupling.cutting_kernels import (
     Cut,
+    CutNumber,
     Edge,
     Felt,
     Memory,
-    Number,
     Place,
     follow_cutting,
 )
@@ -132,15 +132,15 @@ class CuttingProcess:
         self._table = spindle
         self._drive = spindle_drive(spindle)
         self._memory = _memory(0)
-        self._memory.numbers[Number.SPEED] = operation.speed_at_start / SECONDS_PER_MINUTE
+        self._memory.numbers[CutNumber.SPEED] = operation.speed_at_start / SECONDS_PER_MINUTE
         self._tool: ToolTable | None = None
         self._overloaded_s = 0.0
 
     def begin(self, position: FloatArray) -> None:
         """Begin with the machine at rest; see ``Process``."""
-        speed = self._memory.numbers[Number.SPEED]
+        speed = self._memory.numbers[CutNumber.SPEED]
         self._memory = _memory(len(position))
-        self._memory.numbers[Number.SPEED] = speed
+        self._memory.numbers[CutNumber.SPEED] = speed
 
     def renew(self, number: int) -> None:
         """Put a new tool into the place of one, which may have lost its edge."""
@@ -151,7 +151,7 @@ class CuttingProcess:
     def lift(self) -> None:
         """Take the tool off what it cut: what comes next is no way of it."""
         memory = self._memory
-        memory.numbers[Number.FRESH] = 1.0
+        memory.numbers[CutNumber.FRESH] = 1.0
         for column in (memory.load, memory.bend, memory.looked, memory.bench.figures):
             column[:] = 0.0
 
@@ -189,7 +189,7 @@ class CuttingProcess:
         self._tool = tool
         self.lift()
         broken = any(found.tool == tool.number for found in self.breaks)
-        self._memory.numbers[Number.EDGE] = Edge.BY_FORCE if broken else Edge.WHOLE
+        self._memory.numbers[CutNumber.EDGE] = Edge.BY_FORCE if broken else Edge.WHOLE
 
     def _cut(self, turning: Turning) -> Cut:
         tool, frame = turning.tool, self._frame
@@ -210,7 +210,7 @@ class CuttingProcess:
         known = any(found.tool == tool.number for found in self.breaks)
         if not len(state) or state[row] == Edge.WHOLE or known:
             return
-        value, why = float(self._memory.numbers[Number.VALUE]), int(state[row])
+        value, why = float(self._memory.numbers[CutNumber.VALUE]), int(state[row])
         if why == Edge.BY_CHIP:
             reason = (
                 f"a chip of {value:.3g} mm was thicker than the {strength.chip:.3g} mm it bears"
@@ -270,8 +270,8 @@ def spindle_drive(table: SpindleTable) -> SpindleDrive:
 
 
 def _memory(axes: int) -> Memory:
-    numbers = np.zeros(len(Number))
-    numbers[Number.FRESH] = 1.0
+    numbers = np.zeros(len(CutNumber))
+    numbers[CutNumber.FRESH] = 1.0
     three = np.zeros((6, 3))
     return Memory(
         numbers, three[0].copy(), np.zeros((2, 3)), no_trace(), three[1].copy(), three[2].copy(),

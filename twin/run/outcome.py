@@ -36,7 +36,7 @@ from twin.run.observers import (
     ToolUse,
     Traced,
 )
-from twin.run.pipeline import Motion
+from twin.run.pipeline import MachineMotion
 from twin.run.preparation import Preparation
 from twin.run.program_watch import ProgramWatch
 from twin.run.scope import Scope, nothing_judged, scope_of
@@ -104,7 +104,7 @@ def outcome_of(
     preparation: Preparation,
     dry_run: DryRun,
     followers: Followers,
-    motion: Motion | None,
+    motion: MachineMotion | None,
     alarms: tuple[Alarm, ...],
     floats: str | None,
 ) -> Outcome:

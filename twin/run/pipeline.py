@@ -26,7 +26,7 @@ from twin.run.dry_run import DryRun, InterpretedProgram
 from twin.run.layout import Layout
 
 
-class Motion(abc.ABC):
+class MachineMotion(abc.ABC):
     """What moves the machine along a program; iterated once, for the samples of its joints.
 
     Attributes:
@@ -61,7 +61,7 @@ class Forces(NamedTuple):
     load: Load | None = None
 
 
-class ProgramMotion(Motion):
+class ProgramMotion(MachineMotion):
     """Setpoints of a program, held at their end and followed by the simulated drives."""
 
     def __init__(
