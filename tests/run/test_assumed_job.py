@@ -78,6 +78,28 @@ def test_feeds_alone_are_those_of_a_control_without_program_numbers(tmp_path: Pa
         raw(tmp_path, f"%\nO1\n{HELIX}%\n")
 
 
+def test_offsets_that_are_no_tools_number_are_those_of_the_tool_in_the_spindle(
+    tmp_path: Path,
+) -> None:
+    """Posts add 30 or 50 to the tool's number where lengths and radii share one memory."""
+    text = (
+        "%\nO5\nG21 G90\nN1 M6 T1\n(TOOL -1- MILL DIA 10.0)\nG43 H1 Z50.\nS900 M3\nG0 X-20.5 Y0.\nG1 Z-1. F90.\n"
+        "G41 D31 X0.\nY30.\nG40 X-20.\nG0 Z50.\nM6 T2\n(TOOL -2- MILL DIA 6.0)\nG43 H32 Z50.\nM30\n%\n"
+    )
+    preparation, job = raw(tmp_path, text)
+    assert preparation.settings.offset_rows == {31: 1, 32: 2}
+    assert (
+        "offsets H and D: 31 that of tool 1, 32 that of tool 2, which was in the spindle then"
+        in job.assumptions
+    )
+    chunks = list(preparation.interpretation().chunks())
+    moves = concatenate([chunk.moves for chunk in chunks], preparation.machine.axes)
+    assert moves.end[moves.line == 10][-1, 0] == -5.0
+    kept = tmp_path / "kept.toml"
+    kept.write_text(text_beside(kept, job, tmp_path / "part.nc"))
+    assert prepare(kept).settings.offset_rows == {31: 1, 32: 2}
+
+
 def test_one_feed_that_crawls_tells_which_control_was_not_meant(tmp_path: Path) -> None:
     text = "O7\nG21\nT1 M6\nG43 H1\nG0 X1.5 Z5.\nG1 Z-1. F25.\nX9. F250\nG0 Z9.\nM30\n"
     preparation, _ = raw(tmp_path, text)

@@ -357,6 +357,11 @@ class JobFile(Table):
     job both ways."""
     offsets: dict[str, dict[str, float]] = Field(default_factory=dict)
     """Work offsets by name (``G54``), each by axis, from part zero [mm or deg]."""
+    offset_rows: dict[Annotated[int, Field(ge=1)], Annotated[int, Field(ge=0)]] = Field(
+        default_factory=dict
+    )
+    """``fanuc``, ``haas``: rows of the offset memory that hold the length and the radius of a tool of another number:
+    ``31 = 1`` lets D31 and H31 be tool 1's."""
     variables: dict[str, float] = Field(default_factory=dict)
     """Values of variables that the program reads but does not set, by their name in it."""
     m_functions: MachineFunctions = Field(default_factory=dict)

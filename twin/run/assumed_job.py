@@ -197,8 +197,11 @@ def _reading_lines(reading: AssumedReading) -> list[str]:
     """Tables of the work offsets and M codes that were assumed."""
     lines: list[str] = []
     offsets, functions = reading.keys.get("offsets"), reading.keys.get("m_functions")
+    rows = reading.keys.get("offset_rows")
     if isinstance(offsets, dict):
         lines += [line for name in offsets for line in (f"[offsets.{name}]", "")]
+    if isinstance(rows, dict):
+        lines += ["[offset_rows]", *(f"{row} = {tool}" for row, tool in rows.items()), ""]
     if isinstance(functions, dict):
         lines += ["[m_functions]", *(f'{code} = "{does}"' for code, does in functions.items()), ""]
     return lines

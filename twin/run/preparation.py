@@ -235,6 +235,7 @@ def _control_settings(job: Job, machine: Machine, *, strict: bool) -> ControlSet
         },
         any_tool="tools" not in job.file.model_fields_set,
         offsets=job.file.offsets,
+        offset_rows=job.file.offset_rows,
         setup=_setup(job, machine),
         machine_zero=_machine_zero(job, machine),
         variables=job.file.variables,

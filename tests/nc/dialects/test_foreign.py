@@ -7,7 +7,7 @@ import pytest
 
 from tests.nc.running import ROOT, SHIPPED
 from twin.errors import UsageError
-from twin.nc.dialects.foreign import foreign_kind, require_program
+from twin.nc.dialects.foreign import TEXTS, foreign_kind, require_program
 from twin.nc.dialects.recognition import reading_of
 from twin.nc.text.source import source_from_bytes
 
@@ -118,6 +118,11 @@ def test_a_head_that_names_another_control_is_believed(name: str, data: bytes) -
     with pytest.raises(UsageError) as raised:
         reading_of(source_from_bytes(data, "file.nc"))
     assert any(each.lower() in str(raised.value).lower() for each in name.split("|"))
+
+
+def test_no_pattern_goes_over_empty_lines_again_for_each_of_them() -> None:
+    """``^`` matches at each line, and ``\\s`` goes on over line ends: 5,000 empty lines took 14 s."""
+    assert not [kind.name for kind in TEXTS if r"^\s*" in kind.pattern]
 
 
 def test_no_program_of_ours_is_taken_for_a_foreign_file() -> None:

@@ -70,6 +70,9 @@ class ControlSettings:
     setup: Setup | None = None
     """The part on the machine, for tool centre point control and tilted planes; None: not known."""
 
+    offset_rows: Mapping[int, int] = dataclasses.field(default_factory=dict)
+    """``fanuc``, ``haas``: rows of the offset memory, by H and D, that hold the data of a tool of another number."""
+
     machine_zero: Mapping[str, float] | None = None
     """Part coordinates of machine zero by axis [mm or deg]; None: not known, G53 is refused."""
 

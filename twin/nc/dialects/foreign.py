@@ -72,7 +72,9 @@ TEXTS: tuple[Foreign, ...] = (
         comments=True,
     ),
     Foreign("an XML file", "an NC program is text of blocks", r"\A\s*<\?xml\b", comments=True),
-    Foreign("an APT or CL file (ISO 4343)", _POST, r"(?m)^\s*(?:GOTO\s*/|FEDRAT\s*/|PARTNO\b)", 2),
+    Foreign(
+        "an APT or CL file (ISO 4343)", _POST, r"(?m)^[ \t]*(?:GOTO\s*/|FEDRAT\s*/|PARTNO\b)", 2
+    ),
     Foreign("an HP-GL plot", _MODEL, r"(?:\bP[UD](?:-?\d+,-?\d+)?;){2}", comments=True),
     Foreign("an RML plot, for a Roland", _MODEL, r"\^(?:IN|PA|PR|DF);", 2, comments=True),
     Foreign(
@@ -95,26 +97,28 @@ TEXTS: tuple[Foreign, ...] = (
     Foreign(
         "a program for a Philips or Maho control",
         _POST,
-        r"(?m)^%(?:PM|MM)\s*$|\bN1=\d+ +N2=\d+|\(\s*(?:PHILIPS|MAHO)\b",
+        r"(?m)^%(?:PM|MM)[ \t]*$|\bN1=\d+ +N2=\d+|\(\s*(?:PHILIPS|MAHO)\b",
         comments=True,
     ),
     Foreign(
         "a program for a SINUMERIK before the 840D",
         _POST,
-        r"(?m)^\s*(?:N\d+ *)?@\d{2,3}\b|\bSINUMERIK *8(?:05|10|20|50|80)(?![D\d])",
+        r"(?m)^[ \t]*(?:N\d+ *)?@\d{2,3}\b|\bSINUMERIK *8(?:05|10|20|50|80)(?![D\d])",
         comments=True,
     ),
-    Foreign("a program for a NUM", _POST, r"(?m)^\s*(?:N\d+ *)?E[3-9]\d{4} *=|\bG77 *N\d+ *N\d+"),
+    Foreign(
+        "a program for a NUM", _POST, r"(?m)^[ \t]*(?:N\d+ *)?E[3-9]\d{4} *=|\bG77 *N\d+ *N\d+"
+    ),
     Foreign(
         "a Heidenhain program in DIN/ISO",
         "post it as Klartext (.h), which --dialect heidenhain reads",
-        r"(?m)^\s*%\S+[ \t]+G7[01][ \t]*\*",
+        r"(?m)^[ \t]*%\S+[ \t]+G7[01][ \t]*\*",
         comments=True,
     ),
     Foreign(
         "a Mazatrol program",
         _POST,
-        r"(?im)^\s*UNo\.?\s|\bMAZATROL\b|^\s*UNIT +NO|\bWPC-\d",
+        r"(?im)^[ \t]*UNo\.?\s|\bMAZATROL\b|^[ \t]*UNIT +NO|\bWPC-\d",
     ),
     Foreign(
         "a program for an Okuma (OSP)",
@@ -125,16 +129,16 @@ TEXTS: tuple[Foreign, ...] = (
     Foreign(
         "a program for Marlin, a 3D printer's control",
         "post it for one of: twin dialects",
-        r"(?m)^\s*;\s*FLAVOR:|^\s*;\s*(?:generated (?:by|with) )?(?:PrusaSlicer|Cura_SteamEngine|Slic3r|Marlin)"
-        r"|^\s*M(?:10[49]|140|190|106) ?[ST]\d|^\s*M20[45] ?[SPTXYZ]|^\s*M(?:8[23]|107|400|420) *(?:;|$)"
-        r"|^\s*M(?:18|84|280|300)\b(?! *[A-RT-Z])",
+        r"(?m)^[ \t]*;\s*FLAVOR:|^[ \t]*;\s*(?:generated (?:by|with) )?(?:PrusaSlicer|Cura_SteamEngine|Slic3r|Marlin)"
+        r"|^[ \t]*M(?:10[49]|140|190|106) ?[ST]\d|^[ \t]*M20[45] ?[SPTXYZ]|^[ \t]*M(?:8[23]|107|400|420) *(?:;|$)"
+        r"|^[ \t]*M(?:18|84|280|300)\b(?! *[A-RT-Z])",
         2,
         comments=True,
     ),
     Foreign(
         "a program for TinyG or g2core",
         _AS_LINUXCNC,
-        r"(?m)^\s*\{\"?(?:sr|qr|xvm|gc|sys)\"?\s*:",
+        r"(?m)^[ \t]*\{\"?(?:sr|qr|xvm|gc|sys)\"?\s*:",
         comments=True,
     ),
     Foreign(
@@ -157,7 +161,7 @@ TEXTS: tuple[Foreign, ...] = (
     Foreign(
         "a drill file of a circuit board (Excellon)",
         "make a program of it by the CAM of circuit boards",
-        r"(?m)^M48\s*$|^T\d+(?:F\d+S\d+)?C[\d.]+",
+        r"(?m)^M48[ \t]*$|^T\d+(?:F\d+S\d+)?C[\d.]+",
         2,
         comments=True,
     ),
@@ -177,14 +181,14 @@ TEXTS: tuple[Foreign, ...] = (
     Foreign(
         "a program for a robot (KUKA KRL)",
         _ROBOT,
-        r"(?m)^\s*(?:&ACCESS|DEF \w+ ?\(|(?:PTP|LIN|CIRC) +\{)",
+        r"(?m)^[ \t]*(?:&ACCESS|DEF \w+ ?\(|(?:PTP|LIN|CIRC) +\{)",
         2,
         comments=True,
     ),
     Foreign(
         "a program for a robot (ABB RAPID)",
         _ROBOT,
-        r"(?im)^\s*(?:MODULE \w+|PROC \w+\(|Move[JLC] )",
+        r"(?im)^[ \t]*(?:MODULE \w+|PROC \w+\(|Move[JLC] )",
         2,
         comments=True,
     ),

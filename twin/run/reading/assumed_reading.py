@@ -33,6 +33,11 @@ _TOOL_IN_INCHES = re.compile(
 _MILLIMETRES = re.compile(r"[0-9] ?MM\b|\bMETRIC\b|\bMILLIMET", re.IGNORECASE)
 _FARTHEST_INCHES = 40.0
 """Programs that go farther do not count inches: it is as far as the larger mills go [inch]."""
+_CHANGE = re.compile(r"(?<![A-Z])M[ \t]*0?6(?![0-9])", re.IGNORECASE)
+_CALLS_OFFSET = re.compile(r"(?<![A-Z0-9.])G[ \t]*4[1-4](?![0-9.])", re.IGNORECASE)
+_ROW = re.compile(r"(?<![A-Z#\[])[HD][ \t]*0*([1-9][0-9]{0,3})(?![0-9.])", re.IGNORECASE)
+"""H and D name rows of the offset memory on controls where it is numbered."""
+_WITH_ROWS, _ROWS_TOLD = ("fanuc", "haas"), "offsets H and D: "
 _USUAL_OFFSET = "G54"
 UNKNOWN_FUNCTION = "not known here: taken to do nothing"
 
@@ -53,6 +58,10 @@ class AssumedReading(NamedTuple):
 
     def as_read_by(self, dialect: Dialect, settings: ControlSettings) -> "AssumedReading":
         """What of it matters to a dialect, in which numbers without a point may always count whole units."""
+        if "offset_rows" in self.keys and dialect.name not in _WITH_ROWS:
+            keys = {key: value for key, value in self.keys.items() if key != "offset_rows"}
+            notes = tuple(each for each in self.notes if not each.startswith(_ROWS_TOLD))
+            return self._replace(keys=keys, notes=notes).as_read_by(dialect, settings)
         counting = dataclasses.replace(settings, decimal_point="increments")
         if "decimal_point" not in self.keys or dialect.rules.without_point(counting):
             return self
@@ -82,7 +91,29 @@ def assumed_reading(source: Source) -> AssumedReading:
     if tool:
         keys["units"] = "inch"
         notes.append(f"inches: the program names no units, and its tools are in inches ({tool})")
+    rows = _offset_rows(source)
+    if rows:
+        keys["offset_rows"] = rows
+        told = ", ".join(f"{row} that of tool {tool}" for row, tool in rows.items())
+        notes.append(f"{_ROWS_TOLD}{told}, which was in the spindle then")
     return AssumedReading(keys, tuple(notes), _commented_tools(source, inches=bool(tool)))
+
+
+def _offset_rows(source: Source) -> dict[int, int]:
+    """Rows of H and D that are no tool's number, and the tool that was in the spindle where each came first."""
+    numbers = {int(found[1]) for line in _blocks(source) for found in _TOOL.finditer(line)}
+    rows: dict[int, int] = {}
+    selected = spindle = 0
+    for line in _blocks(source):
+        for found in _TOOL.finditer(line):
+            selected = int(found[1])
+        if _CHANGE.search(line):
+            spindle = selected
+        if spindle and _CALLS_OFFSET.search(line):
+            for found in _ROW.finditer(line):
+                if int(found[1]) not in numbers:
+                    rows.setdefault(int(found[1]), spindle)
+    return rows
 
 
 def _tool_in_inches(source: Source) -> str:

@@ -26,9 +26,15 @@ LARGEST_OFFSET = 999
 
 def geometry_of(control: Control, number: int, field: str) -> float | None:
     """Geometry of a length or a radius [mm]; None: nobody has given it."""
-    row, tool = memory_of(control).tool_offsets.get(number), control.tools.data(number)
+    row = memory_of(control).tool_offsets.get(number)
+    tool = control.tools.data(_tool_of(control, number))
     written = None if row is None else getattr(row, field)
     return getattr(tool, field, None) if written is None else written
+
+
+def _tool_of(control: Control, number: int) -> int:
+    """The number of the tool that a row of the memory is for."""
+    return control.settings.offset_rows.get(number, number)
 
 
 def set_length_number(control: Control, word: Word) -> None:
@@ -98,7 +104,7 @@ def apply_length(control: Control, sign: float, word: Word | None) -> None:
     if number == 0:
         set_length(control, 0.0)
         return
-    control.tools.length_call = number
+    control.tools.length_call = _tool_of(control, number)
     length = geometry_of(control, number, "length")
     row = memory_of(control).tool_offsets.get(number)
     if length is None:
@@ -115,14 +121,15 @@ def _refuse_row(control: Control, number: int, letter: str) -> NoReturn:
     word = Word(letter, float(number), 0, 1) if word is None else word
     known = ", ".join(f"{letter}{each}" for each in control.tools.table) or "none"
     message = f"nobody has given a value for {letter}{number}"
-    hint = f"the job's tools give {known}; or write it by G10"
+    hint = f"the job's tools give {known}; [offset_rows] {number} = 1 in the job lets it be tool 1's; or write it by G10"
     control.fail("no-such-tool", message, word, hint)
 
 
 def _warn_of_default_tool(control: Control, number: int, letter: str) -> None:
     word = next((each for each in control.block.words if each.address == letter), None)
-    if word is not None and control.tools.data(number) is not None:
-        tool_numbered(control, word._replace(value=float(number)))
+    tool = _tool_of(control, number)
+    if word is not None and control.tools.data(tool) is not None:
+        tool_numbered(control, word._replace(value=float(tool)))
 
 
 def compensation_code(number: int, side: float) -> Action:

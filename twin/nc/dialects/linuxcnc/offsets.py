@@ -12,6 +12,7 @@ from twin.nc.dialects.linuxcnc.memory import SYSTEMS, CoordinateSystem, Linuxcnc
 from twin.nc.geometry.matrices import IDENTITY, Matrix, applied, rotated, transposed
 from twin.nc.geometry.planes import XY
 from twin.nc.iso.offsets import machine_zero
+from twin.nc.iso.tool_center import begin_tool_center, end_tool_center
 from twin.nc.text.blocks import Word
 
 FIXTURE = 9
@@ -52,6 +53,26 @@ def reframe(control: Control) -> None:
     control.frame.set_matrix(matrix)
     control.frame.set_shift("offset", list(system.origin))
     control.frame.set_shift("preset", _applied(matrix, _preset_of(memory)))
+    shift, center = tool_shift(control), control.path.tool_center
+    if center is None:
+        control.frame.set_shift("length", shift)
+    elif any(shift[:2]) or any(shift[3:]):
+        message = "under M428 the offset of a tool is its length, along Z"
+        control.fail("tool-center", message, hint="write M429 before it")
+    elif center.longer != shift[2]:
+        control.motion.lead_tip(center.with_length(shift[2]))
+    control.motion.reframed()
+
+
+def lead_tip(control: Control) -> None:
+    """M428: X, Y and Z are those of the tip in the part (decision)."""
+    if control.path.tool_center is None:
+        begin_tool_center(control, "M428")
+
+
+def lead_axes(control: Control) -> None:
+    """M429: X, Y and Z are those of the axes."""
+    end_tool_center(control, "M429", keeps_length=True)
     control.frame.set_shift("length", tool_shift(control))
     control.motion.reframed()
 
