@@ -75,11 +75,10 @@ def tool_motion(
     setpoint = samples.setpoint
     meant, points = frame.position(setpoint.position), frame.position(joints)
     lag = np.abs(meant - points).sum(axis=1)
-    axis = None
+    turn, axis = frame.direction(joints), None
     if reach is not None:
-        axis = frame.tool_direction(joints)
+        turn, axis = frame.tool_x(joints), frame.tool_direction(joints)
         lag += reach * np.linalg.norm(axis - frame.tool_direction(setpoint.position), axis=1)
-    turn = frame.direction(joints)
     return ToolMotion(points, turn, axis, lag, setpoint.time, setpoint.line, rapid, standing)
 
 
