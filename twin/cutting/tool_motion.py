@@ -19,7 +19,7 @@ class ToolMotion(Columns):
 
     Attributes:
         points: Of its tip in the part's frame, shape (n, 3) [mm].
-        turn: Direction of machine X there, shape (n, 2).
+        turn: As of ``Points``, at each sample.
         axis: Direction from the tip to the spindle there, shape (n, 3); None: +Z.
         lag: How far it trails its setpoint, shape (n,) [mm].
         time: Shape (n,) [s].
