@@ -60,6 +60,18 @@ def _slip_notice(slip: CutSlip) -> Notice:
     return Notice("blunt-plunge", slip.line, message)
 
 
+def lost_length_notices(fed_without_length: frozenset[int], cut: CutResult) -> Iterator[Notice]:
+    """A length that was called before, and does not count for the tool that cuts."""
+    for line in sorted(fed_without_length):
+        if line in cut.blocks and cut.blocks[line].removed_mm3 >= LEAST_CUT_MM3:
+            message = (
+                "the tool cuts here, and the length that was called before was ended, or is that of "
+                "a tool which is not in the spindle any more"
+            )
+            yield Notice("length-lost", line, message)
+            return
+
+
 def tooth_feed_notices(watch: ProgramWatch, cut: CutResult | None) -> Iterator[Notice]:
     """Feeds per tooth that no edge bears, where no force is simulated that would show it.
 

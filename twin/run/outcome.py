@@ -19,6 +19,7 @@ from twin.nc.text.diagnostics import Diagnostic
 from twin.recording.reader import RecordingWriter
 from twin.run.cut_notices import (
     cut_notices,
+    lost_length_notices,
     tolerance_notices,
     tooth_feed_notices,
     unjudged_limit_notices,
@@ -198,6 +199,7 @@ def _notices(
     job, watch = preparation.job.file, dry_run.watch
     if cut is not None:
         yield from cut_notices(job, watch, machining, cut)
+        yield from lost_length_notices(dry_run.fed_without_length, cut)
     elif watch.spindle_line and watch.first_feed and job.stock is None:
         message = "the spindle turns, and the job has no [stock]: nothing that is cut is judged"
         yield Notice("no-stock", watch.spindle_line, message)

@@ -216,7 +216,7 @@ class ProgramWatch:
         """Warnings about the whole program, once it was interpreted to its end."""
         yield from self._counter.values()
         yield from self._tool_notices()
-        for line, call in interpretation.length_calls.items():
+        for line, call in interpretation.lengths.calls.items():
             if call.spindle is not None and call.number != call.spindle:
                 message = (
                     f"the length of tool {call.number} is called, and tool {call.spindle} is in the "
@@ -224,7 +224,7 @@ class ProgramWatch:
                 )
                 yield Notice("length-of-other-tool", line, message)
         by_code = interpretation.dialect.rules.length_by_code
-        if by_code and self.changed_at and not interpretation.length_calls:
+        if by_code and self.changed_at and not interpretation.lengths.calls:
             yield Notice(
                 "length-never-called",
                 self.changed_at,

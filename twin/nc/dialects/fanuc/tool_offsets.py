@@ -15,6 +15,7 @@ from twin.nc.control.compensation import (
     tool_numbered,
 )
 from twin.nc.control.control import Control
+from twin.nc.control.tools import LENGTH_ENDED
 from twin.nc.dialects.fanuc.memory import ToolOffset, memory_of
 from twin.nc.dialects.fanuc.programs import whole
 from twin.nc.iso.tool_center import end_tool_center
@@ -84,6 +85,7 @@ def end_length(control: Control) -> None:
     """G49."""
     memory_of(control).length_cancelled = ""
     end_tool_center_of_length(control)
+    control.tools.length_call = LENGTH_ENDED
     set_length(control, 0.0)
 
 
@@ -102,6 +104,7 @@ def apply_length(control: Control, sign: float, word: Word | None) -> None:
         code = "G43" if word is None else word.text
         control.fail("tool-offset", f"{code} needs H, the number of the length", word, "G43 H1")
     if number == 0:
+        control.tools.length_call = LENGTH_ENDED
         set_length(control, 0.0)
         return
     control.tools.length_call = _tool_of(control, number)

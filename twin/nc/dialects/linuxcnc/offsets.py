@@ -8,6 +8,7 @@ from twin.nc.control.codes import Action
 from twin.nc.control.compensation import tool_numbered
 from twin.nc.control.control import Control, integer_of
 from twin.nc.control.settings import ToolData
+from twin.nc.control.tools import LENGTH_ENDED
 from twin.nc.dialects.linuxcnc.memory import SYSTEMS, CoordinateSystem, LinuxcncMemory, memory_of
 from twin.nc.geometry.matrices import IDENTITY, Matrix, applied, rotated, transposed
 from twin.nc.geometry.planes import XY
@@ -343,6 +344,7 @@ def further_tool_length(control: Control) -> None:
         control.fail("tool-offset", "G43.2 needs H or words of axes")
     if word is not None and axes:
         control.fail("tool-offset", "G43.2 takes H or words of axes, not both", word)
+    control.tools.length_call = control.tools.spindle
     offset = memory_of(control).tool_offset or [0.0] * len(control.settings.axes)
     more = [0.0] * len(offset)
     if word is not None:
@@ -358,7 +360,14 @@ def given_tool_length(control: Control) -> None:
     offset = list(memory_of(control).tool_offset or [0.0] * len(control.settings.axes))
     for index, word in axes:
         offset[index] = control.axis_value(index, word)
+    control.tools.length_call = control.tools.spindle
     set_length(control, offset)
+
+
+def end_tool_length(control: Control) -> None:
+    """G49."""
+    control.tools.length_call = LENGTH_ENDED
+    set_length(control, None)
 
 
 def set_length(control: Control, offset: list[float] | None) -> None:
