@@ -8,6 +8,7 @@ import twin.compare.result
 import twin.run.run
 from tests.check.test_check_runs import write_job
 from twin import api
+from twin.api import functions
 from twin.commands.compare import compare_and_print
 from twin.commands.export import export_and_print
 from twin.errors import ExitCode, UsageError
@@ -61,3 +62,9 @@ def test_moves_are_a_table_for_data_frames(tmp_path: Path):
     assert {column.ndim for column in table.values()} == {1}
     rows = list(moves)
     assert (len(rows), rows[-1]["end_Y"]) == (len(moves), table["end_Y"][-1])
+
+
+def test_setpoints_that_would_fill_the_memory_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(functions, "MOST_SAMPLES", 100)
+    with pytest.raises(UsageError, match="twin plan"):
+        twin.plan("G1 X20. F300.", dialect="haas")

@@ -19,7 +19,16 @@ from twin.nc.text.source import read_source
 
 GOLDEN = ROOT / "tests" / "golden"
 RULES = sorted(GOLDEN.glob("*/*/*.nc"))
-NEEDS_FIVE_AXES = ("G43.4", "G53.1", "G68.2", "G234", "G254", "G255", "TRAORI")
+NEEDS_FIVE_AXES = (
+    "G43.4",
+    "G53.1",
+    "G68.2",
+    "G234",
+    "G254",
+    "G255",
+    "TRAORI",
+    "tip_led_by_kinematics",
+)
 """Programs that lead the tip, or tilt the plane."""
 ON_FIVE_AXES = settings(on_machine(trunnion()))
 

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from twin.errors import ConfigError, EmptyProgramError, TwinError, UsageError
+from twin.nc.canonical import concatenate
 from twin.nc.text.diagnostics import ProgramError
 from twin.run.assumed_job import AssumedJob, text_beside, with_assumptions
 from twin.run.preparation import Preparation, prepare
@@ -62,7 +63,75 @@ def test_dialects_that_would_move_differently_ask(tmp_path: Path) -> None:
     assert (
         "in line 5 fanuc feeds 485" in message
     )  # 300 of the circle's 31.4 mm, 50.9 mm along the helix
-    assert "type --dialect fanuc, --dialect haas or --dialect linuxcnc" in message
+    assert "type --dialect fanuc or --dialect haas" in message
+
+
+HELIX = "G21 G90\nG0 X10 Y0 Z1\nG1 Z0 F300\nG2 X10 Y0 Z-8 I-1 J0 F400\nG0 Z5\nM30\n"
+
+
+def test_feeds_alone_are_those_of_a_control_without_program_numbers(tmp_path: Path) -> None:
+    """A helix of 2 mm that sinks by 8: F counts its arc or its path; posts for fanuc and haas write O."""
+    preparation, _ = raw(tmp_path, HELIX)
+    assert preparation.dialect.name == "linuxcnc"
+    assert "programs of fanuc and haas begin with their number, O" in preparation.dialect_reason
+    with pytest.raises(UsageError, match=r"could be fanuc or haas.*feeds"):
+        raw(tmp_path, f"%\nO1\n{HELIX}%\n")
+
+
+def test_offsets_that_are_no_tools_number_are_those_of_the_tool_in_the_spindle(
+    tmp_path: Path,
+) -> None:
+    """Posts add 30 or 50 to the tool's number where lengths and radii share one memory."""
+    text = (
+        "%\nO5\nG21 G90\nN1 M6 T1\n(TOOL -1- MILL DIA 10.0)\nG43 H1 Z50.\nS900 M3\nG0 X-20.5 Y0.\nG1 Z-1. F90.\n"
+        "G41 D31 X0.\nY30.\nG40 X-20.\nG0 Z50.\nM6 T2\n(TOOL -2- MILL DIA 6.0)\nG43 H32 Z50.\nM30\n%\n"
+    )
+    preparation, job = raw(tmp_path, text)
+    assert preparation.settings.offset_rows == {31: 1, 32: 2}
+    assert (
+        "offsets H and D: 31 that of tool 1, 32 that of tool 2, which was in the spindle then"
+        in job.assumptions
+    )
+    chunks = list(preparation.interpretation().chunks())
+    moves = concatenate([chunk.moves for chunk in chunks], preparation.machine.axes)
+    assert moves.end[moves.line == 10][-1, 0] == -5.0
+    kept = tmp_path / "kept.toml"
+    kept.write_text(text_beside(kept, job, tmp_path / "part.nc"))
+    assert prepare(kept).settings.offset_rows == {31: 1, 32: 2}
+
+
+def test_one_feed_that_crawls_tells_which_control_was_not_meant(tmp_path: Path) -> None:
+    text = "O7\nG21\nT1 M6\nG43 H1\nG0 X1.5 Z5.\nG1 Z-1. F25.\nX9. F250\nG0 Z9.\nM30\n"
+    preparation, _ = raw(tmp_path, text)
+    assert preparation.dialect.name == "fanuc"
+    assert "haas would feed 0.25 mm/min" in preparation.dialect_reason
+
+
+@pytest.mark.parametrize(
+    ("comment", "far", "inches"),
+    [
+        ("(T1 = 1/2 END MILL)", "3.5", True),
+        ("(TOOL 1 = 1IN FACE MILL)", "3.5", True),
+        ("(END MILL 1/8)", "3.5", True),
+        ("(T1 = 10MM END MILL)", "3.5", False),
+        ("(T1 = 1/2 END MILL)", "350.5", False),
+        ("(T1 = 1/2 END MILL)\nG21", "3.5", False),
+        ("(PART 1/2)", "3.5", False),
+    ],
+)
+def test_tools_in_inches_are_those_of_a_program_in_inches(
+    tmp_path: Path, comment: str, far: str, inches: bool
+) -> None:
+    """Where it names no units and stays within a mill."""
+    text = f"O7\n{comment}\nT1 M6\nS900 M3\nG0 X.5 Y.5 Z1.\nG1 Z-.1 F10.\nX{far}\nG0 Z1.\nM30\n"
+    preparation, job = raw(tmp_path, text)
+    assert (preparation.settings.units == "inch") == inches
+    assert any("its tools are in inches" in each for each in job.assumptions) == inches
+    assert ('units = "inch"' in job.text) == inches
+    moves = concatenate(
+        [c.moves for c in preparation.interpretation().chunks()], preparation.machine.axes
+    )
+    assert moves.end[-1, 0] == pytest.approx(float(far) * (25.4 if inches else 1.0))
 
 
 def test_feeds_that_hardly_differ_are_told_and_ask_nobody(tmp_path: Path) -> None:
@@ -99,7 +168,7 @@ def test_a_control_that_would_hardly_feed_was_not_meant(tmp_path: Path) -> None:
     path.write_text("O1\nG21 G90 G54\nG43 H1 Z20.\nG1 Z-5. F300\nG1 X20.5 F600\nM30\n")
     made = prepare(path, assuming=True)
     assert made.dialect.name == "fanuc"
-    assert "haas would feed 0.6 mm/min at most" in made.dialect_reason
+    assert "haas would feed 0.3 mm/min" in made.dialect_reason
     assert made.reading.keys == {}
     path.write_text(path.read_text().replace("G43 H1", "M10\nG43 H1"))  # which a Haas alone knows
     made = prepare(path, assuming=True)

@@ -7,6 +7,7 @@ from pathlib import Path
 from twin.api.program import Program, prepared, scratch_folder
 from twin.api.result import Result
 from twin.columns import join
+from twin.errors import UsageError
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Moves, concatenate
 from twin.run.dry_run import InterpretedProgram, interpreted
@@ -15,6 +16,9 @@ from twin.run.progress import no_progress
 from twin.run.results import RESULT_FILES, write_results
 from twin.run.run import Run
 from twin.run.run_folder import run_folder, without_verdict
+
+MOST_SAMPLES = 10_000_000
+"""Setpoints that ``plan`` returns at most: with five axes they take 1.5 GB, and half as much again while they are joined."""
 
 
 def interpret(program: Program, *, dialect: str | None = None, machine: str | None = None) -> Moves:
@@ -60,7 +64,7 @@ def plan(program: Program, *, dialect: str | None = None, machine: str | None = 
 
     Raises:
         ProgramError: The program is wrong.
-        UsageError: A file is missing or wrong.
+        UsageError: A file is missing or wrong, or the program takes hours: more than ``MOST_SAMPLES``.
 
     Examples:
         >>> setpoints = twin.plan("part.nc")
@@ -69,7 +73,18 @@ def plan(program: Program, *, dialect: str | None = None, machine: str | None = 
     """
     with scratch_folder() as folder:
         preparation, _ = prepared(program, folder, dialect=dialect, machine=machine)
-        return join(list(setpoints(Run(preparation), interpreted(preparation))))
+        chunks: list[Setpoints] = []
+        count = 0
+        for chunk in setpoints(Run(preparation), interpreted(preparation)):
+            count += len(chunk)
+            if count > MOST_SAMPLES:
+                hours = MOST_SAMPLES * preparation.machine.file.servo_period_s / 3600.0
+                raise UsageError(
+                    f"the program takes more than {hours:.1f} h, whose setpoints would fill the memory: "
+                    "use `twin plan`, or twin.run, whose result is read in pieces"
+                )
+            chunks.append(chunk)
+        return join(chunks)
 
 
 def setpoints(run: Run, program: InterpretedProgram) -> Iterator[Setpoints]:

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from twin.command_line.options import DialectOption, MachineOption
+from twin.command_line.options import ClusterOption, DialectOption, MachineOption
 from twin.errors import UsageError
 
 
@@ -56,6 +56,7 @@ def train(
             help="Logs and score sheets; default out/training, of a class out/class/ROSTER.",
         ),
     ] = None,
+    cluster: ClusterOption = None,
 ) -> None:
     """Run a machine, and wreck it, in a browser: the training room."""
     from twin.commands import train as room
@@ -70,8 +71,10 @@ def train(
         raise typer.Exit(room.rehearse_and_print(scene))
     place = room.Place(language=language, host=host, port=port, certificate=certificate, key=key)
     if roster is not None or seats is not None:
-        room.teach(scene, roster, seats, place, out)
+        room.teach(scene, roster, seats, place, out, cluster)
         return
+    if cluster is not None:
+        raise UsageError("--cluster spreads the rooms of a class: it needs --class or --seats")
     raise typer.Exit(room.train(scene, place, out))
 
 

@@ -12,8 +12,8 @@ import typer
 from twin.commands.pictures import FILM_STEM
 from twin.commands.run import run_and_print
 from twin.compilation.announcement import announce_compilation
-from twin.cutting.inspection import Inspection
 from twin.cutting.material import Material
+from twin.cutting.measuring.inspection import Inspection
 from twin.cutting.recut import COMMANDED, inspect_recorded, recut
 from twin.errors import ExitCode, UsageError
 from twin.files.atomic import write_text

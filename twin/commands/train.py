@@ -164,7 +164,12 @@ def train(name: str, place: Place, out: Path | None) -> ExitCode:
 
 
 def teach(
-    scene: str, roster: Path | None, seats: int | None, place: Place, out: Path | None
+    scene: str,
+    roster: Path | None,
+    seats: int | None,
+    place: Place,
+    out: Path | None,
+    cluster: str | None = None,
 ) -> None:
     """Open a class and keep it open until Ctrl+C.
 
@@ -174,6 +179,7 @@ def teach(
         seats: How many they are.
         place: Where.
         out: The class's folder; None: one that is called as the roster.
+        cluster: Address of the Ray cluster over which rooms are spread; None: they run on this computer.
 
     Raises:
         TwinError: The roster, the scene, or how the class shall be opened, is wrong.
@@ -198,7 +204,7 @@ def teach(
             open_class(
                 pupils, scene, folder, language=language_named(place.language),
                 host=place.host or LOOPBACK, port=place.port, certificate=place.certificate,
-                key=place.key,
+                key=place.key, cluster=cluster,
             )
         )  # fmt: skip
         interrupted = stack.enter_context(stop_on_sigint(over.set))

@@ -175,9 +175,9 @@ class Cutter:
             points = self._part_frame.position(joints)
         off = np.zeros(len(samples), np.bool_) if standing is None else standing
         lag = np.abs(meant - points).sum(axis=1)
-        turn = self._part_frame.direction(joints)
-        axis = self._part_frame.tool_direction(joints) if self.tilts else None
-        if axis is not None:
+        turn, axis = self._part_frame.direction(joints), None
+        if self.tilts:
+            turn, axis = self._part_frame.tool_x(joints), self._part_frame.tool_direction(joints)
             leant = axis - self._part_frame.tool_direction(setpoint.position)
             lag += self.tool.flute * np.linalg.norm(leant, axis=1)
         way = _Way(points, turn, axis, lag, setpoint.time, setpoint.line, rapid, off)

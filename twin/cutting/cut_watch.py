@@ -88,7 +88,8 @@ class CutWatch:
 
     def _remember(self, time: FloatArray, path: FloatArray, cuts: np.ndarray) -> None:
         """Keep this chunk and as much of the way before it as tells whether the tool is in the cut."""
-        tail = np.cumsum(self._path[::-1])[::-1] <= 2.0 * ENGAGED_MM
+        # By where each stretch ends: the last one may be longer than that.
+        tail = np.cumsum(self._path[::-1])[::-1] - self._path <= 2.0 * ENGAGED_MM
         self._time = np.concatenate([self._time[tail], time])
         self._path = np.concatenate([self._path[tail], path])
         self._cuts = np.concatenate([self._cuts[tail], cuts])

@@ -33,7 +33,7 @@ EDGE = "edge"
 
 
 class Upright(Protocol):
-    """A solid above the tool's tip that goes where the tool goes and does not tilt."""
+    """A solid above the tool's tip that goes where the tool goes."""
 
     @property
     def name(self) -> str:
@@ -60,6 +60,16 @@ class Upright(Protocol):
         """Height of its lower end above the tip [mm]."""
         ...
 
+    @property
+    def height(self) -> float:
+        """From its lower to its upper end [mm]."""
+        ...
+
+    @property
+    def swivels(self) -> bool:
+        """Whether it turns with the tool where a head does."""
+        ...
+
 
 Head = Callable[[ToolTable], Iterable[Upright]]
 """What is above a tool's holder."""
@@ -71,7 +81,7 @@ class Points:
 
     Attributes:
         tip: Places of the tool's tip in the part's frame, shape (n + 1, 3) [mm].
-        turn: Direction of machine X there, shape (n + 1, 2).
+        turn: Direction of machine X there, shape (n + 1, 2); with axes that of the tool's, which turns with it, shape (n + 1, 3).
         axis: Direction from the tip to the spindle there, shape (n + 1, 3); None: +Z.
     """
 

@@ -5,7 +5,7 @@ from typing import Literal
 
 from twin.cutting.cut import Cutter
 from twin.cutting.height_map_material import HeightMapMaterial
-from twin.cutting.measured_part import MeasuredPart, measured, nominal_of
+from twin.cutting.measuring.measured_part import MeasuredPart, measured, nominal_of
 from twin.cutting.program_summary import ProgramSummary
 from twin.cutting.tridexel.material import TriDexelMaterial
 from twin.job.job_file import StockTable

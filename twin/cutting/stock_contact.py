@@ -1,6 +1,7 @@
 """What must not go into the stock: shank, holder and head at any time, the edge in a rapid."""
 
 import dataclasses
+import math
 
 import numpy as np
 
@@ -24,8 +25,10 @@ class _Cylinder:
     name: str
     radius: float
     above: float
+    height: float = math.inf
     offset: tuple[float, float] = (0.0, 0.0)
     round: bool = True
+    swivels: bool = True
 
     @property
     def half(self) -> tuple[float, float]:

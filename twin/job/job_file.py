@@ -357,6 +357,11 @@ class JobFile(Table):
     job both ways."""
     offsets: dict[str, dict[str, float]] = Field(default_factory=dict)
     """Work offsets by name (``G54``), each by axis, from part zero [mm or deg]."""
+    offset_rows: dict[Annotated[int, Field(ge=1)], Annotated[int, Field(ge=0)]] = Field(
+        default_factory=dict
+    )
+    """``fanuc``, ``haas``: rows of the offset memory that hold the length and the radius of a tool of another number:
+    ``31 = 1`` lets D31 and H31 be tool 1's."""
     variables: dict[str, float] = Field(default_factory=dict)
     """Values of variables that the program reads but does not set, by their name in it."""
     m_functions: MachineFunctions = Field(default_factory=dict)
@@ -367,6 +372,8 @@ class JobFile(Table):
     decimal_point: Literal["calculator", "increments"] | None = None
     """``fanuc``, ``haas``: ``X10`` is 10 mm ("calculator"), or 0.010 mm ("increments"); missing: as
     the machine file says, else as the control does when it comes from its maker."""
+    units: Literal["mm", "inch"] | None = None
+    """In which units the program begins where it names none; missing: as the machine file says, else mm."""
     step_limit: Annotated[int, Field(gt=0)] = 20_000
     """Blocks that may be run again through jumps and loops before the program counts as endless."""
     expect: Annotated[str, Field(pattern="^[a-z0-9_-]+$")] | None = None

@@ -1,7 +1,6 @@
 """Runs a program: text in, chunks of canonical moves out."""
 
 from collections.abc import Callable, Iterator
-from typing import NamedTuple
 
 import numpy as np
 
@@ -10,6 +9,7 @@ from twin.nc.control.dialect import Dialect
 from twin.nc.control.executor import Executor
 from twin.nc.control.settings import ControlSettings
 from twin.nc.coverage import Coverage
+from twin.nc.length_calls import LengthCalls
 from twin.nc.line_kernel.plain_state import LineKernel, LineRuns, usual_kernel
 from twin.nc.path.move_columns import CHUNK, Refused
 from twin.nc.text.blocks import Block
@@ -21,23 +21,11 @@ _COMPENSATION = (41, 42)
 """Whole parts of the codes of radius compensation, in every dialect."""
 
 
-class LengthCall(NamedTuple):
-    """A tool's length put into force.
-
-    Attributes:
-        number: Whose length.
-        spindle: The tool in the spindle behind that block; None: there is none.
-    """
-
-    number: int
-    spindle: int | None
-
-
 class Interpretation:
     """One run of a program on one control.
 
     Attributes:
-        length_calls: Calls of tool lengths by the number of a tool, by source line.
+        lengths: The tool lengths that it calls.
         compensated: Source lines that were run under radius compensation: their moves are the tool centre's.
     """
 
@@ -57,7 +45,7 @@ class Interpretation:
         self._executor = Executor(dialect, settings, source)
         self._control = self._executor.control
         self.coverage = Coverage(source, dialect)
-        self.length_calls: dict[int, LengthCall] = {}
+        self.lengths = LengthCalls()
         self.compensated: set[int] = set()
 
     @property
@@ -96,32 +84,30 @@ class Interpretation:
                 if lines is not None and (run := lines.run()):
                     self.coverage.note(run.start + 1, run.stop + 1)
                     if columns.count >= CHUNK:
-                        yield columns.take()
+                        yield self.lengths.passed(columns.take())
                     continue
                 block = control.program_counter.next()
                 if block is None:
                     break
                 begun = (columns.count, len(columns.events), block.line)
                 self._executor.run(block)
+                self._note(block, begun[0])
                 begun = None
-                self._note(block)
                 if columns.count >= CHUNK:
-                    yield columns.take()
+                    yield self.lengths.passed(columns.take())
             self._executor.finish()
         except ProgramError:
-            yield columns.take(None if begun is None else Refused(*begun))
+            yield self.lengths.passed(columns.take(None if begun is None else Refused(*begun)))
             raise
-        yield columns.take()
+        yield self.lengths.passed(columns.take())
 
-    def _note(self, block: Block) -> None:
-        """A block was run."""
+    def _note(self, block: Block, first: int) -> None:
+        """A block was run whose first move has that number in its chunk."""
         control, tools = self._control, self._control.tools
         if not (block.skippable and control.settings.skips(block)):
             self.coverage.note(block.line, block.line + 1)
         if int(control.modal.active.get("compensation", _NO_COMPENSATION)) in _COMPENSATION:
             self.compensated.add(block.line)
-        if tools.length_call is not None:
-            self.length_calls[block.line] = LengthCall(tools.length_call, tools.spindle)
-            tools.length_call = None
+        self.lengths.note(tools, block.line, first)
         if control.ended:
             self.coverage.ends_at = block.line

@@ -7,8 +7,8 @@ from PIL import Image, ImageDraw
 
 from twin.cutting.colours import deviation_colours
 from twin.cutting.height_map import HeightMap
-from twin.cutting.inspection import Inspection
-from twin.cutting.measured_part import MeasuredPart
+from twin.cutting.measuring.inspection import Inspection
+from twin.cutting.measuring.measured_part import MeasuredPart
 from twin.render.drawing.canvas import quality_named
 from twin.render.drawing.renderer import Renderer
 from twin.render.hud import INK, MUTED, PAPER, font, lay_over

@@ -117,8 +117,9 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
             position,
             [*stock, *tools] if counts_from_machine_zero else None,
         ),
-        *_point_line(preparation.reading),
+        *_unit_lines(preparation.reading),
         "",
+        *_start_lines(position),
         *stock,
         *tools,
         *_reading_lines(preparation.reading),
@@ -133,6 +134,11 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
     rapids = f"rapids may leave their path by {_RAPID_TOLERANCE_UM:g} µm"
     told += [rapids] if (moves.motion == Motion.RAPID).any() else []
     return AssumedJob("\n".join(lines), (*preparation.reading.notes, said, *told, *left_out))
+
+
+def _start_lines(top: FloatArray | None) -> list[str]:
+    """Where the tool stands at first, where program zero lies below the top of the stock."""
+    return [] if top is None or top[2] <= 0.0 else ["[start]", f"Z = {top[2] + MARGIN:.3f}", ""]
 
 
 def _tolerance_lines(moves: Moves, contour_um: float) -> list[str]:
@@ -180,18 +186,22 @@ def _tool_calls(chunks: list[Chunk]) -> list[tuple[int, int, int]]:
     return changed or selected
 
 
-def _point_line(reading: AssumedReading) -> list[str]:
-    """What a number without a point counts, where that was assumed."""
-    point = reading.keys.get("decimal_point")
-    return [] if point is None else [f'decimal_point = "{point}"  # increments: X10 is 0.010 mm']
+def _unit_lines(reading: AssumedReading) -> list[str]:
+    """The units, and what a number without a point counts, where that was assumed."""
+    point, units = reading.keys.get("decimal_point"), reading.keys.get("units")
+    lines = [] if point is None else [f'decimal_point = "{point}"  # increments: X10 is 0.010 mm']
+    return lines if units is None else [*lines, f'units = "{units}"']
 
 
 def _reading_lines(reading: AssumedReading) -> list[str]:
     """Tables of the work offsets and M codes that were assumed."""
     lines: list[str] = []
     offsets, functions = reading.keys.get("offsets"), reading.keys.get("m_functions")
+    rows = reading.keys.get("offset_rows")
     if isinstance(offsets, dict):
         lines += [line for name in offsets for line in (f"[offsets.{name}]", "")]
+    if isinstance(rows, dict):
+        lines += ["[offset_rows]", *(f"{row} = {tool}" for row, tool in rows.items()), ""]
     if isinstance(functions, dict):
         lines += ["[m_functions]", *(f'{code} = "{does}"' for code, does in functions.items()), ""]
     return lines

@@ -41,12 +41,7 @@ def cut_notices(
         yield Notice("ends-in-cut", watch.last_line, "the program ends with the tool in the cut")
     for slip in cutter.watch.slips:
         yield _slip_notice(slip)
-    if (
-        cut.removed_mm3
-        and watch.changed_at
-        and not watch.spindle_line
-        and job.tools[0].speed is None
-    ):
+    if cut.removed_mm3 and watch.changed_at and watch.taken_to_turn and job.tools[0].speed is None:
         yield Notice(
             "spindle-never-started",
             watch.changed_at,
@@ -63,6 +58,18 @@ def _slip_notice(slip: CutSlip) -> Notice:
         "center_cutting = true in its [[tools]] table"
     )
     return Notice("blunt-plunge", slip.line, message)
+
+
+def lost_length_notices(fed_without_length: frozenset[int], cut: CutResult) -> Iterator[Notice]:
+    """A length that was called before, and does not count for the tool that cuts."""
+    for line in sorted(fed_without_length):
+        if line in cut.blocks and cut.blocks[line].removed_mm3 >= LEAST_CUT_MM3:
+            message = (
+                "the tool cuts here, and the length that was called before was ended, or is that of "
+                "a tool which is not in the spindle any more"
+            )
+            yield Notice("length-lost", line, message)
+            return
 
 
 def tooth_feed_notices(watch: ProgramWatch, cut: CutResult | None) -> Iterator[Notice]:

@@ -105,6 +105,7 @@ class DryRun:
         summary: Its tools, speeds of the spindle and rapids.
         watch: Mistakes of its functions that no axis shows.
         lines_never_run: How many lines with motion it never came to.
+        fed_without_length: Lines that feed while the length of the tool in the spindle, once called, does not count.
     """
 
     program: InterpretedProgram
@@ -113,6 +114,7 @@ class DryRun:
     summary: ProgramSummary
     watch: ProgramWatch
     lines_never_run: int
+    fed_without_length: frozenset[int]
 
     @property
     def moves(self) -> int:
@@ -167,4 +169,5 @@ def interpret_all(preparation: Preparation, part_zero: FloatArray, clock: StageC
         summary=builder.summary(),
         watch=watch,
         lines_never_run=len(interpretation.coverage.never_run()),
+        fed_without_length=frozenset(interpretation.lengths.fed_without),
     )

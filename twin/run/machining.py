@@ -7,11 +7,11 @@ import numpy as np
 
 from twin.cutting.cut import CutResult, Cutter
 from twin.cutting.events import CutEvent
-from twin.cutting.inspection import Inspection
-from twin.cutting.measured_part import measured
-from twin.cutting.nominal import HeightMapNominalWatch, NominalGouge, NominalWatch
+from twin.cutting.measuring.inspection import Inspection
+from twin.cutting.measuring.measured_part import measured
+from twin.cutting.measuring.nominal import HeightMapNominalWatch, NominalGouge, NominalWatch
+from twin.cutting.measuring.nominal_from_any_side import TriDexelNominalWatch
 from twin.cutting.program_summary import ProgramSummary
-from twin.cutting.tridexel.nominal_watch import TriDexelNominalWatch
 from twin.job.job_file import JobFile, ToolTable
 from twin.machine.model.head_shape import HeadShape
 from twin.machine.model.model import MachineModel

@@ -8,8 +8,8 @@ from twin.compare.figures import Figures
 from twin.compare.verdict import Check, Reason, Verdict, judge
 from twin.cutting.cut import CutResult
 from twin.cutting.forces.load_log import LoadLog
-from twin.cutting.inspection import Inspection
-from twin.cutting.nominal import NominalGouge
+from twin.cutting.measuring.inspection import Inspection
+from twin.cutting.measuring.nominal import NominalGouge
 from twin.cutting.program_summary import ProgramSummary
 from twin.errors import ConfigError
 from twin.job.job_file import JobFile, ToleranceTable
@@ -19,6 +19,7 @@ from twin.nc.text.diagnostics import Diagnostic
 from twin.recording.reader import RecordingWriter
 from twin.run.cut_notices import (
     cut_notices,
+    lost_length_notices,
     tolerance_notices,
     tooth_feed_notices,
     unjudged_limit_notices,
@@ -198,6 +199,7 @@ def _notices(
     job, watch = preparation.job.file, dry_run.watch
     if cut is not None:
         yield from cut_notices(job, watch, machining, cut)
+        yield from lost_length_notices(dry_run.fed_without_length, cut)
     elif watch.spindle_line and watch.first_feed and job.stock is None:
         message = "the spindle turns, and the job has no [stock]: nothing that is cut is judged"
         yield Notice("no-stock", watch.spindle_line, message)

@@ -235,6 +235,7 @@ def _control_settings(job: Job, machine: Machine, *, strict: bool) -> ControlSet
         },
         any_tool="tools" not in job.file.model_fields_set,
         offsets=job.file.offsets,
+        offset_rows=job.file.offset_rows,
         setup=_setup(job, machine),
         machine_zero=_machine_zero(job, machine),
         variables=job.file.variables,
@@ -252,6 +253,7 @@ def _control_settings(job: Job, machine: Machine, *, strict: bool) -> ControlSet
         block_skip=job.file.block_skip is True,
         block_skip_levels=_block_skip_levels(job.file),
         decimal_point=job.file.decimal_point or control.decimal_point,
+        units=job.file.units or control.units,
         step_limit=job.file.step_limit,
         strict=strict,
     )

@@ -65,6 +65,7 @@ class ProgramWatch:
         first_feed: Line of the first move at feed; 0: there is none.
         changed_at: Line of the first tool change; 0: there is none.
         spindle_line: Line of the first function that starts the spindle; 0: there is none.
+        taken_to_turn: Nothing starts the spindle or says how fast it turns.
     """
 
     def __init__(self, job: JobFile, spindle: SpindleState) -> None:
@@ -80,6 +81,7 @@ class ProgramWatch:
         self.first_line = 0
         self.first_feed = 0
         self.spindle_line = 0
+        self.taken_to_turn = True
         self._tools = {tool.number: tool for tool in job.tools}
         self._tool, self._selected = job.tools[0], job.tools[0].number
         self._state = spindle
@@ -174,6 +176,7 @@ class ProgramWatch:
             self.spindle_line = self.spindle_line or event.line
         elif word in SPINDLE_STOPS and was and not in_cycle:
             self.stops.append(Stop(place + event.at, event.line, "the spindle stops"))
+        self.taken_to_turn &= word not in SPINDLE_STARTS and word != SPINDLE_SPEED
         if word in SPINDLE_STARTS or word in (SPINDLE_SPEED, TOOL_CHANGE):
             self._watch_speed(event.line)
 
@@ -213,7 +216,7 @@ class ProgramWatch:
         """Warnings about the whole program, once it was interpreted to its end."""
         yield from self._counter.values()
         yield from self._tool_notices()
-        for line, call in interpretation.length_calls.items():
+        for line, call in interpretation.lengths.calls.items():
             if call.spindle is not None and call.number != call.spindle:
                 message = (
                     f"the length of tool {call.number} is called, and tool {call.spindle} is in the "
@@ -221,7 +224,7 @@ class ProgramWatch:
                 )
                 yield Notice("length-of-other-tool", line, message)
         by_code = interpretation.dialect.rules.length_by_code
-        if by_code and self.changed_at and not interpretation.length_calls:
+        if by_code and self.changed_at and not interpretation.lengths.calls:
             yield Notice(
                 "length-never-called",
                 self.changed_at,

@@ -7,6 +7,7 @@ from typing import Any
 from twin.compare.figures import Figures
 from twin.compare.verdict import Check, Reason
 from twin.cutting.cut import TRI_DEXEL, CutResult
+from twin.cutting.program_summary import ProgramSummary
 from twin.job.job_file import JobFile, ToleranceTable
 from twin.job.load import DEFAULT, Job
 from twin.machine.watching.alarms import Alarm
@@ -19,7 +20,7 @@ COLLISIONS = "tool, holder, spindle and head against fixtures and machine; the t
 STOCK = "rapids, standing spindle, shank, holder and head in the stock"
 FORCES = "force, chip, deflection and breakage of tools, load of the spindle"
 WALLS = "cuts into the nominal part"
-HEAD = "boxes of the head above the holder in the stock"
+HEAD = "what carries the swivel head in the stock"
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -117,7 +118,7 @@ def scope_of(
     watched += [WALLS] if file.nominal is not None else []
     watched += sorted({check.what for check in checks})
     blind = (
-        *_blind(file, forces=forces, tilts=dry_run.summary.tilts),
+        *_blind(file, forces=forces, swivels=_swivels(dry_run.summary)),
         *(_silent_spindle(file, watch)),
         *_unknown_functions(file),
         *(Unwatched(reason.what, reason.message) for reason in unjudged),
@@ -145,6 +146,12 @@ def scope_of(
     )
 
 
+def _swivels(summary: ProgramSummary) -> bool:
+    """Whether the part is cut from several sides, and a head turns the tool."""
+    chain = None if summary.part is None else summary.part.frame.chain
+    return summary.tilts and chain is not None and bool((chain.rotary & chain.on_tool).any())
+
+
 def _unknown_functions(job: JobFile) -> Iterator[Unwatched]:
     """M codes of a raw program that were taken to do nothing."""
     unknown = [name for name, table in job.m_functions.items() if table.meaning == UNKNOWN_FUNCTION]
@@ -152,12 +159,12 @@ def _unknown_functions(job: JobFile) -> Iterator[Unwatched]:
         yield Unwatched(", ".join(unknown), UNKNOWN_FUNCTION)
 
 
-def _blind(job: JobFile, *, forces: bool, tilts: bool) -> Iterator[Unwatched]:
+def _blind(job: JobFile, *, forces: bool, swivels: bool) -> Iterator[Unwatched]:
     if job.stock is None:
         yield Unwatched("stock, forces and walls", "the job has no [stock]")
         return
-    if tilts:
-        yield Unwatched(HEAD, _TILTS)
+    if swivels:
+        yield Unwatched(HEAD, _SWIVELS)
     if not forces:
         yield Unwatched(FORCES, _why_no_forces(job))
     if job.nominal is None:
@@ -167,8 +174,8 @@ def _blind(job: JobFile, *, forces: bool, tilts: bool) -> Iterator[Unwatched]:
 
 
 def _silent_spindle(job: JobFile, watch: ProgramWatch) -> Iterator[Unwatched]:
-    if job.stock is not None and not watch.spindle_line:
-        why = "the program never speaks of it, so that it is taken to turn"
+    if job.stock is not None and watch.taken_to_turn:
+        why = "the program never starts it, so that it is taken to turn"
         yield Unwatched("a standing spindle", why)
 
 
@@ -206,7 +213,7 @@ def nothing_judged(
             yield Reason(key, message, 0, 0.0)
 
 
-_TILTS = "the tool comes to the part from several sides, and this is judged of a part cut from one"
+_SWIVELS = "it does not turn with the tool, and of a part that is cut from several sides what does is judged"
 _NO_FIGURE = "the run holds nothing that it could be held against"
 _WHY = {
     "circular_deviation_um": "the program has no arc of 90 degrees or more with the table at rest",

@@ -156,6 +156,13 @@ class PartFrame:
             return tool_direction(self.chain, self.counted(joints))
         return np.tile([0.0, 0.0, 1.0], (len(joints), 1))
 
+    def tool_x(self, joints: FloatArray) -> FloatArray:
+        """Which way machine X points on the tool, with which a head turns it, seen from the part, shape (n, 3)."""
+        if self.chain is not None:
+            along = np.tile([1.0, 0.0, 0.0], (len(joints), 1))
+            return rotated(self.chain, along, self.counted(joints))
+        return np.pad(self.direction(joints), ((0, 0), (0, 1)))
+
     @property
     def over_table(self) -> tuple[float, float]:
         """Machine X and Y at which the tool is over the middle of the table, rotary axes at zero [mm]."""

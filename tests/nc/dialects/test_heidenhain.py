@@ -119,6 +119,10 @@ PLACES = {
         "L X+0 Y+30 F300\nL X+40 IY+0\nCHF 12\nL IX+0 Y+0",
         [(0, 30), (28, 30), (40, 18), (40, 0)],
     ),
+    "CHF needs no blank before its length": (
+        "L X+0 Y+30 F300\nL X+40 IY+0\nCHF12\nL IX+0 Y+0",
+        [(0, 30), (28, 30), (40, 18), (40, 0)],
+    ),
     "RND joins tangentially": (
         "L X+0 Y+30 F300\nL X+40\nRND R5\nL Y+0",
         [(0, 30), (35, 30), (40, 25), (40, 0)],

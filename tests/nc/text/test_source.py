@@ -8,7 +8,13 @@ from twin.nc.text.source import source_from_bytes
 
 
 @pytest.mark.parametrize(
-    "data", [b"\0\0\0%\nG0 X1\n%\n", b"%\nG0 X1\n%\n\0\0", b"\0" * 9 + b"%\nG0 X1\n%\n" + b"\0" * 9]
+    "data",
+    [
+        b"\0\0\0%\nG0 X1\n%\n",
+        b"%\nG0 X1\n%\n\0\0",
+        b"\0" * 9 + b"%\nG0 X1\n%\n" + b"\0" * 9,
+        b"\x12\x7f%\nG0 X1\n%\n\x14",
+    ],
 )
 def test_blank_tape_around_a_program_is_left_out(data: bytes) -> None:
     source = source_from_bytes(data, "part.nc")

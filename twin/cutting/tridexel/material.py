@@ -19,10 +19,12 @@ from twin.cutting.material import (
     STRAIGHT_SHARE,
     Head,
     Points,
+    Upright,
 )
 from twin.cutting.part import export_glb
 from twin.cutting.stock_contact import BRUSH_MM, above_edge
 from twin.cutting.tools import Profile
+from twin.cutting.tridexel.boxes import Box, boxes_met
 from twin.cutting.tridexel.dexels import TriDexel
 from twin.cutting.tridexel.engagement import cut, met
 from twin.cutting.tridexel.mesh import part_mesh, skin_colours, surface
@@ -124,8 +126,8 @@ class TriDexelMaterial:
 class TriDexelContact:
     """Measures one tool against the material; see ``Contact``.
 
-    Each solid is held against it without the outer layer that may brush a wall. Boxes of the head are not
-    looked at.
+    Each solid is held against it without the outer layer that may brush a wall. What carries a swivel head does not turn with
+    the tool, and is not looked at.
     """
 
     def __init__(self, stock: TriDexel, tool: ToolTable, edge: Profile, head: Head | None) -> None:
@@ -133,11 +135,14 @@ class TriDexelContact:
         self._stock = stock
         self._edge = cutting_edge(edge, tool.flute)
         self._solids: dict[str, tuple[Solid, float]] = {}
+        self._boxes: dict[str, Box] = {}
         for each in above_edge(tool, head):
             if each.round and not any(each.offset):
                 high = tool.below_holder if each.name in ("shank", "flute") else ABOVE_MM
                 solid = cylinder(each.half[0], each.above, max(high, each.above))
                 self._solids[each.name] = (solid, BRUSH_MM if each.name == "flute" else SCRAPE_MM)
+            elif each.swivels:
+                self._boxes[each.name] = _box_around(each)
 
     def measure(
         self, points: Points, suspect: BoolArray, *, doubtful: bool = False
@@ -147,6 +152,9 @@ class TriDexelContact:
         poses, found = _poses(points), {}
         for name, (solid, layer) in self._solids.items():
             found[name] = self._depth(poses, solid, layer)
+        for name, box in self._boxes.items():
+            depth = boxes_met(self._stock, poses, points.turn, box)
+            found[name] = np.where(depth > SCRAPE_MM, depth, 0.0)
         if suspect.any():
             depths = [self._depth(poses, solid, BRUSH_MM) for solid in self._edge]
             found[EDGE] = np.where(suspect, np.max(depths, axis=0), 0.0)
@@ -155,6 +163,12 @@ class TriDexelContact:
     def _depth(self, poses: Poses, solid: Solid, layer: float) -> FloatArray:
         depth = met(self._stock, poses, thinner(solid, layer))
         return np.where(depth > 0.0, depth + layer, 0.0)
+
+
+def _box_around(solid: Upright) -> Box:
+    (x, y), (half_x, half_y) = solid.offset, solid.half
+    low = (x - half_x, y - half_y, solid.above)
+    return Box(low, (x + half_x, y + half_y, solid.above + solid.height))
 
 
 def _poses(points: Points) -> Poses:

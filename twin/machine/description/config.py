@@ -233,6 +233,9 @@ class ControlTable(Table):
     """``fagor8070``: the sign of an absolute rotary target is the direction of rotation."""
     decimal_point: Literal["calculator", "increments"] | None = None
     """``fanuc``, ``haas``: ``X10`` is 10 mm ("calculator"), or 0.010 mm ("increments")."""
+    units: Literal["mm", "inch"] | None = None
+    """In which units programs begin that name none: a setting of controls (9 of a Haas), or what was in force when
+    they were switched off (Fanuc)."""
     helical_feed: Literal["arc", "path"] | None = None
     """``fanuc``, parameter 1403 #5 (HTG): F of a helix counts the arc in its plane (0, the control's default), or
     the path (1)."""

@@ -30,6 +30,8 @@ class HeadSolid:
         offset: Its middle off the spindle's axis along machine X and Y [mm].
         above: Height of its lower end above the spindle nose, or, of what ``above_tip`` gives,
             above the tip [mm].
+        height: From there to its upper end [mm].
+        swivels: It turns with the tool where a head does.
     """
 
     name: str
@@ -37,13 +39,15 @@ class HeadSolid:
     half: tuple[float, float]
     offset: tuple[float, float]
     above: float
+    height: float
+    swivels: bool = True
 
 
 class HeadShape:
     """The solids around the spindle, as the model's collision geoms say.
 
     A geom that is neither an upright cylinder nor an upright box counts as the box around it. So does what
-    carries a swivel head: it stands so above the spindle only while the head is upright, and boxes are held
+    carries a swivel head: it stands so above the spindle only while the head is upright, and is held
     against the stock only then.
     """
 
@@ -73,6 +77,7 @@ class HeadShape:
                 (piece.radius, piece.radius),
                 (0.0, 0.0),
                 tool.length + piece.bottom,
+                piece.top - piece.bottom,
             )
             for piece in pieces
             if piece.name == "tool_flange"
@@ -118,4 +123,6 @@ def _solid(
         (float(half[0]) / MM, float(half[1]) / MM),
         (x, y),
         lower,
+        2.0 * float(half[2]) / MM,
+        swivels,
     )

@@ -374,5 +374,5 @@ def refuse_axis(control: Control, word: Word) -> NoReturn:
     )
     stands = f'; {word.address} = "{rotary}" where it stands for {rotary}' if rotary else ""
     listed, ignored = ", ".join(axes.names), f'{word.address} = "ignored at 0"'
-    hint = f"axes: {listed}; in the job: [axes] {ignored}{stands}"
+    hint = f"axes: {listed}; in the job: [axes] {ignored}{stands}; machines with others: twin machine list"
     control.fail("no-such-axis", f"this machine has no axis {word.address}", word, hint)

@@ -18,6 +18,10 @@ from twin.nc.text.blocks import Assignment, Block, Statement, Word
 from twin.nc.text.expressions import ExpressionError
 from twin.nc.text.source import Source
 
+_IN_INCHES: dict[float, float] = {21: 20, 71: 70, 710: 700}
+"""The code of inches by that of millimetres, of the controls that begin with it."""
+_INCH = 25.4
+
 
 class Executor:
     """Runs blocks of a dialect on a control."""
@@ -34,6 +38,9 @@ class Executor:
         self._without_point = dialect.rules.without_point(settings)
         modal.put(dialect.codes.start_state)
         for number in dialect.codes.start:
+            if settings.units == "inch" and number in _IN_INCHES:
+                number = _IN_INCHES[number]
+                modal.unit = _INCH
             self.put_into_force(number, dialect.codes.g[number])
 
     def put_into_force(self, number: float, code: GCode) -> None:

@@ -70,6 +70,9 @@ class ControlSettings:
     setup: Setup | None = None
     """The part on the machine, for tool centre point control and tilted planes; None: not known."""
 
+    offset_rows: Mapping[int, int] = dataclasses.field(default_factory=dict)
+    """``fanuc``, ``haas``: rows of the offset memory, by H and D, that hold the data of a tool of another number."""
+
     machine_zero: Mapping[str, float] | None = None
     """Part coordinates of machine zero by axis [mm or deg]; None: not known, G53 is refused."""
 
@@ -118,6 +121,9 @@ class ControlSettings:
     decimal_point: Literal["calculator", "increments"] | None = None
     """What a number without a point counts: whole units, or least increments (0.001 mm); None: as
     the control does when it comes from its maker."""
+
+    units: Literal["mm", "inch"] | None = None
+    """In which units a program begins that names none; None: as the control does when it comes from its maker."""
 
     def skips(self, block: Block) -> bool:
         """Whether a block is left out."""

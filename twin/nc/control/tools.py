@@ -4,6 +4,9 @@ from collections.abc import Mapping
 
 from twin.nc.control.settings import ToolData
 
+LENGTH_ENDED = 0
+"""What a block calls that ends the tool's length."""
+
 
 class Tools:
     """The tool table with its state.
@@ -13,7 +16,7 @@ class Tools:
         names: Numbers of tools that the program has called by names which the job does not give.
         spindle: Number of the tool in the spindle.
         selected: Number of the tool that the next change brings.
-        length_call: Number of the tool whose length the block that runs calls; None: it calls none.
+        length_call: Number of the tool whose length the block that runs calls, or ``LENGTH_ENDED``; None: it calls none.
     """
 
     def __init__(self, table: Mapping[int, ToolData], *, any_tool: bool = False) -> None:

@@ -1,11 +1,13 @@
 """Files that no dialect here can read: what each looks to be, and what to do with it."""
 
+import codecs
 import re
 from itertools import islice
 from pathlib import Path
 from typing import NamedTuple
 
 from twin.errors import UsageError
+from twin.nc.text.source import LEADER
 
 
 class Foreign(NamedTuple):
@@ -24,6 +26,11 @@ class Foreign(NamedTuple):
     comments: bool = False
 
 
+_CONTROLS = [bytes([each]) for each in range(32) if each not in b"\t\n\v\f\r"]
+_MOST_CONTROLS = 0.05
+"""Share of control characters beyond which a file is no text."""
+_FEW_CONTROLS = 3
+"""So many are damage."""
 HEAD = 200_000
 """Bytes of a file that are looked at."""
 
@@ -72,7 +79,9 @@ TEXTS: tuple[Foreign, ...] = (
         comments=True,
     ),
     Foreign("an XML file", "an NC program is text of blocks", r"\A\s*<\?xml\b", comments=True),
-    Foreign("an APT or CL file (ISO 4343)", _POST, r"(?m)^\s*(?:GOTO\s*/|FEDRAT\s*/|PARTNO\b)", 2),
+    Foreign(
+        "an APT or CL file (ISO 4343)", _POST, r"(?m)^[ \t]*(?:GOTO\s*/|FEDRAT\s*/|PARTNO\b)", 2
+    ),
     Foreign("an HP-GL plot", _MODEL, r"(?:\bP[UD](?:-?\d+,-?\d+)?;){2}", comments=True),
     Foreign("an RML plot, for a Roland", _MODEL, r"\^(?:IN|PA|PR|DF);", 2, comments=True),
     Foreign(
@@ -92,17 +101,31 @@ TEXTS: tuple[Foreign, ...] = (
         "it holds no moves",
         r"\ABEGIN +\S+ *\.[A-Z]+ +(?:MM|INCH)",
     ),
-    Foreign("a program for a NUM", _POST, r"(?m)^\s*(?:N\d+ *)?E[3-9]\d{4} *=|\bG77 *N\d+ *N\d+"),
+    Foreign(
+        "a program for a Philips or Maho control",
+        _POST,
+        r"(?m)^%(?:PM|MM)[ \t]*$|\bN1=\d+ +N2=\d+|\(\s*(?:PHILIPS|MAHO)\b",
+        comments=True,
+    ),
+    Foreign(
+        "a program for a SINUMERIK before the 840D",
+        _POST,
+        r"(?m)^[ \t]*(?:N\d+ *)?@\d{2,3}\b|\bSINUMERIK *8(?:05|10|20|50|80)(?![D\d])",
+        comments=True,
+    ),
+    Foreign(
+        "a program for a NUM", _POST, r"(?m)^[ \t]*(?:N\d+ *)?E[3-9]\d{4} *=|\bG77 *N\d+ *N\d+"
+    ),
     Foreign(
         "a Heidenhain program in DIN/ISO",
         "post it as Klartext (.h), which --dialect heidenhain reads",
-        r"(?m)^\s*%\S+[ \t]+G7[01][ \t]*\*",
+        r"(?m)^[ \t]*%\S+[ \t]+G7[01][ \t]*\*",
         comments=True,
     ),
     Foreign(
         "a Mazatrol program",
         _POST,
-        r"(?im)^\s*UNo\.?\s|\bMAZATROL\b|^\s*UNIT +NO|\bWPC-\d",
+        r"(?im)^[ \t]*UNo\.?\s|\bMAZATROL\b|^[ \t]*UNIT +NO|\bWPC-\d",
     ),
     Foreign(
         "a program for an Okuma (OSP)",
@@ -113,16 +136,16 @@ TEXTS: tuple[Foreign, ...] = (
     Foreign(
         "a program for Marlin, a 3D printer's control",
         "post it for one of: twin dialects",
-        r"(?m)^\s*;\s*FLAVOR:|^\s*;\s*(?:generated (?:by|with) )?(?:PrusaSlicer|Cura_SteamEngine|Slic3r|Marlin)"
-        r"|^\s*M(?:104|109|140|190|82|83|106|107|204|205|400|420) ?(?:S|T|P|;|$)"
-        r"|^\s*M(?:18|84|280|300)\b(?! *[A-RT-Z])",
+        r"(?m)^[ \t]*;\s*FLAVOR:|^[ \t]*;\s*(?:generated (?:by|with) )?(?:PrusaSlicer|Cura_SteamEngine|Slic3r|Marlin)"
+        r"|^[ \t]*M(?:10[49]|140|190|106) ?[ST]\d|^[ \t]*M20[45] ?[SPTXYZ]|^[ \t]*M(?:8[23]|107|400|420) *(?:;|$)"
+        r"|^[ \t]*M(?:18|84|280|300)\b(?! *[A-RT-Z])",
         2,
         comments=True,
     ),
     Foreign(
         "a program for TinyG or g2core",
         _AS_LINUXCNC,
-        r"(?m)^\s*\{\"?(?:sr|qr|xvm|gc|sys)\"?\s*:",
+        r"(?m)^[ \t]*\{\"?(?:sr|qr|xvm|gc|sys)\"?\s*:",
         comments=True,
     ),
     Foreign(
@@ -133,7 +156,7 @@ TEXTS: tuple[Foreign, ...] = (
     Foreign(
         "a program for a lathe",
         "the machines here are mills",
-        r"(?m)^[^(\n]*G28 *[UW]-?0|G96 *S|G50 *S\d|\bT(\d\d)\1\b",
+        r"(?m)^[^(\n]*G28 *[UW]-?0|G96(?!\d)|G50 *S\d|(?<![A-Z])T(\d\d)\1(?!\d)",
         2,
     ),
     Foreign("a list of Grbl's settings", "it holds no moves", r"(?m)^\$\d+ ?= ?[\d.]+", 3),
@@ -145,7 +168,7 @@ TEXTS: tuple[Foreign, ...] = (
     Foreign(
         "a drill file of a circuit board (Excellon)",
         "make a program of it by the CAM of circuit boards",
-        r"(?m)^M48\s*$|^T\d+(?:F\d+S\d+)?C[\d.]+",
+        r"(?m)^M48[ \t]*$|^T\d+(?:F\d+S\d+)?C[\d.]+",
         2,
         comments=True,
     ),
@@ -165,14 +188,14 @@ TEXTS: tuple[Foreign, ...] = (
     Foreign(
         "a program for a robot (KUKA KRL)",
         _ROBOT,
-        r"(?m)^\s*(?:&ACCESS|DEF \w+ ?\(|(?:PTP|LIN|CIRC) +\{)",
+        r"(?m)^[ \t]*(?:&ACCESS|DEF \w+ ?\(|(?:PTP|LIN|CIRC) +\{)",
         2,
         comments=True,
     ),
     Foreign(
         "a program for a robot (ABB RAPID)",
         _ROBOT,
-        r"(?im)^\s*(?:MODULE \w+|PROC \w+\(|Move[JLC] )",
+        r"(?im)^[ \t]*(?:MODULE \w+|PROC \w+\(|Move[JLC] )",
         2,
         comments=True,
     ),
@@ -181,6 +204,17 @@ TEXTS: tuple[Foreign, ...] = (
     ),
     Foreign(
         "a JSON file", "an NC program is text of blocks", r"\A\s*[\[{]\s*[\"{\[]", comments=True
+    ),
+    Foreign(
+        "a MATLAB program",
+        "an NC program is text of blocks",
+        r"(?m)^[ \t]*function\b[^\n;]*\)[ \t]*;?[ \t]*$",
+        comments=True,
+    ),
+    Foreign(
+        "a file of settings",
+        "an NC program is text of blocks",
+        r"(?m)^\[{1,2}[A-Za-z][\w.\- ]*\]{1,2}[ \t]*$|^[\w-]+:[ \t]*$",
     ),
     Foreign("a C program", "an NC program is text of blocks", r"(?m)^#include *[<\"]"),
     Foreign(
@@ -249,6 +283,12 @@ def foreign_kind(data: bytes) -> tuple[str, str] | None:
             return name, advice
     if _is_binary_stl(data):
         return "an STL shape", _MODEL
+    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return "a text in UTF-16", "save it as UTF-8"
+    body = data.strip(LEADER)
+    controls = sum(body.count(byte) for byte in _CONTROLS)
+    if controls > max(_FEW_CONTROLS, _MOST_CONTROLS * len(body)):
+        return "a binary file", "an NC program is text"
     for encoding in ("utf-8", "cp1252", "latin-1"):
         try:
             text = data.decode(encoding)

@@ -106,6 +106,8 @@ def depth_of(lead: Curve, contour: Curve, radius: float) -> float:
 
 def clearance(line: Curve, curve: Curve) -> float:
     """Smallest distance between a line and a line or an arc; 0 where they cross [mm]."""
+    if line[1] == line[2]:
+        return distance_to(curve, line[1])
     count, first, second = curves.meetings(line, curve)
     for number in range(count):
         point = first if number == 0 else second

@@ -194,8 +194,16 @@ def iso_arc(control: Control, rule: ArcRule) -> None:
     sweep_arc(control, target, arc_center(control, target, rule), clockwise=rule.clockwise)
 
 
-def tangent_arc_to(control: Control, target: list[float], name: str) -> None:
+def tangent_arc_to(
+    control: Control, target: list[float], name: str, *, or_straight: bool = False
+) -> None:
     """Move to the target on the arc that leaves the last move along its direction.
+
+    Args:
+        control: The control.
+        target: Programmed position, shape (k,).
+        name: Of the code, for messages.
+        or_straight: On a line where the target lies straight ahead.
 
     Raises:
         ProgramError: Nothing has moved before, or the arc would be a straight line.
@@ -209,6 +217,9 @@ def tangent_arc_to(control: Control, target: list[float], name: str) -> None:
         message = f"the move before {name} has no direction in the plane"
         control.fail("tangent-arc", message)
     center = arcs.center_tangent(start, end, tangent[:2])
+    if center is None and or_straight and arcs.distance(start, end) >= arcs.SAME_POINT:
+        control.line_to(target, rapid=False)
+        return
     if center is None:
         message = "the end lies straight ahead or at the start: no arc leads there"
         control.fail("tangent-arc", message)

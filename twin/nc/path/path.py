@@ -66,10 +66,7 @@ class Path:
         if self._spline is not None:
             self.end_spline(move)
         self._before = move
-        if self._rounding is None:
-            self._compensate(move)
-        else:
-            self._rounding.add(move)
+        self._round(move)
 
     @property
     def passes_on(self) -> bool:

@@ -83,6 +83,10 @@ class Grammar:
         """A line with blanks in place of its comments, as ``comments.without_comments``."""
         return without_comments(line, self._comments)
 
+    def bare(self, line: str) -> str:
+        """A line with blanks in place of its comments."""
+        return without_comments(line, self._comments)[0]
+
     def outside_comments(
         self, pattern: re.Pattern[str], new: Callable[[re.Match[str]], str], line: str
     ) -> str:

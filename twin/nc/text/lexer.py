@@ -15,6 +15,7 @@ from twin.nc.text.syntax import Language
 
 _SPLIT = re.compile(r"[0-9.][ \t]+[0-9.]")
 _COMMA = re.compile(r"(?<=[0-9]),(?=[0-9])")
+_BEGINS_BLOCK = re.compile(r"/?[A-Z][ \t]*[-+]?[.0-9#\[]", re.IGNORECASE)
 _NUMBER_WITH_BLANKS = re.compile(r"[0-9.](?:[ \t]*[0-9.])+")
 
 
@@ -48,8 +49,8 @@ class Lexer:
             self._check(line)
         if self._continued and previous(number).rstrip().endswith(self._continued):
             return (Block(number, 0, statement=Statement(self._continued, line, 0, 0)),)
-        if self._block_end:
-            line = line.rstrip(f"{self._block_end} \t")
+        if self._block_end and self._block_end in line:
+            line = self._before_end(line)
         if self._closes_up and _SPLIT.search(line):
             line = self._grammar.outside_comments(_NUMBER_WITH_BLANKS, _closed_up, line)
         if self._has_commas and "," in line:
@@ -62,6 +63,15 @@ class Lexer:
                 raise
         self._report.warn(excuse, "this line is no block and is left out", 0, len(line))
         return ()
+
+    def _before_end(self, line: str) -> str:
+        """A line without the end of its block and the remark behind it; all of it where a further block follows."""
+        bare = self._grammar.bare(line)
+        end = bare.find(self._block_end)
+        if end < 0 or bare[:end].isspace() or not end:
+            return line
+        behind = bare[end:].strip(f"{self._block_end} \t")
+        return line if _BEGINS_BLOCK.match(behind) else line[:end].rstrip()
 
     def _check(self, line: str) -> None:
         if len(line) > self._longest:

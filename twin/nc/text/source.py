@@ -10,6 +10,9 @@ from twin.errors import UsageError
 from twin.nc.text.lines import PAGE, SURROGATES, Lines
 from twin.nc.text.syntax import Language
 
+LEADER = b"\0\x7f\x11\x12\x13\x14"
+"""What a DNC link sends before and behind a program: blank tape, deleted characters, DC1 to DC4."""
+
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Source:
@@ -86,12 +89,12 @@ def _source_of(pieces: Iterable[bytes], name: str, dialect: Language | None) -> 
             yield piece
 
     def tape() -> Iterator[bytes]:
-        """Without the blank tape before and behind the program, which a DNC link sends as NUL; blank alone it stays."""
+        """Without the leader and the trailer of the tape; a tape of nothing else stays as a NUL."""
         begun, blanks, any_piece = False, b"", False
         for piece in seen():
             any_piece = any_piece or bool(piece)
-            whole = (blanks + piece) if begun else piece.lstrip(b"\0")
-            text = whole.rstrip(b"\0")
+            whole = (blanks + piece) if begun else piece.lstrip(LEADER)
+            text = whole.rstrip(LEADER)
             blanks = whole[len(text) :]
             begun = begun or bool(text)
             if text:

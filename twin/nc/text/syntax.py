@@ -44,7 +44,7 @@ class Syntax:
         fractional_labels: The number of a block may have a fraction, which does not count.
         skip_levels: Digits that may be behind the slash of a block that can be skipped; a slash alone
             means the first.
-        block_end: Character that may end a line and says no more, such as ``;`` for the end of a block.
+        block_end: Character that may end a block, such as ``;``; a remark may follow it, but no further block.
         inner_comments: Comments in brackets may stand anywhere within a statement.
         incremental_suffix: ``X20I`` makes one word incremental.
         forms: Names before a value in brackets that say how it counts, such as ``X=IC(5)``, and whether

@@ -24,6 +24,20 @@ _OFFSET = re.compile(
 _FUNCTION = re.compile(r"(?<![A-Z_#\[])M[ \t]*([0-9]{1,4})(?![0-9.\[#])", re.IGNORECASE)
 _TOOL = re.compile(r"(?<![A-Z#\[])T[ \t]*([0-9]{1,4})(?![0-9.])", re.IGNORECASE)
 _INCHES = re.compile(r"(?<![A-Z0-9.])G[ \t]*[27]0(?![0-9.])", re.IGNORECASE)
+_UNITS = re.compile(r"(?<![A-Z0-9.])G[ \t]*(?:2[01]|7[01]0?)(?![0-9.])", re.IGNORECASE)
+_TOOL_IN_INCHES = re.compile(
+    r"(?:[0-9]+/[0-9]+|[0-9.]+ ?(?:IN(?:CH)?\b|\"))(?=.*(?:MILL|DRILL|TAP|REAM|CUTTER))"
+    r"|(?:MILL|DRILL|TAP|REAM|CUTTER)\b[^0-9]*(?:[0-9]+/[0-9]+|[0-9.]+ ?(?:IN(?:CH)?\b|\"))",
+    re.IGNORECASE,
+)
+_MILLIMETRES = re.compile(r"[0-9] ?MM\b|\bMETRIC\b|\bMILLIMET", re.IGNORECASE)
+_FARTHEST_INCHES = 40.0
+"""Programs that go farther do not count inches: it is as far as the larger mills go [inch]."""
+_CHANGE = re.compile(r"(?<![A-Z])M[ \t]*0?6(?![0-9])", re.IGNORECASE)
+_CALLS_OFFSET = re.compile(r"(?<![A-Z0-9.])G[ \t]*4[1-4](?![0-9.])", re.IGNORECASE)
+_ROW = re.compile(r"(?<![A-Z#\[])[HD][ \t]*0*([1-9][0-9]{0,3})(?![0-9.])", re.IGNORECASE)
+"""H and D name rows of the offset memory on controls where it is numbered."""
+_WITH_ROWS, _ROWS_TOLD = ("fanuc", "haas"), "offsets H and D: "
 _USUAL_OFFSET = "G54"
 UNKNOWN_FUNCTION = "not known here: taken to do nothing"
 
@@ -44,6 +58,10 @@ class AssumedReading(NamedTuple):
 
     def as_read_by(self, dialect: Dialect, settings: ControlSettings) -> "AssumedReading":
         """What of it matters to a dialect, in which numbers without a point may always count whole units."""
+        if "offset_rows" in self.keys and dialect.name not in _WITH_ROWS:
+            keys = {key: value for key, value in self.keys.items() if key != "offset_rows"}
+            notes = tuple(each for each in self.notes if not each.startswith(_ROWS_TOLD))
+            return self._replace(keys=keys, notes=notes).as_read_by(dialect, settings)
         counting = dataclasses.replace(settings, decimal_point="increments")
         if "decimal_point" not in self.keys or dialect.rules.without_point(counting):
             return self
@@ -69,15 +87,60 @@ def assumed_reading(source: Source) -> AssumedReading:
         (offset,) = offsets
         keys["offsets"] = {offset: {}}
         notes.append(f"{offset} lies at program zero: the program names no other work offset")
-    return AssumedReading(keys, tuple(notes), _commented_tools(source))
+    tool = _tool_in_inches(source)
+    if tool:
+        keys["units"] = "inch"
+        notes.append(f"inches: the program names no units, and its tools are in inches ({tool})")
+    rows = _offset_rows(source)
+    if rows:
+        keys["offset_rows"] = rows
+        told = ", ".join(f"{row} that of tool {tool}" for row, tool in rows.items())
+        notes.append(f"{_ROWS_TOLD}{told}, which was in the spindle then")
+    return AssumedReading(keys, tuple(notes), _commented_tools(source, inches=bool(tool)))
 
 
-def _commented_tools(source: Source) -> dict[int, ToolData]:
+def _offset_rows(source: Source) -> dict[int, int]:
+    """Rows of H and D that are no tool's number, and the tool that was in the spindle where each came first."""
+    numbers = {int(found[1]) for line in _blocks(source) for found in _TOOL.finditer(line)}
+    rows: dict[int, int] = {}
+    selected = spindle = 0
+    for line in _blocks(source):
+        for found in _TOOL.finditer(line):
+            selected = int(found[1])
+        if _CHANGE.search(line):
+            spindle = selected
+        if spindle and _CALLS_OFFSET.search(line):
+            for found in _ROW.finditer(line):
+                if int(found[1]) not in numbers:
+                    rows.setdefault(int(found[1]), spindle)
+    return rows
+
+
+def _tool_in_inches(source: Source) -> str:
+    """The first comment of a tool in inches of a program that names no units; empty: its lengths are millimetres."""
+    if any(_UNITS.search(line) for line in _blocks(source)):
+        return ""
+    comments = list(_comments(source))
+    if any(map(_MILLIMETRES.search, comments)) or _farthest(source) > _FARTHEST_INCHES:
+        return ""
+    return next(filter(_TOOL_IN_INCHES.search, comments), "")
+
+
+def _farthest(source: Source) -> float:
+    """The largest number behind X, Y or Z."""
+    numbers = (found for line in _blocks(source) for found in _LENGTH.finditer(line))
+    return max((float(each[2]) for each in numbers if each[1] in "XYZxyz"), default=0.0)
+
+
+def _comments(source: Source) -> Iterator[str]:
+    return (each for line in islice(source.lines, _MOST_LINES) for each in comments_of(line))
+
+
+def _commented_tools(source: Source, *, inches: bool) -> dict[int, ToolData]:
     blocks = list(_blocks(source))
     numbers = {int(found[1]) for line in blocks for found in _TOOL.finditer(line)}
-    inches = any(_INCHES.search(line) for line in blocks)
-    comments = (each for line in islice(source.lines, _MOST_LINES) for each in comments_of(line))
-    listed = listed_tools(comments, numbers, inches=inches)
+    inches = inches or any(_INCHES.search(line) for line in blocks)
+    listed = listed_tools(_comments(source), numbers, inches=inches)
     return {
         number: ToolData(radius=tool.diameter / 2.0, length=USUAL_LENGTH)
         for number, tool in listed.items()

@@ -36,7 +36,7 @@ _KINDS: tuple[tuple[str, str], ...] = (
 """Words of comments, and the kind that they tell; other tools are end mills."""
 
 _DIAMETERS = (
-    rf"\b(?:DIA(?:METER|M)?\.?|D(?=\s*[=:]))\s*(?:OFF\.?\s*-?\s*[0-9]+\s*(?:LEN\.?\s*-?\s*[0-9]+\s*)?(?:DIA\.?)\s*)?[-=:]?\s*({_NUMBER})\s*(MM|IN(?:CH)?\b|\")?",
+    rf"\b(?:DIA(?:METER|M)?\.?|DM?(?=\s*[=:]))\s*(?:OFF\.?\s*-?\s*[0-9]+\s*(?:LEN\.?\s*-?\s*[0-9]+\s*)?(?:DIA\.?)\s*)?[-=:]?\s*({_NUMBER})\s*(MM|IN(?:CH)?\b|\")?",
     rf"[ØøΦ⌀]\s*({_NUMBER})\s*(MM|IN(?:CH)?\b|\")?",
     rf"\{{\s*({_NUMBER})\s*(MM|IN(?:CH)?)?",
     rf"({_NUMBER})\s*(MM|IN(?:CH)?\b|\")",

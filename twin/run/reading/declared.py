@@ -1,4 +1,4 @@
-"""What a program itself declares of its blank and its tools, as Klartext does by BLK FORM and TOOL DEF."""
+"""What a program itself declares of its blank and its tools, as Klartext does by BLK FORM and TOOL DEF, and a SINUMERIK by WORKPIECE."""
 
 from collections.abc import Iterable
 from typing import NamedTuple
@@ -49,11 +49,11 @@ def declared_stock(functions: Iterable[Function]) -> DeclaredStock | None:
     lines = [
         "[stock]",
         f'shape = "{shape[0]}"',
-        *(f"{line}  # mm: from BLK FORM" for line in shape[1:]),
+        *(f"{line}  # mm: the program's own" for line in shape[1:]),
         f"position = [{place}]  # centre of its top face, mm",
         "",
     ]
-    return DeclaredStock(lines, top, f"stock {said} mm, top at Z{top[2]:g}: from BLK FORM")
+    return DeclaredStock(lines, top, f"stock {said} mm, top at Z{top[2]:g}: the program's own")
 
 
 def declared_tools(functions: Iterable[Function]) -> dict[int, ToolComment]:

@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+import re
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -34,8 +35,12 @@ _NEARLY = 0.1
 _CRAWLS = 1.0
 """A dialect that alone reads a program, and in which it feeds slower than this, was not meant [mm/min]."""
 _TOO_SLOW = 1.0 / 200.0
-"""A dialect in which the fastest feed is less than this share of another's is not the one that was meant: a
-Haas counts F300 without a point as 0.3 mm/min, and a post for it writes F300."""
+"""A dialect in which a feed is less than this share of another's is not the one that was meant: a Haas counts F300
+without a point as 0.3 mm/min, and a post for it writes F300."""
+_INCH = 25.4
+_PROGRAM_NUMBER = re.compile(r"\s*[:O]\s*(?:\d+|<)", re.IGNORECASE)
+_NUMBERED = ("fanuc", "haas")
+"""Controls whose programs begin with their number."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -65,6 +70,11 @@ class _Trial:
     def fastest(self) -> float:
         """Its fastest feed [mm/min]."""
         return float(np.nanmax(self.moves.feed, initial=0.0))
+
+    @property
+    def slowest(self) -> float:
+        """Its slowest feed [mm/min]."""
+        return float(np.nanmin(self.moves.feed, initial=math.inf))
 
 
 def chosen_dialect(path: Path, settings: ControlSettings, source: Source | None = None) -> Choice:
@@ -105,11 +115,26 @@ def chosen_dialect(path: Path, settings: ControlSettings, source: Source | None 
     if not good:
         further = [_tried(path, DIALECTS[name], settings) for name in rare] if common else []
         raise _refused(trials, [trial.name for trial in further if trial.error is None])
-    fastest = max(trial.fastest for trial in good)
-    quick = [trial for trial in good if trial.fastest >= fastest * _TOO_SLOW]
+    quick = [trial for trial in good if not any(_crawls(trial, other) for other in good)]
     least = min(len(trial.unknown) for trial in quick)
     meant = [trial for trial in quick if len(trial.unknown) == least]
-    return _choice(source.name, meant, _dropped(good, quick, meant))
+    why = _dropped(good, quick, meant)
+    numbered = any(map(_PROGRAM_NUMBER.match, source.lines))
+    left = [trial for trial in meant if (trial.name in _NUMBERED) == numbered]
+    apart = any(_difference(meant[0], other) for other in meant[1:])
+    if apart and left and (numbered or not any(_paths_apart(meant[0], each) for each in meant)):
+        others = [trial.name for trial in meant if trial not in left]
+        reason = f"programs of {_either(_NUMBERED, 'and')} begin with their number, O"
+        meant, why = left, "; ".join(filter(None, (why, reason if others else "")))
+    return _choice(source.name, meant, why)
+
+
+def _crawls(one: _Trial, other: _Trial) -> bool:
+    """Whether a dialect counts feeds of which another makes at least two hundred times as much."""
+    slow, fast = one.moves.feed, other.moves.feed
+    if len(slow) != len(fast):
+        return one.fastest < other.fastest * _TOO_SLOW
+    return bool(((slow < _CRAWLS * _INCH) & (slow < fast * _TOO_SLOW)).any())
 
 
 def _refused(trials: Sequence[_Trial], others: Sequence[str]) -> ProgramError:
@@ -129,7 +154,7 @@ def _dropped(good: Sequence[_Trial], quick: Sequence[_Trial], meant: Sequence[_T
     """Why some of the dialects that read a program are not the one that was meant; empty: all may be."""
     slow = [trial for trial in good if trial not in quick]
     ignorant = [trial.name for trial in quick if trial not in meant]
-    reasons = [f"{trial.name} would feed {trial.fastest:g} mm/min at most" for trial in slow]
+    reasons = [f"{trial.name} would feed {trial.slowest:g} mm/min" for trial in slow]
     if ignorant:
         lack = "lack" if len(ignorant) > 1 else "lacks"
         reasons.append(f"{_either(ignorant, 'and')} {lack} some of its M codes")
@@ -201,6 +226,20 @@ def _tried(path: Path, dialect: Dialect, settings: ControlSettings) -> _Trial:
 
 def _difference(one: _Trial, other: _Trial) -> str:
     """The first thing that two dialects make differently; empty: none."""
+    paths = _paths_apart(one, other)
+    if paths:
+        return paths
+    feeds = _feeds_apart(one, other, _NEARLY)
+    if feeds:
+        return feeds
+    for mine, theirs in zip(one.functions, other.functions, strict=False):
+        if mine != theirs:
+            return f"in line {mine[0]} {one.name} does {mine[1]} and {other.name} {theirs[1]}"
+    return ""
+
+
+def _paths_apart(one: _Trial, other: _Trial) -> str:
+    """The first move that two dialects make differently; empty: none."""
     a, b = one.moves, other.moves
     count = min(len(a), len(b))
     apart = np.abs(a.end[:count] - b.end[:count]).max(axis=1, initial=0.0) > _SAME
@@ -218,11 +257,6 @@ def _difference(one: _Trial, other: _Trial) -> str:
             for trial in (one, other)
         )
         return f"in line {longer.line[row]} {goals}"
-    if not np.allclose(a.feed, b.feed, rtol=_NEARLY, equal_nan=True):
-        return _feeds_apart(one, other, _NEARLY)
-    for mine, theirs in zip(one.functions, other.functions, strict=False):
-        if mine != theirs:
-            return f"in line {mine[0]} {one.name} does {mine[1]} and {other.name} {theirs[1]}"
     return ""
 
 

@@ -4,7 +4,6 @@ import asyncio
 import contextlib
 import http.client
 import json
-import socket
 import time
 import urllib.parse
 from collections import Counter
@@ -18,13 +17,14 @@ from starlette.requests import Request
 from starlette.responses import FileResponse, JSONResponse, Response
 from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
 from starlette.websockets import WebSocket, WebSocketDisconnect
-from websockets.asyncio.client import unix_connect
 from websockets.exceptions import WebSocketException
 
 from twin.errors import TwinError
 from twin.files.toml import Table
+from twin.training.classroom.door import HEADER, Door
+from twin.training.classroom.hosts import RoomError
 from twin.training.classroom.marks import MADE_SCENES, ClassFile, Mark, as_csv, as_statements
-from twin.training.classroom.rooms import RoomError, Rooms, Seat
+from twin.training.classroom.rooms import Rooms, Seat
 from twin.training.scene.scene_file import read_scene, scene_names, scene_path
 from twin.training.scene.vocabulary import LANGUAGES, Language, Words
 from twin.training.server.app import PAGE, static_routes
@@ -35,8 +35,6 @@ TOLD_EVERY_S = 0.5
 ALARM_S, IDLE_S = 60.0, 180.0
 """A pupil is stuck when an alarm has stood for so long, or when so long nothing was done while nothing ran
 [s]."""
-_ANSWER_S = 60.0
-"""Longest that a room takes for an answer, as for the machine's drawing [s]."""
 _ASKED = (
     "scene.json",
     "words/{language}.json",
@@ -126,7 +124,7 @@ class ClassApp:
                 await page.accept()
                 try:
                     door = await self._rooms.opened(seat)
-                    await _splice(page, door, f"ws://room/{role}/stream")
+                    await _splice(page, door, f"/{role}/stream")
                 except (RoomError, OSError, WebSocketException):
                     pass  # The page is told by the closed line, and asks again.
                 with contextlib.suppress(RuntimeError):
@@ -261,33 +259,18 @@ def stuck(seat: Seat, now: float) -> str:
     return "idle" if waits and now - seat.acted_at > IDLE_S else ""
 
 
-class _RoomConnection(http.client.HTTPConnection):
-    """HTTP to a room's Unix socket."""
-
-    def __init__(self, door: str) -> None:
-        super().__init__("room", timeout=_ANSWER_S)
-        self._door = door
-
-    def connect(self) -> None:
-        self.sock = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
-        self.sock.settimeout(self.timeout)
-        self.sock.connect(self._door)
-
-
-def _answer(door: str, path: str) -> Response:
+def _answer(door: Door, path: str) -> Response:
     """What a room answers."""
-    with contextlib.closing(_RoomConnection(door)) as connection:
-        connection.request("GET", path, headers={"Connection": "close"})
+    with contextlib.closing(door.connection()) as connection:
+        connection.request("GET", path, headers={"Connection": "close", HEADER: door.secret})
         answer = connection.getresponse()
         media_type = answer.headers.get("content-type", "application/octet-stream")
         return Response(answer.read(), answer.status, media_type=media_type)
 
 
-async def _splice(page: WebSocket, door: str, address: str) -> None:
+async def _splice(page: WebSocket, door: Door, path: str) -> None:
     """Pass what a page and its room say to each other on, until one of them goes."""
-    async with unix_connect(
-        door, address, max_size=None, compression=None, ping_interval=None
-    ) as room:
+    async with door.stream(path) as room:
 
         async def up() -> None:
             with contextlib.suppress(WebSocketDisconnect):

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from twin.errors import UsageError
 from twin.training.classroom.app import TEACHER, ClassApp
+from twin.training.classroom.hosts import ClusterHost, ForkHost
 from twin.training.classroom.marks import ClassFile
 from twin.training.classroom.rooms import Rooms
 from twin.training.classroom.roster import Pupil
@@ -41,6 +42,7 @@ def open_class(
     port: int = 0,
     certificate: Path | None = None,
     key: Path | None = None,
+    cluster: str | None = None,
 ) -> Iterator[OpenClass]:
     """Open a class while the block runs.
 
@@ -55,9 +57,10 @@ def open_class(
         port: Its port; 0: the one of the last time, else the first free one.
         certificate: For https.
         key: Of the certificate.
+        cluster: Address of the Ray cluster over which rooms are spread; None: they run on this computer.
 
     Raises:
-        TwinError: The scene is wrong, the port is taken, or the folder is in use.
+        TwinError: The scene is wrong, the port is taken, the folder is in use, or no cluster answers.
     """
     require_three()
     first = read_scene(scene_path(scene))
@@ -65,7 +68,8 @@ def open_class(
     with _alone(folder):
         server = WebServer(host, port or file.number("port"), certificate, key)
         file.keep_number("port", server.port)
-        rooms = Rooms(pupils, scene, language, file)
+        rooms_host = ForkHost() if cluster is None else ClusterHost(cluster)
+        rooms = Rooms(pupils, scene, language, file, rooms_host)
         tokens = file.tokens(new_tokens((TEACHER, *rooms.seats)))
         links = {role: f"{server.origin}/{role}/#{token}" for role, token in tokens.items()}
         app = ClassApp(rooms, file, links, language or first.file.language)

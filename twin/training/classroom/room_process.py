@@ -1,9 +1,10 @@
-"""A pupil's room in a process of its own: its pages at a Unix socket, its state through a pipe."""
+"""A pupil's room in a process of its own: its pages behind a door, its state through a pipe."""
 
 import contextlib
 import dataclasses
 import os
 import resource
+import secrets
 import signal
 import socket
 import threading
@@ -12,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from twin.errors import TwinError
+from twin.training.classroom.door import Door, opened_by
 from twin.training.classroom.marks import MADE_SCENES, ClassFile
 from twin.training.classroom.recorder import Recorder
 from twin.training.scene.scene_file import read_scene, scene_path
@@ -40,7 +42,9 @@ class RoomOrder:
         language: Of the pages; None: the scene's.
         folder: The class's.
         sheets: Folder of the pupil's logs and score sheets.
-        socket: Where the pages are served.
+        socket: Unix socket at which the pages are served; empty: on a port.
+        host: Where that port is.
+        node: What a cluster calls the computer; empty: there is none.
     """
 
     pupil: str
@@ -48,13 +52,23 @@ class RoomOrder:
     language: Language | None
     folder: Path
     sheets: Path
-    socket: str
+    socket: str = ""
+    host: str = ""
+    node: str = ""
+
+    def at_socket(self, path: str) -> "RoomOrder":
+        """The same with pages at a Unix socket."""
+        return dataclasses.replace(self, socket=path)
+
+    def on_port(self, host: str, node: str) -> "RoomOrder":
+        """The same with pages on a port of a host."""
+        return dataclasses.replace(self, host=host, node=node)
 
 
 def run_room(order: RoomOrder, pipe: Connection) -> None:
     """Play until the pipe is closed or says so: the body of a room's process.
 
-    Through the pipe go, to the class: ``{"ready": True}`` or ``{"failed": why}``, then what the teacher is
+    Through the pipe go, to the class: ``{"door": where, "node": where}`` or ``{"failed": why}``, then what the teacher is
     shown, where it changes; from the class: a trainer's commands, ``{"attempt": scene}``, ``{"end": True}``.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -74,12 +88,10 @@ def run_room(order: RoomOrder, pipe: Connection) -> None:
     recorder = Recorder(ClassFile(order.folder), order.pupil, lambda: app.attempt.writer.folder)
     driver.noted = recorder.note
     driver.ask({"do": "sign", "name": order.pupil}, "operator", 0)
-    listener = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
-    listener.bind(order.socket)
-    listener.listen()
+    listener, door = _listening(order)
     server = SocketServer(listener)
-    server.start(app.asgi)
-    pipe.send({"ready": True})
+    server.start(opened_by(door.secret, app.asgi) if door.secret else app.asgi)
+    pipe.send({"door": door, "node": order.node})
     threading.Thread(target=_hear, args=(pipe, driver, app), daemon=True, name="class").start()
     try:
         with prompt_threads():
@@ -88,6 +100,16 @@ def run_room(order: RoomOrder, pipe: Connection) -> None:
         server.stop()
         with contextlib.suppress(OSError):
             app.attempt.writer.close()
+
+
+def _listening(order: RoomOrder) -> tuple[socket.socket, Door]:
+    if order.socket:
+        listener = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        listener.bind(order.socket)
+        listener.listen()
+        return listener, Door(order.socket)
+    listener = socket.create_server((order.host, 0))
+    return listener, Door("", order.host, int(listener.getsockname()[1]), secrets.token_urlsafe(16))
 
 
 def _hear(pipe: Connection, driver: Driver, app: RoomApp) -> None:

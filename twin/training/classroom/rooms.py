@@ -3,19 +3,15 @@
 import asyncio
 import contextlib
 import dataclasses
-import multiprocessing as mp
-import tempfile
 import time
 from collections.abc import Iterator, Mapping
-from multiprocessing import forkserver
 from multiprocessing.connection import Connection
-from multiprocessing.context import BaseContext
-from multiprocessing.process import BaseProcess
-from typing import Any, cast
+from typing import Any
 
-from twin.errors import TwinError
+from twin.training.classroom.door import Door
+from twin.training.classroom.hosts import START_S, RoomError, RoomHost, RoomWorker
 from twin.training.classroom.marks import ClassFile
-from twin.training.classroom.room_process import RoomOrder, run_room
+from twin.training.classroom.room_process import RoomOrder
 from twin.training.classroom.roster import Pupil
 from twin.training.scene.vocabulary import Language
 
@@ -23,14 +19,8 @@ GRACE_S = 120.0
 """How long a room waits for its pupil to come back, before it is ended [s]."""
 LOOKED_EVERY_S = 2.0
 """Between two looks for rooms that have been left, or have died [s]."""
-START_S = 120.0
-"""Longest that a room takes to begin [s]; on an empty cache kernels are compiled first."""
 END_S = 5.0
 """Longest that a room takes to write its last sheet [s]; then it is killed."""
-
-
-class RoomError(TwinError):
-    """A room could not be begun."""
 
 
 @dataclasses.dataclass
@@ -50,7 +40,8 @@ class Seat:
         failed: Why its room could not be begun, or ended by itself; empty: it did not.
         process: The room's; None: there is none.
         pipe: To the room.
-        socket: Where it serves its pages.
+        door: Where it serves its pages.
+        node: What a cluster calls the computer on which it runs.
     """
 
     key: str
@@ -63,9 +54,10 @@ class Seat:
     acted_at: float = 0.0
     alarmed_at: float | None = None
     failed: str = ""
-    process: BaseProcess | None = None
+    process: RoomWorker | None = None
     pipe: Connection | None = None
-    socket: str = ""
+    door: Door | None = None
+    node: str = ""
     lock: asyncio.Lock = dataclasses.field(default_factory=asyncio.Lock)
 
     def take(self, status: dict[str, Any]) -> None:
@@ -88,7 +80,12 @@ class Rooms:
     """
 
     def __init__(
-        self, pupils: tuple[Pupil, ...], scene: str, language: Language | None, file: ClassFile
+        self,
+        pupils: tuple[Pupil, ...],
+        scene: str,
+        language: Language | None,
+        file: ClassFile,
+        host: RoomHost,
     ) -> None:
         """Prepare the seats, with what each pupil was given before.
 
@@ -97,6 +94,7 @@ class Rooms:
             scene: What they begin with.
             language: Of all pages; None: of each scene.
             file: What the class keeps.
+            host: Where rooms run.
         """
         kept, numbers = file.scenes(), file.seats(pupil.name for pupil in pupils)
         self._file = file
@@ -105,13 +103,11 @@ class Rooms:
         for pupil in pupils:
             key = f"seat-{numbers[pupil.name]}"
             self.seats[key] = Seat(key, pupil, kept.get(pupil.name) or pupil.scene or scene)
-        self._context = _room_context()
-        self._sockets = tempfile.TemporaryDirectory(prefix="twin-class-")
+        self._host = host
         self._keeper: asyncio.Task[None] | None = None
-        self._begun = 0
 
-    async def opened(self, seat: Seat) -> str:
-        """The socket of a seat's room, which is begun where there is none.
+    async def opened(self, seat: Seat) -> Door:
+        """The door of a seat's room, which is begun where there is none.
 
         Raises:
             RoomError: It cannot be begun.
@@ -123,23 +119,19 @@ class Rooms:
                 self._forget(seat)
                 seat.left_at = time.monotonic()
                 await self._begin(seat)
-            return seat.socket
+            assert seat.door is not None
+            return seat.door
 
     async def _begin(self, seat: Seat) -> None:
-        self._begun += 1
-        seat.socket = f"{self._sockets.name}/{self._begun}"
+        folder = self._file.folder.absolute()
         order = RoomOrder(
             pupil=seat.pupil.name,
             scene=seat.scene,
             language=self._language,
-            folder=self._file.folder,
-            sheets=self._file.folder / seat.key,
-            socket=seat.socket,
+            folder=folder,
+            sheets=folder / seat.key,
         )
-        ours, theirs = cast("tuple[Connection, Connection]", mp.Pipe())
-        process = self._context.Process(target=run_room, args=(order, theirs), daemon=True)  # pyright: ignore[reportAttributeAccessIssue]
-        await asyncio.to_thread(process.start)
-        theirs.close()
+        process, ours = await asyncio.to_thread(self._host.begin, order)
         seat.process, seat.pipe = process, ours
         answer = await asyncio.to_thread(_first_answer, ours)
         seat.failed = answer.get("failed", "")
@@ -147,6 +139,7 @@ class Rooms:
             process.kill()
             self._forget(seat)
             raise RoomError(seat.failed)
+        seat.door, seat.node = answer["door"], answer["node"]
         seat.acted_at = time.monotonic()
         asyncio.get_running_loop().add_reader(ours.fileno(), self._hear, seat, ours)
         if seat.held:
@@ -226,7 +219,7 @@ class Rooms:
             self.say(seat, {"end": True})
         for seat in running:
             self.end(seat)
-        self._sockets.cleanup()
+        self._host.close()
 
 
 def _first_answer(pipe: Connection) -> dict[str, Any]:
@@ -237,14 +230,3 @@ def _first_answer(pipe: Connection) -> dict[str, Any]:
     except (EOFError, OSError):
         return {"failed": "the room ended before it had begun"}
     return {"failed": f"the room has not begun within {START_S:.0f} s"}
-
-
-def _room_context() -> BaseContext:
-    """How processes are begun: forked from one that is warm, where the system can."""
-    if "forkserver" not in mp.get_all_start_methods():
-        return mp.get_context("spawn")
-    context = mp.get_context("forkserver")
-    forkserver.set_forkserver_preload(["twin.training.classroom.preload"])
-    # At once: by the time that the first pupil comes it is warm.
-    forkserver.ensure_running()
-    return context

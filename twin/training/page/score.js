@@ -24,7 +24,9 @@ export class Score {
     const { words } = this;
     const answer = await fetch(`sheet.html?language=${words.language}`);
     if (!answer.ok) return;
-    const sheet = new DOMParser().parseFromString(await answer.text(), "text/html");
+    // Its own styles are for the printed sheet; the page may hold none, and must not even read them.
+    const text = (await answer.text()).replace(/<style[\s\S]*?<\/style>/g, "");
+    const sheet = new DOMParser().parseFromString(text, "text/html");
     for (const style of sheet.querySelectorAll("style, script, link, meta, title")) style.remove();
     this.closed = false;
     this.box.replaceChildren(make("div", { class: "row next" }, ...this.keys(), this.key("close_sheet", words.label("close"), () => this.close())), make("article", {}, ...sheet.body.childNodes));

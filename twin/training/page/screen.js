@@ -48,12 +48,13 @@ export class Screen {
     const { now, words } = this;
     write(this.at("control"), words.label("title"));
     write(this.at("mode-chip"), words.label(`mode_${now.mode}`));
+    const freed = now.alarm?.code === "emergency-stop" && !now.pressed;
     const [name, colour] = now.replaying ? ["replaying", "blue"] : now.frozen ? ["frozen", "blue"]
-      : now.alarm?.code === "emergency-stop" && !now.pressed ? ["reset_needed", "red"] : now.alarm ? [now.alarm.code === "program" ? "error" : "alarm", "red"] : now.held ? ["held", "yellow"] : now.running ? ["running", "green"] : ["ready", ""];
+      : freed ? ["reset_needed", "red"] : now.alarm ? [now.alarm.code === "program" ? "error" : "alarm", "red"] : now.held ? ["held", "yellow"] : now.running ? ["running", "green"] : ["ready", ""];
     write(this.at("state-chip"), words.label(name));
     this.at("state-chip").className = `chip ${colour}`;
     const message = this.at("message");
-    const key = JSON.stringify([now.alarm, now.refusal, now.broken, now.trouble, words.language]);
+    const key = JSON.stringify([now.alarm, freed, now.refusal, now.broken, now.trouble, words.language]);
     if (key !== this.message) {
       this.message = key;
       message.className = "";
@@ -61,7 +62,7 @@ export class Screen {
       if (told) {
         const alarm = words.alarm(told.code), where = words.place(told);
         const refused = now.refusal ? make("span", { class: "refusal" }, `${words.label("refused")}: ${words.text(now.refusal)} `) : null;
-        message.replaceChildren(...[refused, make("b", {}, `${alarm.name}${where}: `), words.text(told.message), " ", make("span", { class: "advice" }, alarm.advice)].filter(Boolean));
+        message.replaceChildren(...[refused, make("b", {}, `${alarm.name}${where}: `), words.text(told.message), " ", make("span", { class: "advice" }, freed ? words.label("reset_advice") : alarm.advice)].filter(Boolean));
       } else if (now.refusal) {
         message.className = "refusal";
         message.replaceChildren(`${words.label("refused")}: ${words.text(now.refusal)}`);

@@ -92,7 +92,11 @@ export class Sheets {
   /** What cannot be taken back asks once before it is done. */
   asked(name, text, asks) {
     const { words, line, scene } = this;
-    const turn = (asking) => { this.asking = asking; this.show(this.now, words); };
+    const turn = (asking) => {
+      this.asking = asking;
+      this.show(this.now, words);
+      document.querySelector("#sheet [role=alert]")?.scrollIntoView({ block: "nearest" });
+    };
     const send = () => { turn(""); line.say({ do: name }); };
     if (this.asking !== name) return [this.button(name, text, () => (asks ? turn(name) : send()))];
     return [

@@ -5,9 +5,8 @@ import math
 
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.memory import memory_of
-from twin.nc.geometry.arcs import direction
-from twin.nc.geometry.polar import changed, point_at, seen_from
-from twin.nc.text.blocks import Word
+from twin.nc.geometry.polar import seen_from
+from twin.nc.iso.polar_words import aim_by_angle, aim_by_polar
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -88,14 +87,13 @@ def take_goal(control: Control, *, arc: bool) -> Goal:
     has_abscissa = abscissa in words
     target = control.target()
     if angle is not None:
-        _along_angle(control, target, angle, from_abscissa=has_abscissa)
+        aim_by_angle(control, target, angle, from_abscissa=has_abscissa)
     if cartesian:
         forget_polar(control)
     return Goal(target, in_plane=cartesian > 0, polar=False)
 
 
 def _polar_target(control: Control, *, arc: bool) -> list[float]:
-    plane = control.modal.plane
     if control.modal.active.get("offset") == 53:
         message = "polar coordinates are not allowed while G53 is in force (E1530)"
         control.fail("polar-origin", message, control.words.get("R") or control.words.get("Q"))
@@ -104,35 +102,15 @@ def _polar_target(control: Control, *, arc: bool) -> list[float]:
         control.fail("polar-origin", message, control.words.get("R") or control.words.get("Q"))
     radius_word, angle_word = control.take("R"), control.take("Q")
     target = control.target()
-    seen = (radius_word is not None) + 2 * (angle_word is not None)
-    words = (control.length(radius_word), 0.0 if angle_word is None else control.number(angle_word))
-    relative = (_counts_on(control, radius_word), _counts_on(control, angle_word))
-    radius, angle = changed(seen, current_polar(control), words, relative)
-    if radius_word is not None and (radius < 0.0 or (arc and radius == 0.0)):
-        message = f"the polar radius {radius:g} must be positive" + ("" if arc else " or 0")
-        control.fail("polar-radius", message, radius_word)
-    origin = memory_of(control).polar_origin
-    plane.aim(target, point_at(origin, plane.point(control.motion.programmed), radius, angle))
-    memory_of(control).polar_radius, memory_of(control).polar_angle = radius, angle
+    memory = memory_of(control)
+    memory.polar_radius, memory.polar_angle = aim_by_polar(
+        control,
+        target,
+        memory.polar_origin,
+        (memory.polar_radius, memory.polar_angle),
+        (radius_word, angle_word),
+        incremental=control.modal.incremental,
+    )
+    if arc and radius_word is not None and memory.polar_radius == 0.0:
+        control.fail("polar-radius", "an arc needs a polar radius above 0", radius_word)
     return target
-
-
-def _counts_on(control: Control, word: Word | None) -> bool:
-    """Whether a word counts from where the tool stands."""
-    return control.modal.incremental or (word is not None and word.incremental)
-
-
-def _along_angle(control: Control, target: list[float], word: Word, *, from_abscissa: bool) -> None:
-    """One coordinate and Q: the chord leaves the start in the direction Q."""
-    plane = control.modal.plane
-    cosine, sine = direction(control.number(word))
-    along, across = (cosine, sine) if from_abscissa else (sine, cosine)
-    if abs(along) < 1e-9:
-        control.fail("chord-angle", "in this direction the coordinate is never reached", word)
-    start, end = plane.local(control.motion.programmed), plane.local(target)
-    if from_abscissa:
-        other = start.ordinate + (end.abscissa - start.abscissa) * across / along
-        plane.aim(target, (end.abscissa, other))
-    else:
-        other = start.abscissa + (end.ordinate - start.ordinate) * across / along
-        plane.aim(target, (other, end.ordinate))

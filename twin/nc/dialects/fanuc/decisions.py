@@ -129,8 +129,9 @@ DECISIONS: tuple[Decision, ...] = (
         example="timers",
     ),
     Decision(
-        "What is a line that begins with ;?",
-        "It is no block.",
+        "What is ; ?",
+        "The end of a block; what follows it is a remark, and so is a line that begins with it. A further block behind "
+        "it is refused.",
         "; ends a block on the screen, and many files hold it before prose.",
         example="lines_of_screens",
     ),

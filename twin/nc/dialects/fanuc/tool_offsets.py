@@ -15,6 +15,7 @@ from twin.nc.control.compensation import (
     tool_numbered,
 )
 from twin.nc.control.control import Control
+from twin.nc.control.tools import LENGTH_ENDED
 from twin.nc.dialects.fanuc.memory import ToolOffset, memory_of
 from twin.nc.dialects.fanuc.programs import whole
 from twin.nc.iso.tool_center import end_tool_center
@@ -26,9 +27,15 @@ LARGEST_OFFSET = 999
 
 def geometry_of(control: Control, number: int, field: str) -> float | None:
     """Geometry of a length or a radius [mm]; None: nobody has given it."""
-    row, tool = memory_of(control).tool_offsets.get(number), control.tools.data(number)
+    row = memory_of(control).tool_offsets.get(number)
+    tool = control.tools.data(_tool_of(control, number))
     written = None if row is None else getattr(row, field)
     return getattr(tool, field, None) if written is None else written
+
+
+def _tool_of(control: Control, number: int) -> int:
+    """The number of the tool that a row of the memory is for."""
+    return control.settings.offset_rows.get(number, number)
 
 
 def set_length_number(control: Control, word: Word) -> None:
@@ -78,6 +85,7 @@ def end_length(control: Control) -> None:
     """G49."""
     memory_of(control).length_cancelled = ""
     end_tool_center_of_length(control)
+    control.tools.length_call = LENGTH_ENDED
     set_length(control, 0.0)
 
 
@@ -96,9 +104,10 @@ def apply_length(control: Control, sign: float, word: Word | None) -> None:
         code = "G43" if word is None else word.text
         control.fail("tool-offset", f"{code} needs H, the number of the length", word, "G43 H1")
     if number == 0:
+        control.tools.length_call = LENGTH_ENDED
         set_length(control, 0.0)
         return
-    control.tools.length_call = number
+    control.tools.length_call = _tool_of(control, number)
     length = geometry_of(control, number, "length")
     row = memory_of(control).tool_offsets.get(number)
     if length is None:
@@ -115,14 +124,15 @@ def _refuse_row(control: Control, number: int, letter: str) -> NoReturn:
     word = Word(letter, float(number), 0, 1) if word is None else word
     known = ", ".join(f"{letter}{each}" for each in control.tools.table) or "none"
     message = f"nobody has given a value for {letter}{number}"
-    hint = f"the job's tools give {known}; or write it by G10"
+    hint = f"the job's tools give {known}; [offset_rows] {number} = 1 in the job lets it be tool 1's; or write it by G10"
     control.fail("no-such-tool", message, word, hint)
 
 
 def _warn_of_default_tool(control: Control, number: int, letter: str) -> None:
     word = next((each for each in control.block.words if each.address == letter), None)
-    if word is not None and control.tools.data(number) is not None:
-        tool_numbered(control, word._replace(value=float(number)))
+    tool = _tool_of(control, number)
+    if word is not None and control.tools.data(tool) is not None:
+        tool_numbered(control, word._replace(value=float(tool)))
 
 
 def compensation_code(number: int, side: float) -> Action:

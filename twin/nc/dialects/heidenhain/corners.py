@@ -9,7 +9,7 @@ from twin.nc.dialects.heidenhain.values import computed_words, value_at
 from twin.nc.path.blends import Blend, BlendKind
 from twin.nc.text.blocks import Statement, Word
 
-_KEYWORDS = re.compile(rb"\b(?:RND|CHF)\b", re.IGNORECASE)
+_KEYWORDS = re.compile(rb"\b(?:RND|CHF)(?![A-Z_])", re.IGNORECASE)
 
 
 def prepare(control: Control) -> None:

@@ -1,5 +1,6 @@
 """Path functions: L, C, CR, CT, LP, CP, CTP and the pole CC."""
 
+import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
@@ -13,15 +14,20 @@ from twin.nc.geometry.arcs import (
     Bounds,
     Point,
     angle_of,
-    center_tangent,
     distance,
     turned,
 )
 from twin.nc.geometry.planes import PLANE_ORDER
-from twin.nc.geometry.polar import changed, point_at, seen_from
-from twin.nc.iso.circular import center_of_radius, fitted_center, start_and_end, sweep_arc
+from twin.nc.iso.circular import (
+    center_of_radius,
+    fitted_center,
+    start_and_end,
+    sweep_arc,
+    tangent_arc_to,
+)
 from twin.nc.iso.machine_coordinates import machine_frame
 from twin.nc.iso.offsets import offset_of_job
+from twin.nc.iso.polar_words import aim_by_polar
 from twin.nc.text.blocks import Statement
 
 MOTION_WORDS = frozenset("XYZABCUVW") | {"PR", "PA", "DR+", "DR-", "R"}
@@ -36,6 +42,8 @@ Decision: the centre is moved to fit, as far as in the base.
 SAME_ANGLE = 1e-9
 """Angles nearer than this are one [deg]: rounding of what was computed."""
 
+_MEASURED = (math.nan, math.nan)
+"""A polar radius and an angle that are those of where the tool stands."""
 After = Callable[[Control, list[float]], None]
 
 
@@ -96,19 +104,9 @@ def polar_target(control: Control, pole: Point) -> list[float]:
     Raises:
         ProgramError: The radius is negative.
     """
-    plane = control.modal.plane
-    radius_word, angle_word = control.take("PR"), control.take("PA")
+    words = (control.take("PR"), control.take("PA"))
     target = control.target()
-    here = plane.point(control.motion.programmed)
-    seen = (radius_word is not None) + 2 * (angle_word is not None)
-    words = (control.length(radius_word), 0.0 if angle_word is None else control.number(angle_word))
-    relative = tuple(word is not None and word.incremental for word in (radius_word, angle_word))
-    nan = float("nan")
-    old = seen_from(pole, here, nan, nan)
-    radius, angle = changed(seen, old, words, (relative[0], relative[1]))
-    if radius < 0.0:
-        control.fail("polar-radius", f"the polar radius {radius:g} is negative", radius_word)
-    plane.aim(target, point_at(pole, here, radius, angle))
+    aim_by_polar(control, target, pole, _MEASURED, words)
     return target
 
 
@@ -216,35 +214,25 @@ def _arc_by_radius(control: Control) -> None:
     sweep_arc(control, target, center, clockwise=clockwise)
 
 
-def _tangent_arc_to(control: Control, target: list[float]) -> None:
+def _tangent_arc_to(control: Control, name: str, target: list[float]) -> None:
     """An arc that goes on where the last move was going; a line where that leads to its end."""
-    along = control.motion.direction
-    start, end = start_and_end(control, target)
-    ahead = (0.0, 0.0) if along is None else control.modal.plane.point(along)
-    if ahead == (0.0, 0.0) or control.path.leads is not None:
-        message = "a tangential arc needs a move of the contour before it, which says where to"
+    if control.path.leads is not None:
+        message = f"{name} needs a move of the contour before it, which says where to"
         control.fail("tangent-arc", message)
-    if distance(start, end) < SAME_POINT:
-        control.fail("tangent-arc", "a tangential arc ends where it begins: this draws no circle")
-    center = center_tangent(start, end, ahead)
-    if center is None:
-        control.line_to(target, rapid=False)
-        return
-    across = ahead[0] * (center[1] - start[1]) - ahead[1] * (center[0] - start[0])
-    sweep_arc(control, target, center, clockwise=across < 0.0)
+    tangent_arc_to(control, target, name, or_straight=True)
 
 
 def _tangent_arc(control: Control) -> None:
     """CT."""
     _begin_arc(control)
-    _tangent_arc_to(control, control.target())
+    _tangent_arc_to(control, "CT", control.target())
 
 
 def _polar_tangent_arc(control: Control) -> None:
     """CTP."""
     _begin_arc(control)
     with circle_plane(control) as pole:
-        _tangent_arc_to(control, polar_target(control, pole))
+        _tangent_arc_to(control, "CTP", polar_target(control, pole))
 
 
 def _polar_arc(control: Control) -> None:

@@ -154,7 +154,7 @@ MODAL = {
     43.2: _with_axes(
         "a further tool offset, H or words of axes", offsets.further_tool_length, "length"
     ),
-    49: modal("no tool length", "length", lambda control: offsets.set_length(control, None)),
+    49: modal("no tool length", "length", offsets.end_tool_length),
     **{
         (int(name[1:]) if name[1:].isdigit() else float(name[1:])): modal(
             f"coordinate system {number}", "offset", offsets.select_system(number)

@@ -14,16 +14,9 @@ from twin.nc.canonical import Event
 from twin.nc.control.codes import Action
 from twin.nc.control.compensation import tool_numbered
 from twin.nc.control.control import Control
+from twin.nc.dialects.linuxcnc import offset_paths
 from twin.nc.dialects.linuxcnc.memory import memory_of
-from twin.nc.dialects.linuxcnc.offset_paths import (
-    QUARTER,
-    OffsetArc,
-    along,
-    arc_meets_arc,
-    arc_meets_line,
-    line_meets_arc,
-    swept_angle,
-)
+from twin.nc.dialects.linuxcnc.offset_paths import QUARTER, OffsetArc, along, swept_angle
 from twin.nc.geometry.arcs import Point, distance, sweep_between
 from twin.nc.geometry.planes import YZ
 from twin.nc.path.path import holds_none
@@ -168,7 +161,9 @@ class Compensation:
         if turn > math.pi - CORNER and held_arc and not self._is_inside(held.turns):
             concave = True
         if concave and held_arc:
-            self._meet(lambda: arc_meets_line(self._path_of(held), radius, start, heading))
+            self._meet(
+                lambda: offset_paths.arc_meets_line(self._path_of(held), radius, start, heading)
+            )
         elif concave:
             half = (turn + math.pi) / 2.0
             if math.tan(half) == 0.0:
@@ -203,9 +198,11 @@ class Compensation:
             new = radius - self.radius if inside else radius + self.radius
             arc = OffsetArc(center, new, inside, turns > 0)
             if held.center is None:
-                self._meet(lambda: line_meets_arc(before, turn, arc, self.radius, radius))
+                self._meet(
+                    lambda: offset_paths.line_meets_arc(before, turn, arc, self.radius, radius)
+                )
             else:
-                self._meet(lambda: arc_meets_arc(self._path_of(held), arc))
+                self._meet(lambda: offset_paths.arc_meets_arc(self._path_of(held), arc))
         elif turn > CORNER:
             aside = inward if inside else inward + math.pi
             self._let_go()  # before an arc nothing asks whether the moves went back (``rs274``)

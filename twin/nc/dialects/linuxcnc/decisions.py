@@ -160,4 +160,12 @@ DECISIONS = (
         "The control repeats it until somebody stops it.",
         example="main_program_repeats",
     ),
+    Decision(
+        "What do M428 and M429 mean?",
+        "M428 leads the tip: X, Y and Z are its own in the part while rotary axes turn; M429 ends it. On a machine whose axes "
+        "do not turn M428 is refused.",
+        "LinuxCNC's configurations of five-axis machines remap them so, to switch kinematics, and their programs begin with it; a "
+        "machine can give them another meaning.",
+        example="tip_led_by_kinematics",
+    ),
 )

@@ -6,7 +6,7 @@ from twin.nc.control.control import Control
 from twin.nc.dialects.linuxcnc import compensation, saved_state
 from twin.nc.dialects.linuxcnc.flow import call_program, return_from_program
 from twin.nc.dialects.linuxcnc.memory import memory_of
-from twin.nc.dialects.linuxcnc.offsets import refuse_in_compensation
+from twin.nc.dialects.linuxcnc.offsets import lead_axes, lead_tip, refuse_in_compensation
 from twin.nc.iso.declared import flow_function
 from twin.nc.iso.tool_change import go_to_change_height
 from twin.nc.text.blocks import Word
@@ -182,6 +182,8 @@ M_CODES = {
               action=saved_state.restore, silent=True, basis="manual"),
     73: MCode(meaning="what is in force is put aside until the subroutine ends", group="state",
               action=saved_state.save(until_return=True), silent=True, basis="manual"),
+    428: MCode(meaning="the tip is led while rotary axes turn", group="kinematics", action=lead_tip, silent=True),
+    429: MCode(meaning="positions are those of the axes", group="kinematics", action=lead_axes, silent=True),
     98: flow_function("the program O P is run, L times", call_program, "call"),
     99: flow_function("end of that program; the main program begins anew", return_from_program, "call"),
 }  # fmt: skip

@@ -8,10 +8,12 @@ from twin.nc.control.codes import Action
 from twin.nc.control.compensation import tool_numbered
 from twin.nc.control.control import Control, integer_of
 from twin.nc.control.settings import ToolData
+from twin.nc.control.tools import LENGTH_ENDED
 from twin.nc.dialects.linuxcnc.memory import SYSTEMS, CoordinateSystem, LinuxcncMemory, memory_of
 from twin.nc.geometry.matrices import IDENTITY, Matrix, applied, rotated, transposed
 from twin.nc.geometry.planes import XY
 from twin.nc.iso.offsets import machine_zero
+from twin.nc.iso.tool_center import begin_tool_center, end_tool_center
 from twin.nc.text.blocks import Word
 
 FIXTURE = 9
@@ -52,6 +54,26 @@ def reframe(control: Control) -> None:
     control.frame.set_matrix(matrix)
     control.frame.set_shift("offset", list(system.origin))
     control.frame.set_shift("preset", _applied(matrix, _preset_of(memory)))
+    shift, center = tool_shift(control), control.path.tool_center
+    if center is None:
+        control.frame.set_shift("length", shift)
+    elif any(shift[:2]) or any(shift[3:]):
+        message = "under M428 the offset of a tool is its length, along Z"
+        control.fail("tool-center", message, hint="write M429 before it")
+    elif center.longer != shift[2]:
+        control.motion.lead_tip(center.with_length(shift[2]))
+    control.motion.reframed()
+
+
+def lead_tip(control: Control) -> None:
+    """M428: X, Y and Z are those of the tip in the part (decision)."""
+    if control.path.tool_center is None:
+        begin_tool_center(control, "M428")
+
+
+def lead_axes(control: Control) -> None:
+    """M429: X, Y and Z are those of the axes."""
+    end_tool_center(control, "M429", keeps_length=True)
     control.frame.set_shift("length", tool_shift(control))
     control.motion.reframed()
 
@@ -322,6 +344,7 @@ def further_tool_length(control: Control) -> None:
         control.fail("tool-offset", "G43.2 needs H or words of axes")
     if word is not None and axes:
         control.fail("tool-offset", "G43.2 takes H or words of axes, not both", word)
+    control.tools.length_call = control.tools.spindle
     offset = memory_of(control).tool_offset or [0.0] * len(control.settings.axes)
     more = [0.0] * len(offset)
     if word is not None:
@@ -337,7 +360,14 @@ def given_tool_length(control: Control) -> None:
     offset = list(memory_of(control).tool_offset or [0.0] * len(control.settings.axes))
     for index, word in axes:
         offset[index] = control.axis_value(index, word)
+    control.tools.length_call = control.tools.spindle
     set_length(control, offset)
+
+
+def end_tool_length(control: Control) -> None:
+    """G49."""
+    control.tools.length_call = LENGTH_ENDED
+    set_length(control, None)
 
 
 def set_length(control: Control, offset: list[float] | None) -> None:

@@ -13,7 +13,6 @@ from twin.nc.geometry.arcs import (
     SAME_POINT,
     TURN,
     Point,
-    direction,
     distance,
     turned,
 )
@@ -30,6 +29,7 @@ from twin.nc.iso.circular import (
     sweep_arc,
     tangent_arc_to,
 )
+from twin.nc.iso.polar_words import aim_by_angle
 from twin.nc.text.blocks import Word
 
 MOST_TURNS = 999
@@ -53,18 +53,8 @@ def _line_at_angle(control: Control, angle: Word, *, rapid: bool) -> None:
     if len(given) != 1:
         message = "ANG= needs one coordinate of the plane, which says where the line ends"
         control.fail("chord-angle", message, angle, "write both coordinates, or one and ANG=")
-    first = given[0] == plane.axes[0]
-    start, target = plane.point(control.motion.programmed), take_target(control)
-    toward, across = (
-        direction(control.number(angle)) if first else direction(control.number(angle))[::-1]
-    )
-    if abs(toward) < SAME_POINT:
-        control.fail("chord-angle", "in this direction the coordinate is never reached", angle)
-    end = plane.point(target)
-    if first:
-        plane.aim(target, (end[0], start[1] + (end[0] - start[0]) * across / toward))
-    else:
-        plane.aim(target, (start[0] + (end[1] - start[1]) * across / toward, end[1]))
+    target = take_target(control)
+    aim_by_angle(control, target, angle, from_abscissa=given[0] == plane.axes[0])
     control.line_to(target, rapid=rapid)
 
 

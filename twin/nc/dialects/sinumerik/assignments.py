@@ -7,6 +7,7 @@ from twin.nc.control.control import Control
 from twin.nc.dialects.sinumerik.expressions import NAME, SECOND
 from twin.nc.dialects.sinumerik.memory import CallFrame, memory_of
 from twin.nc.dialects.sinumerik.types import TEXTS, VariableType
+from twin.nc.dialects.sinumerik.values import bracketed, split_values
 from twin.nc.dialects.sinumerik.variables import axis_at, write_variable
 from twin.nc.text.blocks import Statement
 from twin.nc.text.expressions import Expression, ExpressionError, NumberedVariable, Variable
@@ -14,11 +15,14 @@ from twin.nc.text.expressions import Expression, ExpressionError, NumberedVariab
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Assignment:
-    """One assignment of a statement: to what, where that stands, and the values (SET has several)."""
+    """One assignment of a statement: to what, where that stands, and the values.
+
+    SET has several, None where it leaves an element as it is; REP has one, and how many elements get it.
+    """
 
     target: Expression
     column: int
-    values: tuple[tuple[Expression, int], ...]
+    values: tuple[tuple[Expression | None, int], ...]
     text: str = ""
     repeats: bool = False
 
@@ -71,12 +75,19 @@ def _value_of(
     if many is None:
         value, end = control.statements.longest(line, at, column)
         return Assignment(target, begin, ((value, column + at),)), end
-    closing = line.find(")", many.end())
-    if closing < 0:
-        control.report.fail("expression", "')' is missing here", column + len(line.rstrip()))
-    values = control.statements.expressions(line[many.end() : closing], column + many.end())
-    given = tuple((each, column + many.end()) for each in values)
-    return Assignment(target, begin, given, repeats=many[1].upper() == "REP"), closing + 1
+    inner, begin_inner, end = bracketed(control, line[many.end() - 1 :], column + many.end() - 1)
+    given = tuple(
+        (
+            control.statements.expression(each, begin_inner + place) if each.strip() else None,
+            begin_inner + place,
+        )
+        for each, place in split_values(inner)
+    )
+    repeats = many[1].upper() == "REP"
+    if repeats and (len(given) > 2 or None in (each for each, _ in given)):
+        message = "REP has a value, and how many elements get it"
+        control.report.fail("assignment", message, begin, many.end() - at, "REP(0) or REP(0,12)")
+    return Assignment(target, begin, given, repeats=repeats), many.end() - 1 + end
 
 
 def _assign(control: Control, each: Assignment) -> None:
@@ -89,9 +100,16 @@ def _assign(control: Control, each: Assignment) -> None:
         index = None
         if isinstance(tree, NumberedVariable):
             index = control.compute(Expression("", tree.index), each.column)
-        values = [control.compute(value, column) for value, column in each.values]
-        if tree.name in call.sizes and (len(values) > 1 or index is None):
+        values = [
+            None if value is None else control.compute(value, column)
+            for value, column in each.values
+        ]
+        many = each.repeats or len(values) > 1 or index is None
+        if tree.name in call.sizes and many:
             _fill(control, each, tree.name, index or 0.0, values)
+        elif len(values) > 1 or values[0] is None:
+            message = f"{tree.name} is one number: it takes one value"
+            control.report.fail("assignment", message, each.column, len(each.target.text))
         else:
             write_variable(control, tree.name, index, values[0])
     except ExpressionError as error:
@@ -99,19 +117,23 @@ def _assign(control: Control, each: Assignment) -> None:
         control.report.fail(error.code, str(error), each.column, width, error.hint)
 
 
-def _fill(control: Control, each: Assignment, name: str, index: float, values: list[float]) -> None:
-    """SET(...) gives the elements of a table from one on their values, the last index first; REP all of them one."""
+def _fill(
+    control: Control, each: Assignment, name: str, index: float, values: list[float | None]
+) -> None:
+    """SET(...) gives the elements of a table from one on their values, the last index first; REP(...) one value."""
     rows, columns = memory_of(control).calls[-1].sizes[name]
     second, first = divmod(int(index), int(SECOND))
     begin = first * columns + second
+    if each.repeats:
+        count = values[1] if len(values) > 1 else float(rows * columns - begin)
+        values = values[:1] * int(min(max(count or 0.0, 0.0), MOST_ELEMENTS + 1))
     if not (each.repeats or len(values) > 1) or begin + len(values) > rows * columns:
         message = f"{name} has {rows * columns} elements"
         control.report.fail("assignment", message, each.column, len(name), f"write {name}[0]=5")
-    count = rows * columns - begin if each.repeats else len(values)
-    for number in range(count):
+    for number, value in enumerate(values):
         row, column = divmod(begin + number, columns)
-        value = values[0] if each.repeats else values[number]
-        write_variable(control, name, row + column * SECOND, value)
+        if value is not None:
+            write_variable(control, name, row + column * SECOND, value)
 
 
 def _assign_text(control: Control, each: Assignment, name: str) -> None:
@@ -129,8 +151,10 @@ def _assign_text(control: Control, each: Assignment, name: str) -> None:
 
 
 def _named_text(call: CallFrame, each: Assignment) -> str | None:
-    (value, _), *_rest = each.values
-    return call.texts.get(value.tree.name) if isinstance(value.tree, Variable) else None
+    value = each.values[0][0]
+    if value is None or not isinstance(value.tree, Variable):
+        return None
+    return call.texts.get(value.tree.name)
 
 
 # --- DEF

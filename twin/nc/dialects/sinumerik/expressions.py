@@ -58,6 +58,8 @@ _CONSTANTS = {"TRUE": 1.0, "FALSE": 0.0}
 _RESERVED = "|".join([*_WORDS, *_FUNCTIONS, *_CONSTANTS])
 NAME = rf"(?!(?:{_RESERVED})\b)[A-Z_][A-Z_]\w*\b"
 """A variable that the program has defined."""
+CONSTANT = r"'H[0-9A-F]+'|'B[01]+'"
+"""A whole number by its digits to the base 16 or 2."""
 SYSTEM = r"\$[A-Z_]\w*(?:[ \t]*\[[^\]]*\])?"
 """A variable of the control; what stands in its brackets may be the name of an axis."""
 
@@ -85,7 +87,7 @@ EXPRESSIONS = ExpressionSyntax(
     },
     functions=_FUNCTIONS,
     constants=_CONSTANTS,
-    variable=rf"R[0-9]+(?!\w)|R(?=[ \t]*\[)|{SYSTEM}|{NAME}(?![ \t]*\()",
+    variable=rf"{CONSTANT}|R[0-9]+(?!\w)|R(?=[ \t]*\[)|{SYSTEM}|{NAME}(?![ \t]*\()",
     brackets="()",
     subscripts="[]",
     joined=_element,

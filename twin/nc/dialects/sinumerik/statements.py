@@ -12,6 +12,7 @@ from twin.nc.dialects.sinumerik.flow import calls, structures
 from twin.nc.dialects.sinumerik.flow.repeats import repeat_blocks
 from twin.nc.dialects.sinumerik.known import PASSED_STATEMENTS, REFUSED_STATEMENTS
 from twin.nc.dialects.sinumerik.values import bracketed
+from twin.nc.dialects.sinumerik.workpiece import workpiece
 from twin.nc.text.blocks import Statement
 
 _INDEXED = re.compile(r"[ \t]*\[[^\]]*\][ \t]*=[ \t]*[-+.\w]+")
@@ -81,6 +82,7 @@ STATEMENTS: dict[str, StatementAction] = {
     "CYCLE800": orientation.swivel,
     "TRAORI": orientation.begin_transformation,
     "TRAFOOF": _end_transformation,
+    "WORKPIECE": workpiece,
 }
 
 

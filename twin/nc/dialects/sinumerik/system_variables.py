@@ -113,6 +113,8 @@ def _axis(control: Control, name: str) -> int:
 
 def _number(control: Control, text: str) -> int:
     """A number in the brackets, or a variable that holds it."""
+    if not text:
+        raise ExpressionError("parameter-number", "an index is missing")
     value = float(text) if text.isdigit() else control.read_variable(text, None)
     if value < 0.0 or value != int(value):
         raise ExpressionError("parameter-number", f"{text} is no index")

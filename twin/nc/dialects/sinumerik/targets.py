@@ -10,7 +10,8 @@ import math
 from twin.nc.control.control import Control
 from twin.nc.dialects.sinumerik.memory import memory_of
 from twin.nc.geometry.arcs import TURN
-from twin.nc.geometry.polar import changed, point_at, seen_from
+from twin.nc.geometry.polar import point_at
+from twin.nc.iso.polar_words import aim_by_polar
 from twin.nc.text.blocks import Word
 
 _WAYS = ("DC", "ACP", "ACN")
@@ -103,6 +104,7 @@ def shows_within_turn(control: Control) -> None:
 
 
 def _polar_target(control: Control) -> list[float]:
+    """Take AP and RP, which do not heed G91 (manual)."""
     memory, plane = memory_of(control), control.modal.plane
     names = control.settings.axes.names
     for axis in plane.axes[:2]:
@@ -114,25 +116,13 @@ def _polar_target(control: Control) -> list[float]:
             control.fail(
                 "polar-mixed", message, word, "write AP= and RP=, or both axes of the plane"
             )
-    radius_word, angle_word = control.take("RP"), control.take("AP")
+    words = (control.take("RP"), control.take("AP"))
     target = take_target(control)
-    here = plane.point(control.motion.programmed)
-    old = seen_from(memory.pole, here, memory.polar_radius, memory.polar_angle)
-    seen = (radius_word is not None) + 2 * (angle_word is not None)
-    words = (control.length(radius_word), 0.0 if angle_word is None else control.number(angle_word))
-    relative = (_counts_on(radius_word), _counts_on(angle_word))
-    radius, angle = changed(seen, old, words, relative)
-    if radius_word is not None and radius < 0.0:
-        message = f"the polar radius {radius:g} is below 0"
-        control.fail("polar-radius", message, radius_word)
-    plane.aim(target, point_at(memory.pole, here, radius, angle))
-    memory.polar_radius, memory.polar_angle = radius, angle
+    last = (memory.polar_radius, memory.polar_angle)
+    memory.polar_radius, memory.polar_angle = aim_by_polar(
+        control, target, memory.pole, last, words
+    )
     return target
-
-
-def _counts_on(word: Word | None) -> bool:
-    """Whether a polar word counts from where the tool stands: AP and RP do not heed G91 (manual)."""
-    return word is not None and word.incremental
 
 
 def set_pole(number: int, control: Control) -> None:

@@ -11,7 +11,9 @@ from twin.nc.text.expressions import ExpressionError
 
 
 def read_variable(control: Control, name: str, index: float | None) -> float:
-    """Value of ``R5``, ``R[..]``, ``NAME``, ``NAME[..]`` or ``$NAME[..]``."""
+    """Value of ``R5``, ``R[..]``, ``NAME``, ``NAME[..]``, ``$NAME[..]`` or ``'H1F'``."""
+    if name.startswith("'"):
+        return float(int(name[2:-1], 16 if name[1] == "H" else 2))
     if name.startswith("$"):
         return system_variables.read(control, name)
     if name == "R" and index is not None:
@@ -89,6 +91,7 @@ def write_variable(control: Control, name: str, index: float | None, value: floa
 # --- axes
 
 
+_COMPARED = re.compile(r"(\w+)[ \t]*(==|<>)[ \t]*\"([^\"]*)\"")
 _AXIS = re.compile(r"\(?[ \t]*(\w+)[ \t]*\)?")
 
 
@@ -125,6 +128,21 @@ def text_named(control: Control, text: str, column: int) -> str:
         message, hint = "a text must stand here", 'write it in quotes: "NAME"'
         control.report.fail("text-value", message, column, max(len(text), 1), hint)
     return bare.strip('"') if held is None else held
+
+
+def with_texts_compared(control: Control, text: str, column: int) -> str:
+    """A condition with 1 or 0 for every comparison of a variable with a text in quotes, and as long as before.
+
+    Raises:
+        ProgramError: A variable holds no text.
+    """
+
+    def compared(match: re.Match[str]) -> str:
+        held = text_named(control, match[1], column + match.start(1))
+        holds = (held == match[3]) is (match[2] == "==")
+        return ("1" if holds else "0").ljust(len(match[0]))
+
+    return _COMPARED.sub(compared, text)
 
 
 def indexed_axis(control: Control, word: Word) -> str:

@@ -6,6 +6,7 @@ import re
 from twin.nc.control.codes import Action
 from twin.nc.control.compensation import compensate, tool_named, tool_numbered
 from twin.nc.control.control import Control
+from twin.nc.control.tools import LENGTH_ENDED
 from twin.nc.dialects.sinumerik import frames, orientation
 from twin.nc.dialects.sinumerik.flow.calls import call_after_motion
 from twin.nc.dialects.sinumerik.leads import is_led
@@ -107,6 +108,7 @@ def tool_offset(control: Control, word: Word) -> None:
 def _apply_offset(control: Control, *, on: bool) -> None:
     memory_of(control).tool_on = on
     tool = control.tools.data(control.tools.spindle) if on else None
+    control.tools.length_call = control.tools.spindle if on else LENGTH_ENDED
     before = frame_changes(control)
     set_length(control, 0.0 if tool is None else control.tools.length_difference(tool))
     frame_changed(control, before)

@@ -10,7 +10,7 @@ from twin.nc.control.control import Control
 from twin.nc.dialects.sinumerik.expressions import NAME
 from twin.nc.dialects.sinumerik.flow.programs import lines_around
 from twin.nc.dialects.sinumerik.memory import memory_of
-from twin.nc.dialects.sinumerik.variables import write_variable
+from twin.nc.dialects.sinumerik.variables import with_texts_compared, write_variable
 from twin.nc.text.blocks import Location, Statement
 from twin.nc.text.expressions import Expression, ExpressionError, NumberedVariable, Tree, Variable
 
@@ -65,8 +65,12 @@ def _construct_of(control: Control, statement: Statement) -> Construct:
 
 def value_of(control: Control, statement: Statement) -> float:
     """The value behind a keyword."""
-    column = statement.text_column
-    return control.compute(control.statements.expression(statement.text, column), column)
+    return _condition(control, statement.text, statement.text_column)
+
+
+def _condition(control: Control, text: str, column: int) -> float:
+    compared = with_texts_compared(control, text, column)
+    return control.compute(control.statements.expression(compared, column), column)
 
 
 # --- conditions and loops
@@ -77,7 +81,7 @@ def _if(control: Control, statement: Statement) -> None:
     jump = _JUMP.search(statement.text)
     head = statement.text if jump is None else statement.text[: jump.start()]
     column = statement.text_column
-    holds = control.compute(control.statements.expression(head, column), column) != 0.0
+    holds = _condition(control, head, column) != 0.0
     if jump is not None:
         if holds:
             at = column + jump.start()

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 
 from twin.cutting.cut import Cutter
-from twin.cutting.nominal import NominalGouge, lies_beside
-from twin.cutting.tridexel.inspection import Crossings, crossings, gaps, nominal_stock
+from twin.cutting.measuring.nominal import NominalGouge, lies_beside
+from twin.cutting.measuring.tridexel_inspection import Crossings, crossings, gaps, nominal_stock
 from twin.cutting.tridexel.material import TriDexelMaterial
 from twin.cutting.tridexel.normals import OWN, tools
 from twin.cutting.tridexel.surface_gap import depths_along_lines

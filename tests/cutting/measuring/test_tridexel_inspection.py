@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 import trimesh
 
-from twin.cutting.inspection import Inspection
+from twin.cutting.measuring.inspection import Inspection
+from twin.cutting.measuring.tridexel_inspection import EXACT_MM, inspect_stock, nominal_stock
 from twin.cutting.tools import profile
 from twin.cutting.tridexel.blanks import box
 from twin.cutting.tridexel.dexels import TriDexel
 from twin.cutting.tridexel.engagement import cut
-from twin.cutting.tridexel.inspection import EXACT_MM, inspect_stock, nominal_stock
 from twin.cutting.tridexel.mesh import part_mesh
 from twin.cutting.tridexel.moving_solid import Poses
 from twin.cutting.tridexel.solids import cutting_edge

@@ -8,7 +8,6 @@ import numpy as np
 
 from twin.cutting.cut import Cutter
 from twin.cutting.height_map import HeightMap
-from twin.cutting.inspection import RAW, STEEPEST, steepness
 from twin.cutting.kernels.drape import drape, note_sides
 from twin.cutting.kernels.surface_distance import (
     BY_CELLS,
@@ -18,6 +17,7 @@ from twin.cutting.kernels.surface_distance import (
     surface_distances,
 )
 from twin.cutting.kernels.wall_distance import KNOWN
+from twin.cutting.measuring.inspection import RAW, STEEPEST, steepness
 from twin.cutting.tridexel.dexels import TriDexel
 from twin.errors import ConfigError
 from twin.files.stl import read_stl

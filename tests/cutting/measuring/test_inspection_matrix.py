@@ -5,8 +5,8 @@ from collections.abc import Iterator
 
 import pytest
 
-from tests.cutting.test_inspection import Shape, boss, cut_along, slot
-from twin.cutting.inspection import inspect
+from tests.cutting.measuring.test_inspection import Shape, boss, cut_along, slot
+from twin.cutting.measuring.inspection import inspect
 from twin.nc.canonical import FloatArray
 
 LENGTH = 36.0

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twin.cutting.inspection import Inspection
+from twin.cutting.measuring.inspection import Inspection
 from twin.cutting.tridexel.blanks import require_closed
 from twin.cutting.tridexel.closed_mesh import mesh_dexels
 from twin.cutting.tridexel.dexels import DIRECTIONS, Lattice, SkinArray, TriDexel

@@ -7,12 +7,12 @@ from twin.cutting.colours import deviation_colours
 from twin.cutting.cut import Cutter
 from twin.cutting.height_map import HeightMap
 from twin.cutting.height_map_material import HeightMapMaterial
-from twin.cutting.inspection import Inspection, inspect
 from twin.cutting.material import Material
-from twin.cutting.nominal import nominal_map
+from twin.cutting.measuring.inspection import Inspection, inspect
+from twin.cutting.measuring.nominal import nominal_map
+from twin.cutting.measuring.tridexel_inspection import deviations, inspect_stock, nominal_stock
 from twin.cutting.part import export_glb, write_glb
 from twin.cutting.tridexel.dexels import TriDexel
-from twin.cutting.tridexel.inspection import deviations, inspect_stock, nominal_stock
 from twin.cutting.tridexel.material import TriDexelMaterial
 from twin.cutting.tridexel.mesh import Surface, part_mesh
 from twin.nc.canonical import FloatArray

@@ -1,0 +1,1 @@
+"""A machined part held against what it should be."""
