@@ -46,6 +46,8 @@ BINARY: tuple[tuple[bytes, str, str], ...] = (
     (b"\x1f\x8b", "a gzip archive", "unpack it first"),
     (b"\x89PNG", "a PNG picture", "an NC program is text"),
     (b"\xff\xd8\xff", "a JPEG picture", "an NC program is text"),
+    (b"GIF8", "a GIF picture", "an NC program is text"),
+    (b"BM", "a BMP picture", "an NC program is text"),
     (b"\xd0\xcf\x11\xe0", "a document of an older office or CAD program", "an NC program is text"),
     (b"AC10", "a DWG drawing", _MODEL),
     (b"\x7fELF", "a program for Linux", "an NC program is text"),
@@ -326,4 +328,7 @@ def _is_binary_stl(data: bytes) -> bool:
     if len(data) < 84 or b"\0" not in data[:200]:
         return False
     count = int.from_bytes(data[80:84], "little")
-    return count > 0 and (84 + 50 * count == len(data) or 84 + 50 * count > len(data) == HEAD)
+    if len(data) < HEAD:
+        return count > 0 and 84 + 50 * count == len(data)
+    # Behind each triangle stands a number of further bytes, which is 0.
+    return 84 + 50 * count >= HEAD and not any(data[84 + 48 : HEAD - 1 : 50])
