@@ -163,8 +163,8 @@ def cutting_forces(
     process = program_process(job, machine, summary, frame, layout.part_zero, laid)
     if process is not None or not job.cutting_load:
         return Forces(process)
-    if job.stock is None or summary.tilts:
-        raise ConfigError("cutting_load needs a [stock] that is cut from one side")
+    if job.stock is None:
+        raise ConfigError("cutting_load needs a [stock]")
     return Forces(load=AxisLoad(job.stock, summary, frame, layout.part_zero))
 
 
