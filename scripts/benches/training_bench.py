@@ -118,7 +118,7 @@ def _reaction_to_click(
         page.mouse.up()
         page.hover("[data-key=feed_hold]")
         room.ask("run_steadily")
-        room.begin("braked")
+        room.begin("wait_for_braking")
         time.sleep(whim.uniform(0.0, BETWEEN_S))
         page.mouse.down()
         braked = room.end()

@@ -127,7 +127,7 @@ class MeasuredRoom:
                 raise TimeoutError(f"the program does not run: {room.alarm}, {room.line}")
             time.sleep(LONG_LOOK_S)
 
-    def rate_limited(self) -> float:
+    def wait_for_braking(self) -> float:
         """Wait for the first loss of speed; returns when it was, by ``time.time`` [s]."""
         self._slowest_steady = (1.0 - GONE) * self._speed()
         self._braked.clear()
