@@ -149,9 +149,9 @@ class RoomProcess:
     def __init__(self, line: Connection) -> None:
         self._line = line
 
-    def begin(self, name: str, *arguments: Any) -> None:
-        """Ask for something that takes a while."""
-        self._line.send((name, arguments))
+    def begin(self, method: Callable[..., Any], *arguments: Any) -> None:
+        """Ask for something that takes a while: for a method of ``MeasuredRoom``."""
+        self._line.send((method.__name__, arguments))
 
     def end(self) -> Any:
         """What it said.
@@ -163,9 +163,9 @@ class RoomProcess:
             raise TimeoutError("the training room did not do what it was asked for")
         return self._line.recv()
 
-    def ask(self, name: str, *arguments: Any) -> Any:
+    def ask(self, method: Callable[..., Any], *arguments: Any) -> Any:
         """Ask for something, and wait."""
-        self.begin(name, *arguments)
+        self.begin(method, *arguments)
         return self.end()
 
 
