@@ -153,8 +153,8 @@ def cutting_forces(job: JobFile, machine: Machine, dry_run: DryRun, layout: Layo
     process = program_process(job, machine, summary, frame, layout.part_zero)
     if process is not None or not job.cutting_load:
         return Forces(process)
-    if job.stock is None or summary.tilts:
-        raise ConfigError("cutting_load needs a [stock] that is cut from one side")
+    if job.stock is None:
+        raise ConfigError("cutting_load needs a [stock]")
     return Forces(load=AxisLoad(job.stock, summary, frame, layout.part_zero))
 
 
