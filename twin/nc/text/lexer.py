@@ -68,7 +68,7 @@ class Lexer:
         """A line without the end of its block and the remark behind it; all of it where a further block follows."""
         bare = self._grammar.bare(line)
         end = bare.find(self._block_end)
-        if end < 0 or bare[:end].isspace() or not end:
+        if end < 0 or not line[:end].strip():
             return line
         behind = bare[end:].strip(f"{self._block_end} \t")
         return line if _BEGINS_BLOCK.match(behind) else line[:end].rstrip()
