@@ -13,7 +13,7 @@ from twin.machine.load import read_machine
 
 
 @pytest.mark.parametrize("dialect", WORDINGS)
-@pytest.mark.parametrize("machine", ["mill4", "mill4_light"])
+@pytest.mark.parametrize("machine", ["mill3", "mill4", "mill4_light", "mill4a", "mill5", "mill5h"])
 def test_a_program_plans_within_the_travel(tmp_path: Path, dialect: str, machine: str) -> None:
     described = read_machine(machine_file(machine))
     write_programs(described, tmp_path)
@@ -24,6 +24,11 @@ def test_a_program_plans_within_the_travel(tmp_path: Path, dialect: str, machine
         reached = setpoints.position[:, index]
         assert travel[0] <= reached.min() < reached.max() <= travel[1]
         assert np.ptp(reached) > min(150.0, 0.2 * (travel[1] - travel[0]))
+    for index, name in list(enumerate(described.axes.names))[3:]:
+        low, high = described.axis(name).travel or (-np.inf, np.inf)
+        reached = setpoints.position[:, index]
+        assert low <= reached.min() < reached.max() <= high
+        assert np.ptp(reached) > min(80.0, 0.2 * (high - low))
     assert setpoints.time[-1] < 600.0
 
 

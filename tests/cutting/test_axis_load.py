@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tests.cutting.conftest import Motion
+from tests.five_axes import FIRST_LENGTH, on_machine, trunnion
 from twin.cutting.axis_load import AxisLoad
 from twin.cutting.cut import Cutter
 from twin.cutting.program_summary import ProgramSummary
@@ -64,3 +65,37 @@ def test_what_cannot_be_reckoned_is_refused() -> None:
     idle = ProgramSummary(tools=ToolPlan((ToolTable(number=1),)))
     with pytest.raises(ConfigError, match="spindle speed"):
         AxisLoad(DISC, idle, FRAME, ZERO)
+
+
+def test_on_five_axes_the_loads_do_the_work_of_the_force(samples: Motion) -> None:
+    """Virtual work: what all axes do is the force along the way of the tip over the part."""
+    setup = on_machine(trunnion())
+    frame = PartFrame(None, (0.0, 0.0), chain=setup.chain).at(setup.zero, FIRST_LENGTH)
+    tool = TOOL.model_copy(update={"length": FIRST_LENGTH})
+    summary = ProgramSummary(tools=ToolPlan((tool,)), tilts=True)
+    stock = StockTable(shape="box", size=(60.0, 60.0, 20.0), cell=0.5, material="C45")
+    share = np.linspace(0.0, 1.0, 2000)[:, None]
+    begin, end = np.array([-35.0, 0.0, -2.0, 0.0, 0.0]), np.array([35.0, 4.0, -3.0, 6.0, 4.0])
+    motion = samples(setup.zero + begin + share * (end - begin))
+    load = AxisLoad(stock, summary, frame, setup.zero)(motion.setpoint)
+    cutter = Cutter(stock, tool, frame, setup.zero, along="setpoints", tilts=True)
+    cutter.add(motion, np.zeros(len(share), np.bool_))
+    assert np.abs(cutter.force).max() > 50.0
+    rate = np.gradient(motion.setpoint.position, axis=0)
+    rate[:, 3:] *= np.deg2rad(1.0) * 1e3
+    tip = np.gradient(frame.position(motion.setpoint.position), axis=0)
+    np.testing.assert_allclose(
+        (load * rate).sum(axis=1)[1:-1], (cutter.force * tip).sum(axis=1)[1:-1], atol=1e-3
+    )
+
+
+def test_a_slot_takes_the_force_that_it_takes_of_a_height_map(samples: Motion) -> None:
+    time = np.linspace(-1.0, 1.0, 3000)[:, None]
+    motion = ZERO + time * [70.0, 0.0, 0.0, 0.0] - [0.0, 0.0, 2.0, 0.0]
+    stock = StockTable(shape="box", size=(100.0, 40.0, 20.0), cell=0.2, material="C45")
+    found = []
+    for tilts in (False, True):
+        cutter = Cutter(stock, TOOL, FRAME, ZERO, along="setpoints", tilts=tilts)
+        cutter.add(samples(motion), np.zeros(len(time), np.bool_))
+        found.append(cutter.force[1000:2000].mean(axis=0))
+    assert np.linalg.norm(found[1] - found[0]) < 0.02 * np.linalg.norm(found[0])

@@ -25,6 +25,19 @@ def test_a_unit_moves_as_the_run_does(recorded: Recorded) -> None:
         assert unit.force.tobytes() == recorded.force[row].tobytes(), row
 
 
+@pytest.mark.parametrize("name", ["mill3", "mill4a", "mill5", "mill5h"])
+def test_a_unit_has_the_axes_of_its_machine(name: str) -> None:
+    machine = read_machine(machine_file(name))
+    unit = MachineUnit(machine)
+    unit.start = np.where(np.array(machine.axes.names) == "Z", -100.0, 0.0)
+    unit.begin()
+    for tick in range(400):
+        unit.position = unit.start + 2.0 * min(1.0, tick / 300.0) ** 3
+        unit.step(unit.period_s)
+    assert unit.alarm == ""
+    assert unit.joint_position == pytest.approx(unit.start + 2.0, abs=0.05)
+
+
 def test_an_alarm_is_latched_and_brakes() -> None:
     unit = MachineUnit(read_machine(machine_file("mill4")))
     unit.begin()

@@ -56,4 +56,4 @@ def test_motion_behind_the_end_is_found_unless_a_subprogram_begins_there():
     ],
 )
 def test_a_length_call_knows_the_tool_in_the_spindle(text, dialect, call):
-    assert interpreted(text, dialect).length_calls == call
+    assert interpreted(text, dialect).lengths.calls == call

@@ -1,5 +1,6 @@
 """How well the fitted model predicts an axis of a log."""
 
+from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
@@ -29,8 +30,10 @@ def figures_of(item: PreparedLog, name: str, parameters: Parameters) -> LogFigur
     if item.is_slow:
         return _slow_figures(item, name, parameters)
     axis = item.log.axes[name]
-    parts = (_judged(parameters, piece) for piece in item.judged(name))
-    seen = _Judged(*(np.concatenate(values) for values in zip(*parts, strict=True)))
+    seen = _joined(
+        (_judged(parameters, piece) for piece in item.judged(name)),
+        sum(end - begin for begin, end in item.rows(name)),
+    )
     left, correlation = None, None
     if len(seen.force):
         left = _rms(seen.force_model - seen.force) / max(_rms(seen.force), 1e-12)
@@ -59,6 +62,22 @@ class _Judged(NamedTuple):
     force: FloatArray
     force_model: FloatArray
     force_speed: FloatArray
+
+
+def _joined(parts: Iterable[_Judged], most: int) -> _Judged:
+    """Parts one after the other, each of which is let go as soon as it is copied.
+
+    Args:
+        parts: Of one axis.
+        most: Rows of all of them at most.
+    """
+    columns = [np.empty(most) for _ in _Judged._fields]
+    filled = [0] * len(columns)
+    for part in parts:
+        for number, values in enumerate(part):
+            columns[number][filled[number] : filled[number] + len(values)] = values
+            filled[number] += len(values)
+    return _Judged(*(column[:count] for column, count in zip(columns, filled, strict=True)))
 
 
 def _judged(parameters: Parameters, piece: Stretch) -> _Judged:
@@ -106,7 +125,7 @@ def _slow_figures(item: PreparedLog, name: str, parameters: Parameters) -> LogFi
 
 
 def _rms(values: FloatArray) -> float:
-    return float(np.sqrt(np.mean(values**2))) if len(values) else 0.0
+    return float(np.sqrt(values @ values / len(values))) if len(values) else 0.0
 
 
 def _correlation(one: FloatArray, other: FloatArray) -> float | None:

@@ -2,26 +2,29 @@
 
 Strokes at five feeds and at rapid tell the loop, slow reversals friction, circles the reversals under
 way, a square with exact stops its corners, a rapid of three axes the planner's limits, dwells the
-noise and whatever pulls at rest. Every dialect gets the same motion.
+noise and whatever pulls at rest. Rotary axes make the same strokes in degrees, with Z at its upper end. Every
+dialect gets the same motion.
 """
 
 import dataclasses
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from twin.files.atomic import write_text
 from twin.machine.description.config import Machine
 from twin.nc.canonical import SPATIAL_AXES
+from twin.units import SECONDS_PER_MINUTE
 
 FEEDS = (500.0, 1000.0, 2000.0, 4000.0, 8000.0)
-"""Of the strokes [mm/min]."""
+"""Of the strokes [mm/min or deg/min]."""
 CIRCLE_FEEDS = (1000.0, 3000.0)
-_LONGEST = 200.0
-"""Of a stroke [mm]."""
+_LONGEST, _WIDEST = 200.0, 90.0
+"""Of a stroke [mm], [deg]."""
 _SHARE = 0.25
 """Of the travel that a stroke takes at most: the machine may stand anywhere near its middle."""
 _CREEP, _CREEP_FEED, _CREEPS = 1.0, 60.0, 6
+"""Slow reversals: how far [mm or deg], how fast [mm/min or deg/min], how often."""
 _DWELL_S = 2.0
 _CLEAR = 100.0
 """Lowest height over part zero: should that be set on the table, all is in the air even so [mm]."""
@@ -124,6 +127,7 @@ def _lines(machine: Machine, wording: Wording) -> Iterator[str]:
     yield _dwell(wording)
     for axis in SPATIAL_AXES:
         yield from _strokes(machine, wording, axis)
+    yield from _turns(machine, wording)
     yield from _circles(machine, wording)
     yield from _square(machine, wording)
     yield from _rapids(machine, wording)
@@ -143,17 +147,32 @@ def _dwell(wording: Wording, seconds: float = _DWELL_S) -> str:
     return _line(wording, "G4", **{wording.dwell: seconds})
 
 
-def _feed(wording: Wording, machine: Machine, feed: float) -> float:
-    slowest = min(machine.axis(name).velocity for name in SPATIAL_AXES) * 60.0
+def _feed(
+    wording: Wording, machine: Machine, feed: float, axes: Sequence[str] = SPATIAL_AXES
+) -> float:
+    slowest = min(machine.axis(name).velocity for name in axes) * SECONDS_PER_MINUTE
     value = min(feed, slowest)
-    return value / 60.0 if wording.per_second else value
+    return value / SECONDS_PER_MINUTE if wording.per_second else value
 
 
 def _ends(machine: Machine, axis: str) -> tuple[float, float]:
-    """Where the strokes of an axis turn round, program coordinates [mm]."""
+    """Where the strokes of an axis turn round, program coordinates [mm or deg]."""
     travel = machine.axis(axis).travel
+    if axis not in SPATIAL_AXES:
+        return _turned(travel)
     length = _LONGEST if travel is None else min(_LONGEST, _SHARE * (travel[1] - travel[0]))
     return (_CLEAR, _CLEAR + length) if axis == "Z" else (-length / 2, length / 2)
+
+
+def _turned(travel: tuple[float, float] | None) -> tuple[float, float]:
+    """The same of a rotary axis: about the middle of its travel, on from 0 where it turns without an end [deg]."""
+    if travel is None:
+        return 0.0, _WIDEST
+    middle, half = (
+        (travel[0] + travel[1]) / 2.0,
+        min(_WIDEST, _SHARE * (travel[1] - travel[0])) / 2.0,
+    )
+    return middle - half, middle + half
 
 
 def _zero(machine: Machine, axis: str) -> float:
@@ -172,9 +191,10 @@ def _home(axis: str) -> float:
 
 def _strokes(machine: Machine, wording: Wording, axis: str) -> Iterator[str]:
     low, high = _ends(machine, axis)
+    axes = SPATIAL_AXES if axis in SPATIAL_AXES else axis
     yield _comment(wording, f"strokes of {axis}")
     for feed in FEEDS:
-        yield _line(wording, "G1", **{axis: high}, F=_feed(wording, machine, feed))
+        yield _line(wording, "G1", **{axis: high}, F=_feed(wording, machine, feed, axes))
         yield _line(wording, "G1", **{axis: low})
     for _ in range(_RAPIDS):
         yield _line(wording, "G0", **{axis: high})
@@ -184,9 +204,21 @@ def _strokes(machine: Machine, wording: Wording, axis: str) -> Iterator[str]:
     yield _dwell(wording)
     yield _comment(wording, f"slow reversals of {axis}")
     for _ in range(_CREEPS):
-        yield _line(wording, "G1", **{axis: home + _CREEP}, F=_feed(wording, machine, _CREEP_FEED))
+        creep = _feed(wording, machine, _CREEP_FEED, axes)
+        yield _line(wording, "G1", **{axis: home + _CREEP}, F=creep)
         yield _line(wording, "G1", **{axis: home})
     yield _dwell(wording)
+
+
+def _turns(machine: Machine, wording: Wording) -> Iterator[str]:
+    """Strokes of the rotary axes, one after the other."""
+    rotary = [name for name in machine.axes.names if name not in SPATIAL_AXES]
+    if rotary:
+        yield _line(wording, "G0", Z=_ends(machine, "Z")[1])
+    for axis in rotary:
+        yield from _strokes(machine, wording, axis)
+    if rotary:
+        yield _line(wording, "G0", Z=_CLEAR)
 
 
 def _circles(machine: Machine, wording: Wording) -> Iterator[str]:

@@ -1,6 +1,7 @@
 """``twin calibrate LOG...``: a machine file, a report and figures from logs of a real machine."""
 
 import contextlib
+import ctypes
 import dataclasses
 import json
 import os
@@ -25,6 +26,9 @@ from twin.machine.load import read_machine
 
 if TYPE_CHECKING:
     from twin.calibrate.result import Calibration
+
+_M_MMAP_THRESHOLD, _LARGE_BYTES = -3, 1 << 20
+"""glibc's number of that setting, ``malloc.h``, and from which size on [B]."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
@@ -91,6 +95,7 @@ def calibrate_and_print(request: Request) -> ExitCode:
     if not request.fits:
         return ExitCode.OK
     require_extra("calibrate", "twin calibrate")
+    _give_large_arrays_back()
     from twin.calibrate.calibrate import calibrate
     from twin.calibrate.machine_text import machine_text
 
@@ -137,6 +142,15 @@ def calibrate_and_print(request: Request) -> ExitCode:
         figures.judged_share > request.require for figures in judged
     )
     return ExitCode.FAILED if failed else ExitCode.OK
+
+
+def _give_large_arrays_back() -> None:
+    """Let glibc return every large array to the system once it is let go.
+
+    By itself it keeps them as soon as some were let go: of an hour's log a tenth more memory is taken then.
+    """
+    with contextlib.suppress(AttributeError, OSError, TypeError):
+        ctypes.CDLL(None).mallopt(_M_MMAP_THRESHOLD, _LARGE_BYTES)
 
 
 def _base_for(base: str, out: Path) -> str:

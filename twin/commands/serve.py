@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from twin.serve.playback import Playhead, Production
     from twin.training.scene.scene_file import Scene
 
-FIRST_PORT, LAST_PORT = 5000, 5099
+PORTS = range(5000, 5100)
 """Where a free port is looked for when none is named; 5000 is what MTConnect agents use."""
 _WAIT_S = 0.2
 
@@ -39,7 +39,7 @@ class Source:
 
     Attributes:
         host: Address to listen at.
-        port: 0: the first free one from ``FIRST_PORT`` on.
+        port: 0: the first free one of ``PORTS``.
         speed: Seconds of the twin for each second of the day.
         buffer: How many observations are remembered.
         dialect: Overrides the job's dialect.
@@ -394,13 +394,6 @@ def _address(listener: socket.socket) -> str:
 
 
 def _listen(host: str, port: int) -> socket.socket:
-    ports = [port] if port else range(FIRST_PORT, LAST_PORT + 1)
-    reason: OSError | None = None
-    for candidate in ports:
-        try:
-            family = socket.getaddrinfo(host, candidate, type=socket.SOCK_STREAM)[0][0]
-            return socket.create_server((host, candidate), family=family)
-        except OSError as error:
-            reason = error
-    where = f"port {port}" if port else f"any port from {FIRST_PORT} to {LAST_PORT}"
-    raise UsageError(f"nobody can listen at {host}, {where}: {reason}")
+    from twin.web.server import listening
+
+    return listening(host, port, PORTS)

@@ -7,11 +7,15 @@ from twin.cutting.forces.materials import kienzle
 from twin.cutting.program_summary import ProgramSummary
 from twin.errors import ConfigError
 from twin.job.job_file import StockTable
+from twin.kinematics import Kinematics
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
 from twin.recording.reader import Samples
 from twin.toolpath.part_frame import PartFrame
-from twin.units import MM
+from twin.units import DEGREE, MM
+
+_STEP = 1e-3
+"""By which an axis is moved to see which way the tip goes [mm or deg]."""
 
 
 class AxisLoad:
@@ -48,7 +52,14 @@ class AxisLoad:
             raise ConfigError(
                 "cutting_load needs a spindle speed: S in the program, or speed of a [[tools]] table"
             )
-        self._cutter = Cutter(stock, summary.tools, part_frame, part_zero, along="setpoints")
+        self._cutter = Cutter(
+            stock,
+            summary.tools,
+            part_frame,
+            part_zero,
+            along="setpoints",
+            tilts=summary.tilts,
+        )
         self._summary = summary
         self._part_frame = part_frame
 
@@ -66,6 +77,8 @@ class AxisLoad:
         self._cutter.add(samples, self._summary.is_rapid(setpoint.move))
         force = self._cutter.force
         frame, load = self._part_frame, still
+        if frame.chain is not None:
+            return self._along_chain(frame.chain, setpoint, force)
         load[:, :3] = force
         if frame.rotary is not None:
             place = frame.position(setpoint.position)
@@ -74,4 +87,17 @@ class AxisLoad:
             load[:, 0] = cosine * force[:, 0] + sine * force[:, 1]
             load[:, 1] = cosine * force[:, 1] - sine * force[:, 0]
             load[:, frame.rotary] = MM * (place[:, 0] * force[:, 1] - place[:, 1] * force[:, 0])
+        return load
+
+    def _along_chain(self, chain: Kinematics, setpoint: Setpoints, force: FloatArray) -> FloatArray:
+        """Loads on the joints of any machine: virtual work, the force times the way of the tip by each axis, shape (n, k)."""
+        frame, place = self._part_frame, setpoint.position
+        lower = self._summary.tools.lower(setpoint.move)
+        load = np.zeros_like(place)
+        for column, rotary in zip(chain.column, chain.rotary, strict=True):
+            step = np.zeros(place.shape[1])
+            step[column] = _STEP
+            way = frame.position(place + step, lower) - frame.position(place - step, lower)
+            per_unit = MM / DEGREE if rotary else 1.0
+            load[:, column] = per_unit * (way * force).sum(axis=1) / (2.0 * _STEP)
         return load

@@ -76,7 +76,10 @@ def read_delimited(
         path,
         tuple(
             Channel(
-                name, columns.column(index), unit=units[index], strange=columns.strange.get(index)
+                name,
+                columns.take_column(index),
+                unit=units[index],
+                strange=columns.strange.get(index),
             )
             for index, name in enumerate(heading)
         ),

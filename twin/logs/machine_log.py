@@ -170,7 +170,7 @@ def _clock(raw: RawLog, meant: ColumnMap, period_s: float | None) -> FloatArray:
     if meant.time is not None and meant.time.column is not None:
         column = ColumnTable(column=meant.time.column, unit=meant.time.unit)
         channel = channel_of(raw, meant.where, "time", column)
-        return channel.numbers(raw.path) * time_factor(meant.time.unit, meant.where)
+        return _times(channel.numbers(raw.path), time_factor(meant.time.unit, meant.where))
     if first.time is not None:
         return first.time
     if period_s is None:
@@ -204,6 +204,15 @@ def channel_of(raw: RawLog, where: str, role: str, column: ColumnTable) -> Chann
     )
 
 
+def _times(values: FloatArray, scale: float, offset: float = 0.0) -> FloatArray:
+    """Values in other units; the same array where they are in those already, since logs are large."""
+    if scale == 1.0 and offset == 0.0:
+        return values
+    scaled = values * scale
+    scaled += offset
+    return scaled
+
+
 def _axis(raw: RawLog, where: str, name: str, table: AxisColumns, time: FloatArray) -> AxisLog:
     kind = kind_of(table.command.unit)
     values: dict[str, FloatArray] = {}
@@ -214,7 +223,7 @@ def _axis(raw: RawLog, where: str, name: str, table: AxisColumns, time: FloatArr
         place = f"{where}: columns.{name}.{role}"
         scale = factor(quantity, kind, column.unit, place)
         channel = channel_of(raw, where, f"{role} of {name}", column)
-        numbers = (channel.numbers(raw.path) * column.scale + column.offset) * scale
+        numbers = _times(channel.numbers(raw.path), column.scale * scale, column.offset * scale)
         clock = time if channel.time is None else channel.time
         if len(clock) != len(numbers):
             raise UsageError(f"{place}: has {len(numbers)} values, its time {len(clock)}")

@@ -38,7 +38,7 @@ class NumberColumns:
         self.strange: dict[int, tuple[int, str]] = {}
         self._path, self._width, self._separator = path, width, separator
         self._wanted = tuple(wanted)
-        self._parts: list[FloatArray] = []
+        self._parts: dict[int, list[FloatArray]] = {number: [] for number in wanted}
 
     def take(self, lines: Sequence[str], split: Callable[[Sequence[str]], list[list[str]]]) -> None:
         """Take further lines.
@@ -55,19 +55,21 @@ class NumberColumns:
             return
         fast = self._all_numbers(lines)
         part = self._cell_by_cell(split(lines)) if fast is None else fast
-        self._parts.append(part)
+        for number, values in zip(self._wanted, part.T, strict=True):
+            self._parts[number].append(values.copy())
         self.rows += len(part)
         if self.rows > _MOST_ROWS:
             raise UsageError(
                 f"{self._path}: has more than {_MOST_ROWS} rows: log for a shorter time, or leave out rows"
             )
 
-    def column(self, number: int) -> FloatArray:
-        """A wanted column, shape (rows,), not a number where a cell is missing."""
-        if number not in self._wanted:
-            return np.zeros(0)
-        place = self._wanted.index(number)
-        return np.concatenate([part[:, place] for part in self._parts])
+    def take_column(self, number: int) -> FloatArray:
+        """Hand over a wanted column, shape (rows,), not a number where a cell is missing, and forget it.
+
+        A log fills much of the memory: it is not to be there twice.
+        """
+        parts = self._parts.pop(number, [])
+        return np.concatenate(parts) if parts else np.zeros(0)
 
     def _all_numbers(self, lines: Sequence[str]) -> FloatArray | None:
         """The rows, where every cell is a plain number; else None."""

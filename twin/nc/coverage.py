@@ -29,6 +29,10 @@ class Coverage:
         self._run = bytearray(len(source.lines) + 1)
         self.ends_at = 0
 
+    def note_line(self, line: int) -> None:
+        """A line was run, numbered from 1."""
+        self._run[line] = 1
+
     def note(self, first: int, behind: int) -> None:
         """The lines from ``first`` up to the one before ``behind`` were run, numbered from 1."""
         self._run[first:behind] = b"\1" * (behind - first)

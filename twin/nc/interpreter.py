@@ -105,7 +105,7 @@ class Interpretation:
         """A block was run whose first move has that number in its chunk."""
         control, tools = self._control, self._control.tools
         if not (block.skippable and control.settings.skips(block)):
-            self.coverage.note(block.line, block.line + 1)
+            self.coverage.note_line(block.line)
         if int(control.modal.active.get("compensation", _NO_COMPENSATION)) in _COMPENSATION:
             self.compensated.add(block.line)
         self.lengths.note(tools, block.line, first)

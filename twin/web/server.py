@@ -175,7 +175,7 @@ class WebServer(SocketServer):
         self.host = host.strip("[]")
         self.local = self.host in LOCAL_NAMES
         _require_certificate(host, certificate, key, local=self.local)
-        super().__init__(_bound(self.host, port), certificate, key)
+        super().__init__(listening(self.host, port), certificate, key)
         self.port = int(self._socket.getsockname()[1])
 
     @property
@@ -209,13 +209,20 @@ def _require_certificate(
         raise UsageError(f"{certificate}: no certificate with its key: {error}") from error
 
 
-def _bound(host: str, port: int) -> socket.socket:
+def listening(
+    host: str, port: int, free: range = range(FIRST_PORT, FIRST_PORT + PORTS)
+) -> socket.socket:
     """A socket that listens on a port of a host.
+
+    Args:
+        host: Name or address.
+        port: 0: the first that is free.
+        free: Where that is looked for.
 
     Raises:
         UsageError: There is no such host, or no such port is free.
     """
-    ports = [port] if port else range(FIRST_PORT, FIRST_PORT + PORTS)
+    ports = [port] if port else free
     reason = ""
     for candidate in ports:
         try:
@@ -233,7 +240,7 @@ def _bound(host: str, port: int) -> socket.socket:
             reason = error.strerror or str(error)
             continue
         return bound
-    shown = f"port {port}" if port else f"ports {FIRST_PORT} to {FIRST_PORT + PORTS - 1}"
+    shown = f"port {port}" if port else f"ports {free.start} to {free.stop - 1}"
     raise UsageError(f"cannot listen on {host}, {shown}: {reason}")
 
 

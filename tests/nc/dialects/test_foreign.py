@@ -27,13 +27,32 @@ FOREIGN: dict[str, list[bytes]] = {
     "JPEG": [b"\xff\xd8\xff\xe0"],
     "DWG": [b"AC1032\0\0"],
     "Windows": [b"MZ\x90\0"],
-    "STL": [STL, b"solid part\n facet normal 0 0 1\n  outer loop\n"],
+    "STL": [
+        STL,
+        b"made by CAD".ljust(80, b" ")
+        + struct.pack("<I", 5000)
+        + (b"\0\1\2\x40" * 12 + b"\0\0") * 5000,
+        b"solid part\n facet normal 0 0 1\n  outer loop\n",
+    ],
     "STEP-NC": [
         b"ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('AP238_MIM'));\n#1=MACHINING_WORKINGSTEP('A');"
     ],
     "STEP file": [b"ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('AUTOMOTIVE_DESIGN'));"],
     "DXF": [b"0\nSECTION\n2\nHEADER\n", b"  0\r\nSECTION\r\n"],
     "SVG": [b'<?xml version="1.0"?>\n<svg width="10">', b"<svg>"],
+    "UTF-16": ["\ufeffG21 G90\nG0 X1\n".encode("utf-16-le"), b"\xfe\xff\0G\x002\x001"],
+    "binary": [
+        b"\x7fCAD\x8e\x0b\0\0\0\0\0\0\x36\0\0\0",
+        b"\0\1\0\0cmap\0\2\3\4" + b"\x9a\0\7" * 90_000,
+    ],
+    "GIF": [b"GIF89a\x10\0\x10\0\xf0\0\0\x01\x02\x03"],
+    "BMP": [b"BM\x8e\x0b\0\0\0\0\0\0\x36\0\0\0"],
+    "MATLAB": [b"%%Copyright\n%\nfunction [a, b] = blockDistance(file, n)\na = 1;\nend\n"],
+    "settings": [
+        b"[DISPLAY]\nPROGRAM = axis\n",
+        b'[package]\nname = "x"\n',
+        b"importers:\n  .: 1\n",
+    ],
     "Philips": [b"%PM\n\nN9000 (PHILIPS SYSTEM 3000)\nN10 G54\n", b"%5\nN180 G14 N1=80 N2=90\n"],
     "before the 840D": [b"%MPF 90\n( SINUMERIK 850 )\nR11=384.5\n", b"N1 @371 R52 K2 K0\n"],
     "web page": [b"<!DOCTYPE html><html>"],

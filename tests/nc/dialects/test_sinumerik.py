@@ -59,6 +59,8 @@ LEADS: dict[str, tuple[str, dict[str, float]]] = {
     "G54 lies under the programmable frame": ("G55\nROT Z90\nG0 X5 Y0", {"X": 20, "Y": 5}),
     "G53 counts from machine zero for its block": ("G55\nTRANS X5\nG0 G53 X0 Z0\nX0", {"X": 25, "Z": 300}),
     "$P_UIFR counts when the offset is called again": ("G54\n$P_UIFR[1,X,TR]=3\nG0 X0\nG54\nG0 Y0", {"X": 10}),
+    "CTRANS writes all shifts of a work offset": (
+        "R1=4\n$P_UIFR[2,Z,TR]=7\n$P_UIFR[2]=CTRANS(X,R1*2, Y ,-3)\nG55 G0 X0 Y0 Z0", {"X": 8, "Y": -3, "Z": 0}),
     # poles
     "G111 sets the pole from zero": ("G111 X10 Y10\nG0 RP=5 AP=90", {"X": 10, "Y": 15}),
     "G110 from where the tool stands": ("G0 X3\nG110 X1 Y0\nG0 RP=5 AP=0", {"X": 9, "Y": 0}),
@@ -114,6 +116,9 @@ REFUSED: dict[str, tuple[str, str]] = {
     "several values for one variable": ("DEF REAL AA=SET(1,2)", "assignment"),
     "a number compared with a text": ('R1=1\nIF R1=="A"\nENDIF', "text-value"),
     "an index that is missing": ("$TC_DP6[,1]=5", "parameter-number"),
+    "a frame that turns, as a value": ("$P_UIFR[1]=CTRANS(X,1):CROT(Z,45)", "frame"),
+    "the programmable frame as a value": ("$P_PFRAME=CTRANS(X,1)", "frame"),
+    "a shift of no axis": ("$P_UIFR[1]=CTRANS(Q,1)", "no-such-axis"),
     "a jump into a structure": ("GOTOF IN\nIF 1\nIN: G0 X1\nENDIF", "jump-into-structure"),
     "GOTOF to a label behind": ("BACK: G0 X1\nGOTOF BACK", "unknown-label"),
     "a polar and a Cartesian end": ("G1 X5 RP=3 AP=0 F100", "polar-mixed"),

@@ -27,6 +27,8 @@ pytestmark = [
     pytest.mark.seconds("six node sets are read into a server"),
 ]
 ua: Any = asyncua.ua
+MACHINE = "mill5h"
+"""X, Y, Z and the rotary axes B and C."""
 EVERYWHERE = "0.0.0.0"  # noqa: S104 - to see it refused
 
 
@@ -44,7 +46,7 @@ class Served:
             "o": await self.client.get_namespace_index(NAMESPACE),
             "0": 0,
         }
-        names = ["m:Machines", "o:mill4", *path]
+        names = ["m:Machines", f"o:{MACHINE}", *path]
         parts = [name.split(":", 1) for name in names]
         return await self.client.nodes.objects.get_child(
             [f"{spaces[space]}:{name}" for space, name in parts]
@@ -69,8 +71,8 @@ class Served:
 
 @contextlib.asynccontextmanager
 async def served() -> AsyncIterator[Served]:
-    machine = read_machine(machine_file("mill4"))
-    agent = Agent(device_of("mill4", machine.axes), Clock(), "a test", 1000)
+    machine = read_machine(machine_file(MACHINE))
+    agent = Agent(device_of(MACHINE, machine.axes), Clock(), "a test", 1000)
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
@@ -117,11 +119,14 @@ async def test_the_specifications_parts_follow_what_the_agent_observed(one: Serv
     one.agent.observe(1.0, {
         "execution": "ACTIVE", "part_count": "3", "X_position": "12.5", "spindle_speed": "6000",
         "path_feedrate": "20", "line": "4", "mode": "AUTOMATIC", "feed_override": "80",
-        "rapid_override": "50", "spindle_override": "110",
+        "rapid_override": "50", "spindle_override": "110", "B_position_commanded": "-15.25",
     })  # fmt: skip
     channel = ("t:Monitoring", "o:Channel1")
     await one.until("4", *channel, "o:Line")
     await one.until(12.5, "t:Monitoring", "o:Axes", "o:X", "o:ActualPosition")
+    turned = ("t:Monitoring", "o:Axes", "o:B", "o:CommandedPosition")
+    await one.until(-15.25, *turned)
+    assert (await one.value(*turned, "0:EngineeringUnits")).DisplayName.Text == "°"
     assert await one.value(*channel, "t:ChannelState") == 0
     await one.until(80.0, *channel, "t:FeedOverride")
     assert await one.value("t:Monitoring", "t:MachineTool", "t:FeedOverride") == 80.0

@@ -153,7 +153,7 @@ def test_every_shipped_scene_cuts_a_named_material():
         preparation = read_scene(scene_path(name)).preparation
         stock = preparation.job.file.stock
         if stock is None:
-            # The room cuts height maps alone, which know a part from one side.
+            # Nothing stands there that could be cut: a fixture is what swings up.
             assert preparation.machine.part_frame.chain is not None, name
             continue
         assert stock.material, name

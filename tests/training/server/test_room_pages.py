@@ -212,6 +212,24 @@ def test_the_machine_is_worked_by_hand_from_the_sheets(room, chromium_context):
     assert machine.setup.tables.tool.kind == "drill"
 
 
+def test_zero_is_found_with_the_edge_finder_from_its_sheet(room, chromium_context):
+    player = Player(room, open_page(room, chromium_context, query="?language=en"))
+    page, machine = player.page, player.machine
+    player.press("mode_jog", "mode")
+    page.click("#tab-offsets")
+    player.press("edge finder", "change_tool")
+    page.wait_for_selector("#sheet >> text=CONTACT lights")
+    assert not page.locator("[data-key='edge finder']").is_visible()
+    player._jog({"axis": "X", "direction": -1, "step": 80.0}, feels=False)
+    player._jog({"axis": "Z", "direction": -1, "step": 30.0}, feels=False)
+    player._jog({"axis": "X", "direction": 1}, feels=True)
+    page.wait_for_selector("#speeds >> text=CONTACT")
+    player.press("touched X-", "set_zero")
+    tables = machine.setup.tables
+    # The left side is zero now: the blank's half from where the program has its own.
+    assert tables.zero[0] == pytest.approx(tables.true_zero[0] - 60.0, abs=0.03)
+
+
 def test_a_handwheel_that_is_spun_is_heard_to_its_last_click(room, context):
     player = Player(room, open_page(room, context))
     page, machine = player.page, player.machine

@@ -285,8 +285,7 @@ class Control:
 
     def forget_cycle(self) -> None:
         """No cycle is in force any more, and its words hold no longer."""
-        if self.cycle_values:
-            self.cycle_values = {}
+        self.cycle_values = {}
 
     # --- jumps and calls
 

@@ -50,7 +50,7 @@ class Executor:
             setattr(modal, name, value)
         if code.group:
             modal.active.put(code.group, number)
-        if modal.cycle is None:
+        if modal.cycle is None and self.control.cycle_values:
             self.control.forget_cycle()
 
     def prepare(self) -> None:

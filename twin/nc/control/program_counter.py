@@ -64,7 +64,7 @@ class ProgramCounter:
         self._report = report
         self._step_limit = step_limit
         self._line = self._part = 0
-        self._furthest = Location(-1, 0)
+        self._furthest = (-1, 0)
         self._budget = step_limit
         self.calls: list[Call] = []
         self._ended: Call | None = None
@@ -78,7 +78,7 @@ class ProgramCounter:
     @property
     def begun(self) -> bool:
         """A block was run."""
-        return self._furthest.line >= 0
+        return self._furthest[0] >= 0
 
     @property
     def location(self) -> Location:
@@ -113,8 +113,8 @@ class ProgramCounter:
             blocks = self._here if line == self._here_line else self._blocks(line)
             if part < len(blocks):
                 self._line, self._part = line, part + 1
-                if (line, part) > self._furthest:
-                    self._furthest = Location(line, part)
+                if (here := (line, part)) > self._furthest:
+                    self._furthest = here
                 else:
                     self._count_again(line)
                 return blocks[part]
@@ -170,14 +170,14 @@ class ProgramCounter:
         if line == self._here_line and part >= len(self._here):
             line, part = line + 1, 0
         repeats = bool(self.calls) and self.calls[-1].last is not None
-        if part or repeats or line <= self._furthest.line or line >= self._line_count:
+        if part or repeats or line <= self._furthest[0] or line >= self._line_count:
             return None
         return line
 
     def pass_lines(self, line: int, behind: int) -> None:
         """The lines before one, of one block at most, were run elsewhere; ``behind`` lies behind the last block."""
         if behind:
-            self._furthest = Location(behind - 1, 0)
+            self._furthest = (behind - 1, 0)
         self.go(Location(line, 0))
 
     def end(self) -> None:
@@ -259,7 +259,7 @@ class ProgramCounter:
         if blocks is None:
             text = self.lines.page_of(line).line(line)
             blocks = self.lexer.blocks(text, line + 1, self._line_before)
-            if line <= self._furthest.line and len(self._cache) < _CACHED_LINES:
+            if line <= self._furthest[0] and len(self._cache) < _CACHED_LINES:
                 self._cache[line] = blocks
         self._here, self._here_line = blocks, line
         return blocks

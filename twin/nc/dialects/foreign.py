@@ -1,11 +1,13 @@
 """Files that no dialect here can read: what each looks to be, and what to do with it."""
 
+import codecs
 import re
 from itertools import islice
 from pathlib import Path
 from typing import NamedTuple
 
 from twin.errors import UsageError
+from twin.nc.text.source import LEADER
 
 
 class Foreign(NamedTuple):
@@ -24,6 +26,11 @@ class Foreign(NamedTuple):
     comments: bool = False
 
 
+_CONTROLS = [bytes([each]) for each in range(32) if each not in b"\t\n\v\f\r"]
+_MOST_CONTROLS = 0.05
+"""Share of control characters beyond which a file is no text."""
+_FEW_CONTROLS = 3
+"""So many are damage."""
 HEAD = 200_000
 """Bytes of a file that are looked at."""
 
@@ -39,6 +46,8 @@ BINARY: tuple[tuple[bytes, str, str], ...] = (
     (b"\x1f\x8b", "a gzip archive", "unpack it first"),
     (b"\x89PNG", "a PNG picture", "an NC program is text"),
     (b"\xff\xd8\xff", "a JPEG picture", "an NC program is text"),
+    (b"GIF8", "a GIF picture", "an NC program is text"),
+    (b"BM", "a BMP picture", "an NC program is text"),
     (b"\xd0\xcf\x11\xe0", "a document of an older office or CAD program", "an NC program is text"),
     (b"AC10", "a DWG drawing", _MODEL),
     (b"\x7fELF", "a program for Linux", "an NC program is text"),
@@ -198,6 +207,17 @@ TEXTS: tuple[Foreign, ...] = (
     Foreign(
         "a JSON file", "an NC program is text of blocks", r"\A\s*[\[{]\s*[\"{\[]", comments=True
     ),
+    Foreign(
+        "a MATLAB program",
+        "an NC program is text of blocks",
+        r"(?m)^[ \t]*function\b[^\n;]*\)[ \t]*;?[ \t]*$",
+        comments=True,
+    ),
+    Foreign(
+        "a file of settings",
+        "an NC program is text of blocks",
+        r"(?m)^\[{1,2}[A-Za-z][\w.\- ]*\]{1,2}[ \t]*$|^[\w-]+:[ \t]*$",
+    ),
     Foreign("a C program", "an NC program is text of blocks", r"(?m)^#include *[<\"]"),
     Foreign(
         "a table of values",
@@ -265,6 +285,12 @@ def foreign_kind(data: bytes) -> tuple[str, str] | None:
             return name, advice
     if _is_binary_stl(data):
         return "an STL shape", _MODEL
+    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return "a text in UTF-16", "save it as UTF-8"
+    body = data.strip(LEADER)
+    controls = sum(body.count(byte) for byte in _CONTROLS)
+    if controls > max(_FEW_CONTROLS, _MOST_CONTROLS * len(body)):
+        return "a binary file", "an NC program is text"
     for encoding in ("utf-8", "cp1252", "latin-1"):
         try:
             text = data.decode(encoding)
@@ -302,4 +328,7 @@ def _is_binary_stl(data: bytes) -> bool:
     if len(data) < 84 or b"\0" not in data[:200]:
         return False
     count = int.from_bytes(data[80:84], "little")
-    return count > 0 and (84 + 50 * count == len(data) or 84 + 50 * count > len(data) == HEAD)
+    if len(data) < HEAD:
+        return count > 0 and 84 + 50 * count == len(data)
+    # Behind each triangle stands a number of further bytes, which is 0.
+    return 84 + 50 * count >= HEAD and not any(data[84 + 48 : HEAD - 1 : 50])

@@ -4,7 +4,7 @@ import math
 import re
 
 from twin.nc.canonical import NO_BLOCK_NUMBER
-from twin.nc.text.blocks import Statement, Word
+from twin.nc.text.blocks import Block, Statement, Word
 from twin.nc.text.line_reader import LineReader
 
 _NUMBER = re.compile(r"[ \t]*([0-9]{1,12})(?=[ \t]|$|[^-+.,0-9=])")
@@ -17,14 +17,15 @@ class KeywordLine(LineReader):
 
     _keyword: Statement | None = None
 
-    def _begin(self) -> None:
-        """The block's number, without an address before it; the slash may be on both sides of it."""
+    def blocks(self) -> tuple[Block, ...]:
+        """The line's blocks, behind a number without an address; the slash may be on both sides of it."""
         for _ in range(2):
             if (slash := _SKIP.match(self._line, self._at)) is not None and not self._skippable:
                 self._skippable, self._at = True, slash.end()
             if (number := _NUMBER.match(self._line, self._at)) is not None and not self._done:
                 self._at = number.end()
                 self._label(number[1], number.start(1))
+        return super().blocks()
 
     def _statement(self) -> bool:
         pattern = self._grammar.statement

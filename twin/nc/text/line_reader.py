@@ -62,7 +62,6 @@ class LineReader:
         """The line's blocks."""
         has_statements = self._grammar.statement is not None
         end = len(self._line)
-        self._begin()
         while self._at < end:
             if has_statements and not self._words and self._statement():
                 continue
@@ -72,9 +71,6 @@ class LineReader:
                 break
         self._close()
         return self._done
-
-    def _begin(self) -> None:
-        """Read what can only begin a line, where a language has such a thing."""
 
     def _plain_words(self) -> bool:
         """Read words with plain numbers; True behind an N where a statement may follow."""

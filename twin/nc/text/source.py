@@ -10,7 +10,7 @@ from twin.errors import UsageError
 from twin.nc.text.lines import PAGE, SURROGATES, Lines
 from twin.nc.text.syntax import Language
 
-_LEADER = b"\0\x7f\x11\x12\x13\x14"
+LEADER = b"\0\x7f\x11\x12\x13\x14"
 """What a DNC link sends before and behind a program: blank tape, deleted characters, DC1 to DC4."""
 
 
@@ -93,8 +93,8 @@ def _source_of(pieces: Iterable[bytes], name: str, dialect: Language | None) -> 
         begun, blanks, any_piece = False, b"", False
         for piece in seen():
             any_piece = any_piece or bool(piece)
-            whole = (blanks + piece) if begun else piece.lstrip(_LEADER)
-            text = whole.rstrip(_LEADER)
+            whole = (blanks + piece) if begun else piece.lstrip(LEADER)
+            text = whole.rstrip(LEADER)
             blanks = whole[len(text) :]
             begun = begun or bool(text)
             if text:

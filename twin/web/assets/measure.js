@@ -15,7 +15,8 @@ export class Measure {
   /** Point at the part: -1 to 1 to the right and upwards. Returns the places so far, in the part's frame [mm]. */
   point(machine, camera, [x, y]) {
     const near = machine.part.worldToLocal(new THREE.Vector3(x, y, -1).unproject(camera)), far = machine.part.worldToLocal(new THREE.Vector3(x, y, 1).unproject(camera));
-    const found = machine.stock && hit(machine.stock, near, far.sub(near).normalize());
+    const way = far.sub(near).normalize();
+    const found = machine.stock ? hit(machine.stock, near, way) : hit_mesh(machine, near, way);
     if (found) this.places = this.places.length === 1 ? [...this.places, found] : [found];
     this.draw();
     return this.places.map((place) => place.toArray());
@@ -31,6 +32,15 @@ export class Measure {
     if (this.places.length === 2) ends.push(...this.places[0].toArray(), ...this.places[1].toArray());
     this.lines.geometry.setAttribute("position", new THREE.Float32BufferAttribute(ends, 3));
   }
+}
+
+/** Where a ray comes first to a part that is drawn as a mesh, and was not cut away by the section; null: it passes by. */
+function hit_mesh(machine, from, way) {
+  const meshes = machine.faces_of_part.filter((mesh) => mesh.isMesh);
+  const world = new THREE.Raycaster(machine.part.localToWorld(from.clone()), way.clone().transformDirection(machine.part.matrixWorld));
+  const shown = ({ object, point }) => (object.material.clippingPlanes ?? []).every((plane) => plane.distanceToPoint(point) >= 0);
+  const found = world.intersectObjects(meshes, false).find(shown);
+  return found ? machine.part.worldToLocal(found.point.clone()) : null;
 }
 
 /** Where a ray comes to the part first; null: it passes by. */

@@ -112,5 +112,5 @@ def _polar_target(control: Control, *, arc: bool) -> list[float]:
         incremental=control.modal.incremental,
     )
     if arc and radius_word is not None and memory.polar_radius == 0.0:
-        control.fail("polar-radius", "an arc needs a polar radius above 0", radius_word)
+        control.fail("polar-radius", "the polar radius 0 must be positive", radius_word)
     return target

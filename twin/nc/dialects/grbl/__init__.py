@@ -195,8 +195,10 @@ GRBL = Dialect(
             42: "Grbl has no radius compensation: let the post compensate",
             43: "the length of a tool is G43.1 Z",
             64: "Grbl passes corners by its junction deviation",
-            81: "Grbl has no canned cycles: let the post write the moves",
-            83: "Grbl has no canned cycles: let the post write the moves",
+            **dict.fromkeys(
+                (73, 81, 82, 83, 85, 86, 89, 98, 99),
+                "Grbl has no canned cycles: let the post write the moves (FreeCAD: --translate_drill)",
+            ),
             95: "F is a feed per minute (G94) or an inverse time (G93)",
         },
         start=START,

@@ -29,6 +29,8 @@ class Assignment:
 
 _SEPARATOR = re.compile(r"[ \t]*")
 _EQUALS = re.compile(r"[ \t]*=(?!=)[ \t]*")
+_FRAME = re.compile(r"(CTRANS|CFINE|CROTS?|CSCALE|CMIRROR)[ \t]*\(", re.IGNORECASE)
+_OFFSET = re.compile(r"(\$P_UIFR\[[^,\]]+)\]")
 _QUOTED = re.compile(r'"([^"]*)"')
 _MANY = re.compile(r"(SET|REP)[ \t]*\(", re.IGNORECASE)
 
@@ -54,12 +56,47 @@ def _assignments(control: Control, statement: Statement) -> list[Assignment]:
         if equals is None or not isinstance(target.tree, Variable | NumberedVariable):
             message = "an assignment gives a variable a value: R1=5"
             control.report.fail("assignment", message, column + at, max(1, end - at))
-        each, at = _value_of(control, line, equals.end(), column, target, column + at)
-        found.append(each)
+        if (frame := _FRAME.match(line, equals.end())) is not None:
+            shifts, at = _work_offset(control, line, frame, column, target)
+            found += shifts
+        else:
+            each, at = _value_of(control, line, equals.end(), column, target, column + at)
+            found.append(each)
         blanks = _SEPARATOR.match(line, at)
         assert blanks is not None
         at = blanks.end()
     return found
+
+
+def _work_offset(
+    control: Control, line: str, frame: re.Match[str], column: int, target: Expression
+) -> tuple[list[Assignment], int]:
+    """``$P_UIFR[1]=CTRANS(X,10,Y,5)``: the shifts of all axes, 0 where it names none.
+
+    Raises:
+        ProgramError: It is another frame, or turns, scales or mirrors.
+    """
+    begin, shown = frame.end() - 1, column + frame.start()
+    inner, at, length = bracketed(control, line[begin:], column + begin)
+    assert isinstance(target.tree, Variable | NumberedVariable)
+    offset, end = _OFFSET.fullmatch(target.tree.name), begin + length
+    values = split_values(inner) if inner.strip() else []
+    is_shift = frame[1].upper() == "CTRANS" and not line[end:].lstrip().startswith(":")
+    if offset is None or not is_shift or len(values) % 2:
+        message = "of frames as values a shift of a work offset is followed alone"
+        hint = "$P_UIFR[1]=CTRANS(X,10,Y,5); or TRANS, ROT, SCALE and MIRROR"
+        control.report.fail("frame", message, shown, len(frame[1]), hint)
+    given = dict[str, tuple[str, int]]()
+    for (name, place), (text, of_value) in zip(values[::2], values[1::2], strict=True):
+        axis, _ = axis_at(control, name, len(name) - len(name.lstrip()), at + place)
+        given[axis] = (text, at + of_value)
+    shifts = []
+    for axis in control.settings.axes.names:
+        text, place = given.get(axis, ("0", shown))
+        value = control.statements.expression(text, place)
+        name = f"{offset[1]},{axis},TR]"
+        shifts.append(Assignment(Expression(name, Variable(name)), shown, ((value, place),)))
+    return shifts, end
 
 
 def _value_of(
