@@ -115,6 +115,8 @@ def _run(stopped: list[int]) -> None:
             file=sys.stderr,
         )
         raise SystemExit(2)
+    # Pictures are drawn in contexts of this package's own: MuJoCo needs to load no window library.
+    os.environ.setdefault("MUJOCO_GL", "disable")
     try:
         import logging
 

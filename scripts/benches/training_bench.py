@@ -16,7 +16,7 @@ from benches.row import REPEATS, Row
 from browsers import CHROMIUM
 from panel_player import browser, without_view
 
-from tests.training.server.measured_room import SCENE, RoomProcess, room_process
+from tests.training.server.measured_room import SCENE, MeasuredRoom, RoomProcess, room_process
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.session.session import Session
 
@@ -44,7 +44,7 @@ def rows() -> Iterator[Row]:
         context = opened.new_context(viewport={"width": 1280, "height": 720})
         page = context.new_page()
         page.add_init_script(NOTE_CLICKS)
-        addresses = room.ask("addresses")
+        addresses = room.ask(MeasuredRoom.addresses)
         begin = time.perf_counter()
         page.goto(addresses["operator"])
         page.wait_for_selector("body[data-ready=yes]")
@@ -56,7 +56,7 @@ def rows() -> Iterator[Row]:
             watcher.goto(addresses["watcher"])
             watcher.wait_for_selector("body[data-ready=yes]")
         page.wait_for_selector("body[data-view=ready]")
-        room.ask("run_steadily")
+        room.ask(MeasuredRoom.run_steadily)
         time.sleep(3.0)
         yield from _steady_rows(room, page)
         yield from _click_rows(room, page)
@@ -65,21 +65,30 @@ def rows() -> Iterator[Row]:
 def _steady_rows(room: RoomProcess, page: "Page") -> Iterator[Row]:
     factors, sent, pictures = [], [], []
     for _ in range(REPEATS):
-        room.ask("run_steadily")
-        before = room.ask("machine_time"), room.ask("bytes_sent"), _pictures(page)
+        room.ask(MeasuredRoom.run_steadily)
+        before = (
+            room.ask(MeasuredRoom.machine_time),
+            room.ask(MeasuredRoom.bytes_sent),
+            _pictures(page),
+        )
         begin = time.perf_counter()
         time.sleep(WATCHED_S)
         passed = time.perf_counter() - begin
-        factors.append((room.ask("machine_time") - before[0]) / passed)
-        sent.append((room.ask("bytes_sent") - before[1]) / passed / (1 + WATCHERS))
+        factors.append((room.ask(MeasuredRoom.machine_time) - before[0]) / passed)
+        sent.append((room.ask(MeasuredRoom.bytes_sent) - before[1]) / passed / (1 + WATCHERS))
         pictures.append((_pictures(page) - before[2]) / passed)
     yield Row(
         "training", f"a page and {WATCHERS} watchers", statistics.median(factors), "x real time"
     )
     yield Row("training", "  sent to each page", 1e-3 * statistics.median(sent), "kB/s")
     yield Row("training", "  pictures, drawn by the processor", statistics.median(pictures), "/s")
-    yield Row("training", "  its threads with precedence", room.ask("preceding_threads"), "of 2")
-    yield Row("training", "  memory of the room at most", room.ask("memory_mb"), "MB")
+    yield Row(
+        "training",
+        "  its threads with precedence",
+        room.ask(MeasuredRoom.preceding_threads),
+        "of 2",
+    )
+    yield Row("training", "  memory of the room at most", room.ask(MeasuredRoom.memory_mb), "MB")
 
 
 def _click_rows(room: RoomProcess, page: "Page") -> Iterator[Row]:
@@ -117,12 +126,12 @@ def _reaction_to_click(
     while True:
         page.mouse.up()
         page.hover("[data-key=feed_hold]")
-        room.ask("run_steadily")
-        room.begin("braked")
+        room.ask(MeasuredRoom.run_steadily)
+        room.begin(MeasuredRoom.wait_for_braking)
         time.sleep(whim.uniform(0.0, BETWEEN_S))
         page.mouse.down()
         braked = room.end()
         clicked = 1e-3 * float(page.evaluate("() => clicks.at(-1)"))
         if braked > clicked:
-            return braked - clicked, braked - room.ask("asked")
+            return braked - clicked, braked - room.ask(MeasuredRoom.asked)
         # The program had come to its end by itself.

@@ -2,6 +2,7 @@
 
 import dataclasses
 import json
+import os
 from pathlib import Path
 
 import numpy as np
@@ -18,12 +19,13 @@ from machine_logs import (
     without_force,
     write_log,
 )
+from scipy.io import loadmat
 
 from twin.calibrate.calibrate import calibrate
 from twin.calibrate.result import Calibration
 from twin.files.shipped import machine_file
-from twin.logs.column_map import read_column_map
-from twin.logs.machine_log import MachineLog, read_machine_log
+from twin.logs.column_map import AxisColumns, ColumnTable, ExternalForceTable, read_column_map
+from twin.logs.machine_log import AxisLog, MachineLog, read_machine_log
 from twin.machine.load import read_machine
 
 pytestmark = pytest.mark.seconds("a machine is simulated, and fitted to its log")
@@ -157,3 +159,36 @@ def part(log: MachineLog, rows: slice, name: str) -> MachineLog:
         more={role: values[rows] for role, values in axis.more.items()},
     )  # fmt: skip
     return MachineLog(name, log.time[rows], {"X": less}, log.line[rows])
+
+
+@pytest.mark.skipif("TWIN_TEST_EMPS" not in os.environ, reason="TWIN_TEST_EMPS names no folder")
+def test_the_whole_record_of_emps_and_its_pulses_are_predicted() -> None:
+    """Fitted to the first half; pulses are volts that are added to what the drive gives."""
+    folder = Path(os.environ["TWIN_TEST_EMPS"])
+    volt = ColumnTable(column="volt", unit="N")
+    injected = ExternalForceTable(column="volt", unit="N", at="drive")
+
+    def record(name: str, rows: slice) -> MachineLog:
+        data = {key: np.ravel(value)[rows] for key, value in loadmat(folder / name).items()
+                if np.size(value) > 1}  # fmt: skip
+        newtons = float(loadmat(folder / name)["gtau"][0, 0])
+        more, position = {"force": data["vir"] * newtons}, ColumnTable(column="q", unit="mm")
+        if "pulses_N" in data:
+            more["external_force"] = data["pulses_N"] * newtons
+        columns = AxisColumns(
+            command=position, actual=position, force=volt, external_force=injected
+        )
+        axis = AxisLog("linear", data["qg"] * 1e3, data["qm"] * 1e3, more, columns)
+        return MachineLog(
+            f"{name} {rows}", data["t"], {"X": axis}, np.zeros(len(data["t"]), np.int64)
+        )
+
+    half = 12421
+    found = calibrate(
+        mill(),
+        [record("DATA_EMPS.mat", slice(0, half))],
+        [record("DATA_EMPS.mat", slice(half, None)), record("DATA_EMPS_PULSES.mat", slice(None))],
+    )
+    _, second, pulses = found.logs
+    assert second.share < 0.003
+    assert pulses.share < 0.0095

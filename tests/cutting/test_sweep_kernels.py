@@ -1,4 +1,3 @@
-import dataclasses
 import itertools
 
 import hypothesis
@@ -73,7 +72,7 @@ def test_sweep_agrees_with_many_small_steps(
     heights, (removed, depth, _), changed = swept(path, cutter, shape)
     step = np.abs(np.diff(path, axis=0)).max() / 400
     stamped = swept_by_small_steps(path, cutter, shape)
-    grown = dataclasses.replace(cutter, radius=cutter.radius + step, flat=cutter.flat + step)
+    grown = cutter._replace(radius=cutter.radius + step, flat=cutter.flat + step)
     assert np.all(heights <= stamped + 1e-9)
     assert np.all(heights >= swept_by_small_steps(path, grown, shape) - 2 * step - 1e-9)
     assert removed.sum() == pytest.approx(-heights.sum() * CELL**2, abs=1e-9)

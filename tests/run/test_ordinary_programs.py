@@ -6,6 +6,8 @@ import pytest
 
 from tests.run.ordinary_programs import ordinary
 from tests.run.test_verdict_scope import codes
+from twin.files.shipped import resource_root
+from twin.machine.model.clamping import what_carries
 from twin.run.preparation import prepare
 from twin.run.progress import no_progress
 from twin.run.run import Run
@@ -32,3 +34,11 @@ def test_a_few_ordinary_programs_draw_nothing(tmp_path: Path) -> None:
 def test_ordinary_programs_draw_nothing(first: int, tmp_path: Path) -> None:
     seeds = range(first, first + BATCH)
     assert {seed: found for seed in seeds if (found := drawn(tmp_path, seed))} == {}
+
+
+@pytest.mark.seconds("every shipped job is laid out on its machine")
+def test_the_stock_of_every_shipped_job_is_carried() -> None:
+    jobs = [job for job in resource_root("programs").rglob("*.toml") if "alarms" not in job.parts]
+    floating = {job.stem: why for job in jobs if (why := what_carries(Run(prepare(job)).model))}
+    assert len(jobs) > 40
+    assert floating == {}

@@ -5,6 +5,7 @@ Times and paths do not count: a moved, restored or copied environment finds what
 
 import functools
 import hashlib
+import os
 import re
 import sys
 from pathlib import Path
@@ -14,7 +15,7 @@ import numba
 import numpy as np
 
 PACKAGE = Path(__file__).resolve().parents[1]
-_DECORATORS = PACKAGE / "compilation" / "kernel.py"
+_DECORATORS = f"{PACKAGE}/compilation/kernel.py"
 """How kernels are compiled and kept; what declares one may import it within a function."""
 REQUIREMENTS = "requirements.txt"
 """What of the compilers compiled kernels need, in a folder of them."""
@@ -37,20 +38,22 @@ _IMPORT = re.compile(
     r"^(?:from (?P<origin>twin[\w.]*) import (?P<names>\([^)]*\)|[^\n]*)|import (?P<module>twin[\w.]+))",
     re.MULTILINE,
 )
+_NAME = re.compile(r"\w+")
 
 
 @functools.cache
 def content_key(file: Path) -> str:
     """Hash of a file, of all files of the package that it imports, of what compiles it, and of the compilers' versions."""
     digest = hashlib.sha256("\n".join((str(sys.implementation.cache_tag), *compilers())).encode())
-    for source in sorted(_closure(file)):
-        digest.update(source.relative_to(PACKAGE).as_posix().encode() + b"\0")
+    root = len(f"{PACKAGE}/")
+    for source in sorted(_closure(str(file))):
+        digest.update(source[root:].encode() + b"\0")
         digest.update(_digest(source))
     return digest.hexdigest()[:24]
 
 
-def _closure(file: Path) -> set[Path]:
-    found: set[Path] = set()
+def _closure(file: str) -> set[str]:
+    found: set[str] = set()
     waiting = [file, _DECORATORS]
     while waiting:
         source = waiting.pop()
@@ -61,21 +64,25 @@ def _closure(file: Path) -> set[Path]:
 
 
 @functools.cache
-def _digest(file: Path) -> bytes:
-    return hashlib.sha256(file.read_bytes()).digest()
+def _digest(file: str) -> bytes:
+    return hashlib.sha256(Path(file).read_bytes()).digest()
 
 
 @functools.cache
-def _imported(file: Path) -> tuple[Path, ...]:
+def _imported(file: str) -> tuple[str, ...]:
     """The package's files that a file imports at its head."""
-    modules: list[str] = []
-    for match in _IMPORT.finditer(file.read_text(encoding="utf-8")):
+    modules: set[str] = set()
+    for match in _IMPORT.finditer(Path(file).read_text(encoding="utf-8")):
         if match["module"]:
-            modules.append(match["module"])
+            modules.add(match["module"])
             continue
-        modules.append(match["origin"])
-        modules += [f"{match['origin']}.{name}" for name in re.findall(r"\w+", match["names"])]
-    places = {PACKAGE.parent.joinpath(*module.split(".")) for module in modules}
-    files = {place.with_suffix(".py") for place in places}
-    files |= {place / "__init__.py" for place in places}
-    return tuple(sorted(each for each in files if each.is_file()))
+        modules.add(match["origin"])
+        modules.update(f"{match['origin']}.{name}" for name in _NAME.findall(match["names"]))
+    return tuple(path for module in modules for path in _files(module))
+
+
+@functools.cache
+def _files(module: str) -> tuple[str, ...]:
+    """Files of a module or a package of that name; none of what a module holds."""
+    place = f"{PACKAGE.parent}/{module.replace('.', '/')}"
+    return tuple(filter(os.path.isfile, (f"{place}.py", f"{place}/__init__.py")))

@@ -1,5 +1,6 @@
 """A compiled function: code of its own for Python, and a part of the kernels that call it."""
 
+import functools
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -10,6 +11,7 @@ from numba.core.registry import CPUDispatcher
 from twin.compilation.cache import Form, kernel_cache
 from twin.compilation.entry import entry_of, packed, unpacked
 from twin.compilation.part import parts_only
+from twin.compilation.shortcuts import take_array_shortcut
 
 _WITHOUT_WRAPPERS = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
@@ -32,8 +34,11 @@ class KernelDispatcher(CPUDispatcher):
         options["nopython"] = True
         super().__init__(function, targetoptions=options)
         self._vectorize = vectorize
-        self._part = CPUDispatcher(function, targetoptions=options | _WITHOUT_WRAPPERS)
         self._cache: Any = kernel_cache(function, Form(packed, unpacked)) or self._cache
+
+    @functools.cached_property
+    def _part(self) -> Any:
+        return CPUDispatcher(self.py_func, targetoptions=self.targetoptions | _WITHOUT_WRAPPERS)
 
     def get_call_template(self, args: Sequence[Any], kws: Any) -> Any:
         """What a kernel that calls this one needs to know of its types; arguments are Numba's."""
@@ -60,6 +65,7 @@ class KernelDispatcher(CPUDispatcher):
             return entry.entry_point
 
     def _compiled(self, arguments: tuple[Any, ...]) -> Any:
+        take_array_shortcut()
         details = {"dispatcher": self, "args": arguments, "return_type": None}
         context: Any = self.targetctx
         with event.trigger_event("numba:compile", data=details):

@@ -8,12 +8,12 @@ An array that does not fit the slice that it is assigned to raises an error of c
 which it compiles the making of texts into every kernel that assigns an array to a slice.
 """
 
+import functools
 from collections.abc import Callable
 from typing import Any
 
 from numba.core.targetconfig import TargetConfig
 from numba.extending import overload
-from numba.np import arrayobj
 
 
 def _changed(self: TargetConfig) -> dict[str, Any]:
@@ -37,7 +37,6 @@ def _raise_without_shapes(source: object, slice_: object) -> None:
     """Stands for Numba's ``raise_with_shape_context``, of whose kind a target may have its own."""
 
 
-@overload(_raise_without_shapes)
 def _raising(source: object, slice_: object) -> Callable[[object, object], None]:
     del source, slice_
 
@@ -48,7 +47,15 @@ def _raising(source: object, slice_: object) -> Callable[[object, object], None]
 
 
 def take_shortcuts() -> None:
-    """Let Numba do so in this process."""
+    """Let Numba compare options so in this process."""
     TargetConfig.__hash__ = _hash
     TargetConfig.__eq__ = _equal
+
+
+@functools.cache
+def take_array_shortcut() -> None:
+    """Let Numba raise that error of an array in this process; it loads what only a compilation needs."""
+    from numba.np import arrayobj
+
+    overload(_raise_without_shapes)(_raising)
     arrayobj.raise_with_shape_context = _raise_without_shapes

@@ -1,5 +1,6 @@
 """The machine stepped while its tool cuts: one loop over setpoints, without a way back to Python."""
 
+import enum
 import math
 from typing import NamedTuple
 
@@ -31,14 +32,37 @@ _LONGEST_MEAN_S = 0.05
 """Longest time that the speed of the feed is averaged over, however seldom a tooth comes [s]."""
 _STILL = 1e-9
 
-WHOLE, BY_FORCE, BY_CHIP, BY_SPEED, BY_TORQUE, BY_THRUST = range(6)
-"""Why a tool has lost its edge."""
 
-ANGLE, SPEED, CONTACT, STATE, VALUE, MET, FRESH, STOOD = range(8)
-"""Numbers in ``Memory.numbers``: direction of the first tooth [turns], speed of the spindle [turns/s], way
-since the cutter met material [mm], why its edge is gone, the value at which it went, whether it meets
-material, whether nothing is known of where it was, whether it has cut all that it meets where it was swept
-up to."""
+class Edge(enum.IntEnum):
+    """A tool's edge: whole, or why it has gone."""
+
+    WHOLE = 0
+    BY_FORCE = 1
+    BY_CHIP = 2
+    BY_SPEED = 3
+    BY_TORQUE = 4
+    BY_THRUST = 5
+
+
+class CutNumber(enum.IntEnum):
+    """Columns of ``Memory.numbers``."""
+
+    ANGLE = 0
+    """Direction of the first tooth [turns]."""
+    SPEED = 1
+    """Of the spindle [turns/s]."""
+    CONTACT = 2
+    """Path since the cutter met material [mm]."""
+    EDGE = 3
+    """Its ``Edge``."""
+    VALUE = 4
+    """At which the edge went."""
+    MET = 5
+    """Whether it meets material."""
+    FRESH = 6
+    """Whether nothing is known of where it was."""
+    STOOD = 7
+    """Whether it has cut all that it meets where it was swept up to."""
 
 
 class Place(NamedTuple):
@@ -81,7 +105,7 @@ class Memory(NamedTuple):
     """What is carried from one period to the next.
 
     Attributes:
-        numbers: See ``ANGLE`` and those after it.
+        numbers: By ``CutNumber``.
         rigid: Where the tip would be, were the tool rigid, part's frame, shape (3,) [mm].
         swept: Where the material was cut up to, shape (2, 3); the second row is the later [mm].
         trace: Where it has left walls up to, of ``leave_walls``.
@@ -181,8 +205,8 @@ def _go_to(physics: Physics, state: FloatArray, cut: Cut, memory: Memory) -> tup
     # A chip is as thick as the way between two teeth: the speed in the mean of that time.
     share = _share_of_tooth(cut, memory, drives.period)
     for k in range(3):
-        if numbers[FRESH] > 0.0:
-            numbers[STOOD] = 0.0
+        if numbers[CutNumber.FRESH] > 0.0:
+            numbers[CutNumber.STOOD] = 0.0
             lose_trace(memory.trace)
             memory.speed[k] = 0.0
             memory.swept[0, k] = memory.swept[1, k] = tip[k]
@@ -190,7 +214,7 @@ def _go_to(physics: Physics, state: FloatArray, cut: Cut, memory: Memory) -> tup
             now = (tip[k] - memory.rigid[k]) / drives.period
             memory.speed[k] += share * (now - memory.speed[k])
         memory.rigid[k] = tip[k]
-    numbers[FRESH] = 0.0
+    numbers[CutNumber.FRESH] = 0.0
     return cosine, sine
 
 
@@ -206,7 +230,7 @@ def _axis(drives: Drives, state: FloatArray, axis: int) -> float:
 @kernel
 def _share_of_tooth(cut: Cut, memory: Memory, period: float) -> float:
     """How far a mean over the time between two teeth follows in a period, 0 to 1."""
-    rate = max(abs(memory.numbers[SPEED]) * cut.cutter.teeth, 1.0 / _LONGEST_MEAN_S)
+    rate = max(abs(memory.numbers[CutNumber.SPEED]) * cut.cutter.teeth, 1.0 / _LONGEST_MEAN_S)
     return 1.0 - math.exp(-rate * period)
 
 
@@ -214,37 +238,42 @@ def _share_of_tooth(cut: Cut, memory: Memory, period: float) -> float:
 def _turn_and_cut(period: float, commanded: float, cut: Cut, memory: Memory) -> None:
     """Turn the spindle, cut, and find what the teeth feel until the next period."""
     numbers = memory.numbers
-    torque = memory.bench.figures[1] * MM if numbers[MET] > 0.0 else 0.0
+    torque = memory.bench.figures[1] * MM if numbers[CutNumber.MET] > 0.0 else 0.0
     told = 0.0 if math.isnan(commanded) else commanded
-    numbers[SPEED] = next_speed(cut.spindle, numbers[SPEED], told, torque, period)
+    numbers[CutNumber.SPEED] = next_speed(
+        cut.spindle, numbers[CutNumber.SPEED], told, torque, period
+    )
     memory.force[:] = 0.0
-    if math.isnan(commanded) or numbers[STATE] != WHOLE:
+    if math.isnan(commanded) or numbers[CutNumber.EDGE] != Edge.WHOLE.value:
         # What cuts nothing goes where it will: the next cut begins where the tool is then.
-        numbers[MET], numbers[FRESH] = 0.0, 1.0
+        numbers[CutNumber.MET], numbers[CutNumber.FRESH] = 0.0, 1.0
         return
-    turned = numbers[SPEED] * period
-    if abs(numbers[SPEED]) > cut.strength.speed / SECONDS_PER_MINUTE:
-        _break(memory, BY_SPEED, abs(numbers[SPEED]) * SECONDS_PER_MINUTE)
+    turned = numbers[CutNumber.SPEED] * period
+    if abs(numbers[CutNumber.SPEED]) > cut.strength.speed / SECONDS_PER_MINUTE:
+        _break(memory, Edge.BY_SPEED, abs(numbers[CutNumber.SPEED]) * SECONDS_PER_MINUTE)
         return
     _look(period, cut, memory)
-    if numbers[MET] > 0.0:
+    if numbers[CutNumber.MET] > 0.0:
         if memory.bench.figures[2] > cut.strength.chip:
-            _break(memory, BY_CHIP, memory.bench.figures[2])
+            _break(memory, Edge.BY_CHIP, memory.bench.figures[2])
         elif memory.bench.figures[0] > cut.strength.force:
-            _break(memory, BY_FORCE, memory.bench.figures[0])
+            _break(memory, Edge.BY_FORCE, memory.bench.figures[0])
         elif memory.bench.figures[1] * MM > cut.strength.torque:
-            _break(memory, BY_TORQUE, memory.bench.figures[1] * MM)
+            _break(memory, Edge.BY_TORQUE, memory.bench.figures[1] * MM)
         elif memory.bench.mean[2] > cut.strength.thrust:
-            _break(memory, BY_THRUST, memory.bench.mean[2])
+            _break(memory, Edge.BY_THRUST, memory.bench.mean[2])
         else:
-            add_force_between(cut.cutter, memory.bench, numbers[ANGLE], -turned, memory.force)
-    numbers[ANGLE] -= turned
-    numbers[ANGLE] -= math.floor(numbers[ANGLE])
+            add_force_between(
+                cut.cutter, memory.bench, numbers[CutNumber.ANGLE], -turned, memory.force
+            )
+    numbers[CutNumber.ANGLE] -= turned
+    numbers[CutNumber.ANGLE] -= math.floor(numbers[CutNumber.ANGLE])
 
 
 @kernel
-def _break(memory: Memory, why: int, value: float) -> None:
-    memory.numbers[STATE], memory.numbers[VALUE], memory.numbers[MET] = why, value, 0.0
+def _break(memory: Memory, why: Edge, value: float) -> None:
+    memory.numbers[CutNumber.EDGE], memory.numbers[CutNumber.VALUE] = why.value, value
+    memory.numbers[CutNumber.MET] = 0.0
 
 
 @array_kernel
@@ -252,12 +281,12 @@ def _look(period: float, cut: Cut, memory: Memory) -> None:
     """Cut up to where the tool is and look at what is before it, where it has gone far enough."""
     numbers, swept, looked, feed = memory.numbers, memory.swept, memory.looked, memory.feed
     pace = math.sqrt(memory.speed[0] ** 2 + memory.speed[1] ** 2 + memory.speed[2] ** 2)
-    if numbers[MET] <= 0.0:
-        numbers[CONTACT] = 0.0
-    numbers[CONTACT] += pace * period
-    teeth = max(abs(numbers[SPEED]) * cut.cutter.teeth, _STILL)
+    if numbers[CutNumber.MET] <= 0.0:
+        numbers[CutNumber.CONTACT] = 0.0
+    numbers[CutNumber.CONTACT] += pace * period
+    teeth = max(abs(numbers[CutNumber.SPEED]) * cut.cutter.teeth, _STILL)
     # The first tooth cuts no more than the tool has come into the material.
-    share = min(1.0 / teeth, numbers[CONTACT] / max(pace, _STILL))
+    share = min(1.0 / teeth, numbers[CutNumber.CONTACT] / max(pace, _STILL))
     moved, changed, before = 0.0, 0.0, 0.0
     for k in range(3):
         feed[k] = memory.speed[k] * share
@@ -272,25 +301,25 @@ def _look(period: float, cut: Cut, memory: Memory) -> None:
         swept[1, k] = memory.rigid[k] + memory.bend[k]
         looked[k] = feed[k]
     if min(swept[0, 2], swept[1, 2]) >= cut.material.grid.top:
-        numbers[MET] = 0.0
+        numbers[CutNumber.MET] = 0.0
         lose_trace(memory.trace)
         return
     material = cut.material
     sweep(
         material.heights, material.grid, swept, cut.cutter.profile,
-        memory.tally, memory.marks, numbers[STOOD] > 0.0, ALL_ROWS,
+        memory.tally, memory.marks, numbers[CutNumber.STOOD] > 0.0, ALL_ROWS,
     )  # fmt: skip
-    numbers[STOOD] = 1.0
-    leave_walls(material, memory.trace, swept[1], cut.cutter.profile[0], cut.cutter.side_from)
-    sense = 1.0 if numbers[SPEED] >= 0.0 else -1.0
+    numbers[CutNumber.STOOD] = 1.0
+    leave_walls(material, memory.trace, swept[1], cut.cutter.profile.radius, cut.cutter.side_from)
+    sense = 1.0 if numbers[CutNumber.SPEED] >= 0.0 else -1.0
     met = tooth_forces(material, swept[1], feed, cut.cutter, cut.law, sense, memory.bench)
-    numbers[MET] = 1.0 if met else 0.0
+    numbers[CutNumber.MET] = 1.0 if met else 0.0
 
 
 @kernel
 def _bend(period: float, cut: Cut, memory: Memory) -> None:
     """Bend the tool by the mean force of a turn."""
-    met = memory.numbers[MET] > 0.0
+    met = memory.numbers[CutNumber.MET] > 0.0
     share = _share_of_tooth(cut, memory, period) if met else 1.0
     for k in range(2):
         wanted = cut.strength.compliance * memory.bench.mean[k] if met else 0.0
@@ -312,8 +341,8 @@ def _load_axes(place: Place, memory: Memory, cosine: float, sine: float) -> None
 def _note(cut: Cut, memory: Memory, felt: Felt, row: int, turn: tuple[float, float]) -> None:
     """Enter what the tool feels."""
     numbers, bend = memory.numbers, memory.bend
-    met = numbers[MET] > 0.0
-    speed = numbers[SPEED]
+    met = numbers[CutNumber.MET] > 0.0
+    speed = numbers[CutNumber.SPEED]
     torque = memory.bench.figures[1] * MM if met else 0.0
     for k in range(3):
         felt.force[row, k] = memory.load[k]
@@ -326,4 +355,4 @@ def _note(cut: Cut, memory: Memory, felt: Felt, row: int, turn: tuple[float, flo
     felt.chip[row] = memory.bench.figures[2] if met else 0.0
     felt.spindle_speed[row] = speed * SECONDS_PER_MINUTE
     felt.spindle_load[row] = torque / lasting_torque(cut.spindle, speed)
-    felt.broken[row] = numbers[STATE]
+    felt.broken[row] = numbers[CutNumber.EDGE]

@@ -8,16 +8,9 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from twin.coupling.cutting_kernels import (
-    BY_CHIP,
-    BY_FORCE,
-    BY_THRUST,
-    BY_TORQUE,
-    FRESH,
-    SPEED,
-    STATE,
-    VALUE,
-    WHOLE,
     Cut,
+    CutNumber,
+    Edge,
     Felt,
     Memory,
     Place,
@@ -100,6 +93,11 @@ class Operation(Protocol):
 class CuttingProcess:
     """Cuts a height map of its own along the simulated motion, and pushes the axes by what the teeth feel.
 
+    It is not the map of ``twin.cutting.cut.Cutter``, which becomes the part. A tooth wants the material cut anew every
+    quarter of a cell; the depth and width of a cut are those of a long straight stretch (of a ball of 6 mm, 1 mm deep, pieces
+    of a quarter of a cell are 0.07 mm deep), and what must not meet the material is held against it before it is cut.
+    Cutting twice takes 1 to 3 % of the processor time of a run.
+
     Attributes:
         breaks: The tools that broke, in order.
         alarm: The spindle's alarm of the last ``follow``.
@@ -134,15 +132,15 @@ class CuttingProcess:
         self._table = spindle
         self._drive = spindle_drive(spindle)
         self._memory = _memory(0)
-        self._memory.numbers[SPEED] = operation.speed_at_start / SECONDS_PER_MINUTE
+        self._memory.numbers[CutNumber.SPEED] = operation.speed_at_start / SECONDS_PER_MINUTE
         self._tool: ToolTable | None = None
         self._overloaded_s = 0.0
 
     def begin(self, position: FloatArray) -> None:
         """Begin with the machine at rest; see ``Process``."""
-        speed = self._memory.numbers[SPEED]
+        speed = self._memory.numbers[CutNumber.SPEED]
         self._memory = _memory(len(position))
-        self._memory.numbers[SPEED] = speed
+        self._memory.numbers[CutNumber.SPEED] = speed
 
     def renew(self, number: int) -> None:
         """Put a new tool into the place of one, which may have lost its edge."""
@@ -153,7 +151,7 @@ class CuttingProcess:
     def lift(self) -> None:
         """Take the tool off what it cut: what comes next is no way of it."""
         memory = self._memory
-        memory.numbers[FRESH] = 1.0
+        memory.numbers[CutNumber.FRESH] = 1.0
         for column in (memory.load, memory.bend, memory.looked, memory.bench.figures):
             column[:] = 0.0
 
@@ -191,7 +189,7 @@ class CuttingProcess:
         self._tool = tool
         self.lift()
         broken = any(found.tool == tool.number for found in self.breaks)
-        self._memory.numbers[STATE] = BY_FORCE if broken else WHOLE
+        self._memory.numbers[CutNumber.EDGE] = Edge.BY_FORCE if broken else Edge.WHOLE
 
     def _cut(self, turning: Turning) -> Cut:
         tool, frame = turning.tool, self._frame
@@ -208,24 +206,24 @@ class CuttingProcess:
     def _note_break(
         self, tool: ToolTable, strength: ToolStrength, setpoints: Setpoints, state: FloatArray
     ) -> None:
-        row = int(np.argmax(state != WHOLE)) if len(state) else 0
+        row = int(np.argmax(state != Edge.WHOLE)) if len(state) else 0
         known = any(found.tool == tool.number for found in self.breaks)
-        if not len(state) or state[row] == WHOLE or known:
+        if not len(state) or state[row] == Edge.WHOLE or known:
             return
-        value, why = float(self._memory.numbers[VALUE]), int(state[row])
-        if why == BY_CHIP:
+        value, why = float(self._memory.numbers[CutNumber.VALUE]), int(state[row])
+        if why == Edge.BY_CHIP:
             reason = (
                 f"a chip of {value:.3g} mm was thicker than the {strength.chip:.3g} mm it bears"
             )
-        elif why == BY_FORCE:
+        elif why == Edge.BY_FORCE:
             reason = (
                 f"a force of {value:.0f} N was greater than the {strength.force:.0f} N it bears"
             )
-        elif why == BY_TORQUE:
+        elif why == Edge.BY_TORQUE:
             reason = (
                 f"a torque of {value:.3g} Nm was greater than the {strength.torque:.3g} Nm it bears"
             )
-        elif why == BY_THRUST:
+        elif why == Edge.BY_THRUST:
             reason = (
                 f"a thrust of {value:.0f} N was greater than the {strength.thrust:.0f} N it bears"
             )
@@ -272,8 +270,8 @@ def spindle_drive(table: SpindleTable) -> SpindleDrive:
 
 
 def _memory(axes: int) -> Memory:
-    numbers = np.zeros(8)
-    numbers[FRESH] = 1.0
+    numbers = np.zeros(len(CutNumber))
+    numbers[CutNumber.FRESH] = 1.0
     three = np.zeros((6, 3))
     return Memory(
         numbers, three[0].copy(), np.zeros((2, 3)), no_trace(), three[1].copy(), three[2].copy(),
@@ -290,4 +288,4 @@ _SPATIAL = ("force", "deflection")
 
 
 def _load(felt: Felt) -> ToolLoad:
-    return ToolLoad(**{**felt._asdict(), "broken": felt.broken != WHOLE})
+    return ToolLoad(**{**felt._asdict(), "broken": felt.broken != Edge.WHOLE})

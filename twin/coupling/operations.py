@@ -6,7 +6,7 @@ import numpy as np
 
 from twin.coupling.cutting_process import CuttingProcess, Operation, Turning
 from twin.cutting.forces.materials import kienzle
-from twin.cutting.height_map import blank
+from twin.cutting.height_map import HeightMap, blank
 from twin.cutting.program_summary import ProgramSummary
 from twin.cutting.tools import default_cell
 from twin.job.job_file import JobFile, StockTable, ToolTable
@@ -90,8 +90,17 @@ def program_process(
     summary: ProgramSummary,
     part_frame: PartFrame,
     part_zero: FloatArray,
+    laid: HeightMap | None = None,
 ) -> CuttingProcess | None:
     """What the tools of a program do to the stock of a job.
+
+    Args:
+        job: Its blank, and whether the force of the cut is simulated.
+        machine: Its spindle turns the tool.
+        summary: What is in the spindle when.
+        part_frame: How the part turns under the tool.
+        part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
+        laid: The blank, if it is on the table already; it is copied.
 
     Returns:
         None where the force of the cut is not simulated: the job says so, or names no stock, no
@@ -106,7 +115,7 @@ def program_process(
         return None
     cell = job.stock.cell or default_cell(summary.tools.tools, job.stock)
     return cutting_process(
-        job.stock, cell, ProgramOperation(summary), machine, part_frame, part_zero
+        job.stock, cell, ProgramOperation(summary), machine, part_frame, part_zero, laid
     )
 
 
@@ -117,6 +126,7 @@ def cutting_process(
     machine: Machine,
     part_frame: PartFrame,
     part_zero: FloatArray,
+    laid: HeightMap | None = None,
 ) -> CuttingProcess | None:
     """What tools do to a stock.
 
@@ -129,6 +139,7 @@ def cutting_process(
         machine: Its spindle turns the tool.
         part_frame: How the part turns under the tool.
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
+        laid: As for ``program_process``.
 
     Raises:
         ConfigError: As for ``program_process``.
@@ -136,6 +147,8 @@ def cutting_process(
     resists = kienzle(stock)
     if resists is None or part_frame.chain is not None or stock.lies:
         return None
-    corner = part_frame.program_zero(part_zero)
-    material = blank(stock, corner, cell)
+    if laid is None:
+        material = blank(stock, part_frame.program_zero(part_zero), cell)
+    else:
+        material = laid.copy()
     return CuttingProcess(material, resists, operation, part_frame, machine.file.spindle)

@@ -1,12 +1,12 @@
 """Cutting: the recorded motion takes material off the stock, and what it did is noted."""
 
 import dataclasses
-from collections.abc import Iterator, Mapping
-from typing import Any, Literal
+from collections.abc import Mapping
+from typing import Literal
 
 import numpy as np
 
-from twin.cutting.cut_log import BlockCut, CutLog
+from twin.cutting.cut_log import HEIGHT_MAP, TRI_DEXEL, CutLog, CutResult
 from twin.cutting.cut_watch import CutWatch
 from twin.cutting.events import CutEvent, EventLog, StockWatch, Stretches
 from twin.cutting.forces.direction import tool_force
@@ -17,60 +17,16 @@ from twin.cutting.height_map_material import HeightMapMaterial
 from twin.cutting.kernels.sweep import Removal
 from twin.cutting.material import AIR_MM, EDGE, Head, Material, Points
 from twin.cutting.sweeping import Rectangle
+from twin.cutting.tool_motion import ToolMotion, by_edge, tool_motion
 from twin.cutting.tools import Profile, default_cell, profile
 from twin.cutting.tridexel import blanks
 from twin.cutting.tridexel.material import TriDexelMaterial
 from twin.errors import ConfigError
 from twin.job.job_file import StockTable, ToolTable
-from twin.nc.canonical import FloatArray, IntArray
+from twin.nc.canonical import FloatArray
 from twin.recording.reader import Samples
 from twin.toolpath.part_frame import PartFrame
 from twin.toolpath.tool_plan import ToolPlan
-
-HEIGHT_MAP, TRI_DEXEL = "height map", "tri-dexel"
-"""What describes the material."""
-
-
-@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
-class CutResult:
-    """What was cut."""
-
-    removed_mm3: float
-    """Material taken off [mm³]."""
-    removed_by_tool_mm3: Mapping[int, float]
-    """What each tool took off, by its number, in the order of use [mm³]."""
-    stock: str
-    """What described the material: ``HEIGHT_MAP`` where the tool kept to the part's Z, else ``TRI_DEXEL``."""
-    cell_mm: float
-    """Side of a cell of it [mm]."""
-    air_share: float
-    """Share of the cutting feed's path that met no material."""
-    gouges: tuple[CutEvent, ...]
-    """Flutes too short, shank, holder or head in the material; one each per line, of many the
-    deepest."""
-    rapid_into_stock: tuple[CutEvent, ...]
-    """Rapids that met material, one per move."""
-    spindle_off: tuple[CutEvent, ...]
-    """Feeds that met material with the spindle off, one per move."""
-    blocks: Mapping[int, BlockCut]
-    """What each line took off; of many those that took off the most or met the greatest force."""
-    blocks_forgotten: int
-    """How often a line was let go of because enough others took off more."""
-    bin_s: float
-    """Length of a bin of ``removed_over_time`` [s]."""
-    removed_over_time: tuple[float, ...]
-    """Material taken off in each bin of time, from 0 on [mm³]."""
-    force_n: float | None
-    """Greatest mean cutting force [N]; None: the job names no material or no spindle speed."""
-    power_w: float | None
-    """Greatest mean cutting power [W]; None as for the force."""
-
-    def as_json(self) -> dict[str, Any]:
-        """The ``cut`` object of ``result.json``."""
-        result = dataclasses.asdict(self)
-        blocks = {line: dataclasses.asdict(block) for line, block in self.blocks.items()}
-        result["blocks"] = [{"line": line, **block} for line, block in sorted(blocks.items())]
-        return result
 
 
 class Cutter:
@@ -136,7 +92,7 @@ class Cutter:
         self._part_frame = part_frame
         self._last: tuple[Points, float] | None = None
         self._changes = 0
-        self._stand: _Way | None = None
+        self._stand: ToolMotion | None = None
         self._removed: dict[int, float] = {}
         self._feed_path = 0.0
         self._air_path = 0.0
@@ -167,34 +123,25 @@ class Cutter:
         self.force = np.zeros((len(samples), 3))
         if not len(samples):
             return 0.0
-        setpoint = samples.setpoint
-        meant = self._part_frame.position(setpoint.position)
-        points, joints = meant, samples.joint_position
-        if self._along == "joints":
-            joints = samples.real(self._part_frame)
-            points = self._part_frame.position(joints)
+        setpoint, frame = samples.setpoint, self._part_frame
+        joints = samples.real(frame) if self._along == "joints" else setpoint.position
         off = np.zeros(len(samples), np.bool_) if standing is None else standing
-        lag = np.abs(meant - points).sum(axis=1)
-        turn, axis = self._part_frame.direction(joints), None
-        if self.tilts:
-            turn, axis = self._part_frame.tool_x(joints), self._part_frame.tool_direction(joints)
-            leant = axis - self._part_frame.tool_direction(setpoint.position)
-            lag += self.tool.flute * np.linalg.norm(leant, axis=1)
-        way = _Way(points, turn, axis, lag, setpoint.time, setpoint.line, rapid, off)
+        reach = self.tool.flute if self.tilts else None
+        motion = tool_motion(samples, joints, frame, reach, rapid, off)
         if self._stand is None:
-            self.start_depth = self._depth_at(way[:1].lowered(self.plan.longer(self.tool)))
-        self._stand = way[-1:]
+            self.start_depth = self._depth_at(motion[:1].lowered(self.plan.longer(self.tool)))
+        self._stand = motion[-1:]
         for run, tool in self.plan.runs(setpoint.move):
             self._change_tools(
-                way[run.start : run.start + 1], max(int(setpoint.move[run.start]), 0)
+                motion[run.start : run.start + 1], max(int(setpoint.move[run.start]), 0)
             )
             if self.halted is not None:
                 break
             if tool.number != self.tool.number:
                 self._last = None
             self.tool = tool
-            for part, edge in _by_edge(samples, run):
-                force = self._cut(way[part].lowered(self.plan.longer(tool)), edge=edge)
+            for part, edge in by_edge(samples, run):
+                force = self._cut(motion[part].lowered(self.plan.longer(tool)), edge=edge)
                 self.force[part.start : part.start + len(force)] = force
         return sum(self._removed.values()) - before
 
@@ -260,7 +207,7 @@ class Cutter:
             power_w=self._power,
         )
 
-    def _change_tools(self, stand: "_Way", move: int | None) -> None:
+    def _change_tools(self, stand: ToolMotion, move: int | None) -> None:
         """Bring the tools that come before a move into the spindle, one after the other.
 
         Args:
@@ -277,7 +224,7 @@ class Cutter:
                 self.tool, self._last = change.tool, None
                 self._note_arrival(stand.lowered(self.plan.longer(change.tool)), change.line)
 
-    def _note_arrival(self, stand: "_Way", line: int) -> None:
+    def _note_arrival(self, stand: ToolMotion, line: int) -> None:
         """Note that the tool which has just come into the spindle stands in the material."""
         depth = self._depth_at(stand)
         if not depth:
@@ -289,7 +236,7 @@ class Cutter:
         if self._halts:
             self.halted = self._gouges.event(("arrival", line))
 
-    def _depth_at(self, stand: "_Way") -> float:
+    def _depth_at(self, stand: ToolMotion) -> float:
         """How deep the tool stands in the material [mm].
 
         Args:
@@ -300,25 +247,25 @@ class Cutter:
         met = contact.measure(here, np.ones(1, np.bool_))
         return max((float(overlap.depth[0]) for overlap in met.values()), default=0.0)
 
-    def _cut(self, way: "_Way", *, edge: bool) -> FloatArray:
+    def _cut(self, motion: ToolMotion, *, edge: bool) -> FloatArray:
         """Cut with one tool from the last point of the run before through all of this one's.
 
         Args:
-            way: Where the tool went.
+            motion: Of the tool.
             edge: Whether it has its edge: without one it takes nothing off, and what it must not
                 meet it still meets.
 
         Returns:
             Force on the tool during each sample that was cut along, shape (m, 3) [N].
         """
-        before, since = (way.ends[:1], way.time[0]) if self._last is None else self._last
-        self._last = way.ends[-1:].copy(), float(way.time[-1])
-        points = before.followed_by(way.ends)
+        before, since = (motion.ends[:1], motion.time[0]) if self._last is None else self._last
+        self._last = motion.ends[-1:].copy(), float(motion.time[-1])
+        points = before.followed_by(motion.ends)
         cutter = profile(self.tool)
-        group = way.group
+        group = motion.group
         chosen = self.material.straight(points, np.concatenate([group[:1], group]), cutter)
         points, sample = points[chosen], chosen[1:] - 1
-        rapid, off, lag = way.rapid[sample], way.standing[sample], way.lag[sample]
+        rapid, off, lag = motion.rapid[sample], motion.standing[sample], motion.lag[sample]
         tip, ends, reach = points.tip, points.axis, self.tool.flute
         rapids = self._rapids.suspects(tip, rapid, lag, ends, reach)
         standing = self._standing.suspects(tip, ~rapid & off, lag, ends, reach)
@@ -330,7 +277,7 @@ class Cutter:
         self._travelled += float(_lengths(points.tip).sum())
         so_far = self._removed.get(self.tool.number, 0.0)
         self._removed[self.tool.number] = so_far + float(found.volume.sum())
-        time, line = way.time[sample], way.line[sample]
+        time, line = motion.time[sample], motion.line[sample]
         axis = None if points.axis is None else points.axis[1:]
         stretches = Stretches(points.tip, time, line, rapid[:count], *found, axis)
         latest = self._note_contacts(stretches, met)
@@ -427,57 +374,6 @@ class Cutter:
             pushed = tool_force(stretches, force, self.tool, self._material)
         self._cut_log.add(stretches, cutting_width(stretches, self.tool.diameter), force)
         return pushed
-
-
-@dataclasses.dataclass(frozen=True, slots=True)
-class _Way:
-    """Where the tool went: n samples."""
-
-    points: FloatArray
-    turn: FloatArray
-    axis: FloatArray | None
-    lag: FloatArray
-    time: FloatArray
-    line: IntArray
-    rapid: BoolArray
-    standing: BoolArray
-
-    def __getitem__(self, run: slice) -> "_Way":
-        return _Way(
-            self.points[run],
-            self.turn[run],
-            None if self.axis is None else self.axis[run],
-            self.lag[run],
-            self.time[run],
-            self.line[run],
-            self.rapid[run],
-            self.standing[run],
-        )
-
-    @property
-    def ends(self) -> Points:
-        """Where the tool was at each sample."""
-        return Points(self.points, self.turn, self.axis)
-
-    def lowered(self, by: float) -> "_Way":
-        """The way of a tool that is longer by so much [mm]."""
-        down = np.array([0.0, 0.0, by]) if self.axis is None else by * self.axis
-        return dataclasses.replace(self, points=self.points - down)
-
-    @property
-    def group(self) -> IntArray:
-        """A number that changes wherever a stretch must end."""
-        return self.line * 4 + self.rapid * 2 + self.standing
-
-
-def _by_edge(samples: Samples, run: slice) -> Iterator[tuple[slice, bool]]:
-    """The samples of a run up to the one at which the tool loses its edge, and those from there on."""
-    gone = np.zeros(0) if samples.tool is None else np.flatnonzero(samples.tool.broken[run])
-    lost = run.start + int(gone[0]) if len(gone) else run.stop
-    if lost > run.start:
-        yield slice(run.start, lost), True
-    if lost < run.stop:
-        yield slice(lost, run.stop), False
 
 
 def _lengths(points: FloatArray) -> FloatArray:

@@ -3,11 +3,12 @@
 import dataclasses
 import math
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
 from twin.columns import Columns, join
-from twin.cutting.events import Stretches
+from twin.cutting.events import CutEvent, Stretches
 from twin.nc.canonical import FloatArray, IntArray
 
 BINS = 512
@@ -21,6 +22,10 @@ CHUNKS_FRESH = 64
 """Chunks that are entered before they are put together: a live cut comes in thirty a second."""
 LINES_REMEMBERED = 1 << 14
 """Lines that are kept at least, where there are so many: 3 MB, and 16 times what is told of."""
+
+
+HEIGHT_MAP, TRI_DEXEL = "height map", "tri-dexel"
+"""What describes the material."""
 
 
 @dataclasses.dataclass(slots=True)
@@ -40,6 +45,48 @@ class BlockCut:
     depth_mm: float = 0.0
     width_mm: float = 0.0
     force_n: float | None = None
+
+
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class CutResult:
+    """What was cut."""
+
+    removed_mm3: float
+    """Material taken off [mm³]."""
+    removed_by_tool_mm3: Mapping[int, float]
+    """What each tool took off, by its number, in the order of use [mm³]."""
+    stock: str
+    """What described the material: ``HEIGHT_MAP`` where the tool kept to the part's Z, else ``TRI_DEXEL``."""
+    cell_mm: float
+    """Side of a cell of it [mm]."""
+    air_share: float
+    """Share of the cutting feed's path that met no material."""
+    gouges: tuple[CutEvent, ...]
+    """Flutes too short, shank, holder or head in the material; one each per line, of many the
+    deepest."""
+    rapid_into_stock: tuple[CutEvent, ...]
+    """Rapids that met material, one per move."""
+    spindle_off: tuple[CutEvent, ...]
+    """Feeds that met material with the spindle off, one per move."""
+    blocks: Mapping[int, BlockCut]
+    """What each line took off; of many those that took off the most or met the greatest force."""
+    blocks_forgotten: int
+    """How often a line was let go of because enough others took off more."""
+    bin_s: float
+    """Length of a bin of ``removed_over_time`` [s]."""
+    removed_over_time: tuple[float, ...]
+    """Material taken off in each bin of time, from 0 on [mm³]."""
+    force_n: float | None
+    """Greatest mean cutting force [N]; None: the job names no material or no spindle speed."""
+    power_w: float | None
+    """Greatest mean cutting power [W]; None as for the force."""
+
+    def as_json(self) -> dict[str, Any]:
+        """The ``cut`` object of ``result.json``."""
+        result = dataclasses.asdict(self)
+        blocks = {line: dataclasses.asdict(block) for line, block in self.blocks.items()}
+        result["blocks"] = [{"line": line, **block} for line, block in sorted(blocks.items())]
+        return result
 
 
 @dataclasses.dataclass(frozen=True, slots=True)

@@ -64,7 +64,7 @@ class StockContact:
             head: What is above its holder; None: nothing.
         """
         self._material = material
-        self._edge = dataclasses.astuple(edge)
+        self._edge = edge
         self._uprights = above_edge(tool, head)
         self._most = {
             solid.name: BRUSH_MM if solid.name == "flute" else SCRAPE_MM for solid in self._uprights
@@ -100,7 +100,7 @@ class StockContact:
             middle[:, 0] += x * turn[:, 0] - y * turn[:, 1]
             middle[:, 1] += x * turn[:, 1] + y * turn[:, 0]
         if solid.round:
-            profile = (solid.half[0], solid.half[0], 0.0, 0.0)
+            profile = Profile(solid.half[0], solid.half[0])
             round_overlap(stood, middle, profile, solid.above, overlap)
         else:
             middle[:, 2] += solid.above

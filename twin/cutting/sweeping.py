@@ -1,6 +1,5 @@
 """Sweep the tool through a height map, on another core too where there is one."""
 
-import dataclasses
 from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
 
@@ -62,11 +61,11 @@ def sweep_lines(
         cores: Cores to use, by default those that this process may run on.
     """
     count = max(len(points) - 1, 0)
-    tally, grid, profile = np.zeros((count, 2, 4)), material.grid, dataclasses.astuple(edge)
+    tally, grid = np.zeros((count, 2, 4)), material.grid
     marks = Marks(np.zeros((0, 0)), np.zeros(count)) if marks is None else marks
 
     def cut(rows: tuple[int, int]) -> Rectangle:
-        return sweep(material.heights, grid, points, profile, tally, marks, stood, rows)
+        return sweep(material.heights, grid, points, edge, tally, marks, stood, rows)
 
     if count >= FEWEST_LINES and (available_cores() if cores is None else cores) > 1:
         with ThreadPoolExecutor(1, "sweep") as other:

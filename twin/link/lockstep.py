@@ -35,7 +35,7 @@ from twin.machine.watching.alarms import Alarm, AlarmStandsError, NearMiss
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
 from twin.recording.form import Samples
-from twin.run.pipeline import Motion
+from twin.run.pipeline import MachineMotion
 
 TICKS_PER_CHUNK = 500
 """Samples that are handed on at once."""
@@ -56,7 +56,7 @@ class _Phase(enum.Enum):
     OVER = enum.auto()
 
 
-class LockstepMotion(Motion):
+class LockstepMotion(MachineMotion):
     """A machine that a control commands; iterate it for the samples of the control's program.
 
     The samples begin with the program, at rest at its start, and end a moment after its last

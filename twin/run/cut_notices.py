@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from twin.cutting.cut import CutResult
+from twin.cutting.cut_log import CutResult
 from twin.cutting.cut_watch import CutSlip
 from twin.job.job_file import JobFile, ToleranceTable
 from twin.run.machining import Machining

@@ -5,8 +5,10 @@ from pathlib import Path
 
 import numpy as np
 
-from twin.cutting.cut import CutResult, Cutter
+from twin.cutting.cut import Cutter
+from twin.cutting.cut_log import CutResult
 from twin.cutting.events import CutEvent
+from twin.cutting.height_map import HeightMap
 from twin.cutting.measuring.inspection import Inspection
 from twin.cutting.measuring.measured_part import measured
 from twin.cutting.measuring.nominal import HeightMapNominalWatch, NominalGouge, NominalWatch
@@ -128,6 +130,11 @@ class Machining(Observer):
     def cutter(self) -> Cutter | None:
         """What cuts the stock; None without one."""
         return self._cutter
+
+    @property
+    def laid(self) -> HeightMap | None:
+        """The blank as far as it is cut; None without one, and where the part is cut from several sides."""
+        return None if self._cutter is None or self._cutter.tilts else self._cutter.map
 
     def end_program(self) -> None:
         """Look at the tools that come behind the last move, which may be in the part then."""

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from twin.compare.figures import Figures
 from twin.compare.verdict import Check, Reason, Verdict, judge
-from twin.cutting.cut import CutResult
+from twin.cutting.cut_log import CutResult
 from twin.cutting.forces.load_log import LoadLog
 from twin.cutting.measuring.inspection import Inspection
 from twin.cutting.measuring.nominal import NominalGouge
@@ -37,7 +37,7 @@ from twin.run.observers import (
     ToolUse,
     Traced,
 )
-from twin.run.pipeline import Motion
+from twin.run.pipeline import MachineMotion
 from twin.run.preparation import Preparation
 from twin.run.program_watch import ProgramWatch
 from twin.run.scope import Scope, nothing_judged, scope_of
@@ -105,7 +105,7 @@ def outcome_of(
     preparation: Preparation,
     dry_run: DryRun,
     followers: Followers,
-    motion: Motion | None,
+    motion: MachineMotion | None,
     alarms: tuple[Alarm, ...],
     floats: str | None,
 ) -> Outcome:

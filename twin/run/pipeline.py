@@ -7,6 +7,7 @@ from typing import NamedTuple
 from twin.coupling.cutting_process import CuttingProcess
 from twin.coupling.operations import ProgramOperation, program_process
 from twin.cutting.axis_load import AxisLoad
+from twin.cutting.height_map import HeightMap
 from twin.cutting.program_summary import ProgramSummary
 from twin.errors import ConfigError
 from twin.job.job_file import JobFile
@@ -25,7 +26,7 @@ from twin.run.dry_run import DryRun, InterpretedProgram
 from twin.run.layout import Layout
 
 
-class Motion(abc.ABC):
+class MachineMotion(abc.ABC):
     """What moves the machine along a program; iterated once, for the samples of its joints.
 
     Attributes:
@@ -60,7 +61,7 @@ class Forces(NamedTuple):
     load: Load | None = None
 
 
-class ProgramMotion(Motion):
+class ProgramMotion(MachineMotion):
     """Setpoints of a program, held at their end and followed by the simulated drives."""
 
     def __init__(
@@ -143,14 +144,23 @@ def planned(
     )
 
 
-def cutting_forces(job: JobFile, machine: Machine, dry_run: DryRun, layout: Layout) -> Forces:
+def cutting_forces(
+    job: JobFile, machine: Machine, dry_run: DryRun, layout: Layout, laid: HeightMap | None = None
+) -> Forces:
     """What the cut of a job pushes the axes with.
+
+    Args:
+        job: Says which force is simulated.
+        machine: It is pushed.
+        dry_run: What the program brings into the spindle when.
+        layout: Where the part is.
+        laid: The blank, if it is on the table already.
 
     Raises:
         ConfigError: The job wants a force that cannot be computed.
     """
     summary, frame = dry_run.summary, layout.part_frame
-    process = program_process(job, machine, summary, frame, layout.part_zero)
+    process = program_process(job, machine, summary, frame, layout.part_zero, laid)
     if process is not None or not job.cutting_load:
         return Forces(process)
     if job.stock is None:

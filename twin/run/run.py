@@ -26,7 +26,7 @@ from twin.run.observers import (
     observed,
 )
 from twin.run.outcome import Followers, Outcome, outcome_of, refuse_unjudged_loads
-from twin.run.pipeline import Motion, ProgramMotion, cutting_forces, grown, planned
+from twin.run.pipeline import MachineMotion, ProgramMotion, cutting_forces, grown, planned
 from twin.run.preparation import Preparation
 from twin.run.progress import Progress, StageClock
 from twin.version import __version__
@@ -75,7 +75,11 @@ class Run:
         return interpret_all(self.preparation, self.part_zero, self.clock)
 
     def execute(
-        self, dry_run: DryRun, out: Path | None, progress: Progress, motion: Motion | None = None
+        self,
+        dry_run: DryRun,
+        out: Path | None,
+        progress: Progress,
+        motion: MachineMotion | None = None,
     ) -> Outcome:
         """Run the chain and write ``recording.h5`` and ``part.stl`` into a folder.
 
@@ -146,13 +150,16 @@ class Run:
             tools=ToolTimes(summary.tools, machine.file.servo_period_s),
         )
 
-    def _motion(self, dry_run: DryRun, followers: Followers, given: Motion | None) -> Motion:
+    def _motion(
+        self, dry_run: DryRun, followers: Followers, given: MachineMotion | None
+    ) -> MachineMotion:
         """What moves the machine; those who judge it know of every move before it is simulated."""
         job, program, summary = self.preparation.job.file, dry_run.program, dry_run.summary
         expect = followers.compared.comparison.expect
         if given is None:
             setpoints = planned(program, self.machine, self.part_zero, expect)
-            forces = cutting_forces(job, self.machine, dry_run, self.layout)
+            laid = followers.machining.laid
+            forces = cutting_forces(job, self.machine, dry_run, self.layout, laid)
             watched = self.clock.watch("plan", setpoints)
             motion = ProgramMotion(watched, self.model, summary, forces)
         else:
@@ -167,7 +174,7 @@ class Run:
         self,
         dry_run: DryRun,
         followers: Followers,
-        motion: Motion | None,
+        motion: MachineMotion | None,
         alarms: tuple[Alarm, ...],
         out: Path | None,
     ) -> Outcome:
@@ -190,7 +197,7 @@ class Run:
         return nullcontext() if out is None else record(out / "recording.h5", self.header())
 
 
-def _alarms(motion: Motion, followers: Followers) -> tuple[Alarm, ...]:
+def _alarms(motion: MachineMotion, followers: Followers) -> tuple[Alarm, ...]:
     """Tools that broke, which stops no machine, and what stopped it, if anything did."""
     machining, until_s = followers.machining, followers.reached.time_s
     if machining.alarm is None and motion.alarm is None:

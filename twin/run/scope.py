@@ -6,7 +6,7 @@ from typing import Any
 
 from twin.compare.figures import Figures
 from twin.compare.verdict import Check, Reason
-from twin.cutting.cut import TRI_DEXEL, CutResult
+from twin.cutting.cut_log import TRI_DEXEL, CutResult
 from twin.cutting.program_summary import ProgramSummary
 from twin.job.job_file import JobFile, ToleranceTable
 from twin.job.load import DEFAULT, Job

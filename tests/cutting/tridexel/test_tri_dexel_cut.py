@@ -10,7 +10,8 @@ import pytest
 import trimesh
 
 from tests.cutting.conftest import samples
-from twin.cutting.cut import HEIGHT_MAP, TRI_DEXEL, Cutter
+from twin.cutting.cut import Cutter
+from twin.cutting.cut_log import HEIGHT_MAP, TRI_DEXEL
 from twin.errors import ConfigError
 from twin.files.shipped import machine_file
 from twin.job.job_file import StockTable, ToolTable

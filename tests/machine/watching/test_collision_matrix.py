@@ -8,7 +8,7 @@ import pytest
 
 from tests.machine.watching.test_clearance import along
 from twin.errors import ConfigError
-from twin.files.shipped import machine_file
+from twin.files.shipped import machine_file, machine_names
 from twin.job.fixture import FixtureTable
 from twin.job.job_file import ToolTable
 from twin.machine.description.config import Blank, Machine
@@ -57,7 +57,7 @@ def built_to_pass(model: mujoco.MjModel, one: int, two: int) -> bool:
     return not names.intersection(CLAMPED) and (not any(tool) or gantry)
 
 
-MACHINES = ("mill4", "mill4_light", "mill3", "mill4a", "mill5", "mill5h")
+MACHINES = tuple(machine_names())
 PAIRS = [pair for name in MACHINES for pair in all_pairs(name)]
 
 

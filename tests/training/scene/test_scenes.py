@@ -125,3 +125,12 @@ def test_a_scene_without_scripts_cannot_be_rehearsed(tmp_path):
     (tmp_path / "scene.toml").write_text(MINIMAL)
     with pytest.raises(ScriptError, match="no solution to rehearse"):
         rehearse(read_scene(tmp_path / "scene.toml"))
+
+
+@pytest.mark.parametrize("name", scene_names())
+def test_a_program_says_nothing_in_one_language_alone(name):
+    """A pupil reads the scene in his own; what a TNC writes beside its Q parameters is the control's."""
+    preparation = scene(name).preparation
+    if preparation.dialect.name != "heidenhain":
+        for line in preparation.source.lines:
+            assert not re.search(r"[(;$].*[^\W\d_]{3,}", line), line

@@ -18,10 +18,10 @@ def test_every_part_is_held_and_nothing_is_in_two_places(name):
     preparation = scene(name).preparation
     job, machine = preparation.job.file, preparation.machine
     assert machine.file.fixtures
-    if job.stock is None or not job.fixtures:
-        return  # What it stands for, or holds it, is a fixture of its own.
     blank = lay_out(job, machine).blank
     refuse_overlaps(MachineModel(machine, job.tools[0], blank))
+    if job.stock is None or not job.fixtures:
+        return  # What stands for it, or holds it, is a fixture of its own.
     names = {fixture.name for fixture in job.fixtures}
     assert ({"chuck"} if job.stock.shape == "cylinder" else {"vise bed", "fixed jaw"}) <= names
     assert all(fixture.mass > 0.0 for fixture in job.fixtures)

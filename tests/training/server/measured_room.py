@@ -127,7 +127,7 @@ class MeasuredRoom:
                 raise TimeoutError(f"the program does not run: {room.alarm}, {room.line}")
             time.sleep(LONG_LOOK_S)
 
-    def rate_limited(self) -> float:
+    def wait_for_braking(self) -> float:
         """Wait for the first loss of speed; returns when it was, by ``time.time`` [s]."""
         self._slowest_steady = (1.0 - GONE) * self._speed()
         self._braked.clear()
@@ -149,9 +149,9 @@ class RoomProcess:
     def __init__(self, line: Connection) -> None:
         self._line = line
 
-    def begin(self, name: str, *arguments: Any) -> None:
-        """Ask for something that takes a while."""
-        self._line.send((name, arguments))
+    def begin(self, method: Callable[..., Any], *arguments: Any) -> None:
+        """Ask for something that takes a while: for a method of ``MeasuredRoom``."""
+        self._line.send((method.__name__, arguments))
 
     def end(self) -> Any:
         """What it said.
@@ -163,9 +163,9 @@ class RoomProcess:
             raise TimeoutError("the training room did not do what it was asked for")
         return self._line.recv()
 
-    def ask(self, name: str, *arguments: Any) -> Any:
+    def ask(self, method: Callable[..., Any], *arguments: Any) -> Any:
         """Ask for something, and wait."""
-        self.begin(name, *arguments)
+        self.begin(method, *arguments)
         return self.end()
 
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import pytest
 from panel_player import browser
 
-from tests.training.server.measured_room import RoomProcess, room_process
+from tests.training.server.measured_room import MeasuredRoom, RoomProcess, room_process
 
 MINUTES = 20.0
 LOOK_S = 10.0
@@ -35,8 +35,8 @@ def looks(room: RoomProcess, minutes: float) -> Iterator[Look]:
     """Keep the room busy, and look at it."""
     begin, programs = time.perf_counter(), 0
     while (passed := time.perf_counter() - begin) < 60.0 * minutes:
-        programs += room.ask("keep_busy", 100)
-        machine_s, lost_s, memory_mb = room.ask("condition")
+        programs += room.ask(MeasuredRoom.keep_busy, 100)
+        machine_s, lost_s, memory_mb = room.ask(MeasuredRoom.condition)
         yield Look(passed, machine_s, lost_s, memory_mb, programs)
         time.sleep(LOOK_S)
 
@@ -45,7 +45,7 @@ def looks(room: RoomProcess, minutes: float) -> Iterator[Look]:
 def test_a_long_session_loses_no_time_and_does_not_grow() -> None:
     seen: list[Look] = []
     with room_process() as room, browser() as opened:
-        addresses = room.ask("addresses")
+        addresses = room.ask(MeasuredRoom.addresses)
         for role in ("operator", "watcher"):
             page = opened.new_context(viewport={"width": 1280, "height": 720}).new_page()
             page.goto(addresses[role])

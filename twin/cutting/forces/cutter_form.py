@@ -28,7 +28,7 @@ def cutter_form(tool: ToolTable) -> CutterForm:
     helix = math.radians(tool.helix_angle)
     rise = math.tau / BINS * edge.radius / math.tan(helix) if helix else math.inf
     return CutterForm(
-        profile=(edge.radius, edge.flat, edge.corner, edge.slope),
+        profile=edge,
         side_from=float(edge.height(np.array(edge.radius))),
         flute=tool.flute,
         teeth=tool.teeth,

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from twin.compilation.kernel import array_kernel
 from twin.cutting.kernels.sweep import Grid, chord
-from twin.cutting.kernels.tool_height import lowest_height, steepness
+from twin.cutting.kernels.tool_height import Profile, lowest_height, steepness
 from twin.cutting.kernels.wall_distance import HALF, WallDistance, nearest_foot, reach_before
 from twin.nc.canonical import FloatArray
 
@@ -44,7 +44,7 @@ class Stood(NamedTuple):
 def round_overlap(
     stood: Stood,
     points: FloatArray,
-    profile: tuple[float, float, float, float],
+    profile: Profile,
     above: float,
     overlap: Overlap,
 ) -> None:
@@ -53,12 +53,12 @@ def round_overlap(
     Args:
         stood: The material.
         points: Tool tip positions, shape (n + 1, 3) [mm].
-        profile: Radius, flat, corner, slope of its lower end (``twin.cutting.tools.Profile``).
+        profile: Of its lower end.
         above: Height of its lower end above the tip [mm].
         overlap: Set to what was found.
     """
     heights, grid = stood.heights, stood.grid
-    cell, radius = grid.cell, profile[0]
+    cell, radius = grid.cell, profile.radius
     outer = radius + HALF * cell
     for i in range(len(points) - 1):
         overlap.reach[i] = 0.0

@@ -7,7 +7,7 @@ one shape of tool, without a branch, so that the compiler takes several cells in
 import math
 
 from twin.compilation.kernel import arithmetic_kernel
-from twin.cutting.kernels.tool_height import cone_turning_point, lowest_height
+from twin.cutting.kernels.tool_height import Profile, cone_turning_point, lowest_height
 from twin.nc.canonical import FloatArray
 
 
@@ -18,7 +18,7 @@ def lowest_in_run(
     cell: float,
     a: FloatArray,
     b: FloatArray,
-    profile: tuple[float, float, float, float],
+    profile: Profile,
 ) -> None:
     """Lowest height of a tool that moves straight from a to b, over cells that lie along X.
 
@@ -28,7 +28,7 @@ def lowest_in_run(
         cell: From one cell to the next [mm].
         a: Tool tip at the beginning, shape (3,) [mm].
         b: At the end.
-        profile: Radius, flat, corner, slope of ``twin.cutting.tools.Profile``.
+        profile: Of the tool.
     """
     radius, flat, corner, _ = profile
     standing = a[0] == b[0] and a[1] == b[1]
@@ -75,7 +75,7 @@ def _level_corner(
     cell: float,
     a: FloatArray,
     b: FloatArray,
-    profile: tuple[float, float, float, float],
+    profile: Profile,
 ) -> None:
     radius, flat, corner, _ = profile
     dx, dy, inverse = _way(a, b)
@@ -94,7 +94,7 @@ def _level_cone(
     cell: float,
     a: FloatArray,
     b: FloatArray,
-    profile: tuple[float, float, float, float],
+    profile: Profile,
 ) -> None:
     radius, flat, _, slope = profile
     dx, dy, inverse = _way(a, b)
@@ -155,7 +155,7 @@ def _inclined_cone(
     cell: float,
     a: FloatArray,
     b: FloatArray,
-    profile: tuple[float, float, float, float],
+    profile: Profile,
 ) -> None:
     radius, flat, _, slope = profile
     dx, dy, inverse = _way(a, b)

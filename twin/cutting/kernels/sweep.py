@@ -1,5 +1,6 @@
 """Hot loops of cutting: sweep the tool along straight stretches."""
 
+import enum
 import math
 from typing import NamedTuple
 
@@ -8,6 +9,7 @@ import numpy as np
 from twin.compilation.compilable import inlined
 from twin.compilation.kernel import arithmetic_kernel, threaded_kernel
 from twin.cutting.kernels.run_heights import lowest_in_run
+from twin.cutting.kernels.tool_height import Profile
 from twin.nc.canonical import FloatArray, IntArray
 
 RUN = 128
@@ -20,7 +22,18 @@ ODD_ROWS = (1, 2)
 
 _WHOLE = 1.5 * 2.0**52
 """Added to a number that is much smaller, it leaves no room for what is behind the point."""
-_LOST, _COLUMNS, _ROWS, _DEEPEST = range(4)
+
+
+class _Tally(enum.IntEnum):
+    """What a line took off: columns of ``tally``."""
+
+    LOST = 0
+    """Height [mm]."""
+    COLUMNS = 1
+    """That times the number of the column."""
+    ROWS = 2
+    DEEPEST = 3
+    """Greatest height [mm]."""
 
 
 class Grid(NamedTuple):
@@ -84,7 +97,7 @@ class _Bench(NamedTuple):
 
     heights: FloatArray
     grid: Grid
-    profile: tuple[float, float, float, float]
+    profile: Profile
     marks: Marks
     rows: tuple[int, int]
     low: IntArray
@@ -99,7 +112,7 @@ def sweep(
     heights: FloatArray,
     grid: Grid,
     points: FloatArray,
-    profile: tuple[float, float, float, float],
+    profile: Profile,
     tally: FloatArray,
     marks: Marks,
     stood: bool,
@@ -114,7 +127,7 @@ def sweep(
         heights: The height map, shape (ny, nx) [mm]; changed in place.
         grid: Where its cells lie.
         points: Tool tip positions, shape (n, 3) [mm].
-        profile: Radius, flat, corner, slope of ``twin.cutting.tools.Profile``.
+        profile: Of the tool.
         tally: What each line took off of rows of even and of odd number is added to it, shape
             (n - 1, 2, 4): height [mm], that times the number of the column and of the row, and the
             greatest height. ``tally_removal`` reads it.
@@ -125,7 +138,7 @@ def sweep(
     Returns:
         First and last-but-one row, first and last-but-one column of the cells that changed.
     """
-    count = int(2.0 * profile[0] / grid.cell) + 2
+    count = int(2.0 * profile.radius / grid.cell) + 2
     bench = _Bench(
         heights, grid, profile, marks, rows, np.zeros(2, np.int64),
         np.zeros((2, 2, count)), np.zeros(RUN), tally, np.zeros(4, np.int64),
@@ -147,15 +160,15 @@ def tally_removal(tally: FloatArray, points: FloatArray, grid: Grid, removal: Re
     """
     for i in range(len(tally)):
         even, odd = tally[i, 0], tally[i, 1]
-        lost = even[_LOST] + odd[_LOST]
+        lost = even[_Tally.LOST] + odd[_Tally.LOST]
         removal.volume[i] = lost * grid.cell * grid.cell
-        removal.depth[i] = max(even[_DEEPEST], odd[_DEEPEST])
+        removal.depth[i] = max(even[_Tally.DEEPEST], odd[_Tally.DEEPEST])
         removal.aside[i] = 0.0
         dx, dy = points[i + 1, 0] - points[i, 0], points[i + 1, 1] - points[i, 1]
         length = math.hypot(dx, dy)
         if lost > 0.0 and length > 0.0:
-            column = (even[_COLUMNS] + odd[_COLUMNS]) / lost
-            row = (even[_ROWS] + odd[_ROWS]) / lost
+            column = (even[_Tally.COLUMNS] + odd[_Tally.COLUMNS]) / lost
+            row = (even[_Tally.ROWS] + odd[_Tally.ROWS]) / lost
             x = grid.origin[0] + column * grid.cell - points[i, 0]
             y = grid.origin[1] + row * grid.cell - points[i, 1]
             removal.aside[i] = (y * dx - x * dy) / length
@@ -163,7 +176,7 @@ def tally_removal(tally: FloatArray, points: FloatArray, grid: Grid, removal: Re
 
 @arithmetic_kernel
 def _sweep_lines(bench: _Bench, points: FloatArray, stood: bool) -> None:
-    known, flat = False, bench.profile[1] >= bench.profile[0]
+    known, flat = False, bench.profile.flat >= bench.profile.radius
     for i in range(len(points) - 1):
         a, b = points[i], points[i + 1]
         if min(a[2], b[2]) >= bench.grid.top:
@@ -190,7 +203,7 @@ def _lay_disc(bench: _Bench, center: FloatArray, which: int) -> None:
     """
     grid, columns = bench.grid, float(bench.heights.shape[1])
     radius, cell, first, end = (
-        bench.profile[0], grid.cell, bench.spans[which, 0], bench.spans[which, 1],
+        bench.profile.radius, grid.cell, bench.spans[which, 0], bench.spans[which, 1],
     )  # fmt: skip
     low = math.ceil((center[1] - radius - grid.origin[1]) / cell)
     bench.low[which] = low
@@ -252,7 +265,10 @@ def _outline(bench: _Bench, a: FloatArray, b: FloatArray, line: int) -> _Outline
     low_a, low_b, (begin, step) = bench.low[before], bench.low[after], bench.rows
     low = max(0, min(low_a, low_b))
     high = min(bench.heights.shape[0], max(low_a, low_b) + bench.spans.shape[2])
-    right, left = _side(bench, a, b, bench.profile[0]), _side(bench, a, b, -bench.profile[0])
+    right, left = (
+        _side(bench, a, b, bench.profile.radius),
+        _side(bench, a, b, -bench.profile.radius),
+    )
     return _Outline(before, after, right, left, low + (begin - low) % step, high)
 
 
@@ -339,7 +355,7 @@ def _sweep_line(bench: _Bench, a: FloatArray, b: FloatArray, line: int, done: bo
         line: Its number.
         done: Whether nothing is left of what the tool at the beginning meets, or behind it.
     """
-    flat, outline = bench.profile[1] >= bench.profile[0], _outline(bench, a, b, line)
+    flat, outline = bench.profile.flat >= bench.profile.radius, _outline(bench, a, b, line)
     begins_lower = a[2] <= b[2]
     lower = a if begins_lower else b
     for row in range(outline.low, outline.high, bench.rows[1]):
@@ -417,10 +433,10 @@ def _add(
 ) -> None:
     """Add what a run of cells lost: in all, that times the columns' numbers, and at most [mm]."""
     tally, changed = bench.tally[line, row % 2], bench.changed
-    tally[_LOST] += cut[0]
-    tally[_COLUMNS] += cut[1]
-    tally[_ROWS] += cut[0] * row
-    tally[_DEEPEST] = max(tally[_DEEPEST], cut[2])
+    tally[_Tally.LOST] += cut[0]
+    tally[_Tally.COLUMNS] += cut[1]
+    tally[_Tally.ROWS] += cut[0] * row
+    tally[_Tally.DEEPEST] = max(tally[_Tally.DEEPEST], cut[2])
     changed[0], changed[1] = min(changed[0], row), max(changed[1], row + 1)
     changed[2], changed[3] = min(changed[2], run[0]), max(changed[3], run[1])
 

@@ -1,6 +1,9 @@
 """How low a tool that moves straight comes over a place: the rule that sweep and overlap share."""
 
 import math
+from typing import NamedTuple
+
+import numpy as np
 
 from twin.compilation.kernel import array_kernel
 from twin.nc.canonical import FloatArray
@@ -12,26 +15,37 @@ _FOUND = 1e-9
 then falls with its square."""
 
 
-@array_kernel
-def below_capsule(
-    x: float, y: float, z: float, a: FloatArray, b: FloatArray, radius: float
-) -> bool:
-    """Whether a point no higher than a swept ball's centres is outside of it: a cheap refusal."""
-    dx, dy, dz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
-    px, py, pz = x - a[0], y - a[1], z - a[2] - radius
-    if pz > min(0.0, dz):
-        return False
-    squared = dx * dx + dy * dy + dz * dz
-    if squared > 0.0:
-        t = min(1.0, max(0.0, (px * dx + py * dy + pz * dz) / squared))
-        px, py, pz = px - t * dx, py - t * dy, pz - t * dz
-    return px * px + py * py + pz * pz >= radius * radius
+class Profile(NamedTuple):
+    """The surface that a turning cutter sweeps, from the axis outwards.
+
+    A disc of ``flat`` radius, then a quarter round of ``corner`` radius or a cone of ``slope`` up
+    to ``radius``: one form for flat, ball, bull-nose, drill and chamfer cutters. It is convex,
+    which is what makes the lowest height over a straight sweep unique.
+
+    Attributes:
+        radius: Of the cutting edge [mm].
+        flat: Radius of the disc at the tip [mm].
+        corner: Radius of the rounding [mm]; 0 for none.
+        slope: Rise of the cone over radius; 0 for none.
+    """
+
+    radius: float
+    flat: float
+    corner: float = 0.0
+    slope: float = 0.0
+
+    def height(self, radius: FloatArray) -> FloatArray:
+        """Height of the edge above the tip at distances from the axis [mm]; inf beyond the edge."""
+        beyond = np.maximum(np.asarray(radius, np.float64) - self.flat, 0.0)
+        if self.corner:
+            rise = self.corner - np.sqrt(np.maximum(self.corner**2 - beyond**2, 0.0))
+        else:
+            rise = self.slope * beyond
+        return np.where(np.asarray(radius) <= self.radius, rise, np.inf)
 
 
 @array_kernel
-def lowest_height(
-    x: float, y: float, a: FloatArray, b: FloatArray, profile: tuple[float, float, float, float]
-) -> float:
+def lowest_height(x: float, y: float, a: FloatArray, b: FloatArray, profile: Profile) -> float:
     """Lowest height over (x, y) of a tool that moves straight from a to b; inf if it misses.
 
     With t from 0 to 1 the distance from the axis is convex in t, the profile is convex and rises
@@ -115,7 +129,7 @@ def _turning_point(
     squared: float,
     offset: float,
     dz: float,
-    profile: tuple[float, float, float, float],
+    profile: Profile,
 ) -> float:
     """Where the height over a cell stops falling [share of the line].
 
@@ -153,7 +167,7 @@ def _rise(
     squared: float,
     offset: float,
     dz: float,
-    profile: tuple[float, float, float, float],
+    profile: Profile,
 ) -> float:
     """Has the sign with which the height of a rounded corner over a cell changes, and no pole."""
     _, flat, corner, _ = profile
@@ -168,7 +182,7 @@ def _rise(
 
 
 @array_kernel
-def steepness(distance: float, profile: tuple[float, float, float, float]) -> float:
+def steepness(distance: float, profile: Profile) -> float:
     """Slope of a cutter's lower end at a distance from its axis."""
     _, flat, corner, slope = profile
     if distance <= flat:

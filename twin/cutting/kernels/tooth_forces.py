@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from twin.compilation.kernel import kernel
-from twin.cutting.kernels.tool_height import profile_height
+from twin.cutting.kernels.tool_height import Profile, profile_height
 from twin.cutting.kernels.walls import (
     Material,
     cell_number,
@@ -56,7 +56,7 @@ class CutterForm(NamedTuple):
     """A cutter as forces see it.
 
     Attributes:
-        profile: Radius, flat, corner, slope of its lower end (``twin.cutting.tools.Profile``).
+        profile: Of its lower end.
         side_from: Height above the tip at which its side begins [mm].
         flute: Height above the tip at which its edges end [mm].
         teeth: Number of edges, evenly spaced.
@@ -69,7 +69,7 @@ class CutterForm(NamedTuple):
         downwards: Share of it that points down.
     """
 
-    profile: tuple[float, float, float, float]
+    profile: Profile
     side_from: float
     flute: float
     teeth: int
@@ -312,7 +312,7 @@ def _enter_side(
     bench.side[j, 0] = force * (-sense * sine - law.radial * cosine)
     bench.side[j, 1] = force * (sense * cosine - law.radial * sine)
     bench.side[j, 2] = -force * law.along
-    bench.figures[1] += force * bench.depth[j] * cutter.profile[0]
+    bench.figures[1] += force * bench.depth[j] * cutter.profile.radius
     bench.figures[2] = max(bench.figures[2], advance.per_tooth * thickest)
     return True
 
@@ -350,7 +350,7 @@ def _side_depth(
     material: Material, advance: Advance, cutter: CutterForm, cosine: float, sine: float
 ) -> float:
     """How deep the side is in the material in a direction [mm]."""
-    tip, way, radius = advance.tip, advance.way, cutter.profile[0]
+    tip, way, radius = advance.tip, advance.way, cutter.profile.radius
     clear = _CLEAR * material.grid.cell
     level = math.hypot(way[0], way[1])
     if way[0] * cosine + way[1] * sine <= 0.0:

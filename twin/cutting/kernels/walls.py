@@ -7,6 +7,7 @@ no vector, no wall. A wall stays where a tool goes away: beside a straight way, 
 where it turns or is drawn out.
 """
 
+import enum
 import math
 from typing import NamedTuple
 
@@ -31,7 +32,16 @@ _PIECE = 2.0
 _EQUAL = 1e-9
 """Heights that differ by less are the same [mm]."""
 
-_X, _Y, _Z, _AHEAD_X, _AHEAD_Y, _KNOWN = range(6)
+
+class _Trace(enum.IntEnum):
+    """Where a tool was and which way it came: columns of ``no_trace``."""
+
+    X = 0
+    Y = 1
+    Z = 2
+    AHEAD_X = 3
+    AHEAD_Y = 4
+    KNOWN = 5
 
 
 class Material(NamedTuple):
@@ -62,13 +72,13 @@ def no_walls(heights: FloatArray) -> WallArray:
 
 def no_trace() -> FloatArray:
     """Of a tool that has been nowhere: see ``leave_walls``."""
-    return np.zeros(6)
+    return np.zeros(len(_Trace))
 
 
 @kernel
 def lose_trace(trace: FloatArray) -> None:
     """Forget where a tool was: it leaves no wall on its way to where it is next."""
-    trace[_KNOWN] = 0.0
+    trace[_Trace.KNOWN] = 0.0
 
 
 @kernel
@@ -84,20 +94,20 @@ def leave_walls(
         radius: Of the tool [mm].
         side_from: Height above the tip at which its side begins [mm].
     """
-    if trace[_KNOWN] <= 0.0:
+    if trace[_Trace.KNOWN] <= 0.0:
         _note(trace, tip, 0.0, 0.0)
         return
-    dx, dy, rise = tip[0] - trace[_X], tip[1] - trace[_Y], tip[2] - trace[_Z]
+    dx, dy, rise = tip[0] - trace[_Trace.X], tip[1] - trace[_Trace.Y], tip[2] - trace[_Trace.Z]
     length, least = math.hypot(dx, dy), _STEP * material.grid.cell
-    level = max(tip[2], trace[_Z]) + side_from + _EQUAL
+    level = max(tip[2], trace[_Trace.Z]) + side_from + _EQUAL
     if length >= least:
         ahead_x, ahead_y = dx / length, dy / length
-        at_turn = _Tool(radius, trace[_Z] + side_from + _EQUAL)
+        at_turn = _Tool(radius, trace[_Trace.Z] + side_from + _EQUAL)
         _leave_turn(material, trace, ahead_x, ahead_y, at_turn)
         _leave_sides(material, trace, tip, _Tool(radius, level))
         _note(trace, tip, ahead_x, ahead_y)
     elif rise > least:
-        _leave_turn(material, trace, 0.0, 0.0, _Tool(radius, trace[_Z] + side_from + _EQUAL))
+        _leave_turn(material, trace, 0.0, 0.0, _Tool(radius, trace[_Trace.Z] + side_from + _EQUAL))
         _note(trace, tip, 0.0, 0.0)
     elif rise < -least:
         _note(trace, tip, 0.0, 0.0)
@@ -105,8 +115,8 @@ def leave_walls(
 
 @kernel
 def _note(trace: FloatArray, tip: FloatArray, ahead_x: float, ahead_y: float) -> None:
-    trace[_X], trace[_Y], trace[_Z] = tip[0], tip[1], tip[2]
-    trace[_AHEAD_X], trace[_AHEAD_Y], trace[_KNOWN] = ahead_x, ahead_y, 1.0
+    trace[_Trace.X], trace[_Trace.Y], trace[_Trace.Z] = tip[0], tip[1], tip[2]
+    trace[_Trace.AHEAD_X], trace[_Trace.AHEAD_Y], trace[_Trace.KNOWN] = ahead_x, ahead_y, 1.0
 
 
 @kernel
@@ -143,7 +153,7 @@ def _leave_turn(
     material: Material, trace: FloatArray, ahead_x: float, ahead_y: float, tool: _Tool
 ) -> None:
     """The wall around a place at which a tool turns, begins (no way before) or ends (none ahead)."""
-    came_x, came_y = trace[_AHEAD_X], trace[_AHEAD_Y]
+    came_x, came_y = trace[_Trace.AHEAD_X], trace[_Trace.AHEAD_Y]
     came, goes = came_x != 0.0 or came_y != 0.0, ahead_x != 0.0 or ahead_y != 0.0
     quarter = 0.5 * math.pi
     begin, arc = 0.0, 4.0 * quarter
@@ -163,13 +173,13 @@ def _leave_turn(
         low, high = begin + arc * number / pieces, begin + arc * (number + 1) / pieces
         middle = 0.5 * (low + high)
         low_x, low_y, high_x, high_y = math.cos(low), math.sin(low), math.cos(high), math.sin(high)
-        x = trace[_X] + tool.radius * math.cos(middle) - grid.origin[0]
-        y = trace[_Y] + tool.radius * math.sin(middle) - grid.origin[1]
+        x = trace[_Trace.X] + tool.radius * math.cos(middle) - grid.origin[0]
+        y = trace[_Trace.Y] + tool.radius * math.sin(middle) - grid.origin[1]
         rows, columns = _around(y, aside, cell), _around(x, aside, cell)
         for row in range(max(0, rows[0]), min(material.heights.shape[0], rows[1])):
             for column in range(max(0, columns[0]), min(material.heights.shape[1], columns[1])):
-                px = grid.origin[0] + column * cell - trace[_X]
-                py = grid.origin[1] + row * cell - trace[_Y]
+                px = grid.origin[0] + column * cell - trace[_Trace.X]
+                py = grid.origin[1] + row * cell - trace[_Trace.Y]
                 distance = math.hypot(px, py)
                 off = (distance - tool.radius) / cell
                 within = low_x * py - low_y * px >= 0.0 > high_x * py - high_y * px

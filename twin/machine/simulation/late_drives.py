@@ -2,12 +2,13 @@
 
 from typing import Any, NamedTuple
 
+import mujoco
 import numpy as np
 
 from twin.machine.description.config import Machine
 from twin.machine.model.drive_actuators import LagActuator, lag_actuator
 from twin.machine.model.drives import Drive, lag_name
-from twin.machine.simulation.drive_kernels import Drives, Points
+from twin.machine.simulation.drive_kernels import Drives, Points, read_states
 from twin.machine.simulation.sampling import held_acceleration, held_velocity, polyline_node
 from twin.machine.simulation.setpoint_filter import SetpointFilter
 from twin.nc.canonical import FloatArray
@@ -147,6 +148,24 @@ class LateDrives:
         force += self._integral * self._half * (late[0] - drives.trail * late[1])
         return np.asarray(force)
 
+    def read(
+        self, told: Told, states: FloatArray, first_act: int
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Position, velocity and force of the axes in states.
+
+        Args:
+            told: What the drives saw on the way there; the last rows of it belong to the states.
+            states: Shape (n, width).
+            first_act: Column of the first actuator's state.
+        """
+        drives = self._drives
+        seen = Told(*(Points(*(column[-len(states) :] for column in part)) for part in told))
+        unlimited = drives._replace(limit=np.full(len(drives.scale), np.inf))
+        position, velocity, force = read_states(unlimited, seen.points, states)
+        speed = states[:, drives.qvel] / drives.scale
+        force += np.sign(drives.scale) * self.force(seen, speed, states[:, first_act:])
+        return position, velocity, np.clip(force, -drives.limit, drives.limit)
+
 
 def is_late(machine: Machine, loops: tuple[Drive, ...]) -> bool:
     """Whether anything of a machine's drives is late."""
@@ -156,3 +175,23 @@ def is_late(machine: Machine, loops: tuple[Drive, ...]) -> bool:
 
 def _lag_names(machine: Machine, index: int, loop: Drive) -> list[str]:
     return [lag_name(machine.axes.names[index], number) for number in range(len(loop.lags))]
+
+
+def late_drives(
+    machine: Machine, model: mujoco.MjModel, loops: tuple[Drive, ...], drives: Drives
+) -> LateDrives | None:
+    """What is late in the drives; None where nothing is.
+
+    Args:
+        machine: The machine file.
+        model: What it was built to.
+        loops: One per axis.
+        drives: The same, as the kernels have them.
+    """
+    if not is_late(machine, loops):
+        return None
+    places = {
+        model.actuator(index).name: int(address)
+        for index, address in enumerate(model.actuator_actadr)
+    }
+    return LateDrives(machine, loops, drives, places, model.opt.timestep)

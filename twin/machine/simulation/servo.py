@@ -2,28 +2,25 @@
 
 import copy
 import dataclasses
-from collections.abc import Iterable
 
 import mujoco
 import numpy as np
-import numpy.typing as npt
 from mujoco.rollout import Rollout
 
 from twin.columns import join
 from twin.machine.description.config import Machine
-from twin.machine.model.drives import Drive, feedforward_name, integral_name
-from twin.machine.model.model import drives, moved
+from twin.machine.model.model import drives
 from twin.machine.model.timers import switch_off_timers
-from twin.machine.model.transmission import directly_driven, give_name, give_stiffness, has_give
+from twin.machine.model.transmission import give_stiffness
+from twin.machine.simulation.drive_columns import actuators, drive_columns
 from twin.machine.simulation.drive_kernels import (
-    Drives,
     Points,
     all_finite,
     hold_controls,
     hold_pushes,
     read_states,
 )
-from twin.machine.simulation.late_drives import LateDrives, Told, is_late
+from twin.machine.simulation.late_drives import Told, late_drives
 from twin.machine.simulation.process import Physics, Process
 from twin.machine.simulation.sampling import polyline_node
 from twin.machine.simulation.stepping import stepper
@@ -32,7 +29,7 @@ from twin.machine.watching.alarms import SimulationError
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray, IntArray
 from twin.recording.form import Samples, ToolLoad
-from twin.units import kv_per_second, to_si
+from twin.units import to_si
 
 _STATE = int(mujoco.mjtState.mjSTATE_FULLPHYSICS)
 _CONTROL = int(mujoco.mjtState.mjSTATE_CTRL)
@@ -76,96 +73,30 @@ class Servo:
 
     def __init__(self, machine: Machine, model: mujoco.MjModel) -> None:
         switch_off_timers()
-        self._period = machine.file.servo_period_s
-        self.model = model
+        self.model, self._period = model, machine.file.servo_period_s
         self._data = mujoco.MjData(model)
         loops = drives(machine, model)
-        self._position_gain = np.array([loop.position_gain for loop in loops])
+        self._drives = drive_columns(machine, model, loops)
+        self._scale, joined = self._drives.scale, 1 + model.nq
+        self._qpos, self._dof = self._drives.qpos - 1, self._drives.dof
+        self._setpoint_state = model.actuator_actadr[actuators(model, machine.axes.names)]
+        self._integrates = np.flatnonzero(self._drives.integral >= 0)
+        self._integral_state = self._drives.integral[self._integrates] - joined - model.nv
+        self._gives = np.flatnonzero(self._drives.give_dof >= 0)
+        self._give_qpos = self._drives.give_qpos[self._gives] - 1
+        self._give_dof = self._drives.give_dof[self._gives]
         axes = [machine.axis(name) for name in machine.axes.names]
-        joints = [model.joint(axis.joint) for axis in axes]
-        self._qpos = np.array([int(joint.qposadr[0]) for joint in joints])
-        self._dof = np.array([int(joint.dofadr[0]) for joint in joints])
-        self._setpoint_state = model.actuator_actadr[self._actuators(machine.axes.names)]
-        self._integrates = np.flatnonzero([loop.integral_gain > 0 for loop in loops])
-        integral = self._actuators(
-            integral_name(machine.axes.names[index]) for index in self._integrates
-        )
-        self._integral_state = model.actuator_actadr[integral]
-        self._integral_gain = np.array([loop.integral_gain for loop in loops])
-        self._gives = np.flatnonzero([has_give(axis) for axis in axes])
-        give = [model.joint(give_name(axes[index])) for index in self._gives]
-        self._give_qpos = np.array([int(joint.qposadr[0]) for joint in give], np.int64)
-        self._give_dof = np.array([int(joint.dofadr[0]) for joint in give], np.int64)
-        self._stiffness = np.array(
-            [give_stiffness(axes[i], loops[i].moved, self._period) for i in self._gives]
-        )
-        self._half_gap = np.array(
-            [0.5 * axes[i].backlash * to_si(axes[i].kind) for i in self._gives]
-        )
-        self._scale = machine.joint_scale
-        self._constant = np.array([axis.constant_force for axis in axes])
+        giving = [(axes[i], loops[i].moved) for i in self._gives]
+        self._stiffness = np.array([give_stiffness(*each, self._period) for each in giving])
+        self._half_gap = np.array([0.5 * axis.backlash * to_si(axis.kind) for axis, _ in giving])
         self._substeps = round(self._period / model.opt.timestep)
-        self._drives = self._columns(machine, loops)
-        self._late = _late_drives(machine, model, loops, self._drives)
+        self._late = late_drives(machine, model, loops, self._drives)
         self.process: Process | None = None
         self._view_data()
-        self._state = np.zeros(0)
-        self._states = np.zeros((0, 0))
+        self._state, self._states = np.zeros(0), np.zeros((0, 0))
         self._chunk: Setpoints | None = None
         self._warmstart = np.zeros((1, model.nv))
         self._idle = np.zeros((_FEW, len(loops)))
-
-    def _actuators(self, names: Iterable[str]) -> IntArray:
-        """Numbers of actuators by their names."""
-        return np.array([self.model.actuator(name).id for name in names], np.int64)
-
-    def _columns(self, machine: Machine, loops: tuple[Drive, ...]) -> Drives:
-        """What the kernels know of the drives."""
-        model, everywhere, joined = self.model, len(loops), 1 + self.model.nq
-        names = machine.axes.names
-        axes = [machine.axis(name) for name in names]
-        driven = list(zip(axes, loops, strict=True))
-        servos, forces = self._actuators(names), self._actuators(map(feedforward_name, names))
-        integral = self._actuators(integral_name(names[index]) for index in self._integrates)
-        return Drives(
-            period=self._period,
-            scale=self._scale,
-            position_gain=self._position_gain,
-            velocity_gain=np.array([loop.damping_gain for loop in loops]),
-            integral_gain=self._integral_gain,
-            velocity_told=np.array(
-                [axis.velocity_feedforward * loop.velocity_gain for axis, loop in driven]
-            ),
-            acceleration_told=np.array(
-                [axis.acceleration_feedforward * loop.moved for axis, loop in driven]
-            ),
-            trail=np.array(
-                [(1.0 - axis.velocity_feedforward) / kv_per_second(axis.kv) for axis in axes]
-            ),
-            speed_bulge=np.array(
-                [
-                    axis.velocity_feedforward
-                    * loop.velocity_gain
-                    / directly_driven(axis, float(size))
-                    for (axis, loop), size in zip(driven, moved(machine, model), strict=True)
-                ]
-            )
-            * (self._period**2 / 12),
-            limit=np.array([axis.force_limit or np.inf for axis in axes]),
-            constant=self._constant,
-            velocity_input=_numbers(everywhere, slice(None), model.actuator_ctrladr[servos]),
-            force_input=_numbers(everywhere, slice(None), model.actuator_ctrladr[forces]),
-            position_input=_numbers(everywhere, self._integrates, model.actuator_ctrladr[integral]),
-            qpos=1 + self._qpos,
-            qvel=joined + self._dof,
-            dof=self._dof,
-            give_qpos=_numbers(everywhere, self._gives, 1 + self._give_qpos),
-            give_qvel=_numbers(everywhere, self._gives, joined + self._give_dof),
-            give_dof=_numbers(everywhere, self._gives, self._give_dof),
-            integral=_numbers(
-                everywhere, self._integrates, joined + model.nv + self._integral_state
-            ),
-        )
 
     @property
     def last(self) -> Setpoints:
@@ -243,14 +174,7 @@ class Servo:
         """Position, velocity and force of the axes in states."""
         if self._late is None or told is None:
             return read_states(self._drives, points, states)
-        seen = Told(*(Points(*(column[-len(states) :] for column in part)) for part in told))
-        unlimited = self._drives._replace(limit=np.full(len(self._scale), np.inf))
-        position, velocity, force = read_states(unlimited, seen.points, states)
-        speed = states[:, self._drives.qvel] / self._scale
-        acts = states[:, 1 + self.model.nq + self.model.nv :]
-        force += np.sign(self._scale) * self._late.force(seen, speed, acts)
-        limit = self._drives.limit
-        return position, velocity, np.clip(force, -limit, limit)
+        return self._late.read(told, states, 1 + self.model.nq + self.model.nv)
 
     def begin_anew(self) -> None:
         """Forget all that was followed: the next chunk is the first of all."""
@@ -350,7 +274,7 @@ class Servo:
         speed[self._gives] += data.qvel[self._give_dof]
         integral = np.full(len(self._qpos), np.nan)
         integral[self._integrates] = (
-            self._integral_gain[self._integrates] * data.act[self._integral_state]
+            self._drives.integral_gain[self._integrates] * data.act[self._integral_state]
         )
         setpoint = data.act[self._setpoint_state].copy()
         lagging: dict[str, float] = {}
@@ -370,15 +294,15 @@ class Servo:
 
     def _carried(self, dofs: IntArray, axes: IntArray) -> FloatArray:
         """What joints of axes carry as they stand [N or N m]."""
-        pulled = (self._constant * np.sign(self._scale))[axes]
+        pulled = (self._drives.constant * np.sign(self._scale))[axes]
         return (self._data.qfrc_bias - self._data.qfrc_passive)[dofs] - pulled
 
     def _carry(self, load: FloatArray) -> FloatArray:
         """Give the integrators their load; return what the others stand off for theirs, (k,)."""
         self._data.act[self._integral_state] = (
-            load[self._integrates] / self._integral_gain[self._integrates]
+            load[self._integrates] / self._drives.integral_gain[self._integrates]
         )
-        return np.where(self._integral_gain > 0, 0.0, load / self._position_gain)
+        return np.where(self._drives.integral_gain > 0, 0.0, load / self._drives.position_gain)
 
     def _warm_up(self) -> None:
         """Let the solver begin where the present state leads."""
@@ -443,7 +367,7 @@ class Servo:
             self._solver[:] = self._warmstart[0]
             return step_held(self._loop, self._state, controls, pushes)
         held, steps = _CONTROL, self._substeps
-        if load.any() or self._constant.any():
+        if load.any() or self._drives.constant.any():
             pushes = hold_pushes(self._drives, load, self.model.nv)
             controls, held = np.hstack([controls, pushes]), _CONTROL | _PUSH
         if steps > 1:
@@ -471,26 +395,6 @@ class Servo:
         raise SimulationError(f"MuJoCo warned during the simulation: {names}")
 
 
-def _late_drives(
-    machine: Machine, model: mujoco.MjModel, loops: tuple[Drive, ...], drives: Drives
-) -> LateDrives | None:
-    """What is late in the drives; None where nothing is."""
-    if not is_late(machine, loops):
-        return None
-    places = {
-        model.actuator(index).name: int(address)
-        for index, address in enumerate(model.actuator_actadr)
-    }
-    return LateDrives(machine, loops, drives, places, model.opt.timestep)
-
-
 def _points(setpoints: Setpoints) -> Points:
     """What the drives are told of setpoints."""
     return Points(setpoints.position, setpoints.velocity, setpoints.acceleration)
-
-
-def _numbers(count: int, axes: IntArray | slice, numbers: npt.NDArray[np.integer]) -> IntArray:
-    """Numbers of some of all axes, -1 elsewhere, shape (k,)."""
-    out = np.full(count, -1)
-    out[axes] = numbers
-    return out

@@ -221,7 +221,7 @@ def read_scene(path: Path) -> Scene:
     Confinement(path).require(file.job)
     if not (folder / file.job.program).is_file():
         raise ConfigError(f"{path}: no NC program '{file.job.program}' beside it")
-    scene = Scene(path.stem, file, prepare_job(with_work_holding(Job(folder, file.job))))
+    scene = Scene(path.stem, file, with_work_holding(prepare_job(Job(folder, file.job))))
     axes = scene.preparation.machine.axes.names
     named = [*file.start.position, *file.start.zero_error, *(f.axis for f in file.faults if f.axis)]
     for task in file.tasks:

@@ -4,14 +4,14 @@ They are fixtures like those that a job file names: they are drawn, and whatever
 collision. A scene whose job or machine file clamps something itself has nothing added.
 """
 
+import dataclasses
 import math
 from collections.abc import Iterator
 
 from twin.job.fixture import FixtureTable
-from twin.job.load import Job
-from twin.machine.description.config import Blank
-from twin.machine.load import load_machine
+from twin.machine.description.config import Blank, Machine
 from twin.run.layout import lay_out
+from twin.run.preparation import Preparation
 
 GRIP_SHARE, GRIP_MM = 0.3, (2.0, 8.0)
 """How much of the part's height the jaws grip: a share of it, within so much [mm]."""
@@ -22,30 +22,33 @@ JAW_SHARE, JAW_WIDTH_MM = 0.75, (30.0, 160.0)
 JAW_THICKNESS_MM, JAW_DIAMETER_MM = 18.0, 20.0
 """Of a vise's jaws, and of a chuck's, which are round [mm]."""
 CHUCK_JAWS = 3
+_Z = 2
 STEEL_G_MM3 = 7.85e-3
 """[g/mm³]"""
 
 
-def with_work_holding(job: Job) -> Job:
-    """A job with what holds its raw part.
-
-    Args:
-        job: The job of a scene.
+def with_work_holding(preparation: Preparation) -> Preparation:
+    """The job of a scene with what holds its raw part.
 
     Raises:
         ConfigError: The machine or the stock is wrong.
-        UsageError: There is no such machine.
     """
+    job, machine = preparation.job, preparation.machine
     stock = job.file.stock
-    if stock is None or stock.shape == "stl" or job.file.fixtures:
-        return job
-    machine = load_machine(job)
-    if machine.file.fixtures or machine.part_frame.table_about(2) is None:
-        return job
+    if stock is None or stock.shape == "stl" or machine.file.fixtures:
+        return preparation
+    if machine.part_frame.table_about(_Z) is None:
+        return preparation
     blank = lay_out(job.file, machine).blank
     assert blank is not None
-    parts = _chuck(blank) if blank.round else _vise(blank)
-    return job.with_file(job.file.model_copy(update={"fixtures": tuple(parts)}))
+    if blank.direction != _Z:
+        return preparation  # A bar that lies is held by its ends, on machines that have something for that.
+    holding = {"fixtures": tuple(_chuck(blank) if blank.round else _vise(blank))}
+    return dataclasses.replace(
+        preparation,
+        job=job.with_file(job.file.model_copy(update=holding)),
+        machine=Machine(machine.path, machine.file.model_copy(update=holding)),
+    )
 
 
 def _vise(blank: Blank) -> Iterator[FixtureTable]:
