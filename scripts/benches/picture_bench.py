@@ -51,11 +51,11 @@ def rows() -> Iterator[Row]:
             peer=FREECAD,
             peer_figure=published,
         )
-    for tilt in (0.0, 20.0):
+    for tilt, size in ((0.0, 60.0), (0.0, 200.0), (20.0, 60.0), (20.0, 200.0)):
         yield Row(
             package="picture",
-            task=f"cut from any side: moves of {MOVE_MM} mm, 6 mm ball at {tilt:g} degrees, cell 0.2 mm",
-            figure=tri_dexel_moves_per_second(0.2, tilt),
+            task=f"cut from any side: moves of {MOVE_MM} mm, 6 mm ball at {tilt:g} degrees, cell 0.2 mm, part of {size:g} mm",
+            figure=tri_dexel_moves_per_second(0.2, tilt, size),
             unit="moves/s",
         )
     with tempfile.TemporaryDirectory() as folder:
@@ -91,12 +91,13 @@ def moves_per_second(cell: float) -> float:
     return (len(points) - 1) / median_cpu_seconds(cut)
 
 
-def tri_dexel_moves_per_second(cell: float, tilt: float) -> float:
+def tri_dexel_moves_per_second(cell: float, tilt: float, size: float = 60.0) -> float:
     """Moves of a ball per second, on waves in rows a millimetre apart, its axis turning about Z.
 
     Args:
         cell: Between the lines of the stock [mm].
         tilt: Of the axis off Z [deg].
+        size: Of the block along X and Y, of which the same is cut [mm].
     """
     edge = profile(TOOL.model_copy(update={"kind": "ball"}))
     x = np.arange(-27.0, 27.0, MOVE_MM)
@@ -110,7 +111,8 @@ def tri_dexel_moves_per_second(cell: float, tilt: float) -> float:
     upright = np.full(len(turn), np.cos(off))
     axis = np.stack([np.sin(off) * np.cos(turn), np.sin(off) * np.sin(turn), upright], 1)
     poses = Poses(middle - edge.radius * axis, axis)
-    whole = box(np.array([-30.0, -30.0, -10.0]), np.array([30.0, 30.0, 0.0]), cell)
+    half = 0.5 * size
+    whole = box(np.array([-half, -half, -10.0]), np.array([half, half, 0.0]), cell)
 
     def cut() -> None:
         engagement.cut(whole.copy(), poses, cutting_edge(edge, TOOL.flute), 1)
