@@ -50,14 +50,6 @@ def test_tools_change_between_moves(dialect: str) -> None:
     ]  # fmt: skip
 
 
-def test_a_spindle_that_is_stopped_before_it_was_started_turned() -> None:
-    """Switched on by hand, it turns until M5; one that has a speed and no start stands, as on the machine."""
-    stopped = summary("G1 X1 F100\nM5\nG1 X2\nM3\nG1 X3\nM30\n")
-    assert [stopped.spindle.at(move) for move in range(2)] == [None, 0.0]
-    held = summary("S900\nG1 X1 F100\nM5\nM30\n")
-    assert held.spindle.at(0) == 0.0
-
-
 def test_tool_0_leaves_the_spindle_empty() -> None:
     found = summary("T4 M6\nG1 X2 F100\nT0 M6\nG0 X5\nM30\n", dialect="fagor8070")
     lengths = [found.tools.at(move).length for move in range(2)]

@@ -101,9 +101,8 @@ class ProgramSummary:
         rapid: Whether each move is a rapid, shape (n,).
         spindle: Its speed [1/min], negative where it turns counter-clockwise, 0 where it stands;
             None where nothing is known of it. A program that never speaks of the spindle has one
-            value: it runs with it turning, since someone has switched it on by hand, and so does one that
-            stops it before it ever starts it, until then. One that does else is held to it from its first
-            move on.
+            value: it runs with it turning, since someone has switched it on by hand. One that does
+            is held to it from its first move on.
         screen: What the control's screen shows; None: always where the axes are.
         part: Where the part is on the machine; None: its screen never shows the tip.
         tilts: Whether a height map does not hold the part: the tool stands off the part's Z somewhere, or the blank is a
@@ -174,7 +173,7 @@ class SummaryBuilder:
         self._selected: int | None = None
         self._tool = job.tools[0]
         self._state = spindle or SpindleState(tool_speed=self._tool.speed)
-        self._speaks = self._found_turning = False
+        self._speaks = False
         self._plan: list[tuple[int, ToolTable]] = [(0, self._tool)]
         self._changes: list[ToolChange] = []
         self._spindle: list[tuple[float, float | None]] = [(0.0, self._tool.speed)]
@@ -229,7 +228,7 @@ class SummaryBuilder:
             plain = Screen(np.eye(3), np.zeros_like(self._shown[0][1].shift))
             screen = _steps([(0, plain), *self._shown])
         first_move, tools = zip(*self._plan, strict=True)
-        if self._speaks and not self._found_turning:
+        if self._speaks:
             self._spindle[0] = (0.0, 0.0)
         return ProgramSummary(
             tools=ToolPlan(tools, first_move, tuple(self._changes)),
@@ -248,7 +247,6 @@ class SummaryBuilder:
             self._change_tool(self._selected, event, move)
         elif word in _OF_SPINDLE or (word in _ENDS_SPINDLE and self._speaks):
             # In a program that never spoke of the spindle they say nothing about it.
-            self._found_turning |= not self._speaks and word in SPINDLE_STOPS
             self._speaks = True
             self._turn(self._state.after(event), move, event.at)
 

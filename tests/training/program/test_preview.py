@@ -98,7 +98,7 @@ def test_a_way_out_of_the_travel_is_drawn_up_to_there(session):
 
 
 def test_a_tool_that_is_not_there_is_told(session):
-    load(session, "N10 G90\nN20 G0 X5\nN30 T99 M6\nN40 G0 X0\nN50 M30")
+    load(session, "N10 G90\nN20 G0 X5\nN30 T98 M6\nN40 G0 X0\nN50 M30")
     path = drawn(session)
     assert not path.complete
     assert path.message
