@@ -22,6 +22,7 @@ def connected(address: str) -> Any:
     """
     require_extra("cluster", "--cluster")
     import ray
+    from ray.exceptions import RayError
 
     path = os.pathsep.join(filter(None, [str(Path.cwd()), os.environ.get("PYTHONPATH")]))
     here = {"PYTHONPATH": path}
@@ -32,6 +33,6 @@ def connected(address: str) -> Any:
         options["address"] = address
     try:
         ray.init(**options)
-    except (ConnectionError, RuntimeError, ValueError, ray.exceptions.RayError) as error:
+    except (ConnectionError, RuntimeError, ValueError, RayError) as error:
         raise UsageError(f"--cluster {address}: no cluster answers: {error}") from error
     return ray

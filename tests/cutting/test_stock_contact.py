@@ -29,6 +29,8 @@ class Solid:
     half: tuple[float, float]
     offset: tuple[float, float]
     above: float
+    height: float = 50.0
+    swivels: bool = False
 
 
 HEAD = (

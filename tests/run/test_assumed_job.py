@@ -1,11 +1,13 @@
 """What is assumed for a raw program: its dialect, its stock and zero, its tools."""
 
 import contextlib
+import tomllib
 from pathlib import Path
 
 import pytest
 
 from twin.errors import ConfigError, EmptyProgramError, TwinError, UsageError
+from twin.files.shipped import machine_file
 from twin.nc.canonical import concatenate
 from twin.nc.text.diagnostics import ProgramError
 from twin.run.assumed_job import AssumedJob, text_beside, with_assumptions
@@ -344,6 +346,22 @@ def test_the_job_can_be_kept_in_another_folder(tmp_path: Path) -> None:
     assert again.dialect.name == "fanuc"
     assert again.job.file.stock == made.job.file.stock
     assert again.job.file.tools == made.job.file.tools
+
+
+@pytest.mark.parametrize("name", ["mill5", "mill4/uncompensated"])
+def test_the_job_that_is_kept_names_the_machine_that_was_asked_for(
+    tmp_path: Path, name: str
+) -> None:
+    program = tmp_path / "part.nc"
+    program.write_text(CONTOUR)
+    _, assumed = with_assumptions(prepare(program, machine=name), machine=name, strict=False)
+    assert f'machine = "{name}"' in assumed.text
+    own = tmp_path / "own"
+    own.symlink_to(machine_file("mill4").parent)
+    _, assumed = with_assumptions(
+        prepare(program, machine=str(own)), machine=str(own), strict=False
+    )
+    assert tomllib.loads(assumed.text)["machine"] == machine_file("mill4").resolve().as_posix()
 
 
 @pytest.mark.parametrize(

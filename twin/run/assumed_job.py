@@ -1,6 +1,7 @@
 """The job that is assumed for a raw program: stock, zero and tools, as its path and its comments show them."""
 
 import dataclasses
+import json
 import os
 import re
 import tomllib
@@ -9,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from twin.files.shipped import machine_file, machine_names, variant_names
 from twin.job.job_file import JobFile
 from twin.job.load import Job
 from twin.machine.description.config import Machine
@@ -110,7 +112,7 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
     lines = [
         f'program = "{preparation.job.program.name}"',
         f'dialect = "{preparation.dialect.name}"',
-        f'machine = "{preparation.job.file.machine}"',
+        f"machine = {json.dumps(_machine_name(preparation.machine))}",
         *_zero_line(
             preparation,
             moves,
@@ -375,6 +377,14 @@ def _zero_line(
         return []
     values = ", ".join(f"{name} = {value:.3f}" for name, value in zero.items())
     return [f"part_zero = {{ {values} }}  # mm in machine coordinates"]
+
+
+def _machine_name(machine: Machine) -> str:
+    """As a job beside the program may call it: a shipped machine by its name, another by its path."""
+    for name in (*machine_names(), *variant_names()):
+        if machine_file(name) == machine.path:
+            return name
+    return machine.path.resolve().as_posix()
 
 
 def _height(file: JobFile, machine: Machine) -> float:

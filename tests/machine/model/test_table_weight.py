@@ -2,6 +2,7 @@
 
 import math
 from pathlib import Path
+from typing import Literal
 
 import mujoco
 import numpy as np
@@ -126,7 +127,9 @@ def test_a_shape_from_a_file_weighs_what_its_solid_does(tmp_path: Path, closed: 
 
 
 @pytest.mark.parametrize(("axis", "moment"), [("X", 0.5), ("Y", 1.0 / 3.0 + 0.25)])
-def test_a_bar_that_lies_is_turned_about_its_axis_or_across_it(axis: str, moment: float) -> None:
+def test_a_bar_that_lies_is_turned_about_its_axis_or_across_it(
+    axis: Literal["X", "Y"], moment: float
+) -> None:
     """Of a bar as long as twice its radius r: m r²/2 about its axis, m (3 r² + h²) / 12 across it."""
     machine = read_machine(resource_root("models") / "mill4a" / "machine.toml")
     bar = StockTable(

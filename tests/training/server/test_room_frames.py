@@ -49,7 +49,9 @@ def test_a_page_that_follows_has_the_stock_as_it_is_cut():
     session = Session(scene)
     room, feed = session.room, StockFeed()
     assert room.setup.work is not None
-    shown = np.zeros(room.setup.work.map.heights.shape)
+    stock = room.setup.work.map
+    assert stock is not None
+    shown = np.zeros(stock.heights.shape)
     assert min(shown.shape) >= 400
     session.submit({"do": "cycle_start"})
     epoch = version = -1
@@ -62,7 +64,6 @@ def test_a_page_that_follows_has_the_stock_as_it_is_cut():
             rows, columns, levels = heights(message)
             shown[rows, columns] = levels / LEVELS
             sizes.append(len(message))
-    stock = room.setup.work.map
     there = (stock.heights - stock.bottom) / (stock.top - stock.bottom)
     assert room.setup.work.removed > 0.0
     assert np.abs(shown - there).max() <= 0.51 / LEVELS
