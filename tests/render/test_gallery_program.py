@@ -11,7 +11,7 @@ from twin.files.shipped import resource_root
 JOB = resource_root("programs") / "gallery" / "fagor8070" / "rosette.toml"
 
 
-@pytest.mark.seconds("the rosette is run whole")
+@pytest.mark.thorough
 def test_the_rosette_passes_and_spoils_nothing(twin: Twin, tmp_path: Path) -> None:
     done = twin("run", JOB, "--out", tmp_path)
     assert done.code == 0, done.stderr

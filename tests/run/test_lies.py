@@ -182,6 +182,7 @@ def nominal(tmp_path: Path) -> None:
     trimesh.util.concatenate(boxes).export(tmp_path / "nominal.stl")
 
 
+@pytest.mark.seconds("a program is run whole")
 def test_the_right_slot_keeps_its_nominal_part(tmp_path: Path) -> None:
     assert not codes(run(tmp_path, CUT_, {"more": NOMINAL + "standing_um = 100.0"}))
 

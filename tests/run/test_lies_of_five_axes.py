@@ -177,6 +177,7 @@ def run(folder: Path, program: str, parts: dict[str, str]) -> Outcome:
     return chain.execute(chain.dry_run(), None, no_progress)
 
 
+@pytest.mark.seconds("programs are run whole")
 @pytest.mark.parametrize("name", TOLD)
 def test_a_lie_is_told_at_its_line(name: str, tmp_path: Path) -> None:
     program, parts, code, line = TOLD[name]

@@ -23,7 +23,7 @@ BENDS = {18: 15.0, 20: -15.0}
 """Line of a half circle of 26 mm about X12, and the Y of its middle."""
 
 
-@pytest.mark.seconds("a whole run on mill5h")
+@pytest.mark.thorough
 def test_the_tip_is_on_its_contour_as_mujoco_places_the_bodies(twin: Twin, tmp_path: Path) -> None:
     assert twin("run", str(JOB), "--out", str(tmp_path)).code == 0
     result = json.loads((tmp_path / "result.json").read_text())

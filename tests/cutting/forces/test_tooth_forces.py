@@ -119,6 +119,7 @@ def assert_like(bench: ToothBench, direction: float, expected: tuple[FloatArray,
     assert bench.figures[1] == pytest.approx(torque, rel=0.05)
 
 
+@pytest.mark.seconds("the kernel of the tooth is loaded")
 @pytest.mark.parametrize("direction", QUADRANTS)
 @pytest.mark.parametrize("helix", [0.0, 30.0, 45.0])
 def test_a_slot_is_what_hand_integration_gives(direction: float, helix: float) -> None:

@@ -58,6 +58,8 @@ def built_to_pass(model: mujoco.MjModel, one: int, two: int) -> bool:
 
 
 MACHINES = tuple(machine_names())
+EVERYDAY = ("mill4", "mill5")
+"""Machines whose every pair is looked at ten times a day."""
 PAIRS = [pair for name in MACHINES for pair in all_pairs(name)]
 
 
@@ -78,7 +80,13 @@ def lone(
     return machine, spec
 
 
-@pytest.mark.parametrize(("name", "one", "two"), PAIRS)
+@pytest.mark.parametrize(
+    ("name", "one", "two"),
+    [
+        pytest.param(*pair, marks=() if pair[0] in EVERYDAY else pytest.mark.thorough)
+        for pair in PAIRS
+    ],
+)
 def test_an_overlap_of_a_twentieth_is_seen_and_a_gap_of_one_is_none(
     machines: dict[str, tuple[Machine, mujoco.MjSpec]], name: str, one: str, two: str
 ) -> None:

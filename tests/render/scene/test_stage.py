@@ -120,6 +120,7 @@ def stocked(scene: Scene, request: pytest.FixtureRequest) -> Scene:
     return dataclasses.replace(scene, summary=summary)
 
 
+@pytest.mark.seconds("a stage is built and drawn")
 def test_groove_is_where_the_tool_was(stocked: Scene) -> None:
     with stage(stocked, SIZE, DRAFT) as play:
         blank, stock = play.picture("top"), stock_pixels(play, "top")
