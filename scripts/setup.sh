@@ -80,6 +80,5 @@ setup_vulkan() {
 setup_browser() {
     # For the tests of pages, which are left out without one; axe-core holds them to accessibility.
     command -v chromium >/dev/null || _need_packages chromium || true
-    command -v firefox-esr >/dev/null || command -v firefox >/dev/null || _need_packages firefox-esr || true
     .venv/bin/python scripts/fetch_three.py --axe || true
 }

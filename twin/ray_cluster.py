@@ -28,7 +28,12 @@ def connected(address: str) -> Any:
     here = {"PYTHONPATH": path}
     options: dict[str, Any] = {"log_to_driver": False, "logging_level": "error"}
     if address == HERE:
-        options |= {"include_dashboard": False, "runtime_env": {"env_vars": here}}
+        # Without an address Ray takes a cluster that someone else has on this computer, and waits for it when it is gone.
+        options |= {
+            "address": "local",
+            "include_dashboard": False,
+            "runtime_env": {"env_vars": here},
+        }
     else:
         options["address"] = address
     try:

@@ -14,7 +14,10 @@ from twin.training.classroom.marks import ClassFile
 from twin.training.classroom.rooms import Rooms, Seat
 from twin.training.classroom.roster import Pupil
 
-pytestmark = pytest.mark.processes
+pytestmark = [
+    pytest.mark.processes,
+    pytest.mark.by_hand("two nodes of Ray and four rooms take minutes and 2 GB beside other tests"),
+]
 PATIENCE_S = 60.0
 
 
