@@ -161,7 +161,7 @@ def part(log: MachineLog, rows: slice, name: str) -> MachineLog:
     return MachineLog(name, log.time[rows], {"X": less}, log.line[rows])
 
 
-@pytest.mark.skipif("TWIN_TEST_EMPS" not in os.environ, reason="TWIN_TEST_EMPS names no folder")
+@pytest.mark.by_hand("TWIN_TEST_EMPS names the folder of the record, which no package brings")
 def test_the_whole_record_of_emps_and_its_pulses_are_predicted() -> None:
     """Fitted to the first half; pulses are volts that are added to what the drive gives."""
     folder = Path(os.environ["TWIN_TEST_EMPS"])

@@ -17,10 +17,11 @@ from tests.serve.agent_attacks import serving
 from tests.serve.schema_check import Schemas
 from twin.files.shipped import resource_root
 
-FOLDER = os.environ.get("TWIN_TEST_MTCONNECT")
 pytestmark = [
     pytest.mark.oracle,
-    pytest.mark.skipif(FOLDER is None, reason="TWIN_TEST_MTCONNECT names no folder of schemas"),
+    pytest.mark.by_hand(
+        "TWIN_TEST_MTCONNECT names the folder of the schemas, which no package brings"
+    ),
     pytest.mark.seconds("a machine is watched while it makes a part"),
 ]
 GOOD = resource_root("programs") / "codesys" / "semicircle_by_radius.toml"
@@ -51,8 +52,7 @@ JOBS = {"an alarm": ("mill4", 395.0), "five axes": ("mill5h", 0.0), "three axes"
 
 @pytest.mark.parametrize("name", ["a part", *JOBS])
 def test_every_answer_is_valid(tmp_path: Path, name: str) -> None:
-    assert FOLDER is not None
-    schemas = Schemas(Path(FOLDER))
+    schemas = Schemas(Path(os.environ["TWIN_TEST_MTCONNECT"]))
     job = GOOD
     if name in JOBS:
         job = tmp_path / "part.toml"
