@@ -100,8 +100,11 @@ class JobItem(pytest.Item):
         if outcome["contour_um"] is not None:
             names = ("contour_um", "worst_line", "cycle_time_s")
             self.user_properties += [(name, outcome[name]) for name in names]
+        self.user_properties += [("scope", line) for line in outcome["scope"]]
+        if outcome["expected"] is not None:
+            self.user_properties.append(("expected", outcome["expected"]))
         if outcome["warnings"]:
-            self.add_report_section("call", "warnings", _told(outcome["warnings"]))
+            self.warn(JobWarning(_told(outcome["warnings"])))
         if outcome["verdict"] != "pass":
             raise JobError(_told(outcome["findings"]))
 
@@ -150,6 +153,10 @@ class JobItem(pytest.Item):
     def reportinfo(self) -> tuple[Path, int | None, str]:
         """Where the test stands, for reports."""
         return self.path, None, f"job {self.name}"
+
+
+class JobWarning(pytest.PytestWarning):
+    """What ``twin check`` warns of in a job."""
 
 
 class JobError(Exception):

@@ -11,7 +11,8 @@ from twin.cutting.events import CutEvent
 from twin.cutting.height_map import HeightMap
 from twin.cutting.measuring.inspection import Inspection
 from twin.cutting.measuring.measured_part import measured
-from twin.cutting.measuring.nominal import HeightMapNominalWatch, NominalGouge, NominalWatch
+from twin.cutting.measuring.nominal import NominalGouge, NominalWatch
+from twin.cutting.measuring.nominal_from_above import HeightMapNominalWatch
 from twin.cutting.measuring.nominal_from_any_side import TriDexelNominalWatch
 from twin.cutting.program_summary import ProgramSummary
 from twin.job.job_file import JobFile, ToolTable
@@ -87,6 +88,11 @@ class Machining(Observer):
         """The deepest cut into the nominal part beyond what it allows."""
         return None if self._nominal is None else self._nominal.worst
 
+    @property
+    def misfit(self) -> str | None:
+        """Why the nominal part can hardly be what the blank is to become; None where it can, or there is none."""
+        return None if self._nominal is None else self._nominal.misfit
+
     def inspect(self) -> Inspection | None:
         """How far the part is from the nominal one by now; None where the job names none."""
         if self._cutter is None or self._nominal is None or self._gouge_um is None:
@@ -141,7 +147,9 @@ class Machining(Observer):
         if self._cutter is not None:
             for stop in self._stops:
                 self._note_stop(stop, np.inf)
-            self.ended_in_cut = not self.stopped[-1:] and self._cutter.watch.engaged(np.inf)
+            last = self.stopped[-1].place if self.stopped else -1.0
+            at_end = last >= len(self._summary.rapid)
+            self.ended_in_cut = not at_end and self._cutter.watch.engaged(np.inf)
             self._cutter.end_program()
             self._note_alarm()
 
