@@ -27,7 +27,7 @@ def cut_notices(
     """
     cutter, watch = machining.cutter, dry_run.watch
     assert cutter is not None
-    begins = watch.first_feed or watch.spindle_line
+    begins = watch.first_feed or watch.spindle_line or watch.first_line
     if not cut.removed_mm3 and begins:
         yield Notice("nothing-cut", begins, "no move of the program takes anything off the stock")
     if cutter.start_depth:
@@ -44,6 +44,14 @@ def cut_notices(
     if machining.ended_in_cut:
         yield Notice("ends-in-cut", watch.last_line, "the program ends with the tool in the cut")
     tools = {tool.number: tool for tool in job.tools}
+    for number, line in watch.tools_used.items():
+        tool = tools.get(number, job.tools[0])
+        if cut.cell_mm > 0.5 * tool.diameter:
+            message = (
+                f"the stock's cells are {cut.cell_mm:g} mm wide, between whose middles tool {number} of "
+                f"{tool.diameter:g} mm can pass unseen: stock.cell is to be half of that at most"
+            )
+            yield Notice("coarse-cell", line, message)
     for slip in cutter.watch.slips:
         yield from _slip_notices(slip, tools.get(slip.tool, job.tools[0]), dry_run.drilled)
     if cut.removed_mm3 and watch.changed_at and watch.taken_to_turn and job.tools[0].speed is None:

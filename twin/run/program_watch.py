@@ -62,7 +62,7 @@ class ProgramWatch:
     Attributes:
         stops: Where program, spindle or tool are stopped in blocks of their own; a cycle knows what it does.
         overspeed: The first time that the spindle turns a tool faster than it bears.
-        tools_used: Numbers of the tools that were in the spindle while something moved.
+        tools_used: The tools that were in the spindle while something moved, each with the line of its first move.
         first_line: Line of the first move; 0: there is none.
         first_feed: Line of the first move at feed; 0: there is none.
         changed_at: Line of the first tool change; 0: there is none.
@@ -79,7 +79,7 @@ class ProgramWatch:
         """
         self.stops: list[Stop] = []
         self.overspeed: Alarm | None = None
-        self.tools_used: set[int] = set()
+        self.tools_used: dict[int, int] = {}
         self.first_line = 0
         self.first_feed = 0
         self.spindle_line = 0
@@ -124,7 +124,7 @@ class ProgramWatch:
             return
         moves = chunk.moves[first:end]
         self.first_line = self.first_line or int(moves.line[0])
-        self.tools_used.add(self._tool.number)
+        self.tools_used.setdefault(self._tool.number, int(moves.line[0]))
         self._line = int(moves.line[-1])
         feeds = np.flatnonzero(moves.motion != Motion.RAPID)
         if not len(feeds):
