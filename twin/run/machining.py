@@ -15,6 +15,7 @@ from twin.cutting.measuring.nominal import NominalGouge, NominalWatch
 from twin.cutting.measuring.nominal_from_above import HeightMapNominalWatch
 from twin.cutting.measuring.nominal_from_any_side import TriDexelNominalWatch
 from twin.cutting.program_summary import ProgramSummary
+from twin.cutting.tridexel.dexels import TriDexel
 from twin.job.job_file import JobFile, ToolTable
 from twin.machine.model.head_shape import HeadShape
 from twin.machine.model.model import MachineModel
@@ -65,7 +66,7 @@ class Machining(Observer):
         self._summary = summary
         self._zero = part_frame.program_zero(part_zero)
         self._cutter: Cutter | None = None
-        self._nominal: NominalWatch | None = None
+        self._nominal: NominalWatch[HeightMap] | NominalWatch[TriDexel] | None = None
         self._gouge_um = None if job.nominal is None else job.nominal.gouge_um
         self._gouge_stops = job.nominal is not None and job.nominal.gouge == "alarm"
         if job.stock is not None:

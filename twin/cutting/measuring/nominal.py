@@ -3,7 +3,7 @@
 import abc
 import dataclasses
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -29,6 +29,7 @@ OUTSIDE = 1e-3
 
 Nominal = HeightMap | TriDexel
 """What a part should be, on the grid of the part."""
+NominalT = TypeVar("NominalT", HeightMap, TriDexel)
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -87,10 +88,11 @@ class Deep(NamedTuple):
 
     def only(self, rows: IntArray) -> "Deep":
         """Some of them."""
-        return Deep(*(column[rows] for column in self[:-1]), self.above)
+        points, depth, marks, aside, above = self
+        return Deep(points[rows], depth[rows], marks[rows], aside[rows], above)
 
 
-class NominalWatch(abc.ABC):
+class NominalWatch(abc.ABC, Generic[NominalT]):
     """Looks after every chunk whether what it cut reaches into the nominal part.
 
     Attributes:
@@ -98,8 +100,6 @@ class NominalWatch(abc.ABC):
         misfit: Why the file can hardly be that of the part; None where it can.
         worst: The deepest so far, None without any.
     """
-
-    nominal: Nominal
 
     def __init__(
         self, nominal: NominalTable, cutter: Cutter, part_frame: PartFrame, part_zero: FloatArray
@@ -120,7 +120,7 @@ class NominalWatch(abc.ABC):
         self._allowed = nominal.gouge_um / UM_PER_MM
         self.worst: NominalGouge | None = None
         file = Path(nominal.file)
-        self.nominal = self._laid(file)
+        self.nominal: NominalT = self._laid(file)
         if self._is_empty():
             raise ConfigError(
                 f"job key 'nominal.file': {file} has nothing over the stock: it counts in "
@@ -153,7 +153,7 @@ class NominalWatch(abc.ABC):
         return self._gouge(samples, sample, deep, first), sample
 
     @abc.abstractmethod
-    def _laid(self, file: Path) -> Nominal:
+    def _laid(self, file: Path) -> NominalT:
         """The nominal part on the grid of the machined one."""
 
     @abc.abstractmethod

@@ -44,13 +44,11 @@ def nominal_map(part: HeightMap, file: Path, corner: FloatArray) -> HeightMap:
     return result
 
 
-class HeightMapNominalWatch(NominalWatch):
+class HeightMapNominalWatch(NominalWatch[HeightMap]):
     """What counts is how far from what is left of the part the nominal surface is, straight down or sideways.
 
     A gouge into a wall whose place is not known closer than by cells is seen from a cell more on.
     """
-
-    nominal: HeightMap
 
     def _laid(self, file: Path) -> HeightMap:
         return nominal_map(self._cutter.map, file, self._corner)

@@ -19,10 +19,8 @@ from twin.cutting.tridexel.surface_gap import depths_along_lines
 from twin.recording.reader import Samples
 
 
-class TriDexelNominalWatch(NominalWatch):
+class TriDexelNominalWatch(NominalWatch[TriDexel]):
     """What counts is how deep in the nominal part the surface lies that a tool has left."""
-
-    nominal: TriDexel
 
     @property
     def _material(self) -> TriDexelMaterial:
