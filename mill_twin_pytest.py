@@ -21,6 +21,7 @@ import os
 import subprocess
 import sys
 import tomllib
+import warnings
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -104,7 +105,8 @@ class JobItem(pytest.Item):
         if outcome["expected"] is not None:
             self.user_properties.append(("expected", outcome["expected"]))
         if outcome["warnings"]:
-            self.warn(JobWarning(_told(outcome["warnings"])))
+            warning = JobWarning(_told(outcome["warnings"]))
+            warnings.warn_explicit(warning, None, str(self.path), 1)
         if outcome["verdict"] != "pass":
             raise JobError(_told(outcome["findings"]))
 
