@@ -8,7 +8,7 @@ the same two.
 import math
 from typing import NamedTuple
 
-from twin.compare.statistics_kernels import BINS, FIRST_CODE, MANTISSA_BITS, bin_of
+from twin.compare.statistics import BINS, FIRST_CODE, MANTISSA_BITS, bin_of
 from twin.compilation.kernel import kernel
 from twin.nc.canonical import BoolArray, FloatArray, IntArray
 

@@ -18,9 +18,8 @@ from twin.serve.grbl.reports import BUILD, HELP, WELCOME, ParserState, Reporter,
 from twin.serve.grbl.serial_buffer import SerialBuffer, cleaned
 from twin.serve.grbl.settings import GrblSettings
 from twin.serve.grbl.stream import MOST_AHEAD, GrblStream
-from twin.training.program.inherited import Inherited
 from twin.training.program.program_run import ProgramRun
-from twin.training.program.run_options import RunOptions
+from twin.training.program.run_options import Inherited, RunOptions
 from twin.training.room.room import Room
 from twin.training.room.run_settings import run_settings
 from twin.training.session import commands as c

@@ -21,8 +21,12 @@ from twin.nc.control.settings import ControlSettings
 from twin.nc.functions import SpindleState
 from twin.nc.text.source import Source
 from twin.training.program.block_walk import ModalState
-from twin.training.program.move_window import MOVES_KEPT_BEHIND
-from twin.training.program.program_reader import MOVES_AT_ONCE, READ_AT_ONCE, ProgramReader
+from twin.training.program.program_reader import (
+    MOVES_AT_ONCE,
+    MOVES_KEPT_BEHIND,
+    READ_AT_ONCE,
+    ProgramReader,
+)
 from twin.training.program.run_options import RunOptions
 
 CHUNKS_AHEAD = 2 * math.ceil(LOOK_AHEAD / MOVES_AT_ONCE)
