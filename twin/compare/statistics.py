@@ -27,7 +27,7 @@ def bin_of(bits):
 
 
 @kernel
-def tally(values, bits, histogram):
+def count_into(values, bits, histogram):
     """Count values into a histogram.
 
     Args:
@@ -76,7 +76,7 @@ class Distribution:
         if not len(values):
             return None
         values = np.ascontiguousarray(values, np.float64)
-        worst, squares = tally(values, values.view(np.int64), self._histogram)
+        worst, squares = count_into(values, values.view(np.int64), self._histogram)
         greatest = abs(float(values[worst]))
         greater = self.count == 0 or greatest > self.greatest
         self.count += len(values)

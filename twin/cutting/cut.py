@@ -129,7 +129,9 @@ class Cutter:
         reach = self.tool.flute if self.tilts else None
         motion = tool_motion(samples, joints, frame, reach, rapid, off)
         if self._stand is None:
-            self.start_depth = self._depth_at(motion[:1].lowered(self.plan.longer(self.tool)))
+            self.start_depth = self._depth_at(
+                motion[:1].lowered(self.plan.length_difference(self.tool))
+            )
         self._stand = motion[-1:]
         for run, tool in self.plan.runs(setpoint.move):
             self._change_tools(
@@ -141,7 +143,9 @@ class Cutter:
                 self._last = None
             self.tool = tool
             for part, edge in by_edge(samples, run):
-                force = self._cut(motion[part].lowered(self.plan.longer(tool)), edge=edge)
+                force = self._cut(
+                    motion[part].lowered(self.plan.length_difference(tool)), edge=edge
+                )
                 self.force[part.start : part.start + len(force)] = force
         return sum(self._removed.values()) - before
 
@@ -222,7 +226,9 @@ class Cutter:
             self._changes += 1
             if change.tool.number != self.tool.number:
                 self.tool, self._last = change.tool, None
-                self._note_arrival(stand.lowered(self.plan.longer(change.tool)), change.line)
+                self._note_arrival(
+                    stand.lowered(self.plan.length_difference(change.tool)), change.line
+                )
 
     def _note_arrival(self, stand: ToolMotion, line: int) -> None:
         """Note that the tool which has just come into the spindle stands in the material."""

@@ -82,14 +82,16 @@ class PlacedPart(NamedTuple):
         """Whether the tool ever stands off the part's Z, part coordinates of shape (n, k) [mm or deg]."""
         return self.frame.tilts(axes + self.zero)
 
-    def tip(self, axes: FloatArray, longer: FloatArray | float) -> FloatArray:
+    def tip(self, axes: FloatArray, length_difference: FloatArray | float) -> FloatArray:
         """Where the tip of a tool is in the part, from program zero, shape (n, 3) [mm].
 
         Args:
             axes: Part coordinates, shape (n, k).
-            longer: How much longer than the first the tool is, one or shape (n,) [mm].
+            length_difference: How much longer than the first the tool is, one or shape (n,) [mm].
         """
-        return self.frame.position(axes + self.zero, longer) - self.frame.program_zero(self.zero)
+        return self.frame.position(axes + self.zero, length_difference) - self.frame.program_zero(
+            self.zero
+        )
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
@@ -134,7 +136,9 @@ class ProgramSummary:
             return axes
         screen, place = self.screen.at(move), axes.copy()
         if screen.led and self.part is not None:
-            place[:3] = self.part.tip(axes[None], self.tools.longer(self.tools.at(move)))[0]
+            place[:3] = self.part.tip(
+                axes[None], self.tools.length_difference(self.tools.at(move))
+            )[0]
         place[:3] = screen.matrix @ place[:3]
         return place + screen.shift
 
@@ -206,9 +210,9 @@ class SummaryBuilder:
         if self._part is not None and led.any():
             rows = np.flatnonzero(led)
             first_move, tools = zip(*self._plan, strict=True)
-            longer = ToolPlan(tools, first_move).lower(before + rows)
+            length_difference = ToolPlan(tools, first_move).lower(before + rows)
             place = place.copy()
-            place[rows, :3] = self._part.tip(place[rows], longer)
+            place[rows, :3] = self._part.tip(place[rows], length_difference)
         shift = moves.display - place
         if moves.screen is not None:
             shift[:, :3] = moves.display[:, :3] - np.einsum("nij,nj->ni", turned, place[:, :3])

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from twin.motion.corner_trials import PiecesOfChunks
+from twin.motion.corner_candidates import PiecesOfChunks
 from twin.motion.limits import MotionLimits
 from twin.motion.phases_of_pieces import phases_of_pieces
 from twin.motion.profile.phases import Phases

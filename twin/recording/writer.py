@@ -24,7 +24,7 @@ from twin.recording.form import (
     RecordingHeader,
     Samples,
 )
-from twin.recording.seal import seal
+from twin.recording.write_checksum import write_checksum
 
 _STEP = 8 << 20
 """Bytes that are taken at a time."""
@@ -231,4 +231,4 @@ def record(path: Path, header: RecordingHeader) -> Iterator[RecordingWriter]:
         # Opened again, HDF5 also gives the room back that was held and not needed.
         with h5py.File(temporary, "r+", libver=_FORMAT) as file:
             file.attrs["complete"] = True
-        seal(temporary)
+        write_checksum(temporary)

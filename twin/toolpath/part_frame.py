@@ -102,12 +102,14 @@ class PartFrame:
             found[name] = self.position(moved)[0] - here
         return found
 
-    def position(self, joints: FloatArray, longer: float | FloatArray = 0.0) -> FloatArray:
+    def position(
+        self, joints: FloatArray, length_difference: float | FloatArray = 0.0
+    ) -> FloatArray:
         """Where the tip of a tool is, seen from the part.
 
         Args:
             joints: Machine coordinates of all axes, shape (n, k) [mm or deg].
-            longer: How much longer than the first the tool is, one or shape (n,) [mm].
+            length_difference: How much longer than the first the tool is, one or shape (n,) [mm].
 
         Returns:
             Shape (n, 3) [mm], origin on the axis of rotation at machine Z 0: X and Y of the tool
@@ -115,16 +117,16 @@ class PartFrame:
             its frame.
         """
         if self.chain is not None:
-            return tool_point(self.chain, self.counted(joints), longer)
+            return tool_point(self.chain, self.counted(joints), length_difference)
         relative = joints[:, :3] - np.array([*self.center, 0.0])
         if self.rotary is None:
-            return _lowered(relative, longer)
+            return _lowered(relative, length_difference)
         angle = np.deg2rad(joints[:, self.rotary] - self.turn_zero)
         cosine, sine = np.cos(angle), np.sin(angle)
         turned = relative.copy()
         turned[:, 0] = cosine * relative[:, 0] - sine * relative[:, 1]
         turned[:, 1] = sine * relative[:, 0] + cosine * relative[:, 1]
-        return _lowered(turned, longer)
+        return _lowered(turned, length_difference)
 
     def program_zero(self, part_zero: FloatArray) -> FloatArray:
         """Where program zero lies in the frame of its part, shape (3,) [mm]."""
@@ -226,6 +228,6 @@ def chain_from_text(text: str) -> tuple[Kinematics | None, FloatArray | None]:
     return Kinematics(**fields), zero
 
 
-def _lowered(points: FloatArray, longer: float | FloatArray) -> FloatArray:
-    points[:, 2] -= longer
+def _lowered(points: FloatArray, length_difference: float | FloatArray) -> FloatArray:
+    points[:, 2] -= length_difference
     return points

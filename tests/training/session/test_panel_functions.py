@@ -69,7 +69,7 @@ def second_tool(session: Session) -> float:
 
 
 def test_a_tool_change_takes_the_time_that_the_machine_file_says(session):
-    """As in a run: twin.run.waits; a tool that is there already takes none."""
+    """As in a run: twin.run.spindle_dwells; a tool that is there already takes none."""
     change_s = second_tool(session)
     same = seconds(session, "N10 T1 M6\nN20 G90 G1 F500 X1\nN30 M30")
     other = seconds(session, "N10 T2 M6\nN20 G90 G1 F500 X2\nN30 M30")
@@ -685,7 +685,7 @@ def test_a_tool_that_is_added_is_mounted_and_cuts(session):
     assert (row.kind, row.diameter, row.length, row.radius) == ("flat", 4.0, 70.0, 2.0)
     assert "T7" in refused(session, "add_tool", **added)
     do(session, "change_tool", number=7)
-    assert session.room.setup.tables.longer[2] == 10.0
+    assert session.room.setup.tables.length_difference[2] == 10.0
     do(session, "mode", mode="auto")
     load(session, "N10 T7 M6\nN20 S3000 M3\nN30 G90 G1 F500 X1\nN40 M30")
     do(session, "cycle_start")

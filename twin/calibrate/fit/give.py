@@ -161,7 +161,7 @@ def rigid_errors(stretches: Sequence[Stretch]) -> dict[str, float]:
             speed, change = _kinematics(stretch.time, place, _SMOOTHED_S[0])
             moves = np.abs(speed) > 0.01 * np.abs(speed).max(initial=1e-9)
             table = [change, speed, np.sign(speed) * moves, np.ones(len(speed))]
-            columns.append(np.column_stack(table)[stretch.felt])
+            columns.append(np.column_stack(table)[stretch.measured])
         fitted, *_ = np.linalg.lstsq(np.vstack(columns), force, rcond=None)
         found.append(fitted)
     shares = np.abs(found[1] - found[0])[:3] / np.maximum(np.abs(found[0][:3]), 1e-12)

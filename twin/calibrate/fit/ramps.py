@@ -196,6 +196,6 @@ def predict_ramp(parameters: Parameters, ramp: Ramp) -> Seen:
     velocity = seen_at(motion.speed, acceleration, command, parameters.delay)
     change = seen_at(acceleration, rate, command, parameters.delay)
     place = ramp.place
-    told = _averaged(command.position[:, 1], ramp.window)[place]
+    own = _averaged(command.position[:, 1], ramp.window)[place]
     done = _averaged(velocity, ramp.window)[place]
-    return Seen(float(told - done), float(done), float(change[place]))
+    return Seen(float(own - done), float(done), float(change[place]))

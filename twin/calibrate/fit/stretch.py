@@ -50,7 +50,7 @@ class Stretch:
         pushed: Force that is injected at the load, (n,); None where none is.
         knots: Samples of the command that are its own, shape (n,).
         seen: Rows of actual positions that are looked at.
-        felt: Rows of force or current that are looked at.
+        measured: Rows of force or current that are looked at.
     """
 
     time: FloatArray
@@ -64,7 +64,7 @@ class Stretch:
     pushed: FloatArray | None
     knots: BoolArray
     seen: BoolArray
-    felt: BoolArray
+    measured: BoolArray
 
     @property
     def lag(self) -> FloatArray:
@@ -75,7 +75,7 @@ class Stretch:
     def logged_force(self) -> FloatArray | None:
         """Force, else current, of the rows that are looked at; None where neither is logged."""
         column = self.current if self.force is None else self.force
-        return None if column is None else column[self.felt]
+        return None if column is None else column[self.measured]
 
 
 def stretches_of(

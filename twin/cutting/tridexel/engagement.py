@@ -101,16 +101,16 @@ def cut(stock: TriDexel, poses: Poses, edge: Sequence[Solid], tool: int) -> Enga
         edge: The bodies that cut.
         tool: Number that the cut surface remembers, from 1 to ``normals.MOST_TOOLS``.
     """
-    tally = _swept(stock, poses, edge, tool)
-    length = tally[:, LENGTH]
+    sums = _swept(stock, poses, edge, tool)
+    length = sums[:, LENGTH]
     touched = length > 0.0
     some = np.where(touched, length, 1.0)
     return Engagement(
-        tally[:, VOLUME],
+        sums[:, VOLUME],
         touched,
-        np.where(touched, tally[:, HIGHEST] - tally[:, LOWEST], 0.0),
-        tally[:, MOMENT : MOMENT + 3] / some[:, None],
-        tally[:, LONGEST : LONGEST + 3].max(axis=1, initial=0.0),
+        np.where(touched, sums[:, HIGHEST] - sums[:, LOWEST], 0.0),
+        sums[:, MOMENT : MOMENT + 3] / some[:, None],
+        sums[:, LONGEST : LONGEST + 3].max(axis=1, initial=0.0),
     )
 
 
@@ -129,18 +129,18 @@ def met(stock: TriDexel, poses: Poses, solid: Solid) -> FloatArray:
 def _swept(stock: TriDexel, poses: Poses, solids: Sequence[Solid], tool: int) -> FloatArray:
     """Bring solids along steps, in shorter ones where they are long; what each step did."""
     short, step = in_short_steps(poses, solids)
-    tally = np.zeros((len(step), COLUMNS))
-    tally[:, LOWEST], tally[:, HIGHEST] = np.inf, -np.inf
+    sums = np.zeros((len(step), COLUMNS))
+    sums[:, LOWEST], sums[:, HIGHEST] = np.inf, -np.inf
     bodies, done = np.array(solids, np.float64), 0
     while True:
-        done = sweep(stock.dexels, stock.lattice, short, bodies, tally, tool, done)
-        if done >= len(tally):
+        done = sweep(stock.dexels, stock.lattice, short, bodies, sums, tool, done)
+        if done >= len(sums):
             break
         stock.dexels = stock.dexels.grown()
-    if len(tally) < len(poses.tip):
-        return tally
+    if len(sums) < len(poses.tip):
+        return sums
     first = np.flatnonzero(np.diff(step, prepend=-1))
-    whole = np.add.reduceat(tally, first)
-    whole[:, LOWEST] = np.minimum.reduceat(tally[:, LOWEST], first)
-    whole[:, HIGHEST:] = np.maximum.reduceat(tally[:, HIGHEST:], first)
+    whole = np.add.reduceat(sums, first)
+    whole[:, LOWEST] = np.minimum.reduceat(sums[:, LOWEST], first)
+    whole[:, HIGHEST:] = np.maximum.reduceat(sums[:, HIGHEST:], first)
     return whole

@@ -152,7 +152,7 @@ def tune(axis: AxisTable, moved: float) -> Drive:
     )
 
 
-def swings_up(drive: Drive) -> bool:
+def is_unstable(drive: Drive) -> bool:
     """Whether the loop, on a rigid axis without friction, grows by itself because of its lags."""
     width = 3 + len(drive.lags)
     rates: FloatArray = np.zeros((width, width))

@@ -143,7 +143,9 @@ class LateDrives:
         """What a dead time adds to what a drive is told in advance, for velocities and accelerations."""
         drives, dead = self._drives, self._half > 0.0
         behind = [2.0 * dead * (after - at) for at, after in zip(now, late, strict=True)]
-        force = drives.velocity_told * behind[0] + drives.acceleration_told * behind[1]
+        force = (
+            drives.velocity_feedforward * behind[0] + drives.acceleration_feedforward * behind[1]
+        )
         force += self._integral * drives.trail * now[0] - self._stiffness * late[0]
         force += self._integral * self._half * (late[0] - drives.trail * late[1])
         return np.asarray(force)

@@ -271,7 +271,7 @@ class Clearance:
         """
         way = np.abs(track[:, 1] - track[:, 0])
         length = float(np.linalg.norm(way[:3])) + before.reach * float(way[3:].sum())
-        if length < SHORTEST_WAY or _told(before, behind, track, self._threshold[pair]):
+        if length < SHORTEST_WAY or _is_certain(before, behind, track, self._threshold[pair]):
             return np.inf
         stand, there = position.mean(axis=0), track.mean(axis=1)
         clearance, middle = self._measure(pair, stand, there)
@@ -349,7 +349,7 @@ class _Way(NamedTuple):
         return int(setpoint.line[row - self.known]), float(setpoint.time[row - self.known])
 
 
-def _told(before: _Plane, behind: _Plane, track: FloatArray, threshold: float) -> bool:
+def _is_certain(before: _Plane, behind: _Plane, track: FloatArray, threshold: float) -> bool:
     """Whether two planes keep a pair apart on the whole straight way between two samples."""
     leaves = _share_above(before.bound(track) - threshold)
     comes = 1.0 - _share_above(behind.bound(track)[::-1] - threshold)

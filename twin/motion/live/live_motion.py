@@ -24,7 +24,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from twin.columns import join
-from twin.motion.corner_trials import PiecesOfChunks
+from twin.motion.corner_candidates import PiecesOfChunks
 from twin.motion.limits import MotionLimits
 from twin.motion.live.overridden_plan import OverriddenPlan, Overrides
 from twin.motion.pieces.pieces import BATCH

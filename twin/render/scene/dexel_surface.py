@@ -11,10 +11,10 @@ from twin.cutting.tridexel.mesh import MOST_VERTICES, TRIANGLES, Surface, surfac
 from twin.cutting.tridexel.normals import OWN, normals, tools
 from twin.nc.canonical import BoolArray, FloatArray
 from twin.render.drawing.canvas import Canvas
+from twin.render.scene.facet import MATERIAL
 from twin.render.scene.live_mesh import LiveMesh, add_live_mesh
 from twin.render.scene.placement import Placement
 from twin.render.scene.shading import SMOOTH_COSINE, face_normals
-from twin.render.scene.skin import MATERIAL
 
 MESH = "stock_from_all_sides"
 RAW, MACHINED = 0, 1
@@ -111,12 +111,12 @@ class DexelSurface:
 
 def machined(found: Surface) -> BoolArray:
     """Which faces a tool left, shape (m,): of a face's first corner, a crossing, it is known."""
-    return tools(found.skin[found.faces[:, 0]]) != OWN
+    return tools(found.facet[found.faces[:, 0]]) != OWN
 
 
 def corner_normals(found: Surface) -> FloatArray:
     """Normals of the corners of faces, shape (m, 3, 3): the surface's own, across an edge of it the face's."""
     faces = face_normals(found.points[found.faces])[:, None]
-    smooth = normals(found.skin)[found.faces]
+    smooth = normals(found.facet)[found.faces]
     agree = (smooth * faces).sum(axis=2, keepdims=True) > SMOOTH_COSINE
     return np.where(agree, smooth, faces)

@@ -23,8 +23,8 @@ from twin.render.scene.cameras import PART_CAMERAS, SMALLEST_MM, add_part_camera
 from twin.render.scene.dexel_surface import Deviations, DexelSurface
 from twin.render.scene.placement import Joints, Placement, place, tip_position
 from twin.render.scene.scene import Scene
-from twin.render.scene.skin import Skin
 from twin.render.scene.stock_surface import StockSurface
+from twin.render.scene.texture import StockTexture
 from twin.render.scene.tool_body import ToolBodies
 from twin.render.scene.trail import Trail, trail_points
 from twin.render.scene.work_holding import add_work_holding
@@ -176,8 +176,11 @@ class Stage:
     @property
     def _tip(self) -> FloatArray:
         """Where the tool point is, in the part's frame, shape (3,) [mm]."""
-        frame, longer = self._scene.recording.header.part_frame, self._scene.summary.tools.longer
-        return frame.position(self._position[None], longer(self._tool))[0]
+        frame, length_difference = (
+            self._scene.recording.header.part_frame,
+            self._scene.summary.tools.length_difference,
+        )
+        return frame.position(self._position[None], length_difference(self._tool))[0]
 
     def _spray(self) -> Chips:
         """Chips of what was removed of late; out of a slot of a height map they fly from its upper edge."""
@@ -291,7 +294,7 @@ def _stock_surface(
     assert not callable(paint)
     cells = material.map.heights.shape
     step = max(1, -(-max(cells) // quality.drawn_cells))
-    return StockSurface(material, Skin(material.map, material.marks, step, paint), step)
+    return StockSurface(material, StockTexture(material.map, material.marks, step, paint), step)
 
 
 def _trail_radius(points: FloatArray) -> float:

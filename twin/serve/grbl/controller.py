@@ -50,7 +50,7 @@ class GrblController:
         self._left: Inherited | None = None
         self._checking: Executor | None = None
         self._locked = self._halted = self._homing = self._door = False
-        self._told_lost = 0
+        self._reported_lost = 0
         self._reset_state(room, None)
 
     # --- what the line asks for
@@ -70,7 +70,7 @@ class GrblController:
     def work(self, room: Room, data: bytes = b"") -> bytes:
         """Take bytes from the line, do what they ask for as far as the machine is ready; what is to be sent."""
         if data and self._stream is not None:
-            self._stream.heard = time.monotonic()
+            self._stream.last_received = time.monotonic()
         for command in self.serial.receive(data):
             if command == realtime.RESET:
                 self._reset(room)
@@ -79,9 +79,9 @@ class GrblController:
             elif not self._halted:
                 realtime.obey(room, command, jogging=self._jogs)
                 self._door = self._door_behind(command)
-        if self.serial.lost > self._told_lost:
+        if self.serial.lost > self._reported_lost:
             self._tell(f"the serial buffer ran over: {self.serial.lost} bytes are lost")
-        self._told_lost = self.serial.lost
+        self._reported_lost = self.serial.lost
         self._look(room)
         if not self._halted:
             self._run_lines(room)

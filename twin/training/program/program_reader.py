@@ -23,7 +23,7 @@ from twin.nc.path.feed_rates import FEED_FACTORS
 from twin.nc.text.blocks import Block
 from twin.nc.text.diagnostics import Diagnostic, ProgramError
 from twin.nc.text.source import Source
-from twin.run.waits import Waits
+from twin.run.spindle_dwells import SpindleDwells
 from twin.training.program.block_search import BlockSearch
 from twin.training.program.block_walk import BlockWalk, ModalState
 from twin.training.program.run_options import Inherited, RunOptions
@@ -158,7 +158,7 @@ class ProgramReader:
         self._clear_part()
         tools = self._control.tools
         table = self._machine.file.spindle
-        self._waits = Waits(table, {}, tools.spindle or 0, spindle, tools.selected)
+        self._spindle_dwells = SpindleDwells(table, {}, tools.spindle or 0, spindle, tools.selected)
         self.start, self.zero = start, zero
         self.ending = None
 
@@ -295,7 +295,7 @@ class ProgramReader:
         # No time passes for a tool that is not there: the change is reported at once.
         changes = self.ending == "tool"
         happen = [one for one in chunk.events if changes or not _is_tool_change(one)]
-        chunk = Chunk(chunk.moves, tuple(self._waits.among(happen)))
+        chunk = Chunk(chunk.moves, tuple(self._spindle_dwells.among(happen)))
         for event in chunk.events:
             self.walk.note_event(self.moves.count, event)
         self.moves.add(chunk.moves)

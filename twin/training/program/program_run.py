@@ -227,7 +227,7 @@ class ProgramRun:
         if reader.ending is None and (stream is not None or len(reader.waiting) < self._ahead):
             reader.interpret(most, self._move)
         self._looks += 1
-        if stream is not None and self._motion is None and reader.ending is None and stream.quiet:
+        if stream is not None and self._motion is None and reader.ending is None and stream.is_idle:
             reader.end_stream()
         long_enough = self._looks > SLICES_AT_REST and stream is None
         if self._motion is None and long_enough:

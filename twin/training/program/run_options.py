@@ -69,7 +69,7 @@ class BlockStream(Protocol):
     """
 
     @property
-    def quiet(self) -> bool:
+    def is_idle(self) -> bool:
         """Whether no block has come for a while."""
         ...
 

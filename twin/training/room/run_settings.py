@@ -42,7 +42,7 @@ def path_to_come(room: Observed) -> PathToCome:
         search=room.program.searched,
         stand=room.machine.setpoint.position[0].copy(),
         zero=tables.zero.copy(),
-        longer=tables.longer_by_table(),
+        length_difference=tables.longer_by_table(),
         tool=tables.spindle,
         spindle=room.auxiliaries.spindle,
         frame=room.setup.part_frame,

@@ -63,10 +63,10 @@ class Tables:
     @property
     def tip_zero(self) -> FloatArray:
         """Machine coordinates at which the tip stands on the part's true zero, shape (k,)."""
-        return self.true_zero + self.longer
+        return self.true_zero + self.length_difference
 
     @property
-    def longer(self) -> FloatArray:
+    def length_difference(self) -> FloatArray:
         """How much higher the head stands than with the first tool, shape (k,) [mm]."""
         return self._along_z(self.tool.length - self._reference)
 

@@ -31,7 +31,7 @@ def mesh_message(stock: TriDexel, crossings: int) -> bytes:
         crossings: How finely it is drawn; see ``surface``.
     """
     found = surface(stock, crossings)
-    by = np.minimum(tools(found.skin[found.faces[:, 0]]), _MOST_TOOL).astype(np.uint8)
+    by = np.minimum(tools(found.facet[found.faces[:, 0]]), _MOST_TOOL).astype(np.uint8)
     head = struct.pack("<BxxxII", MESH, len(found.points), len(found.faces))
     content = (
         found.points.astype("<f4").tobytes() + found.faces.astype("<u4").tobytes() + by.tobytes()

@@ -120,7 +120,7 @@ def _start(room: Room) -> dict[str, Any]:
     """How the machine and its control stand."""
     names, tables = room.machine.machine.axes.names, room.setup.tables
     off = tables.zero - tables.true_zero
-    longer = tables.lengths[tables.spindle] - tables.tool.length
+    length_difference = tables.lengths[tables.spindle] - tables.tool.length
     start: dict[str, Any] = {
         "mode": room.panel.mode,
         "position": {
@@ -130,7 +130,7 @@ def _start(room: Room) -> dict[str, Any]:
         "zero_error": {
             name: round(float(value), 4) for name, value in zip(names, off, strict=True) if value
         },
-        "tool_length_error": round(longer, 4),
+        "tool_length_error": round(length_difference, 4),
         "feed_override": room.panel.feed_override,
         "rapid_override": room.panel.rapid_override,
     }

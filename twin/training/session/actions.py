@@ -277,8 +277,8 @@ def _set_zero(room: Room, command: c.SetZero) -> None:
     _require_no_run(room)
     tables = room.setup.tables
     place = float(room.machine.position[column])
-    longer = float((tables.program_zero - tables.zero)[column])
-    tables.set_zero(column, place - command.reading - longer)
+    length_difference = float((tables.program_zero - tables.zero)[column])
+    tables.set_zero(column, place - command.reading - length_difference)
     room.faults.forget_offset(command.axis)
 
 

@@ -98,8 +98,10 @@ def _put_length(control: Control) -> None:
     """The length of the tool in the spindle counts, with DL."""
     tool, number = control.tools.data(control.tools.spindle), control.tools.spindle
     control.tools.length_call = number
-    longer = 0.0 if tool is None or number == 0 else control.tools.length_difference(tool)
-    set_length(control, longer + memory_of(control).deltas.length)
+    length_difference = (
+        0.0 if tool is None or number == 0 else control.tools.length_difference(tool)
+    )
+    set_length(control, length_difference + memory_of(control).deltas.length)
 
 
 def define_tool(control: Control, statement: Statement) -> None:

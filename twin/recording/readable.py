@@ -19,7 +19,7 @@ _ROWS = 65536
 
 def reading_ends(path: Path) -> bool:
     """Whether all that a file holds can be read, or is refused with an error."""
-    command = [sys.executable, "-m", "twin.recording.trial", str(path)]
+    command = [sys.executable, "-m", "twin.recording.readable", str(path)]
     return subprocess.run(command, capture_output=True, check=False).returncode >= 0  # noqa: S603 (this module)
 
 
