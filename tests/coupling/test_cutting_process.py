@@ -117,7 +117,7 @@ def test_halving_the_step_changes_little() -> None:
 
 
 def walls(passes: list[float]) -> list[float]:
-    """How far a wall stands off after each pass along it at an offset [mm]."""
+    """How far a wall is off after each pass along it at an offset [mm]."""
     machine = shipped_machine()
     slender = ToolTable(number=1, diameter=10.0, teeth=4, flute=40.0, free_length=55.0, length=90.0)
     narrow = StockTable(

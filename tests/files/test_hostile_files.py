@@ -1,6 +1,6 @@
 """Damaged and hostile files of every kind are taken or refused with a sentence.
 
-``scripts/fuzz KIND`` tries as many as there is time for; what it found stands here by name.
+``scripts/fuzz KIND`` tries as many as there is time for; what it found is here by name.
 """
 
 import logging

@@ -98,7 +98,7 @@ def test_a_run_counts_them_and_records_a_standstill(tmp_path: Path):
         (tmp_path / "part.toml").write_text(job.format(machine) + tools)
         done = twin.run(tmp_path / "part.toml", out=tmp_path / f"out {machine}")
         seconds[machine] = done.outcome.duration_s
-    # 1 s to start, 1 s to stop, 4 s to change, 0.5 s to start anew.
+    # 1 s to start, 1 s to stop, 4 s to change, 0.5 s to start again.
     assert seconds["mill4"] - seconds["quick.toml"] == pytest.approx(6.5, abs=0.002)
     with h5py.File(tmp_path / "out mill4" / "recording.h5") as recording:
         line = np.asarray(recording["line"])

@@ -16,7 +16,7 @@ from twin.version import __version__
 
 
 def machine_text(result: Calibration, *, base: str, name: str) -> str:
-    """A machine file that stands on its base.
+    """A machine file that is based on another.
 
     Args:
         result: The calibration.

@@ -74,7 +74,7 @@ def run_variant(variant: Variant, settings: CheckSettings) -> CheckOutcome:
         outcome = _not_run(path, UsageError(f"{error.filename or path}: {error.strerror or error}"))
     except MemoryError:
         outcome = _not_run(path, UsageError("not enough memory; a coarser stock.cell needs less"))
-    except Exception:  # noqa: BLE001 - a defect at one program is told with it, the others run on
+    except Exception:  # noqa: BLE001 - a defect at one program is reported with it, the others run on
         outcome = _crashed(path)
     return dataclasses.replace(outcome, wall_s=time.perf_counter() - began, changes=variant.changes)
 

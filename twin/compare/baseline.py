@@ -178,7 +178,7 @@ def _first_of(reasons: Iterator[Reason]) -> list[Reason]:
 
 
 class _Pair(NamedTuple):
-    """What stands beside each other: a stored block, a block of the program, or both."""
+    """What is beside each other: a stored block, a block of the program, or both."""
 
     before: Entry | None
     now: Entry | None
@@ -225,7 +225,7 @@ class _Pairs:
     def _taken(self, stored: int, program: int) -> _Pair:
         before = self._ahead[0].popleft() if stored else None
         now = self._ahead[1].popleft() if program else None
-        # What is lost is told at the line before which it stood.
+        # What is lost is reported at the line before which it stood.
         found_at = now or (self._ahead[1][0] if self._ahead[1] else None)
         self._line = self._line if found_at is None else found_at.line
         return _Pair(before, now, self._line)

@@ -25,7 +25,7 @@ from twin.nc.canonical import FloatArray
 from twin.units import MM, SECONDS_PER_MINUTE
 
 LOOK_CELLS = 0.25
-"""The material is cut, and looked at anew, when the tip has gone so far since [cells]."""
+"""The material is cut, and looked at again, when the tip has gone so far since [cells]."""
 LOOK_FEED = 0.05
 """Or when the feed per tooth has changed by so much of itself."""
 _LONGEST_MEAN_S = 0.05
@@ -165,9 +165,9 @@ def follow_cutting(
 
     Args:
         physics: The machine.
-        controls: What the drives are told on the way to each setpoint, shape (n, nu).
+        controls: What the drives are commanded on the way to each setpoint, shape (n, nu).
         states: Set to the states there, shape (n, width).
-        commanded: Speed that the spindle is told, shape (n,) [turns/s]; NaN: nothing is known of it.
+        commanded: Speed that the spindle is commanded, shape (n,) [turns/s]; NaN: nothing is known of it.
         cut: Tool and material.
         memory: Carried on.
         loads: Set to what the tool felt.

@@ -93,7 +93,7 @@ class Operation(Protocol):
 class CuttingProcess:
     """Cuts a height map of its own along the simulated motion, and pushes the axes by what the teeth feel.
 
-    It is not the map of ``twin.cutting.cut.Cutter``, which becomes the part. A tooth wants the material cut anew every
+    It is not the map of ``twin.cutting.cut.Cutter``, which becomes the part. A tooth wants the material cut again every
     quarter of a cell; the depth and width of a cut are those of a long straight stretch (of a ball of 6 mm, 1 mm deep, pieces
     of a quarter of a cell are 0.07 mm deep), and what must not meet the material is held against it before it is cut.
     Cutting twice takes 1 to 3 % of the processor time of a run.

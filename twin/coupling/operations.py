@@ -67,7 +67,7 @@ class OperatorOperation:
 
     @property
     def speed_at_start(self) -> float:
-        """As it was told before."""
+        """As it was reported before."""
         return self.speed or 0.0
 
     def turnings(self, setpoints: Setpoints) -> Iterator[Turning]:
@@ -82,7 +82,7 @@ def _known(speed: float | None) -> float:
 
 
 def speeds_are_known(summary: ProgramSummary) -> bool:
-    """Whether the speed of the spindle is told wherever a program may cut."""
+    """Whether the speed of the spindle is commanded wherever a program may cut."""
     said = summary.spindle.values[1:]
     return all(speed is not None for speed in said or [t.speed for t in summary.tools.tools])
 

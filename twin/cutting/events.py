@@ -99,14 +99,14 @@ def in_tool_frame(vectors: FloatArray, axis: FloatArray) -> FloatArray:
 
 
 EVENTS_TOLD = 1000
-"""Occurrences that are told of at most: the deepest."""
+"""Occurrences that are reported at most: the deepest."""
 
 
 class EventLog:
     """Keeps the first and the worst of each occurrence.
 
     Attributes:
-        forgotten: How often one was let go of because enough others were deeper.
+        forgotten: How often one was dropped because enough others were deeper.
     """
 
     def __init__(self, most: int = EVENTS_TOLD) -> None:

@@ -1,4 +1,4 @@
-"""The height map: how high the material stands over every cell of the part's own frame.
+"""The height map: how high the material is over every cell of the part's own frame.
 
 The rotary table turns about Z, so that the tool never tilts against the part and one height per
 cell describes the part exactly, up to the size of the cells.

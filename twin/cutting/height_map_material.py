@@ -37,7 +37,7 @@ class HeightMapMaterial:
         map: The height map.
         changed: Cells that changed since ``begin_chunk``: row, row end, column, column end; none when the rows
             end before they begin.
-        marks: Way of the tool at which each cell was last cut, shape (ny, nx) [mm]: its lines are
+        marks: Path of the tool at which each cell was last cut, shape (ny, nx) [mm]: its lines are
             the marks that a cutter leaves. Of no size unless asked for.
     """
 

@@ -79,7 +79,7 @@ class PlacedPart(NamedTuple):
     zero: FloatArray
 
     def tilts(self, axes: FloatArray) -> bool:
-        """Whether the tool ever stands off the part's Z, part coordinates of shape (n, k) [mm or deg]."""
+        """Whether the tool ever is off the part's Z, part coordinates of shape (n, k) [mm or deg]."""
         return self.frame.tilts(axes + self.zero)
 
     def tip(self, axes: FloatArray, length_difference: FloatArray | float) -> FloatArray:
@@ -101,13 +101,13 @@ class ProgramSummary:
     Attributes:
         tools: What is in the spindle when, at which speed.
         rapid: Whether each move is a rapid, shape (n,).
-        spindle: Its speed [1/min], negative where it turns counter-clockwise, 0 where it stands;
+        spindle: Its speed [1/min], negative where it turns counter-clockwise, 0 where it is at rest;
             None where nothing is known of it. A program that never speaks of the spindle has one
             value: it runs with it turning, since someone has switched it on by hand. One that does
             is held to it from its first move on.
         screen: What the control's screen shows; None: always where the axes are.
         part: Where the part is on the machine; None: its screen never shows the tip.
-        tilts: Whether a height map does not hold the part: the tool stands off the part's Z somewhere, or the blank is a
+        tilts: Whether a height map does not hold the part: the tool is off the part's Z somewhere, or the blank is a
             cylinder that lies.
     """
 
@@ -168,7 +168,7 @@ class SummaryBuilder:
         Args:
             job: Its tools are those that the program may bring.
             spindle: As the machine and the control have it; None: without a limit.
-            part: Where the part is on the machine; None: the tool never stands off its Z.
+            part: Where the part is on the machine; None: the tool never is off its Z.
         """
         self._tools = {tool.number: tool for tool in job.tools}
         # Without a list of tools every number means the default tool, as in a run without one.

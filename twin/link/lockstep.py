@@ -1,7 +1,7 @@
 """The twin under a control that asks for a position every servo period and waits for the answer.
 
 Time stands still while nobody asks, so that a stall on either side delays both and is none of the
-machine's. The drives are told no more than the positions: velocity and acceleration are backward
+machine's. The drives are commanded no more than the positions: velocity and acceleration are backward
 differences of them. Commands are rounded as a recording rounds them before they are used, so that
 a recording, played back, gives the joints of the run bit for bit.
 """
@@ -285,7 +285,7 @@ class LockstepMotion(MachineMotion):
             self._log.add(samples)
 
     def _clear(self) -> bool:
-        """Switch the drives on where the axes stand; returns whether they stand."""
+        """Switch the drives on where the axes are; returns whether they are at rest."""
         try:
             self._live.clear()
         except AlarmStandsError:

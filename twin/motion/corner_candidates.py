@@ -106,7 +106,7 @@ class PiecesOfChunks(Step[_Span, Pieces]):
     Args:
         chunks: The program.
         limits: Of the axes and the path.
-        start: Where the axes stand before, part coordinates, shape (k,) [mm or deg].
+        start: Where the axes are before, part coordinates, shape (k,) [mm or deg].
         largest_override: Of the feed that the limits of a piece must leave room for.
         batch: How many blocks are cut together.
 

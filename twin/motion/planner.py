@@ -24,7 +24,7 @@ def plan_phases(
     Args:
         chunks: The program.
         limits: Of the axes and the path.
-        start: Where the axes stand before, part coordinates, shape (k,) [mm or deg].
+        start: Where the axes are before, part coordinates, shape (k,) [mm or deg].
     """
     return phases_of_pieces(PiecesOfChunks(chunks, limits, start), limits)
 
@@ -48,7 +48,7 @@ def plan(
         limits: Of the axes and the path.
         period_s: Servo period [s].
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
-        start: Where the axes stand before the program, machine coordinates, shape (k,) [mm or deg].
+        start: Where the axes are before the program, machine coordinates, shape (k,) [mm or deg].
 
     Yields:
         Setpoints in machine coordinates, at most ``SAMPLES`` at a time.
@@ -77,7 +77,7 @@ class WatchedEnd(Step[Chunk, Chunk]):
 
     Args:
         chunks: The program.
-        start: Where the axes stand before, machine coordinates, shape (k,) [mm or deg].
+        start: Where the axes are before, machine coordinates, shape (k,) [mm or deg].
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
 
     Attributes:

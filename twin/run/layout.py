@@ -139,7 +139,7 @@ def bore_of(job: JobFile) -> float | None:
 
 
 def start_position(job: JobFile, machine: Machine) -> FloatArray:
-    """Where the axes stand when the program starts, program coordinates, shape (k,) [mm or deg].
+    """Where the axes are when the program starts, program coordinates, shape (k,) [mm or deg].
 
     Raises:
         ConfigError: An axis does not exist.

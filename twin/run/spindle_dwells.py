@@ -16,7 +16,7 @@ def with_spindle_dwells(
 
     A tool change takes ``tool_change_s`` behind the spindle's stop; one that brings the tool that
     is in the spindle takes only the stop. Whatever changes the spindle's speed takes the change over
-    ``acceleration``, if the machine ``spindle_dwells`` for it; a speed that neither program nor job says
+    ``acceleration``, if the machine ``waits`` for it; a speed that neither program nor job says
     takes none. The program's end is not waited for, nor is what happens in the middle of a path that
     goes on.
 
@@ -87,5 +87,5 @@ class SpindleDwells:
     def _turn(self, turns: float) -> float:
         """How long the spindle takes to another speed [s], negative counter-clockwise [1/min]."""
         change, self._turns = abs(turns - self._turns), turns
-        spindle_dwells = self._spindle.spindle_dwells and self._spindle.acceleration > 0.0
+        spindle_dwells = self._spindle.waits and self._spindle.acceleration > 0.0
         return change / self._spindle.acceleration if spindle_dwells else 0.0

@@ -99,7 +99,7 @@ def _execution(now: Snapshot) -> Execution:
 
 
 def _condition(now: Snapshot) -> Condition:
-    """The alarm that stands, or else a fault that the trainer has put in, or nothing."""
+    """The alarm that is active, or else a fault that the trainer has put in, or nothing."""
     if now.alarm is not None:
         return Condition("Fault", now.alarm.code, now.alarm.message)
     if now.faults:

@@ -35,7 +35,7 @@ class PartFrame:
 
     Attributes:
         rotary: Column of the axis that turns the part about +Z, or None when nothing turns it.
-        center: Machine X and Y at which the tool stands over the axis of rotation [mm].
+        center: Machine X and Y at which the tool is over the axis of rotation [mm].
         turn_zero: Rotary machine value at which the part's frame is parallel to the machine's
             [deg]: the part zero of that axis, so that the part lies as its program describes it.
         geometry: How far the machine is from straight and square.
@@ -141,7 +141,7 @@ class PartFrame:
             joints: Machine coordinates of all axes, shape (n, k) [mm or deg].
 
         Returns:
-            Unit vectors, shape (n, 2); with a chain only where the tool stands along Z.
+            Unit vectors, shape (n, 2); with a chain only where the tool is along Z.
         """
         if self.chain is not None:
             return rotated(
@@ -190,7 +190,7 @@ class PartFrame:
         return int(self.chain.column[tables[-1]]), self.chain.anchor[tables[-1]]
 
     def tilts(self, joints: FloatArray) -> bool:
-        """Whether the tool ever stands off the part's Z, joints of shape (n, k) [mm or deg]."""
+        """Whether the tool ever is off the part's Z, joints of shape (n, k) [mm or deg]."""
         if self.chain is None:
             return False
         return bool(np.any(self.tool_direction(joints)[:, 2] < _ALONG_Z))

@@ -31,7 +31,7 @@ class ToolPlan:
 
     Attributes:
         tools: In the order in which they come into the spindle; the first is in it at the start.
-            A tool whose speed changes stands there once for each speed.
+            A tool whose speed changes is there once for each speed.
         first_move: Number of the first move that each is in the spindle for, never falling from 0.
         changes: Those of the program, also where no move follows.
     """

@@ -192,7 +192,7 @@ def ball_by_hand(
     out, rise = np.sin(lead)[:, None], np.cos(lead)[:, None]
     c, s = np.cos(angle), np.sin(angle)
     surface = np.stack([out * c, out * s, -rise + 0.0 * c])
-    # The plane's surface stands ``depth`` above the ball's lowest point along its normal.
+    # The plane's surface is ``depth`` above the ball's lowest point along its normal.
     below = radius * np.tensordot(normal, surface, 1) < depth - radius
     chip = FEED * np.maximum(np.tensordot(ahead, surface, 1), 0.0) * below
     push = law.kc * np.maximum(chip, 1e-3) ** -law.mc * chip * radius * step

@@ -108,7 +108,7 @@ def test_a_tube_lacks_its_bore() -> None:
 
 @pytest.mark.parametrize("closed", [True, False])
 def test_a_shape_from_a_file_weighs_what_its_solid_does(tmp_path: Path, closed: bool) -> None:
-    """A box that stands askew on its corner is the box: same mass, same moments."""
+    """A box that is askew on its corner is the box: same mass, same moments."""
     mesh = trimesh.creation.box((60.0, 40.0, 20.0))
     mesh.apply_transform(trimesh.transformations.euler_matrix(0.4, 0.3, 0.2))
     if not closed:

@@ -1,4 +1,4 @@
-"""The drawn way of a program against the way that the room then drives."""
+"""The drawn path of a program against the way that the room then drives."""
 
 import numpy as np
 import pytest

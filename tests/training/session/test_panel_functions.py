@@ -663,7 +663,7 @@ def test_a_reset_stops_spindle_and_coolant_in_every_state(session, state):
     ids=["subprogram", "loop", "cycle", "rotated", "incremental"],
 )  # fmt: skip
 def test_a_search_comes_to_where_its_block_begins(text, line, begins, ends):
-    """What stands before the block is computed, its first pass counts (SINUMERIK: block search)."""
+    """What is before the block is computed, its first pass counts (SINUMERIK: block search)."""
     session = Session(read_scene(scene_path("linuxcnc_round_corners")))
     load(session, text)
     do(session, "search", line=line)

@@ -34,14 +34,14 @@ _FEW = 100
 
 
 class Give(NamedTuple):
-    """Backlash and stiffness of an axis, with 95 % intervals; None where they are not told."""
+    """Backlash and stiffness of an axis, with 95 % intervals; None where they are not determined."""
 
     backlash: Interval | None
     """[mm or deg]."""
     stiffness: Interval | None
     """[N/mm or N m/deg]."""
     why: str
-    """What is not told, and why; empty where all is."""
+    """What is not determined, and why; empty where all is."""
 
 
 NO_SECOND_ENCODER = "no second encoder at the axis: the log has no column 'load'"

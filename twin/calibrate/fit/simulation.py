@@ -29,7 +29,7 @@ _HELD = slice(1, 3)
 _FASTEST_FILTER_S = 1e-6
 """A filter faster than this is none [s]."""
 _STANDS = 1e-3
-"""An axis slower than this stands [mm/s or deg/s]."""
+"""An axis slower than this is at rest [mm/s or deg/s]."""
 _ON_AN_INPUT = 1e-3
 """A sample that is taken so near to an input, in steps, is taken at it."""
 _START_S = 0.01
@@ -38,7 +38,7 @@ _START_S = 0.01
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Command:
-    """What an axis was told, at even steps of the simulation.
+    """What an axis was commanded, at even steps of the simulation.
 
     Attributes:
         kind: Of the axis.
@@ -150,7 +150,7 @@ def simulate_axis(parameters: Parameters, command: Command) -> Response:
 
     Args:
         parameters: The axis.
-        command: What it was told.
+        command: What it was commanded.
     """
     inertia = parameters.mass * to_si(command.kind)
     system = _system(parameters, inertia)
@@ -178,7 +178,7 @@ def simulate_axis(parameters: Parameters, command: Command) -> Response:
 
 
 def _held(command: FloatArray, step: float) -> FloatArray:
-    """What the drive is told, as it holds it between inputs.
+    """What the drive is commanded, as it holds it between inputs.
 
     Args:
         command: Setpoint, its velocity and acceleration, and what pushes, shape (n, 4).

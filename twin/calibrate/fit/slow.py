@@ -21,7 +21,7 @@ _OUTLIER = 2.0
 _STILL = 0.02
 """An axis slower than this share of its greatest speed counts as standing."""
 _REACHES = 0.3
-"""Share of the rapid velocity that a log must reach to tell of friction that grows with speed."""
+"""Share of the rapid velocity that a log must reach to report friction that grows with speed."""
 _TOO_SLOW = "the log is too slow to show how the position loop settles"
 _UNDETERMINED = {
     "kv": _TOO_SLOW,
@@ -52,7 +52,7 @@ class SlowLog:
 def commanded_speed(
     axis: AxisLog, time: FloatArray, whole: BoolArray
 ) -> tuple[FloatArray, BoolArray]:
-    """Commanded velocity of every row, 0 where it is not told, and where it is; shape (n,) each.
+    """Commanded velocity of every row, 0 where it is not determined, and where it is; shape (n,) each.
 
     Args:
         axis: Of a slow log.
@@ -68,7 +68,7 @@ def commanded_speed(
 
 
 def fit_slow(kind: AxisKind, logs: Sequence[SlowLog], base: Parameters, fastest: float) -> AxisFit:
-    """Fit what slow logs tell of an axis; everything else stays at the base's value.
+    """Fit what slow logs say about an axis; everything else stays at the base's value.
 
     Args:
         kind: Of the axis.

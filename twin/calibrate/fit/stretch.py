@@ -21,7 +21,7 @@ class Sound:
 
     Attributes:
         command: The others repeat the one before, or are spikes.
-        actual: The same of the actual position, and of what stands beside a force that was cut off.
+        actual: The same of the actual position, and of what is beside a force that was cut off.
         force: The same of force or current.
     """
 
@@ -40,7 +40,7 @@ class Stretch:
 
     Attributes:
         time: Shape (n,) [s].
-        command: What it was told.
+        command: What it was commanded.
         asked: Logged commanded positions, shape (n,) [mm or deg].
         actual: Logged actual positions, shape (n,) [mm or deg].
         force: Logged force, (n,) [N or N m]; None where none is.

@@ -186,7 +186,7 @@ def _sweep_lines(scratch: _Scratch, points: FloatArray, stood: bool) -> None:
             _lay_disc(scratch, a, i % 2)
         _lay_disc(scratch, b, (i + 1) % 2)
         known = True
-        # What the tool stands in already, no line that does not sink can take off again.
+        # What the tool is in already, no line that does not sink can take off again.
         done = (stood or i > 0) and b[2] >= a[2]
         if done and flat and a[2] == b[2] and not scratch.marks.cells.size:
             _sweep_level(scratch, a, b, i)
@@ -314,7 +314,7 @@ def _span(scratch: _Scratch, disc: int, row: int) -> tuple[int, int]:
 
 @arithmetic_kernel
 def _sweep_level(scratch: _Scratch, a: FloatArray, b: FloatArray, line: int) -> None:
-    """Cut along a level line with a flat tool that has cut all it stands in at its beginning.
+    """Cut along a level line with a flat tool that has cut all it is in at its beginning.
 
     Only the crescents before and beside it are left: in most rows a cell or two. They are taken in
     pairs, because the processor cannot guess of how many cells a row's crescent will be.

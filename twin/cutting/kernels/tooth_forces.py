@@ -1,4 +1,4 @@
-"""The force of every tooth at every angle, from the material that stands before the cutter.
+"""The force of every tooth at every angle, from the material that is before the cutter.
 
 The edges are looked at in ``BINS`` directions about the axis. In each, the side of the cutter meets
 the material up to a depth that the height map tells, and the rings of its lower end meet it or do
@@ -155,7 +155,7 @@ def tooth_forces(
     Args:
         material: What is cut.
         tip: Tool tip, shape (3,) [mm].
-        feed: Way of the tip in the time between two teeth, shape (3,) [mm].
+        feed: Path of the tip in the time between two teeth, shape (3,) [mm].
         cutter: The cutter.
         law: What the material does.
         sense: 1: it turns clockwise, seen from above; -1: counter-clockwise.
@@ -432,7 +432,7 @@ def _ring_share(
         if top <= lowest + min(0.0, way[2]) / level * max(0.0, ahead) + _LEAST:
             return 0.0
     if abs(top - profile_height(math.hypot(x, y), radius, flat, corner, slope)) <= _LEAST:
-        # The cutter stands on what it has cut itself, and goes on into it.
+        # The cutter is on what it has cut itself, and goes on into it.
         return 1.0
     if top <= low:
         return 0.0

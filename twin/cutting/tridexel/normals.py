@@ -13,7 +13,7 @@ _STEPS = 2047
 _BITS = 11
 _LARGEST = (1 << _BITS) - 1
 MOST_TOOLS = 511
-"""Tools that are told apart."""
+"""Tools that are distinguished."""
 OWN = 0
 """In place of a tool's number: the blank's own surface."""
 

@@ -62,7 +62,7 @@ class Drives(NamedTuple):
 
 
 class Points(NamedTuple):
-    """Setpoints, as far as drives are told of them: shape (n, k) each."""
+    """Setpoints, as far as drives receive them: shape (n, k) each."""
 
     position: FloatArray
     velocity: FloatArray

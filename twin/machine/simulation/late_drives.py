@@ -72,7 +72,7 @@ class LateDrives:
         """Setpoints as the drives see them.
 
         Args:
-            past: What was followed last, or stands at the first.
+            past: What was followed last, or is at the first.
             points: What follows.
         """
         rows = Points(
@@ -140,7 +140,7 @@ class LateDrives:
     def _force(
         self, now: tuple[FloatArray, FloatArray], late: tuple[FloatArray, FloatArray]
     ) -> FloatArray:
-        """What a dead time adds to what a drive is told in advance, for velocities and accelerations."""
+        """What a dead time adds to what a drive is commanded in advance, for velocities and accelerations."""
         drives, dead = self._drives, self._half > 0.0
         behind = [2.0 * dead * (after - at) for at, after in zip(now, late, strict=True)]
         force = (

@@ -106,7 +106,7 @@ class BlocksOfChunks(Step[Chunk, Blocks]):
 
     Args:
         chunks: The program.
-        start: Where the axes stand before, part coordinates, shape (k,) [mm or deg].
+        start: Where the axes are before, part coordinates, shape (k,) [mm or deg].
 
     Raises:
         ValueError: When pulled: a move does not begin where the one before it ended.
@@ -206,7 +206,7 @@ def _of_moves(
 
 
 def _of_dwell(dwell: Dwell, move: int, position: FloatArray) -> Blocks:
-    """The block of a dwell: it stands at ``position``, the end of the move before."""
+    """The block of a dwell: it is at ``position``, the end of the move before."""
     zero = np.zeros(1)
     still = Geometry(
         base=position[None],

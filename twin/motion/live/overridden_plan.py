@@ -1,4 +1,4 @@
-"""A plan that is made only as far as it is needed, and anew when the operator's overrides change."""
+"""A plan that is made only as far as it is needed, and again when the operator's overrides change."""
 
 import dataclasses
 import math

@@ -100,7 +100,7 @@ def summarize(
     Args:
         chunks: The program.
         limits: Of the axes and the path.
-        start: Where the axes stand before, part coordinates, shape (k,) [mm or deg].
+        start: Where the axes are before, part coordinates, shape (k,) [mm or deg].
         axes: Their names.
     """
     rows: dict[tuple[int, int], _Row] = defaultdict(_Row)

@@ -4,7 +4,7 @@ Decisions:
 
 * Programmed X, Y and Z count in a frame that is fixed to the part, and parallel to the machine's axes while the
   rotary axes that carry the part are at the zero of their work offset.
-* F counts the way of the tip in the part; where it rests, the degrees of the rotary axes.
+* F counts the path of the tip in the part; where it rests, the degrees of the rotary axes.
 * Rotary axes go evenly between the angles of two blocks; the tip goes straight or on its arc also in rapids.
 """
 

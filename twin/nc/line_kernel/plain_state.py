@@ -165,7 +165,7 @@ class LineRuns:
         return factors
 
     def _take_back(self, state: PlainState, line: int, rows: MoveRows) -> None:
-        """The control stands where the run has come to."""
+        """The control is where the run has come to."""
         control, motion, feed = self._control, self._control.motion, float(state.feed[0])
         kind = int(state.kind[0])
         if kind != kind_of(control.modal.interpolation):

@@ -388,7 +388,7 @@ def _length(move: Segment) -> float:
 
 
 def _screen(move: Segment, frame: FloatArray) -> Matrix:
-    """What a move whose X, Y and Z are told in another frame adds to what the screen shows (``Segment.screen``)."""
+    """What a move whose X, Y and Z are reported in another frame adds to what the screen shows (``Segment.screen``)."""
     rows = frame if move.screen is None else np.array(move.screen) @ frame
     return (_vector(rows[0]), _vector(rows[1]), _vector(rows[2]))
 

@@ -1,4 +1,4 @@
-"""The stock as it is drawn where it is cut from several sides: the surface of its intervals, laid anew when it was cut."""
+"""The stock as it is drawn where it is cut from several sides: the surface of its intervals, laid again when it was cut."""
 
 from collections.abc import Callable
 
@@ -23,7 +23,7 @@ _SKIN = np.array([RAW_RGB, MACHINED_RGB], np.uint8)
 _ROWS = 2
 """Of the texture, all alike."""
 _DEVIATIONS = np.linspace(-1.0, 1.0, 255)
-"""Shares of the scale whose colours are told apart."""
+"""Shares of the scale whose colours are distinguished."""
 
 Deviations = Callable[[Surface], FloatArray]
 """How far the vertices of a surface are off, as shares of a scale, shape (n,); NaN: as metal looks."""

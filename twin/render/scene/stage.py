@@ -59,7 +59,7 @@ TRAIL_MM = (0.1, 0.8)
 
 
 class _Props(NamedTuple):
-    """What is drawn beside the machine, and where it stands."""
+    """What is drawn beside the machine, and where it is."""
 
     placement: Placement
     cutter: Cutter | None
@@ -119,7 +119,7 @@ class Stage:
             self._rate = self._cut(samples[-late:]) / (late * period)
 
     def clear_view(self) -> None:
-        """Take the tool back to where it stood at the start, so that it does not hide the part."""
+        """Take the tool back to where it was at the start, so that it does not hide the part."""
         self._position, self._rate = self._start, 0.0
 
     def _cut(self, samples: Samples) -> float:
@@ -230,7 +230,7 @@ def stage(
         renderer: What draws.
         paint: Colours of the stock's cells, shape (ny, nx, 4), as metal looks where the fourth is 0; or, of one
             that is cut from several sides, what colours its surface; None: all looks like metal.
-        trail: Whether the way of the tool is seen.
+        trail: Whether the path of the tool is seen.
 
     Raises:
         RenderError: The renderer does not work here.

@@ -54,7 +54,7 @@ class StockTexture:
         Args:
             height_map: What is painted.
             mesh_step: Cells from one vertex of the drawn net to the next.
-            marks: Way of the tool at the last cut, shape (ny, nx) [mm]; of no size: no marks.
+            marks: Path of the tool at the last cut, shape (ny, nx) [mm]; of no size: no marks.
             paint: Colours to use instead where the fourth channel is not 0, shape (ny, nx, 4).
         """
         self._map = height_map

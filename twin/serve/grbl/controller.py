@@ -56,7 +56,7 @@ class GrblController:
     # --- what the line asks for
 
     def welcome(self) -> bytes:
-        """What a sender that has just come is told; a line that another one has not ended is forgotten."""
+        """What is sent to a sender that has just come; a line that another one has not ended is forgotten."""
         self.serial.forget_open()
         self._greet()
         return self._take_output()

@@ -1,4 +1,4 @@
-"""Block search: what stands before a block is only computed, then the axes go to where it begins."""
+"""Block search: what is before a block is only computed, then the axes go to where it begins."""
 
 import dataclasses
 import itertools
@@ -24,10 +24,10 @@ SHORTEST = 1e-6
 
 
 def approach(control: Control, stand: FloatArray, line: int, clearance: float) -> Moves:
-    """Straight moves to where the control stands after a search.
+    """Straight moves to where the control is after a search.
 
     The tool is lifted first, travels at the height of clearance, and goes down last, in the feed that is in
-    force there: it may stand in the part, and may have material under it. Where the other axes stand
+    force there: it may stand in the part, and may have material under it. Where the other axes are
     right, Z goes straight.
 
     Args:

@@ -1,4 +1,4 @@
-"""The way of a program, before it is run: what the room's own interpreter makes of it, drawn and not driven.
+"""The path of a program, before it is run: what the room's own interpreter makes of it, drawn and not driven.
 
 A program is read through all its parts as ``ProgramReader`` would read it, from the place and with the
 tables of the moment in which it was asked for, also behind a search. Nothing is planned and nothing
@@ -78,7 +78,7 @@ class PathToCome:
         zero: Machine coordinates of program zero for the first tool, as the control has it, shape (k,).
         length_difference: How much longer than the first each tool is in the control's table, by number [mm].
         tool: Number of the tool in the spindle.
-        spindle: What it has been told.
+        spindle: What it has been commanded.
         frame: How the part turns under the tool.
     """
 

@@ -153,7 +153,7 @@ class ProgramReader:
         Args:
             start: Where the setpoints are, machine coordinates, shape (k,) [mm or deg].
             zero: Machine coordinates of program zero, shape (k,) [mm or deg].
-            spindle: What it has been told: the axes wait until it has come to its speed.
+            spindle: What it has been commanded: the axes wait until it has come to its speed.
         """
         self._clear_part()
         tools = self._control.tools

@@ -111,7 +111,7 @@ class ProgramRun:
         Args:
             start: Where the setpoints stand, machine coordinates, shape (k,) [mm or deg].
             zero: Machine coordinates of program zero, shape (k,) [mm or deg].
-            spindle: What it has been told: the axes wait until it has come to its speed.
+            spindle: What it has been commanded: the axes wait until it has come to its speed.
             paused: Whether start is waited for before its first block.
         """
         self._clear_part()

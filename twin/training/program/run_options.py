@@ -94,7 +94,7 @@ class RunOptions:
     Attributes:
         soft_limits: Whether to stop before a move that leaves the travel.
         dry_feed: What all feeds are replaced by in a dry run [mm/min]; None: none.
-        search: Source line to begin at: what stands before it is only computed. 0: the beginning.
+        search: Source line to begin at: what is before it is only computed. 0: the beginning.
         inherited: What is in force at the beginning; None: what the control begins with.
         stream: Where blocks come from, in place of the source.
     """

@@ -101,7 +101,7 @@ class LiveCut:
     def turn(self, spindle: SpindleState, override: float) -> None:
         """Tell the drive of the spindle what is asked of it; ``override`` is a factor.
 
-        An edge that stands may touch the part, as a feeler: what it must not do is the part's to see.
+        An edge that is may touch the part, as a feeler: what it must not do is the part's to see.
         """
         self._operation.speed = override * spindle.turning if spindle.turning else None
 

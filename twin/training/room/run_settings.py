@@ -1,4 +1,4 @@
-"""What the interpreter is told of the machine as it stands, for a start and for the path before one."""
+"""What the interpreter is told about the machine as it stands, for a start and for the path before one."""
 
 import dataclasses
 

@@ -1,4 +1,4 @@
-"""The part that is cut from any side as pages draw it: a mesh, laid anew beside the machine while it is cut."""
+"""The part that is cut from any side as pages draw it: a mesh, laid again beside the machine while it is cut."""
 
 import asyncio
 import struct

@@ -41,7 +41,7 @@ class ProgramCheck:
 
         Args:
             page: Its number.
-            text: What stands there now.
+            text: What is there now.
             tell: Sends it.
         """
         self._typed[page] = text

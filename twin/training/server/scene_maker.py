@@ -86,7 +86,7 @@ def write_scene(scene: SceneText, folder: Path) -> Path:
         The scene's file.
 
     Raises:
-        UsageError: It cannot be written, or is none that stands alone; nothing is left of it.
+        UsageError: It cannot be written, or is none that is on its own; nothing is left of it.
     """
     (title,) = scene.content["title"].values()
     name = _free_name(folder, title)

@@ -348,7 +348,7 @@ def _require_no_run(
 
 
 def _require_jog(room: Room, axis: str) -> None:
-    """An axis may be jogged; off its limit switch also while that alarm stands."""
+    """An axis may be jogged; off its limit switch also while that alarm is active."""
     if room.panel.mode != "jog":
         raise UsageError("jogging needs the mode manual jog")
     _column(room, axis)
@@ -361,7 +361,7 @@ def _require_jog(room: Room, axis: str) -> None:
 
 
 def _require_still(room: Room) -> None:
-    """Nothing runs, and no alarm stands."""
+    """Nothing runs, and no alarm is active."""
     _require_no_alarm(room)
     if room.panel.mode != "jog":
         raise UsageError("that is done in the mode manual jog")

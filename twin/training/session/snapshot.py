@@ -64,7 +64,7 @@ class Snapshot:
     rapid_override: int
     spindle: SpindleState
     spindle_turning: float | None
-    """Speed that it is told, negative counter-clockwise, 0 at a stand; None: not known [1/min]."""
+    """Commanded speed, negative counter-clockwise, 0 at a standstill; None: not known [1/min]."""
     spindle_override: int
     counter_clockwise: bool
     coolant: bool

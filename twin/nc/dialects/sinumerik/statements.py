@@ -63,7 +63,7 @@ def _pass_over(control: Control, statement: Statement) -> None:
 
 
 def _run_rest(control: Control, statement: Statement, at: int) -> None:
-    """Run what stands in a line behind a statement as a block."""
+    """Run what is in a line behind a statement as a block."""
     text, column = statement.text[at:], statement.text_column + at
     for block in control.statements.blocks(text, column, control.block.line):
         control.run(block)

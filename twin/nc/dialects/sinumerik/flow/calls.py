@@ -82,7 +82,7 @@ def _enter(
     values: Sequence[tuple[str, int]],
     times: float,
 ) -> None:
-    """Call a subprogram with the texts of its values, and where they stand."""
+    """Call a subprogram with the texts of its values, and where they are."""
     formals, memory = subprogram.formals, memory_of(control)
     if len(values) > len(formals):
         message = f"the subprogram takes {len(formals)} values, not {len(values)}"
