@@ -9,7 +9,6 @@ from pathlib import Path
 
 import h5py
 import pytest
-from twin.recording.write_checksum import LENGTH as SEAL_LENGTH
 
 from tests import file_fuzz, fuzz_kinds
 from twin.errors import ConfigError, RecordingError
@@ -17,6 +16,7 @@ from twin.files.shipped import machine_file
 from twin.files.stl import read_stl
 from twin.machine.load import read_machine
 from twin.machine.model.model import build_spec
+from twin.recording.checksum import LENGTH as SEAL_LENGTH
 from twin.recording.reader import open_recording
 
 

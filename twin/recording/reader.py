@@ -18,6 +18,7 @@ import numpy as np
 from twin.errors import RecordingError
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Axes, FloatArray
+from twin.recording.checksum import checksum_is_wrong, has_checksum
 from twin.recording.form import (
     COLUMNS,
     CONTOUR,
@@ -32,7 +33,6 @@ from twin.recording.form import (
     ToolLoad,
 )
 from twin.recording.readable import reading_ends
-from twin.recording.write_checksum import checksum_is_wrong, has_checksum
 from twin.recording.writer import PROGRAM_TEXT, RecordingWriter, record
 from twin.toolpath.machine_geometry import geometry_from_text
 from twin.toolpath.part_frame import PartFrame, chain_from_text

@@ -12,6 +12,7 @@ import numpy as np
 
 from twin.files.atomic import complete_or_absent, with_path
 from twin.nc.canonical import FloatArray
+from twin.recording.checksum import write_checksum
 from twin.recording.form import (
     COLUMNS,
     CONTOUR,
@@ -24,7 +25,6 @@ from twin.recording.form import (
     RecordingHeader,
     Samples,
 )
-from twin.recording.write_checksum import write_checksum
 
 _STEP = 8 << 20
 """Bytes that are taken at a time."""

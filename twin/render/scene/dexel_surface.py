@@ -11,10 +11,10 @@ from twin.cutting.tridexel.mesh import MOST_VERTICES, TRIANGLES, Surface, surfac
 from twin.cutting.tridexel.normals import OWN, normals, tools
 from twin.nc.canonical import BoolArray, FloatArray
 from twin.render.drawing.canvas import Canvas
-from twin.render.scene.facet import MATERIAL
 from twin.render.scene.live_mesh import LiveMesh, add_live_mesh
 from twin.render.scene.placement import Placement
 from twin.render.scene.shading import SMOOTH_COSINE, face_normals
+from twin.render.scene.stock_texture import MATERIAL
 
 MESH = "stock_from_all_sides"
 RAW, MACHINED = 0, 1

@@ -24,7 +24,7 @@ from twin.render.scene.dexel_surface import Deviations, DexelSurface
 from twin.render.scene.placement import Joints, Placement, place, tip_position
 from twin.render.scene.scene import Scene
 from twin.render.scene.stock_surface import StockSurface
-from twin.render.scene.texture import StockTexture
+from twin.render.scene.stock_texture import StockTexture
 from twin.render.scene.tool_body import ToolBodies
 from twin.render.scene.trail import Trail, trail_points
 from twin.render.scene.work_holding import add_work_holding

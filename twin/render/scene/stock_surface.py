@@ -20,7 +20,7 @@ from twin.render.drawing.canvas import Canvas
 from twin.render.scene.live_mesh import LiveMesh, add_live_mesh
 from twin.render.scene.placement import Placement
 from twin.render.scene.shading import corner_normals
-from twin.render.scene.texture import MATERIAL, StockTexture
+from twin.render.scene.stock_texture import MATERIAL, StockTexture
 
 TILE = 24
 """Squares along a tile's side."""
