@@ -15,7 +15,7 @@ def test_an_address_that_nobody_answers_is_refused_with_what_would_have_worked(m
     monkeypatch.setattr(ray_cluster, "ANSWERED_S", 0.2)
     with socket.create_server(("127.0.0.1", 0)) as listener:
         port = listener.getsockname()[1]
-        with pytest.raises(UsageError, match="timed out.*ray start --head"):
+        with pytest.raises(UsageError, match=r"timed out.*ray start --head"):
             ray_cluster.connected(f"127.0.0.1:{port}")
 
         def answer_as_a_web_server() -> None:
@@ -28,5 +28,5 @@ def test_an_address_that_nobody_answers_is_refused_with_what_would_have_worked(m
         threading.Thread(target=answer_as_a_web_server, daemon=True).start()
         with pytest.raises(UsageError, match="is not Ray"):
             ray_cluster.connected(f"ray://127.0.0.1:{port}")
-    with pytest.raises(UsageError, match="refused.*--cluster local"):
+    with pytest.raises(UsageError, match=r"refused.*--cluster local"):
         ray_cluster.connected(f"127.0.0.1:{port}")
