@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from twin.cutting.height_map import HeightMap
-from twin.cutting.kernels.drape import drape, note_sides
+from twin.cutting.kernels.rasterize import note_sides, rasterize
 from twin.cutting.kernels.surface_distance import (
     BY_CELLS,
     REACH,
@@ -38,7 +38,7 @@ def nominal_map(part: HeightMap, file: Path, corner: FloatArray) -> HeightMap:
     result = part.copy()
     result.heights[:] = part.bottom
     triangles = np.ascontiguousarray(read_stl(file).triangles + corner, dtype=np.float64)
-    drape(result.heights, result.origin, result.cell, triangles)
+    rasterize(result.heights, result.origin, result.cell, triangles)
     result.behind[:] = 0.0
     note_sides(result.heights, result.behind, result.origin, result.cell, triangles)
     return result
