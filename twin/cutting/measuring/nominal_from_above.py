@@ -98,8 +98,8 @@ class HeightMapNominalWatch(NominalWatch[HeightMap]):
         inside = cut.outline.inside(cut.x[columns], cut.y[rows, None]) / cell
         before[np.abs(behind[..., 0] - KNOWN - inside) < RAW] = 0.0
         wanted = (nominal - heights > self._allowed) | (before > self._allowed)
-        found, told_by = np.zeros(heights.shape), np.zeros(heights.shape, np.int64)
+        found, found_by = np.zeros(heights.shape), np.zeros(heights.shape, np.int64)
         flat = np.maximum(steepness(heights, cell), steepness(nominal, cell)) <= STEEPEST
         part, whole = Surface(heights, behind), Surface(nominal, walls)
-        surface_distances(part, whole, cell, wanted, flat, found, told_by)
-        return np.where(told_by == BY_CELLS, -found - cell, -found)
+        surface_distances(part, whole, cell, wanted, flat, found, found_by)
+        return np.where(found_by == BY_CELLS, -found - cell, -found)
