@@ -52,7 +52,7 @@ def directions_of(abscissa: Vector, ordinate: Vector) -> Matrix:
 
 
 def plane_of_axes(control: Control, angles: dict[int, float]) -> Matrix:
-    """The directions of the plane that the tool stands across while rotary axes stand at angles; as columns.
+    """The directions of the plane that the tool stands across while rotary axes are at angles; as columns.
 
     Args:
         control: The control, of a machine with rotary axes.
@@ -114,7 +114,7 @@ def turn_about(
     begin_tool_center(control, name)
     center = control.path.tool_center
     assert center is not None
-    control.motion.lead_tip(center.with_length(center.longer + below))
+    control.motion.lead_tip(center.with_length(center.length_difference + below))
     control.line_to([*control.motion.programmed[:3], *axes[3:]], rapid=rapid)
     control.motion.lead_tip(center)
     end_tool_center(control, name, keeps_length=True)
