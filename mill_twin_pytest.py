@@ -7,7 +7,7 @@ Every TOML file with a key ``program`` that pytest comes across becomes one test
 * ``--twin-machine NAME`` runs all of them on one machine;
 * ``--twin-dialect NAME`` reads all of them in one dialect;
 * ``--twin-baseline DIR`` holds them to the baselines stored there;
-* ``--twin-update-baseline`` stores these anew instead;
+* ``--twin-update-baseline`` stores these again instead;
 * ``--twin-strict`` turns the interpreter's warnings into errors.
 
 The plugin is loaded in every project whose environment has it. It stands outside the package
@@ -148,7 +148,7 @@ class JobItem(pytest.Item):
         return super().repr_failure(excinfo, style)
 
     def reportinfo(self) -> tuple[Path, int | None, str]:
-        """Where the test stands, for reports."""
+        """Where the test is, for reports."""
         return self.path, None, f"job {self.name}"
 
 

@@ -1,6 +1,6 @@
 """Golden files: the canonical moves of every shipped program and of every rule.
 
-``python -m tests.nc.test_golden`` writes them anew; look at the difference before committing.
+``python -m tests.nc.test_golden`` writes them again; look at the difference before committing.
 """
 
 import json

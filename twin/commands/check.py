@@ -41,7 +41,7 @@ def check_and_print(
 ) -> ExitCode:
     """Check programs and tell how they came out.
 
-    Interrupted, it tells of those that are complete.
+    Interrupted, it reports those that are complete.
 
     Args:
         paths: Programs, job files, folders, globs.

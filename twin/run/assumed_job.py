@@ -147,7 +147,7 @@ def _least_length(machine: Machine, moves: Moves) -> float:
 
 
 def _start_lines(top: FloatArray | None) -> list[str]:
-    """Where the tool stands at first, where program zero lies below the top of the stock."""
+    """Where the tool is at first, where program zero lies below the top of the stock."""
     return [] if top is None or top[2] <= 0.0 else ["[start]", f"Z = {top[2] + MARGIN:.3f}", ""]
 
 

@@ -18,7 +18,7 @@ from twin.run.messages import shown, speed_notice
 from twin.run.preparation import Preparation
 from twin.run.program_watch import ProgramWatch
 from twin.run.progress import StageClock
-from twin.run.waits import with_waits
+from twin.run.spindle_dwells import with_spindle_dwells
 
 MOVES_IN_MEMORY = 200_000
 """Of a longer program the further moves lie in a file, at some 200 bytes each: memory stays bounded."""
@@ -82,7 +82,9 @@ class InterpretedProgram:
     def timed_chunks(self) -> Iterator[Chunk]:
         """The same with the time of tool changes and of the spindle as dwells."""
         made = self._preparation
-        return with_waits(self.chunks(), made.machine.file.spindle, made.job.file, made.spindle)
+        return with_spindle_dwells(
+            self.chunks(), made.machine.file.spindle, made.job.file, made.spindle
+        )
 
 
 def interpreted(preparation: Preparation) -> InterpretedProgram:

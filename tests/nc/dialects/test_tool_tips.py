@@ -58,8 +58,10 @@ def test_a_machine_without_rotary_axes_leads_no_tip(dialect: str) -> None:
 def test_a_longer_tool_is_led_at_its_own_tip() -> None:
     text = LED["fanuc"].replace("T1", "T2").replace("H1", "H2")
     end = _led("fanuc", text).moves.end[-1]
-    longer = ToolCenter(on_machine(trunnion()), 15.0, [0.0] * 5)
-    assert longer.tip(end.tolist()) == pytest.approx([40.0, -10.0, 5.0, 30.0, 90.0], abs=1e-9)
+    length_difference = ToolCenter(on_machine(trunnion()), 15.0, [0.0] * 5)
+    assert length_difference.tip(end.tolist()) == pytest.approx(
+        [40.0, -10.0, 5.0, 30.0, 90.0], abs=1e-9
+    )
 
 
 def test_behind_the_control_of_the_tip_positions_are_those_of_the_axes() -> None:
@@ -96,8 +98,8 @@ TILTED = {
 @pytest.mark.parametrize("dialect", TILTED)
 def test_every_control_cuts_in_the_same_tilted_plane(dialect: str) -> None:
     moves = _led(dialect, TILTED[dialect]).moves
-    longer = ToolCenter(on_machine(trunnion()), 15.0, [0.0] * 5)
-    tip = np.array(longer.tip(moves.end[-1].tolist()))
+    length_difference = ToolCenter(on_machine(trunnion()), 15.0, [0.0] * 5)
+    tip = np.array(length_difference.tip(moves.end[-1].tolist()))
     # 10 along and 10 up a plane that turns by 30 degrees about X through X10, 1 below it.
     sine, cosine = 0.5, np.sqrt(0.75)
     assert tip[:3] == pytest.approx((20.0, 10.0 * cosine + sine, 10.0 * sine - cosine), abs=1e-9)
@@ -137,8 +139,8 @@ def test_move_keeps_the_tip_at_the_part_while_the_axes_turn() -> None:
     text = TILTED["heidenhain"].replace("TURN FMAX", "MOVE FMAX")
     moves = _led("heidenhain", text).moves
     curves = moves[moves.shape == Shape.CURVE]
-    longer = ToolCenter(on_machine(trunnion()), 15.0, [0.0] * 5)
-    tips = np.array([longer.tip(place.tolist())[:3] for place in curves.end])
+    length_difference = ToolCenter(on_machine(trunnion()), 15.0, [0.0] * 5)
+    tips = np.array([length_difference.tip(place.tolist())[:3] for place in curves.end])
     assert np.abs(tips - tips[0]).max() < 1e-9
 
 
@@ -170,9 +172,9 @@ def test_seq_is_the_sign_of_the_axis_next_to_the_tool(words: str, sign: float) -
     moves = _led("heidenhain", text).moves
     assert moves.end[-1, 3] == pytest.approx(30.0 * sign)
     expected = _led("heidenhain", TILTED["heidenhain"]).moves.end[-1]
-    longer = ToolCenter(on_machine(trunnion()), 15.0, [0.0] * 5)
-    assert longer.tip(moves.end[-1].tolist())[:3] == pytest.approx(
-        longer.tip(expected.tolist())[:3], abs=1e-9
+    length_difference = ToolCenter(on_machine(trunnion()), 15.0, [0.0] * 5)
+    assert length_difference.tip(moves.end[-1].tolist())[:3] == pytest.approx(
+        length_difference.tip(expected.tolist())[:3], abs=1e-9
     )
 
 

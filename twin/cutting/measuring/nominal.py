@@ -8,7 +8,7 @@ import numpy as np
 
 from twin.cutting.cut import Cutter
 from twin.cutting.height_map import HeightMap
-from twin.cutting.kernels.drape import drape, note_sides
+from twin.cutting.kernels.rasterize import note_sides, rasterize
 from twin.cutting.kernels.surface_distance import (
     BY_CELLS,
     REACH,
@@ -78,7 +78,7 @@ def nominal_map(
     result = part.copy()
     result.heights[:] = part.bottom
     triangles = np.ascontiguousarray(read_stl(file).triangles + corner, dtype=np.float64)
-    drape(result.heights, result.origin, result.cell, triangles)
+    rasterize(result.heights, result.origin, result.cell, triangles)
     result.behind[:] = 0.0
     note_sides(result.heights, result.behind, result.origin, result.cell, triangles)
     return result
@@ -175,11 +175,11 @@ class HeightMapNominalWatch:
         inside = cut.outline.inside(cut.x[columns], cut.y[rows, None]) / cell
         before[np.abs(behind[..., 0] - KNOWN - inside) < RAW] = 0.0
         wanted = (nominal - heights > self._allowed) | (before > self._allowed)
-        found, told_by = np.zeros(heights.shape), np.zeros(heights.shape, np.int64)
+        found, found_by = np.zeros(heights.shape), np.zeros(heights.shape, np.int64)
         flat = np.maximum(steepness(heights, cell), steepness(nominal, cell)) <= STEEPEST
         part, whole = Surface(heights, behind), Surface(nominal, walls)
-        surface_distances(part, whole, cell, wanted, flat, found, told_by)
-        return np.where(told_by == BY_CELLS, -found - cell, -found)
+        surface_distances(part, whole, cell, wanted, flat, found, found_by)
+        return np.where(found_by == BY_CELLS, -found - cell, -found)
 
     def _gouge(
         self, samples: Samples, sample: int, cell: IntArray, depth_mm: float
@@ -196,7 +196,7 @@ class HeightMapNominalWatch:
         tip = self._frame.position(samples.real(self._frame))
         radius = np.zeros(len(tip))
         for run, tool in self._cutter.plan.runs(samples.setpoint.move):
-            tip[run, 2] -= self._cutter.plan.longer(tool)
+            tip[run, 2] -= self._cutter.plan.length_difference(tool)
             radius[run] = tool.diameter / 2.0
         cut = self._cutter.map
         found = np.full(len(cells), len(tip) - 1)

@@ -85,7 +85,7 @@ class TriDexelNominalWatch:
         ends, around = np.concatenate([tip, top]), radius + self._allowed
         box = np.stack([ends.min(axis=0) - around, ends.max(axis=0) + around])
         found = crossings(self._material.stock, box)
-        found = found.only(tools(found.skin) != OWN)
+        found = found.only(tools(found.facet) != OWN)
         # Along a line a place is as deep at least as it is by the nearest surface.
         along = np.zeros(len(found.line))
         places = found.points[np.arange(len(along)), found.along]

@@ -41,7 +41,7 @@ _STRAIGHT = (None, (NAN, NAN, NAN), 0.0)
 
 
 class Motion:
-    """Where a control stands and how fast it goes.
+    """Where a control is and how fast it goes.
 
     Attributes:
         frame: From programmed to part coordinates.

@@ -52,7 +52,7 @@ def directions_of(abscissa: Vector, ordinate: Vector) -> Matrix:
 
 
 def plane_of_axes(control: Control, angles: dict[int, float]) -> Matrix:
-    """The directions of the plane that the tool stands across while rotary axes stand at angles; as columns.
+    """The directions of the plane that the tool stands across while rotary axes are at angles; as columns.
 
     Args:
         control: The control, of a machine with rotary axes.

@@ -4,7 +4,7 @@ Decisions:
 
 * Programmed X, Y and Z count in a frame that is fixed to the part, and parallel to the machine's axes while the
   rotary axes that carry the part are at the zero of their work offset.
-* F counts the way of the tip in the part; where it rests, the degrees of the rotary axes.
+* F counts the path of the tip in the part; where it rests, the degrees of the rotary axes.
 * Rotary axes go evenly between the angles of two blocks; the tip goes straight or on its arc also in rapids.
 """
 
@@ -35,9 +35,11 @@ def begin_tool_center(control: Control, name: str, *, tilted: bool = False) -> N
             "tool-center", message, hint="leave it out, or run it on a machine with rotary axes"
         )
     _refuse_compensation(control, name)
-    longer = length_in_force(control)
+    length_difference = length_in_force(control)
     control.frame.set_shift("length", [0.0] * len(control.settings.axes))
-    control.motion.lead_tip(ToolCenter(setup, longer, control.frame.zero(), tilted=tilted))
+    control.motion.lead_tip(
+        ToolCenter(setup, length_difference, control.frame.zero(), tilted=tilted)
+    )
 
 
 def end_tool_center(control: Control, name: str, *, keeps_length: bool = False) -> None:
@@ -54,7 +56,9 @@ def end_tool_center(control: Control, name: str, *, keeps_length: bool = False) 
     _refuse_compensation(control, name)
     if keeps_length:
         axes = range(len(control.settings.axes))
-        control.frame.set_shift("length", [center.longer if axis == 2 else 0.0 for axis in axes])
+        control.frame.set_shift(
+            "length", [center.length_difference if axis == 2 else 0.0 for axis in axes]
+        )
     control.motion.lead_tip(None)
 
 
@@ -89,7 +93,7 @@ def point_by_words(control: Control, direction: Vector, at: Word) -> None:
 def length_in_force(control: Control) -> float:
     """How much longer than the first the tool in force is [mm]."""
     center = control.path.tool_center
-    return control.frame.shift("length")[2] if center is None else center.longer
+    return control.frame.shift("length")[2] if center is None else center.length_difference
 
 
 def _refuse_compensation(control: Control, name: str) -> None:

@@ -77,19 +77,28 @@ class ToolCenter:
     """
 
     def __init__(
-        self, setup: Setup, longer: float, rotary_zero: list[float], *, tilted: bool = False
+        self,
+        setup: Setup,
+        length_difference: float,
+        rotary_zero: list[float],
+        *,
+        tilted: bool = False,
     ) -> None:
         """Control the tip of a tool.
 
         Args:
             setup: The part on the machine.
-            longer: How much longer than the first the tool is [mm].
+            length_difference: How much longer than the first the tool is [mm].
             rotary_zero: Where the work offset puts the zeros of the axes, part coordinates, shape (k,); of the
                 linear ones it is not looked at.
             tilted: The tool stands across a tilted plane: no rotary axis may move.
         """
         self.tilted = tilted
-        self._setup, self.longer, self.rotary_zero = setup, longer, list(rotary_zero)
+        self._setup, self.length_difference, self.rotary_zero = (
+            setup,
+            length_difference,
+            list(rotary_zero),
+        )
         self._zero = np.asarray(setup.zero, np.float64)
         counted = np.zeros(len(self._zero))
         columns = setup.chain.column[turns_part(setup.chain)]
@@ -101,22 +110,22 @@ class ToolCenter:
             # The part's frame is parallel to the machine's axes at part zero, not at the work offset's.
             shifted = [0.0, 0.0, 0.0, *rotary_zero[3:]]
             level = [0.0] * len(rotary_zero)
-            self._seen_from_part = ToolCenter(setup, longer, level).frame_there(shifted)
+            self._seen_from_part = ToolCenter(setup, length_difference, level).frame_there(shifted)
 
-    def with_length(self, longer: float) -> "ToolCenter":
+    def with_length(self, length_difference: float) -> "ToolCenter":
         """The same for a tool of another length."""
-        return ToolCenter(self._setup, longer, self.rotary_zero, tilted=self.tilted)
+        return ToolCenter(self._setup, length_difference, self.rotary_zero, tilted=self.tilted)
 
     def with_zero(self, rotary_zero: list[float]) -> "ToolCenter":
         """The same with other zeros of the axes; itself where no rotary axis has another one."""
         if rotary_zero[3:] == self.rotary_zero[3:]:
             return self
-        return ToolCenter(self._setup, self.longer, rotary_zero, tilted=self.tilted)
+        return ToolCenter(self._setup, self.length_difference, rotary_zero, tilted=self.tilted)
 
     def tip(self, axes: list[float]) -> list[float]:
         """Where the tip is while the axes are at a place, with the rotary axes as they are, shape (k,)."""
         joints = np.array([axes]) + self._counted_zero
-        place = tool_point(self._chain, joints, self.longer)[0] - self._zero[:3]
+        place = tool_point(self._chain, joints, self.length_difference)[0] - self._zero[:3]
         return [*place.tolist(), *axes[3:]]
 
     def direction(self, axes: list[float]) -> FloatArray:
@@ -260,7 +269,7 @@ class ToolCenter:
         if move.center is not None:
             reach += 2.0 * math.dist(move.start[:3], move.center)
         # Of a product of sines and a straight line: the sines' own, and six times the line's share.
-        bound = (reach + abs(self.longer) + 6.0 * math.dist(*ends.tolist())) / (
+        bound = (reach + abs(self.length_difference) + 6.0 * math.dist(*ends.tolist())) / (
             _HERMITE * TIP_ERROR
         )
         return max(1, math.ceil(angle * bound ** (1.0 / 6.0)))
@@ -295,7 +304,7 @@ class ToolCenter:
         chain, count = self._chain, len(places)
         joints = places + self._counted_zero
         none = np.zeros((count, 3))
-        point = _Motion(np.tile(-self.longer * chain.tool, (count, 1)), none, none)
+        point = _Motion(np.tile(-self.length_difference * chain.tool, (count, 1)), none, none)
         steps: list[_Motion] = [point] * 3
         begun: list[int] = []
         for joint, column in enumerate(chain.column.tolist()):
@@ -379,7 +388,7 @@ def _length(move: Segment) -> float:
 
 
 def _screen(move: Segment, frame: FloatArray) -> Matrix:
-    """What a move whose X, Y and Z are told in another frame adds to what the screen shows (``Segment.screen``)."""
+    """What a move whose X, Y and Z are reported in another frame adds to what the screen shows (``Segment.screen``)."""
     rows = frame if move.screen is None else np.array(move.screen) @ frame
     return (_vector(rows[0]), _vector(rows[1]), _vector(rows[2]))
 

@@ -22,7 +22,7 @@ def letter_patterns(letter: str, rest: bytes) -> tuple[re.Pattern[bytes], ...]:
 
 
 def holds_any(lines: Lines, patterns: Iterable[re.Pattern[bytes]]) -> bool:
-    """Whether one of the patterns stands in any line."""
+    """Whether one of the patterns is in any line."""
     return any(lines.any_holds(pattern) for pattern in patterns)
 
 
@@ -72,7 +72,7 @@ class Variant(NamedTuple):
         adds_rotation: When controls of this kind add the R of G68 in G91 to the rotation in force.
         reference_cancels_any_length: G28 cancels the tool length whatever axes it names, not with Z alone.
         side_change: How the tool goes over to the other side of a contour.
-        transformed_keeps_origin: Neither work offsets nor presets nor moves to reference points stand under
+        transformed_keeps_origin: Neither work offsets nor presets nor moves to reference points are under
             a scale, a mirror or a rotation.
     """
 

@@ -43,7 +43,7 @@ SAME_ANGLE = 1e-9
 """Angles nearer than this are one [deg]: rounding of what was computed."""
 
 _MEASURED = (math.nan, math.nan)
-"""A polar radius and an angle that are those of where the tool stands."""
+"""A polar radius and an angle that are those of where the tool is."""
 After = Callable[[Control, list[float]], None]
 
 
@@ -126,7 +126,7 @@ def pole_alone(control: Control, _statement: Statement) -> None:
 
 
 def set_pole(control: Control) -> None:
-    """CC: its axes name the plane; without any the pole is where the tool stands.
+    """CC: its axes name the plane; without any the pole is where the tool is.
 
     Decision: of one coordinate alone the other stays that of the last pole.
     """

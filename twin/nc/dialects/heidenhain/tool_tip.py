@@ -20,7 +20,7 @@ _TCPM = re.compile(
 
 
 def begin_tcpm(control: Control) -> None:
-    """M128: F counts the way of the tip; A, B and C are axes of the machine."""
+    """M128: F counts the path of the tip; A, B and C are axes of the machine."""
     memory_of(control).spatial = None
     begin_tool_center(control, "M128")
 

@@ -166,7 +166,7 @@ def _turn_about(control: Control, axes: list[float], distance: float, *, rapid: 
     begin_tool_center(control, "PLANE")
     center = control.path.tool_center
     assert center is not None
-    control.motion.lead_tip(center.with_length(center.longer + distance))
+    control.motion.lead_tip(center.with_length(center.length_difference + distance))
     control.line_to([*control.motion.programmed[:3], *axes[3:]], rapid=rapid)
     control.motion.lead_tip(center)
     end_tool_center(control, "PLANE", keeps_length=True)

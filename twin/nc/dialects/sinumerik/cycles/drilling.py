@@ -1,7 +1,7 @@
 """Drilling cycles of the SINUMERIK: CYCLE81 to CYCLE89, CYCLE84 and CYCLE840.
 
 RTP is the height to which they return, RFP the surface, SDIS the safety distance above it; DP the bottom, or DPR below
-the surface. They drill where the tool stands.
+the surface. They drill where the tool is.
 """
 
 import math

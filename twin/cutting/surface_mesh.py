@@ -26,7 +26,7 @@ _NEIGHBOURS = ((0, 1), (1, 0), (0, -1), (-1, 0), (1, 1), (1, -1), (-1, 1), (-1, 
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Net:
+class SurfaceMesh:
     """Vertices in the middles of cells, and a rim around them; it stays as the map is cut.
 
     Attributes:
@@ -73,7 +73,7 @@ class Net:
         return x, y
 
 
-def net(height_map: HeightMap, step: int = 1) -> Net:
+def surface_mesh(height_map: HeightMap, step: int = 1) -> SurfaceMesh:
     """The net of a height map.
 
     Args:
@@ -101,7 +101,7 @@ def net(height_map: HeightMap, step: int = 1) -> Net:
         better = ~inside & there & (distance < best)
         best[better] = distance[better]
         cell[better] = from_cell[better]
-    return Net(
+    return SurfaceMesh(
         np.where(inside, grid_x, snapped_x),
         np.where(inside, grid_y, snapped_y),
         cell,

@@ -11,7 +11,7 @@ _UPRIGHT = 0.5
 
 
 @array_kernel
-def drape(
+def rasterize(
     heights: FloatArray, origin: tuple[float, float], cell: float, triangles: FloatArray
 ) -> None:
     """Raise every cell to the highest triangle over its middle.

@@ -33,35 +33,35 @@ STEEP = 1.0
 """Slope from which a square of the drawn net is a wall."""
 
 
-def _texel_step(cells: int, net_step: int) -> int:
+def _texel_step(cells: int, mesh_step: int) -> int:
     """Cells from one texel to the next: a divisor of the net's step, so that vertices have one."""
     fewest = max(1, -(-cells // MOST_TEXELS))
     return min(
         step
-        for step in range(1, net_step + 1)
-        if net_step % step == 0 and step >= min(fewest, net_step)
+        for step in range(1, mesh_step + 1)
+        if mesh_step % step == 0 and step >= min(fewest, mesh_step)
     )
 
 
-class Skin:
+class StockTexture:
     """Paints a height map; ``add_to`` the specification, compile, ``bind``, then ``update``."""
 
     def __init__(
-        self, height_map: HeightMap, marks: FloatArray, net_step: int, paint: Colours | None = None
+        self, height_map: HeightMap, marks: FloatArray, mesh_step: int, paint: Colours | None = None
     ) -> None:
         """Choose the texture's size.
 
         Args:
             height_map: What is painted.
-            net_step: Cells from one vertex of the drawn net to the next.
-            marks: Way of the tool at the last cut, shape (ny, nx) [mm]; of no size: no marks.
+            mesh_step: Cells from one vertex of the drawn net to the next.
+            marks: Path of the tool at the last cut, shape (ny, nx) [mm]; of no size: no marks.
             paint: Colours to use instead where the fourth channel is not 0, shape (ny, nx, 4).
         """
         self._map = height_map
         self._marks = marks
         self._paint = paint
-        self._step = _texel_step(max(height_map.heights.shape), net_step)
-        self._between = net_step // self._step
+        self._step = _texel_step(max(height_map.heights.shape), mesh_step)
+        self._between = mesh_step // self._step
         self._rows, self._columns = height_map.heights[:: self._step, :: self._step].shape
         random = np.random.default_rng(1)
         self._grain = 1.0 + GRAIN * random.standard_normal((self._rows, self._columns))

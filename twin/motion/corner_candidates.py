@@ -30,7 +30,7 @@ MOST_LINES = BATCH
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class _Trial:
+class _Candidate:
     """Another way through some blocks, from a stop to a stop.
 
     Attributes:
@@ -52,11 +52,11 @@ class _Span:
 
     Attributes:
         pieces: They.
-        trials: What may be faster, in order; what is tried last covers what was tried before it.
+        candidates: What may be faster, in order; what is tried last covers what was tried before it.
     """
 
     pieces: Pieces
-    trials: tuple[_Trial, ...] = ()
+    candidates: tuple[_Candidate, ...] = ()
 
 
 class _Spans(Step[Surroundings, _Span]):
@@ -85,14 +85,18 @@ class _Spans(Step[Surroundings, _Span]):
             if begin > done:
                 yield _Span(pieces[done:begin])
             done = end
-            trials: list[_Trial] = []
+            candidates: list[_Candidate] = []
             while waiting and waiting[0][0] < last:
                 one, other = waiting.popleft()
                 there, behind = (begins[[one - part.first, other - part.first]] - begin).tolist()
-                trials.append(_Trial(part.blocks[one:other], there, behind, Corner.EXACT_STOP))
+                candidates.append(
+                    _Candidate(part.blocks[one:other], there, behind, Corner.EXACT_STOP)
+                )
             if (first, last) in whole:
-                trials.append(_Trial(part.blocks[first:last], 0, end - begin, Corner.EXACT_PATH))
-            yield _Span(pieces[begin:end], tuple(trials))
+                candidates.append(
+                    _Candidate(part.blocks[first:last], 0, end - begin, Corner.EXACT_PATH)
+                )
+            yield _Span(pieces[begin:end], tuple(candidates))
         yield _Span(pieces[done:])
 
 
@@ -102,7 +106,7 @@ class PiecesOfChunks(Step[_Span, Pieces]):
     Args:
         chunks: The program.
         limits: Of the axes and the path.
-        start: Where the axes stand before, part coordinates, shape (k,) [mm or deg].
+        start: Where the axes are before, part coordinates, shape (k,) [mm or deg].
         largest_override: Of the feed that the limits of a piece must leave room for.
         batch: How many blocks are cut together.
 
@@ -123,24 +127,26 @@ class PiecesOfChunks(Step[_Span, Pieces]):
 
     def take(self, part: _Span) -> Iterator[Pieces]:
         """The pieces of a span, each trial's where they are faster."""
-        pieces, longer, known = part.pieces, 0, None
-        for trial in part.trials:
-            whole = trial.begin == 0 and trial.end == len(part.pieces)
-            begin, end = (0, len(pieces)) if whole else (trial.begin + longer, trial.end + longer)
+        pieces, shift, known = part.pieces, 0, None
+        for candidate in part.candidates:
+            whole = candidate.begin == 0 and candidate.end == len(part.pieces)
+            begin, end = (
+                (0, len(pieces)) if whole else (candidate.begin + shift, candidate.end + shift)
+            )
             if known is None or not whole:
                 known = _seconds(pieces[begin:end], self._limits)
-            tried = self._cut(trial)
+            tried = self._cut(candidate)
             tried.overlap[0] = pieces.overlap[begin]
             seconds = _seconds(tried, self._limits)
             if seconds < known:
-                longer += len(tried) - (end - begin)
+                shift += len(tried) - (end - begin)
                 pieces = join([pieces[:begin], tried, pieces[end:]])
             known = min(known, seconds) if whole else None
         yield pieces
 
-    def _cut(self, trial: _Trial) -> Pieces:
-        blocks, limits, override = trial.blocks, self._limits, self._largest_override
-        corner = np.minimum(blocks.corner, np.uint8(trial.corner))
+    def _cut(self, candidate: _Candidate) -> Pieces:
+        blocks, limits, override = candidate.blocks, self._limits, self._largest_override
+        corner = np.minimum(blocks.corner, np.uint8(candidate.corner))
         apart = Surroundings(dataclasses.replace(blocks, corner=corner), 0, len(blocks), True)
         return cut(apart, find_borders(apart.blocks, limits, override), limits, override)
 

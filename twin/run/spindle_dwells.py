@@ -9,7 +9,7 @@ from twin.nc.canonical import Chunk, Dwell, Event, Function
 from twin.nc.functions import PROGRAM_ENDS, TOOL_CHANGE, SpindleState
 
 
-def with_waits(
+def with_spindle_dwells(
     chunks: Iterable[Chunk], spindle: SpindleTable, job: JobFile, state: SpindleState
 ) -> Iterator[Chunk]:
     """A program with a dwell behind every function that a machine takes time for.
@@ -30,12 +30,12 @@ def with_waits(
         yield from chunks
         return
     speeds = {tool.number: tool.speed for tool in job.tools}
-    waits = Waits(spindle, speeds, job.tools[0].number, state)
+    spindle_dwells = SpindleDwells(spindle, speeds, job.tools[0].number, state)
     for chunk in chunks:
-        yield dataclasses.replace(chunk, events=tuple(waits.among(chunk.events)))
+        yield dataclasses.replace(chunk, events=tuple(spindle_dwells.among(chunk.events)))
 
 
-class Waits:
+class SpindleDwells:
     """Follows the tool in the spindle and its speed."""
 
     def __init__(
@@ -87,5 +87,5 @@ class Waits:
     def _turn(self, turns: float) -> float:
         """How long the spindle takes to another speed [s], negative counter-clockwise [1/min]."""
         change, self._turns = abs(turns - self._turns), turns
-        waits = self._spindle.waits and self._spindle.acceleration > 0.0
-        return change / self._spindle.acceleration if waits else 0.0
+        spindle_dwells = self._spindle.waits and self._spindle.acceleration > 0.0
+        return change / self._spindle.acceleration if spindle_dwells else 0.0

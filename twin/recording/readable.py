@@ -1,6 +1,6 @@
 """Whether HDF5 comes to an end with a recording: a process of its own tries it.
 
-A damaged file can make HDF5 search for ever or crash, which no exception tells of. Recordings carry
+A damaged file can make HDF5 search for ever or crash, which no exception reports. Recordings carry
 a seal against that; one that lost its seal, because it was cut short or because another program
 added to it, is read here first.
 """
@@ -19,7 +19,7 @@ _ROWS = 65536
 
 def reading_ends(path: Path) -> bool:
     """Whether all that a file holds can be read, or is refused with an error."""
-    command = [sys.executable, "-m", "twin.recording.trial", str(path)]
+    command = [sys.executable, "-m", "twin.recording.readable", str(path)]
     return subprocess.run(command, capture_output=True, check=False).returncode >= 0  # noqa: S603 (this module)
 
 

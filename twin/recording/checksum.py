@@ -14,22 +14,22 @@ LENGTH = len(_MARK) + 8
 _PIECE = 1 << 22
 
 
-def seal(path: Path) -> None:
+def write_checksum(path: Path) -> None:
     """Put a seal at the end of a complete file."""
     with path.open("rb+") as file:
         file.seek(0, 2)
-        file.write(_seal_of(path, file.tell()))
+        file.write(_checksum_of(path, file.tell()))
 
 
-def is_sealed(path: Path) -> bool:
+def has_checksum(path: Path) -> bool:
     """Whether there is a seal at the end of a file, be it whole or broken."""
     return _end_of(path).startswith(_MARK)
 
 
-def seal_is_broken(path: Path) -> bool:
+def checksum_is_wrong(path: Path) -> bool:
     """Whether a sealed file is not what it was when the seal was put on it."""
     found = _end_of(path)
-    return found.startswith(_MARK) and found != _seal_of(path, path.stat().st_size - LENGTH)
+    return found.startswith(_MARK) and found != _checksum_of(path, path.stat().st_size - LENGTH)
 
 
 def _end_of(path: Path) -> bytes:
@@ -38,7 +38,7 @@ def _end_of(path: Path) -> bytes:
         return file.read(LENGTH)
 
 
-def _seal_of(path: Path, size: int) -> bytes:
+def _checksum_of(path: Path, size: int) -> bytes:
     found, left = 0, size
     with path.open("rb") as file:
         while left > 0 and (piece := file.read(min(_PIECE, left))):

@@ -7,7 +7,7 @@ from twin.nc.canonical import FloatArray, IntArray
 
 
 @array_kernel
-def thin(
+def simplify(
     points: FloatArray, group: IntArray, tolerance: float, longest: float, most: int
 ) -> IntArray:
     """Choose samples between which points of the tool moved straight.

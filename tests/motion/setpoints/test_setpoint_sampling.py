@@ -1,8 +1,8 @@
 import numpy as np
 
 from twin.columns import join
+from twin.motion.setpoints.sampling import settle
 from twin.motion.setpoints.setpoints import Setpoints
-from twin.motion.setpoints.settle import settle
 
 
 def moving(first: int, count: int) -> Setpoints:

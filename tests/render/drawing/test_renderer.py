@@ -12,7 +12,8 @@ from PIL import Image
 
 from twin.errors import RenderError
 from twin.recording.reader import open_recording
-from twin.render.drawing import filament, gl
+from twin.render.drawing import gl
+from twin.render.drawing import renderer as renderers
 from twin.render.drawing.canvas import DRAFT, Canvas, Pixels, Quality
 from twin.render.drawing.filament_mesh import mesh_corners, tangent_frames
 from twin.render.drawing.gl import Probe, probe
@@ -38,7 +39,7 @@ SIZE = (160, 120)
 
 @pytest.fixture
 def filament_driver() -> None:
-    if probe(filament.FILAMENT).error:
+    if probe(gl.FILAMENT).error:
         pytest.skip("no Vulkan driver for Filament here: see twin doctor")
 
 
@@ -183,15 +184,15 @@ def test_a_still_has_the_display_over_it(make_recording: Record, scene: Scene) -
 
 
 def test_without_a_driver_the_message_names_the_packages(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(filament, "probe", lambda name: Probe(name, error="no Vulkan instance"))
+    monkeypatch.setattr(renderers, "probe", lambda name: Probe(name, error="no Vulkan instance"))
     with pytest.raises(RenderError, match=r"no Vulkan instance.*mesa-vulkan-drivers.*'opengl'"):
-        filament.require_filament()
+        renderers.require_filament()
 
 
 def test_the_probe_outlives_a_missing_driver(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("VK_ICD_FILENAMES", "/nonexistent.json")
     monkeypatch.setenv("VK_DRIVER_FILES", "/nonexistent.json")
-    found = gl.probe.__wrapped__(filament.FILAMENT)
+    found = gl.probe.__wrapped__(gl.FILAMENT)
     assert found.error
     assert not found.renderer
 
@@ -267,7 +268,7 @@ def test_lamps_get_an_intensity_unless_the_model_has_one() -> None:
 @pytest.mark.usefixtures("filament_driver")
 def test_filament_says_in_a_process_of_its_own_what_it_draws_through() -> None:
     done = subprocess.run(
-        [sys.executable, "-m", "twin.render.drawing.probe", filament.FILAMENT],
+        [sys.executable, "-m", "twin.render.drawing.probe", gl.FILAMENT],
         capture_output=True,
         text=True,
         check=True,
