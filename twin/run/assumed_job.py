@@ -121,7 +121,7 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
         ),
         *_unit_lines(preparation.reading),
         "",
-        *_start_lines(position),
+        *_start_lines(moves, position),
         *stock,
         *tools,
         *_reading_lines(preparation.reading),
@@ -146,9 +146,12 @@ def _least_length(machine: Machine, moves: Moves) -> float:
     return travel[0] + MARGIN - float(frame.chain.table[2]) - float(moves.end[:, 2].min())
 
 
-def _start_lines(top: FloatArray | None) -> list[str]:
-    """Where the tool is at first, where program zero lies below the top of the stock."""
-    return [] if top is None or top[2] <= 0.0 else ["[start]", f"Z = {top[2] + MARGIN:.3f}", ""]
+def _start_lines(moves: Moves, top: FloatArray | None) -> list[str]:
+    """Where the tool is at first, where program zero lies below the top of the stock or in the axis of a table."""
+    height = 0.0 if top is None or top[2] <= 0.0 else float(top[2]) + MARGIN
+    if top is None and turns_about_x(moves):
+        height = float(moves.end[:, 2].max()) + MARGIN
+    return ["[start]", f"Z = {height:.3f}", ""] if height > 0.0 else []
 
 
 def _tolerance_lines(moves: Moves, contour_um: float) -> list[str]:
@@ -256,7 +259,7 @@ def _zero_line(
         center = machine.part_frame.over_table
         zero["X"], zero["Y"] = float(center[0] - top[0]), float(center[1] - top[1])
     chain = machine.part_frame.chain
-    if top is not None and turns_about_x(moves) and chain is not None:
+    if turns_about_x(moves) and chain is not None:
         zero["X"] = float(chain.table[0]) - bar_ends(moves)[0]
     if decides_height is not None:
         text = "\n".join(['program = "x"', *decides_height])

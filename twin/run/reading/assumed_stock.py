@@ -96,6 +96,7 @@ def turns_about_x(moves: Moves) -> bool:
 def bar_ends(moves: Moves) -> tuple[float, float]:
     """From where to where along X a bar reaches that axis A turns; its beginning is clamped [mm]."""
     feeds = moves.motion == Motion.FEED
+    feeds |= not feeds.any()
     places = np.concatenate([moves.start[feeds, 0], moves.end[feeds, 0]])
     return float(places.min()) - _CLAMPED, float(places.max()) + MARGIN
 
@@ -160,7 +161,7 @@ def _levels(moves: Moves) -> tuple[FloatArray, FloatArray]:
     cuts = feeds & _level(moves) & (last >= 0) & feeds[last] & (drop[last] < 0.0)
     ways = np.hypot(*(moves.end[cuts, :2] - moves.start[cuts, :2]).T)
     levels, at = np.unique(moves.end[cuts, 2].round(3), return_inverse=True)
-    lengths = np.bincount(at, ways, minlength=len(levels))
+    lengths = np.bincount(at, ways, minlength=len(levels)).astype(np.float64)
     return levels[::-1], lengths[::-1]
 
 
