@@ -48,6 +48,21 @@ def test_the_path_shows_where_zero_lies(
     assert made.job.file.start.get("Z", 0.0) == (top + 10.0 if top else 0.0)
 
 
+def test_a_path_that_slopes_down_has_no_steps(tmp_path: Path) -> None:
+    ramp = "G0 Z60.\nG0 X9. Y9.\nX0. Y0.\nG1 Z40. F100.\nX2. F300.\n" + "".join(
+        f"X{40 * (n % 2)}. Z{40 - 3 * n}.\n" for n in range(1, 9)
+    )
+    made, _ = raw(tmp_path, f"{HEAD}{ramp}Y30.\nX0.\n{END}")
+    assert made.job.file.stock is not None
+    assert made.job.file.stock.position[2] == 41.0
+
+
+def test_a_router_that_calls_t0_has_a_tool_0(tmp_path: Path) -> None:
+    """MakerCam writes T0 M6 before everything: an empty spindle would cut nothing, and pass."""
+    made, _ = raw(tmp_path, f"{HEAD.replace('T1', 'T0')}{passes(-1.0)}{END}")
+    assert [tool.number for tool in made.job.file.tools] == [0]
+
+
 def test_flutes_are_as_long_as_the_deepest_cut_below_the_top(tmp_path: Path) -> None:
     made, _ = raw(tmp_path, f"{HEAD}{passes(50.0, 40.0, 30.0, 20.0, 10.0, 0.0, clear=70.0)}{END}")
     assert made.job.file.tools[0].flute == 65.0

@@ -78,9 +78,9 @@ def assumed_stock(
 def top_of_stock(moves: Moves) -> float:
     """Height of the stock's top, as far as the path shows it [mm]."""
     feeds = moves.motion == Motion.FEED
-    levels, _ = _levels(moves)
+    levels, lengths = _levels(moves)
     if turns_about_x(moves) and len(levels):
-        return _over_the_cuts(moves, levels)
+        return _over_the_cuts(moves, levels, lengths)
     found = _heights(moves, float(moves.end[feeds, 2].min())) if feeds.any() else None
     return 0.0 if found is None else found[0]
 
@@ -103,10 +103,10 @@ def bar_ends(moves: Moves) -> tuple[float, float]:
 
 def _bar(moves: Moves) -> tuple[list[str], FloatArray | None, str]:
     """A bar along X that axis A turns about program zero."""
-    levels, _ = _levels(moves)
+    levels, lengths = _levels(moves)
     if not len(levels) or levels[0] <= BELOW:
         return _no_stock("axis A turns, and the cuts do not lie above its centre at Z0")
-    radius = float(np.ceil(_over_the_cuts(moves, levels) * 10.0) / 10.0)
+    radius = float(np.ceil(_over_the_cuts(moves, levels, lengths) * 10.0) / 10.0)
     first, last = bar_ends(moves)
     top = np.array([(first + last) / 2.0, 0.0, radius])
     lines = [
@@ -133,17 +133,30 @@ def _heights(moves: Moves, low: float) -> tuple[float, float, str] | None:
     if not above.any() or lengths[above].sum() < _MOST_ABOVE * lengths.sum():
         return (0.0, low - MARGIN, "") if low < -BELOW else None
     said = f"; zero is not on its top: cuts lie at Z{levels[0]:g} to Z{levels[-1]:g}, the first taken as deep as the next"
-    return _over_the_cuts(moves, levels), min(0.0, low), said
+    return _over_the_cuts(moves, levels, lengths), min(0.0, low), said
 
 
-def _over_the_cuts(moves: Moves, levels: FloatArray) -> float:
-    """Top of a stock whose first cut is as deep as the step to the next, or a guess where there is but one [mm]."""
+def _over_the_cuts(moves: Moves, levels: FloatArray, lengths: FloatArray) -> float:
+    """Top of a stock whose first cut is as deep as the step to the next, or a guess where that is no step [mm].
+
+    It is none where there is but one cut, or where the path slopes down to the next longer than it goes level.
+    """
     highest = float(levels[0])
     step = highest - float(levels[1]) if len(levels) > 1 else _ONLY_CUT
-    rapids = moves.end[(moves.motion == Motion.RAPID) & _level(moves), 2]
-    above = rapids[rapids > highest]
+    if len(levels) > 1 and _sloping(moves, levels[1], highest) > lengths[0]:
+        step = min(step, _ONLY_CUT)
+    ends = moves.end[moves.motion == Motion.RAPID, 2]
+    above = ends[ends > highest]
     room = float(above.min()) - _LEAST_CLEARANCE - highest if len(above) else step
     return highest + max(0.0, min(step, room))
+
+
+def _sloping(moves: Moves, low: float, high: float) -> float:
+    """Length in the plane of feeds that rise or fall to a height between two [mm]."""
+    way, ends = moves.end[:, :3] - moves.start[:, :3], moves.end[:, 2]
+    rows = (moves.motion == Motion.FEED) & (np.abs(way[:, 2]) >= BELOW)
+    rows &= (ends > low + BELOW) & (ends < high - BELOW)
+    return float(np.hypot(way[rows, 0], way[rows, 1]).sum())
 
 
 def _level(moves: Moves) -> BoolArray:

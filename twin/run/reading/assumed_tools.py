@@ -167,7 +167,9 @@ def tool_lines(
         least_length: So long is each tool at least [mm].
         worn: Tools of which the control's table holds the wear alone.
     """
-    numbers = list(dict.fromkeys(number for number, _, _ in calls if number)) or [1]
+    numbers = list(dict.fromkeys(number for number, _, _ in calls if number)) or (
+        [0] if calls else [1]
+    )
     listed = listed_tools((comment for _, comment in comments), numbers, inches=inches)
     lines: list[str] = []
     told: list[str] = []
