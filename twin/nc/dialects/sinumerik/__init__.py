@@ -81,6 +81,8 @@ SINUMERIK = Dialect(
             "compensation watch",
             "compensation",
             "spindle",
+            "orientation frame",
+            "orientation",
             "motion",
         ),
         g=CODES,
