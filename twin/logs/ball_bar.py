@@ -1,6 +1,7 @@
 """A ball-bar's log: how far the tool is off a circle, over the angle (ISO 230-4, as a QC20-W exports it)."""
 
 import enum
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple
 
@@ -72,7 +73,7 @@ class BallBarLog(NamedTuple):
     radius: float
     speed: float
     angle: FloatArray
-    turns: dict[int, FloatArray]
+    turns: Mapping[int, FloatArray]
 
 
 def read_ball_bar(path: Path, columns: Path | None) -> BallBarLog:

@@ -15,7 +15,7 @@ from twin.nc.control.statements import StatementReader
 from twin.nc.control.tools import Tools
 from twin.nc.control.variables import Variables
 from twin.nc.geometry.arcs import Point
-from twin.nc.path.feed_rates import PATH_COUNTS, FeedFault, FeedRule
+from twin.nc.path.feed_rates import PATH_COUNTS, STANDING, WITHOUT_SPEED, FeedRule
 from twin.nc.path.moves import LARGEST_COORDINATE, axis_target
 from twin.nc.text.blocks import Assignment, Block, Location, Statement, Word
 from twin.nc.text.expressions import Expression, ExpressionError
@@ -188,9 +188,9 @@ class Control:
 
     def _refuse_feed(self, finding: int) -> None:
         """Report what is wrong with the feed rate of a move."""
-        if finding == FeedFault.WITHOUT_SPEED:
+        if finding == WITHOUT_SPEED:
             self.fail("feed-per-revolution", "a feed per revolution needs a spindle speed S")
-        if finding == FeedFault.SPINDLE_STOPPED:
+        if finding == STANDING:
             message = "a feed per revolution never moves while the spindle stands"
             self.fail("feed-per-revolution", message, hint="start it by M3 or M4 before")
         self.report.warn_once(

@@ -11,9 +11,9 @@ from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.frame import Arc, Frame, arc_about, moved_shift
 from twin.nc.geometry.planes import Plane, Vector
 from twin.nc.path.feed_rates import (
+    KNOWN_FEED,
     PATH_COUNTS,
     Displacement,
-    FeedFault,
     FeedRule,
     arc_displacement,
     feed_by_rule,
@@ -218,7 +218,7 @@ class Motion:
         feed = NAN if self.feed is None else self.feed
         speed = NAN if self.spindle is None else self.spindle
         finding = finding_of_feed(feed, modal.feed_mode, speed, float(self.spindle_turns))
-        if finding != FeedFault.NONE:
+        if finding != KNOWN_FEED:
             self._refuse_feed(finding)
         turning = not is_arc and only_turns(self.part, end, self.linear)
         return feed_per_minute(

@@ -3,7 +3,6 @@
 What is ``compilable`` must give the same bits compiled, which ``math.hypot`` does not.
 """
 
-import enum
 import math
 from typing import NamedTuple
 
@@ -68,26 +67,21 @@ def sweep_between(start: Point, end: Point, center: Point, clockwise: bool) -> f
     return angle if angle > 0.0 else angle + TURN
 
 
-class ArcFault(enum.IntEnum):
-    """What is wrong with an arc."""
-
-    NONE = 0
-    ON_CENTER = 1
-    """The centre lies on its start or end."""
-    UNEQUAL = 2
-    """Start and end are not equally far from the centre."""
-    FAR_CENTER = 3
-    """The centre would have to be moved far for that."""
-    SAME_ENDS = 4
-    """Start and end are one point, through which a radius gives no circle."""
-    SHORT_RADIUS = 5
-    """The radius does not reach from one to the other."""
-    NEGATIVE_RADIUS = 6
-    """The radius is below 0, where that has no meaning."""
-    OVERDEFINED = 7
-    """There are a radius and a centre."""
-    WITHOUT_CENTER = 8
-    """There is neither."""
+(
+    FITS,
+    ON_CENTER,
+    UNEQUAL,
+    FAR_CENTER,
+    SAME_ENDS,
+    SHORT_RADIUS,
+    NEGATIVE_RADIUS,
+    OVERDEFINED,
+    WITHOUT_CENTER,
+) = range(9)
+"""What is wrong with an arc: nothing; the centre lies on its start or end; these are not equally far
+from it; it would have to be moved far to be so; they are one point, which no radius tells a circle
+through; the radius does not reach from one to the other; it is below 0, where that means nothing;
+there are a radius and a centre; there is neither."""
 
 
 class Bounds(NamedTuple):
@@ -112,13 +106,13 @@ def fitted_center(start: Point, end: Point, given: Point, bounds: Bounds) -> tup
     near, far = distance(start, given), distance(end, given)
     larger = max(near, far)
     if min(near, far) < SAME_POINT:
-        return ArcFault.ON_CENTER, given
+        return ON_CENTER, given
     if abs(near - far) > max(bounds.mismatch, bounds.mismatch_share * larger):
-        return ArcFault.UNEQUAL, given
+        return UNEQUAL, given
     center = equidistant(start, end, given)
     if distance(given, center) > max(bounds.shift, bounds.shift_share * larger):
-        return ArcFault.FAR_CENTER, center
-    return ArcFault.NONE, center
+        return FAR_CENTER, center
+    return FITS, center
 
 
 class ArcWords(NamedTuple):
@@ -158,12 +152,12 @@ def center_of_words(
     center = programmed_center(start, words.first, words.second, absolute)
     if words.radius == words.radius:
         if has_center:
-            return ArcFault.OVERDEFINED, start
+            return OVERDEFINED, start
         finding, center = center_of_radius(start, end, words.radius, sense.clockwise, sense.signed)
-        if finding != ArcFault.NONE or not sense.fits:
+        if finding != FITS or not sense.fits:
             return finding, center
     elif not has_center:
-        return ArcFault.WITHOUT_CENTER, start
+        return WITHOUT_CENTER, start
     return fitted_center(start, end, center, bounds)
 
 
@@ -181,12 +175,12 @@ def center_of_radius(
 ) -> tuple[int, Point]:
     """What is wrong with the radius of an arc, and its centre; ``signed``: a negative one means the arc beyond 180° [mm]."""
     if distance(start, end) < SAME_POINT:
-        return ArcFault.SAME_ENDS, start
+        return SAME_ENDS, start
     if radius < 0.0 and not signed:
-        return ArcFault.NEGATIVE_RADIUS, start
+        return NEGATIVE_RADIUS, start
     if radius == 0.0 or not reaches(start, end, abs(radius)):
-        return ArcFault.SHORT_RADIUS, start
-    return ArcFault.NONE, center_at_radius(start, end, abs(radius), clockwise, radius < 0.0)
+        return SHORT_RADIUS, start
+    return FITS, center_at_radius(start, end, abs(radius), clockwise, radius < 0.0)
 
 
 @compilable

@@ -70,7 +70,7 @@ def fitted_center(
         ProgramError: They are farther from one circle than the bounds allow.
     """
     finding, fitted = arcs.fitted_center(*ends, center, bounds)
-    if finding != arcs.ArcFault.NONE:
+    if finding != arcs.FITS:
         refuse_arc(control, finding, word, *(distance(end, center) for end in ends))
     return fitted
 
@@ -86,35 +86,35 @@ def center_of_radius(
 ) -> Point:
     """Centre of an arc given by a radius [mm]; a negative one asks for the larger arc."""
     finding, center = arcs.center_of_radius(start, end, value, clockwise, signed=True)
-    if finding != arcs.ArcFault.NONE:
+    if finding != arcs.FITS:
         refuse_arc(control, finding, word, abs(value), distance(start, end) / 2.0)
     return center
 
 
 _FINDINGS = {
-    arcs.ArcFault.OVERDEFINED: ("arc-overdefined", "an arc has a centre or a radius", None),
-    arcs.ArcFault.ON_CENTER: ("arc-center", "the centre lies on the arc's start or end", None),
-    arcs.ArcFault.UNEQUAL: (
+    arcs.OVERDEFINED: ("arc-overdefined", "an arc has a centre or a radius", None),
+    arcs.ON_CENTER: ("arc-center", "the centre lies on the arc's start or end", None),
+    arcs.UNEQUAL: (
         "arc-center",
         "start and end are {0:.4f} and {1:.4f} mm from the centre",
         "give a centre that is as far from the start as from the end",
     ),
-    arcs.ArcFault.FAR_CENTER: (
+    arcs.FAR_CENTER: (
         "arc-center",
         "the centre misses start and end by {2:.4f} mm, too much for two points so near each other",
         "end a full circle exactly where it starts",
     ),
-    arcs.ArcFault.SAME_ENDS: (
+    arcs.SAME_ENDS: (
         "arc-full-by-radius",
         "start and end are the same point: a radius leaves the centre undefined",
         "write the centre (I, J, K) of a full circle",
     ),
-    arcs.ArcFault.NEGATIVE_RADIUS: (
+    arcs.NEGATIVE_RADIUS: (
         "arc-radius",
         "R draws arcs below 180 degrees; what a negative one means is not known",
         "write the centre (I, J, K) of a larger arc",
     ),
-    arcs.ArcFault.SHORT_RADIUS: (
+    arcs.SHORT_RADIUS: (
         "arc-radius",
         "the end cannot be reached with radius {0:g} mm",
         "half the distance is {1:.4f} mm: no smaller radius reaches",
@@ -168,11 +168,11 @@ def arc_center(control: Control, target: list[float], rule: ArcRule) -> Point:
     absolute = control.modal.center_absolute
     sense = Sense(rule.clockwise, rule.signed_radius, rule.fits_radius)
     finding, center = arcs.center_of_words(start, end, words, absolute, sense, rule.bounds)
-    if finding == arcs.ArcFault.WITHOUT_CENTER:
+    if finding == arcs.WITHOUT_CENTER:
         refuse_missing_center(control)
-    if finding != arcs.ArcFault.NONE and radius is not None:
+    if finding != arcs.FITS and radius is not None:
         refuse_arc(control, finding, radius, abs(words.radius), distance(start, end) / 2.0)
-    if finding != arcs.ArcFault.NONE:
+    if finding != arcs.FITS:
         given = programmed_center(start, words.first, words.second, absolute)
         refuse_arc(control, finding, centre.words[0], distance(start, given), distance(end, given))
     return center

@@ -30,7 +30,8 @@ from twin.nc.line_kernel.reading import (
 )
 from twin.nc.path import move_columns
 from twin.nc.path.feed_rates import (
-    FeedFault,
+    KNOWN_FEED,
+    WITHOUT_FEED,
     FeedRule,
     arc_displacement,
     feed_by_rule,
@@ -230,7 +231,7 @@ def _has_feed(seen: int, feed: float, state: PlainState) -> bool:
     if needs_own_feed(state.feed_mode) and not seen & 1 << FEED_WORD:
         return False
     finding = finding_of_feed(feed, state.feed_mode, state.spindle, state.spindle_turns)
-    return finding == FeedFault.NONE or (finding == FeedFault.WITHOUT_FEED and state.feed_may_lack)
+    return finding == KNOWN_FEED or (finding == WITHOUT_FEED and state.feed_may_lack)
 
 
 @inlined
@@ -280,7 +281,7 @@ def _bend(
     sense = Sense(clockwise, rules.signed_radius, rules.fits_radius)
     absolute = state.center_absolute
     finding, center = arcs.center_of_words(start, end, words, absolute, sense, rules.bounds)
-    if finding != arcs.ArcFault.NONE:
+    if finding != arcs.FITS:
         return _DOUBTFUL
     sweep = arcs.sweep_between(start, end, center, clockwise)
     programmed = arc_about(state.plane, state.position[0], center, sweep)

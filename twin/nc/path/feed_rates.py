@@ -27,16 +27,9 @@ _PER_SECOND, _PER_REVOLUTION = int(FeedMode.PER_SECOND), int(FeedMode.PER_REVOLU
 _SECONDS_PER_BLOCK = int(FeedMode.SECONDS_PER_BLOCK)
 _BLOCKS_PER_MINUTE = int(FeedMode.BLOCKS_PER_MINUTE)
 
-
-class FeedFault(enum.IntEnum):
-    """What is wrong with the feed rate of a move."""
-
-    NONE = 0
-    WITHOUT_FEED = 1
-    """No F is programmed."""
-    WITHOUT_SPEED = 2
-    """F counts per revolution, and no S is programmed."""
-    SPINDLE_STOPPED = 3
+KNOWN_FEED, WITHOUT_FEED, WITHOUT_SPEED, STANDING = range(4)
+"""What is wrong with the feed rate of a move: nothing; no F is programmed; F counts per revolution, and no S is
+programmed; or the spindle is stopped."""
 
 
 @inlined
@@ -50,12 +43,12 @@ def finding_of_feed(feed: float, mode: int, speed: float, turns: float) -> int:
         turns: 0 where the spindle is stopped.
     """
     if feed != feed:
-        return FeedFault.WITHOUT_FEED
+        return WITHOUT_FEED
     if mode != _PER_REVOLUTION:
-        return FeedFault.NONE
+        return KNOWN_FEED
     if speed != speed or speed == 0.0:
-        return FeedFault.WITHOUT_SPEED
-    return FeedFault.SPINDLE_STOPPED if turns == 0.0 else FeedFault.NONE
+        return WITHOUT_SPEED
+    return STANDING if turns == 0.0 else KNOWN_FEED
 
 
 @inlined

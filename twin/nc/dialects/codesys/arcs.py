@@ -35,17 +35,17 @@ def _radius_arc(control: Control, word: Word, *, clockwise: bool) -> None:
     target = control.target()
     start, end = start_and_end(control, target)
     if take_center(control).words:
-        refuse_arc(control, arcs.ArcFault.OVERDEFINED, word)
+        refuse_arc(control, arcs.OVERDEFINED, word)
     radius = abs(control.length(word))
     finding, center = arcs.center_of_radius(start, end, radius, clockwise, signed=False)
-    if finding == arcs.ArcFault.SHORT_RADIUS:
+    if finding == arcs.SHORT_RADIUS:
         half = distance(start, end) / 2.0
         message = (
             f"the radius is shorter than half the distance, {half:.4f}: a straight line instead"
         )
         _line_instead(control, target, message, word)
         return
-    if finding != arcs.ArcFault.NONE:
+    if finding != arcs.FITS:
         refuse_arc(control, finding, word)
     sweep_arc(control, target, center, clockwise=clockwise)
 
@@ -58,7 +58,7 @@ def _center_arc(control: Control, rule: ArcRule) -> None:
         _line_instead(control, target, "the arc has no centre and no radius: a straight line", None)
         return
     finding, fitted = arcs.fitted_center(start, end, center, rule.bounds)
-    if finding in (arcs.ArcFault.ON_CENTER, arcs.ArcFault.UNEQUAL):
+    if finding in (arcs.ON_CENTER, arcs.UNEQUAL):
         first, last = distance(start, center), distance(end, center)
         message = (
             f"start and end are {first:.4f} and {last:.4f} from the centre, "
@@ -66,7 +66,7 @@ def _center_arc(control: Control, rule: ArcRule) -> None:
         )
         _line_instead(control, target, message, word)
         return
-    if finding == arcs.ArcFault.FAR_CENTER:
+    if finding == arcs.FAR_CENTER:
         moved = distance(center, fitted)
         message = f"the centre is corrected by {moved:.4f} to fit start and end"
         control.warn("arc-center-corrected", message, word)

@@ -56,7 +56,7 @@ def _arc(control: Control, rule: ArcRule) -> None:
     memory = memory_of(control)
     if circle is not None:
         if centre.words:
-            refuse_arc(control, arcs.ArcFault.OVERDEFINED, circle)
+            refuse_arc(control, arcs.OVERDEFINED, circle)
         value = control.length(circle)
         center = center_of_radius(control, start, end, value, circle, clockwise=clockwise)
     elif memory.circle_radius is not None and not centre.words and not goal.polar:

@@ -133,7 +133,7 @@ def _center_by_angle(
     start, end = start_and_end(control, target)
     if center is not None:
         if distance(start, center) < SAME_POINT:
-            refuse_arc(control, arcs.ArcFault.ON_CENTER, opening)
+            refuse_arc(control, arcs.ON_CENTER, opening)
         control.modal.plane.aim(target, turned(start, center, -angle if clockwise else angle))
         forget_polar(control)
         return center
