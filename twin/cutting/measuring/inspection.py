@@ -50,6 +50,11 @@ class Inspection:
         return np.isfinite(self.deviation_mm)
 
     @property
+    def measured_share(self) -> float:
+        """Share of the cells that belong to what was machined, or should have been, that were measured."""
+        return int(self.measured.sum()) / self.judged if self.judged else 0.0
+
+    @property
     def most_standing_mm(self) -> float:
         """The most that was left standing [mm]."""
         return float(self.deviation_mm[self.measured].max(initial=0.0))
@@ -81,7 +86,7 @@ class Inspection:
             return {"measured_share": 0.0, **volumes}
         return {
             **volumes,
-            "measured_share": len(here) / self.judged,
+            "measured_share": self.measured_share,
             "bound_um": UM_PER_MM * self.bound_mm,
             "max_um": float(here.max()),
             "min_um": float(here.min()),

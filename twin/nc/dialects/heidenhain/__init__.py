@@ -74,6 +74,8 @@ HEIDENHAIN = Dialect(
             "PR": "polar radius; incremental as IPR",
             "PA": "polar angle; incremental as IPA",
             "R": "radius of CR, RND and a lead",
+            **{f"N{axis}": "normal of the surface (LN)" for axis in "XYZ"},
+            **{f"T{axis}": "direction of the tool, from its tip (LN)" for axis in "XYZ"},
             "LEN": "length of a straight lead",
             "CCA": "angle of a lead's arc",
             "DR+": "arc counter-clockwise",

@@ -9,6 +9,7 @@ from twin.nc.control.control import Control
 from twin.nc.control.modal import LineRule
 from twin.nc.dialects.heidenhain.corners import refuse_chamfered_arc
 from twin.nc.dialects.heidenhain.memory import memory_of
+from twin.nc.dialects.heidenhain.vectors import take_vector
 from twin.nc.geometry.arcs import (
     SAME_POINT,
     Bounds,
@@ -87,6 +88,15 @@ def _line(control: Control) -> None:
 
 
 LINE = Interpolation(_line, rule=LineRule())
+
+
+def _line_by_vectors(control: Control) -> None:
+    """LN: L with the normal of the surface, and the direction of the tool."""
+    take_vector(control)
+    _line(control)
+
+
+LINE_BY_VECTORS = Interpolation(_line_by_vectors)
 
 
 def _polar_line(control: Control) -> None:
@@ -267,6 +277,7 @@ POLAR_TANGENT_ARC = Interpolation(_polar_tangent_arc)
 
 KEYWORDS: dict[str, Interpolation] = {
     "L": LINE,
+    "LN": LINE_BY_VECTORS,
     "LP": POLAR_LINE,
     "C": ARC,
     "CR": ARC_BY_RADIUS,

@@ -5,7 +5,7 @@ from functools import partial
 from twin.nc.canonical import Corner
 from twin.nc.control.codes import Action, GCode
 from twin.nc.control.control import Control
-from twin.nc.dialects.sinumerik import arcs, frames, words
+from twin.nc.dialects.sinumerik import arcs, frames, orientation, words
 from twin.nc.dialects.sinumerik.known import PASSED_CODES, REFUSED_CODES
 from twin.nc.dialects.sinumerik.leads import LEADS
 from twin.nc.dialects.sinumerik.targets import forget_polar, set_pole
@@ -44,7 +44,7 @@ def to_reference(number: int) -> Action:
 
 _ACTING = (
     *("CIP", "CT", "TRANS", "ATRANS", "ROT", "AROT", "SCALE", "ASCALE", "MIRROR", "AMIRROR"),
-    *("SUPA", "NORM", "KONT"),
+    *("SUPA", "NORM", "KONT", "ORIWKS", "ORIMKS", "ORIVECT", "ORIPLANE", "ORIAXES"),
 )
 _NAMED = (*_ACTING, *PASSED_CODES, *REFUSED_CODES)
 NUMBERS = {
@@ -181,6 +181,10 @@ CODES: dict[float, GCode] = {
     NUMBERS["MIRROR"]: _frame("mirror of the frame", frames.mirroring),
     NUMBERS["AMIRROR"]: _frame("mirror on top of the frame", frames.mirroring, additive=True),
     NUMBERS["SUPA"]: _machine_code("SUPA"),
+    **{
+        NUMBERS[name]: modal(meaning, group, orientation.interpolate(name))
+        for name, (meaning, group) in orientation.INTERPOLATIONS.items()
+    },
     NUMBERS["NORM"]: modal(
         "leads of compensation go straight", "compensation leads", indirect_leads=False
     ),

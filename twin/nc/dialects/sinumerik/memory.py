@@ -105,6 +105,8 @@ class SinumerikMemory:
     Attributes:
         matrix: Of the programmable frame.
         swivel: Directions of the axes of CYCLE800's plane, as columns, and its origin [mm]; None: there is none.
+        vector_turns: A vector is reached in the plane of both directions, or not; None: ORIWKS and ORIMKS say which.
+        machine_vectors: ORIMKS: no frame turns a vector.
         uneven: It scales the axes differently.
         translation: Of the programmable frame, before it shifts by a work offset [mm].
         fine: Its fine part (G59), which TRANS ends [mm].
@@ -137,6 +139,8 @@ class SinumerikMemory:
 
     matrix: Matrix = IDENTITY
     swivel: tuple[Matrix, Vector] | None = None
+    vector_turns: bool | None = None
+    machine_vectors: bool = False
     uneven: bool = False
     translation: Vector = (0.0, 0.0, 0.0)
     fine: Vector = (0.0, 0.0, 0.0)
