@@ -73,7 +73,7 @@ class BallBarLog(NamedTuple):
     radius: float
     speed: float
     angle: FloatArray
-    turns: Mapping[int, FloatArray]
+    turns: Mapping[Turning, FloatArray]
 
 
 def read_ball_bar(path: Path, columns: Path | None) -> BallBarLog:
