@@ -256,7 +256,7 @@ def _finding(preparation: Preparation, reason: Reason) -> Finding:
     job = preparation.job.path
     if reason.what == "baseline-job" and job is not None:
         key = reason.message.partition(" is ")[0]
-        files = [layer.path for layer in preparation.job.layers]
+        files = [layer.path for layer in preparation.job.layers if layer.path.is_file()]
         if key.startswith("machine."):
             files, key = [preparation.machine.path], key.removeprefix("machine.")
         file, line = place_of_key(files, key)

@@ -108,6 +108,7 @@ class DryRun:
         watch: Mistakes of its functions that no axis shows.
         lines_never_run: How many lines with motion it never came to.
         fed_without_length: Lines that feed while the length of the tool in the spindle, once called, does not count.
+        drilled: Lines that make a hole by a drilling cycle.
     """
 
     program: InterpretedProgram
@@ -117,6 +118,7 @@ class DryRun:
     watch: ProgramWatch
     lines_never_run: int
     fed_without_length: frozenset[int]
+    drilled: frozenset[int]
 
     @property
     def moves(self) -> int:
@@ -172,4 +174,5 @@ def interpret_all(preparation: Preparation, part_zero: FloatArray, clock: StageC
         watch=watch,
         lines_never_run=len(interpretation.coverage.never_run()),
         fed_without_length=frozenset(interpretation.lengths.fed_without),
+        drilled=frozenset(interpretation.drilled),
     )

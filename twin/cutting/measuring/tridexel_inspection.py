@@ -178,12 +178,12 @@ def inspect_stock(part: TriDexel, nominal: TriDexel, tolerance_um: float) -> Ins
         bound_mm=EXACT_MM + float(np.nanmax(np.concatenate(unsure), initial=0.0)),
         judged=len(deviation),
         tolerance_um=tolerance_um,
-        standing_mm3=_alone(part, nominal),
-        missing_mm3=_alone(nominal, part),
+        standing_mm3=volume_alone(part, nominal),
+        missing_mm3=volume_alone(nominal, part),
     )
 
 
-def _alone(one: TriDexel, other: TriDexel) -> float:
+def volume_alone(one: TriDexel, other: TriDexel) -> float:
     """What lies in one of two stocks on the same lattice alone [mm³]."""
     lattice = one.lattice
     ends = [*lattice.base.tolist(), lattice.lines]
