@@ -49,7 +49,6 @@ _THREAD = re.compile(r"\bM([0-9]+(?:\.[0-9]+)?)(?:\s*[Xx][0-9.]+)?\s*(?:TAP|GEWI
 _CORNER = re.compile(
     rf"\b(?:CR|R|RAD(?:IUS)?|CORNER RAD(?:IUS)?)\s*[=:.-]?\s*({_NUMBER})", re.IGNORECASE
 )
-_TAPER = re.compile(r"\bTAPER\s*=\s*([0-9.]+)\s*DEG", re.IGNORECASE)
 
 
 class ToolComment(NamedTuple):
