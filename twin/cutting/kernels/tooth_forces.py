@@ -14,7 +14,16 @@ from typing import NamedTuple
 import numpy as np
 
 from twin.compilation.kernel import kernel
-from twin.cutting.kernels.tool_height import Profile, profile_height
+from twin.cutting.kernels.teeth import (
+    BINS,
+    CutterForm,
+    ForceLaw,
+    ToothBench,
+    bin_direction,
+    push,
+    sum_teeth,
+)
+from twin.cutting.kernels.tool_height import profile_height
 from twin.cutting.kernels.walls import (
     Material,
     cell_number,
@@ -24,10 +33,6 @@ from twin.cutting.kernels.walls import (
 )
 from twin.nc.canonical import FloatArray
 
-THINNEST_CHIP_MM = 1e-3
-"""Chips thinner than this are rubbed, not cut; the formula is not followed below [mm]."""
-BINS = 72
-"""Directions about the axis that are looked at: 5 degrees each."""
 _ANGLES = (np.arange(BINS) + 0.5) * (2.0 * np.pi / BINS)
 _COSINE, _SINE = np.cos(_ANGLES), np.sin(_ANGLES)
 _PLACES = 2
@@ -52,52 +57,6 @@ _LEAST = 1e-9
 """Lengths below this are the arithmetic's doing [mm]."""
 
 
-class CutterForm(NamedTuple):
-    """A cutter as forces see it.
-
-    Attributes:
-        profile: Of its lower end.
-        side_from: Height above the tip at which its side begins [mm].
-        flute: Height above the tip at which its edges end [mm].
-        teeth: Number of edges, evenly spaced.
-        rise: Height over which a helical edge falls back by one bin [mm]; infinite: it is straight.
-        radius: Of each ring of the lower end, shape (m,) [mm]; so on.
-        height: Above the tip of its lower edge [mm].
-        span: How much higher its upper edge is [mm].
-        width: Length of edge [mm].
-        outwards: Share of the normal that points outwards.
-        downwards: Share of it that points down.
-    """
-
-    profile: Profile
-    side_from: float
-    flute: float
-    teeth: int
-    rise: float
-    radius: FloatArray
-    height: FloatArray
-    span: FloatArray
-    width: FloatArray
-    outwards: FloatArray
-    downwards: FloatArray
-
-
-class ForceLaw(NamedTuple):
-    """What a material does to an edge.
-
-    Attributes:
-        kc: Specific force of a chip 1 mm wide and 1 mm thick [N/mm²].
-        mc: Its fall with the chip's thickness.
-        radial: Force along the normal as a share of the tangential one.
-        along: Force along the edge as a share of it.
-    """
-
-    kc: float
-    mc: float
-    radial: float
-    along: float
-
-
 class Advance(NamedTuple):
     """How a cutter goes on.
 
@@ -112,32 +71,6 @@ class Advance(NamedTuple):
     way: tuple[float, float, float]
     per_tooth: float
     sense: float
-
-
-class ToothBench(NamedTuple):
-    """What ``tooth_forces`` leaves: of one tooth in each direction, and of all in the mean.
-
-    Attributes:
-        side: Force a millimetre of side, shape (BINS, 3) [N/mm].
-        depth: How deep the side is in the material, shape (BINS,) [mm].
-        tooth: Force on the tool when a tooth's tip is in that direction, shape (BINS, 3) [N].
-        summed: ``tooth`` added up from the first direction on, shape (BINS + 1, 3).
-        mean: Force on the tool in the mean of a turn, shape (3,) [N].
-        figures: Greatest level force of a turn [N], torque in the mean [N mm], thickest chip [mm].
-    """
-
-    side: FloatArray
-    depth: FloatArray
-    tooth: FloatArray
-    summed: FloatArray
-    mean: FloatArray
-    figures: FloatArray
-
-
-def tooth_bench() -> ToothBench:
-    """A bench on which nothing lies."""
-    shapes = ((BINS, 3), (BINS,), (BINS, 3), (BINS + 1, 3), (3,), (3,))
-    return ToothBench(*(np.zeros(shape) for shape in shapes))
 
 
 @kernel
@@ -258,9 +191,9 @@ def _edge_force(
     for first in (begin, end - within):
         x, y = 0.0, 0.0
         for number in range(_SLICES):
-            cosine, sine = _direction(first + within * (number + 0.5) / _SLICES)
+            cosine, sine = bin_direction(first + within * (number + 0.5) / _SLICES)
             chip = advance.way[0] * cosine + advance.way[1] * sine
-            force = height * _push(law, advance.per_tooth, max(chip, 0.0))
+            force = height * push(law, advance.per_tooth, max(chip, 0.0))
             x += force * (-sense * sine - law.radial * cosine)
             y += force * (sense * cosine - law.radial * sine)
         greatest = max(greatest, math.hypot(x, y))
@@ -297,8 +230,8 @@ def _enter_side(
     ends = (_BORDER_COSINE[j * _PLACES], _BORDER_SINE[j * _PLACES])
     other = (_BORDER_COSINE[(j + 1) * _PLACES], _BORDER_SINE[(j + 1) * _PLACES])
     if engaged.share < 1.0:
-        cosine, sine = _direction(j + engaged.middle)
-        ends, other = _direction(j + engaged.begin), _direction(j + engaged.end)
+        cosine, sine = bin_direction(j + engaged.middle)
+        ends, other = bin_direction(j + engaged.begin), bin_direction(j + engaged.end)
     chip = advance.way[0] * cosine + advance.way[1] * sine
     if chip <= _LEAST:
         return False
@@ -307,7 +240,7 @@ def _enter_side(
         advance.way[0] * other[0] + advance.way[1] * other[1],
         chip,
     )
-    force = _push(law, advance.per_tooth, chip) * engaged.share
+    force = push(law, advance.per_tooth, chip) * engaged.share
     bench.depth[j] = engaged.depth
     bench.side[j, 0] = force * (-sense * sine - law.radial * cosine)
     bench.side[j, 1] = force * (sense * cosine - law.radial * sine)
@@ -315,13 +248,6 @@ def _enter_side(
     bench.figures[1] += force * bench.depth[j] * cutter.profile.radius
     bench.figures[2] = max(bench.figures[2], advance.per_tooth * thickest)
     return True
-
-
-@kernel
-def _direction(place: float) -> tuple[float, float]:
-    """Cosine and sine of a place around the axis [bins]."""
-    at = 2.0 * math.pi / BINS * place
-    return math.cos(at), math.sin(at)
 
 
 @kernel
@@ -336,7 +262,7 @@ def _step_between(
     j, begin, end = place
     for _ in range(_HALVINGS):
         middle = 0.5 * (begin + end)
-        cosine, sine = _direction(j + middle)
+        cosine, sine = bin_direction(j + middle)
         depth = _side_depth(material, advance, cutter, cosine, sine)
         if abs(depth - depths[0]) < abs(depth - depths[1]):
             begin = middle
@@ -388,7 +314,7 @@ def _meet_end(
             continue
         met = True
         thickness = advance.per_tooth * chip
-        force = _push(law, advance.per_tooth, chip) * share * cutter.width[i]
+        force = push(law, advance.per_tooth, chip) * share * cutter.width[i]
         inwards = force * (law.radial * cutter.outwards[i] + law.along * cutter.downwards[i])
         upwards = force * (law.radial * cutter.downwards[i] - law.along * cutter.outwards[i])
         bench.tooth[j, 0] += -sense * sine * force - cosine * inwards
@@ -440,13 +366,6 @@ def _ring_share(
 
 
 @kernel
-def _push(law: ForceLaw, per_tooth: float, chip: float) -> float:
-    """Tangential force a millimetre of edge, of a chip that is a share of the feed [N/mm]."""
-    thickness = per_tooth * chip
-    return law.kc * max(thickness, THINNEST_CHIP_MM) ** -law.mc * thickness
-
-
-@kernel
 def _add_up(cutter: CutterForm, sense: float, bench: ToothBench) -> None:
     """Force of a tooth by the direction of its tip, their sums, and the mean and greatest of a turn."""
     share = cutter.teeth / BINS
@@ -466,46 +385,4 @@ def _add_up(cutter: CutterForm, sense: float, bench: ToothBench) -> None:
             below += part
             # Higher up the edge is in this direction when its tip has gone on.
             to = (to + BINS - behind) % BINS
-    for k in range(3):
-        bench.summed[0, k] = 0.0
-        for j in range(BINS):
-            bench.summed[j + 1, k] = bench.summed[j, k] + bench.tooth[j, k]
-    for j in range(math.ceil(BINS / cutter.teeth)):
-        x, y = 0.0, 0.0
-        for tooth in range(cutter.teeth):
-            at = (j + tooth * BINS // cutter.teeth) % BINS
-            x += bench.tooth[at, 0]
-            y += bench.tooth[at, 1]
-        bench.figures[0] = max(bench.figures[0], math.hypot(x, y))
-
-
-@kernel
-def add_force_between(
-    cutter: CutterForm, bench: ToothBench, angle: float, turned: float, force: FloatArray
-) -> None:
-    """Force on the tool in the mean while it turns.
-
-    Args:
-        cutter: The cutter.
-        bench: What ``tooth_forces`` found.
-        angle: Direction of the first tooth's tip at the beginning [turns, counter-clockwise].
-        turned: How far it turns, signed [turns]; at least a thousandth of a bin is counted.
-        force: The force is added to it, shape (3,) [N].
-    """
-    width = max(abs(turned) * BINS, 1e-3)
-    first = angle * BINS - (width if turned < 0.0 else 0.0)
-    for tooth in range(cutter.teeth):
-        low = first + tooth * BINS / cutter.teeth
-        low -= BINS * math.floor(low / BINS)
-        for k in range(3):
-            force[k] += (_sum_up_to(bench, low + width, k) - _sum_up_to(bench, low, k)) / width
-
-
-@kernel
-def _sum_up_to(bench: ToothBench, place: float, k: int) -> float:
-    """Sum of a tooth's force over the directions up to a place from 0 on, in bins."""
-    turns = math.floor(place / BINS)
-    rest = place - turns * BINS
-    whole = min(int(rest), BINS - 1)
-    part = (rest - whole) * bench.tooth[whole, k]
-    return turns * bench.summed[BINS, k] + bench.summed[whole, k] + part
+    sum_teeth(cutter, bench)
