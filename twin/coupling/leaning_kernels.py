@@ -295,9 +295,7 @@ def _sweep(cut: LeaningCut, pose: Pose, way: float) -> bool:
         step.tip[1] = (1.0 - share) * begin + share * end
         step.axis[1] = (1.0 - share) * axis + share * last
         step.axis[1] /= math.sqrt(_dot(step.axis[1], step.axis[1]))
-        done = sweep(
-            cut.dexels, cut.lattice, step, cut.solids, pose.tally, cut.number, np.int64(0)
-        )
+        done = sweep(cut.dexels, cut.lattice, step, cut.solids, pose.tally, cut.number, np.int64(0))
         if done < 1:
             return False
     return True

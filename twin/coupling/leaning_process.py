@@ -58,7 +58,10 @@ class LeaningProcess(CuttingProcess):
         job, stock = turning.tool, self.material
         solids = cutting_edge(profile(job), job.flute)
         number = min(max(job.number, 1), MOST_TOOLS)
-        speed, chain = turning.speed / SECONDS_PER_MINUTE, self._chain._replace(longer=turning.longer)
+        speed, chain = (
+            turning.speed / SECONDS_PER_MINUTE,
+            self._chain._replace(longer=turning.longer),
+        )
         done = 0
         while done < len(speed):
             left = slice(done, None)

@@ -127,9 +127,7 @@ def new_memory(axes: int) -> Memory:
     numbers[CutNumber.FRESH] = 1.0
     three = [np.zeros(3) for _ in range(6)]
     rigid, speed, looked, bend, force, feed = three
-    return Memory(
-        numbers, rigid, speed, looked, bend, np.zeros(axes), tooth_bench(), force, feed
-    )
+    return Memory(numbers, rigid, speed, looked, bend, np.zeros(axes), tooth_bench(), force, feed)
 
 
 @kernel

@@ -20,8 +20,10 @@ from twin.job.job_file import ToolTable
 from twin.nc.canonical import FloatArray
 
 CELL = 0.2
-TILTS = [(0.0, 0.0), (25.0, 40.0), (50.0, 200.0)]
-"""By how much the tool leans, and whither [deg]: upright, and twice in a block whose face leans as much."""
+ON = np.array([20.0, 0.0, 0.0])
+"""To beyond the block [mm]."""
+TILTS = [(0.0, 0.0), (50.0, 200.0)]
+"""By how much the tool leans, and whither [deg]: upright, and in a block whose face leans as much."""
 
 
 def frame(tilt: float, towards: float, direction: float) -> FloatArray:
@@ -34,9 +36,9 @@ def frame(tilt: float, towards: float, direction: float) -> FloatArray:
     return np.stack([x, np.cross(z, x), z])
 
 
-def block(axes: FloatArray, cell: float = CELL) -> TriDexel:
+def block(axes: FloatArray) -> TriDexel:
     """A block, faced across a tool's axis through its middle."""
-    stock = box(np.array([-14.0, -14.0, -14.0]), np.array([14.0, 14.0, 14.0]), cell)
+    stock = box(np.array([-12.0, -12.0, -12.0]), np.array([12.0, 12.0, 12.0]), CELL)
     face = Poses(np.zeros((2, 3)), np.tile(axes[2], (2, 1)))
     cut(stock, face, [cylinder(40.0, 0.0, 40.0)], 1)
     return stock
@@ -76,7 +78,7 @@ def forces(
 
 def straight(depth: float, aside: float = 0.0) -> FloatArray:
     """A way into the middle of the block along the tool's X, and so far left of it."""
-    return np.linspace([-30.0, aside, -depth], [0.0, aside, -depth], 151)
+    return np.linspace([-20.0, aside, -depth], [0.0, aside, -depth], 81)
 
 
 def assert_like(bench: ToothBench, expected: tuple[FloatArray, float, float], within: float):
@@ -87,8 +89,7 @@ def assert_like(bench: ToothBench, expected: tuple[FloatArray, float, float], wi
 
 
 @pytest.mark.parametrize(("tilt", "towards"), TILTS)
-@pytest.mark.parametrize("helix", [0.0, 30.0])
-@pytest.mark.parametrize("sense", [1.0, -1.0])
+@pytest.mark.parametrize(("helix", "sense"), [(0.0, 1.0), (30.0, -1.0)])
 def test_a_slot(tilt: float, towards: float, helix: float, sense: float) -> None:
     tool = ToolTable(number=1, diameter=10.0, teeth=4, helix=helix)
     axes = frame(tilt, towards, 20.0)
@@ -106,7 +107,7 @@ def test_a_shoulder_down_and_up(tilt: float, towards: float, side: float, width:
     stock = block(axes)
     clearing = ToolTable(number=2, diameter=40.0)
     tips = straight(6.0, -side * (15.0 + width))
-    mill(stock, clearing, axes, np.concatenate([tips, tips + [30.0, 0.0, 0.0]]))
+    mill(stock, clearing, axes, np.concatenate([tips, tips + ON]))
     bench = forces(stock, tool, axes, straight(3.0))
     bound = math.asin(1.0 - width / 5.0)
     first, last = (bound, 0.5 * math.pi) if side > 0 else (-0.5 * math.pi, -bound)
@@ -127,7 +128,7 @@ def test_a_drill(tilt: float, towards: float) -> None:
     assert bench.figures[1] == pytest.approx(2 * kc * FEED * 4.0 * 2.0, rel=0.05)
 
 
-@pytest.mark.parametrize("lead", [-20.0, 0.0, 30.0])
+@pytest.mark.parametrize("lead", [-20.0, 30.0])
 @pytest.mark.parametrize(("tilt", "towards"), TILTS)
 def test_a_ball_that_leans_on_a_plane(tilt: float, towards: float, lead: float) -> None:
     """The plane is across the axis of ``axes``; the tool leads by an angle in it, and its teeth cut on one side."""
@@ -152,7 +153,14 @@ def test_a_ball_that_leans_on_a_plane(tilt: float, towards: float, lead: float) 
 
 @pytest.mark.parametrize("kind", ["flat", "ball", "bull"])
 def test_a_height_map_says_the_same(kind: str) -> None:
-    tool = ToolTable(number=1, diameter=10.0, teeth=3, kind=kind, helix=30.0, corner=2.0 if kind == "bull" else None)
+    tool = ToolTable(
+        number=1,
+        diameter=10.0,
+        teeth=3,
+        kind=kind,
+        helix=30.0,
+        corner=2.0 if kind == "bull" else None,
+    )
     axes = frame(0.0, 0.0, 20.0)
     bench = forces(block(axes), tool, axes, straight(4.0))
     other = height_map.forces(height_map.plate(), tool, height_map.along(20.0, 4.0))
@@ -164,7 +172,7 @@ def test_a_height_map_says_the_same(kind: str) -> None:
 def test_what_was_cut_before_pushes_no_more() -> None:
     tool, axes = ToolTable(number=1, diameter=10.0, teeth=3), frame(25.0, 40.0, 20.0)
     stock, slot = block(axes), block(axes)
-    mill(stock, tool, axes, np.concatenate([straight(4.0), straight(4.0) + [30.0, 0.0, 0.0]]))
+    mill(stock, tool, axes, np.concatenate([straight(4.0), straight(4.0) + ON]))
     full = forces(slot, tool, axes, straight(4.0))
     again = forces(stock, tool, axes, straight(4.0))
     assert np.linalg.norm(again.mean) < 0.02 * np.linalg.norm(full.mean)

@@ -22,7 +22,7 @@ from twin.cutting.kernels.teeth import (
     sum_teeth,
 )
 from twin.cutting.tridexel.dexels import Dexels, Lattice
-from twin.cutting.tridexel.inside import inside
+from twin.cutting.tridexel.inside import EdgePoint, Standing, inside
 from twin.nc.canonical import FloatArray
 
 MOST_SLICES = 24
@@ -108,6 +108,7 @@ class _Edge(NamedTuple):
     cutter: CutterForm
     leaning: Leaning
     side: _Side
+    standing: Standing
 
 
 def empty_bench() -> EdgeBench:
@@ -148,7 +149,9 @@ def edge_forces(
     low, high = _heights(lattice, leaning)
     if low >= high or high <= 0.0 or low >= cutter.flute:
         return False
-    edge = _Edge(dexels, lattice, cutter, leaning, _slices(lattice, cutter, low, high))
+    standing = Standing(leaning.tip, leaning.frame[2], cutter.profile, cutter.side_from)
+    side = _slices(lattice, cutter, low, high)
+    edge = _Edge(dexels, lattice, cutter, leaning, side, standing)
     rings = len(cutter.radius) + edge.side.count
     met = False
     for border in range(BINS + 1):
@@ -232,15 +235,21 @@ def _before(edge: _Edge, ring: _Ring, place: float) -> bool:
         return False
     cell, tip, frame = edge.lattice.cell, edge.leaning.tip, edge.leaning.frame
     ahead = min(_CLEAR * cell / chip, _FARTHEST * cell / pace)
-    x, y, z = radius * cosine + ahead * x, radius * sine + ahead * y, height + ahead * z
-    return inside(
-        edge.dexels,
-        edge.lattice,
-        (
-            tip[0] + x * frame[0, 0] + y * frame[1, 0] + z * frame[2, 0],
-            tip[1] + x * frame[0, 1] + y * frame[1, 1] + z * frame[2, 1],
-            tip[2] + x * frame[0, 2] + y * frame[1, 2] + z * frame[2, 2],
-        ),
+    off = (radius * cosine + ahead * x, radius * sine + ahead * y, height + ahead * z)
+    x, y, z = _in_part(frame, off)
+    normal = _in_part(frame, (-out * cosine, -out * sine, down))
+    point = EdgePoint((tip[0] + x, tip[1] + y, tip[2] + z), normal)
+    return inside(edge.dexels, edge.lattice, edge.standing, point)
+
+
+@arithmetic_kernel
+def _in_part(frame: FloatArray, vector: _Place) -> _Place:
+    """A vector of the tool's frame, seen from the part."""
+    x, y, z = vector
+    return (
+        x * frame[0, 0] + y * frame[1, 0] + z * frame[2, 0],
+        x * frame[0, 1] + y * frame[1, 1] + z * frame[2, 1],
+        x * frame[0, 2] + y * frame[1, 2] + z * frame[2, 2],
     )
 
 
