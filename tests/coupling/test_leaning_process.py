@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from tests.coupling.test_cutting_process import SPEED, STOCK, TOOL, WAY, felt, run
+from tests.coupling.test_cutting_process import SPEED, STOCK, TOOL, WAY, loads, run
 from tests.machine.machine_fixtures import shipped_machine
 from twin.coupling.cutting_process import CuttingProcess
 from twin.coupling.leaning_process import LeaningProcess
@@ -34,7 +34,7 @@ def test_a_leaning_process_feels_what_a_height_map_does() -> None:
     one, other = run([WAY], upright), run([WAY], leaning)
     late = slice(-300, None)
     for name, within in (("force", 0.03), ("deflection", 0.03), ("chip", 0.02), ("power", 0.03)):
-        mean, like = (getattr(felt(each), name)[late].mean(axis=0) for each in (other, one))
+        mean, like = (getattr(loads(each), name)[late].mean(axis=0) for each in (other, one))
         size = within * float(np.abs(like).max())
         np.testing.assert_allclose(mean, like, atol=size, err_msg=name)
     moved = np.abs(one.joint_position - other.joint_position).max()

@@ -9,8 +9,8 @@ from twin.compilation.kernel import array_kernel, kernel
 from twin.coupling.turning_tool import (
     LOOK_CELLS,
     CutNumber,
-    Felt,
     Memory,
+    ToolLoads,
     TurningTool,
     axis_place,
     bend_tool,
@@ -38,13 +38,13 @@ class Place(NamedTuple):
         rotary: Column of the axis that turns the part; -1: nothing does.
         center: Machine X and Y over the axis of rotation [mm].
         turn_zero: Where the part's frame is parallel to the machine's [deg].
-        longer: How much lower the tip is than that which positions count for [mm].
+        length_difference: How much lower the tip is than that which positions count for [mm].
     """
 
     rotary: int
     center: tuple[float, float]
     turn_zero: float
-    longer: float
+    length_difference: float
 
 
 class Cut(NamedTuple):
@@ -61,13 +61,13 @@ class Swept(NamedTuple):
     Attributes:
         tips: Where it was cut up to, shape (2, 3); the second row is the later [mm].
         trace: Where it has left walls up to, of ``leave_walls``.
-        tally: What ``sweep`` adds to, shape (1, 2, 4).
+        sums: What ``sweep`` adds to, shape (1, 2, 4).
         marks: Nothing is marked.
     """
 
     tips: FloatArray
     trace: FloatArray
-    tally: FloatArray
+    sums: FloatArray
     marks: Marks
 
 
@@ -86,7 +86,7 @@ def follow_cutting(
     cut: Cut,
     memory: Memory,
     swept: Swept,
-    felt: Felt,
+    loads: ToolLoads,
 ) -> None:
     """Step the machine from setpoint to setpoint while its tool cuts.
 
@@ -95,13 +95,13 @@ def follow_cutting(
 
     Args:
         physics: The machine.
-        controls: What the drives are told on the way to each setpoint, shape (n, nu).
+        controls: What the drives are commanded on the way to each setpoint, shape (n, nu).
         states: Set to the states there, shape (n, width).
-        commanded: Speed that the spindle is told, shape (n,) [turns/s]; NaN: nothing is known of it.
+        commanded: Speed that the spindle is commanded, shape (n,) [turns/s]; NaN: nothing is known of it.
         cut: Tool and material.
         memory: Carried on.
         swept: Carried on.
-        felt: Set to what the tool felt.
+        loads: Set to what the tool loads.
     """
     stepper, period = physics.stepper, physics.drives.period
     for row in range(len(controls)):
@@ -121,7 +121,7 @@ def follow_cutting(
         _load_axes(cut.place, memory, cosine, sine)
         x, y = memory.bend[0], memory.bend[1]
         bend = (cosine * x + sine * y, cosine * y - sine * x, memory.bend[2])
-        note_load(cut.tool, memory, felt, row, bend)
+        note_load(cut.tool, memory, loads, row, bend)
     physics.pushed[:] = 0.0
 
 
@@ -133,7 +133,7 @@ def _go_to(
     drives, numbers, place = physics.drives, memory.numbers, cut.place
     x = axis_place(drives, state, 0) - place.center[0]
     y = axis_place(drives, state, 1) - place.center[1]
-    z = axis_place(drives, state, 2) - place.longer
+    z = axis_place(drives, state, 2) - place.length_difference
     cosine, sine = 1.0, 0.0
     if place.rotary >= 0:
         turn = math.radians(axis_place(drives, state, place.rotary) - place.turn_zero)
@@ -176,12 +176,12 @@ def _look(period: float, cut: Cut, memory: Memory, swept: Swept) -> None:
     material, cutter = cut.material, cut.tool.cutter
     sweep(
         material.heights, material.grid, tips, cutter.profile,
-        swept.tally, swept.marks, numbers[CutNumber.STOOD] > 0.0, ALL_ROWS,
+        swept.sums, swept.marks, numbers[CutNumber.STOOD] > 0.0, ALL_ROWS,
     )  # fmt: skip
     numbers[CutNumber.STOOD] = 1.0
     leave_walls(material, swept.trace, tips[1], cutter.profile.radius, cutter.side_from)
     sense = 1.0 if numbers[CutNumber.SPEED] >= 0.0 else -1.0
-    met = tooth_forces(material, tips[1], feed, cutter, cut.tool.law, sense, memory.bench)
+    met = tooth_forces(material, tips[1], feed, cutter, cut.tool.law, sense, memory.scratch)
     numbers[CutNumber.MET] = 1.0 if met else 0.0
 
 

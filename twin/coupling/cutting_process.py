@@ -9,7 +9,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from twin.coupling.spindle_kernels import SpindleDrive
-from twin.coupling.turning_tool import CutNumber, Edge, Felt, TurningTool, new_memory
+from twin.coupling.turning_tool import CutNumber, Edge, ToolLoads, TurningTool, new_memory
 from twin.cutting.forces.cutter_form import cutter_form, force_law
 from twin.cutting.forces.materials import Kienzle
 from twin.cutting.forces.tool_strength import ToolStrength, tool_strength
@@ -55,13 +55,13 @@ class Turning(NamedTuple):
     Attributes:
         rows: Which setpoints.
         tool: The tool.
-        longer: How much lower its tip is than that which positions count for [mm].
+        length_difference: How much lower its tip is than that which positions count for [mm].
         speed: Of the spindle, shape (n,) [1/min], negative counter-clockwise; NaN where nothing is known.
     """
 
     rows: slice
     tool: ToolTable
-    longer: float
+    length_difference: float
     speed: FloatArray
 
 
@@ -82,20 +82,20 @@ class Rows(NamedTuple):
     """What the machine is told in n periods, and what is set by them.
 
     Attributes:
-        controls: What the drives are told on the way to each setpoint, shape (n, nu).
+        controls: What the drives are commanded on the way to each setpoint, shape (n, nu).
         states: Set to the states there, shape (n, width).
-        felt: Set to what the tool felt.
+        loads: Set to what the tool loads.
     """
 
     controls: FloatArray
     states: FloatArray
-    felt: Felt
+    loads: ToolLoads
 
 
 class CuttingProcess(abc.ABC):
     """Cuts a material of its own along the simulated motion, and pushes the axes by what the teeth feel.
 
-    It is not the material of ``twin.cutting.cut.Cutter``, which becomes the part. A tooth wants the material cut anew every
+    It is not the material of ``twin.cutting.cut.Cutter``, which becomes the part. A tooth wants the material cut again every
     quarter of a cell; the depth and width of a cut are those of a long straight stretch (of a ball of 6 mm, 1 mm deep, pieces
     of a quarter of a cell are 0.07 mm deep), and what must not meet the material is held against it before it is cut.
     Cutting twice takes 1 to 3 % of the processor time of a run.
@@ -144,7 +144,7 @@ class CuttingProcess(abc.ABC):
         """Take the tool off what it cut: what comes next is no way of it."""
         memory = self._memory
         memory.numbers[CutNumber.FRESH] = 1.0
-        for column in (memory.load, memory.bend, memory.looked, memory.bench.figures):
+        for column in (memory.load, memory.bend, memory.looked, memory.scratch.figures):
             column[:] = 0.0
 
     def at_rest(self, count: int) -> ToolLoad:
@@ -156,18 +156,18 @@ class CuttingProcess(abc.ABC):
     ) -> ToolLoad:
         """Step the machine while the tool cuts; see ``Process``."""
         self.alarm = None
-        felt = _felt(len(setpoints))
+        loads = _felt(len(setpoints))
         for turning in self._operation.turnings(setpoints):
             rows, tool = turning.rows, turning.tool
             self._mount(tool)
             turned = TurningTool(
                 cutter_form(tool), force_law(tool, self._resists), tool_strength(tool), self._drive
             )
-            here = Felt(*(column[rows] for column in felt))
+            here = ToolLoads(*(column[rows] for column in loads))
             self._cut_along(physics, turning, turned, Rows(controls[rows], states[rows], here))
-            self._note_break(tool, turned.strength, setpoints[rows], felt.broken[rows])
-            self._watch_spindle(setpoints[rows], turning.speed, felt, rows, physics.drives.period)
-        return _load(felt)
+            self._note_break(tool, turned.strength, setpoints[rows], loads.broken[rows])
+            self._watch_spindle(setpoints[rows], turning.speed, loads, rows, physics.drives.period)
+        return _load(loads)
 
     def _mount(self, tool: ToolTable) -> None:
         if self._tool is not None and self._tool.number == tool.number:
@@ -208,10 +208,10 @@ class CuttingProcess(abc.ABC):
         self.breaks.append(ToolBreak(tool.number, line, time, reason))
 
     def _watch_spindle(
-        self, setpoints: Setpoints, told: FloatArray, felt: Felt, rows: slice, period: float
+        self, setpoints: Setpoints, told: FloatArray, loads: ToolLoads, rows: slice, period: float
     ) -> None:
         """Raise the alarm of a spindle that stalls, or that gives too much for too long."""
-        load, speed = felt.spindle_load[rows], np.abs(felt.spindle_speed[rows])
+        load, speed = loads.spindle_load[rows], np.abs(loads.spindle_speed[rows])
         if self.alarm is not None or not (load > 1.0).any():
             self._overloaded_s = 0.0
             return
@@ -244,12 +244,14 @@ def spindle_drive(table: SpindleTable) -> SpindleDrive:
     )
 
 
-def _felt(count: int) -> Felt:
-    return Felt(*(np.zeros((count, 3) if name in _SPATIAL else count) for name in Felt._fields))
+def _felt(count: int) -> ToolLoads:
+    return ToolLoads(
+        *(np.zeros((count, 3) if name in _SPATIAL else count) for name in ToolLoads._fields)
+    )
 
 
 _SPATIAL = ("force", "deflection")
 
 
-def _load(felt: Felt) -> ToolLoad:
-    return ToolLoad(**{**felt._asdict(), "broken": felt.broken != Edge.WHOLE})
+def _load(loads: ToolLoads) -> ToolLoad:
+    return ToolLoad(**{**loads._asdict(), "broken": loads.broken != Edge.WHOLE})

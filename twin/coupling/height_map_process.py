@@ -57,8 +57,8 @@ class HeightMapProcess(CuttingProcess):
             rows.controls,
             rows.states,
             turning.speed / SECONDS_PER_MINUTE,
-            Cut(material, tool, self._place._replace(longer=turning.longer)),
+            Cut(material, tool, self._place._replace(length_difference=turning.length_difference)),
             self._memory,
             self._swept,
-            rows.felt,
+            rows.loads,
         )

@@ -9,8 +9,8 @@ from twin.compilation.kernel import array_kernel, kernel
 from twin.coupling.turning_tool import (
     LOOK_CELLS,
     CutNumber,
-    Felt,
     Memory,
+    ToolLoads,
     TurningTool,
     axis_place,
     bend_tool,
@@ -22,7 +22,7 @@ from twin.coupling.turning_tool import (
     turn_spindle,
 )
 from twin.cutting.tridexel.dexels import Dexels, Lattice
-from twin.cutting.tridexel.edge_forces import EdgeBench, Leaning, edge_forces, empty_bench
+from twin.cutting.tridexel.edge_forces import EdgeScratch, Leaning, edge_forces, empty_scratch
 from twin.cutting.tridexel.moving_solid import Poses
 from twin.cutting.tridexel.sweep import COLUMNS, LENGTH, sweep
 from twin.kinematics import Kinematics
@@ -44,12 +44,12 @@ class Chain(NamedTuple):
     Attributes:
         joints: The chain.
         zero: What its axes count from, shape (k,) [mm or deg].
-        longer: How much longer the tool is than that which positions count for [mm].
+        length_difference: How much longer the tool is than that which positions count for [mm].
     """
 
     joints: Kinematics
     zero: FloatArray
-    longer: float
+    length_difference: float
 
 
 class LeaningCut(NamedTuple):
@@ -85,7 +85,7 @@ class Pose(NamedTuple):
         bend: Deflection of its tip in the part's frame, shape (3,) [mm].
         cut_to: Where the material was cut up to: two poses, the later one second.
         step: The poses of a short step.
-        tally: What ``sweep`` adds to, shape (1, COLUMNS).
+        sums: What ``sweep`` adds to, shape (1, COLUMNS).
         edge: What of the edge is in the material.
     """
 
@@ -96,8 +96,8 @@ class Pose(NamedTuple):
     bend: FloatArray
     cut_to: Poses
     step: Poses
-    tally: FloatArray
-    edge: EdgeBench
+    sums: FloatArray
+    edge: EdgeScratch
 
 
 def nowhere(axes: int) -> Pose:
@@ -106,7 +106,7 @@ def nowhere(axes: int) -> Pose:
     cut_to, step = (Poses(np.zeros((2, 3)), np.zeros((2, 3))) for _ in range(2))
     return Pose(
         np.eye(3), np.zeros((axes, 3)), lean_speed, lean, bend, cut_to, step,
-        np.zeros((1, COLUMNS)), empty_bench(),
+        np.zeros((1, COLUMNS)), empty_scratch(),
     )  # fmt: skip
 
 
@@ -119,7 +119,7 @@ def follow_leaning(
     cut: LeaningCut,
     memory: Memory,
     pose: Pose,
-    felt: Felt,
+    loads: ToolLoads,
 ) -> int:
     """Step the machine from setpoint to setpoint while its tool cuts; see ``cutting_kernels.follow_cutting``.
 
@@ -144,7 +144,7 @@ def follow_leaning(
             feel_teeth(period, cut.tool, memory)
         bend_tool(period, cut.tool, memory)
         _load_axes(cut.chain.joints, memory, pose)
-        note_load(cut.tool, memory, felt, row, _along_axes(memory, pose))
+        note_load(cut.tool, memory, loads, row, _along_axes(memory, pose))
         if not enough:
             physics.pushed[:] = 0.0
             return row + 1
@@ -187,7 +187,7 @@ def _carry(chain: Chain, tip: FloatArray, pose: Pose) -> None:
         pose: In the first column of ``ways`` are the axes' coordinates, which are replaced.
     """
     joints, frame, ways = chain.joints, pose.frame, pose.ways
-    tip[:] = -chain.longer * joints.tool
+    tip[:] = -chain.length_difference * joints.tool
     frame[:] = 0.0
     frame[0, 1 if abs(joints.tool[0]) > _ALONG else 0] = 1.0
     frame[0] -= _dot(frame[0], joints.tool) * joints.tool
@@ -261,12 +261,12 @@ def _look(period: float, cut: LeaningCut, memory: Memory, pose: Pose) -> bool:
         cut_to.tip[1], cut_to.axis[1] = cut_to.tip[0], cut_to.axis[0]
         return False
     memory.looked[:] = memory.feed
-    if pose.tally[0, LENGTH] <= 0.0 and numbers[CutNumber.MET] <= 0.0:
+    if pose.sums[0, LENGTH] <= 0.0 and numbers[CutNumber.MET] <= 0.0:
         return True
     sense = 1.0 if numbers[CutNumber.SPEED] >= 0.0 else -1.0
     leaning = Leaning(tip, frame, memory.feed, pose.lean, sense)
     met = edge_forces(
-        cut.dexels, cut.lattice, leaning, cut.tool.cutter, cut.tool.law, pose.edge, memory.bench
+        cut.dexels, cut.lattice, leaning, cut.tool.cutter, cut.tool.law, pose.edge, memory.scratch
     )
     numbers[CutNumber.MET] = 1.0 if met else 0.0
     return True
@@ -284,7 +284,7 @@ def _bend_in_part(memory: Memory, pose: Pose) -> None:
 @array_kernel
 def _sweep(cut: LeaningCut, pose: Pose, way: float) -> bool:
     """Cut between two poses, in short steps; False: memory ran out."""
-    pose.tally[:] = 0.0
+    pose.sums[:] = 0.0
     step, begin, end = pose.step, pose.cut_to.tip[0], pose.cut_to.tip[1]
     axis, last = pose.cut_to.axis[0], pose.cut_to.axis[1]
     parts = max(math.ceil(way / cut.longest), 1)
@@ -295,7 +295,9 @@ def _sweep(cut: LeaningCut, pose: Pose, way: float) -> bool:
         step.tip[1] = (1.0 - share) * begin + share * end
         step.axis[1] = (1.0 - share) * axis + share * last
         step.axis[1] /= math.sqrt(_dot(step.axis[1], step.axis[1]))
-        done = sweep(cut.dexels, cut.lattice, step, cut.solids, pose.tally, cut.number, np.int64(0))
+        done = sweep(
+            cut.dexels, cut.lattice, step, cut.solids, pose.sums, cut.number, int(np.int64(0))
+        )
         if done < 1:
             return False
     return True

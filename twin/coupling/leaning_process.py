@@ -4,12 +4,12 @@ import numpy as np
 
 from twin.coupling.cutting_process import CuttingProcess, Operation, Rows, Turning
 from twin.coupling.leaning_kernels import Chain, LeaningCut, follow_leaning, nowhere
-from twin.coupling.turning_tool import Felt, TurningTool
+from twin.coupling.turning_tool import ToolLoads, TurningTool
 from twin.cutting.forces.materials import Kienzle
 from twin.cutting.tools import profile
 from twin.cutting.tridexel.dexels import TriDexel
+from twin.cutting.tridexel.engagement import longest_step
 from twin.cutting.tridexel.normals import MOST_TOOLS
-from twin.cutting.tridexel.poses import longest_step
 from twin.cutting.tridexel.solids import cutting_edge
 from twin.machine.description.config import SpindleTable
 from twin.machine.simulation.process import Physics
@@ -60,7 +60,7 @@ class LeaningProcess(CuttingProcess):
         number = min(max(job.number, 1), MOST_TOOLS)
         speed, chain = (
             turning.speed / SECONDS_PER_MINUTE,
-            self._chain._replace(longer=turning.longer),
+            self._chain._replace(length_difference=turning.length_difference),
         )
         done = 0
         while done < len(speed):
@@ -77,7 +77,7 @@ class LeaningProcess(CuttingProcess):
                 cut,
                 self._memory,
                 self._pose,
-                Felt(*(column[left] for column in rows.felt)),
+                ToolLoads(*(column[left] for column in rows.loads)),
             )
             if done < len(speed):
                 stock.dexels = stock.dexels.grown()

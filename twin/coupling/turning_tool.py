@@ -15,7 +15,7 @@ from twin.cutting.forces.tool_strength import ToolStrength
 from twin.cutting.kernels.teeth import (
     CutterForm,
     ForceLaw,
-    ToothBench,
+    ToothScratch,
     add_force_between,
     tooth_bench,
 )
@@ -24,7 +24,7 @@ from twin.nc.canonical import FloatArray
 from twin.units import MM, SECONDS_PER_MINUTE
 
 LOOK_CELLS = 0.25
-"""The material is cut, and looked at anew, when the tip has gone so far since [cells]."""
+"""The material is cut, and looked at again, when the tip has gone so far since [cells]."""
 LOOK_FEED = 0.05
 """Or when the feed per tooth has changed by so much of itself."""
 _LONGEST_MEAN_S = 0.05
@@ -92,7 +92,7 @@ class Memory(NamedTuple):
         looked: Feed per tooth when the material was looked at, shape (3,) [mm].
         bend: Deflection of the tip, shape (3,) [mm].
         load: What pushes the axes, shape (k,) [N or N m].
-        bench: The teeth's forces.
+        scratch: The teeth's forces.
         force: On the tool in this period, shape (3,) [N].
         feed: Feed per tooth in this period, shape (3,) [mm].
     """
@@ -103,12 +103,12 @@ class Memory(NamedTuple):
     looked: FloatArray
     bend: FloatArray
     load: FloatArray
-    bench: ToothBench
+    scratch: ToothScratch
     force: FloatArray
     feed: FloatArray
 
 
-class Felt(NamedTuple):
+class ToolLoads(NamedTuple):
     """Columns of ``twin.recording.form.ToolLoad``, set row by row."""
 
     force: FloatArray
@@ -152,12 +152,12 @@ def turn_spindle(period: float, commanded: float, tool: TurningTool, memory: Mem
 
     Args:
         period: [s].
-        commanded: Speed that the spindle is told [turns/s]; NaN: nothing is known of it.
+        commanded: Speed that the spindle is commanded [turns/s]; NaN: nothing is known of it.
         tool: The tool.
         memory: Carried on.
     """
     numbers = memory.numbers
-    torque = memory.bench.figures[1] * MM if numbers[CutNumber.MET] > 0.0 else 0.0
+    torque = memory.scratch.figures[1] * MM if numbers[CutNumber.MET] > 0.0 else 0.0
     told = 0.0 if math.isnan(commanded) else commanded
     numbers[CutNumber.SPEED] = next_speed(
         tool.spindle, numbers[CutNumber.SPEED], told, torque, period
@@ -176,19 +176,19 @@ def turn_spindle(period: float, commanded: float, tool: TurningTool, memory: Mem
 @kernel
 def feel_teeth(period: float, tool: TurningTool, memory: Memory) -> None:
     """What the teeth do until the next period: break the tool, or push it in the mean of the angle that they turn."""
-    numbers, bench, strength = memory.numbers, memory.bench, tool.strength
+    numbers, scratch, strength = memory.numbers, memory.scratch, tool.strength
     turned = numbers[CutNumber.SPEED] * period
     if numbers[CutNumber.MET] > 0.0:
-        if bench.figures[2] > strength.chip:
-            _break(memory, Edge.BY_CHIP, bench.figures[2])
-        elif bench.figures[0] > strength.force:
-            _break(memory, Edge.BY_FORCE, bench.figures[0])
-        elif bench.figures[1] * MM > strength.torque:
-            _break(memory, Edge.BY_TORQUE, bench.figures[1] * MM)
-        elif bench.mean[2] > strength.thrust:
-            _break(memory, Edge.BY_THRUST, bench.mean[2])
+        if scratch.figures[2] > strength.chip:
+            _break(memory, Edge.BY_CHIP, scratch.figures[2])
+        elif scratch.figures[0] > strength.force:
+            _break(memory, Edge.BY_FORCE, scratch.figures[0])
+        elif scratch.figures[1] * MM > strength.torque:
+            _break(memory, Edge.BY_TORQUE, scratch.figures[1] * MM)
+        elif scratch.mean[2] > strength.thrust:
+            _break(memory, Edge.BY_THRUST, scratch.mean[2])
         else:
-            add_force_between(tool.cutter, bench, numbers[CutNumber.ANGLE], -turned, memory.force)
+            add_force_between(tool.cutter, scratch, numbers[CutNumber.ANGLE], -turned, memory.force)
     numbers[CutNumber.ANGLE] -= turned
     numbers[CutNumber.ANGLE] -= math.floor(numbers[CutNumber.ANGLE])
 
@@ -233,34 +233,34 @@ def bend_tool(period: float, tool: TurningTool, memory: Memory) -> None:
     met = memory.numbers[CutNumber.MET] > 0.0
     share = share_of_tooth(tool, memory, period) if met else 1.0
     for k in range(2):
-        wanted = tool.strength.compliance * memory.bench.mean[k] if met else 0.0
+        wanted = tool.strength.compliance * memory.scratch.mean[k] if met else 0.0
         memory.bend[k] += share * (wanted - memory.bend[k])
 
 
 @kernel
 def note_load(
-    tool: TurningTool, memory: Memory, felt: Felt, row: int, bend: tuple[float, float, float]
+    tool: TurningTool, memory: Memory, loads: ToolLoads, row: int, bend: tuple[float, float, float]
 ) -> None:
     """Enter what the tool feels.
 
     Args:
         tool: The tool.
         memory: What it feels.
-        felt: It is entered there.
+        loads: It is entered there.
         row: In this row.
         bend: How far the tip gives way along X, Y and Z of the machine [mm].
     """
     numbers = memory.numbers
     met = numbers[CutNumber.MET] > 0.0
     speed = numbers[CutNumber.SPEED]
-    torque = memory.bench.figures[1] * MM if met else 0.0
+    torque = memory.scratch.figures[1] * MM if met else 0.0
     for k in range(3):
-        felt.force[row, k] = memory.load[k]
-        felt.deflection[row, k] = bend[k]
-    peak = max(memory.bench.figures[0], abs(memory.bench.mean[2]))
-    felt.peak_force[row] = peak if met else 0.0
-    felt.power[row] = 2.0 * math.pi * abs(speed) * torque
-    felt.chip[row] = memory.bench.figures[2] if met else 0.0
-    felt.spindle_speed[row] = speed * SECONDS_PER_MINUTE
-    felt.spindle_load[row] = torque / lasting_torque(tool.spindle, speed)
-    felt.broken[row] = numbers[CutNumber.EDGE]
+        loads.force[row, k] = memory.load[k]
+        loads.deflection[row, k] = bend[k]
+    peak = max(memory.scratch.figures[0], abs(memory.scratch.mean[2]))
+    loads.peak_force[row] = peak if met else 0.0
+    loads.power[row] = 2.0 * math.pi * abs(speed) * torque
+    loads.chip[row] = memory.scratch.figures[2] if met else 0.0
+    loads.spindle_speed[row] = speed * SECONDS_PER_MINUTE
+    loads.spindle_load[row] = torque / lasting_torque(tool.spindle, speed)
+    loads.broken[row] = numbers[CutNumber.EDGE]

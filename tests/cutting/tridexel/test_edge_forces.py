@@ -1,6 +1,7 @@
 """The forces of teeth in a tri-dexel stock against hand integration, upright and leaning, and against a height map."""
 
 import math
+from typing import Literal
 
 import numpy as np
 import pytest
@@ -8,11 +9,11 @@ import pytest
 from tests.cutting.forces import test_tooth_forces as height_map
 from tests.cutting.forces.test_tooth_forces import FEED, STEEL, ball_by_hand, by_hand
 from twin.cutting.forces.cutter_form import cutter_form, force_law
-from twin.cutting.kernels.teeth import ToothBench, tooth_bench
+from twin.cutting.kernels.teeth import ToothScratch, tooth_bench
 from twin.cutting.tools import profile
 from twin.cutting.tridexel.blanks import box
 from twin.cutting.tridexel.dexels import TriDexel
-from twin.cutting.tridexel.edge_forces import Leaning, edge_forces, empty_bench
+from twin.cutting.tridexel.edge_forces import Leaning, edge_forces, empty_scratch
 from twin.cutting.tridexel.engagement import cut
 from twin.cutting.tridexel.moving_solid import Poses
 from twin.cutting.tridexel.solids import cutting_edge, cylinder
@@ -52,7 +53,7 @@ def mill(stock: TriDexel, tool: ToolTable, axes: FloatArray, tips: FloatArray) -
 
 def forces(
     stock: TriDexel, tool: ToolTable, axes: FloatArray, tips: FloatArray, sense: float = 1.0
-) -> ToothBench:
+) -> ToothScratch:
     """What the teeth feel at the end of a way that was cut, in the tool's frame."""
     mill(stock, tool, axes, tips)
     way = tips[-1] - tips[-2]
@@ -69,7 +70,7 @@ def forces(
         leaning,
         cutter_form(tool),
         force_law(tool, STEEL),
-        empty_bench(),
+        empty_scratch(),
         bench,
     )
     bench.mean[:] = spin.T @ bench.mean
@@ -81,7 +82,7 @@ def straight(depth: float, aside: float = 0.0) -> FloatArray:
     return np.linspace([-20.0, aside, -depth], [0.0, aside, -depth], 81)
 
 
-def assert_like(bench: ToothBench, expected: tuple[FloatArray, float, float], within: float):
+def assert_like(bench: ToothScratch, expected: tuple[FloatArray, float, float], within: float):
     mean, peak, torque = expected
     np.testing.assert_allclose(bench.mean, mean, atol=within * float(np.linalg.norm(mean)))
     assert bench.figures[0] == pytest.approx(peak, rel=within)
@@ -152,7 +153,7 @@ def test_a_ball_that_leans_on_a_plane(tilt: float, towards: float, lead: float) 
 
 
 @pytest.mark.parametrize("kind", ["flat", "ball", "bull"])
-def test_a_height_map_says_the_same(kind: str) -> None:
+def test_a_height_map_says_the_same(kind: Literal["flat", "ball", "bull"]) -> None:
     tool = ToolTable(
         number=1,
         diameter=10.0,

@@ -67,7 +67,7 @@ class ForceLaw(NamedTuple):
     along: float
 
 
-class ToothBench(NamedTuple):
+class ToothScratch(NamedTuple):
     """What ``tooth_forces`` leaves: of one tooth in each direction, and of all in the mean.
 
     Attributes:
@@ -87,10 +87,10 @@ class ToothBench(NamedTuple):
     figures: FloatArray
 
 
-def tooth_bench() -> ToothBench:
-    """A bench on which nothing lies."""
+def tooth_bench() -> ToothScratch:
+    """Nothing is known yet."""
     shapes = ((BINS, 3), (BINS,), (BINS, 3), (BINS + 1, 3), (3,), (3,))
-    return ToothBench(*(np.zeros(shape) for shape in shapes))
+    return ToothScratch(*(np.zeros(shape) for shape in shapes))
 
 
 @kernel
@@ -108,30 +108,30 @@ def bin_direction(place: float) -> tuple[float, float]:
 
 
 @kernel
-def sum_teeth(cutter: CutterForm, bench: ToothBench) -> None:
+def sum_teeth(cutter: CutterForm, scratch: ToothScratch) -> None:
     """Add up the force of a tooth from direction to direction; the greatest of all teeth in a turn."""
     for k in range(3):
-        bench.summed[0, k] = 0.0
+        scratch.summed[0, k] = 0.0
         for j in range(BINS):
-            bench.summed[j + 1, k] = bench.summed[j, k] + bench.tooth[j, k]
+            scratch.summed[j + 1, k] = scratch.summed[j, k] + scratch.tooth[j, k]
     for j in range(math.ceil(BINS / cutter.teeth)):
         x, y = 0.0, 0.0
         for tooth in range(cutter.teeth):
             at = (j + tooth * BINS // cutter.teeth) % BINS
-            x += bench.tooth[at, 0]
-            y += bench.tooth[at, 1]
-        bench.figures[0] = max(bench.figures[0], math.hypot(x, y))
+            x += scratch.tooth[at, 0]
+            y += scratch.tooth[at, 1]
+        scratch.figures[0] = max(scratch.figures[0], math.hypot(x, y))
 
 
 @kernel
 def add_force_between(
-    cutter: CutterForm, bench: ToothBench, angle: float, turned: float, force: FloatArray
+    cutter: CutterForm, scratch: ToothScratch, angle: float, turned: float, force: FloatArray
 ) -> None:
     """Force on the tool in the mean while it turns.
 
     Args:
         cutter: The cutter.
-        bench: What ``tooth_forces`` found.
+        scratch: What ``tooth_forces`` found.
         angle: Direction of the first tooth's tip at the beginning [turns, counter-clockwise].
         turned: How far it turns, signed [turns]; at least a thousandth of a bin is counted.
         force: The force is added to it, shape (3,) [N].
@@ -142,14 +142,14 @@ def add_force_between(
         low = first + tooth * BINS / cutter.teeth
         low -= BINS * math.floor(low / BINS)
         for k in range(3):
-            force[k] += (_sum_up_to(bench, low + width, k) - _sum_up_to(bench, low, k)) / width
+            force[k] += (_sum_up_to(scratch, low + width, k) - _sum_up_to(scratch, low, k)) / width
 
 
 @kernel
-def _sum_up_to(bench: ToothBench, place: float, k: int) -> float:
+def _sum_up_to(scratch: ToothScratch, place: float, k: int) -> float:
     """Sum of a tooth's force over the directions up to a place from 0 on, in bins."""
     turns = math.floor(place / BINS)
     rest = place - turns * BINS
     whole = min(int(rest), BINS - 1)
-    part = (rest - whole) * bench.tooth[whole, k]
-    return turns * bench.summed[BINS, k] + bench.summed[whole, k] + part
+    part = (rest - whole) * scratch.tooth[whole, k]
+    return turns * scratch.summed[BINS, k] + scratch.summed[whole, k] + part

@@ -16,7 +16,7 @@ from twin.cutting.kernels.teeth import (
     BINS,
     CutterForm,
     ForceLaw,
-    ToothBench,
+    ToothScratch,
     bin_direction,
     push,
     sum_teeth,
@@ -67,7 +67,7 @@ class Leaning(NamedTuple):
     sense: float
 
 
-class EdgeBench(NamedTuple):
+class EdgeScratch(NamedTuple):
     """What of each of m = ``MOST_RINGS`` + ``MOST_SLICES`` rings is in the material.
 
     Attributes:
@@ -88,7 +88,7 @@ class EdgeBench(NamedTuple):
 class _Side(NamedTuple):
     """The slices of the side: how many, where the first begins [mm], their height [mm]."""
 
-    count: int
+    slices: int
     begins: float
     height: float
 
@@ -111,11 +111,12 @@ class _Edge(NamedTuple):
     standing: Standing
 
 
-def empty_bench() -> EdgeBench:
-    """A bench on which nothing lies."""
+def empty_scratch() -> EdgeScratch:
+    """Nothing is known yet."""
     rings = MOST_RINGS + MOST_SLICES
     arc, level = np.zeros((rings, BINS, 2)), np.zeros((rings, BINS, 4))
-    return EdgeBench(*np.zeros((2, 2, rings)), arc, level, np.zeros((rings, 2)))
+    length, middle = np.zeros((2, 2, rings))
+    return EdgeScratch(length, middle, arc, level, np.zeros((rings, 2)))
 
 
 @arithmetic_kernel
@@ -125,8 +126,8 @@ def edge_forces(
     leaning: Leaning,
     cutter: CutterForm,
     law: ForceLaw,
-    found: EdgeBench,
-    bench: ToothBench,
+    found: EdgeScratch,
+    scratch: ToothScratch,
 ) -> bool:
     """Forces of a cutter that goes on as it does.
 
@@ -137,14 +138,14 @@ def edge_forces(
         cutter: Its form.
         law: What the material does.
         found: Set to what is in the material.
-        bench: Set to the forces, in the tool's frame.
+        scratch: Set to the forces, in the tool's frame.
 
     Returns:
         Whether the cutter meets any material.
     """
-    bench.tooth[:] = 0.0
-    bench.mean[:] = 0.0
-    bench.figures[:] = 0.0
+    scratch.tooth[:] = 0.0
+    scratch.mean[:] = 0.0
+    scratch.figures[:] = 0.0
     found.arc[:] = 0.0
     low, high = _heights(lattice, leaning)
     if low >= high or high <= 0.0 or low >= cutter.flute:
@@ -152,7 +153,7 @@ def edge_forces(
     standing = Standing(leaning.tip, leaning.frame[2], cutter.profile, cutter.side_from)
     side = _slices(lattice, cutter, low, high)
     edge = _Edge(dexels, lattice, cutter, leaning, side, standing)
-    rings = len(cutter.radius) + edge.side.count
+    rings = len(cutter.radius) + edge.side.slices
     met = False
     for border in range(BINS + 1):
         now = border % 2
@@ -161,9 +162,9 @@ def edge_forces(
             continue
         for number in range(rings):
             if found.length[0, number] > 0.0 or found.length[1, number] > 0.0:
-                met |= _cut_ring(edge, law, number, border - 1, found, bench)
+                met |= _cut_ring(edge, law, number, border - 1, found, scratch)
     if met:
-        _add_up(cutter, rings, found, bench)
+        _add_up(cutter, rings, found, scratch)
     return met
 
 
@@ -256,7 +257,7 @@ def _in_part(frame: FloatArray, vector: _Place) -> _Place:
 @arithmetic_kernel
 def _look_along(edge: _Edge, border: int, length: FloatArray, middle: FloatArray) -> None:
     """What of each ring is in the material in one direction."""
-    rings = len(edge.cutter.radius) + edge.side.count
+    rings = len(edge.cutter.radius) + edge.side.slices
     for number in range(rings):
         total, moment = 0.0, 0.0
         last = _before(edge, _Ring(number, 0.0), border)
@@ -308,8 +309,8 @@ def _cut_ring(
     law: ForceLaw,
     number: int,
     j: int,
-    found: EdgeBench,
-    bench: ToothBench,
+    found: EdgeScratch,
+    scratch: ToothScratch,
 ) -> bool:
     """Force of one ring between two directions, of which ``found`` knows what is in the material."""
     before, after = j % 2, (j + 1) % 2
@@ -338,17 +339,17 @@ def _cut_ring(
     for step in range(2):
         part = (end - begin) * (to - whole if step == 1 else 1.0 - to + whole)
         at = (whole + step) % BINS
-        bench.tooth[at, 0] += part * x
-        bench.tooth[at, 1] += part * y
-        bench.tooth[at, 2] += part * upwards
+        scratch.tooth[at, 0] += part * x
+        scratch.tooth[at, 1] += part * y
+        scratch.tooth[at, 2] += part * upwards
     force = math.hypot(x, y) / math.hypot(1.0, _inwards(edge, law, ring))
-    bench.figures[1] += (end - begin) * force * radius
-    bench.figures[2] = max(bench.figures[2], chip)
+    scratch.figures[1] += (end - begin) * force * radius
+    scratch.figures[2] = max(scratch.figures[2], chip)
     for k in range(2):
         x, y, _, chip = _push_at(edge, law, ring, j + arc[k], length)
         found.arc[number, j, k] = arc[k]
         found.level[number, j, 2 * k], found.level[number, j, 2 * k + 1] = x, y
-        bench.figures[2] = max(bench.figures[2], chip)
+        scratch.figures[2] = max(scratch.figures[2], chip)
     return True
 
 
@@ -387,15 +388,15 @@ def _push_at(
 
 
 @arithmetic_kernel
-def _add_up(cutter: CutterForm, rings: int, found: EdgeBench, bench: ToothBench) -> None:
+def _add_up(cutter: CutterForm, rings: int, found: EdgeScratch, scratch: ToothScratch) -> None:
     """The mean of a turn, the sums of a tooth, and the greatest level force."""
     share = cutter.teeth / BINS
     for j in range(BINS):
         for k in range(3):
-            bench.mean[k] += share * bench.tooth[j, k]
-    bench.figures[1] *= share
-    sum_teeth(cutter, bench)
-    bench.figures[0] = 0.0
+            scratch.mean[k] += share * scratch.tooth[j, k]
+    scratch.figures[1] *= share
+    sum_teeth(cutter, scratch)
+    scratch.figures[0] = 0.0
     for step in range(math.ceil(_FINER * BINS / cutter.teeth)):
         x, y = 0.0, 0.0
         for tooth in range(cutter.teeth):
@@ -407,11 +408,11 @@ def _add_up(cutter: CutterForm, rings: int, found: EdgeBench, bench: ToothBench)
                     at = turned + found.lag[number, 0] + spread * (part + 0.5) / parts
                     push_x, push_y = _level_force(found, number, at)
                     x, y = x + push_x / parts, y + push_y / parts
-        bench.figures[0] = max(bench.figures[0], math.hypot(x, y))
+        scratch.figures[0] = max(scratch.figures[0], math.hypot(x, y))
 
 
 @arithmetic_kernel
-def _level_force(found: EdgeBench, number: int, at: float) -> tuple[float, float]:
+def _level_force(found: EdgeScratch, number: int, at: float) -> tuple[float, float]:
     """Level force on a tooth whose ring is at a place about the axis [bins]."""
     whole = math.floor(at)
     j, within = whole % BINS, at - whole

@@ -119,7 +119,7 @@ def _nearest(
                         away = gap * gap + du * du + dv * dv
                         if abs(gap) > _REACH * cell or away >= squared:
                             continue
-                        face = unpacked(dexels.skin[at, k])
+                        face = unpacked(dexels.facet[at, k])
                         here = _along(d, gap, du, dv)
                         if not any_face and (
                             (_dot(here, face) > 0.0) == below or not _differ(face, than.normal)
