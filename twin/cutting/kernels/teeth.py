@@ -2,7 +2,7 @@
 
 A tooth that cuts a chip of thickness h is pushed by Kienzle's force kc1.1 h^(1 - mc) a millimetre of edge
 against its motion, by ``radial`` of that inwards along the normal, and by ``along`` of it along the edge
-towards the tip. Which of its edges are in the material, in which of ``BINS`` directions about the axis, is found
+towards the tip. Which of its edges are in the material, in which of ``ANGLE_BINS`` directions about the axis, is found
 by ``tooth_forces`` in a height map and by ``twin.cutting.tridexel.edge_forces`` in a part that is cut from any side.
 """
 
@@ -17,7 +17,7 @@ from twin.nc.canonical import FloatArray
 
 THINNEST_CHIP_MM = 1e-3
 """Chips thinner than this are rubbed, not cut; the formula is not followed below [mm]."""
-BINS = 72
+ANGLE_BINS = 72
 """Directions about the axis that are looked at: 5 degrees each."""
 
 
@@ -71,10 +71,10 @@ class ToothScratch(NamedTuple):
     """What ``tooth_forces`` leaves: of one tooth in each direction, and of all in the mean.
 
     Attributes:
-        side: Force a millimetre of side, shape (BINS, 3) [N/mm].
-        depth: How deep the side is in the material, shape (BINS,) [mm].
-        tooth: Force on the tool when a tooth's tip is in that direction, shape (BINS, 3) [N].
-        summed: ``tooth`` added up from the first direction on, shape (BINS + 1, 3).
+        side: Force a millimetre of side, shape (ANGLE_BINS, 3) [N/mm].
+        depth: How deep the side is in the material, shape (ANGLE_BINS,) [mm].
+        tooth: Force on the tool when a tooth's tip is in that direction, shape (ANGLE_BINS, 3) [N].
+        summed: ``tooth`` added up from the first direction on, shape (ANGLE_BINS + 1, 3).
         mean: Force on the tool in the mean of a turn, shape (3,) [N].
         figures: Greatest level force of a turn [N], torque in the mean [N mm], thickest chip [mm].
     """
@@ -89,7 +89,7 @@ class ToothScratch(NamedTuple):
 
 def tooth_bench() -> ToothScratch:
     """Nothing is known yet."""
-    shapes = ((BINS, 3), (BINS,), (BINS, 3), (BINS + 1, 3), (3,), (3,))
+    shapes = ((ANGLE_BINS, 3), (ANGLE_BINS,), (ANGLE_BINS, 3), (ANGLE_BINS + 1, 3), (3,), (3,))
     return ToothScratch(*(np.zeros(shape) for shape in shapes))
 
 
@@ -103,7 +103,7 @@ def push(law: ForceLaw, per_tooth: float, chip: float) -> float:
 @kernel
 def bin_direction(place: float) -> tuple[float, float]:
     """Cosine and sine of a place around the axis [bins]."""
-    at = 2.0 * math.pi / BINS * place
+    at = 2.0 * math.pi / ANGLE_BINS * place
     return math.cos(at), math.sin(at)
 
 
@@ -112,12 +112,12 @@ def sum_teeth(cutter: CutterForm, scratch: ToothScratch) -> None:
     """Add up the force of a tooth from direction to direction; the greatest of all teeth in a turn."""
     for k in range(3):
         scratch.summed[0, k] = 0.0
-        for j in range(BINS):
+        for j in range(ANGLE_BINS):
             scratch.summed[j + 1, k] = scratch.summed[j, k] + scratch.tooth[j, k]
-    for j in range(math.ceil(BINS / cutter.teeth)):
+    for j in range(math.ceil(ANGLE_BINS / cutter.teeth)):
         x, y = 0.0, 0.0
         for tooth in range(cutter.teeth):
-            at = (j + tooth * BINS // cutter.teeth) % BINS
+            at = (j + tooth * ANGLE_BINS // cutter.teeth) % ANGLE_BINS
             x += scratch.tooth[at, 0]
             y += scratch.tooth[at, 1]
         scratch.figures[0] = max(scratch.figures[0], math.hypot(x, y))
@@ -136,11 +136,11 @@ def add_force_between(
         turned: How far it turns, signed [turns]; at least a thousandth of a bin is counted.
         force: The force is added to it, shape (3,) [N].
     """
-    width = max(abs(turned) * BINS, 1e-3)
-    first = angle * BINS - (width if turned < 0.0 else 0.0)
+    width = max(abs(turned) * ANGLE_BINS, 1e-3)
+    first = angle * ANGLE_BINS - (width if turned < 0.0 else 0.0)
     for tooth in range(cutter.teeth):
-        low = first + tooth * BINS / cutter.teeth
-        low -= BINS * math.floor(low / BINS)
+        low = first + tooth * ANGLE_BINS / cutter.teeth
+        low -= ANGLE_BINS * math.floor(low / ANGLE_BINS)
         for k in range(3):
             force[k] += (_sum_up_to(scratch, low + width, k) - _sum_up_to(scratch, low, k)) / width
 
@@ -148,8 +148,8 @@ def add_force_between(
 @kernel
 def _sum_up_to(scratch: ToothScratch, place: float, k: int) -> float:
     """Sum of a tooth's force over the directions up to a place from 0 on, in bins."""
-    turns = math.floor(place / BINS)
-    rest = place - turns * BINS
-    whole = min(int(rest), BINS - 1)
+    turns = math.floor(place / ANGLE_BINS)
+    rest = place - turns * ANGLE_BINS
+    whole = min(int(rest), ANGLE_BINS - 1)
     part = (rest - whole) * scratch.tooth[whole, k]
-    return turns * scratch.summed[BINS, k] + scratch.summed[whole, k] + part
+    return turns * scratch.summed[ANGLE_BINS, k] + scratch.summed[whole, k] + part

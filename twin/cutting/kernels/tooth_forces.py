@@ -1,6 +1,6 @@
 """The force of every tooth at every angle, from the material that is before the cutter.
 
-The edges are looked at in ``BINS`` directions about the axis. In each, the side of the cutter meets
+The edges are looked at in ``ANGLE_BINS`` directions about the axis. In each, the side of the cutter meets
 the material up to a depth that the height map tells, and the rings of its lower end meet it or do
 not. A tooth that passes there cuts a chip as thick as the feed per tooth along the normal of the
 surface that it sweeps, h = f·n, and is pushed by Kienzle's force kc1.1 h^(1 - mc) a millimetre of
@@ -15,7 +15,7 @@ import numpy as np
 
 from twin.compilation.kernel import kernel
 from twin.cutting.kernels.teeth import (
-    BINS,
+    ANGLE_BINS,
     CutterForm,
     ForceLaw,
     ToothScratch,
@@ -33,12 +33,12 @@ from twin.cutting.kernels.walls import (
 )
 from twin.nc.canonical import FloatArray
 
-_ANGLES = (np.arange(BINS) + 0.5) * (2.0 * np.pi / BINS)
+_ANGLES = (np.arange(ANGLE_BINS) + 0.5) * (2.0 * np.pi / ANGLE_BINS)
 _COSINE, _SINE = np.cos(_ANGLES), np.sin(_ANGLES)
 _PLACES = 2
 """Places in each direction at which the depth of the side is looked at."""
-_BORDER_STEP = 2.0 * np.pi / (BINS * _PLACES)
-_BORDER = np.arange(BINS * _PLACES + 1) * _BORDER_STEP
+_BORDER_STEP = 2.0 * np.pi / (ANGLE_BINS * _PLACES)
+_BORDER = np.arange(ANGLE_BINS * _PLACES + 1) * _BORDER_STEP
 _BORDER_COSINE, _BORDER_SINE = np.cos(_BORDER), np.sin(_BORDER)
 _HALVINGS = 6
 """Halvings between two places, in search of where the depth changes."""
@@ -105,7 +105,7 @@ def tooth_forces(
     way = (feed[0] / per_tooth, feed[1] / per_tooth, feed[2] / per_tooth)
     advance = Advance(tip, way, per_tooth, sense)
     met = _meet_side(material, advance, cutter, law, scratch)
-    for j in range(BINS):
+    for j in range(ANGLE_BINS):
         for k in range(3):
             scratch.tooth[j, k] = 0.0
         met |= _meet_end(material, advance, cutter, law, j, scratch)
@@ -124,11 +124,11 @@ def _meet_side(
     if math.hypot(way[0], way[1]) <= _LEAST:
         return False
     met, edge, begun, deepest = False, 0.0, 0.0, 0.0
-    ahead = math.floor(math.atan2(way[1], way[0]) / (2.0 * math.pi) * BINS)
+    ahead = math.floor(math.atan2(way[1], way[0]) / (2.0 * math.pi) * ANGLE_BINS)
     last = 0.0
     # Behind the cutter there is nothing to meet.
-    for turned in range(ahead - BINS // 4 - 1, ahead + BINS // 4 + 2):
-        j = turned % BINS
+    for turned in range(ahead - ANGLE_BINS // 4 - 1, ahead + ANGLE_BINS // 4 + 2):
+        j = turned % ANGLE_BINS
         area, moment, share, begins, ends = 0.0, 0.0, 0.0, 1.0, 0.0
         for part in range(_PLACES):
             border = j * _PLACES + part + 1
@@ -183,7 +183,7 @@ def _edge_force(
     """
     begin, end = arc
     lag = depth / cutter.rise
-    if end - begin + lag >= BINS / cutter.teeth:
+    if end - begin + lag >= ANGLE_BINS / cutter.teeth:
         return 0.0
     within = min(lag, end - begin)
     height = depth * (within / lag if within < lag else 1.0) / _SLICES
@@ -368,13 +368,13 @@ def _ring_share(
 @kernel
 def _add_up(cutter: CutterForm, sense: float, scratch: ToothScratch) -> None:
     """Force of a tooth by the direction of its tip, their sums, and the mean and greatest of a turn."""
-    share = cutter.teeth / BINS
-    for j in range(BINS):
+    share = cutter.teeth / ANGLE_BINS
+    for j in range(ANGLE_BINS):
         for k in range(3):
             scratch.mean[k] += share * (scratch.tooth[j, k] + scratch.side[j, k] * scratch.depth[j])
     scratch.figures[1] *= share
-    behind = 1 if sense > 0.0 else BINS - 1
-    for j in range(BINS):
+    behind = 1 if sense > 0.0 else ANGLE_BINS - 1
+    for j in range(ANGLE_BINS):
         if scratch.depth[j] <= 0.0:
             continue
         below, to = 0.0, j
@@ -384,5 +384,5 @@ def _add_up(cutter: CutterForm, sense: float, scratch: ToothScratch) -> None:
                 scratch.tooth[to, k] += part * scratch.side[j, k]
             below += part
             # Higher up the edge is in this direction when its tip has gone on.
-            to = (to + BINS - behind) % BINS
+            to = (to + ANGLE_BINS - behind) % ANGLE_BINS
     sum_teeth(cutter, scratch)

@@ -1,7 +1,7 @@
 """The force of every tooth at every angle on a cutter that leans as it likes in a tri-dexel stock.
 
 The edge is looked at in rings: those of its lower end, and slices of its side as far up as the part reaches. Between
-``BINS`` directions about the axis it is found which length of each ring has material before it, and between two of
+``ANGLE_BINS`` directions about the axis it is found which length of each ring has material before it, and between two of
 them where that begins and ends. Chips, forces and their sums are those of ``twin.cutting.kernels.teeth``, in
 the tool's own frame.
 """
@@ -13,7 +13,7 @@ import numpy as np
 
 from twin.compilation.kernel import arithmetic_kernel
 from twin.cutting.kernels.teeth import (
-    BINS,
+    ANGLE_BINS,
     CutterForm,
     ForceLaw,
     ToothScratch,
@@ -73,8 +73,8 @@ class EdgeScratch(NamedTuple):
     Attributes:
         length: Share of the ring's length in two neighbouring directions, shape (2, m).
         middle: Where the middle of it is, as a share of the ring from its lower end, shape (2, m).
-        arc: Where between two directions the material begins and ends, shape (m, BINS, 2) [bins]; equal: there is none.
-        level: Level force on the tool while a tooth is there, at its beginning and its end, shape (m, BINS, 4) [N].
+        arc: Where between two directions the material begins and ends, shape (m, ANGLE_BINS, 2) [bins]; equal: there is none.
+        level: Level force on the tool while a tooth is there, at its beginning and its end, shape (m, ANGLE_BINS, 4) [N].
         lag: How far the edge falls back at the lower and the upper end of what is in the material, signed, shape (m, 2) [bins].
     """
 
@@ -114,7 +114,7 @@ class _Edge(NamedTuple):
 def empty_scratch() -> EdgeScratch:
     """Nothing is known yet."""
     rings = MOST_RINGS + MOST_SLICES
-    arc, level = np.zeros((rings, BINS, 2)), np.zeros((rings, BINS, 4))
+    arc, level = np.zeros((rings, ANGLE_BINS, 2)), np.zeros((rings, ANGLE_BINS, 4))
     length, middle = np.zeros((2, 2, rings))
     return EdgeScratch(length, middle, arc, level, np.zeros((rings, 2)))
 
@@ -155,7 +155,7 @@ def edge_forces(
     edge = _Edge(dexels, lattice, cutter, leaning, side, standing)
     rings = len(cutter.radius) + edge.side.slices
     met = False
-    for border in range(BINS + 1):
+    for border in range(ANGLE_BINS + 1):
         now = border % 2
         _look_along(edge, border, found.length[now], found.middle[now])
         if border == 0:
@@ -338,7 +338,7 @@ def _cut_ring(
     whole = math.floor(to)
     for step in range(2):
         part = (end - begin) * (to - whole if step == 1 else 1.0 - to + whole)
-        at = (whole + step) % BINS
+        at = (whole + step) % ANGLE_BINS
         scratch.tooth[at, 0] += part * x
         scratch.tooth[at, 1] += part * y
         scratch.tooth[at, 2] += part * upwards
@@ -390,17 +390,17 @@ def _push_at(
 @arithmetic_kernel
 def _add_up(cutter: CutterForm, rings: int, found: EdgeScratch, scratch: ToothScratch) -> None:
     """The mean of a turn, the sums of a tooth, and the greatest level force."""
-    share = cutter.teeth / BINS
-    for j in range(BINS):
+    share = cutter.teeth / ANGLE_BINS
+    for j in range(ANGLE_BINS):
         for k in range(3):
             scratch.mean[k] += share * scratch.tooth[j, k]
     scratch.figures[1] *= share
     sum_teeth(cutter, scratch)
     scratch.figures[0] = 0.0
-    for step in range(math.ceil(_FINER * BINS / cutter.teeth)):
+    for step in range(math.ceil(_FINER * ANGLE_BINS / cutter.teeth)):
         x, y = 0.0, 0.0
         for tooth in range(cutter.teeth):
-            turned = step / _FINER + tooth * BINS / cutter.teeth
+            turned = step / _FINER + tooth * ANGLE_BINS / cutter.teeth
             for number in range(rings):
                 spread = found.lag[number, 1] - found.lag[number, 0]
                 parts = math.ceil(_PARTS * min(abs(spread), 1.0)) + 1
@@ -415,7 +415,7 @@ def _add_up(cutter: CutterForm, rings: int, found: EdgeScratch, scratch: ToothSc
 def _level_force(found: EdgeScratch, number: int, at: float) -> tuple[float, float]:
     """Level force on a tooth whose ring is at a place about the axis [bins]."""
     whole = math.floor(at)
-    j, within = whole % BINS, at - whole
+    j, within = whole % ANGLE_BINS, at - whole
     begin, end = found.arc[number, j, 0], found.arc[number, j, 1]
     if not begin <= within < end:
         return 0.0, 0.0
