@@ -16,7 +16,7 @@ from twin.machine.description.config import Machine
 from twin.machine.load import load_machine
 from twin.nc.control.settings import ControlSettings, MachineFunction, ToolData
 from twin.nc.dialects import Dialect, dialect_named
-from twin.nc.dialects.foreign import require_program
+from twin.nc.dialects.foreign import require_text
 from twin.nc.functions import SpindleState
 from twin.nc.interpreter import Interpretation
 from twin.nc.path.tool_center import Setup
@@ -93,7 +93,7 @@ def prepare(
     """
     job, reading = load_job(path, changes), None
     if assuming and job.path is None:
-        require_program(job.program)
+        require_text(job.program)
         reading = assumed_reading(read_source(job.program))
         job = _with_keys(job, reading.keys)
     made = prepare_job(
