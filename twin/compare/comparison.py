@@ -128,8 +128,8 @@ class Comparison:
         self._add_tracking(samples)
         real = samples.real(self._frame)
         self._add_direction(real, setpoint)
-        longer = self._lower(setpoint.move)
-        point = np.ascontiguousarray(self._frame.position(real, longer))
+        length_difference = self._lower(setpoint.move)
+        point = np.ascontiguousarray(self._frame.position(real, length_difference))
         if int(setpoint.move.max()) >= self._first + len(self._moves):
             raise RecordingError(
                 f"a sample names move {setpoint.move.max()}, but the program has only "
@@ -137,7 +137,7 @@ class Comparison:
             )
         if len(self._moves) == 0:
             distance = np.linalg.norm(
-                point - self._frame.position(setpoint.position, longer), axis=1
+                point - self._frame.position(setpoint.position, length_difference), axis=1
             )
             place, fraction = None, np.zeros(0)
         else:

@@ -323,7 +323,7 @@ class JobFile(Table):
     program: str
     """NC program, relative to the job file."""
     dialect: str | None = None
-    """One of ``twin dialects``; none: told apart by the program's own words."""
+    """One of ``twin dialects``; none: distinguished by the program's own words."""
     machine: str = DEFAULT_MACHINE
     """A shipped machine's name, or a path relative to the job file."""
     axes: dict[Annotated[str, Field(pattern="^[A-Z]$")], str] = Field(default_factory=dict)
@@ -337,7 +337,7 @@ class JobFile(Table):
     """Program zero in machine coordinates, by axis [mm or deg]; an axis left out: on the table's
     centre line, at the height of the stock's top face, other axes at 0."""
     start: dict[str, float] = Field(default_factory=dict)
-    """Where the axes stand when the program starts, program coordinates [mm or deg]."""
+    """Where the axes are when the program starts, program coordinates [mm or deg]."""
     stock: StockTable | None = None
     nominal: NominalTable | None = None
     tools: tuple[ToolTable, ...] = (ToolTable(number=1),)
@@ -351,9 +351,9 @@ class JobFile(Table):
     ``cutting_force = "teeth"`` it does so without this key."""
     cutting_force: Literal["teeth", "mean", "none"] = "teeth"
     """Of a stock whose material is known: ``teeth``, the force of every tooth acts while it is cut, the tool
-    bends and may break; ``mean``, the mean force is told, and with ``cutting_load`` reckoned ahead, but it
+    bends and may break; ``mean``, the mean force is reported, and with ``cutting_load`` reckoned ahead, but it
     bends and breaks no tool: contour errors come out several times too small where a tool gives way, and the
-    part does not show it; ``none``, the mean force is told alone. The page of ``twin/coupling`` has one
+    part does not show it; ``none``, the mean force is reported alone. The page of ``twin/coupling`` has one
     job both ways."""
     offsets: dict[str, dict[str, float]] = Field(default_factory=dict)
     """Work offsets by name (``G54``), each by axis, from part zero [mm or deg]."""

@@ -12,7 +12,7 @@ import numpy as np
 
 from twin.files.shipped import machine_file, machine_names, variant_names
 from twin.job.job_file import JobFile
-from twin.job.load import Job
+from twin.job.load import ASSUMED, Job, Layer
 from twin.machine.description.config import Machine
 from twin.nc.canonical import Chunk, FloatArray, Function, Motion, Moves, concatenate
 from twin.nc.dialects.recognition import HEAD_LINES, comments_of, without_comments
@@ -82,14 +82,17 @@ def with_assumptions(
     Raises:
         ProgramError: The program is wrong.
     """
-    assumed = assumed_job(preparation)
-    given = preparation.job.file.model_dump(exclude_unset=True)
-    file = JobFile.model_validate({**assumed.tables, **given, "dialect": preparation.dialect.name})
-    job = Job(preparation.job.folder, file)
+    assumed, found = assumed_job(preparation), preparation.job
+    given = found.file.model_dump(exclude_unset=True)
+    taken = {key: value for key, value in assumed.tables.items() if key not in given}
+    file = JobFile.model_validate({**taken, **given, "dialect": preparation.dialect.name})
+    job = Job(found.folder, file, layers=(*found.layers, Layer(ASSUMED, taken)))
     made = prepare_job(job, machine=machine, strict=strict)
-    return dataclasses.replace(
+    made = dataclasses.replace(
         made, dialect_reason=preparation.dialect_reason, reading=preparation.reading
-    ), assumed
+    )
+    notes = tuple(reading_notes(made, assumed.assumptions))
+    return dataclasses.replace(made, assumptions=notes), assumed
 
 
 def assumed_job(preparation: Preparation) -> AssumedJob:
@@ -139,7 +142,7 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
 
 
 def _start_lines(top: FloatArray | None) -> list[str]:
-    """Where the tool stands at first, where program zero lies below the top of the stock."""
+    """Where the tool is at first, where program zero lies below the top of the stock."""
     return [] if top is None or top[2] <= 0.0 else ["[start]", f"Z = {top[2] + MARGIN:.3f}", ""]
 
 

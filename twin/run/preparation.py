@@ -45,6 +45,7 @@ class Preparation:
         settings: What the interpreter has to know of machine and job.
         dialect_reason: What showed the dialect of a program whose job names none; empty: the job does.
         reading: What was assumed of how a raw program is read.
+        assumptions: All that was assumed of a raw program, its stock and tools too, a line each.
     """
 
     job: Job
@@ -54,6 +55,7 @@ class Preparation:
     settings: ControlSettings
     dialect_reason: str = ""
     reading: AssumedReading = NOTHING_ASSUMED
+    assumptions: tuple[str, ...] = ()
 
     def interpretation(self) -> Interpretation:
         """A fresh pass over the program."""

@@ -45,7 +45,7 @@ def surface_distances(
     wanted: BoolArray,
     flat: BoolArray,
     found: FloatArray,
-    told_by: IntArray,
+    found_by: IntArray,
 ) -> None:
     """Distances of a part's surface from the nominal one.
 
@@ -57,7 +57,7 @@ def surface_distances(
         flat: Cells around which both are no steeper than 45 degrees, shape (ny, nx): a floor at the foot of
             walls that both have is held against the other's floor, not against the walls.
         found: Set there: positive where the part has more material [mm].
-        told_by: Set there: ``BY_HEIGHT``, ``BY_WALL`` or ``BY_CELLS``.
+        found_by: Set there: ``BY_HEIGHT``, ``BY_WALL`` or ``BY_CELLS``.
     """
     for row in range(wanted.shape[0]):
         for column in range(wanted.shape[1]):
@@ -73,7 +73,7 @@ def surface_distances(
             before, seen = _wall_difference(part, nominal, row, column)
             if seen and how != BY_CELLS and abs(before * cell) >= abs(distance):
                 distance, how = before * cell, BY_WALL
-            found[row, column], told_by[row, column] = distance, how
+            found[row, column], found_by[row, column] = distance, how
 
 
 @inlined

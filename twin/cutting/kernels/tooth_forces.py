@@ -1,4 +1,4 @@
-"""The force of every tooth at every angle, from the material that stands before the cutter.
+"""The force of every tooth at every angle, from the material that is before the cutter.
 
 The edges are looked at in ``BINS`` directions about the axis. In each, the side of the cutter meets
 the material up to a depth that the height map tells, and the rings of its lower end meet it or do
@@ -114,7 +114,7 @@ class Advance(NamedTuple):
     sense: float
 
 
-class ToothBench(NamedTuple):
+class ToothScratch(NamedTuple):
     """What ``tooth_forces`` leaves: of one tooth in each direction, and of all in the mean.
 
     Attributes:
@@ -134,10 +134,10 @@ class ToothBench(NamedTuple):
     figures: FloatArray
 
 
-def tooth_bench() -> ToothBench:
+def tooth_bench() -> ToothScratch:
     """A bench on which nothing lies."""
     shapes = ((BINS, 3), (BINS,), (BINS, 3), (BINS + 1, 3), (3,), (3,))
-    return ToothBench(*(np.zeros(shape) for shape in shapes))
+    return ToothScratch(*(np.zeros(shape) for shape in shapes))
 
 
 @kernel
@@ -148,45 +148,45 @@ def tooth_forces(
     cutter: CutterForm,
     law: ForceLaw,
     sense: float,
-    bench: ToothBench,
+    scratch: ToothScratch,
 ) -> bool:
     """Forces of a cutter that goes on as it does.
 
     Args:
         material: What is cut.
         tip: Tool tip, shape (3,) [mm].
-        feed: Way of the tip in the time between two teeth, shape (3,) [mm].
+        feed: Path of the tip in the time between two teeth, shape (3,) [mm].
         cutter: The cutter.
         law: What the material does.
         sense: 1: it turns clockwise, seen from above; -1: counter-clockwise.
-        bench: Set to what was found.
+        scratch: Set to what was found.
 
     Returns:
         Whether the cutter meets any material.
     """
     per_tooth = math.sqrt(feed[0] * feed[0] + feed[1] * feed[1] + feed[2] * feed[2])
-    bench.mean[:] = 0.0
-    bench.figures[:] = 0.0
+    scratch.mean[:] = 0.0
+    scratch.figures[:] = 0.0
     if per_tooth < _LEAST:
         return False
     way = (feed[0] / per_tooth, feed[1] / per_tooth, feed[2] / per_tooth)
     advance = Advance(tip, way, per_tooth, sense)
-    met = _meet_side(material, advance, cutter, law, bench)
+    met = _meet_side(material, advance, cutter, law, scratch)
     for j in range(BINS):
         for k in range(3):
-            bench.tooth[j, k] = 0.0
-        met |= _meet_end(material, advance, cutter, law, j, bench)
+            scratch.tooth[j, k] = 0.0
+        met |= _meet_end(material, advance, cutter, law, j, scratch)
     if met:
-        _add_up(cutter, sense, bench)
+        _add_up(cutter, sense, scratch)
     return met
 
 
 @kernel
 def _meet_side(
-    material: Material, advance: Advance, cutter: CutterForm, law: ForceLaw, bench: ToothBench
+    material: Material, advance: Advance, cutter: CutterForm, law: ForceLaw, scratch: ToothScratch
 ) -> bool:
     """Depth and force of the side in all directions."""
-    bench.depth[:] = 0.0
+    scratch.depth[:] = 0.0
     way = advance.way
     if math.hypot(way[0], way[1]) <= _LEAST:
         return False
@@ -224,8 +224,8 @@ def _meet_side(
                 )
         if share > 0.0:
             engaged = _Engaged(j, share, area / share, moment / area, begins, ends)
-            met |= _enter_side(advance, cutter, law, engaged, bench)
-    bench.figures[0] = edge
+            met |= _enter_side(advance, cutter, law, engaged, scratch)
+    scratch.figures[0] = edge
     return met
 
 
@@ -289,7 +289,7 @@ class _Engaged(NamedTuple):
 
 @kernel
 def _enter_side(
-    advance: Advance, cutter: CutterForm, law: ForceLaw, engaged: _Engaged, bench: ToothBench
+    advance: Advance, cutter: CutterForm, law: ForceLaw, engaged: _Engaged, scratch: ToothScratch
 ) -> bool:
     """Force of the side in one direction."""
     j, sense = engaged.bin, advance.sense
@@ -308,12 +308,12 @@ def _enter_side(
         chip,
     )
     force = _push(law, advance.per_tooth, chip) * engaged.share
-    bench.depth[j] = engaged.depth
-    bench.side[j, 0] = force * (-sense * sine - law.radial * cosine)
-    bench.side[j, 1] = force * (sense * cosine - law.radial * sine)
-    bench.side[j, 2] = -force * law.along
-    bench.figures[1] += force * bench.depth[j] * cutter.profile.radius
-    bench.figures[2] = max(bench.figures[2], advance.per_tooth * thickest)
+    scratch.depth[j] = engaged.depth
+    scratch.side[j, 0] = force * (-sense * sine - law.radial * cosine)
+    scratch.side[j, 1] = force * (sense * cosine - law.radial * sine)
+    scratch.side[j, 2] = -force * law.along
+    scratch.figures[1] += force * scratch.depth[j] * cutter.profile.radius
+    scratch.figures[2] = max(scratch.figures[2], advance.per_tooth * thickest)
     return True
 
 
@@ -373,7 +373,7 @@ def _meet_end(
     cutter: CutterForm,
     law: ForceLaw,
     j: int,
-    bench: ToothBench,
+    scratch: ToothScratch,
 ) -> bool:
     """Force of the rings of the lower end in one direction."""
     met, way, sense = False, advance.way, advance.sense
@@ -391,11 +391,11 @@ def _meet_end(
         force = _push(law, advance.per_tooth, chip) * share * cutter.width[i]
         inwards = force * (law.radial * cutter.outwards[i] + law.along * cutter.downwards[i])
         upwards = force * (law.radial * cutter.downwards[i] - law.along * cutter.outwards[i])
-        bench.tooth[j, 0] += -sense * sine * force - cosine * inwards
-        bench.tooth[j, 1] += sense * cosine * force - sine * inwards
-        bench.tooth[j, 2] += upwards
-        bench.figures[1] += force * cutter.radius[i]
-        bench.figures[2] = max(bench.figures[2], thickness)
+        scratch.tooth[j, 0] += -sense * sine * force - cosine * inwards
+        scratch.tooth[j, 1] += sense * cosine * force - sine * inwards
+        scratch.tooth[j, 2] += upwards
+        scratch.figures[1] += force * cutter.radius[i]
+        scratch.figures[2] = max(scratch.figures[2], thickness)
     return met
 
 
@@ -432,7 +432,7 @@ def _ring_share(
         if top <= lowest + min(0.0, way[2]) / level * max(0.0, ahead) + _LEAST:
             return 0.0
     if abs(top - profile_height(math.hypot(x, y), radius, flat, corner, slope)) <= _LEAST:
-        # The cutter stands on what it has cut itself, and goes on into it.
+        # The cutter is on what it has cut itself, and goes on into it.
         return 1.0
     if top <= low:
         return 0.0
@@ -447,47 +447,47 @@ def _push(law: ForceLaw, per_tooth: float, chip: float) -> float:
 
 
 @kernel
-def _add_up(cutter: CutterForm, sense: float, bench: ToothBench) -> None:
+def _add_up(cutter: CutterForm, sense: float, scratch: ToothScratch) -> None:
     """Force of a tooth by the direction of its tip, their sums, and the mean and greatest of a turn."""
     share = cutter.teeth / BINS
     for j in range(BINS):
         for k in range(3):
-            bench.mean[k] += share * (bench.tooth[j, k] + bench.side[j, k] * bench.depth[j])
-    bench.figures[1] *= share
+            scratch.mean[k] += share * (scratch.tooth[j, k] + scratch.side[j, k] * scratch.depth[j])
+    scratch.figures[1] *= share
     behind = 1 if sense > 0.0 else BINS - 1
     for j in range(BINS):
-        if bench.depth[j] <= 0.0:
+        if scratch.depth[j] <= 0.0:
             continue
         below, to = 0.0, j
-        while below < bench.depth[j]:
-            part = min(cutter.rise, bench.depth[j] - below)
+        while below < scratch.depth[j]:
+            part = min(cutter.rise, scratch.depth[j] - below)
             for k in range(3):
-                bench.tooth[to, k] += part * bench.side[j, k]
+                scratch.tooth[to, k] += part * scratch.side[j, k]
             below += part
             # Higher up the edge is in this direction when its tip has gone on.
             to = (to + BINS - behind) % BINS
     for k in range(3):
-        bench.summed[0, k] = 0.0
+        scratch.summed[0, k] = 0.0
         for j in range(BINS):
-            bench.summed[j + 1, k] = bench.summed[j, k] + bench.tooth[j, k]
+            scratch.summed[j + 1, k] = scratch.summed[j, k] + scratch.tooth[j, k]
     for j in range(math.ceil(BINS / cutter.teeth)):
         x, y = 0.0, 0.0
         for tooth in range(cutter.teeth):
             at = (j + tooth * BINS // cutter.teeth) % BINS
-            x += bench.tooth[at, 0]
-            y += bench.tooth[at, 1]
-        bench.figures[0] = max(bench.figures[0], math.hypot(x, y))
+            x += scratch.tooth[at, 0]
+            y += scratch.tooth[at, 1]
+        scratch.figures[0] = max(scratch.figures[0], math.hypot(x, y))
 
 
 @kernel
 def add_force_between(
-    cutter: CutterForm, bench: ToothBench, angle: float, turned: float, force: FloatArray
+    cutter: CutterForm, scratch: ToothScratch, angle: float, turned: float, force: FloatArray
 ) -> None:
     """Force on the tool in the mean while it turns.
 
     Args:
         cutter: The cutter.
-        bench: What ``tooth_forces`` found.
+        scratch: What ``tooth_forces`` found.
         angle: Direction of the first tooth's tip at the beginning [turns, counter-clockwise].
         turned: How far it turns, signed [turns]; at least a thousandth of a bin is counted.
         force: The force is added to it, shape (3,) [N].
@@ -498,14 +498,14 @@ def add_force_between(
         low = first + tooth * BINS / cutter.teeth
         low -= BINS * math.floor(low / BINS)
         for k in range(3):
-            force[k] += (_sum_up_to(bench, low + width, k) - _sum_up_to(bench, low, k)) / width
+            force[k] += (_sum_up_to(scratch, low + width, k) - _sum_up_to(scratch, low, k)) / width
 
 
 @kernel
-def _sum_up_to(bench: ToothBench, place: float, k: int) -> float:
+def _sum_up_to(scratch: ToothScratch, place: float, k: int) -> float:
     """Sum of a tooth's force over the directions up to a place from 0 on, in bins."""
     turns = math.floor(place / BINS)
     rest = place - turns * BINS
     whole = min(int(rest), BINS - 1)
-    part = (rest - whole) * bench.tooth[whole, k]
-    return turns * bench.summed[BINS, k] + bench.summed[whole, k] + part
+    part = (rest - whole) * scratch.tooth[whole, k]
+    return turns * scratch.summed[BINS, k] + scratch.summed[whole, k] + part

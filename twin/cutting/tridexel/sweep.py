@@ -52,7 +52,7 @@ def sweep(
     lattice: Lattice,
     poses: Poses,
     solids: FloatArray,
-    tally: FloatArray,
+    sums: FloatArray,
     tool: int,
     first: int,
 ) -> int:
@@ -63,7 +63,7 @@ def sweep(
         lattice: Where it lies.
         poses: Ends of n steps.
         solids: What moves: the fields of each ``Solid``, shape (m, 5).
-        tally: What each step did is added to it, shape (n, COLUMNS).
+        sums: What each step did is added to it, shape (n, COLUMNS).
         tool: Which it is; ``MEASURE``: it cuts nothing, and what it meets is measured.
         first: Step to begin with.
 
@@ -79,7 +79,7 @@ def sweep(
             if span[0] > span[1]:
                 continue
             for direction in range(3):
-                if not _sweep_lines(dexels, lattice, poses, solid, tally, step, span, direction):
+                if not _sweep_lines(dexels, lattice, poses, solid, sums, step, span, direction):
                     return number
     return len(poses.tip) - 1
 
@@ -129,7 +129,7 @@ def _sweep_lines(
     lattice: Lattice,
     poses: Poses,
     solid: Solid,
-    tally: FloatArray,
+    sums: FloatArray,
     step: Step,
     span: tuple[float, float],
     d: int,
@@ -168,7 +168,7 @@ def _sweep_lines(
             if not meeting(dexels, line + column, bottom, top):
                 continue
             x = lattice.origin[u] + column * cell
-            if not _meet(dexels, lattice, poses, solid, tally, step, (d, line + column, x, y)):
+            if not _meet(dexels, lattice, poses, solid, sums, step, (d, line + column, x, y)):
                 return False
     return True
 
@@ -224,7 +224,7 @@ def _meet(
     lattice: Lattice,
     poses: Poses,
     solid: Solid,
-    tally: FloatArray,
+    sums: FloatArray,
     step: Step,
     place: tuple[int, int, float, float],
 ) -> bool:
@@ -239,7 +239,7 @@ def _meet(
     meets = meeting(dexels, line, low, high) if low < high else 0
     if not meets:
         return True
-    row, a = tally[step.number], step.number
+    row, a = sums[step.number], step.number
     if not step.cuts:
         row[LONGEST + d] = max(row[LONGEST + d], overlap(dexels, line, low, high))
         return True

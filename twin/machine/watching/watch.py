@@ -18,7 +18,7 @@ from twin.recording.reader import Samples
 OVERTRAVEL = 2.0
 """How far beyond its travel an axis meets its limit switch where none is given [mm or deg]."""
 _ON_SWITCH = 0.1
-"""What an axis that stands on its limit switch may move further onto it, such as by settling
+"""What an axis that is on its limit switch may move further onto it, such as by settling
 [mm or deg]."""
 _AT_LIMIT = 1.0 - 1e-9
 """Share of the force limit from which a drive counts as being at it: rounding, not slack."""

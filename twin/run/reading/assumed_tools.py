@@ -53,11 +53,11 @@ _TAPER = re.compile(r"\bTAPER\s*=\s*([0-9.]+)\s*DEG", re.IGNORECASE)
 
 
 class ToolComment(NamedTuple):
-    """What a comment tells of a tool.
+    """What a comment says about a tool.
 
     Attributes:
-        kind: As ``ToolTable`` has it; empty: it is not told.
-        diameter: [mm]; None: it is not told.
+        kind: As ``ToolTable`` has it; empty: it is not stated.
+        diameter: [mm]; None: it is not stated.
         corner: Radius of a bull-nose's corner [mm].
         text: The comment.
     """
@@ -78,7 +78,7 @@ def numbered_tool(comment: str) -> tuple[int, str] | None:
 
 
 def tool_of_comment(text: str, *, inches: bool) -> ToolComment:
-    """What a comment tells of a tool; numbers without a unit are the program's."""
+    """What a comment says about a tool; numbers without a unit are the program's."""
     upper = text.upper()
     kind = next((kind for words, kind in _KINDS if re.search(words, upper)), "")
     diameter = _diameter(upper, inches=inches)
@@ -160,7 +160,7 @@ def tool_lines(
 def listed_tools(
     comments: Iterable[str], numbers: Collection[int], *, inches: bool
 ) -> dict[int, ToolComment]:
-    """What comments that begin with a tool's number tell of the tools, by number."""
+    """What comments that begin with a tool's number say about the tools, by number."""
     listed: dict[int, ToolComment] = {}
     for comment in comments:
         found = numbered_tool(comment)
@@ -178,7 +178,7 @@ def _near_comment(
     *,
     inches: bool,
 ) -> ToolComment | None:
-    """What a comment beside a tool's call tells of it; without a list, and one tool alone, any comment of the head."""
+    """What a comment beside a tool's call says about it; without a list, and one tool alone, any comment of the head."""
     lines = [line for each, line, _ in calls if each == number]
     near = [
         (abs(line - call), text)

@@ -31,7 +31,7 @@ _SAME = 1e-6
 _CLEARANCE = 1.0
 """How far between pecks a drill withdraws is a parameter of the control; rapids that differ by less ask nobody [mm]."""
 _NEARLY = 0.1
-"""Feeds on the same path that differ by less are told, but they ask nobody: F of a helix counts its arc or its path."""
+"""Feeds on the same path that differ by less are stated, but they ask nobody: F of a helix counts its arc or its path."""
 _CRAWLS = 1.0
 """A dialect that alone reads a program, and in which it feeds slower than this, was not meant [mm/min]."""
 _TOO_SLOW = 1.0 / 200.0
@@ -82,7 +82,7 @@ def chosen_dialect(path: Path, settings: ControlSettings, source: Source | None 
 
     Args:
         path: The program.
-        settings: What its control is told of machine and job.
+        settings: What its control is told about machine and job.
         source: The program, where it was read already.
 
     Raises:

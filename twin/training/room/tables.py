@@ -15,7 +15,7 @@ MAGAZINE_PLACES = 40
 class Tables:
     """Part zero and tool lengths, as the control has them and as they are.
 
-    Machine coordinates count for the first tool; with a longer one the head stands higher by the
+    Machine coordinates count for the first tool; with a longer one the head is higher by the
     difference, which the control takes from its table and the material from the tool.
 
     Attributes:
@@ -62,12 +62,12 @@ class Tables:
 
     @property
     def tip_zero(self) -> FloatArray:
-        """Machine coordinates at which the tip stands on the part's true zero, shape (k,)."""
-        return self.true_zero + self.longer
+        """Machine coordinates at which the tip is on the part's true zero, shape (k,)."""
+        return self.true_zero + self.length_difference
 
     @property
-    def longer(self) -> FloatArray:
-        """How much higher the head stands than with the first tool, shape (k,) [mm]."""
+    def length_difference(self) -> FloatArray:
+        """How much higher the head is than with the first tool, shape (k,) [mm]."""
         return self._along_z(self.tool.length - self._reference)
 
     def mount(self, number: int) -> None:

@@ -25,13 +25,13 @@ class Goal:
 
 
 def forget_polar(control: Control) -> None:
-    """The last polar values no longer hold: they are seen anew from where the tool stands."""
+    """The last polar values no longer hold: they are seen again from where the tool is."""
     memory = memory_of(control)
     memory.polar_radius = memory.polar_angle = math.nan
 
 
 def set_polar_origin(control: Control) -> None:
-    """G30: I abscissa and J ordinate of the polar origin; neither: where the tool stands.
+    """G30: I abscissa and J ordinate of the polar origin; neither: where the tool is.
 
     Raises:
         ProgramError: Only one of both is given.
@@ -70,7 +70,7 @@ def temporary_polar_origin(control: Control) -> None:
 
 
 def current_polar(control: Control) -> tuple[float, float]:
-    """R and Q of where the tool stands: as last programmed, else measured [mm, deg]."""
+    """R and Q of where the tool is: as last programmed, else measured [mm, deg]."""
     here, memory = control.modal.plane.point(control.motion.programmed), memory_of(control)
     return seen_from(memory.polar_origin, here, memory.polar_radius, memory.polar_angle)
 

@@ -46,6 +46,7 @@ def before_motion(control: Control, rapid: bool) -> None:
     """
     reference_points.warn_of_cancelled_length(control)
     tool_tips.require_orientation(control)
+    tool_tips.point_by_vector(control)
     if not rapid:
         base.require_feed_of_block(control)
         if memory_of(control).feed_lost and control.motion.feed is None:

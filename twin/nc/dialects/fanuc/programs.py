@@ -119,7 +119,7 @@ def _warn_of_tape_end(control: Control) -> None:
 
 
 def _follows(control: Control, before: int | None, line: int, key: Key) -> bool:
-    """A file's own heading stands right behind the one that its name has given it."""
+    """A file's own heading is right behind the one that its name has given it."""
     lines = control.program_counter.lines
     if before is None or memory_of(control).programs.get(key) != before + 1:
         return False
@@ -144,7 +144,7 @@ def heading(control: Control, word: Word) -> None:
 
 
 def lines_around(control: Control, line: int | None = None) -> range:
-    """The program that a line, from 0, stands in, else the one that is being run; labels are its own."""
+    """The program that a line, from 0, is in, else the one that is being run; labels are its own."""
     headings, count = memory_of(control).headings, len(control.program_counter.lines)
     here = control.block.line - 1 if line is None else line
     first = max((each for each in headings if each <= here), default=0)

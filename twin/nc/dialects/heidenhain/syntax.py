@@ -12,7 +12,7 @@ _AXES = "XYZABCUVW"
 
 WORDED = frozenset(
     (
-        *("L", "C", "CC", "CR", "CT", "LP", "CP", "CTP", "CYCL CALL", "CYCL CALL POS"),
+        *("L", "LN", "C", "CC", "CR", "CT", "LP", "CP", "CTP", "CYCL CALL", "CYCL CALL POS"),
         *(f"APPR {polar}{kind}" for kind in ("LT", "LN", "CT", "LCT") for polar in ("", "P")),
         *("DEP LT", "DEP LN", "DEP CT", "DEP LCT", "DEP PLCT"),
     )
@@ -34,7 +34,7 @@ KEYWORDS = (
 _OF_AXIS = r"M[ \t]*94[ \t]+[ABC](?![ \t]*[-+.0-9Q])"
 """M94 with the axis that it is for."""
 _ADDRESS = (
-    rf"I?(?:PR|PA){_VALUE}|LIN_[XYZ]|I[{_AXES}]{_VALUE}|LEN|CCA|DL|DR{_VALUE}|DR2|DIST|RI|MB{_VALUE}|LA"
+    rf"I?(?:PR|PA){_VALUE}|[NT][XYZ]{_VALUE}|LIN_[XYZ]|I[{_AXES}]{_VALUE}|LEN|CCA|DL|DR{_VALUE}|DR2|DIST|RI|MB{_VALUE}|LA"
     rf"|FU|FZ|FT|R(?!0(?![.,0-9]))|L{_VALUE}|(?!{_OF_AXIS})[{_AXES}FSMDN]"
 )
 _FLAG = (

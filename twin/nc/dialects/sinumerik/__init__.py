@@ -79,6 +79,8 @@ SINUMERIK = Dialect(
             "compensation watch",
             "compensation",
             "spindle",
+            "orientation frame",
+            "orientation",
             "motion",
         ),
         g=CODES,
