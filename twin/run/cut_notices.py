@@ -37,8 +37,7 @@ def cut_notices(
             f"the tool stands {cutter.start_depth:.2f} mm deep in the stock before it moves",
         )
     if machining.misfit is not None:
-        message = f"{machining.misfit}: its file counts in mm from program zero"
-        yield Notice("nominal-misfit", 0, message)
+        yield Notice("nominal-misfit", 0, machining.misfit)
     for stop in machining.stopped:
         yield Notice("stops-in-cut", stop.line, f"{stop.what} while the tool is in the cut")
     if machining.ended_in_cut:
