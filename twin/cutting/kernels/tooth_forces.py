@@ -1,6 +1,6 @@
 """The force of every tooth at every angle, from the material that is before the cutter.
 
-The edges are looked at in ``BINS`` directions about the axis. In each, the side of the cutter meets
+The edges are looked at in ``ANGLE_BINS`` directions about the axis. In each, the side of the cutter meets
 the material up to a depth that the height map tells, and the rings of its lower end meet it or do
 not. A tooth that passes there cuts a chip as thick as the feed per tooth along the normal of the
 surface that it sweeps, h = f·n, and is pushed by Kienzle's force kc1.1 h^(1 - mc) a millimetre of
@@ -26,14 +26,14 @@ from twin.nc.canonical import FloatArray
 
 THINNEST_CHIP_MM = 1e-3
 """Chips thinner than this are rubbed, not cut; the formula is not followed below [mm]."""
-BINS = 72
+ANGLE_BINS = 72
 """Directions about the axis that are looked at: 5 degrees each."""
-_ANGLES = (np.arange(BINS) + 0.5) * (2.0 * np.pi / BINS)
+_ANGLES = (np.arange(ANGLE_BINS) + 0.5) * (2.0 * np.pi / ANGLE_BINS)
 _COSINE, _SINE = np.cos(_ANGLES), np.sin(_ANGLES)
 _PLACES = 2
 """Places in each direction at which the depth of the side is looked at."""
-_BORDER_STEP = 2.0 * np.pi / (BINS * _PLACES)
-_BORDER = np.arange(BINS * _PLACES + 1) * _BORDER_STEP
+_BORDER_STEP = 2.0 * np.pi / (ANGLE_BINS * _PLACES)
+_BORDER = np.arange(ANGLE_BINS * _PLACES + 1) * _BORDER_STEP
 _BORDER_COSINE, _BORDER_SINE = np.cos(_BORDER), np.sin(_BORDER)
 _HALVINGS = 6
 """Halvings between two places, in search of where the depth changes."""
@@ -118,10 +118,10 @@ class ToothScratch(NamedTuple):
     """What ``tooth_forces`` leaves: of one tooth in each direction, and of all in the mean.
 
     Attributes:
-        side: Force a millimetre of side, shape (BINS, 3) [N/mm].
-        depth: How deep the side is in the material, shape (BINS,) [mm].
-        tooth: Force on the tool when a tooth's tip is in that direction, shape (BINS, 3) [N].
-        summed: ``tooth`` added up from the first direction on, shape (BINS + 1, 3).
+        side: Force a millimetre of side, shape (ANGLE_BINS, 3) [N/mm].
+        depth: How deep the side is in the material, shape (ANGLE_BINS,) [mm].
+        tooth: Force on the tool when a tooth's tip is in that direction, shape (ANGLE_BINS, 3) [N].
+        summed: ``tooth`` added up from the first direction on, shape (ANGLE_BINS + 1, 3).
         mean: Force on the tool in the mean of a turn, shape (3,) [N].
         figures: Greatest level force of a turn [N], torque in the mean [N mm], thickest chip [mm].
     """
@@ -136,7 +136,7 @@ class ToothScratch(NamedTuple):
 
 def tooth_bench() -> ToothScratch:
     """A bench on which nothing lies."""
-    shapes = ((BINS, 3), (BINS,), (BINS, 3), (BINS + 1, 3), (3,), (3,))
+    shapes = ((ANGLE_BINS, 3), (ANGLE_BINS,), (ANGLE_BINS, 3), (ANGLE_BINS + 1, 3), (3,), (3,))
     return ToothScratch(*(np.zeros(shape) for shape in shapes))
 
 
@@ -172,7 +172,7 @@ def tooth_forces(
     way = (feed[0] / per_tooth, feed[1] / per_tooth, feed[2] / per_tooth)
     advance = Advance(tip, way, per_tooth, sense)
     met = _meet_side(material, advance, cutter, law, scratch)
-    for j in range(BINS):
+    for j in range(ANGLE_BINS):
         for k in range(3):
             scratch.tooth[j, k] = 0.0
         met |= _meet_end(material, advance, cutter, law, j, scratch)
@@ -191,11 +191,11 @@ def _meet_side(
     if math.hypot(way[0], way[1]) <= _LEAST:
         return False
     met, edge, begun, deepest = False, 0.0, 0.0, 0.0
-    ahead = math.floor(math.atan2(way[1], way[0]) / (2.0 * math.pi) * BINS)
+    ahead = math.floor(math.atan2(way[1], way[0]) / (2.0 * math.pi) * ANGLE_BINS)
     last = 0.0
     # Behind the cutter there is nothing to meet.
-    for turned in range(ahead - BINS // 4 - 1, ahead + BINS // 4 + 2):
-        j = turned % BINS
+    for turned in range(ahead - ANGLE_BINS // 4 - 1, ahead + ANGLE_BINS // 4 + 2):
+        j = turned % ANGLE_BINS
         area, moment, share, begins, ends = 0.0, 0.0, 0.0, 1.0, 0.0
         for part in range(_PLACES):
             border = j * _PLACES + part + 1
@@ -250,7 +250,7 @@ def _edge_force(
     """
     begin, end = arc
     lag = depth / cutter.rise
-    if end - begin + lag >= BINS / cutter.teeth:
+    if end - begin + lag >= ANGLE_BINS / cutter.teeth:
         return 0.0
     within = min(lag, end - begin)
     height = depth * (within / lag if within < lag else 1.0) / _SLICES
@@ -320,7 +320,7 @@ def _enter_side(
 @kernel
 def _direction(place: float) -> tuple[float, float]:
     """Cosine and sine of a place around the axis [bins]."""
-    at = 2.0 * math.pi / BINS * place
+    at = 2.0 * math.pi / ANGLE_BINS * place
     return math.cos(at), math.sin(at)
 
 
@@ -449,13 +449,13 @@ def _push(law: ForceLaw, per_tooth: float, chip: float) -> float:
 @kernel
 def _add_up(cutter: CutterForm, sense: float, scratch: ToothScratch) -> None:
     """Force of a tooth by the direction of its tip, their sums, and the mean and greatest of a turn."""
-    share = cutter.teeth / BINS
-    for j in range(BINS):
+    share = cutter.teeth / ANGLE_BINS
+    for j in range(ANGLE_BINS):
         for k in range(3):
             scratch.mean[k] += share * (scratch.tooth[j, k] + scratch.side[j, k] * scratch.depth[j])
     scratch.figures[1] *= share
-    behind = 1 if sense > 0.0 else BINS - 1
-    for j in range(BINS):
+    behind = 1 if sense > 0.0 else ANGLE_BINS - 1
+    for j in range(ANGLE_BINS):
         if scratch.depth[j] <= 0.0:
             continue
         below, to = 0.0, j
@@ -465,15 +465,15 @@ def _add_up(cutter: CutterForm, sense: float, scratch: ToothScratch) -> None:
                 scratch.tooth[to, k] += part * scratch.side[j, k]
             below += part
             # Higher up the edge is in this direction when its tip has gone on.
-            to = (to + BINS - behind) % BINS
+            to = (to + ANGLE_BINS - behind) % ANGLE_BINS
     for k in range(3):
         scratch.summed[0, k] = 0.0
-        for j in range(BINS):
+        for j in range(ANGLE_BINS):
             scratch.summed[j + 1, k] = scratch.summed[j, k] + scratch.tooth[j, k]
-    for j in range(math.ceil(BINS / cutter.teeth)):
+    for j in range(math.ceil(ANGLE_BINS / cutter.teeth)):
         x, y = 0.0, 0.0
         for tooth in range(cutter.teeth):
-            at = (j + tooth * BINS // cutter.teeth) % BINS
+            at = (j + tooth * ANGLE_BINS // cutter.teeth) % ANGLE_BINS
             x += scratch.tooth[at, 0]
             y += scratch.tooth[at, 1]
         scratch.figures[0] = max(scratch.figures[0], math.hypot(x, y))
@@ -492,11 +492,11 @@ def add_force_between(
         turned: How far it turns, signed [turns]; at least a thousandth of a bin is counted.
         force: The force is added to it, shape (3,) [N].
     """
-    width = max(abs(turned) * BINS, 1e-3)
-    first = angle * BINS - (width if turned < 0.0 else 0.0)
+    width = max(abs(turned) * ANGLE_BINS, 1e-3)
+    first = angle * ANGLE_BINS - (width if turned < 0.0 else 0.0)
     for tooth in range(cutter.teeth):
-        low = first + tooth * BINS / cutter.teeth
-        low -= BINS * math.floor(low / BINS)
+        low = first + tooth * ANGLE_BINS / cutter.teeth
+        low -= ANGLE_BINS * math.floor(low / ANGLE_BINS)
         for k in range(3):
             force[k] += (_sum_up_to(scratch, low + width, k) - _sum_up_to(scratch, low, k)) / width
 
@@ -504,8 +504,8 @@ def add_force_between(
 @kernel
 def _sum_up_to(scratch: ToothScratch, place: float, k: int) -> float:
     """Sum of a tooth's force over the directions up to a place from 0 on, in bins."""
-    turns = math.floor(place / BINS)
-    rest = place - turns * BINS
-    whole = min(int(rest), BINS - 1)
+    turns = math.floor(place / ANGLE_BINS)
+    rest = place - turns * ANGLE_BINS
+    whole = min(int(rest), ANGLE_BINS - 1)
     part = (rest - whole) * scratch.tooth[whole, k]
-    return turns * scratch.summed[BINS, k] + scratch.summed[whole, k] + part
+    return turns * scratch.summed[ANGLE_BINS, k] + scratch.summed[whole, k] + part

@@ -266,6 +266,7 @@ _SHARED_EXAMPLES = {
     "arc_centre_moved_to_fit",
     "compensation_start",
     "compensation_corners",
+    "narrow_contour",
     "work_offsets",
     "chip_clearance",
     "main_ends_by_m99",

@@ -15,6 +15,7 @@ from twin.nc.dialects.heidenhain.syntax import SYNTAX
 from twin.nc.dialects.heidenhain.tool_tip import take_spatial_angles
 from twin.nc.iso import shared_marks
 from twin.nc.iso.base import spindle_speed
+from twin.nc.path.compensation.gouge import NEIGHBOURS
 from twin.nc.text.blocks import Word
 from twin.nc.text.syntax import Mark
 
@@ -47,6 +48,7 @@ HEIDENHAIN = Dialect(
     code_page="cp1252",
     syntax=SYNTAX,
     codes=Codes(
+        start_state={"look_ahead": NEIGHBOURS},
         groups=(),
         g={},
         start=(),
