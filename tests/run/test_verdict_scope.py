@@ -179,6 +179,14 @@ def test_cycles_that_are_no_drills_take_end_mills(cycle: str, tmp_path: Path) ->
     assert codes(run(tmp_path, program)) == {}
 
 
+def test_a_cut_on_a_side_that_is_thinner_than_a_cell_is_one(tmp_path: Path) -> None:
+    """No cell's middle is reached, and the force shows it."""
+    program = HEAD + "G0 X-30. Y23.9\nG0 Z-3.\nG1 X30. F480.\nG0 Z20.\nM30\n"
+    outcome = run(tmp_path, program, {"stock": 'material = "C45"'})
+    assert outcome.scope.removed_mm3 == 0.0
+    assert codes(outcome) == {}
+
+
 def test_strict_makes_them_failures(tmp_path: Path) -> None:
     program, parts, code, line = SLIPS["end in the slot"]
     outcome = run(tmp_path, program, parts, strict=True)
