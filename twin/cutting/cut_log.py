@@ -11,7 +11,7 @@ from twin.columns import Columns, join
 from twin.cutting.events import CutEvent, Stretches
 from twin.nc.canonical import FloatArray, IntArray
 
-BINS = 512
+TIME_BINS = 512
 """Stretches of time that removal is noted in; they grow longer as the run does."""
 
 FIRST_BIN_S = 0.01
@@ -150,7 +150,7 @@ class CutLog:
         self._fresh_lines = 0
         self._latest = 0
         self._bin_s = FIRST_BIN_S
-        self._bins = np.zeros(BINS)
+        self._bins = np.zeros(TIME_BINS)
         self._end = 0
 
     def add(self, stretches: Stretches, width: FloatArray, force: FloatArray | None) -> None:
@@ -199,8 +199,8 @@ class CutLog:
         }
 
     def _enter_time(self, time: FloatArray, removed: FloatArray) -> None:
-        while time[-1] >= self._bin_s * BINS:
-            self._bins = np.append(self._bins.reshape(-1, 2).sum(axis=1), np.zeros(BINS // 2))
+        while time[-1] >= self._bin_s * TIME_BINS:
+            self._bins = np.append(self._bins.reshape(-1, 2).sum(axis=1), np.zeros(TIME_BINS // 2))
             self._bin_s *= 2
             self._end = -(-self._end // 2)
         number = (time / self._bin_s).astype(np.int64)

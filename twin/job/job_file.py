@@ -134,6 +134,9 @@ class ToolTable(Table):
     """Length of the cutting part [mm]."""
     corner: Positive | None = None
     """Bull-nose: radius of the corner [mm]."""
+    radius_offset: Annotated[float, Field(ge=0)] | None = None
+    """What the control's tool table holds as its radius [mm]; none: half the diameter. 0 where the program's contours
+    are the path of the tool's centre already and the table holds the wear alone (posts: "wear" compensation)."""
     angle: Annotated[float, Field(gt=0, lt=180)] | None = None
     """Drill and chamfer: included angle of the point [deg]; none: 118 and 90."""
     tip: Annotated[float, Field(ge=0)] = 0.0
@@ -181,6 +184,11 @@ class ToolTable(Table):
         if self.free_length is not None and self.free_length > self.length:
             raise ValueError("free_length is at most the length")
         return self
+
+    @property
+    def table_radius(self) -> float:
+        """Its radius in the control's tool table [mm]."""
+        return self.diameter / 2.0 if self.radius_offset is None else self.radius_offset
 
     @property
     def point_angle(self) -> float | None:

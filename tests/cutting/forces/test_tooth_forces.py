@@ -9,13 +9,8 @@ import pytest
 from twin.cutting.forces.cutter_form import cutter_form, force_law
 from twin.cutting.forces.materials import materials
 from twin.cutting.height_map import HeightMap, blank
-from twin.cutting.kernels.tooth_forces import (
-    BINS,
-    ToothScratch,
-    add_force_between,
-    tooth_bench,
-    tooth_forces,
-)
+from twin.cutting.kernels.teeth import ANGLE_BINS, ToothScratch, add_force_between, tooth_bench
+from twin.cutting.kernels.tooth_forces import tooth_forces
 from twin.cutting.kernels.walls import Material, WallArray, leave_walls, no_trace, no_walls
 from twin.cutting.sweeping import sweep_lines
 from twin.cutting.tools import profile
@@ -246,8 +241,8 @@ def test_force_over_a_turn_is_the_mean_and_over_little_the_force_of_the_teeth_th
         np.testing.assert_allclose(force, scratch.mean, rtol=1e-9)
     for bin_ in (0, 5, 23):
         force = np.zeros(3)
-        add_force_between(cutter, scratch, (bin_ + 0.5) / BINS, 0.0, force)
-        at = (bin_ + BINS // 3 * np.arange(3)) % BINS
+        add_force_between(cutter, scratch, (bin_ + 0.5) / ANGLE_BINS, 0.0, force)
+        at = (bin_ + ANGLE_BINS // 3 * np.arange(3)) % ANGLE_BINS
         np.testing.assert_allclose(force, scratch.tooth[at].sum(axis=0), rtol=1e-6, atol=1e-6)
 
 

@@ -7,12 +7,7 @@ import numpy as np
 
 from twin.cutting.height_map import HeightMap
 from twin.cutting.height_map_material import WALL_MM
-from twin.cutting.kernels.surface_distance import (
-    BY_CELLS,
-    BY_HEIGHT,
-    Surface,
-    surface_distances,
-)
+from twin.cutting.kernels.surface_distance import FoundBy, Surface, surface_distances
 from twin.cutting.kernels.wall_distance import KNOWN, WallDistance
 from twin.errors import ConfigError
 from twin.nc.canonical import BoolArray, FloatArray
@@ -130,7 +125,7 @@ def inspect(part: HeightMap, nominal: HeightMap, tolerance_um: float) -> Inspect
     edge = _raw_sides(part) | _raw_sides(nominal)
     upright = (_beside_walls(part) | _beside_walls(nominal)) & ~edge
     rest = (touched & ~edge | upright) & ~gentle
-    found_by = np.full(rest.shape, BY_HEIGHT)
+    found_by = np.full(rest.shape, FoundBy.HEIGHT)
     one, other = (Surface(each.heights, _without(each.behind, edge)) for each in (part, nominal))
     surface_distances(
         one,
@@ -141,11 +136,11 @@ def inspect(part: HeightMap, nominal: HeightMap, tolerance_um: float) -> Inspect
         deviation,
         found_by,
     )
-    unseen = rest & upright & (found_by == BY_HEIGHT) & (deviation == 0.0)
+    unseen = rest & upright & (found_by == FoundBy.HEIGHT) & (deviation == 0.0)
     unseen &= ~_both_slope(part, nominal)
     unseen |= _nominal_within_raw_side(part, nominal)
     off = above * part.cell**2
-    coarse = unseen.any() or bool((found_by == BY_CELLS).any())
+    coarse = unseen.any() or bool((found_by == FoundBy.CELLS).any())
     return Inspection(
         deviation_mm=np.where(unseen, np.nan, deviation),
         bound_mm=part.cell if coarse else min(WALL_ERROR_MM, part.cell),

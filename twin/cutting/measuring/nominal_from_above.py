@@ -7,9 +7,9 @@ import numpy as np
 from twin.cutting.height_map import HeightMap
 from twin.cutting.kernels.rasterize import note_sides, rasterize
 from twin.cutting.kernels.surface_distance import (
-    BY_CELLS,
     REACH,
     SAME_MM,
+    FoundBy,
     Surface,
     surface_distances,
 )
@@ -102,4 +102,4 @@ class HeightMapNominalWatch(NominalWatch[HeightMap]):
         flat = np.maximum(steepness(heights, cell), steepness(nominal, cell)) <= STEEPEST
         part, whole = Surface(heights, behind), Surface(nominal, walls)
         surface_distances(part, whole, cell, wanted, flat, found, found_by)
-        return np.where(found_by == BY_CELLS, -found - cell, -found)
+        return np.where(found_by == FoundBy.CELLS, -found - cell, -found)

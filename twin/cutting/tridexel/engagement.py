@@ -9,17 +9,7 @@ from twin.cutting.tridexel.dexels import DIRECTIONS, TriDexel
 from twin.cutting.tridexel.intervals import Node, total_worth
 from twin.cutting.tridexel.moving_solid import Poses
 from twin.cutting.tridexel.solids import Solid
-from twin.cutting.tridexel.sweep import (
-    COLUMNS,
-    HIGHEST,
-    LENGTH,
-    LONGEST,
-    LOWEST,
-    MEASURE,
-    MOMENT,
-    VOLUME,
-    sweep,
-)
+from twin.cutting.tridexel.sweep import MEASURE, Sum, sweep
 from twin.nc.canonical import BoolArray, FloatArray, IntArray
 
 STEP_SHARE = 0.1
@@ -28,6 +18,12 @@ STEP_DEGREES = 2.0
 """Largest turn of the axis in a step [deg]."""
 FINEST_STEP_MM = 0.05
 """Steps need not be shorter than this [mm]: of a pointed tool its whole radius counts, of a stub nothing."""
+
+
+def longest_step(solids: Sequence[Solid]) -> float:
+    """How far what moves may go in a step [mm]."""
+    radius = max(max(solid.low_radius, solid.high_radius) + solid.rounding for solid in solids)
+    return max(STEP_SHARE * radius, FINEST_STEP_MM)
 
 
 def in_short_steps(poses: Poses, solids: Sequence[Solid]) -> tuple[Poses, IntArray]:
@@ -41,8 +37,7 @@ def in_short_steps(poses: Poses, solids: Sequence[Solid]) -> tuple[Poses, IntArr
         Poses of m short steps, and which of the n steps each of them is part of, shape (m,).
     """
     tip, axis = poses
-    radius = max(max(solid.low_radius, solid.high_radius) + solid.rounding for solid in solids)
-    longest = max(STEP_SHARE * radius, FINEST_STEP_MM)
+    longest = longest_step(solids)
     way = np.zeros(len(tip) - 1)
     for height in (solids[0].low, max(solid.high for solid in solids)):
         way = np.maximum(way, np.linalg.norm(np.diff(tip + height * axis, axis=0), axis=1))
@@ -102,15 +97,15 @@ def cut(stock: TriDexel, poses: Poses, edge: Sequence[Solid], tool: int) -> Enga
         tool: Number that the cut surface remembers, from 1 to ``normals.MOST_TOOLS``.
     """
     sums = _swept(stock, poses, edge, tool)
-    length = sums[:, LENGTH]
+    length = sums[:, Sum.LENGTH]
     touched = length > 0.0
     some = np.where(touched, length, 1.0)
     return Engagement(
-        sums[:, VOLUME],
+        sums[:, Sum.VOLUME],
         touched,
-        np.where(touched, sums[:, HIGHEST] - sums[:, LOWEST], 0.0),
-        sums[:, MOMENT : MOMENT + 3] / some[:, None],
-        sums[:, LONGEST : LONGEST + 3].max(axis=1, initial=0.0),
+        np.where(touched, sums[:, Sum.HIGHEST] - sums[:, Sum.LOWEST], 0.0),
+        sums[:, Sum.MOMENT : Sum.MOMENT + 3] / some[:, None],
+        sums[:, Sum.LONGEST : Sum.LONGEST + 3].max(axis=1, initial=0.0),
     )
 
 
@@ -121,7 +116,7 @@ def met(stock: TriDexel, poses: Poses, solid: Solid) -> FloatArray:
     is any, and the shortest of these counts: on a face that looks along an axis it is the depth below the
     face, on one that looks between all three at most 1.73 times as much.
     """
-    longest = _swept(stock, poses, (solid,), MEASURE)[:, LONGEST : LONGEST + 3]
+    longest = _swept(stock, poses, (solid,), MEASURE)[:, Sum.LONGEST : Sum.LONGEST + 3]
     least = np.where(longest > 0.0, longest, np.inf).min(axis=1, initial=np.inf)
     return np.where(np.isfinite(least), least, 0.0)
 
@@ -129,8 +124,8 @@ def met(stock: TriDexel, poses: Poses, solid: Solid) -> FloatArray:
 def _swept(stock: TriDexel, poses: Poses, solids: Sequence[Solid], tool: int) -> FloatArray:
     """Bring solids along steps, in shorter ones where they are long; what each step did."""
     short, step = in_short_steps(poses, solids)
-    sums = np.zeros((len(step), COLUMNS))
-    sums[:, LOWEST], sums[:, HIGHEST] = np.inf, -np.inf
+    sums = np.zeros((len(step), Sum.COLUMNS))
+    sums[:, Sum.LOWEST], sums[:, Sum.HIGHEST] = np.inf, -np.inf
     bodies, done = np.array(solids, np.float64), 0
     while True:
         done = sweep(stock.dexels, stock.lattice, short, bodies, sums, tool, done)
@@ -141,6 +136,6 @@ def _swept(stock: TriDexel, poses: Poses, solids: Sequence[Solid], tool: int) ->
         return sums
     first = np.flatnonzero(np.diff(step, prepend=-1))
     whole = np.add.reduceat(sums, first)
-    whole[:, LOWEST] = np.minimum.reduceat(sums[:, LOWEST], first)
-    whole[:, HIGHEST:] = np.maximum.reduceat(sums[:, HIGHEST:], first)
+    whole[:, Sum.LOWEST] = np.minimum.reduceat(sums[:, Sum.LOWEST], first)
+    whole[:, Sum.HIGHEST :] = np.maximum.reduceat(sums[:, Sum.HIGHEST :], first)
     return whole

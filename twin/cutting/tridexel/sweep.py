@@ -1,5 +1,6 @@
 """Bring solids along steps through a tri-dexel stock, line by line."""
 
+import enum
 import math
 from typing import NamedTuple
 
@@ -21,10 +22,24 @@ from twin.cutting.tridexel.solids import Solid
 from twin.cutting.tridexel.swept import within_swept, within_swept_ball
 from twin.nc.canonical import FloatArray
 
-VOLUME, LENGTH, MOMENT, LOWEST, HIGHEST, LONGEST, COLUMNS = 0, 1, 2, 5, 6, 7, 10
-"""Columns of what is found out about a step: volume [mm³]; length of all that was taken off [mm]; that times
-its place along X, Y, Z [mm²]; its lowest and highest place along the tool's axis, above the tip [mm]; its longest
-piece along X, Y and Z, or how long what was met is [mm]."""
+
+class Sum(enum.IntEnum):
+    """Columns of what is found out about a step."""
+
+    VOLUME = 0
+    """[mm³]"""
+    LENGTH = 1
+    """Of all that was taken off [mm]."""
+    MOMENT = 2
+    """First of three: that length times its place along X, Y and Z [mm²]."""
+    LOWEST = 5
+    """Lowest place along the tool's axis, above the tip [mm]."""
+    HIGHEST = 6
+    LONGEST = 7
+    """First of three: the longest piece along X, Y and Z, or how long what was met is [mm]."""
+    COLUMNS = 10
+    """How many there are."""
+
 
 MEASURE = -1
 """In place of a tool's number: nothing is cut."""
@@ -241,7 +256,7 @@ def _meet(
         return True
     row, a = sums[step.number], step.number
     if not step.cuts:
-        row[LONGEST + d] = max(row[LONGEST + d], overlap(dexels, line, low, high))
+        row[Sum.LONGEST + d] = max(row[Sum.LONGEST + d], overlap(dexels, line, low, high))
         return True
     below = above = 0
     if meets & ENDS_BELOW:
@@ -257,16 +272,16 @@ def _meet(
         return True
     area = lattice.cell * lattice.cell
     u, v = (d + 1) % 3, (d + 2) % 3
-    row[VOLUME] += area * piece.volume
-    row[LENGTH] += piece.length
-    row[MOMENT + d] += piece.moment
-    row[MOMENT + u] += piece.length * x
-    row[MOMENT + v] += piece.length * y
-    row[LONGEST + d] = max(row[LONGEST + d], piece.longest)
+    row[Sum.VOLUME] += area * piece.volume
+    row[Sum.LENGTH] += piece.length
+    row[Sum.MOMENT + d] += piece.moment
+    row[Sum.MOMENT + u] += piece.length * x
+    row[Sum.MOMENT + v] += piece.length * y
+    row[Sum.LONGEST + d] = max(row[Sum.LONGEST + d], piece.longest)
     for end in (piece.low, piece.high):
         height = _height(poses, a + 1, d, end, x, y)
-        row[LOWEST] = min(row[LOWEST], height)
-        row[HIGHEST] = max(row[HIGHEST], height)
+        row[Sum.LOWEST] = min(row[Sum.LOWEST], height)
+        row[Sum.HIGHEST] = max(row[Sum.HIGHEST], height)
     return True
 
 

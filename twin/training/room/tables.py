@@ -40,7 +40,7 @@ class Tables:
         self.zero = true_zero.copy()
         self.tools = {tool.number: tool for tool in tools}
         self.lengths = {tool.number: tool.length for tool in tools}
-        self.radii = {tool.number: tool.diameter / 2.0 for tool in tools}
+        self.radii = {tool.number: tool.table_radius for tool in tools}
         self.offsets = {name: dict(values) for name, values in offsets.items()}
         self.spindle = self.first = tools[0].number
         self.finder: int | None = None
@@ -111,7 +111,7 @@ class Tables:
     def _enter(self, tool: ToolTable) -> None:
         self.tools[tool.number] = tool
         self.lengths[tool.number] = tool.length
-        self.radii[tool.number] = tool.diameter / 2.0
+        self.radii[tool.number] = tool.table_radius
 
     def add_finder(self, finder: ToolTable) -> None:
         """Put an edge finder into a place of its own, under a number that is free."""

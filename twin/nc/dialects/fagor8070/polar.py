@@ -5,7 +5,6 @@ import math
 
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.memory import memory_of
-from twin.nc.geometry.polar import seen_from
 from twin.nc.iso.polar_words import aim_by_angle, aim_by_polar
 
 
@@ -67,12 +66,6 @@ def temporary_polar_origin(control: Control) -> None:
     if control.modal.active.get("motion") not in (2, 3):
         control.fail("temporary-origin", "G31 needs an arc, G02 or G03", control.code_word(31))
     memory_of(control).temporary = True
-
-
-def current_polar(control: Control) -> tuple[float, float]:
-    """R and Q of where the tool is: as last programmed, else measured [mm, deg]."""
-    here, memory = control.modal.plane.point(control.motion.programmed), memory_of(control)
-    return seen_from(memory.polar_origin, here, memory.polar_radius, memory.polar_angle)
 
 
 def take_goal(control: Control, *, arc: bool) -> Goal:

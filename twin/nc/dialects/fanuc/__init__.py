@@ -101,7 +101,7 @@ FANUC = Dialect(
         start=codes.START,
         m=codes.M_CODES,
         last_of_group_counts=True,
-        start_state={"square_corners": True},
+        start_state={"square_corners": True, "look_ahead": tool_offsets.BLOCKS_AHEAD},
         statements={**flow.STATEMENTS, **macro_calls.CALLS_BY_CODE},
     ),
     words=Words(

@@ -53,7 +53,7 @@ def passed_over(meaning: str, letters: str, *, modes: tuple[float, ...] = ()) ->
 
 
 NO_PROBE = "the twin has no probe to touch with"
-_NO_TILT = "the machine's tool does not tilt"
+_TIP_LED = "G43.4 leads the tip, G234 on a Haas"
 _NO_ANGLE = "the twin's spindle has no angle"
 _UNKNOWN = "its effect on the path is not documented well enough to be followed"
 _LIMITS = "the limits are the machine file's"
@@ -162,7 +162,7 @@ _REFUSED: Mapping[float, GCode] = {
     **refused(
         "tool position offset", "write the coordinates, or compensate by G41", 45, 46, 47, 48
     ),
-    **refused("tool centre point control", _NO_TILT, 43.1, 43.3, 43.8, 43.9),
+    **refused("tool centre point control", _TIP_LED, 43.1, 43.3, 43.8, 43.9),
     **refused("normal direction control", "the twin has no axis that turns the tool", 41.1, 42.1),
     **refused("tilted plane by other forms", "G68.2 X Y Z I J K is", 68.3, 68.4),
     **refused("single direction positioning", "the backlash is the machine file's", 60),

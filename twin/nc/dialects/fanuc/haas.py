@@ -130,7 +130,7 @@ _OWN: Mapping[float, GCode] = {
     **{number: bolt_holes(number) for number in (70, 71)},
     **refused("bolt holes on a line", _FIRST_HOLE, 72),
     **refused("probing", NO_PROBE, 35, 36, 136),
-    **refused("compensation in space", "the machine's tool does not tilt", 141, 143),
+    **refused("compensation in space", "G234 leads the tip", 141, 143),
     234: modal("length by H, the tip led while axes turn", "length", tool_tips.begin("G234")),
     254: modal(
         "work offset goes with the turned part", "dynamic offset", tool_tips.begin_dynamic_offset
@@ -266,6 +266,7 @@ _SHARED_EXAMPLES = {
     "arc_centre_moved_to_fit",
     "compensation_start",
     "compensation_corners",
+    "narrow_contour",
     "work_offsets",
     "chip_clearance",
     "main_ends_by_m99",

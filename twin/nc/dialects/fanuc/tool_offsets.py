@@ -23,6 +23,8 @@ from twin.nc.iso.tool_compensation import LEFT, RIGHT, set_length
 from twin.nc.text.blocks import Word
 
 LARGEST_OFFSET = 999
+BLOCKS_AHEAD = 3
+"""Among so many blocks of a contour the control finds an interference (parameter 19625)."""
 
 
 def geometry_of(control: Control, number: int, field: str) -> float | None:

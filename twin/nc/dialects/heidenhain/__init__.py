@@ -12,9 +12,10 @@ from twin.nc.dialects.heidenhain.memory import KlartextMemory, acts_on_lines, me
 from twin.nc.dialects.heidenhain.page import TABLES
 from twin.nc.dialects.heidenhain.statements import STATEMENTS, other_statement
 from twin.nc.dialects.heidenhain.syntax import SYNTAX
-from twin.nc.dialects.heidenhain.tool_tip import take_spatial_angles
+from twin.nc.dialects.heidenhain.tool_tip import begin_tcpm_with_feed, take_spatial_angles
 from twin.nc.iso import shared_marks
 from twin.nc.iso.base import spindle_speed
+from twin.nc.path.compensation.gouge import NEIGHBOURS
 from twin.nc.text.blocks import Word
 from twin.nc.text.syntax import Mark
 
@@ -47,6 +48,7 @@ HEIDENHAIN = Dialect(
     code_page="cp1252",
     syntax=SYNTAX,
     codes=Codes(
+        start_state={"look_ahead": NEIGHBOURS},
         groups=(),
         g={},
         start=(),
@@ -66,6 +68,7 @@ HEIDENHAIN = Dialect(
             "S": spindle_speed,
             **{name: compensation_word(side) for name, side in SIDES.items()},
             **dict.fromkeys(("M94A", "M94B", "M94C"), reduce_rotary),
+            "M128F": begin_tcpm_with_feed,
             "R+": refuse_paraxial,
             "R-": refuse_paraxial,
         },
@@ -97,6 +100,7 @@ HEIDENHAIN = Dialect(
             "R-": "one axis shorter by the radius",
             "S": "spindle speed",
             "M": "machine function",
+            "M128F": "M128 with the feed of its own moves",
             "MB": "way of M140; as MB MAX",
             "MBMAX": "M140 to the end of the travel",
             **{f"M94{axis}": f"M94 of the axis {axis} alone" for axis in "ABC"},

@@ -10,7 +10,7 @@ from twin.nc.control.control import Control
 from twin.nc.dialects.heidenhain.cycles.plane_directions import spatial
 from twin.nc.dialects.heidenhain.memory import memory_of
 from twin.nc.iso.tool_center import begin_tool_center, end_tool_center, point_by_words
-from twin.nc.text.blocks import Statement
+from twin.nc.text.blocks import Statement, Word
 
 _TCPM = re.compile(
     r"[ \t]*F[ \t]+TCP[ \t]+AXIS[ \t]+(?P<axis>POS|SPAT)[ \t]+PATHCTRL[ \t]+(?P<path>AXIS|VECTOR)"
@@ -23,6 +23,11 @@ def begin_tcpm(control: Control) -> None:
     """M128: F counts the path of the tip; A, B and C are axes of the machine."""
     memory_of(control).spatial = None
     begin_tool_center(control, "M128")
+
+
+def begin_tcpm_with_feed(control: Control, _word: Word) -> None:
+    """M128 F: the feed bounds moves by which the control follows an axis turned by hand, of which there are none here."""
+    begin_tcpm(control)
 
 
 def end_tcpm(control: Control) -> None:
