@@ -75,7 +75,7 @@ class KernelBuildHook(BuildHookInterface[Any]):
 
 
 def _requirements(file: Path) -> list[str]:
-    """The compilers whose kernels are in the wheel: others would compile them anew."""
+    """The compilers whose kernels are in the wheel: others would compile them again."""
     if not file.is_file():
         raise FileNotFoundError(f"{file}: does not say which compilers made the kernels beside it")
     return file.read_text(encoding="utf-8").split()

@@ -7,7 +7,7 @@ Every TOML file with a key ``program`` that pytest comes across becomes one test
 * ``--twin-machine NAME`` runs all of them on one machine;
 * ``--twin-dialect NAME`` reads all of them in one dialect;
 * ``--twin-baseline DIR`` holds them to the baselines stored there;
-* ``--twin-update-baseline`` stores these anew instead;
+* ``--twin-update-baseline`` stores these again instead;
 * ``--twin-strict`` turns the interpreter's warnings into errors.
 
 The plugin is loaded in every project whose environment has it. It stands outside the package
@@ -21,6 +21,7 @@ import os
 import subprocess
 import sys
 import tomllib
+import warnings
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -100,8 +101,12 @@ class JobItem(pytest.Item):
         if outcome["contour_um"] is not None:
             names = ("contour_um", "worst_line", "cycle_time_s")
             self.user_properties += [(name, outcome[name]) for name in names]
+        self.user_properties += [("scope", line) for line in outcome["scope"]]
+        if outcome["expected"] is not None:
+            self.user_properties.append(("expected", outcome["expected"]))
         if outcome["warnings"]:
-            self.add_report_section("call", "warnings", _told(outcome["warnings"]))
+            warning = JobWarning(_told(outcome["warnings"]))
+            warnings.warn_explicit(warning, None, str(self.path), 1)
         if outcome["verdict"] != "pass":
             raise JobError(_told(outcome["findings"]))
 
@@ -148,8 +153,12 @@ class JobItem(pytest.Item):
         return super().repr_failure(excinfo, style)
 
     def reportinfo(self) -> tuple[Path, int | None, str]:
-        """Where the test stands, for reports."""
+        """Where the test is, for reports."""
         return self.path, None, f"job {self.name}"
+
+
+class JobWarning(pytest.PytestWarning):
+    """What ``twin check`` warns of in a job."""
 
 
 class JobError(Exception):

@@ -2,7 +2,7 @@
 """Make the meshes of the shipped machines with trimesh: ``python models/make_meshes.py [MACHINE ...]``.
 
 Every part is a join of convex bodies and bodies of revolution, written as one STL per body and
-material into ``models/<machine>/assets``. All lengths are metres; parts are drawn where they stand
+material into ``models/<machine>/assets``. All lengths are metres; parts are drawn where they are
 with all axes at zero (z up from the floor, x to the right, y to the back, origin under the axis of
 the rotary table) and moved into the frame of the body that carries them.
 """

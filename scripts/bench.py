@@ -15,7 +15,7 @@ from benches.row import Row
 from rich.console import Console
 from rich.table import Table
 
-from twin.compilation.speed import VARIABLE
+from twin.nc.line_kernel.plain_state import VARIABLE
 
 BENCHES = Path(__file__).parent / "benches"
 

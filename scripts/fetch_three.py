@@ -34,7 +34,7 @@ NODE_SET_FILES = {
         )
     )
 }
-"""What the server of ``twin serve --opcua`` imports, numbered: each stands on those before it; OPC 40501-1 comes last."""
+"""What the server of ``twin serve --opcua`` imports, numbered: each builds on those before it; OPC 40501-1 comes last."""
 
 THREE_FILES = {
     "LICENSE": "LICENSE",

@@ -13,7 +13,7 @@ from hypothesis import HealthCheck, settings
 
 from twin import cli
 from twin.__main__ import COLLECT_AFTER
-from twin.compilation.speed import VARIABLE
+from twin.nc.line_kernel.plain_state import VARIABLE
 
 # What is compiled beside a run, and when it is ready, would differ from one run of the tests to the next.
 os.environ.setdefault(VARIABLE, "wait")

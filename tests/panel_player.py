@@ -282,7 +282,7 @@ class Player:
         low, high = 0.0, 200.0
         for _ in range(40):
             middle = 0.5 * (low + high)
-            place = room.machine.position - room.setup.tables.longer
+            place = room.machine.position - room.setup.tables.length_difference
             place[column] += direction * middle
             low, high = (low, middle) if work.touches(place) else (middle, high)
         return max(0.0, low - 0.005)

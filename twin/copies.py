@@ -48,7 +48,7 @@ def copied(thing: Thing, shared: Callable[[type], bool], memo: dict[int, Any]) -
     Args:
         thing: Holds no generator, and no function that closes over anything that changes.
         shared: Whether what has a type never changes: the copy holds the same one.
-        memo: As ``copy.deepcopy`` has it: what stands in the copy for each thing, by its id.
+        memo: As ``copy.deepcopy`` has it: what is in the copy for each thing, by its id.
     """
     seen: set[int] = set()
     waiting: list[object] = [thing]

@@ -99,7 +99,7 @@ class FeedEnv(gymnasium.Env[Observation, Action]):
         self._session = Session(self._session.prepared)
         later = int(self.np_random.integers(0, self._warm_up + 1))
         step = self._session.step(max(1, later))
-        return self._seen(step), self._told(step)
+        return self._seen(step), self._info(step)
 
     def step(self, action: Action) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """Go on for a period at an override."""
@@ -110,7 +110,7 @@ class FeedEnv(gymnasium.Env[Observation, Action]):
         reward = -self._servo_s * (len(beyond) + ERROR_WEIGHT * float(beyond.sum()))
         if session.alarm is not None:
             reward -= ALARM_COST
-        return self._seen(step), reward, session.done, False, self._told(step)
+        return self._seen(step), reward, session.done, False, self._info(step)
 
     def _seen(self, step: Step) -> Observation:
         samples = step.samples
@@ -131,7 +131,7 @@ class FeedEnv(gymnasium.Env[Observation, Action]):
         ]
         return np.clip(np.array(seen), 0.0, MOST_SEEN).astype(np.float32)
 
-    def _told(self, step: Step) -> dict[str, Any]:
+    def _info(self, step: Step) -> dict[str, Any]:
         alarm = self._session.alarm
         return {
             "time_s": self._session.time_s,

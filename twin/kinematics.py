@@ -1,13 +1,13 @@
 """How the axes of a machine carry the tool against the part: a chain of joints, as arrays.
 
-The chain leads from the tool over the machine's base to the part. Every joint is told as the motion of
+The chain leads from the tool over the machine's base to the part. Every joint is reported as the motion of
 the tool against the part that a positive machine coordinate brings (ISO 841), whether it carries the one
 or the other, so that one rule holds for tables and heads: a point of the tool is moved by one joint after
 the other, each about or along where that joint lies with all axes at zero (product of exponentials, Brockett
 1984; Lynch and Park, Modern Robotics, chapter 4). What results is where the point is, seen from the part.
 
 All is in the machine's frame: its axes are the directions of X, Y and Z, its origin is the spindle nose
-with all axes at zero. The part's frame here is fixed to the part and is the machine's while all axes stand at zero.
+with all axes at zero. The part's frame here is fixed to the part and is the machine's while all axes are at zero.
 """
 
 from typing import NamedTuple
@@ -140,7 +140,7 @@ def linear_axes(chain: Kinematics, points: _Floats, joints: _Floats, length: flo
 
 
 def counted_from(chain: Kinematics, zero: _Floats, length: float) -> Kinematics:
-    """The chain of a part that was measured with a tool while the rotary axes stood at a part zero.
+    """The chain of a part that was measured with a tool while the rotary axes were at a part zero.
 
     Its frame is that of the machine while the axes that turn the part stand there: their joints are told
     where they lie then, and their coordinates count from there. Its origin is the tip of the tool with X, Y

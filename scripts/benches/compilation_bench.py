@@ -1,7 +1,7 @@
 """The whole compilation, kernel by kernel: processor time of each on an empty folder.
 
 A kernel's time holds that of its parts, which have no compiled form of their own, and none of the kernels
-that it calls. Numba tells of both; the steps of its compiler are told apart in the last rows.
+that it calls. Numba reports both; the steps of its compiler are distinguished in the last rows.
 """
 
 import json

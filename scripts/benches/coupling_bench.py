@@ -29,20 +29,20 @@ def rows() -> Iterator[Row]:
     operation.speed = 3000.0
 
     def step(stock: StockTable | None) -> float:
-        felt = 0.0
+        loads = 0.0
 
         def run() -> None:
-            nonlocal felt
+            nonlocal loads
             process = None
             if stock is not None:
                 assert stock.cell is not None
                 frame = machine.part_frame
                 process = cutting_process(stock, stock.cell, operation, machine, frame, middle)
             for samples in simulate(machine, model, [points], process=process):
-                felt = 0.0 if samples.tool is None else float(np.abs(samples.tool.force).max())
+                loads = 0.0 if samples.tool is None else float(np.abs(samples.tool.force).max())
 
         faster = float(points.time[-1] - points.time[0]) / median_cpu_seconds(run)
-        assert (felt > 0.0) == (stock is not None)
+        assert (loads > 0.0) == (stock is not None)
         return faster
 
     for cell in CELLS:

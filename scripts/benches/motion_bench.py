@@ -12,7 +12,7 @@ from benches.row import Row, median_cpu_seconds
 
 from twin.machine.description.motion_limits import motion_limits
 from twin.motion.limits import MotionLimits
-from twin.motion.phase_planner import plan_phases
+from twin.motion.planner import plan_phases
 from twin.nc.canonical import Chunk
 from twin.run.preparation import Preparation, prepare
 

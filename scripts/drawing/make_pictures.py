@@ -18,7 +18,7 @@ from twin.machine.model.model import build_spec
 
 SIZE = (1280, 900)
 VIEWS = {
-    # look at, distance [m], azimuth, elevation [deg], and where the axes stand [mm or deg]
+    # look at, distance [m], azimuth, elevation [deg], and where the axes are [mm or deg]
     "mill4": ((0.06, 0.08, 1.22), 4.4, 56.0, -17.0, {"X": 60.0, "Y": -40.0, "Z": -430.0, "C": 25.0}),
     "mill3": ((0.06, 0.08, 1.22), 4.4, 56.0, -17.0, {"X": 60.0, "Y": -40.0, "Z": -430.0}),
     "mill4a": ((0.0, 0.05, 1.15), 2.9, 62.0, -18.0, {"X": 30.0, "Y": -20.0, "Z": -400.0, "A": 25.0}),

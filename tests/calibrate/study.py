@@ -30,7 +30,7 @@ from twin.logs.column_map import AxisColumns, ColumnTable
 from twin.logs.machine_log import AxisLog
 from twin.machine.description.config import AxisTable
 from twin.machine.load import read_machine
-from twin.machine.model.drives import swings_up, tune
+from twin.machine.model.drives import is_unstable, tune
 from twin.nc.canonical import FloatArray
 
 RATES = (50, 100, 250, 500, 1000, 4000)
@@ -82,7 +82,7 @@ def draw(random: np.random.Generator) -> Drawn:
         delay=float(random.choice([0.0, random.uniform(0.0, 0.005)])),
         **_extras(random),
     )
-    if swings_up(tune(_axis_with(truth), mass)):
+    if is_unstable(tune(_axis_with(truth), mass)):
         return draw(random)
     rate, kind = int(random.choice(RATES)), str(random.choice(["positions", "current", "force"]))
     asked = _course(random)

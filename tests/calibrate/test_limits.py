@@ -39,7 +39,7 @@ def course(*lengths: float) -> np.ndarray:
 def test_what_ramp_after_ramp_comes_to_is_a_limit(step: float) -> None:
     command = course(150.0, -150.0, 120.0, -120.0)
     command = np.round(command / step) * step if step else command
-    told = limits(command).told
+    told = limits(command).known
     assert told["velocity"] == pytest.approx(VELOCITY, rel=0.01)
     assert told["acceleration"] == pytest.approx(ACCELERATION, rel=0.03)
     assert told["jerk"] == pytest.approx(JERK, rel=0.06)
@@ -49,8 +49,8 @@ def test_ramps_that_differ_tell_no_limit() -> None:
     time = np.arange(0.0, 6.0, PERIOD)
     found = limits(40.0 * np.sin(time * (1.0 + time)))
     assert set(found.reached) == {"velocity", "acceleration", "jerk"}
-    assert not {"acceleration", "jerk"} & set(found.told)
+    assert not {"acceleration", "jerk"} & set(found.known)
 
 
 def test_a_slow_speed_is_a_feed_and_no_limit() -> None:
-    assert "velocity" not in limits(course(150.0, -150.0) / 5.0).told
+    assert "velocity" not in limits(course(150.0, -150.0) / 5.0).known

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from twin.check.expectation import held_to_expectation
 from twin.check.outcome import CheckOutcome, Finding
+from twin.check.program import held_to_expectation
 from twin.check.runner import check_program
 from twin.check.task import CheckSettings
 from twin.errors import ExitCode

@@ -24,8 +24,8 @@ class Change(NamedTuple):
     Attributes:
         file: Its name.
         what: In words.
-        old: What stands once in the file.
-        new: What stands there instead; nothing takes the line away.
+        old: What occurs once in the file.
+        new: What is there instead; nothing takes the line away.
     """
 
     file: str
@@ -34,7 +34,7 @@ class Change(NamedTuple):
     new: str
 
     def made_in(self, text: str) -> tuple[str, range]:
-        """The changed text, and the lines at which the change may be told.
+        """The changed text, and the lines at which the change may be reported.
 
         Raises:
             ValueError: What is to be changed does not stand there exactly once.
@@ -43,7 +43,7 @@ class Change(NamedTuple):
             raise ValueError(f"{self.file}: '{self.old}' stands there {text.count(self.old)} times")
         line = text[: text.index(self.old)].count("\n") + 1
         if self.new:
-            # A block that goes nowhere any more is lost, which is told at the next one.
+            # A block that goes nowhere any more is lost, which is reported at the next one.
             return text.replace(self.old, self.new), range(line, line + 2 + self.new.count("\n"))
         lines = text.splitlines(keepends=True)
         # What is lost is told where it stood: at the next block, or at the table of a key.

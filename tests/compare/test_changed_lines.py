@@ -3,7 +3,7 @@
 from twin.compare.changed_lines import (
     changed_lines,
     changed_offsets,
-    told_by_line,
+    differences_by_line,
     without_comments,
 )
 from twin.compare.verdict import Reason
@@ -43,7 +43,7 @@ def test_what_a_word_of_a_cycle_changes_is_told_once_at_its_line():
         Reason("baseline-path", f"ends at Z{z}", line, 0.0) for line in (3, 4, 5) for z in (1, 2)
     ]
     found += [Reason("baseline-feed", "feed 2", 5, 0.0)]
-    assert list(told_by_line(found, [3])) == [
+    assert list(differences_by_line(found, [3])) == [
         Reason("baseline-path", "ends at Z1 (and 5 more of this change)", 3, 0.0),
         Reason("baseline-feed", "line 5 feed 2", 3, 0.0),
     ]
@@ -51,10 +51,10 @@ def test_what_a_word_of_a_cycle_changes_is_told_once_at_its_line():
 
 def test_a_round_of_a_loop_before_its_changed_line_is_told_there():
     found = [Reason("baseline-path", f"ends at X{x}", 2, 0.0) for x in (1, 2, 3)]
-    (only,) = told_by_line(found, [4])
+    (only,) = differences_by_line(found, [4])
     assert only == Reason("baseline-path", "line 2 ends at X1 (and 2 more of this change)", 4, 0.0)
 
 
 def test_without_a_changed_line_all_are_told():
     found = [Reason("baseline-path", "ends at X1", 2, 0.0), Reason("baseline-path", "lost", 3, 0.0)]
-    assert list(told_by_line(found, [])) == found
+    assert list(differences_by_line(found, [])) == found

@@ -21,9 +21,8 @@ from twin.compare.circular.circle_kernels import (
     widest_gap,
 )
 from twin.compare.contour.blocks import BlockCollector
-from twin.compare.contour.corner_kernels import pass_corners
-from twin.compare.statistics import RESOLUTION, Distribution
-from twin.compare.statistics_kernels import LEAST_EXPONENT
+from twin.compare.contour.corners import pass_corners
+from twin.compare.statistics import LEAST_EXPONENT, RESOLUTION, Distribution
 from twin.nc.canonical import FloatArray, IntArray
 
 checked = settings(max_examples=examples(40), derandomize=True, deadline=None)

@@ -7,10 +7,10 @@ import pytest
 
 from tests.compare.paths import AXES, UP, arc, line, moves_of
 from tests.compare.runs import FRAME, PART_ZERO, samples, setpoints
+from twin.commands.export import csv_header, export_csv
 from twin.compare.track_comparison import compare_tracks
 from twin.compare.tracks import read_track
 from twin.errors import RecordingError, UsageError
-from twin.recording.export import csv_header, export_csv
 from twin.recording.reader import RecordingHeader, open_recording, record
 
 CORNER = np.array([50.0, 0, 0, 0])

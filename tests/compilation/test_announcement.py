@@ -1,4 +1,4 @@
-"""The first compilation is told of, once, and a cached kernel is not."""
+"""The first compilation is reported, once, and a cached kernel is not."""
 
 import os
 import subprocess

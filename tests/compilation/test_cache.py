@@ -1,4 +1,4 @@
-"""A kernel that another one calls is compiled anew when it has changed, and so is the other one."""
+"""A kernel that another one calls is compiled again when it has changed, and so is the other one."""
 
 import os
 import shutil

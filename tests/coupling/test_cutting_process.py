@@ -47,7 +47,7 @@ def run(
     return join(list(simulate(machine, model, chunks, process=cut)))
 
 
-def felt(samples: Samples) -> ToolLoad:
+def loads(samples: Samples) -> ToolLoad:
     assert samples.tool is not None
     return samples.tool
 
@@ -60,8 +60,8 @@ def test_chunks_change_no_bit() -> None:
     again = run(parts, process(machine))
     np.testing.assert_array_equal(whole.joint_position, again.joint_position)
     for name in ("force", "chip", "deflection", "spindle_load", "peak_force"):
-        np.testing.assert_array_equal(getattr(felt(whole), name), getattr(felt(again), name))
-    assert felt(whole).force.any()
+        np.testing.assert_array_equal(getattr(loads(whole), name), getattr(loads(again), name))
+    assert loads(whole).force.any()
 
 
 def test_a_tool_in_the_air_moves_the_machine_as_none_does() -> None:
@@ -69,7 +69,7 @@ def test_a_tool_in_the_air_moves_the_machine_as_none_does() -> None:
     away = STOCK.model_copy(update={"position": (0.0, 200.0, 0.0)})
     with_process = run([WAY], process(machine, stock=away))
     np.testing.assert_array_equal(with_process.joint_position, run([WAY], None).joint_position)
-    assert not felt(with_process).force.any()
+    assert not loads(with_process).force.any()
 
 
 def test_the_axes_are_pushed_by_what_the_teeth_feel() -> None:
@@ -78,7 +78,7 @@ def test_the_axes_are_pushed_by_what_the_teeth_feel() -> None:
     free = run([WAY], None)
     off = cut.joint_position - free.joint_position
     late = slice(-300, None)
-    force = felt(cut).force[late].mean(axis=0)
+    force = loads(cut).force[late].mean(axis=0)
     assert force[0] < 0.0 < force[1], "held back along X, pushed to the left"
     # A loop without integral action gives way by force over gain.
     gain = np.array([loop.position_gain for loop in drives(machine, build_spec(machine).compile())])
@@ -87,7 +87,7 @@ def test_the_axes_are_pushed_by_what_the_teeth_feel() -> None:
 
 def test_the_tool_bends_by_the_mean_force_over_its_stiffness() -> None:
     samples = run([WAY], process(shipped_machine()))
-    load, late = felt(samples), slice(-100, None)
+    load, late = loads(samples), slice(-100, None)
     # A turn takes 20 ms: its mean is the mean of 100 samples.
     meant = tool_strength(TOOL).compliance * load.force[late, :2].mean(axis=0)
     np.testing.assert_allclose(load.deflection[late, :2].mean(axis=0), meant, rtol=0.02)
@@ -109,7 +109,7 @@ def test_halving_the_step_changes_little() -> None:
     )  # fmt: skip
     coarse = run([WAY], process(machine), machine)
     halved = run([fine], process(finer), finer)[::2]
-    bend, bend_halved = felt(coarse).deflection, felt(halved).deflection
+    bend, bend_halved = loads(coarse).deflection, loads(halved).deflection
     assert np.abs(bend).max() > 0.02
     assert np.sqrt(np.mean((bend - bend_halved) ** 2)) < 0.02 * np.abs(bend).max()
     moved = np.abs(coarse.joint_position - halved.joint_position)[:, :3].max()
@@ -117,7 +117,7 @@ def test_halving_the_step_changes_little() -> None:
 
 
 def walls(passes: list[float]) -> list[float]:
-    """How far a wall stands off after each pass along it at an offset [mm]."""
+    """How far a wall is off after each pass along it at an offset [mm]."""
     machine = shipped_machine()
     slender = ToolTable(number=1, diameter=10.0, teeth=4, flute=40.0, free_length=55.0, length=90.0)
     narrow = StockTable(
@@ -153,7 +153,7 @@ def test_a_broken_tool_cuts_no_more() -> None:
     machine = shipped_machine()
     weak = TOOL.model_copy(update={"force_limit": 300.0})
     cut = process(machine, tool=weak)
-    load = felt(run([WAY[:600], WAY[600:]], cut))
+    load = loads(run([WAY[:600], WAY[600:]], cut))
     (broken,) = cut.breaks
     row = int(np.argmax(load.broken))
     assert load.broken[row:].all()
@@ -182,7 +182,7 @@ def test_a_live_machine_feels_the_cut_as_a_run_does() -> None:
     parts = [live.follow(WAY[first : first + 10]) for first in range(1, len(WAY), 10)]
     followed = join(parts)
     np.testing.assert_array_equal(followed.joint_position, whole.joint_position[1:])
-    np.testing.assert_array_equal(felt(followed).force, felt(whole).force[1:])
+    np.testing.assert_array_equal(loads(followed).force, loads(whole).force[1:])
 
 
 def test_a_stalled_spindle_stops_a_live_machine() -> None:

@@ -68,7 +68,7 @@ def test_what_cannot_be_reckoned_is_refused() -> None:
 
 
 def test_on_five_axes_the_loads_do_the_work_of_the_force(samples: Motion) -> None:
-    """Virtual work: what all axes do is the force along the way of the tip over the part."""
+    """Virtual work: what all axes do is the force along the path of the tip over the part."""
     setup = on_machine(trunnion())
     frame = PartFrame(None, (0.0, 0.0), chain=setup.chain).at(setup.zero, FIRST_LENGTH)
     tool = TOOL.model_copy(update={"length": FIRST_LENGTH})

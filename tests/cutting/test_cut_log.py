@@ -91,7 +91,7 @@ def test_without_a_force_none_is_told() -> None:
 
 def test_of_very_many_gouges_the_deepest_are_told_of_in_order() -> None:
     chance = random.Random(5)  # noqa: S311 (the same)
-    log, depths = EventLog(told=20), []
+    log, depths = EventLog(most=20), []
     stretches, _, _ = chunk(chance, list(range(300)))
     for line in range(300):
         depths.append(chance.uniform(0.1, 5.0))

@@ -41,7 +41,7 @@ def test_tools_change_between_moves(dialect: str) -> None:
     found = summary("G0 X1\nG1 X2 F100\nT4\nG1 X3\nM6\nG1 X4\nT1 M6\nG0 X5\nM30\n", dialect=dialect)
     numbers = [found.tools.at(move).number for move in range(-1, 5)]
     assert numbers == [1, 1, 1, 1, 4, 1]
-    assert found.tools.longer(found.tools.at(3)) == 15.0
+    assert found.tools.length_difference(found.tools.at(3)) == 15.0
     assert [(move, line, tool.number) for move, line, tool in found.tools.changes] == [
         (3, 5, 4), (4, 7, 1),
     ]  # fmt: skip

@@ -7,8 +7,8 @@ import pytest
 from examples import examples
 
 from twin.cutting.height_map import HeightMap
+from twin.cutting.kernels.simplify import simplify
 from twin.cutting.kernels.sweep import Marks, Removal
-from twin.cutting.kernels.thin import thin
 from twin.cutting.kernels.wall_distance import no_walls_known
 from twin.cutting.outline import Outline
 from twin.cutting.sweeping import Rectangle, sweep_lines
@@ -161,7 +161,7 @@ def test_thin_agrees_with_plain_python(seed: int) -> None:
     path = np.cumsum(np.repeat(random.normal(size=(12, 3)), 7, axis=0), axis=0)
     path += random.normal(scale=1e-3, size=path.shape)
     group = np.arange(len(path)) // 20
-    chosen = thin(path[None], group, 2e-3, 1e9, 10_000)
+    chosen = simplify(path[None], group, 2e-3, 1e9, 10_000)
     assert chosen.tolist() == thin_in_python(path, group.astype(np.float64), 2e-3)
     assert len(chosen) < len(path)
 
@@ -169,11 +169,15 @@ def test_thin_agrees_with_plain_python(seed: int) -> None:
 def test_thin_keeps_standstill_reversal_and_limits() -> None:
     still = np.zeros((10, 3))
     group = np.zeros(10, np.int64)
-    assert thin(still[None], group, 1e-3, 1.0, 100).tolist() == [0, 9]
+    assert simplify(still[None], group, 1e-3, 1.0, 100).tolist() == [0, 9]
     there_and_back = np.array([[x, 0.0, 0.0] for x in (0, 1, 2, 3, 2, 1)])
-    assert 3 in thin(there_and_back[None], group[:6], 1e-3, 100.0, 100)
+    assert 3 in simplify(there_and_back[None], group[:6], 1e-3, 100.0, 100)
     ahead = np.array([[x, 0.0, 0.0] for x in range(10)], np.float64)
-    assert thin(ahead[None], group, 1e-3, 3.0, 100).tolist() == [0, 3, 6, 9]
-    assert thin(ahead[None], group, 1e-3, 100.0, 2).tolist() == [0, 2, 4, 6, 8, 9]
-    assert thin(ahead[None], group + (np.arange(10) > 4), 1e-3, 100.0, 100).tolist() == [0, 4, 9]
-    assert thin(still[:1][None], group[:1], 1e-3, 1.0, 100).tolist() == [0]
+    assert simplify(ahead[None], group, 1e-3, 3.0, 100).tolist() == [0, 3, 6, 9]
+    assert simplify(ahead[None], group, 1e-3, 100.0, 2).tolist() == [0, 2, 4, 6, 8, 9]
+    assert simplify(ahead[None], group + (np.arange(10) > 4), 1e-3, 100.0, 100).tolist() == [
+        0,
+        4,
+        9,
+    ]
+    assert simplify(still[:1][None], group[:1], 1e-3, 1.0, 100).tolist() == [0]

@@ -16,7 +16,7 @@ from twin.nc.canonical import FloatArray
 CELL, RADIUS, DEPTH = 0.5, 5.0, 2.0
 TOOL = ToolTable(number=1, diameter=2.0 * RADIUS)
 CLOSE = 0.01
-"""How close to a wall the material is told from the free [mm]."""
+"""How close to a wall the material is distinguished from the free [mm]."""
 
 
 def way(*corners: tuple[float, float], depth: float = DEPTH) -> FloatArray:
@@ -30,7 +30,7 @@ def way(*corners: tuple[float, float], depth: float = DEPTH) -> FloatArray:
 
 
 def height(part: Plate, x: float, y: float) -> float:
-    """What stands at a place, above the floor of the cut; NaN: no wall tells."""
+    """What is at a place, above the floor of the cut; NaN: no wall tells."""
     return height_by_wall(part.material, x, y, (x, y), -DEPTH)
 
 

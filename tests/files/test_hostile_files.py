@@ -1,6 +1,6 @@
 """Damaged and hostile files of every kind are taken or refused with a sentence.
 
-``scripts/fuzz KIND`` tries as many as there is time for; what it found stands here by name.
+``scripts/fuzz KIND`` tries as many as there is time for; what it found is here by name.
 """
 
 import logging
@@ -16,8 +16,8 @@ from twin.files.shipped import machine_file
 from twin.files.stl import read_stl
 from twin.machine.load import read_machine
 from twin.machine.model.model import build_spec
+from twin.recording.checksum import LENGTH as SEAL_LENGTH
 from twin.recording.reader import open_recording
-from twin.recording.seal import LENGTH as SEAL_LENGTH
 
 
 @pytest.mark.parametrize(

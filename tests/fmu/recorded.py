@@ -5,7 +5,7 @@ from typing import NamedTuple
 from twin.nc.canonical import FloatArray
 
 START = (0.0, 0.0, -150.0, 0.0)
-"""Where the axes stand before."""
+"""Where the axes are before."""
 
 
 class Recorded(NamedTuple):

@@ -34,7 +34,7 @@ def motion_of(machine: Machine) -> LockstepMotion:
 
 
 def commanded(speed: float, seconds: float) -> FloatArray:
-    """X along a line, from rest; it stops at once and stands a moment."""
+    """X along a line, from rest; it stops at once and waits a moment."""
     way = line(0, speed, seconds, rise=0.1).position
     return START + np.concatenate([way, np.repeat(way[-1:], STANDING, axis=0)])
 

@@ -11,8 +11,7 @@ from hypothesis import strategies as st
 
 from twin.columns import join
 from twin.motion.limits import MotionLimits
-from twin.motion.phase_planner import plan_phases
-from twin.motion.planner import plan
+from twin.motion.planner import plan, plan_phases
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import (
     NO_BLOCK_NUMBER,

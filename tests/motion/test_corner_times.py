@@ -12,7 +12,7 @@ from twin.files.shipped import machine_file, resource_root
 from twin.machine.description.motion_limits import motion_limits
 from twin.machine.load import read_machine
 from twin.motion.limits import MotionLimits
-from twin.motion.phase_planner import plan_phases
+from twin.motion.planner import plan_phases
 from twin.nc.canonical import Chunk, Corner, FloatArray
 from twin.run.preparation import prepare
 

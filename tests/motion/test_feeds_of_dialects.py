@@ -8,8 +8,7 @@ import pytest
 from motion_programs import mill
 
 from twin.columns import join
-from twin.motion.phase_planner import plan_phases
-from twin.motion.planner import plan
+from twin.motion.planner import plan, plan_phases
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.run.dry_run import interpreted
 from twin.run.preparation import Preparation, prepare

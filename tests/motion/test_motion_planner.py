@@ -29,8 +29,7 @@ from motion_programs import (
 from twin.columns import join
 from twin.motion.blocks.blocks import SHORTEST
 from twin.motion.limits import MotionLimits
-from twin.motion.phase_planner import plan_phases
-from twin.motion.planner import plan
+from twin.motion.planner import plan, plan_phases
 from twin.nc.canonical import Chunk, Corner, Dwell, FloatArray, Function, Moves
 
 

@@ -2,7 +2,7 @@
 
 Those in a folder ``strict`` earn a warning, which counts as an error there.
 
-``python -m tests.nc.test_bad`` writes the expected diagnostics anew; look at the difference.
+``python -m tests.nc.test_bad`` writes the expected diagnostics again; look at the difference.
 """
 
 import dataclasses

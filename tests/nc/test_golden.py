@@ -1,6 +1,6 @@
 """Golden files: the canonical moves of every shipped program and of every rule.
 
-``python -m tests.nc.test_golden`` writes them anew; look at the difference before committing.
+``python -m tests.nc.test_golden`` writes them again; look at the difference before committing.
 """
 
 import json
@@ -21,12 +21,16 @@ GOLDEN = ROOT / "tests" / "golden"
 RULES = sorted(GOLDEN.glob("*/*/*.nc"))
 NEEDS_FIVE_AXES = (
     "G43.4",
+    "G43.5",
     "G53.1",
+    "G53.6",
     "G68.2",
     "G234",
     "G254",
     "G255",
+    *("G253", "G268", "G269"),
     "TRAORI",
+    *("ORIWKS", "ORIMKS", "ORIVECT", "ORIPLANE", "ORIAXES"),
     "tip_led_by_kinematics",
 )
 """Programs that lead the tip, or tilt the plane."""

@@ -1,7 +1,7 @@
 """The slips that are made most, as programs of a line or two, each with the diagnostic that it earns.
 
 A file of ``tests/bad/slips`` holds those of a dialect: the program, its diagnostic set in behind it, a blank line.
-``python -m tests.nc.test_slips`` writes the diagnostics anew; read them as a beginner would.
+``python -m tests.nc.test_slips`` writes the diagnostics again; read them as a beginner would.
 """
 
 from pathlib import Path

@@ -66,7 +66,7 @@ kv = 7.5
 TOOL = ToolTable(number=1, diameter=10.0, length=50.0)
 STOCK = StockTable(shape="box", size=(120.0, 80.0, 20.0), cell=0.5)
 ZERO = np.array([0.0, 0.0, -230.0, 15.0])
-"""The table top is 250 mm below the tip of the tool at Z 0; the stock stands on it."""
+"""The table top is 250 mm below the tip of the tool at Z 0; the stock is on it."""
 SOURCE = ("G0 X0 Y0 Z50", "G1 X-40 Z-5 ; прямая", "G1 X40", "G1 C90 ; kružnice")
 SUMMARY = ProgramSummary(tools=ToolPlan((TOOL,)), rapid=np.array([True, False, False, False]))
 
@@ -142,7 +142,7 @@ def scene(recording: Recording, spec: mujoco.MjSpec, machine: Machine) -> Scene:
 
 
 def slot(machine: Machine) -> tuple[RecordingHeader, Samples]:
-    """The header and the samples of the program's recording; the joints stand off a little."""
+    """The header and the samples of the program's recording; the joints are off a little."""
     position, line = program()
     position = position + ZERO
     velocity = np.gradient(position, 1e-3, axis=0)

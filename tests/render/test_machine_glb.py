@@ -98,9 +98,9 @@ def test_a_part_that_is_drawn_as_a_mesh_is_closed_and_where_the_part_s_frame_is(
     skins: list[trimesh.Trimesh] = []
     for name in (f"{described['part_as_cut']}raw", f"{PART_PREFIX}machined"):
         placed, geometry = scene.graph.get(name)
-        skin = scene.geometry[geometry]
-        there = trimesh.transform_points(skin.vertices, np.linalg.inv(frame) @ placed)
-        skins.append(trimesh.Trimesh(there, skin.faces))
+        texture = scene.geometry[geometry]
+        there = trimesh.transform_points(texture.vertices, np.linalg.inv(frame) @ placed)
+        skins.append(trimesh.Trimesh(there, texture.faces))
     assert skins[1].area == pytest.approx(2.0 * np.pi * 3.0 * 30.0, rel=0.03)
     raw, machined = skins
     whole = trimesh.Trimesh(

@@ -10,7 +10,7 @@ import trimesh
 from command_line import Twin
 from PIL import Image
 
-from twin.render.drawing import filament
+from twin.render.drawing import renderer as renderers
 from twin.render.drawing.gl import FILAMENT, Probe, probe
 
 PROGRAM = """S2000 M3
@@ -122,7 +122,7 @@ def test_filament_draws_by_choice(recorded: Path, twin: Twin, tmp_path: Path) ->
 def test_filament_without_a_driver_is_refused(
     recorded: Path, twin: Twin, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(filament, "probe", lambda name: Probe(name, error="no driver"))
+    monkeypatch.setattr(renderers, "probe", lambda name: Probe(name, error="no driver"))
     done = twin("render", recorded, "--out", tmp_path, "--renderer", "filament", "--at", 0.5)
     assert done.code == 2
     assert "apt-get install libvulkan1 mesa-vulkan-drivers" in done.stderr

@@ -100,7 +100,10 @@ TOLD: dict[str, tuple[str, dict[str, str], str, int]] = {
         SIDE, {"more": '[[fixtures]]\nname = "post"\nsize = [20, 20, 120]\nposition = [42, 40, 0]'},
         "collision", 10,
     ),
-    "direction too strict": (SIDE, {"more": "[tolerance]\ndirection_mdeg = 0.001"}, "direction_mdeg", 14),
+    "direction too strict": (
+        LED.replace("G1 X-45 F800", "G1 X-45 B30 F3000"),
+        {**HEAD, "more": "[tolerance]\ndirection_mdeg = 0.001"}, "direction_mdeg", 8,
+    ),
     "direction without a tilt": (
         "G90 G94 T1 M6\nG43 H1\nS6000 M3\nG0 X-35. Y0.\nG0 Z-2.\nG1 X35. F600.\nG0 Z20.\nM30\n",
         {**PLATE, "top": "", "more": "[tolerance]\ndirection_mdeg = 5.0"}, "direction_mdeg", 0,

@@ -1,4 +1,4 @@
-"""Near misses as they are told."""
+"""Near misses as they are reported."""
 
 from pathlib import Path
 

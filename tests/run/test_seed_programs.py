@@ -24,7 +24,7 @@ FINAL = {
     },
     "mefi/helix": {"X": 200.0, "Y": 0.0, "Z": 22.575},
 }
-"""Where the axes stand in the end, as the seeds say it: the table's physical angle, the helix."""
+"""Where the axes are in the end, as the seeds say it: the table's physical angle, the helix."""
 
 
 def name_of(job: Path) -> str:

@@ -1,4 +1,4 @@
-"""The worst places of a run are told in the coordinates that the control shows."""
+"""The worst places of a run are reported in the coordinates that the control shows."""
 
 from pathlib import Path
 

@@ -33,7 +33,7 @@ WATCHED_S = 60.0
 TICK_S = 0.01
 """Between two observations of an axis."""
 LATEST_S = 0.5
-"""How long after its time stamp an observation may be told, in the median [s]."""
+"""How long after its time stamp an observation may be reported, in the median [s]."""
 BUFFER = 1 << 14
 """Observations that the agent remembers: soon as many as there can be, so that its memory has its size."""
 FULL_S = 60.0

@@ -1,4 +1,4 @@
-"""A training room seen by a monitor: what is done in it is told, and nothing can be done to it."""
+"""A training room seen by a monitor: what is done in it is reported, and nothing can be done to it."""
 
 import asyncio
 

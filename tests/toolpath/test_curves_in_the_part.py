@@ -18,18 +18,20 @@ PROGRAMS = {
 
 @pytest.mark.parametrize(("block", "kind"), PROGRAMS.values(), ids=PROGRAMS)
 @pytest.mark.parametrize("longer", [0.0, 15.0])
-def test_the_path_in_the_part_is_the_programmed_one(block: str, kind: int, longer: float) -> None:
+def test_the_path_in_the_part_is_the_programmed_one(
+    block: str, kind: int, length_difference: float
+) -> None:
     setup = on_machine(trunnion())
-    tool = 2 if longer else 1
+    tool = 2 if length_difference else 1
     text = f"O1\nT{tool} M6\nG43.4 H{tool}\nG0 X0 Y0 Z0\n{block}\nM30\n"
     outcome = run(text, "fanuc", settings(setup))
     assert outcome.error is None, outcome.error
     moves = outcome.moves[outcome.moves.shape == Shape.CURVE]
     frame = PartFrame(None, (0.0, 0.0), chain=trunnion()).at(setup.zero, FIRST_LENGTH)
-    path = path_columns(moves, frame, setup.zero, np.full(len(moves), longer))
+    path = path_columns(moves, frame, setup.zero, np.full(len(moves), length_difference))
     assert set(path.kind.tolist()) == {kind}
     ends = ends_of(path)
-    tips = frame.position(moves.end + setup.zero, longer)
+    tips = frame.position(moves.end + setup.zero, length_difference)
     assert np.abs(ends.point - tips).max() < 1e-9
     # Consecutive parts go on where, and in the direction in which, the one before has ended.
     assert np.abs(path.origin[1:] + path.first[1:] - ends.point[:-1]).max() < 1e-9

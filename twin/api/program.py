@@ -47,7 +47,7 @@ def prepared(
         assuming: Stock, tools and zero of a program without a job are assumed, as ``twin run`` does.
 
     Raises:
-        UsageError: A file is missing or wrong, or the dialect cannot be told.
+        UsageError: A file is missing or wrong, or the dialect cannot be determined.
         ProgramError: The program is wrong.
     """
     if isinstance(program, JobFile):

@@ -263,6 +263,10 @@ class Result:
             yield "removed", f"{self.outcome.cut.removed_mm3:,.0f} mm³"
         for alarm in self.alarms:
             yield "alarm", f"{alarm.code} (line {alarm.line}): {alarm.message}"
+        for reason in self.outcome.verdict.reasons[len(self.alarms) :]:
+            yield "fails", f"{reason.what} (line {reason.line}): {reason.message}"
+        for warning in self.warnings:
+            yield "warning", f"{warning.code} (line {warning.line}): {warning.message}"
 
     def __repr__(self) -> str:
         told = ", ".join(

@@ -41,7 +41,7 @@ def sweep(
 
     Returns:
         A row for each combination, in the order of their product, with a column for each key, ``verdict``,
-        ``contour_um``, ``worst_line``, ``cycle_time_s``, ``findings``.
+        ``contour_um``, ``worst_line``, ``cycle_time_s``, ``findings``, ``warnings``.
 
     Raises:
         UsageError: The job is missing, a key or value is none, or pandas is not installed.
@@ -73,4 +73,5 @@ def _row(outcome: CheckOutcome) -> dict[str, object]:
         "worst_line": outcome.worst_line,
         "cycle_time_s": outcome.cycle_time_s,
         "findings": "; ".join(str(found) for found in outcome.findings),
+        "warnings": "; ".join(str(found) for found in outcome.warnings),
     }

@@ -12,12 +12,12 @@ from twin.logs.machine_log import AxisLog
 from twin.nc.canonical import BoolArray, FloatArray
 
 _NEIGHBOURS = 5
-"""Samples whose median a spike stands off."""
+"""Samples whose median a spike is off."""
 _SPIKE = 8.0
 """Times the 97th percentile of all distances from that median."""
 _ORDINARY = 0.97
 _FEWER = 0.02
-"""What stands off in a larger share of samples is no spike."""
+"""What is off in a larger share of samples is no spike."""
 _JUMP = 6.0
 """Times what an ordinary step of the following error differs from those beside it."""
 _LEVEL = 10
@@ -29,7 +29,7 @@ _OVER = 10
 _HELD = 0.3
 """Share of moving samples that repeat the one before, above which a column is held throughout."""
 _SINGLE = 0.005
-"""Share above which single repetitions are told."""
+"""Share above which single repetitions are reported."""
 _CUT = 5
 """Samples in a row at the very end of a force's range that are cut off."""
 _RECOVERS_S = 0.15
@@ -184,7 +184,7 @@ def _held(
 def _cut_off(
     name: str, values: FloatArray, unit: str, time: FloatArray, sound: Sound
 ) -> list[Finding]:
-    """Leave out where a force stands at the very end of its range, and positions until it has settled."""
+    """Leave out where a force is at the very end of its range, and positions until it has settled."""
     findings = []
     span = float(np.ptp(values))
     for sense, word in ((1.0, "above"), (-1.0, "below")):

@@ -88,7 +88,9 @@ def _judged(parameters: Parameters, piece: Stretch) -> _Judged:
     if force is None:
         return _Judged(*positions, _NOTHING, _NOTHING, _NOTHING, _NOTHING)
     given = model.current if piece.force is None else model.force
-    return _Judged(*positions, piece.time[piece.felt], force, given[piece.felt], speed[piece.felt])
+    return _Judged(
+        *positions, piece.time[piece.measured], force, given[piece.measured], speed[piece.measured]
+    )
 
 
 def _slow_figures(item: PreparedLog, name: str, parameters: Parameters) -> LogFigures:
@@ -98,7 +100,7 @@ def _slow_figures(item: PreparedLog, name: str, parameters: Parameters) -> LogFi
     ramps = None
     if len(logged) and _rms(logged):
         ramps = SlowFigures(_rms(logged), _rms(logged - model), len(logged))
-    whole = (axis.command - axis.actual)[slow.told]
+    whole = (axis.command - axis.actual)[slow.known]
     loop = (1.0 - parameters.velocity_feedforward) / kv_per_second(parameters.kv)
     force, moves = slow_force(slow, parameters, axis.kind)
     correlation, shown, current = None, _NOTHING, _NOTHING
@@ -117,7 +119,7 @@ def _slow_figures(item: PreparedLog, name: str, parameters: Parameters) -> LogFi
         item.log.time[moves],
         slow.speed[rows],
     )
-    left = whole - slow.speed[slow.told] * (loop + parameters.delay)
+    left = whole - slow.speed[slow.known] * (loop + parameters.delay)
     return LogFigures(
         item.log.name, item.role, name, axis.kind, _rms(whole), _rms(left), None, correlation,
         ramps, course,

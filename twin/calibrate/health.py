@@ -29,7 +29,7 @@ SLOW_S = 0.025
 SHORTEST = 50
 """Samples of a stretch that is fitted."""
 _JITTER = 0.02
-"""Standard deviation of the steps of a clock, in periods, from which it is told as uneven."""
+"""Standard deviation of the steps of a clock, in periods, from which it is reported as uneven."""
 _SKEWED_S = 2e-4
 """Columns that were taken less apart count as taken together [s]."""
 _BANDS, _BAND = (0.12, 0.26, 0.42), 0.08

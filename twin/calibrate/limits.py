@@ -32,11 +32,11 @@ class Limits:
 
     Attributes:
         reached: Greatest velocity, acceleration and jerk [mm or deg, per s, s², s³].
-        told: Those that ramp after ramp comes to.
+        known: Those that ramp after ramp comes to.
     """
 
     reached: Mapping[str, float]
-    told: Mapping[str, float]
+    known: Mapping[str, float]
 
 
 def planner_limits(
@@ -59,17 +59,17 @@ def planner_limits(
             ramps.setdefault(name, []).extend(_peaks(values))
     peaks = {name: sorted(found, reverse=True) for name, found in ramps.items() if found}
     reached = {name: found[0] for name, found in peaks.items()}
-    told = {
+    known = {
         name: float(np.median(found[:_OFTEN]))
         for name, found in peaks.items()
         if len(found) >= _OFTEN and found[_OFTEN - 1] > _ALIKE * found[0]
     }
     longest = max((period for _, period in pieces), default=0.0)
-    if "jerk" in told and reached["acceleration"] < _STEEP * longest * told["jerk"]:
-        told.pop("jerk")
-    if told.get("velocity", 0.0) < _RAPID * base.velocity:
-        told.pop("velocity", None)
-    return Limits(reached, told)
+    if "jerk" in known and reached["acceleration"] < _STEEP * longest * known["jerk"]:
+        known.pop("jerk")
+    if known.get("velocity", 0.0) < _RAPID * base.velocity:
+        known.pop("velocity", None)
+    return Limits(reached, known)
 
 
 def _derivative(command: FloatArray, order: int, period_s: float) -> FloatArray:

@@ -16,7 +16,7 @@ from twin.version import __version__
 
 
 def machine_text(result: Calibration, *, base: str, name: str) -> str:
-    """A machine file that stands on its base.
+    """A machine file that is based on another.
 
     Args:
         result: The calibration.
@@ -68,8 +68,8 @@ def _axis_lines(axis: AxisResult) -> Iterator[str]:
                 yield f"current_scale = {scale}    # not determined: what the friction stands on"
     yield from give
     for name, value in axis.limits.reached.items():
-        if name in axis.limits.told:
-            limit = _number(axis.limits.told[name])
+        if name in axis.limits.known:
+            limit = _number(axis.limits.known[name])
             yield f"{name} = {limit}    # what the commands come to again and again"
         else:
             yield f"# {name} as in the base: the commands reach {value:.5g}, but no limit"

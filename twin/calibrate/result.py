@@ -219,7 +219,7 @@ def _axis_contract(axis: AxisResult) -> dict[str, object]:
         },
         "undetermined": dict(fit.undetermined),
         "limits": dict(axis.limits.reached),
-        "limits_told": dict(axis.limits.told),
+        "limits_told": dict(axis.limits.known),
         "correlations": {
             "names": list(fit.names),
             "matrix": [[round(float(value), 4) for value in row] for row in fit.correlations],

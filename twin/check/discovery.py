@@ -4,10 +4,10 @@ import glob
 import os
 import re
 import tomllib
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from pathlib import Path
 
-from twin.errors import UsageError
+from twin.errors import TwinError, UsageError
 
 NC_SUFFIXES = frozenset(
     {".nc", ".cnc", ".ngc", ".tap", ".mpf", ".spf", ".iso", ".gcode", ".eia", ".min", ".h"}
@@ -52,17 +52,49 @@ def find_programs(paths: Iterable[str | Path]) -> list[Path]:
     return list(found)
 
 
-def checkable(files: Iterable[Path]) -> list[Path]:
-    """Job files and programs among files of any kind; a program that one of these jobs runs is left out.
+def checkable(files: Iterable[Path], root: Path = Path()) -> list[Path]:
+    """Job files and programs among files of any kind, and jobs that use another one of them.
+
+    A program that one of these jobs runs is left out.
 
     Args:
-        files: What a commit changes, say. Files that are gone are left out too.
+        files: What a commit changes, say. Of those that are gone a ``twin.toml`` alone counts.
+        root: Where jobs are looked for that share settings, use an STL file, or run on a machine among the files.
     """
+    files = list(files)
     there = [path for path in files if path.is_file()]
     run_by = {path: program_of(path) for path in there if path.suffix == ".toml"}
     jobs = [path for path, program in run_by.items() if program is not None]
-    taken = set(run_by.values())
-    return jobs + [path for path in there if _is_program(path) and path.resolve() not in taken]
+    programs = [path for path in there if _is_program(path)]
+    known = {path.resolve() for path in (*jobs, *programs)}
+    used = {path.resolve() for path in files} - known
+    if used:
+        found = (path for path in _programs_in(root) if path.suffix == ".toml")
+        jobs += [path for path in found if path.resolve() not in known and _uses(path, used)]
+    taken = {program_of(path) for path in jobs}
+    return jobs + [path for path in programs if path.resolve() not in taken]
+
+
+def _uses(path: Path, files: Collection[Path]) -> bool:
+    """Whether a job takes settings from one of some files, or names it as solid or machine."""
+    # Most who look for programs need no job to be read.
+    from twin.job.load import SHARED_NAME, load_job
+
+    folder = path.resolve().parent
+    if any(each.name == SHARED_NAME and folder.is_relative_to(each.parent) for each in files):
+        return True
+    try:
+        job = load_job(path)
+    except TwinError:
+        return False  # it is told of where it is checked itself
+    file, named = job.file, [layer.path for layer in job.layers]
+    named.append(job.folder / file.machine)
+    named += [
+        Path(each.file)
+        for each in (file.stock, file.nominal, *file.fixtures)
+        if each is not None and each.file
+    ]
+    return any(each.resolve() in files for each in named)
 
 
 def _expanded(paths: Iterable[str | Path]) -> Iterable[Path]:

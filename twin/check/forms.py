@@ -89,6 +89,11 @@ def _add_case(suite: ET.Element, outcome: CheckOutcome) -> None:
         problem = ET.SubElement(case, kind, about)
         problem.text = _printable("\n".join(str(finding) for finding in outcome.findings))
     told = [*(f"{key}: {value}" for key, value in figures(outcome)), *outcome.scope]
+    told = (
+        told
+        if outcome.expected is None
+        else [f"ended as its job expects: {outcome.expected}", *told]
+    )
     if told:
         ET.SubElement(case, "system-out").text = _printable("\n".join(told))
     if outcome.warnings:
@@ -152,7 +157,9 @@ def markdown_summary(outcomes: Sequence[CheckOutcome]) -> str:
         "|---|---|--:|--:|--:|",
     ]
     lines += [f"| {' | '.join(map(_cell, row))} |" for row in table_rows(outcomes)]
-    findings = [finding for outcome in outcomes for finding in outcome.findings]
+    findings = [
+        finding for outcome in outcomes for finding in (*outcome.findings, *outcome.warnings)
+    ]
     if findings:
         lines += ["", "```", *(str(finding) for finding in findings), "```"]
     return "\n".join(lines) + "\n"

@@ -8,7 +8,6 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
-from twin.check.expectation import expectation, held_to_expectation
 from twin.check.outcome import CheckOutcome, Finding
 from twin.check.task import CheckSettings, Variant
 from twin.compare.baseline import compare_baseline, write_baseline
@@ -16,7 +15,7 @@ from twin.compare.baseline_text import RunFigures
 from twin.compare.verdict import Reason
 from twin.errors import ConfigError, EmptyProgramError, ExitCode, TwinError, UsageError
 from twin.files.toml_lines import place_of_key
-from twin.job.load import Job
+from twin.job.load import Job, load_job
 from twin.machine.watching.alarms import Alarm
 from twin.nc.canonical import Chunk
 from twin.nc.text.diagnostics import Diagnostic, ProgramError
@@ -26,6 +25,39 @@ from twin.run.outcome import Outcome
 from twin.run.preparation import Preparation, prepare
 from twin.run.progress import no_progress
 from twin.run.run import Run
+
+
+def expectation(path: Path) -> str | None:
+    """The code that a job expects; None where it shall pass, or cannot be read."""
+    try:
+        return load_job(path).file.expect
+    except (TwinError, OSError):
+        return None
+
+
+def held_to_expectation(outcome: CheckOutcome, expected: str | None) -> CheckOutcome:
+    """Pass a program that ended as its job expects, fail one that did not.
+
+    Args:
+        outcome: How it came out by itself.
+        expected: The code that its job names, if any.
+    """
+    if expected is None or outcome.exit_code is ExitCode.CRASH:
+        return outcome
+    codes = {finding.code for finding in outcome.findings}
+    if codes == {expected}:
+        return dataclasses.replace(
+            outcome, verdict="pass", exit_code=ExitCode.OK, findings=(), expected=expected
+        )
+    others = tuple(finding for finding in outcome.findings if finding.code != expected)
+    if expected not in codes:
+        happened = ", ".join(sorted(codes)) or "none"
+        message = f"the job expects '{expected}', and it did not happen; what happened: {happened}"
+        others = (Finding("expectation", message, outcome.program), *others)
+    verdict = "fail" if outcome.passed else outcome.verdict
+    code = ExitCode.FAILED if outcome.passed else outcome.exit_code
+    return dataclasses.replace(outcome, verdict=verdict, exit_code=code, findings=others)
+
 
 _FILES_OF_MACHINE = {"model"}
 """Keys of a machine file that name another file."""
@@ -42,7 +74,7 @@ def run_variant(variant: Variant, settings: CheckSettings) -> CheckOutcome:
         outcome = _not_run(path, UsageError(f"{error.filename or path}: {error.strerror or error}"))
     except MemoryError:
         outcome = _not_run(path, UsageError("not enough memory; a coarser stock.cell needs less"))
-    except Exception:  # noqa: BLE001 - a defect at one program is told with it, the others run on
+    except Exception:  # noqa: BLE001 - a defect at one program is reported with it, the others run on
         outcome = _crashed(path)
     return dataclasses.replace(outcome, wall_s=time.perf_counter() - began, changes=variant.changes)
 
@@ -224,7 +256,7 @@ def _finding(preparation: Preparation, reason: Reason) -> Finding:
     job = preparation.job.path
     if reason.what == "baseline-job" and job is not None:
         key = reason.message.partition(" is ")[0]
-        files = [layer.path for layer in preparation.job.layers]
+        files = [layer.path for layer in preparation.job.layers if layer.path.is_file()]
         if key.startswith("machine."):
             files, key = [preparation.machine.path], key.removeprefix("machine.")
         file, line = place_of_key(files, key)

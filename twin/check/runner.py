@@ -115,7 +115,7 @@ def _pool(workers: int, context: SpawnContext) -> concurrent.futures.ProcessPool
 
 
 def _begin(telling: Lock) -> None:
-    """An interrupt from the keyboard ends a process at once; one process tells of compilation."""
+    """An interrupt from the keyboard ends a process at once; one process reports compilation."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     _tell_of_compilation(lambda: telling.acquire(block=False))
 

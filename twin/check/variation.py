@@ -31,7 +31,7 @@ def combinations(path: Path, vary: Sequence[tuple[str, Sequence[Any]]]) -> list[
     """The same, of keys with their values.
 
     Raises:
-        UsageError: A key stands twice, is none of a job or machine, or has no values; or there are too many
+        UsageError: A key occurs twice, is none of a job or machine, or has no values; or there are too many
             combinations.
     """
     for key, values in vary:

@@ -17,7 +17,9 @@ ProgramOrJob = Annotated[
         show_default=False,
     ),
 ]
-DialectOption = Annotated[str | None, typer.Option("--dialect", help="Default: told by its words.")]
+DialectOption = Annotated[
+    str | None, typer.Option("--dialect", help="Default: recognised by its words.")
+]
 OutOption = Annotated[Path | None, typer.Option("--out", help="Folder; default out/<program>.")]
 MachineOption = Annotated[str | None, typer.Option("--machine", help="Name, or a machine.toml.")]
 MachineArgument = Annotated[

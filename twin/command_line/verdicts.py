@@ -32,7 +32,10 @@ def check(
     ] = False,
     changed: Annotated[
         bool,
-        typer.Option("--changed", help="Pass over files that are no programs or jobs; all may be."),
+        typer.Option(
+            "--changed",
+            help="Of files that a commit changes, the programs and jobs, and jobs that use the others; there may be none.",
+        ),
     ] = False,
     reports: Annotated[
         Path | None, typer.Option("--reports", help="Write a report on every program there.")
@@ -46,7 +49,7 @@ def check(
     """Run many programs without pictures; one table, exit 1 if any falls short."""
     from twin.check.discovery import checkable
     from twin.check.task import CheckSettings
-    from twin.commands.check import check_and_print
+    from twin.commands.check import check_and_print, write_forms
 
     settings = CheckSettings(
         dialect=dialect, machine=machine, strict=strict, baseline=baseline,
@@ -55,7 +58,13 @@ def check(
     if changed:
         paths = [str(path) for path in checkable(map(Path, paths))]
         if not paths:
-            typer.echo("none of the files is a program or a job: nothing was checked")
+            typer.echo(
+                "no program or job has to do with these files: nothing was checked", err=True
+            )
+            # An earlier check's file would say that something was.
+            unwritten = write_forms([], junit, json_file_of(form, json_file))
+            if unwritten is not None:
+                raise unwritten
             return
     code = check_and_print(
         paths,

@@ -41,7 +41,7 @@ def check_and_print(
 ) -> ExitCode:
     """Check programs and tell how they came out.
 
-    Interrupted, it tells of those that are complete.
+    Interrupted, it reports those that are complete.
 
     Args:
         paths: Programs, job files, folders, globs.
@@ -79,7 +79,7 @@ def check_and_print(
     if settings.baseline is not None and not settings.update_baseline:
         outcomes += map(_without_program, baselines_without_programs(settings.baseline))
     # Before the table, so that a terminal that went away loses no file.
-    unwritten = _write(outcomes, junit, json_file)
+    unwritten = write_forms(outcomes, junit, json_file)
     _print(outcomes, to_stderr=STDOUT in (junit, json_file))
     if jobless := without_jobs(programs):
         names = ", ".join(map(str, jobless))
@@ -98,10 +98,15 @@ def check_and_print(
     return exit_code_of(outcomes)
 
 
-def _write(
+def write_forms(
     outcomes: Sequence[CheckOutcome], junit: Path | None, json_file: Path | None
 ) -> OSError | None:
     """Write each file that was asked for; what keeps one from being written keeps no other.
+
+    Args:
+        outcomes: How the programs came out; none where nothing was checked.
+        junit: Where JUnit XML goes.
+        json_file: Where every outcome goes as JSON.
 
     Returns:
         The first reason why one could not be written.

@@ -194,7 +194,7 @@ def start_compiling(path: Path, dialect: str | None, machine: str | None) -> Non
 
 
 def _compile_later_stages(path: Path, dialect: str | None, machine: str | None) -> None:
-    """Go through the later stages; what is wrong with the job is told by the run itself."""
+    """Go through the later stages; what is wrong with the job is reported by the run itself."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     sys.stdout = sys.stderr = Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115 (until the process ends)
     threading.Thread(target=_end_with_parent, daemon=True).start()

@@ -27,7 +27,7 @@ def print_doctor(*, compile_now: bool = False) -> ExitCode:
         typer.echo(f"compiled into {compile_into_reach()}")
     from twin.compilation.inventory import inventory
     from twin.render.doctor import render_facts
-    from twin.render.drawing.filament import PACKAGES
+    from twin.render.drawing.renderer import PACKAGES
 
     typer.echo(f"python     {platform.python_version()} ({sys.executable})")
     for name in LIBRARIES:

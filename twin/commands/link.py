@@ -162,7 +162,7 @@ def _require_screen(display: str) -> None:
 def _linuxcnc_program(path: Path, changes: list[Change]) -> Job | None:
     """The job of a program in LinuxCNC's own language; None for one of the twin's dialects.
 
-    A program that no dialect's own words stand in is LinuxCNC's.
+    A program that no dialect's own words are in is LinuxCNC's.
     """
     if not path.is_file():
         return None

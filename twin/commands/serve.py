@@ -35,7 +35,7 @@ _WAIT_S = 0.2
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
 class Source:
-    """What is told of, and where.
+    """What is reported, and where.
 
     Attributes:
         host: Address to listen at.
@@ -63,7 +63,7 @@ class Source:
 
 
 def serve_job(path: Path, source: Source) -> ExitCode:
-    """Simulate a job once, then tell of it as if the machine made part after part.
+    """Simulate a job once, then report it as if the machine made part after part.
 
     Args:
         path: NC program or job file.

@@ -158,9 +158,9 @@ def train(name: str, place: Place, out: Path | None) -> ExitCode:
         room.serve()
         if interrupted:
             typer.echo("")  # the terminal has shown its ^C
-        judge = room.session.room.judge
-    typer.echo(f"{scene.name}: {judge.score} of {scene.points} points; sheet in {room.folder}")
-    return ExitCode.FAILED if judge.over and judge.score < scene.points else ExitCode.OK
+        played, judge = room.session.scene, room.session.room.judge
+    typer.echo(f"{played.name}: {judge.score} of {played.points} points; sheet in {room.folder}")
+    return ExitCode.FAILED if judge.over and judge.score < played.points else ExitCode.OK
 
 
 def teach(

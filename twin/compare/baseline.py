@@ -26,7 +26,7 @@ from twin.compare.block_difference import block_differences, same_end
 from twin.compare.changed_lines import (
     changed_lines,
     changed_offsets,
-    told_by_line,
+    differences_by_line,
     without_comments,
 )
 from twin.compare.verdict import Reason
@@ -115,7 +115,7 @@ def compare_baseline(
                 pairs = _Pairs(read_entries(lines, head.axes), entries(chunks), limits)
                 changed = changed_lines(head.source, source) if head.source else []
                 found = _program_reasons(pairs, head.axes, limits)
-                told = list(told_by_line(found, changed))
+                told = list(differences_by_line(found, changed))
                 known = {reason.line for reason in told}
                 told += [
                     each for each in _offset_reasons(head.source, source) if each.line not in known
@@ -178,7 +178,7 @@ def _first_of(reasons: Iterator[Reason]) -> list[Reason]:
 
 
 class _Pair(NamedTuple):
-    """What stands beside each other: a stored block, a block of the program, or both."""
+    """What is beside each other: a stored block, a block of the program, or both."""
 
     before: Entry | None
     now: Entry | None
@@ -225,9 +225,9 @@ class _Pairs:
     def _taken(self, stored: int, program: int) -> _Pair:
         before = self._ahead[0].popleft() if stored else None
         now = self._ahead[1].popleft() if program else None
-        # What is lost is told at the line before which it stood.
-        told_at = now or (self._ahead[1][0] if self._ahead[1] else None)
-        self._line = self._line if told_at is None else told_at.line
+        # What is lost is reported at the line before which it stood.
+        found_at = now or (self._ahead[1][0] if self._ahead[1] else None)
+        self._line = self._line if found_at is None else found_at.line
         return _Pair(before, now, self._line)
 
     def _found_again(self) -> tuple[int, int]:
@@ -277,20 +277,20 @@ def _program_reasons(
                 what = "baseline-path"
             yield Reason(what, _instead(before, now, names), line, 0.0)
     except ProgramError as error:
-        message = f"no longer interprets, baseline {_told(pairs.expected(), names)}"
+        message = f"no longer interprets, baseline {_text_of(pairs.expected(), names)}"
         yield Reason("baseline-path", message, error.diagnostic.line, 0.0)
 
 
 def _instead(before: Entry | None, now: Entry | None, names: tuple[str, ...]) -> str:
     if now is None:
-        return f"lost here: {_told(before, names)}"
+        return f"lost here: {_text_of(before, names)}"
     if before is None:
-        return f"new, and not in the baseline: {_told(now, names)}"
+        return f"new, and not in the baseline: {_text_of(now, names)}"
     stored = dataclasses.replace(before, shown=now.shown) if before.is_path else before
-    return f"{_told(now, names)}, baseline {_told(stored, names)}"
+    return f"{_text_of(now, names)}, baseline {_text_of(stored, names)}"
 
 
-def _told(entry: Entry | None, names: tuple[str, ...]) -> str:
+def _text_of(entry: Entry | None, names: tuple[str, ...]) -> str:
     if entry is None:
         return "its end"
     shown = entry.as_shown

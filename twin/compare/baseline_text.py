@@ -19,7 +19,7 @@
 
 An axis, a feed, a corner mode (``corner continuous 0.05``) or a programmed acceleration
 (``acceleration 500 400``) is written where it changes; source lines are not, so that a comment more changes
-nothing; the program's words stand there once, to say which of its lines has changed.
+nothing; the program's words are there once, to say which of its lines has changed.
 """
 
 import dataclasses
@@ -53,7 +53,7 @@ class RunFigures:
 
 
 class Head(NamedTuple):
-    """What stands before the entries.
+    """What is before the entries.
 
     Attributes:
         figures: What the run came to.
@@ -195,7 +195,7 @@ def write(file: TextIO, head: Head, program: Iterable[Entry]) -> None:
 
     Args:
         file: Where to.
-        head: What stands before the entries.
+        head: What is before the entries.
         program: What the program does.
     """
     figures = head.figures
@@ -268,7 +268,7 @@ def number(value: float) -> str:
 
 
 def read_head(lines: Iterator[str]) -> tuple[Head, Iterator[str]]:
-    """What stands before the entries, and the lines of the entries.
+    """What is before the entries, and the lines of the entries.
 
     Raises:
         ValueError: This is no baseline.

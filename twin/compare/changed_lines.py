@@ -58,10 +58,10 @@ def changed_offsets(before: Sequence[str], now: Sequence[str]) -> Iterator[tuple
                 yield line, f"{says or 'no offset'}, baseline {said or 'no offset'}"
 
 
-def told_by_line(reasons: Iterable[Reason], changed: Sequence[int]) -> Iterator[Reason]:
+def differences_by_line(reasons: Iterable[Reason], changed: Sequence[int]) -> Iterator[Reason]:
     """Differences of blocks, gathered at the changed lines that they follow from.
 
-    A word of a cycle changes all its holes, a word in a loop all its rounds: each code is told once a
+    A word of a cycle changes all its holes, a word in a loop all its rounds: each code is reported once a
     changed line, with the first difference and how many there are. A difference belongs to its own line
     if that has changed, or else to the last changed line before it, or to the first behind it.
 

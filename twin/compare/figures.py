@@ -137,9 +137,9 @@ class BlockFigures:
         p99_um: What 99 % of the samples of one passage do not exceed, at most 0.8 % too high; of
             several passages the greatest, shape (m,) [µm].
         time_s: When the greatest was reached, shape (m,) [s].
-        forgotten: How often a block was let go of because enough others were worse. Those that are
+        forgotten: How often a block was dropped because enough others were worse. Those that are
             the worst of all are exact in ``max_um`` even so; their other figures leave out what
-            was before they were let go of and came again.
+            was before they were dropped and came again.
     """
 
     line: IntArray

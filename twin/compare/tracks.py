@@ -14,7 +14,7 @@ from twin.recording.reader import open_recording
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Track:
-    """What the axes were told and what they did.
+    """What the axes were commanded and what they did.
 
     Attributes:
         name: Where it comes from.

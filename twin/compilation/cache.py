@@ -1,8 +1,8 @@
 """Compiled kernels, kept by the content of everything that they were compiled from.
 
-Numba's own cache keeps what it compiled for as long as the file that a kernel stands in stays as it
+Numba's own cache keeps what it compiled for as long as the file that a kernel is in stays as it
 is: it does not see that a function or a constant of another file, compiled into this one, has
-changed; it compiles anew when an environment was moved; and a file of it that was cut short ends the
+changed; it compiles again when an environment was moved; and a file of it that was cut short ends the
 program. Here a kernel's folder is named by its content, its file by its types and its processor; a
 file carries a checksum, and one that is damaged is compiled again. Processes that lack the same
 kernel at the same time wait for the one that compiles it.

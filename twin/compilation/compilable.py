@@ -15,7 +15,7 @@ class Declared(NamedTuple):
     """A function that kernels may call.
 
     Attributes:
-        called: What stands in their text.
+        called: What is in their text.
         compiled: What is compiled for it.
         options: Of the compiler.
     """

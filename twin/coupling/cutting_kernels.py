@@ -13,7 +13,7 @@ from twin.cutting.kernels.sweep import ALL_ROWS, Marks, sweep
 from twin.cutting.kernels.tooth_forces import (
     CutterForm,
     ForceLaw,
-    ToothBench,
+    ToothScratch,
     add_force_between,
     tooth_forces,
 )
@@ -25,7 +25,7 @@ from twin.nc.canonical import FloatArray
 from twin.units import MM, SECONDS_PER_MINUTE
 
 LOOK_CELLS = 0.25
-"""The material is cut, and looked at anew, when the tip has gone so far since [cells]."""
+"""The material is cut, and looked at again, when the tip has gone so far since [cells]."""
 LOOK_FEED = 0.05
 """Or when the feed per tooth has changed by so much of itself."""
 _LONGEST_MEAN_S = 0.05
@@ -72,13 +72,13 @@ class Place(NamedTuple):
         rotary: Column of the axis that turns the part; -1: nothing does.
         center: Machine X and Y over the axis of rotation [mm].
         turn_zero: Where the part's frame is parallel to the machine's [deg].
-        longer: How much lower the tip is than that which positions count for [mm].
+        length_difference: How much lower the tip is than that which positions count for [mm].
     """
 
     rotary: int
     center: tuple[float, float]
     turn_zero: float
-    longer: float
+    length_difference: float
 
 
 class Cut(NamedTuple):
@@ -113,10 +113,10 @@ class Memory(NamedTuple):
         looked: Feed per tooth when the material was looked at, shape (3,) [mm].
         bend: Deflection of the tip in the part's frame, shape (3,) [mm].
         load: What pushes the axes, shape (k,) [N or N m].
-        bench: The teeth's forces.
+        scratch: The teeth's forces.
         force: On the tool in this period, part's frame, shape (3,) [N].
         feed: Feed per tooth in this period, shape (3,) [mm].
-        tally: What ``sweep`` adds to, shape (1, 2, 4).
+        sums: What ``sweep`` adds to, shape (1, 2, 4).
         marks: Nothing is marked.
     """
 
@@ -128,14 +128,14 @@ class Memory(NamedTuple):
     looked: FloatArray
     bend: FloatArray
     load: FloatArray
-    bench: ToothBench
+    scratch: ToothScratch
     force: FloatArray
     feed: FloatArray
-    tally: FloatArray
+    sums: FloatArray
     marks: Marks
 
 
-class Felt(NamedTuple):
+class ToolLoads(NamedTuple):
     """Columns of ``twin.recording.form.ToolLoad``, set row by row."""
 
     force: FloatArray
@@ -156,7 +156,7 @@ def follow_cutting(
     commanded: FloatArray,
     cut: Cut,
     memory: Memory,
-    felt: Felt,
+    loads: ToolLoads,
 ) -> None:
     """Step the machine from setpoint to setpoint while its tool cuts.
 
@@ -165,12 +165,12 @@ def follow_cutting(
 
     Args:
         physics: The machine.
-        controls: What the drives are told on the way to each setpoint, shape (n, nu).
+        controls: What the drives are commanded on the way to each setpoint, shape (n, nu).
         states: Set to the states there, shape (n, width).
-        commanded: Speed that the spindle is told, shape (n,) [turns/s]; NaN: nothing is known of it.
+        commanded: Speed that the spindle is commanded, shape (n,) [turns/s]; NaN: nothing is known of it.
         cut: Tool and material.
         memory: Carried on.
-        felt: Set to what the tool felt.
+        loads: Set to what the tool felt.
     """
     stepper = physics.stepper
     for row in range(len(controls)):
@@ -186,7 +186,7 @@ def follow_cutting(
         _turn_and_cut(physics.drives.period, commanded[row], cut, memory)
         _bend(physics.drives.period, cut, memory)
         _load_axes(cut.place, memory, cosine, sine)
-        _note(cut, memory, felt, row, (cosine, sine))
+        _note(cut, memory, loads, row, (cosine, sine))
     physics.pushed[:] = 0.0
 
 
@@ -196,7 +196,7 @@ def _go_to(physics: Physics, state: FloatArray, cut: Cut, memory: Memory) -> tup
     drives, numbers, place = physics.drives, memory.numbers, cut.place
     x = _axis(drives, state, 0) - place.center[0]
     y = _axis(drives, state, 1) - place.center[1]
-    z = _axis(drives, state, 2) - place.longer
+    z = _axis(drives, state, 2) - place.length_difference
     cosine, sine = 1.0, 0.0
     if place.rotary >= 0:
         turn = math.radians(_axis(drives, state, place.rotary) - place.turn_zero)
@@ -238,7 +238,7 @@ def _share_of_tooth(cut: Cut, memory: Memory, period: float) -> float:
 def _turn_and_cut(period: float, commanded: float, cut: Cut, memory: Memory) -> None:
     """Turn the spindle, cut, and find what the teeth feel until the next period."""
     numbers = memory.numbers
-    torque = memory.bench.figures[1] * MM if numbers[CutNumber.MET] > 0.0 else 0.0
+    torque = memory.scratch.figures[1] * MM if numbers[CutNumber.MET] > 0.0 else 0.0
     told = 0.0 if math.isnan(commanded) else commanded
     numbers[CutNumber.SPEED] = next_speed(
         cut.spindle, numbers[CutNumber.SPEED], told, torque, period
@@ -254,17 +254,17 @@ def _turn_and_cut(period: float, commanded: float, cut: Cut, memory: Memory) -> 
         return
     _look(period, cut, memory)
     if numbers[CutNumber.MET] > 0.0:
-        if memory.bench.figures[2] > cut.strength.chip:
-            _break(memory, Edge.BY_CHIP, memory.bench.figures[2])
-        elif memory.bench.figures[0] > cut.strength.force:
-            _break(memory, Edge.BY_FORCE, memory.bench.figures[0])
-        elif memory.bench.figures[1] * MM > cut.strength.torque:
-            _break(memory, Edge.BY_TORQUE, memory.bench.figures[1] * MM)
-        elif memory.bench.mean[2] > cut.strength.thrust:
-            _break(memory, Edge.BY_THRUST, memory.bench.mean[2])
+        if memory.scratch.figures[2] > cut.strength.chip:
+            _break(memory, Edge.BY_CHIP, memory.scratch.figures[2])
+        elif memory.scratch.figures[0] > cut.strength.force:
+            _break(memory, Edge.BY_FORCE, memory.scratch.figures[0])
+        elif memory.scratch.figures[1] * MM > cut.strength.torque:
+            _break(memory, Edge.BY_TORQUE, memory.scratch.figures[1] * MM)
+        elif memory.scratch.mean[2] > cut.strength.thrust:
+            _break(memory, Edge.BY_THRUST, memory.scratch.mean[2])
         else:
             add_force_between(
-                cut.cutter, memory.bench, numbers[CutNumber.ANGLE], -turned, memory.force
+                cut.cutter, memory.scratch, numbers[CutNumber.ANGLE], -turned, memory.force
             )
     numbers[CutNumber.ANGLE] -= turned
     numbers[CutNumber.ANGLE] -= math.floor(numbers[CutNumber.ANGLE])
@@ -307,12 +307,12 @@ def _look(period: float, cut: Cut, memory: Memory) -> None:
     material = cut.material
     sweep(
         material.heights, material.grid, swept, cut.cutter.profile,
-        memory.tally, memory.marks, numbers[CutNumber.STOOD] > 0.0, ALL_ROWS,
+        memory.sums, memory.marks, numbers[CutNumber.STOOD] > 0.0, ALL_ROWS,
     )  # fmt: skip
     numbers[CutNumber.STOOD] = 1.0
     leave_walls(material, memory.trace, swept[1], cut.cutter.profile.radius, cut.cutter.side_from)
     sense = 1.0 if numbers[CutNumber.SPEED] >= 0.0 else -1.0
-    met = tooth_forces(material, swept[1], feed, cut.cutter, cut.law, sense, memory.bench)
+    met = tooth_forces(material, swept[1], feed, cut.cutter, cut.law, sense, memory.scratch)
     numbers[CutNumber.MET] = 1.0 if met else 0.0
 
 
@@ -322,7 +322,7 @@ def _bend(period: float, cut: Cut, memory: Memory) -> None:
     met = memory.numbers[CutNumber.MET] > 0.0
     share = _share_of_tooth(cut, memory, period) if met else 1.0
     for k in range(2):
-        wanted = cut.strength.compliance * memory.bench.mean[k] if met else 0.0
+        wanted = cut.strength.compliance * memory.scratch.mean[k] if met else 0.0
         memory.bend[k] += share * (wanted - memory.bend[k])
 
 
@@ -338,21 +338,21 @@ def _load_axes(place: Place, memory: Memory, cosine: float, sine: float) -> None
 
 
 @kernel
-def _note(cut: Cut, memory: Memory, felt: Felt, row: int, turn: tuple[float, float]) -> None:
+def _note(cut: Cut, memory: Memory, loads: ToolLoads, row: int, turn: tuple[float, float]) -> None:
     """Enter what the tool feels."""
     numbers, bend = memory.numbers, memory.bend
     met = numbers[CutNumber.MET] > 0.0
     speed = numbers[CutNumber.SPEED]
-    torque = memory.bench.figures[1] * MM if met else 0.0
+    torque = memory.scratch.figures[1] * MM if met else 0.0
     for k in range(3):
-        felt.force[row, k] = memory.load[k]
-    felt.deflection[row, 0] = turn[0] * bend[0] + turn[1] * bend[1]
-    felt.deflection[row, 1] = turn[0] * bend[1] - turn[1] * bend[0]
-    felt.deflection[row, 2] = bend[2]
-    peak = max(memory.bench.figures[0], abs(memory.bench.mean[2]))
-    felt.peak_force[row] = peak if met else 0.0
-    felt.power[row] = 2.0 * math.pi * abs(speed) * torque
-    felt.chip[row] = memory.bench.figures[2] if met else 0.0
-    felt.spindle_speed[row] = speed * SECONDS_PER_MINUTE
-    felt.spindle_load[row] = torque / lasting_torque(cut.spindle, speed)
-    felt.broken[row] = numbers[CutNumber.EDGE]
+        loads.force[row, k] = memory.load[k]
+    loads.deflection[row, 0] = turn[0] * bend[0] + turn[1] * bend[1]
+    loads.deflection[row, 1] = turn[0] * bend[1] - turn[1] * bend[0]
+    loads.deflection[row, 2] = bend[2]
+    peak = max(memory.scratch.figures[0], abs(memory.scratch.mean[2]))
+    loads.peak_force[row] = peak if met else 0.0
+    loads.power[row] = 2.0 * math.pi * abs(speed) * torque
+    loads.chip[row] = memory.scratch.figures[2] if met else 0.0
+    loads.spindle_speed[row] = speed * SECONDS_PER_MINUTE
+    loads.spindle_load[row] = torque / lasting_torque(cut.spindle, speed)
+    loads.broken[row] = numbers[CutNumber.EDGE]

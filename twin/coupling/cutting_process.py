@@ -11,9 +11,9 @@ from twin.coupling.cutting_kernels import (
     Cut,
     CutNumber,
     Edge,
-    Felt,
     Memory,
     Place,
+    ToolLoads,
     follow_cutting,
 )
 from twin.coupling.spindle_kernels import SpindleDrive
@@ -67,13 +67,13 @@ class Turning(NamedTuple):
     Attributes:
         rows: Which setpoints.
         tool: The tool.
-        longer: How much lower its tip is than that which positions count for [mm].
+        length_difference: How much lower its tip is than that which positions count for [mm].
         speed: Of the spindle, shape (n,) [1/min], negative counter-clockwise; NaN where nothing is known.
     """
 
     rows: slice
     tool: ToolTable
-    longer: float
+    length_difference: float
     speed: FloatArray
 
 
@@ -93,7 +93,7 @@ class Operation(Protocol):
 class CuttingProcess:
     """Cuts a height map of its own along the simulated motion, and pushes the axes by what the teeth feel.
 
-    It is not the map of ``twin.cutting.cut.Cutter``, which becomes the part. A tooth wants the material cut anew every
+    It is not the map of ``twin.cutting.cut.Cutter``, which becomes the part. A tooth wants the material cut again every
     quarter of a cell; the depth and width of a cut are those of a long straight stretch (of a ball of 6 mm, 1 mm deep, pieces
     of a quarter of a cell are 0.07 mm deep), and what must not meet the material is held against it before it is cut.
     Cutting twice takes 1 to 3 % of the processor time of a run.
@@ -152,7 +152,7 @@ class CuttingProcess:
         """Take the tool off what it cut: what comes next is no way of it."""
         memory = self._memory
         memory.numbers[CutNumber.FRESH] = 1.0
-        for column in (memory.load, memory.bend, memory.looked, memory.bench.figures):
+        for column in (memory.load, memory.bend, memory.looked, memory.scratch.figures):
             column[:] = 0.0
 
     def at_rest(self, count: int) -> ToolLoad:
@@ -164,7 +164,7 @@ class CuttingProcess:
     ) -> ToolLoad:
         """Step the machine while the tool cuts; see ``Process``."""
         self.alarm = None
-        felt = _felt(len(setpoints))
+        loads = _felt(len(setpoints))
         for turning in self._operation.turnings(setpoints):
             rows, tool = turning.rows, turning.tool
             self._mount(tool)
@@ -176,11 +176,11 @@ class CuttingProcess:
                 turning.speed / SECONDS_PER_MINUTE,
                 cut,
                 self._memory,
-                Felt(*(column[rows] for column in felt)),
+                ToolLoads(*(column[rows] for column in loads)),
             )
-            self._note_break(tool, cut.strength, setpoints[rows], felt.broken[rows])
-            self._watch_spindle(setpoints[rows], turning.speed, felt, rows, physics.drives.period)
-        return _load(felt)
+            self._note_break(tool, cut.strength, setpoints[rows], loads.broken[rows])
+            self._watch_spindle(setpoints[rows], turning.speed, loads, rows, physics.drives.period)
+        return _load(loads)
 
     def _mount(self, tool: ToolTable) -> None:
         if self._tool is not None and self._tool.number == tool.number:
@@ -200,7 +200,7 @@ class CuttingProcess:
             force_law(tool, self._resists),
             tool_strength(tool),
             self._drive,
-            Place(rotary, frame.center, frame.turn_zero, turning.longer),
+            Place(rotary, frame.center, frame.turn_zero, turning.length_difference),
         )
 
     def _note_break(
@@ -233,10 +233,10 @@ class CuttingProcess:
         self.breaks.append(ToolBreak(tool.number, line, time, reason))
 
     def _watch_spindle(
-        self, setpoints: Setpoints, told: FloatArray, felt: Felt, rows: slice, period: float
+        self, setpoints: Setpoints, told: FloatArray, loads: ToolLoads, rows: slice, period: float
     ) -> None:
         """Raise the alarm of a spindle that stalls, or that gives too much for too long."""
-        load, speed = felt.spindle_load[rows], np.abs(felt.spindle_speed[rows])
+        load, speed = loads.spindle_load[rows], np.abs(loads.spindle_speed[rows])
         if self.alarm is not None or not (load > 1.0).any():
             self._overloaded_s = 0.0
             return
@@ -280,12 +280,14 @@ def _memory(axes: int) -> Memory:
     )  # fmt: skip
 
 
-def _felt(count: int) -> Felt:
-    return Felt(*(np.zeros((count, 3) if name in _SPATIAL else count) for name in Felt._fields))
+def _felt(count: int) -> ToolLoads:
+    return ToolLoads(
+        *(np.zeros((count, 3) if name in _SPATIAL else count) for name in ToolLoads._fields)
+    )
 
 
 _SPATIAL = ("force", "deflection")
 
 
-def _load(felt: Felt) -> ToolLoad:
-    return ToolLoad(**{**felt._asdict(), "broken": felt.broken != Edge.WHOLE})
+def _load(loads: ToolLoads) -> ToolLoad:
+    return ToolLoad(**{**loads._asdict(), "broken": loads.broken != Edge.WHOLE})

@@ -44,7 +44,10 @@ class ProgramOperation:
         for rows, tool in self._tools.runs(setpoints.move):
             told = np.full(rows.stop - rows.start, _known(tool.speed))
             yield Turning(
-                rows, tool, self._tools.longer(tool), told if self._silent else speed[rows]
+                rows,
+                tool,
+                self._tools.length_difference(tool),
+                told if self._silent else speed[rows],
             )
 
 
@@ -53,25 +56,25 @@ class OperatorOperation:
 
     Attributes:
         tool: The tool.
-        longer: How much lower its tip is than that which positions count for [mm].
+        length_difference: How much lower its tip is than that which positions count for [mm].
         speed: How fast the spindle shall turn [1/min], negative counter-clockwise; None: not known.
     """
 
     def __init__(self, tool: ToolTable) -> None:
         self.tool = tool
-        self.longer = 0.0
+        self.length_difference = 0.0
         self.speed: float | None = 0.0
 
     @property
     def speed_at_start(self) -> float:
-        """As it was told before."""
+        """As it was reported before."""
         return self.speed or 0.0
 
     def turnings(self, setpoints: Setpoints) -> Iterator[Turning]:
         """All setpoints at once; see ``Operation``."""
         if len(setpoints):
             told = np.full(len(setpoints), _known(self.speed))
-            yield Turning(slice(0, len(setpoints)), self.tool, self.longer, told)
+            yield Turning(slice(0, len(setpoints)), self.tool, self.length_difference, told)
 
 
 def _known(speed: float | None) -> float:
@@ -79,7 +82,7 @@ def _known(speed: float | None) -> float:
 
 
 def speeds_are_known(summary: ProgramSummary) -> bool:
-    """Whether the speed of the spindle is told wherever a program may cut."""
+    """Whether the speed of the spindle is commanded wherever a program may cut."""
     said = summary.spindle.values[1:]
     return all(speed is not None for speed in said or [t.speed for t in summary.tools.tools])
 

@@ -21,7 +21,7 @@ _STEP = 1e-3
 class AxisLoad:
     """Loads of a run, chunk by chunk; call it with the setpoints in order.
 
-    The material is cut along the commanded path: what the axes stand off it, micrometres, changes
+    The material is cut along the commanded path: what the axes are off it, micrometres, changes
     the chip by far less than Kienzle's constants are known to.
     """
 
@@ -90,7 +90,7 @@ class AxisLoad:
         return load
 
     def _along_chain(self, chain: Kinematics, setpoint: Setpoints, force: FloatArray) -> FloatArray:
-        """Loads on the joints of any machine: virtual work, the force times the way of the tip by each axis, shape (n, k)."""
+        """Loads on the joints of any machine: virtual work, the force times the path of the tip by each axis, shape (n, k)."""
         frame, place = self._part_frame, setpoint.position
         lower = self._summary.tools.lower(setpoint.move)
         load = np.zeros_like(place)

@@ -40,7 +40,7 @@ class Cutter:
             frame, shape (n, 3) [N]; 0 in the air and where it is not known.
         halted: What met material that must not, at which cutting ended, if it shall.
         watch: What the cut should not do, though nothing stops at it.
-        start_depth: How deep the tool stood in the material before anything moved [mm].
+        start_depth: How deep the tool was in the material before anything moved [mm].
     """
 
     def __init__(
@@ -69,7 +69,7 @@ class Cutter:
                 rapid, a feed with the spindle off, shank, holder or head. The part is then as it
                 was at that moment.
             head: What is above a tool's holder; None: nothing.
-            tilts: Whether the tool ever stands off the part's Z: the material is then described by
+            tilts: Whether the tool ever is off the part's Z: the material is then described by
                 intervals along three directions, else by a height map.
 
         Raises:
@@ -129,7 +129,9 @@ class Cutter:
         reach = self.tool.flute if self.tilts else None
         motion = tool_motion(samples, joints, frame, reach, rapid, off)
         if self._stand is None:
-            self.start_depth = self._depth_at(motion[:1].lowered(self.plan.longer(self.tool)))
+            self.start_depth = self._depth_at(
+                motion[:1].lowered(self.plan.length_difference(self.tool))
+            )
         self._stand = motion[-1:]
         for run, tool in self.plan.runs(setpoint.move):
             self._change_tools(
@@ -141,7 +143,9 @@ class Cutter:
                 self._last = None
             self.tool = tool
             for part, edge in by_edge(samples, run):
-                force = self._cut(motion[part].lowered(self.plan.longer(tool)), edge=edge)
+                force = self._cut(
+                    motion[part].lowered(self.plan.length_difference(tool)), edge=edge
+                )
                 self.force[part.start : part.start + len(force)] = force
         return sum(self._removed.values()) - before
 
@@ -161,7 +165,7 @@ class Cutter:
 
     @property
     def marks(self) -> FloatArray:
-        """Way of the tool at which each cell was last cut, shape (ny, nx) [mm]; of no size unless asked for."""
+        """Path of the tool at which each cell was last cut, shape (ny, nx) [mm]; of no size unless asked for."""
         return self._of_height_map.marks
 
     @property
@@ -179,7 +183,7 @@ class Cutter:
         return self.material
 
     def end_program(self) -> None:
-        """Hold the tools that come behind the last move against the material where the axes stand."""
+        """Hold the tools that come behind the last move against the material where the axes are."""
         if self._stand is not None and self.halted is None:
             self._change_tools(self._stand, None)
 
@@ -222,10 +226,12 @@ class Cutter:
             self._changes += 1
             if change.tool.number != self.tool.number:
                 self.tool, self._last = change.tool, None
-                self._note_arrival(stand.lowered(self.plan.longer(change.tool)), change.line)
+                self._note_arrival(
+                    stand.lowered(self.plan.length_difference(change.tool)), change.line
+                )
 
     def _note_arrival(self, stand: ToolMotion, line: int) -> None:
-        """Note that the tool which has just come into the spindle stands in the material."""
+        """Note that the tool which has just come into the spindle is in the material."""
         depth = self._depth_at(stand)
         if not depth:
             return
@@ -237,7 +243,7 @@ class Cutter:
             self.halted = self._gouges.event(("arrival", line))
 
     def _depth_at(self, stand: ToolMotion) -> float:
-        """How deep the tool stands in the material [mm].
+        """How deep the tool is in the material [mm].
 
         Args:
             stand: Where its tip is, one sample.

@@ -11,17 +11,17 @@ from twin.columns import Columns, join
 from twin.cutting.events import CutEvent, Stretches
 from twin.nc.canonical import FloatArray, IntArray
 
-BINS = 512
+TIME_BINS = 512
 """Stretches of time that removal is noted in; they grow longer as the run does."""
 
 FIRST_BIN_S = 0.01
 
 LINES_TOLD = 1000
-"""Lines that are told of at most: those that took off the most or met the greatest force."""
+"""Lines that are reported at most: those that took off the most or met the greatest force."""
 CHUNKS_FRESH = 64
 """Chunks that are entered before they are put together: a live cut comes in thirty a second."""
 LINES_REMEMBERED = 1 << 14
-"""Lines that are kept at least, where there are so many: 3 MB, and 16 times what is told of."""
+"""Lines that are kept at least, where there are so many: 3 MB, and 16 times what is reported."""
 
 
 HEIGHT_MAP, TRI_DEXEL = "height map", "tri-dexel"
@@ -34,7 +34,7 @@ class BlockCut:
 
     Attributes:
         removed_mm3: Material.
-        path_mm: Way of the tool in the part, cutting.
+        path_mm: Path of the tool in the part, cutting.
         depth_mm: Greatest depth of cut.
         width_mm: Greatest width of cut of a stretch, each stretch's mean.
         force_n: Greatest mean cutting force; None where it is not reckoned.
@@ -71,7 +71,7 @@ class CutResult:
     blocks: Mapping[int, BlockCut]
     """What each line took off; of many those that took off the most or met the greatest force."""
     blocks_forgotten: int
-    """How often a line was let go of because enough others took off more."""
+    """How often a line was dropped because enough others took off more."""
     bin_s: float
     """Length of a bin of ``removed_over_time`` [s]."""
     removed_over_time: tuple[float, ...]
@@ -134,7 +134,7 @@ class CutLog:
     """Adds up removal by program line and by time.
 
     Attributes:
-        forgotten: How often a line was let go of because enough others took off more.
+        forgotten: How often a line was dropped because enough others took off more.
     """
 
     def __init__(self, remembered: int = LINES_REMEMBERED) -> None:
@@ -150,7 +150,7 @@ class CutLog:
         self._fresh_lines = 0
         self._latest = 0
         self._bin_s = FIRST_BIN_S
-        self._bins = np.zeros(BINS)
+        self._bins = np.zeros(TIME_BINS)
         self._end = 0
 
     def add(self, stretches: Stretches, width: FloatArray, force: FloatArray | None) -> None:
@@ -199,8 +199,8 @@ class CutLog:
         }
 
     def _enter_time(self, time: FloatArray, removed: FloatArray) -> None:
-        while time[-1] >= self._bin_s * BINS:
-            self._bins = np.append(self._bins.reshape(-1, 2).sum(axis=1), np.zeros(BINS // 2))
+        while time[-1] >= self._bin_s * TIME_BINS:
+            self._bins = np.append(self._bins.reshape(-1, 2).sum(axis=1), np.zeros(TIME_BINS // 2))
             self._bin_s *= 2
             self._end = -(-self._end // 2)
         number = (time / self._bin_s).astype(np.int64)

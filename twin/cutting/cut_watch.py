@@ -1,4 +1,4 @@
-"""What a cut should not do although no machine would stop it: sideways drills, blunt plunges, stops in the material."""
+"""What a cut should not do although no machine would stop it: sideways drills, plunges, stops in the material."""
 
 import dataclasses
 
@@ -23,7 +23,7 @@ class CutSlip:
     """Something that a cut should not do.
 
     Attributes:
-        what: ``sideways`` or ``plunge``.
+        what: ``sideways``, a drill; or ``plunge``, another tool straight down into the full material.
         line: Source line.
         tool: Number of the tool.
     """
@@ -66,7 +66,7 @@ class CutWatch:
         advance = np.hypot(way[:, 0], way[:, 1])
         if tool.kind == "drill":
             self._watch_drill(stretches, cuts, advance, tool)
-        elif not tool.plunges:
+        else:
             whole = np.pi * (0.5 * tool.diameter) ** 2
             down = -way[:, 2]
             full = stretches.removed > FULL_SHARE * whole * np.maximum(down, 1e-9)

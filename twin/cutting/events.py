@@ -99,19 +99,19 @@ def in_tool_frame(vectors: FloatArray, axis: FloatArray) -> FloatArray:
 
 
 EVENTS_TOLD = 1000
-"""Occurrences that are told of at most: the deepest."""
+"""Occurrences that are reported at most: the deepest."""
 
 
 class EventLog:
     """Keeps the first and the worst of each occurrence.
 
     Attributes:
-        forgotten: How often one was let go of because enough others were deeper.
+        forgotten: How often one was dropped because enough others were deeper.
     """
 
-    def __init__(self, told: int = EVENTS_TOLD) -> None:
+    def __init__(self, most: int = EVENTS_TOLD) -> None:
         self.forgotten = 0
-        self._told = told
+        self._most = most
         self._events: dict[Hashable, CutEvent] = {}
 
     def note(
@@ -123,7 +123,7 @@ class EventLog:
             x, y, z = (float(value) for value in stretches.points[index])
             line, time = int(stretches.line[index]), float(stretches.time[index])
             self._events[key] = CutEvent(line, time, depth, (x, y, z), what)
-            if len(self._events) > 2 * self._told:
+            if len(self._events) > 2 * self._most:
                 self._forget(key)
         elif depth > known.depth_mm:
             self._events[key] = dataclasses.replace(known, depth_mm=depth)
@@ -135,17 +135,17 @@ class EventLog:
     def _forget(self, latest: Hashable) -> None:
         """Let go of all but the deepest, and the latest, which may go deeper yet."""
         deepest = sorted(self._events, key=lambda key: -self._events[key].depth_mm)
-        kept = {*deepest[: self._told], latest}
+        kept = {*deepest[: self._most], latest}
         self.forgotten += len(self._events) - len(kept)
         self._events = {key: event for key, event in self._events.items() if key in kept}
 
     def events(self) -> tuple[CutEvent, ...]:
         """The occurrences, in the order in which they began; of very many the deepest."""
         found = list(self._events.values())
-        if len(found) <= self._told:
+        if len(found) <= self._most:
             return tuple(found)
-        least = sorted(event.depth_mm for event in found)[-self._told]
-        return tuple(event for event in found if event.depth_mm >= least)[: self._told]
+        least = sorted(event.depth_mm for event in found)[-self._most]
+        return tuple(event for event in found if event.depth_mm >= least)[: self._most]
 
 
 class StockWatch:

@@ -1,4 +1,4 @@
-"""The height map: how high the material stands over every cell of the part's own frame.
+"""The height map: how high the material is over every cell of the part's own frame.
 
 The rotary table turns about Z, so that the tool never tilts against the part and one height per
 cell describes the part exactly, up to the size of the cells.
@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from twin.cutting.kernels.drape import drape
+from twin.cutting.kernels.rasterize import rasterize
 from twin.cutting.kernels.sweep import Grid
 from twin.cutting.kernels.wall_distance import KNOWN, WallDistance, no_walls_known
 from twin.cutting.kernels.walls import BASE, REACH, WallArray, no_walls
@@ -140,7 +140,7 @@ def blank(stock: StockTable, corner: FloatArray, cell: float) -> HeightMap:
         middle = np.array([*(0.5 * (low + high))[:2], high[2]])
         triangles = np.ascontiguousarray(mesh.triangles - middle + center, dtype=np.float64)
         heights[:], behind[:] = bottom, 0.0
-        drape(heights, result.origin, cell, triangles)
+        rasterize(heights, result.origin, cell, triangles)
         result.uncut = heights.copy()
         behind[_beside_lower(heights, bottom)] = KNOWN, bottom
     return result

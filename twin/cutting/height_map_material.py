@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 
 from twin.cutting.height_map import HeightMap
+from twin.cutting.kernels.simplify import simplify
 from twin.cutting.kernels.sweep import Marks, Removal
-from twin.cutting.kernels.thin import thin
 from twin.cutting.kernels.wall_distance import note_walls
 from twin.cutting.material import (
     LONGEST_SHARE,
@@ -37,7 +37,7 @@ class HeightMapMaterial:
         map: The height map.
         changed: Cells that changed since ``begin_chunk``: row, row end, column, column end; none when the rows
             end before they begin.
-        marks: Way of the tool at which each cell was last cut, shape (ny, nx) [mm]: its lines are
+        marks: Path of the tool at which each cell was last cut, shape (ny, nx) [mm]: its lines are
             the marks that a cutter leaves. Of no size unless asked for.
     """
 
@@ -63,7 +63,9 @@ class HeightMapMaterial:
     def straight(self, points: Points, group: IntArray, edge: Profile) -> IntArray:
         """Choose samples between which the tool moved straight."""
         tolerance = min(STRAIGHT_SHARE * self.cell, STRAIGHT_MM)
-        return thin(points.tip[None], group, tolerance, LONGEST_SHARE * edge.radius, MOST_JOINED)
+        return simplify(
+            points.tip[None], group, tolerance, LONGEST_SHARE * edge.radius, MOST_JOINED
+        )
 
     def contact(self, tool: ToolTable, edge: Profile, head: Head | None) -> StockContact:
         """What measures a tool with what is above it against the material."""
@@ -78,7 +80,7 @@ class HeightMapMaterial:
         found = sweep_lines(material, way, edge, Marks(self.marks, travelled), stood=stood)
         self.changed = union(self.changed, found.changed)
         off = min(WALL_SHARE * material.cell, WALL_MM)
-        rows = thin(way[None], np.zeros(len(way), np.int64), off, edge.radius, WALL_JOINED)
+        rows = simplify(way[None], np.zeros(len(way), np.int64), off, edge.radius, WALL_JOINED)
         note_walls(
             material.heights, material.behind, material.grid, way[rows], edge.radius, edge.flat
         )

@@ -20,7 +20,7 @@ this, count as on it [mm]."""
 
 LONGEST_SHARE = 0.5
 """Longest stretch that is swept at once, as a share of the tool's radius: it is also how finely
-cutting is told from air."""
+cutting is distinguished from air."""
 
 MOST_JOINED = 64
 """Samples that one stretch may stand for."""

@@ -10,8 +10,8 @@ from PIL import Image
 
 from twin.cutting.colours import RAW_RGB, Colours, surface_colours
 from twin.cutting.height_map import HeightMap
-from twin.cutting.net import all_corners, net, open_edges, surface_faces
 from twin.cutting.outline import BoolArray
+from twin.cutting.surface_mesh import all_corners, open_edges, surface_faces, surface_mesh
 from twin.files.atomic import complete_or_absent
 from twin.files.stl import stl_text
 from twin.nc.canonical import FloatArray, IntArray
@@ -39,18 +39,18 @@ def part_mesh(height_map: HeightMap, colours: Colours | None = None) -> "trimesh
     """
     import trimesh
 
-    vertices, faces, painted = _net(height_map, colours)
+    vertices, faces, painted = _mesh(height_map, colours)
     return trimesh.Trimesh(vertices, faces, vertex_colors=painted, process=False)
 
 
-def _net(
+def _mesh(
     height_map: HeightMap, colours: Colours | None
 ) -> tuple[FloatArray, IntArray, Colours | None]:
     """Corners, shape (n, 3) [mm], faces, shape (m, 3), and colours of the corners."""
     step = 1
     while height_map.heights[::step, ::step].size > MESH_CELLS:
         step += 1
-    surface = net(height_map, step)
+    surface = surface_mesh(height_map, step)
     heights = surface.heights(height_map)
     patches = surface.patches & all_corners(heights > height_map.bottom)
     _separate_pinches(patches)
@@ -79,9 +79,9 @@ def _net(
     vertices = np.concatenate([top, bottom, [middle]])[used]
     painted = None
     if colours is not None:
-        skin = np.where(surface.cell.ravel() < 0, 0, surface.cell.ravel())
+        facet = np.where(surface.cell.ravel() < 0, 0, surface.cell.ravel())
         raw = np.tile(np.array(RAW_RGB, np.uint8), (below + 1, 1))
-        painted = np.concatenate([colours.reshape(-1, 3)[skin], raw])[used]
+        painted = np.concatenate([colours.reshape(-1, 3)[facet], raw])[used]
     return vertices, renumbered.reshape(faces.shape), painted
 
 
@@ -136,7 +136,7 @@ def write_stl(height_map: HeightMap, path: Path, zero: ArrayLike = (0.0, 0.0, 0.
     Raises:
         OSError: The file cannot be written.
     """
-    vertices, faces, _ = _net(height_map, None)
+    vertices, faces, _ = _mesh(height_map, None)
     text = stl_text((vertices - np.asarray(zero))[faces])
     with complete_or_absent(path) as temporary:
         temporary.write_bytes(text)

@@ -79,17 +79,19 @@ class PlacedPart(NamedTuple):
     zero: FloatArray
 
     def tilts(self, axes: FloatArray) -> bool:
-        """Whether the tool ever stands off the part's Z, part coordinates of shape (n, k) [mm or deg]."""
+        """Whether the tool ever is off the part's Z, part coordinates of shape (n, k) [mm or deg]."""
         return self.frame.tilts(axes + self.zero)
 
-    def tip(self, axes: FloatArray, longer: FloatArray | float) -> FloatArray:
+    def tip(self, axes: FloatArray, length_difference: FloatArray | float) -> FloatArray:
         """Where the tip of a tool is in the part, from program zero, shape (n, 3) [mm].
 
         Args:
             axes: Part coordinates, shape (n, k).
-            longer: How much longer than the first the tool is, one or shape (n,) [mm].
+            length_difference: How much longer than the first the tool is, one or shape (n,) [mm].
         """
-        return self.frame.position(axes + self.zero, longer) - self.frame.program_zero(self.zero)
+        return self.frame.position(axes + self.zero, length_difference) - self.frame.program_zero(
+            self.zero
+        )
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
@@ -99,13 +101,13 @@ class ProgramSummary:
     Attributes:
         tools: What is in the spindle when, at which speed.
         rapid: Whether each move is a rapid, shape (n,).
-        spindle: Its speed [1/min], negative where it turns counter-clockwise, 0 where it stands;
+        spindle: Its speed [1/min], negative where it turns counter-clockwise, 0 where it is at rest;
             None where nothing is known of it. A program that never speaks of the spindle has one
             value: it runs with it turning, since someone has switched it on by hand. One that does
             is held to it from its first move on.
         screen: What the control's screen shows; None: always where the axes are.
         part: Where the part is on the machine; None: its screen never shows the tip.
-        tilts: Whether a height map does not hold the part: the tool stands off the part's Z somewhere, or the blank is a
+        tilts: Whether a height map does not hold the part: the tool is off the part's Z somewhere, or the blank is a
             cylinder that lies.
     """
 
@@ -134,7 +136,9 @@ class ProgramSummary:
             return axes
         screen, place = self.screen.at(move), axes.copy()
         if screen.led and self.part is not None:
-            place[:3] = self.part.tip(axes[None], self.tools.longer(self.tools.at(move)))[0]
+            place[:3] = self.part.tip(
+                axes[None], self.tools.length_difference(self.tools.at(move))
+            )[0]
         place[:3] = screen.matrix @ place[:3]
         return place + screen.shift
 
@@ -164,7 +168,7 @@ class SummaryBuilder:
         Args:
             job: Its tools are those that the program may bring.
             spindle: As the machine and the control have it; None: without a limit.
-            part: Where the part is on the machine; None: the tool never stands off its Z.
+            part: Where the part is on the machine; None: the tool never is off its Z.
         """
         self._tools = {tool.number: tool for tool in job.tools}
         # Without a list of tools every number means the default tool, as in a run without one.
@@ -206,9 +210,9 @@ class SummaryBuilder:
         if self._part is not None and led.any():
             rows = np.flatnonzero(led)
             first_move, tools = zip(*self._plan, strict=True)
-            longer = ToolPlan(tools, first_move).lower(before + rows)
+            length_difference = ToolPlan(tools, first_move).lower(before + rows)
             place = place.copy()
-            place[rows, :3] = self._part.tip(place[rows], longer)
+            place[rows, :3] = self._part.tip(place[rows], length_difference)
         shift = moves.display - place
         if moves.screen is not None:
             shift[:, :3] = moves.display[:, :3] - np.einsum("nij,nj->ni", turned, place[:, :3])

@@ -1,4 +1,4 @@
-"""The part of a recording, cut anew: along the simulated motion or the commanded one."""
+"""The part of a recording, cut again: along the simulated motion or the commanded one."""
 
 from pathlib import Path
 from typing import Literal

@@ -12,8 +12,8 @@ from twin.cutting.kernels.sweep import (
     ODD_ROWS,
     Marks,
     Removal,
+    removal_of_sums,
     sweep,
-    tally_removal,
 )
 from twin.cutting.tools import Profile
 from twin.nc.canonical import FloatArray
@@ -61,11 +61,11 @@ def sweep_lines(
         cores: Cores to use, by default those that this process may run on.
     """
     count = max(len(points) - 1, 0)
-    tally, grid = np.zeros((count, 2, 4)), material.grid
+    sums, grid = np.zeros((count, 2, 4)), material.grid
     marks = Marks(np.zeros((0, 0)), np.zeros(count)) if marks is None else marks
 
     def cut(rows: tuple[int, int]) -> Rectangle:
-        return sweep(material.heights, grid, points, edge, tally, marks, stood, rows)
+        return sweep(material.heights, grid, points, edge, sums, marks, stood, rows)
 
     if count >= FEWEST_LINES and (available_cores() if cores is None else cores) > 1:
         with ThreadPoolExecutor(1, "sweep") as other:
@@ -74,7 +74,7 @@ def sweep_lines(
     else:
         changed = cut(ALL_ROWS)
     removal = Removal(*np.zeros((3, count)))
-    tally_removal(tally, points, grid, removal)
+    removal_of_sums(sums, points, grid, removal)
     return Swept(removal, changed)
 
 

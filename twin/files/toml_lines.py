@@ -10,7 +10,7 @@ _KEY = re.compile(r"\s*([A-Za-z0-9_.\"'-]+)\s*=\s*([^#]*)")
 
 
 class _Entry(NamedTuple):
-    """A key of a file: its whole name, with the number of the table that it stands in, if it has one."""
+    """A key of a file: its whole name, with the number of the table that it is in, if it has one."""
 
     name: str
     line: int

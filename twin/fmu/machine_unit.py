@@ -24,7 +24,7 @@ class MachineUnit:
 
     Attributes:
         machine: What it is.
-        start: Where its axes stand before the first step, machine coordinates, shape (k,) [mm or deg].
+        start: Where its axes are before the first step, machine coordinates, shape (k,) [mm or deg].
         position: Setpoint at the end of the next step, machine coordinates, shape (k,) [mm or deg].
         velocity: The same, shape (k,) [mm/s or deg/s]; what feed-forward is computed from.
         acceleration: The same, shape (k,) [mm/s² or deg/s²].
@@ -49,7 +49,7 @@ class MachineUnit:
 
     @property
     def alarm(self) -> str:
-        """Code of the alarm that stands; empty: none does."""
+        """Code of the alarm that is active; empty: none does."""
         return "" if self._live is None or self._live.alarm is None else self._live.alarm.code
 
     @property

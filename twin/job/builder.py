@@ -35,4 +35,4 @@ class ToolChangeTable(Table):
 
     height: float | None = None
     """Z that the control, or the builder's macro behind M6, rises to by itself before the tool changes, machine
-    coordinates [mm]; none: a Haas rises to machine zero, other controls change the tool where it stands."""
+    coordinates [mm]; none: a Haas rises to machine zero, other controls change the tool where it is."""

@@ -59,7 +59,7 @@ def upright_weight(
 class FixtureTable(Table):
     """What is clamped to the work-holding surface: a box or an upright cylinder, such as the jaw of a vise, or an STL.
 
-    A machine file lists what always stands on its table, a job file what holds its part.
+    A machine file lists what always is on its table, a job file what holds its part.
     """
 
     name: str

@@ -134,6 +134,9 @@ class ToolTable(Table):
     """Length of the cutting part [mm]."""
     corner: Positive | None = None
     """Bull-nose: radius of the corner [mm]."""
+    radius_offset: Annotated[float, Field(ge=0)] | None = None
+    """What the control's tool table holds as its radius [mm]; none: half the diameter. 0 where the program's contours
+    are the path of the tool's centre already and the table holds the wear alone (posts: "wear" compensation)."""
     angle: Annotated[float, Field(gt=0, lt=180)] | None = None
     """Drill and chamfer: included angle of the point [deg]; none: 118 and 90."""
     tip: Annotated[float, Field(ge=0)] = 0.0
@@ -181,6 +184,11 @@ class ToolTable(Table):
         if self.free_length is not None and self.free_length > self.length:
             raise ValueError("free_length is at most the length")
         return self
+
+    @property
+    def table_radius(self) -> float:
+        """Its radius in the control's tool table [mm]."""
+        return self.diameter / 2.0 if self.radius_offset is None else self.radius_offset
 
     @property
     def point_angle(self) -> float | None:
@@ -323,7 +331,7 @@ class JobFile(Table):
     program: str
     """NC program, relative to the job file."""
     dialect: str | None = None
-    """One of ``twin dialects``; none: told apart by the program's own words."""
+    """One of ``twin dialects``; none: distinguished by the program's own words."""
     machine: str = DEFAULT_MACHINE
     """A shipped machine's name, or a path relative to the job file."""
     axes: dict[Annotated[str, Field(pattern="^[A-Z]$")], str] = Field(default_factory=dict)
@@ -337,7 +345,7 @@ class JobFile(Table):
     """Program zero in machine coordinates, by axis [mm or deg]; an axis left out: on the table's
     centre line, at the height of the stock's top face, other axes at 0."""
     start: dict[str, float] = Field(default_factory=dict)
-    """Where the axes stand when the program starts, program coordinates [mm or deg]."""
+    """Where the axes are when the program starts, program coordinates [mm or deg]."""
     stock: StockTable | None = None
     nominal: NominalTable | None = None
     tools: tuple[ToolTable, ...] = (ToolTable(number=1),)
@@ -351,9 +359,9 @@ class JobFile(Table):
     ``cutting_force = "teeth"`` it does so without this key."""
     cutting_force: Literal["teeth", "mean", "none"] = "teeth"
     """Of a stock whose material is known: ``teeth``, the force of every tooth acts while it is cut, the tool
-    bends and may break; ``mean``, the mean force is told, and with ``cutting_load`` reckoned ahead, but it
+    bends and may break; ``mean``, the mean force is reported, and with ``cutting_load`` reckoned ahead, but it
     bends and breaks no tool: contour errors come out several times too small where a tool gives way, and the
-    part does not show it; ``none``, the mean force is told alone. The page of ``twin/coupling`` has one
+    part does not show it; ``none``, the mean force is reported alone. The page of ``twin/coupling`` has one
     job both ways."""
     offsets: dict[str, dict[str, float]] = Field(default_factory=dict)
     """Work offsets by name (``G54``), each by axis, from part zero [mm or deg]."""

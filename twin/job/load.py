@@ -21,6 +21,8 @@ SHARED_NAME = "twin.toml"
 EXTENDS = "extends"
 DEFAULT = "default"
 """Named as the source of a tolerance that no file sets."""
+ASSUMED, VARIED = Path("assumed"), Path("--vary")
+"""Layers of a job that are no files: what is assumed of a program without a job, and what a sweep changes."""
 _LONGEST_CHAIN = 10
 _FILES = (("machine",), ("stock", "file"), ("nominal", "file"))
 """Keys whose values are paths, relative to the file that sets them."""
@@ -28,10 +30,10 @@ _FILES = (("machine",), ("stock", "file"), ("nominal", "file"))
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Layer:
-    """One file's share of a job.
+    """One file's share of a job, or that of what is no file.
 
     Attributes:
-        path: The file.
+        path: The file, or ``ASSUMED`` or ``VARIED``.
         data: Its content, paths made absolute.
     """
 
@@ -70,7 +72,10 @@ class Job:
         """The file that sets a key, as seen from the job's folder."""
         if not self.layers:
             return "job"
-        return os.path.relpath(layer_of(self.layers, key).resolve(), self.folder.resolve())
+        path = layer_of(self.layers, key)
+        if path in (ASSUMED, VARIED):
+            return str(path)
+        return os.path.relpath(path.resolve(), self.folder.resolve())
 
 
 def load_job(path: Path, changes: Sequence[Change] = ()) -> Job:
@@ -93,7 +98,9 @@ def load_job(path: Path, changes: Sequence[Change] = ()) -> Job:
         data = load_toml(job_path)
     if data is None or not (job_path == path or _runs(job_path, data, path)):
         job_path, data = None, {"program": path.name}
-    layers = _layers_of(job_path or path, changed(data, "job", changes))
+    layers = _layers_of(job_path or path, data)
+    if varied := changed({}, "job", changes):
+        layers.insert(0, Layer(VARIED, varied))
     file = checked(_merged(layers), JobFile, partial(layer_of, layers))
     job = Job(path.parent, file, job_path, layers)
     if not job.program.is_file():

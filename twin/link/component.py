@@ -45,7 +45,7 @@ def source(stamp: str = "") -> str:
     """The component for ``halcompile``.
 
     Args:
-        stamp: By which the compiled form is told from those of other versions.
+        stamp: By which the compiled form is distinguished from those of other versions.
     """
     return (
         templates()

@@ -14,7 +14,7 @@ from twin.machine.description.config import Machine
 from twin.nc.canonical import FloatArray
 
 NO_LIMIT = 1e9
-"""What stands where a machine has no limit [mm or deg]."""
+"""What is where a machine has no limit [mm or deg]."""
 _NANOSECONDS = 1e9
 
 

@@ -105,7 +105,7 @@ class LinuxCnc:
 def claimed_linuxcnc() -> Iterator[Path]:
     """LinuxCNC for this process alone, by its start script, until the block ends.
 
-    LinuxCNC's own lock stands only once it runs, and its remains are taken away afterwards: a second
+    LinuxCNC's own lock is only once it runs, and its remains are taken away afterwards: a second
     twin that began meanwhile would take away the first one's.
 
     Raises:

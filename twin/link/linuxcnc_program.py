@@ -26,7 +26,7 @@ class LinuxcncProgram(NamedTuple):
 
     Attributes:
         text: What it reads.
-        line_of_move: Line that each of the n moves stands in, shape (n,).
+        line_of_move: Line that each of the n moves is in, shape (n,).
     """
 
     text: str

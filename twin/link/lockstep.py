@@ -1,7 +1,7 @@
 """The twin under a control that asks for a position every servo period and waits for the answer.
 
 Time stands still while nobody asks, so that a stall on either side delays both and is none of the
-machine's. The drives are told no more than the positions: velocity and acceleration are backward
+machine's. The drives are commanded no more than the positions: velocity and acceleration are backward
 differences of them. Commands are rounded as a recording rounds them before they are used, so that
 a recording, played back, gives the joints of the run bit for bit.
 """
@@ -15,7 +15,7 @@ from typing import Self
 
 import numpy as np
 
-from twin.link.commands import Commands
+from twin.columns import join
 from twin.link.packet import (
     ANSWER_LAYOUT,
     ANSWER_STATES,
@@ -29,13 +29,95 @@ from twin.link.packet import (
     write_answer,
 )
 from twin.link.place import Places
-from twin.link.sample_log import SampleLog
 from twin.machine.simulation.live import LiveMachine
 from twin.machine.watching.alarms import Alarm, AlarmStandsError, NearMiss
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
-from twin.recording.form import Samples
+from twin.recording.form import STEPS, Samples
 from twin.run.pipeline import MachineMotion
+
+
+class SampleLog:
+    """Remembers samples.
+
+    Attributes:
+        ticks: How many came in all.
+        standing: For how many of the last ones nothing was to move.
+    """
+
+    def __init__(self, period_s: float) -> None:
+        """Begin with none.
+
+        Args:
+            period_s: Time between two samples, the first of which is at 0 [s].
+        """
+        self.ticks = 0
+        self.standing = 0
+        self._period = period_s
+        self._kept: list[Samples] = []
+
+    def __len__(self) -> int:
+        return len(self._kept)
+
+    def add(self, sample: Samples) -> None:
+        """Remember one sample."""
+        self._kept.append(sample)
+        self.ticks += 1
+        self.standing = 0 if any(sample.setpoint.velocity[0].tolist()) else self.standing + 1
+
+    def take(self, count: int) -> Samples:
+        """Hand the first samples on, and forget them; of no move yet."""
+        first = self.ticks - len(self._kept)
+        samples = join(self._kept[:count])
+        del self._kept[:count]
+        time = np.arange(first, first + count) * np.float64(self._period)
+        return dataclasses.replace(
+            samples, setpoint=dataclasses.replace(samples.setpoint, time=time)
+        )
+
+
+_POSITION, _VELOCITY, _ACCELERATION = (
+    STEPS[f"setpoint/{name}"] for name in ("position", "velocity", "acceleration")
+)
+
+
+class Commands:
+    """Turns commanded positions into setpoints, with the velocities that a drive can know from them.
+
+    Attributes:
+        position: The last one, shape (k,) [mm or deg].
+        velocity: Backward difference of the positions, shape (k,) [mm/s or deg/s].
+        acceleration: Backward difference of the velocities, shape (k,) [mm/s² or deg/s²].
+    """
+
+    def __init__(self, period_s: float, position: FloatArray) -> None:
+        """Begin at rest.
+
+        Args:
+            period_s: Time between two positions [s].
+            position: Where, shape (k,) [mm or deg].
+        """
+        self._period = period_s
+        self.rest_at(position)
+
+    def rest_at(self, position: FloatArray) -> None:
+        """Stand at a position."""
+        self.position = rounded(position, _POSITION)
+        self.velocity = np.zeros(len(position))
+        self.acceleration = np.zeros(len(position))
+
+    def go_to(self, position: FloatArray) -> None:
+        """Take the next position, one period later."""
+        goal = rounded(position, _POSITION)
+        velocity = rounded((goal - self.position) / self._period, _VELOCITY)
+        self.acceleration = rounded((velocity - self.velocity) / self._period, _ACCELERATION)
+        self.position, self.velocity = goal, velocity
+
+
+def rounded(values: FloatArray, step: float) -> FloatArray:
+    """To multiples of a step, as a recording keeps them."""
+    return np.rint(values / step) * step
+
 
 TICKS_PER_CHUNK = 500
 """Samples that are handed on at once."""
@@ -203,7 +285,7 @@ class LockstepMotion(MachineMotion):
             self._log.add(samples)
 
     def _clear(self) -> bool:
-        """Switch the drives on where the axes stand; returns whether they stand."""
+        """Switch the drives on where the axes are; returns whether they are at rest."""
         try:
             self._live.clear()
         except AlarmStandsError:

@@ -100,7 +100,7 @@ def read_program(
 def _numbered(lines: Sequence[str]) -> list[str]:
     """The program with its lines' numbers as N words, which ``rs274`` repeats with each call.
 
-    What stands before and behind a pair of ``%`` is no program.
+    What is before and behind a pair of ``%`` is no program.
     """
     marks = [number for number, line in enumerate(lines) if line.strip() == "%"]
     first = marks[0] + 1 if marks else 0
@@ -193,7 +193,7 @@ class _Writer:
     def straight(self, call: str, _arguments: str, values: list[float]) -> None:
         end = self._part(np.array([*values, *[0.0] * 9][:9]))
         if not self._begun:
-            # The move to where the axes stand.
+            # The move to where the axes are.
             self._begun, self._at = True, end
             return
         if call == "STRAIGHT_TRAVERSE":

@@ -1,5 +1,6 @@
 """LinuxCNC and the twin together: a program, or a session at LinuxCNC's screen."""
 
+import contextlib
 import os
 import re
 from collections.abc import Callable
@@ -7,7 +8,9 @@ from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import NamedTuple
 
+from twin.compilation.inventory import inventory
 from twin.files.atomic import write_text
+from twin.job.job_file import ToolTable
 from twin.link.component import install, module_folder
 from twin.link.configuration import Settings, write_configuration
 from twin.link.linuxcnc import (
@@ -22,15 +25,49 @@ from twin.link.linuxcnc import (
 from twin.link.linuxcnc_program import linuxcnc_program
 from twin.link.lockstep import LockstepMotion
 from twin.link.place import Places
-from twin.link.rehearsal import rehearse
 from twin.machine.simulation.live import LiveMachine
 from twin.machine.watching.alarms import Alarm, AlarmCode
-from twin.nc.canonical import concatenate
+from twin.nc.canonical import FloatArray, concatenate
 from twin.run.dry_run import DryRun, InterpretedProgram
 from twin.run.outcome import Outcome
 from twin.run.preparation import Preparation
 from twin.run.progress import Progress
 from twin.run.run import Run
+
+
+class _EnoughError(Exception):
+    """Every step has been called."""
+
+
+def rehearse(run: Run, dry_run: DryRun, tool: ToolTable, position: FloatArray) -> None:
+    """Call what a linked run will call, unless all of it is compiled already; nothing of it is kept.
+
+    Kernels compile when they are first called, which takes a minute in a new installation, and LinuxCNC's
+    component gives up on a twin that is silent for two seconds.
+
+    Args:
+        run: The prepared job.
+        dry_run: What its dry run found.
+        tool: What the spindle holds at the start.
+        position: Where the axes stand, machine coordinates, shape (k,) [mm or deg].
+
+    Raises:
+        SimulationError: The twin's own run of the program fails.
+    """
+    if inventory().complete:
+        return
+    with contextlib.suppress(_EnoughError):
+        Run(run.preparation).execute(dry_run, None, _enough)
+    live = LiveMachine(run.machine, tool, position, run.model.blank)
+    live.stand_at(position)
+    live.follow(live.setpoint)
+    live.brake(1)
+    live.clear()
+
+
+def _enough(_stage: str, _share: float) -> None:
+    raise _EnoughError
+
 
 FOLDER_NAME = "linuxcnc"
 """Where, in the folder of a run, all that LinuxCNC reads and writes lies."""

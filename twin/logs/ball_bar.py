@@ -1,5 +1,7 @@
 """A ball-bar's log: how far the tool is off a circle, over the angle (ISO 230-4, as a QC20-W exports it)."""
 
+import enum
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple
 
@@ -15,7 +17,15 @@ from twin.logs.units import factor
 from twin.nc.canonical import FloatArray
 
 Positive = Annotated[float, Field(gt=0)]
-COUNTER_CLOCKWISE, CLOCKWISE = 1, -1
+
+
+class Turning(enum.IntEnum):
+    """Sense of a circle, seen along the normal of its plane."""
+
+    COUNTER_CLOCKWISE = 1
+    CLOCKWISE = -1
+
+
 _LEAST_TURN = 180.0
 """An arc below this many degrees does not tell a circle's shape from where its centre is."""
 _LEAST_SAMPLES = 100
@@ -63,7 +73,7 @@ class BallBarLog(NamedTuple):
     radius: float
     speed: float
     angle: FloatArray
-    turns: dict[int, FloatArray]
+    turns: Mapping[Turning, FloatArray]
 
 
 def read_ball_bar(path: Path, columns: Path | None) -> BallBarLog:
@@ -96,7 +106,7 @@ def read_ball_bar(path: Path, columns: Path | None) -> BallBarLog:
         return (channel.numbers(path) * column.scale + column.offset) * scale
 
     angle = np.deg2rad(numbers("angle", table.angle, angle=True))
-    roles = {COUNTER_CLOCKWISE: "counter_clockwise", CLOCKWISE: "clockwise"}
+    roles = {Turning.COUNTER_CLOCKWISE: "counter_clockwise", Turning.CLOCKWISE: "clockwise"}
     turns = {
         sense: numbers(role, column)
         for sense, role in roles.items()

@@ -4,7 +4,7 @@ What separates the cells and where the numbers begin is seen from the file. A ta
 (LinuxCNC's ``halsampler``) has columns that are named by their numbers.
 
 TwinCAT Scope View exports a block of properties per channel, each row as ``key; value; key; value``;
-where channels share a time column, the key stands over the time column and one value over each
+where channels share a time column, the key is over the time column and one value over each
 channel. Times are milliseconds since the start, or ticks of 100 ns (Beckhoff, TE13xx, "Export to csv").
 """
 

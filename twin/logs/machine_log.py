@@ -1,4 +1,4 @@
-"""A log of a machine: what its axes were told and what they did, in the shop's units."""
+"""A log of a machine: what its axes were commanded and what they did, in the shop's units."""
 
 import dataclasses
 import difflib

@@ -7,7 +7,7 @@ import numpy as np
 from twin.motion.limits import MotionLimits
 from twin.motion.pieces.pieces import Pieces
 from twin.motion.profile.backward_pass_kernels import backward_pass
-from twin.motion.profile.forward_pass_kernels import STATE_AT_REST, Stands, forward_pass
+from twin.motion.profile.forward_pass_kernels import STATE_AT_REST, SegmentTimes, forward_pass
 from twin.motion.profile.phases import Phases, brakes_from, phases_of
 from twin.motion.profile.windows import Windows
 from twin.motion.retiming.retiming import PhaseTable, pieces_for_runs, retime
@@ -22,19 +22,19 @@ def phases_of_pieces(parts: Iterable[Pieces], limits: MotionLimits) -> Iterator[
     """
     state = STATE_AT_REST.copy()
     known = np.zeros((4, 0))
-    machine, gained = limits.arrays(), 0.0
+    machine, time_saved = limits.arrays(), 0.0
     for window in Windows(parts):
         brakes = backward_pass(window.limits, window.entry, known)
-        stands = Stands(window.overlap, window.pause)
+        times = SegmentTimes(window.overlap, window.pause)
         rows, segments = forward_pass(
-            window.limits, window.entry, brakes, stands, window.due, np.inf, state
+            window.limits, window.entry, brakes, times, window.due, np.inf, state
         )
         if len(rows) > 0:
             phases = phases_of(window, rows, segments)
             pieces = pieces_for_runs(window.parts[0])
-            if pieces is not None or gained > 0.0:
+            if pieces is not None or time_saved > 0.0:
                 table = PhaseTable(phases.rows, phases.rows_pieces)
-                table, _, gained = retime(table, pieces, machine, 1.0, gained)
+                table, _, time_saved = retime(table, pieces, machine, 1.0, time_saved)
                 phases = Phases(phases.parts, table.rows, table.rows_pieces)
             yield phases
         known = brakes_from(brakes, window.due)

@@ -6,12 +6,27 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
+from twin.motion.corner_candidates import PiecesOfChunks
 from twin.motion.limits import MotionLimits
-from twin.motion.phase_planner import plan_phases
+from twin.motion.phases_of_pieces import phases_of_pieces
+from twin.motion.profile.phases import Phases
 from twin.motion.setpoints.sampling import at_end, sample, standing
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.motion.steps import Step
 from twin.nc.canonical import Chunk, FloatArray
+
+
+def plan_phases(
+    chunks: Iterable[Chunk], limits: MotionLimits, *, start: FloatArray
+) -> Iterator[Phases]:
+    """Plan the velocity along a program.
+
+    Args:
+        chunks: The program.
+        limits: Of the axes and the path.
+        start: Where the axes are before, part coordinates, shape (k,) [mm or deg].
+    """
+    return phases_of_pieces(PiecesOfChunks(chunks, limits, start), limits)
 
 
 def plan(
@@ -33,7 +48,7 @@ def plan(
         limits: Of the axes and the path.
         period_s: Servo period [s].
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
-        start: Where the axes stand before the program, machine coordinates, shape (k,) [mm or deg].
+        start: Where the axes are before the program, machine coordinates, shape (k,) [mm or deg].
 
     Yields:
         Setpoints in machine coordinates, at most ``SAMPLES`` at a time.
@@ -62,7 +77,7 @@ class WatchedEnd(Step[Chunk, Chunk]):
 
     Args:
         chunks: The program.
-        start: Where the axes stand before, machine coordinates, shape (k,) [mm or deg].
+        start: Where the axes are before, machine coordinates, shape (k,) [mm or deg].
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
 
     Attributes:

@@ -1,4 +1,4 @@
-"""Steps of planning that pull parts of a program: each remembers as an object where it stands.
+"""Steps of planning that pull parts of a program: each remembers as an object where it is.
 
 A generator could not be copied, and a plan under an operator's hands is: a training room goes back to
 copies of it.

@@ -6,7 +6,7 @@ from twin.nc.canonical import Function
 
 SPINDLE_COUNTER_CLOCKWISE = "M4"
 _STARTS, _STOPS = (3, 4), (5, 6)
-"""M codes behind which the spindle turns, and behind which it stands until it is started again, whichever
+"""M codes behind which the spindle turns, and behind which it is stopped until it is started again, whichever
 tool M6 has brought (LinuxCNC, "M6 Tool Change": when the change is complete the spindle is stopped)."""
 SPINDLE_STARTS = frozenset(f"M{number}" for number in _STARTS)
 SPINDLE_STOPS = frozenset({"M5", "M19"})

@@ -27,6 +27,7 @@ class Interpretation:
     Attributes:
         lengths: The tool lengths that it calls.
         compensated: Source lines that were run under radius compensation: their moves are the tool centre's.
+        drilled: Source lines that made a hole by a drilling cycle.
     """
 
     def __init__(
@@ -47,6 +48,7 @@ class Interpretation:
         self.coverage = Coverage(source, dialect)
         self.lengths = LengthCalls()
         self.compensated: set[int] = set()
+        self.drilled: set[int] = set()
 
     @property
     def programs_in_inches(self) -> bool:
@@ -108,6 +110,9 @@ class Interpretation:
             self.coverage.note_line(block.line)
         if int(control.modal.active.get("compensation", _NO_COMPENSATION)) in _COMPENSATION:
             self.compensated.add(block.line)
+        if tools.drills:
+            self.drilled.add(block.line)
+            tools.drills = False
         self.lengths.note(tools, block.line, first)
         if control.ended:
             self.coverage.ends_at = block.line

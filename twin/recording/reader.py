@@ -18,6 +18,7 @@ import numpy as np
 from twin.errors import RecordingError
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Axes, FloatArray
+from twin.recording.checksum import checksum_is_wrong, has_checksum
 from twin.recording.form import (
     COLUMNS,
     CONTOUR,
@@ -31,8 +32,7 @@ from twin.recording.form import (
     Samples,
     ToolLoad,
 )
-from twin.recording.seal import is_sealed, seal_is_broken
-from twin.recording.trial import reading_ends
+from twin.recording.readable import reading_ends
 from twin.recording.writer import PROGRAM_TEXT, RecordingWriter, record
 from twin.toolpath.machine_geometry import geometry_from_text
 from twin.toolpath.part_frame import PartFrame, chain_from_text
@@ -198,12 +198,12 @@ def open_recording(path: Path) -> Iterator[Recording]:
     Raises:
         RecordingError: The file is missing, torn, incomplete or not a recording.
     """
-    with _damage_told(path):
-        if path.is_file() and seal_is_broken(path):
+    with _damage_reported(path):
+        if path.is_file() and checksum_is_wrong(path):
             raise RecordingError(f"{path}: is damaged: it is not what was written")
     with _opened(path) as file:
-        with _damage_told(path):
-            if not is_sealed(path) and not reading_ends(path):
+        with _damage_reported(path):
+            if not has_checksum(path) and not reading_ends(path):
                 raise RecordingError(f"{path}: is damaged: reading it does not come to an end")
             if not file.attrs.get("complete", False):
                 raise RecordingError(f"{path}: the recording is not complete")
@@ -227,7 +227,7 @@ def open_growing(path: Path) -> Iterator[Recording]:
     )
     found = path if path.is_file() or not parts else parts[-1]
     with _opened(found, swmr=True) as file:
-        with _damage_told(found):
+        with _damage_reported(found):
             recording = Recording(found, file)
             recording.refresh()
         yield recording
@@ -244,7 +244,7 @@ def _opened(path: Path, *, swmr: bool = False) -> Iterator[h5py.File]:
 
 
 @contextlib.contextmanager
-def _damage_told(path: Path) -> Iterator[None]:
+def _damage_reported(path: Path) -> Iterator[None]:
     try:
         yield
     except _DAMAGE as error:

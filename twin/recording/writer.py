@@ -2,6 +2,7 @@
 
 import contextlib
 import json
+import os
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -9,9 +10,9 @@ from typing import Any
 import h5py
 import numpy as np
 
-from twin.files.atomic import complete_or_absent
+from twin.files.atomic import complete_or_absent, with_path
 from twin.nc.canonical import FloatArray
-from twin.recording.disk_space import DiskRoom
+from twin.recording.checksum import write_checksum
 from twin.recording.form import (
     COLUMNS,
     CONTOUR,
@@ -24,7 +25,43 @@ from twin.recording.form import (
     RecordingHeader,
     Samples,
 )
-from twin.recording.seal import seal
+
+_STEP = 8 << 20
+"""Bytes that are taken at a time."""
+
+
+class DiskSpace:
+    """Allocates disk space before HDF5 writes to it.
+
+    HDF5 cannot close a file that it could not write, and crashes the process when it exits. A full disk
+    is met here first, where it is an error like any other.
+    """
+
+    def __init__(self, handle: int, path: Path) -> None:
+        """Allocate nothing yet.
+
+        Args:
+            handle: The descriptor of the file.
+            path: Its path, for messages.
+        """
+        self._handle = handle
+        self._path = path
+        self._end = 0
+
+    def hold(self, end: int) -> None:
+        """Make sure that the file can be written up to ``end`` [bytes].
+
+        Raises:
+            OSError: The disk is full, or the file would be larger than is allowed.
+        """
+        if end <= self._end:
+            return
+        try:
+            os.posix_fallocate(self._handle, 0, end + _STEP)
+        except OSError as error:
+            raise with_path(error, self._path) from error
+        self._end = end + _STEP
+
 
 _ROWS_PER_CHUNK = 4096
 _FORMAT = ("v110", "v110")
@@ -47,8 +84,8 @@ class RecordingWriter:
         self._count = 0
         self._waiting: dict[str, np.ndarray[Any, Any]] = {}
         width = len(header.axes)
-        self._room = DiskRoom(file.id.get_vfd_handle(), Path(file.filename))
-        self._hold_room(len(header.program_text) * _MOST_OF_A_LETTER)
+        self._space = DiskSpace(file.id.get_vfd_handle(), Path(file.filename))
+        self._hold_space(len(header.program_text) * _MOST_OF_A_LETTER)
         values = sum(width if "/" in path else 1 for path in (*COLUMNS, *JOINT_COLUMNS, CONTOUR))
         self._row_bytes = values * np.dtype(np.float64).itemsize
         for path, (name, unit) in {**COLUMNS, **JOINT_COLUMNS}.items():
@@ -136,14 +173,14 @@ class RecordingWriter:
     def _write(self, columns: Mapping[str, np.ndarray[Any, Any]]) -> None:
         count = len(columns["time"])
         # The last chunk of each column may be there already, in part, and is written once more.
-        self._hold_room((count + _ROWS_PER_CHUNK) * self._row_bytes)
+        self._hold_space((count + _ROWS_PER_CHUNK) * self._row_bytes)
         for path, column in columns.items():
             self._put(path, column, self._count + count)
         self._count += count
         self._file.flush()
 
-    def _hold_room(self, size: int) -> None:
-        self._room.hold(self._file.id.get_filesize() + size + _BOOKKEEPING)
+    def _hold_space(self, size: int) -> None:
+        self._space.hold(self._file.id.get_filesize() + size + _BOOKKEEPING)
 
     def _put(self, path: str, values: np.ndarray[Any, Any], end: int) -> None:
         dataset = self._file[path]
@@ -194,4 +231,4 @@ def record(path: Path, header: RecordingHeader) -> Iterator[RecordingWriter]:
         # Opened again, HDF5 also gives the room back that was held and not needed.
         with h5py.File(temporary, "r+", libver=_FORMAT) as file:
             file.attrs["complete"] = True
-        seal(temporary)
+        write_checksum(temporary)

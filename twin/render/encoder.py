@@ -111,7 +111,7 @@ class VideoWriter:
 
 
 def _palettes(size: tuple[int, int], time_base: Fraction) -> Graph:
-    """A filter that chooses 256 colours anew for every frame."""
+    """A filter that chooses 256 colours again for every frame."""
     graph = Graph()
     source = graph.add_buffer(
         width=size[0], height=size[1], format=av.VideoFormat("rgb24"), time_base=time_base

@@ -61,7 +61,7 @@ class Gauge:
         velocity = SECONDS_PER_MINUTE * last.joint_velocity[0]
         feed = float(np.linalg.norm(velocity[:3]))
         if summary.leads_tip(move):
-            feed = SECONDS_PER_MINUTE * self._tip_speed(summary.tools.longer(tool))
+            feed = SECONDS_PER_MINUTE * self._tip_speed(summary.tools.length_difference(tool))
         turning = float(np.linalg.norm(velocity[header.axes.rotary()]))
         only_turns = feed < 1.0 < turning
         raised = [text for since, text in self._alarms if since <= time]
@@ -78,12 +78,12 @@ class Gauge:
             alarm=raised[-1] if raised else warning(line),
         )
 
-    def _tip_speed(self, longer: float) -> float:
+    def _tip_speed(self, length_difference: float) -> float:
         """How fast the tip of a tool, so much longer than the first [mm], goes over the part [mm/s]."""
         assert self._last is not None
         here, way = self._last.joint_position, _INSTANT_S * self._last.joint_velocity
         tips = self._scene.recording.header.part_frame.position(
-            np.concatenate([here - way, here + way]), longer
+            np.concatenate([here - way, here + way]), length_difference
         )
         return float(np.linalg.norm(tips[1] - tips[0])) / (2.0 * _INSTANT_S)
 

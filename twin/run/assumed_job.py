@@ -12,41 +12,30 @@ import numpy as np
 
 from twin.files.shipped import machine_file, machine_names, variant_names
 from twin.job.job_file import JobFile
-from twin.job.load import Job
+from twin.job.load import ASSUMED, Job, Layer
 from twin.machine.description.config import Machine
 from twin.nc.canonical import Chunk, FloatArray, Function, Motion, Moves, concatenate
-from twin.nc.dialects.recognition import HEAD_LINES, comments_of, without_comments
+from twin.nc.dialects.recognition import comments_of, without_comments
 from twin.nc.functions import TOOL_CHANGE
 from twin.nc.interpreter import Interpretation
 from twin.nc.text.diagnostics import ProgramError
 from twin.run.layout import lay_out
 from twin.run.preparation import IGNORED_AT_ZERO, Preparation, anywhere, prepare_job
 from twin.run.reading.assumed_reading import AssumedReading
+from twin.run.reading.assumed_stock import (
+    MARGIN,
+    assumed_stock,
+    bar_ends,
+    top_of_stock,
+    turns_about_x,
+)
 from twin.run.reading.assumed_tools import BELOW, tool_lines
 from twin.run.reading.declared import declared_stock, declared_tools
 
 _MACHINE_ZERO_UNKNOWN = "no-machine-zero"
 """The finding of a program that counts from machine zero, where no job says where that lies."""
-MARGIN = 10.0
-"""Stock beyond the feed moves, on each side [mm]."""
-_LEAST_HEIGHT = 10.0
-_MOST_CLIPPED = 0.5
-"""Share of the stock's area that may be taken from it so that no rapid plunges into it; beyond that there is none."""
 _RAPID_TOLERANCE_UM = 200.0
 """How exactly rapids are to keep their path: no one measures it, and 0.2 mm hits nothing that is watched."""
-
-_NUMBER = r"\s*[:=-]?\s*([0-9]+(?:\.[0-9]*)?)"
-_STOCK_WORDS = r"(?:STOCK(?:/BLOCK)?|BLOCK SIZE|BLANK|MATERIAL(?: SIZE)?|WORKPIECE SIZE|ROHTEIL)"
-_STOCKS = (
-    re.compile(
-        rf"{_STOCK_WORDS}\b[^XYZ]{{0,40}}\bX{_NUMBER}\D{{0,12}}?Y{_NUMBER}\D{{0,12}}?Z{_NUMBER}",
-        re.DOTALL,
-    ),
-    re.compile(
-        rf"{_STOCK_WORDS}\b[^0-9]{{0,20}}([0-9.]+)\s*(?:MM)?\s*[X*]\s*([0-9.]+)\s*(?:MM)?\s*[X*]\s*([0-9.]+)",
-        re.DOTALL,
-    ),
-)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -82,14 +71,17 @@ def with_assumptions(
     Raises:
         ProgramError: The program is wrong.
     """
-    assumed = assumed_job(preparation)
-    given = preparation.job.file.model_dump(exclude_unset=True)
-    file = JobFile.model_validate({**assumed.tables, **given, "dialect": preparation.dialect.name})
-    job = Job(preparation.job.folder, file)
+    assumed, found = assumed_job(preparation), preparation.job
+    given = found.file.model_dump(exclude_unset=True)
+    taken = {key: value for key, value in assumed.tables.items() if key not in given}
+    file = JobFile.model_validate({**taken, **given, "dialect": preparation.dialect.name})
+    job = Job(found.folder, file, layers=(*found.layers, Layer(ASSUMED, taken)))
     made = prepare_job(job, machine=machine, strict=strict)
-    return dataclasses.replace(
+    made = dataclasses.replace(
         made, dialect_reason=preparation.dialect_reason, reading=preparation.reading
-    ), assumed
+    )
+    notes = tuple(reading_notes(made, assumed.assumptions))
+    return dataclasses.replace(made, assumptions=notes), assumed
 
 
 def assumed_job(preparation: Preparation) -> AssumedJob:
@@ -105,10 +97,21 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
     comments = list(_comments(preparation))
     functions = [each for chunk in chunks for each in chunk.events if isinstance(each, Function)]
     declared = declared_tools(functions)
-    tools, told, diameter = tool_lines(calls, comments, moves, declared, inches=inches)
-    stock, position, said = declared_stock(functions) or _stock(
-        moves, comments, diameter / 2.0, inches=inches
+    length = _least_length(preparation.machine, moves)
+    blank = declared_stock(functions)
+    top = top_of_stock(moves) if blank is None else float(blank.top[2])
+    worn = {number for number, tool in preparation.settings.tools.items() if not tool.radius}
+    tools, told, diameter = tool_lines(
+        calls,
+        comments,
+        moves,
+        declared,
+        inches=inches,
+        top=top,
+        least_length=length,
+        worn=worn,
     )
+    stock, position, said = blank or assumed_stock(moves, comments, diameter / 2.0, inches=inches)
     lines = [
         f'program = "{preparation.job.program.name}"',
         f'dialect = "{preparation.dialect.name}"',
@@ -121,7 +124,7 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
         ),
         *_unit_lines(preparation.reading),
         "",
-        *_start_lines(position),
+        *_start_lines(moves, position),
         *stock,
         *tools,
         *_reading_lines(preparation.reading),
@@ -138,9 +141,20 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
     return AssumedJob("\n".join(lines), (*preparation.reading.notes, said, *told, *left_out))
 
 
-def _start_lines(top: FloatArray | None) -> list[str]:
-    """Where the tool stands at first, where program zero lies below the top of the stock."""
-    return [] if top is None or top[2] <= 0.0 else ["[start]", f"Z = {top[2] + MARGIN:.3f}", ""]
+def _least_length(machine: Machine, moves: Moves) -> float:
+    """How long a tool must be to reach a part on a table that turns about a level axis; 0 where it does not [mm]."""
+    frame, travel = machine.part_frame, machine.axis("Z").travel
+    if frame.chain is None or frame.table_about(2) is not None or travel is None or not len(moves):
+        return 0.0
+    return travel[0] + MARGIN - float(frame.chain.table[2]) - float(moves.end[:, 2].min())
+
+
+def _start_lines(moves: Moves, top: FloatArray | None) -> list[str]:
+    """Where the tool is at first, where program zero lies below the top of the stock or in the axis of a table."""
+    height = 0.0 if top is None or top[2] <= 0.0 else float(top[2]) + MARGIN
+    if top is None and turns_about_x(moves):
+        height = float(moves.end[:, 2].max()) + MARGIN
+    return ["[start]", f"Z = {height:.3f}", ""] if height > 0.0 else []
 
 
 def _tolerance_lines(moves: Moves, contour_um: float) -> list[str]:
@@ -226,129 +240,6 @@ def _comments(preparation: Preparation) -> Iterator[tuple[int, str]]:
             yield number, comment
 
 
-# --- stock and zero
-
-
-def _stock(
-    moves: Moves, comments: list[tuple[int, str]], radius: float, *, inches: bool
-) -> tuple[list[str], FloatArray | None, str]:
-    """Lines of the stock, the centre of its top face, and how it came about."""
-    feeds = moves.motion == Motion.FEED
-    points = np.concatenate([moves.start[feeds], moves.end[feeds]])[:, :3]
-    if not len(points):
-        return _no_stock("the program feeds nowhere")
-    low, high = points.min(axis=0), points.max(axis=0)
-    head = "\n".join(text for line, text in comments if line <= HEAD_LINES).upper()
-    told = next((match for pattern in _STOCKS if (match := pattern.search(head))), None)
-    if told is not None:
-        size = np.array([float(value) for value in told.groups()]) * (25.4 if inches else 1.0)
-        if (size > 0.0).all():
-            center = _center_of(size, low, high)
-            top = 0.0 if low[2] < 0.0 else float(size[2])
-            return _box(size, np.array([*center, top]), "a comment in the program's head")
-    if low[2] >= -BELOW:
-        drop = moves.end[:, 2] - moves.start[:, 2]
-        flat, plunges = feeds & (np.abs(drop) < BELOW), (feeds & (drop < -BELOW)).any()
-        top = float(moves.end[flat, 2].max()) if plunges and flat.any() else 0.0
-        if top <= BELOW:
-            return _no_stock("no feed goes below Z0")
-        bottom = 0.0
-    else:
-        top, bottom = 0.0, float(low[2]) - MARGIN
-    corner, far, plunges = _clipped(moves, low[:2] - MARGIN, high[:2] + MARGIN, top, radius)
-    whole = np.prod(high[:2] - low[:2] + 2.0 * MARGIN)
-    if (far <= corner).any() or np.prod(far - corner) < (1.0 - _MOST_CLIPPED) * whole:
-        return _no_stock("rapids plunge wherever it could lie")
-    size = np.array([*(far - corner), max(np.ceil(top - bottom), _LEAST_HEIGHT)])
-    size[:2] = np.floor(size[:2] * 10.0) / 10.0
-    around = f"the path and {MARGIN:g} mm around it"
-    if plunges:
-        several = "lines" if len(plunges) > 1 else "line"
-        around += (
-            f", less where the rapids of {several} {', '.join(map(str, plunges[:5]))}"
-            f"{' ...' if len(plunges) > 5 else ''} go below its top: what they would hit there is not judged"
-        )
-    return _box(size, np.array([*((corner + far) / 2.0), top]), around)
-
-
-def _clipped(
-    moves: Moves, corner: FloatArray, far: FloatArray, top: float, radius: float
-) -> tuple[FloatArray, FloatArray, list[int]]:
-    """The box without what rapids would plunge into, and their lines; holes that were fed before are none of that."""
-    lines: list[int] = []
-    fed: dict[tuple[float, float], float] = {}
-    rapid, ends = moves.motion == Motion.RAPID, moves.end[:, :3].round(3)
-    starts = moves.start[:, 2]
-    below = ends[:, 2] < top - BELOW
-    for row in np.flatnonzero(below):
-        x, y, z = ends[row].tolist()
-        if not rapid[row]:
-            fed[x, y] = min(z, fed.get((x, y), z))
-            continue
-        if starts[row] <= z + BELOW or fed.get((x, y), top) <= z + 1.0:
-            continue
-        if (corner < (x + radius, y + radius)).all() and (far > (x - radius, y - radius)).all():
-            lines.append(int(moves.line[row]))
-            width, depth = (far - corner).tolist()
-            losses = {
-                (0, "low"): (x + radius - corner[0]) * depth,
-                (0, "high"): (far[0] - x + radius) * depth,
-                (1, "low"): (y + radius - corner[1]) * width,
-                (1, "high"): (far[1] - y + radius) * width,
-            }
-            (axis, side), _ = min(losses.items(), key=lambda pair: pair[1])
-            place = (x, y)[axis]
-            corner, far = corner.copy(), far.copy()
-            if side == "low":
-                corner[axis] = place + radius + _CLEAR
-            else:
-                far[axis] = place - radius - _CLEAR
-    return corner, far, list(dict.fromkeys(lines))
-
-
-_CLEAR = 0.5
-"""Between the stock and a tool that plunges beside it [mm]."""
-
-
-def _center_of(size: FloatArray, low: FloatArray, high: FloatArray) -> tuple[float, float]:
-    """Where stock of a known size lies: from a corner at zero, around zero, or around the path."""
-    slack = MARGIN
-    if (low[:2] >= -slack).all() and (high[:2] <= size[:2] + slack).all():
-        return float(size[0]) / 2.0, float(size[1]) / 2.0
-    if (np.abs(low[:2]) <= size[:2] / 2.0 + slack).all() and (
-        np.abs(high[:2]) <= size[:2] / 2.0 + slack
-    ).all():
-        return 0.0, 0.0
-    return float(low[0] + high[0]) / 2.0, float(low[1] + high[1]) / 2.0
-
-
-def _box(size: FloatArray, top: FloatArray, source: str) -> tuple[list[str], FloatArray, str]:
-    measures = ", ".join(f"{value:.1f}" for value in size)
-    lines = [
-        "[stock]",
-        'shape = "box"',
-        f"size = [{measures}]  # mm: from {source}",
-        f"position = [{top[0]:.3f}, {top[1]:.3f}, {top[2]:.3f}]  # centre of its top face, mm",
-        "",
-    ]
-    return (
-        lines,
-        top,
-        f"stock {' x '.join(f'{value:g}' for value in size.round(1))} mm, top at Z{top[2]:g}: from {source}",
-    )
-
-
-def _no_stock(reason: str) -> tuple[list[str], None, str]:
-    lines = [
-        f"# No stock: {reason}. With one it would read:",
-        "# [stock]",
-        '# shape = "box"',
-        "# size = [100.0, 100.0, 20.0]  # mm; its top face lies at program Z0",
-        "",
-    ]
-    return lines, None, f"no stock: {reason}, so that nothing is cut"
-
-
 def _zero_line(
     preparation: Preparation,
     moves: Moves,
@@ -370,6 +261,9 @@ def _zero_line(
     if top is not None and not turns and np.abs(top[:2]).max() > BELOW:
         center = machine.part_frame.over_table
         zero["X"], zero["Y"] = float(center[0] - top[0]), float(center[1] - top[1])
+    chain = machine.part_frame.chain
+    if turns_about_x(moves) and chain is not None:
+        zero["X"] = float(chain.table[0]) - bar_ends(moves)[0]
     if decides_height is not None:
         text = "\n".join(['program = "x"', *decides_height])
         zero["Z"] = _height(JobFile.model_validate(tomllib.loads(text)), machine)

@@ -4,7 +4,8 @@ from collections.abc import Iterator
 
 from twin.cutting.cut_log import CutResult
 from twin.cutting.cut_watch import CutSlip
-from twin.job.job_file import JobFile, ToleranceTable
+from twin.job.job_file import JobFile, ToleranceTable, ToolTable
+from twin.run.dry_run import DryRun
 from twin.run.machining import Machining
 from twin.run.messages import Notice
 from twin.run.program_watch import ProgramWatch, ToothFeed
@@ -14,19 +15,19 @@ LEAST_CUT_MM3 = 1e-3
 
 
 def cut_notices(
-    job: JobFile, watch: ProgramWatch, machining: Machining, cut: CutResult
+    job: JobFile, dry_run: DryRun, machining: Machining, cut: CutResult
 ) -> Iterator[Notice]:
     """Warnings about the cut of a whole program.
 
     Args:
         job: Its stock is there.
-        watch: What the program does.
+        dry_run: What the program does.
         machining: The cut.
         cut: What it came to.
     """
-    cutter = machining.cutter
+    cutter, watch = machining.cutter, dry_run.watch
     assert cutter is not None
-    begins = watch.first_feed or watch.spindle_line
+    begins = watch.first_feed or watch.spindle_line or watch.first_line
     if not cut.removed_mm3 and begins:
         yield Notice("nothing-cut", begins, "no move of the program takes anything off the stock")
     if cutter.start_depth:
@@ -35,12 +36,24 @@ def cut_notices(
             watch.first_line,
             f"the tool stands {cutter.start_depth:.2f} mm deep in the stock before it moves",
         )
+    if machining.misfit is not None:
+        message = f"{machining.misfit}: its file counts in mm from program zero"
+        yield Notice("nominal-misfit", 0, message)
     for stop in machining.stopped:
         yield Notice("stops-in-cut", stop.line, f"{stop.what} while the tool is in the cut")
     if machining.ended_in_cut:
         yield Notice("ends-in-cut", watch.last_line, "the program ends with the tool in the cut")
+    tools = {tool.number: tool for tool in job.tools}
+    for number, line in watch.tools_used.items():
+        tool = tools.get(number, job.tools[0])
+        if cut.cell_mm > 0.5 * tool.diameter:
+            message = (
+                f"the stock's cells are {cut.cell_mm:g} mm wide, between whose middles tool {number} of "
+                f"{tool.diameter:g} mm can pass unseen: stock.cell is to be half of that at most"
+            )
+            yield Notice("coarse-cell", line, message)
     for slip in cutter.watch.slips:
-        yield _slip_notice(slip)
+        yield from _slip_notices(slip, tools.get(slip.tool, job.tools[0]), dry_run.drilled)
     if cut.removed_mm3 and watch.changed_at and watch.taken_to_turn and job.tools[0].speed is None:
         yield Notice(
             "spindle-never-started",
@@ -49,15 +62,22 @@ def cut_notices(
         )
 
 
-def _slip_notice(slip: CutSlip) -> Notice:
+def _slip_notices(slip: CutSlip, tool: ToolTable, drilled: frozenset[int]) -> Iterator[Notice]:
     if slip.what == "sideways":
         message = f"drill {slip.tool} moves sideways in the material"
-        return Notice("drill-sideways", slip.line, message)
-    message = (
-        f"tool {slip.tool} plunges, and is not known to cut over its centre: ramp in, or say "
-        "center_cutting = true in its [[tools]] table"
-    )
-    return Notice("blunt-plunge", slip.line, message)
+        yield Notice("drill-sideways", slip.line, message)
+    elif not tool.plunges:
+        message = (
+            f"tool {slip.tool} plunges, and is not known to cut over its centre: ramp in, or say "
+            "center_cutting = true in its [[tools]] table"
+        )
+        yield Notice("blunt-plunge", slip.line, message)
+    elif slip.line in drilled and tool.center_cutting is None:
+        message = (
+            f'a drilling cycle drives tool {slip.tool}, which is no drill (kind = "{tool.kind}"), into '
+            "the full material; where that is meant, say center_cutting = true in its [[tools]] table"
+        )
+        yield Notice("cutter-in-cycle", slip.line, message)
 
 
 def lost_length_notices(fed_without_length: frozenset[int], cut: CutResult) -> Iterator[Notice]:

@@ -18,7 +18,7 @@ from twin.run.messages import shown, speed_notice
 from twin.run.preparation import Preparation
 from twin.run.program_watch import ProgramWatch
 from twin.run.progress import StageClock
-from twin.run.waits import with_waits
+from twin.run.spindle_dwells import with_spindle_dwells
 
 MOVES_IN_MEMORY = 200_000
 """Of a longer program the further moves lie in a file, at some 200 bytes each: memory stays bounded."""
@@ -82,7 +82,9 @@ class InterpretedProgram:
     def timed_chunks(self) -> Iterator[Chunk]:
         """The same with the time of tool changes and of the spindle as dwells."""
         made = self._preparation
-        return with_waits(self.chunks(), made.machine.file.spindle, made.job.file, made.spindle)
+        return with_spindle_dwells(
+            self.chunks(), made.machine.file.spindle, made.job.file, made.spindle
+        )
 
 
 def interpreted(preparation: Preparation) -> InterpretedProgram:
@@ -106,6 +108,7 @@ class DryRun:
         watch: Mistakes of its functions that no axis shows.
         lines_never_run: How many lines with motion it never came to.
         fed_without_length: Lines that feed while the length of the tool in the spindle, once called, does not count.
+        drilled: Lines that make a hole by a drilling cycle.
     """
 
     program: InterpretedProgram
@@ -115,6 +118,7 @@ class DryRun:
     watch: ProgramWatch
     lines_never_run: int
     fed_without_length: frozenset[int]
+    drilled: frozenset[int]
 
     @property
     def moves(self) -> int:
@@ -170,4 +174,5 @@ def interpret_all(preparation: Preparation, part_zero: FloatArray, clock: StageC
         watch=watch,
         lines_never_run=len(interpretation.coverage.never_run()),
         fed_without_length=frozenset(interpretation.lengths.fed_without),
+        drilled=frozenset(interpretation.drilled),
     )

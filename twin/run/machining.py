@@ -11,9 +11,11 @@ from twin.cutting.events import CutEvent
 from twin.cutting.height_map import HeightMap
 from twin.cutting.measuring.inspection import Inspection
 from twin.cutting.measuring.measured_part import measured
-from twin.cutting.measuring.nominal import HeightMapNominalWatch, NominalGouge, NominalWatch
+from twin.cutting.measuring.nominal import NominalGouge, NominalWatch
+from twin.cutting.measuring.nominal_from_above import HeightMapNominalWatch
 from twin.cutting.measuring.nominal_from_any_side import TriDexelNominalWatch
 from twin.cutting.program_summary import ProgramSummary
+from twin.cutting.tridexel.dexels import TriDexel
 from twin.job.job_file import JobFile, ToolTable
 from twin.machine.model.head_shape import HeadShape
 from twin.machine.model.model import MachineModel
@@ -64,7 +66,7 @@ class Machining(Observer):
         self._summary = summary
         self._zero = part_frame.program_zero(part_zero)
         self._cutter: Cutter | None = None
-        self._nominal: NominalWatch | None = None
+        self._nominal: NominalWatch[HeightMap] | NominalWatch[TriDexel] | None = None
         self._gouge_um = None if job.nominal is None else job.nominal.gouge_um
         self._gouge_stops = job.nominal is not None and job.nominal.gouge == "alarm"
         if job.stock is not None:
@@ -86,6 +88,11 @@ class Machining(Observer):
     def gouge(self) -> NominalGouge | None:
         """The deepest cut into the nominal part beyond what it allows."""
         return None if self._nominal is None else self._nominal.worst
+
+    @property
+    def misfit(self) -> str | None:
+        """Why the nominal part can hardly be what the blank is to become; None where it can, or there is none."""
+        return None if self._nominal is None else self._nominal.misfit
 
     def inspect(self) -> Inspection | None:
         """How far the part is from the nominal one by now; None where the job names none."""
@@ -141,7 +148,9 @@ class Machining(Observer):
         if self._cutter is not None:
             for stop in self._stops:
                 self._note_stop(stop, np.inf)
-            self.ended_in_cut = not self.stopped[-1:] and self._cutter.watch.engaged(np.inf)
+            last = self.stopped[-1].place if self.stopped else -1.0
+            at_end = last >= len(self._summary.rapid)
+            self.ended_in_cut = not at_end and self._cutter.watch.engaged(np.inf)
             self._cutter.end_program()
             self._note_alarm()
 

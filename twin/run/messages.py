@@ -93,7 +93,7 @@ def at_line(
         line: Its line; without one, an empty line 1 is shown.
         code: Of the diagnostic.
         message: What happened.
-        marked: What the caret stands under: the first of these that the line holds; none: the line.
+        marked: What the caret is under: the first of these that the line holds; none: the line.
         severity: Of the diagnostic.
     """
     text = source.lines[line - 1] if 0 < line <= len(source.lines) else ""

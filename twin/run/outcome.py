@@ -153,7 +153,14 @@ def outcome_of(
         near_miss=None if motion is None else motion.near_miss,
         warnings=(*dry_run.warnings, *shown(notices, preparation.source, strict=False)),
         scope=scope_of(
-            job, dry_run, judged.checks, cut, forces=forces, unjudged=blind, alarms=alarms
+            preparation,
+            dry_run,
+            judged.checks,
+            cut,
+            forces=forces,
+            unjudged=blind,
+            alarms=alarms,
+            inspection=inspection,
         ),
         tools=followers.tools.result(cut),
         samples=reached.samples,
@@ -185,7 +192,7 @@ def _unjudged(
     if not dry_run.moves:
         yield Reason("nothing-moves", "the program makes no move", 0, 0.0)
     else:
-        yield from nothing_judged(job.file.tolerance, judged.checks, job.tolerances_from, figures)
+        yield from nothing_judged(job.file, judged.checks, job.tolerances_from, figures)
 
 
 def _notices(
@@ -198,7 +205,7 @@ def _notices(
     """Warnings about a run that came to its end."""
     job, watch = preparation.job.file, dry_run.watch
     if cut is not None:
-        yield from cut_notices(job, watch, machining, cut)
+        yield from cut_notices(job, dry_run, machining, cut)
         yield from lost_length_notices(dry_run.fed_without_length, cut)
     elif watch.spindle_line and watch.first_feed and job.stock is None:
         message = "the spindle turns, and the job has no [stock]: nothing that is cut is judged"
@@ -228,10 +235,13 @@ def _nominal_checks(
             depth, line, when = gouge.depth_mm * UM_PER_MM, gouge.line, gouge.time_s
         figure = "gouge into the nominal part"
         yield Check("gouge_um", figure, depth, nominal.gouge_um, "µm", line, when)
-    if nominal.standing_um is not None and inspection is not None:
+    if nominal.standing_um is not None and inspection is not None and inspection.measured.any():
         figure = "material left on the nominal part"
         left = inspection.most_standing_mm * UM_PER_MM
-        bound = f" (walls are known to {inspection.bound_mm * UM_PER_MM:.0f} µm)"
+        bound = (
+            f" ({inspection.measured_share:.1%} measured, walls are known to "
+            f"{inspection.bound_mm * UM_PER_MM:.0f} µm)"
+        )
         yield Check("standing_um", figure, left, nominal.standing_um, "µm", 0, 0.0, bound)
 
 

@@ -18,8 +18,8 @@ from twin.machine.simulation.growth import Growth
 from twin.machine.simulation.simulate import Load, simulate
 from twin.machine.watching.alarms import Alarm, NearMiss
 from twin.motion.planner import plan
+from twin.motion.setpoints.sampling import settle
 from twin.motion.setpoints.setpoints import Setpoints
-from twin.motion.setpoints.settle import settle
 from twin.nc.canonical import Chunk, FloatArray, Moves
 from twin.recording.reader import Samples
 from twin.run.dry_run import DryRun, InterpretedProgram

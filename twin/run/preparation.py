@@ -1,7 +1,8 @@
 """From a job to everything that a run needs: the program, its dialect, the machine, the places."""
 
 import dataclasses
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 
@@ -20,9 +21,11 @@ from twin.nc.dialects.foreign import require_program
 from twin.nc.functions import SpindleState
 from twin.nc.interpreter import Interpretation
 from twin.nc.path.tool_center import Setup
+from twin.nc.text.diagnostics import ProgramError
 from twin.nc.text.source import Source, read_source, source_from_text
 from twin.recording.reader import RecordingHeader
 from twin.run.layout import lay_out, start_position
+from twin.run.reading.assumed_machine import assumed_machine
 from twin.run.reading.assumed_reading import (
     NOTHING_ASSUMED,
     UNKNOWN_FUNCTION,
@@ -45,6 +48,7 @@ class Preparation:
         settings: What the interpreter has to know of machine and job.
         dialect_reason: What showed the dialect of a program whose job names none; empty: the job does.
         reading: What was assumed of how a raw program is read.
+        assumptions: All that was assumed of a raw program, its stock and tools too, a line each.
     """
 
     job: Job
@@ -54,6 +58,7 @@ class Preparation:
     settings: ControlSettings
     dialect_reason: str = ""
     reading: AssumedReading = NOTHING_ASSUMED
+    assumptions: tuple[str, ...] = ()
 
     def interpretation(self) -> Interpretation:
         """A fresh pass over the program."""
@@ -93,18 +98,81 @@ def prepare(
     """
     job, reading = load_job(path, changes), None
     if assuming and job.path is None:
-        require_program(job.program)
-        reading = assumed_reading(read_source(job.program))
-        job = _with_keys(job, reading.keys)
-    made = prepare_job(
-        job,
-        dialect=dialect,
-        machine=machine,
-        strict=strict,
-        changes=changes,
-        tools=reading.tools if reading else {},
-    )
-    return made if reading is None else _with_functions(made, reading)
+        job, reading = _assumed(job, machine)
+
+    def made_with(tools: Mapping[int, ToolData]) -> Preparation:
+        return prepare_job(
+            job, dialect=dialect, machine=machine, strict=strict, changes=changes, tools=tools
+        )
+
+    if reading is None:
+        return made_with({})
+    return _with_functions(*_with_radii(made_with, reading))
+
+
+def _assumed(job: Job, machine: str | None) -> tuple[Job, AssumedReading]:
+    """A raw program's job with what its text shows of machine and reading."""
+    require_program(job.program)
+    source = read_source(job.program)
+    reading = assumed_reading(source)
+    says_machine = machine is not None or "machine" in job.file.model_fields_set
+    needed = None if says_machine else assumed_machine(source)
+    if needed is not None:
+        keys = {**reading.keys, "machine": needed[0]}
+        reading = reading._replace(keys=keys, notes=(*reading.notes, needed[1]))
+    return _with_keys(job, reading.keys), reading
+
+
+_DOES_NOT_FIT = frozenset({"compensation-gouge", "compensation-radius"})
+_WHOLE_RADIUS = (
+    "radius compensation counts the whole radius: no comment says that D holds the wear alone "
+    "(else radius_offset = 0.0 of its [[tools]])"
+)
+_RADIUS_IS_A_GUESS = (
+    "no comment tells the tool's diameter: write the job by twin init, correct diameter of its [[tools]], "
+    "or radius_offset = 0.0 where D holds the wear alone"
+)
+_COMPENSATES = re.compile(rb"G0*4[12](?![0-9])|[ \t]R[LR]\b", re.IGNORECASE)
+
+
+def _with_radii(
+    made_with: Callable[[Mapping[int, ToolData]], Preparation], reading: AssumedReading
+) -> tuple[Preparation, AssumedReading]:
+    """A raw program, whose tools have no radius in the control's table where their whole radius does not fit.
+
+    Where it does not, and no radius does, the contours are the path of the tool's centre, and the table holds the wear.
+    """
+    try:
+        made = made_with(reading.tools)
+        if made.source.lines.any_holds(_COMPENSATES):
+            _require_that_radii_fit(made)
+            if any(tool.radius for tool in made.settings.tools.values()):
+                reading = reading._replace(notes=(*reading.notes, _WHOLE_RADIUS))
+    except ProgramError as error:
+        finding = error.diagnostic
+        if finding.code not in _DOES_NOT_FIT:
+            raise
+        if not reading.tools:
+            hint = "; ".join(filter(None, (finding.hint, _RADIUS_IS_A_GUESS)))
+            raise ProgramError(dataclasses.replace(finding, hint=hint)) from None
+        tools = {n: dataclasses.replace(tool, radius=0.0) for n, tool in reading.tools.items()}
+        worn = made_with(tools)
+        _require_that_radii_fit(worn)
+        note = (
+            f"contours are the path of the tool's centre: in line {finding.line} {finding.message}"
+        )
+        return worn, reading._replace(tools=tools, notes=(*reading.notes, note))
+    return made, reading
+
+
+def _require_that_radii_fit(made: Preparation) -> None:
+    """Raise the error of a compensated contour that leaves the tool no room; other errors are told later."""
+    try:
+        for _ in made.interpretation().chunks():
+            pass
+    except ProgramError as error:
+        if error.diagnostic.code in _DOES_NOT_FIT:
+            raise
 
 
 def _with_keys(job: Job, keys: Mapping[str, object]) -> Job:
@@ -230,7 +298,7 @@ def _control_settings(job: Job, machine: Machine, *, strict: bool) -> ControlSet
         default_rotary_feed=job.file.default_rotary_feed or control.default_rotary_feed,
         start=machine.axes.named(start),
         tools={
-            tool.number: ToolData(tool.diameter / 2.0, tool.length, tool.name)
+            tool.number: ToolData(tool.table_radius, tool.length, tool.name)
             for tool in job.file.tools
         },
         any_tool="tools" not in job.file.model_fields_set,

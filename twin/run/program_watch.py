@@ -10,7 +10,9 @@ from twin.job.job_file import JobFile, ToolTable
 from twin.machine.watching.alarms import Alarm
 from twin.nc.canonical import Chunk, FloatArray, Function, IntArray, Motion
 from twin.nc.functions import (
+    OPTIONAL_STOP,
     PROGRAM_ENDS,
+    PROGRAM_STOPS,
     SPINDLE_SPEED,
     SPINDLE_STARTS,
     SPINDLE_STOPS,
@@ -23,7 +25,7 @@ from twin.run.messages import Notice
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Stop:
-    """A place of the program at which the spindle stops, or its tool is changed.
+    """A place of the program at which it is stopped, the spindle stops, or its tool is changed.
 
     Attributes:
         place: Number of the next move, and how much of it lies behind.
@@ -58,9 +60,9 @@ class ProgramWatch:
     """Reads a program along, chunk by chunk.
 
     Attributes:
-        stops: Where spindle or tool are stopped in blocks of their own; a cycle knows what it does.
+        stops: Where program, spindle or tool are stopped in blocks of their own; a cycle knows what it does.
         overspeed: The first time that the spindle turns a tool faster than it bears.
-        tools_used: Numbers of the tools that were in the spindle while something moved.
+        tools_used: The tools that were in the spindle while something moved, each with the line of its first move.
         first_line: Line of the first move; 0: there is none.
         first_feed: Line of the first move at feed; 0: there is none.
         changed_at: Line of the first tool change; 0: there is none.
@@ -77,7 +79,7 @@ class ProgramWatch:
         """
         self.stops: list[Stop] = []
         self.overspeed: Alarm | None = None
-        self.tools_used: set[int] = set()
+        self.tools_used: dict[int, int] = {}
         self.first_line = 0
         self.first_feed = 0
         self.spindle_line = 0
@@ -97,6 +99,8 @@ class ProgramWatch:
         self._tapped: set[int] = set()
         self._tooth_feeds: dict[int, ToothFeed] = {}
         self._counter: dict[int, Notice] = {}
+        self._taps: dict[int, Notice] = {}
+        self._lists_tools = "tools" in job.model_fields_set
 
     def add(self, chunk: Chunk) -> None:
         """Take note of moves and functions that follow the last ones."""
@@ -120,7 +124,7 @@ class ProgramWatch:
             return
         moves = chunk.moves[first:end]
         self.first_line = self.first_line or int(moves.line[0])
-        self.tools_used.add(self._tool.number)
+        self.tools_used.setdefault(self._tool.number, int(moves.line[0]))
         self._line = int(moves.line[-1])
         feeds = np.flatnonzero(moves.motion != Motion.RAPID)
         if not len(feeds):
@@ -168,17 +172,32 @@ class ProgramWatch:
         if word in PROGRAM_ENDS:
             self._end_line = event.line
             return
-        self._state = self._state.after(event)
+        before, self._state = self._state, self._state.after(event)
         if word in SPINDLE_STARTS:
             self._started_at, self._started_in_cycle = event.line, in_cycle
-            if in_cycle:
-                self._tapped.add(event.line)
+            reversed_in_it = before.counter_clockwise != self._state.counter_clockwise
+            if in_cycle and before.started and reversed_in_it:
+                self._note_tap(event.line)
             self.spindle_line = self.spindle_line or event.line
         elif word in SPINDLE_STOPS and was and not in_cycle:
             self.stops.append(Stop(place + event.at, event.line, "the spindle stops"))
+        elif word in PROGRAM_STOPS and not in_cycle:
+            where = ", where its switch is on," if word == OPTIONAL_STOP else ""
+            self.stops.append(Stop(place + event.at, event.line, f"{word}{where} holds the axes"))
         self.taken_to_turn &= word not in SPINDLE_STARTS and word != SPINDLE_SPEED
         if word in SPINDLE_STARTS or word in (SPINDLE_SPEED, TOOL_CHANGE):
             self._watch_speed(event.line)
+
+    def _note_tap(self, line: int) -> None:
+        """The spindle is reversed within a cycle, which is how a tap comes back."""
+        tool = self._tool
+        if self._lists_tools and tool.kind != "drill":
+            message = (
+                f'a tapping cycle runs with tool {tool.number}, which is no tap (kind = "{tool.kind}"); '
+                'a tap is listed as kind = "drill"'
+            )
+            self._taps.setdefault(line, Notice("cutter-in-cycle", line, message))
+        self._tapped.add(line)
 
     def _watch_speed(self, line: int) -> None:
         limit, turning = self._tool.speed_limit, abs(self._state.turning or 0.0)
@@ -215,6 +234,7 @@ class ProgramWatch:
     def notices(self, interpretation: Interpretation) -> Iterator[Notice]:
         """Warnings about the whole program, once it was interpreted to its end."""
         yield from self._counter.values()
+        yield from self._taps.values()
         yield from self._tool_notices()
         for line, call in interpretation.lengths.calls.items():
             if call.spindle is not None and call.number != call.spindle:

@@ -63,7 +63,7 @@ ItemT = TypeVar("ItemT")
 
 
 class StageClock:
-    """Exclusive wall time by stage: while an inner stage runs, the outer one's clock stands.
+    """Exclusive wall time by stage: while an inner stage runs, the outer one's clock is stopped.
 
     Attributes:
         seconds: Time spent by stage name [s].

@@ -30,7 +30,7 @@ RESULT_FILES = (
 )
 """What a run may leave; an earlier run's files of these names are removed when one begins.
 
-The result, written last, is removed first: where it stands, everything that it speaks of is whole.
+The result, written last, is removed first: where it is, everything that it speaks of is whole.
 """
 
 

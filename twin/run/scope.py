@@ -7,11 +7,14 @@ from typing import Any
 from twin.compare.figures import Figures
 from twin.compare.verdict import Check, Reason
 from twin.cutting.cut_log import TRI_DEXEL, CutResult
+from twin.cutting.measuring.inspection import Inspection
 from twin.cutting.program_summary import ProgramSummary
-from twin.job.job_file import JobFile, ToleranceTable
-from twin.job.load import DEFAULT, Job
+from twin.job.job_file import JobFile
+from twin.job.load import DEFAULT
+from twin.machine.description.config import Machine
 from twin.machine.watching.alarms import Alarm
 from twin.run.dry_run import DryRun
+from twin.run.preparation import Preparation
 from twin.run.program_watch import ProgramWatch
 from twin.run.reading.assumed_reading import UNKNOWN_FUNCTION
 
@@ -48,6 +51,8 @@ class Scope:
         air_share: Share of the feed path that met no material; None without a stock.
         tools_unused: Numbers of tools that the job lists and no move used.
         lines_never_run: How many lines with words of axes were never come to.
+        nominal: How far the part is from the nominal one, and how much of it was measured; None without one.
+        assumed: What was assumed of a raw program, its stock and tools among it.
         tolerances_from: Where each tolerance is set: a file, or ``default``.
         tolerances: What each of them allows, in the unit that its key names.
     """
@@ -59,6 +64,8 @@ class Scope:
     air_share: float | None
     tools_unused: tuple[int, ...]
     lines_never_run: int
+    nominal: str | None
+    assumed: tuple[str, ...]
     tolerances_from: Mapping[str, str]
     tolerances: Mapping[str, float]
 
@@ -77,10 +84,14 @@ class Scope:
             )
             sides = ", from several sides" if self.stock == TRI_DEXEL else ""
             yield f"cut: {self.removed_mm3:,.1f} mm³{air}{sides}"
+        if self.nominal is not None:
+            yield self.nominal
         if self.tools_unused:
             yield f"tools never used: {', '.join(map(str, self.tools_unused))}"
         if self.lines_never_run:
             yield f"lines with motion never run: {self.lines_never_run}"
+        if self.assumed:
+            yield f"assumed: {'; '.join(self.assumed)}"
         sources = (
             f"{key} = {self.tolerances[key]:.15g} from {place}"
             if key in self.tolerances
@@ -91,7 +102,7 @@ class Scope:
 
 
 def scope_of(
-    job: Job,
+    preparation: Preparation,
     dry_run: DryRun,
     checks: Sequence[Check],
     cut: CutResult | None,
@@ -99,25 +110,28 @@ def scope_of(
     forces: bool,
     unjudged: Sequence[Reason],
     alarms: Sequence[Alarm],
+    inspection: Inspection | None,
 ) -> Scope:
     """Put the scope of a run together.
 
     Args:
-        job: What was asked for.
+        preparation: What was asked for.
         dry_run: What the program does.
         checks: What was held to tolerances.
         cut: What was cut; None without a stock.
         forces: Whether the force of the cut was simulated.
         unjudged: What was asked for and judged nothing.
         alarms: What stopped the machine.
+        inspection: How far the part is from the nominal one; None without one.
     """
-    file, watch = job.file, dry_run.watch
+    job, file, watch = preparation.job, preparation.job.file, dry_run.watch
     watched = [DRIVES, COLLISIONS]
     watched += [STOCK] if file.stock is not None else []
     watched += [FORCES] if forces else []
     watched += [WALLS] if file.nominal is not None else []
     watched += sorted({check.what for check in checks})
     blind = (
+        *_without_limits(preparation.machine, forces=forces),
         *_blind(file, forces=forces, swivels=_swivels(dry_run.summary)),
         *(_silent_spindle(file, watch)),
         *_unknown_functions(file),
@@ -137,6 +151,8 @@ def scope_of(
         air_share=None if cut is None else cut.air_share,
         tools_unused=tuple(unused) if listed else (),
         lines_never_run=dry_run.lines_never_run,
+        nominal=None if inspection is None else inspection.summary,
+        assumed=preparation.assumptions,
         tolerances_from=job.tolerances_from,
         tolerances={
             key: value
@@ -150,6 +166,20 @@ def _swivels(summary: ProgramSummary) -> bool:
     """Whether the part is cut from several sides, and a head turns the tool."""
     chain = None if summary.part is None else summary.part.frame.chain
     return summary.tilts and chain is not None and bool((chain.rotary & chain.on_tool).any())
+
+
+def _without_limits(machine: Machine, *, forces: bool) -> Iterator[Unwatched]:
+    """Limits that the machine file does not give, so that nothing is held to them."""
+    axes = {name: machine.axis(name) for name in machine.axes.names}
+    for what, key in (("following error", "following_error_limit"), ("force", "force_limit")):
+        names = [name for name, axis in axes.items() if not getattr(axis, key)]
+        if names:
+            yield Unwatched(f"{what} of {', '.join(names)}", f"the machine file gives no {key}")
+    endless = [name for name, axis in axes.items() if axis.kind == "linear" and not axis.travel]
+    if endless:
+        yield Unwatched(f"travel of {', '.join(endless)}", "the machine file gives no travel")
+    if forces and not machine.file.spindle.power:
+        yield Unwatched("load of the spindle", "the machine file gives no spindle.power")
 
 
 def _unknown_functions(job: JobFile) -> Iterator[Unwatched]:
@@ -191,21 +221,24 @@ def _why_no_forces(job: JobFile) -> str:
 
 
 def nothing_judged(
-    tolerance: ToleranceTable, checks: Sequence[Check], asked: Mapping[str, str], figures: Figures
+    job: JobFile, checks: Sequence[Check], asked: Mapping[str, str], figures: Figures
 ) -> Iterator[Reason]:
     """Tolerances that the job asks for and that no check was made of.
 
     Args:
-        tolerance: What the job allows.
+        job: What it allows.
         checks: What was held to it.
         asked: Where each key is set; a default was not asked for.
         figures: What was found.
     """
-    judged = {check.what for check in checks}
+    judged, nominal = {check.what for check in checks}, job.nominal
+    if nominal is not None and nominal.standing_um is not None and "standing_um" not in judged:
+        message = "standing_um has judged nothing: no surface of the part could be measured"
+        yield Reason("standing_um", message, 0, 0.0)
     for key, place in asked.items():
         if key not in judged and key != "blocks" and place != DEFAULT:
             yield Reason(key, f"{key} has judged nothing: {_WHY.get(key, _NO_FIGURE)}", 0, 0.0)
-    for number, part in enumerate(tolerance.blocks):
+    for number, part in enumerate(job.tolerance.blocks):
         first, last = part.lines
         key = f"blocks[{number}].contour_um"
         if key not in judged and figures.samples:

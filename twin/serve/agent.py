@@ -235,7 +235,7 @@ class Agent:
         return self._streams(found, following), following, bool(found)
 
     def error(self, error: RequestError) -> ET.Element:
-        """The document that tells of an error."""
+        """The document that reports an error."""
         return error_document(self._header(), error.code, str(error))
 
     def _streams(self, found: list[Observation], following: int) -> ET.Element:

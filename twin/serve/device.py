@@ -1,4 +1,4 @@
-"""What the agent tells of a machine: components and data items after MTConnect Part 2."""
+"""What the agent says about a machine: components and data items after MTConnect Part 2."""
 
 import dataclasses
 from collections.abc import Iterator
@@ -18,7 +18,7 @@ class DataItem:
 
     Attributes:
         id: Unique on the device.
-        category: Samples are measured, events change in steps, conditions tell of health.
+        category: Samples are measured, events change in steps, conditions report health.
         type: In the words of the standard, such as ``PATH_FEEDRATE``.
         units: Of a sample; empty for others.
         sub_type: ``ACTUAL`` or ``COMMANDED``, where the type has such.

@@ -17,7 +17,7 @@ _CATEGORIES = {"SAMPLE": "Samples", "EVENT": "Events", "CONDITION": "Condition"}
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
 class Header:
-    """What stands at the head of every document.
+    """What is at the head of every document.
 
     Attributes:
         time: When the document was made, by the twin's clock, ISO 8601.
@@ -34,7 +34,7 @@ class Header:
     sender: str
 
     def attributes(self) -> dict[str, str]:
-        """As attributes of every document; ``testIndicator`` says that no real machine stands behind it."""
+        """As attributes of every document; ``testIndicator`` says that no real machine is behind it."""
         return {
             "creationTime": self.time,
             "sender": self.sender,
@@ -45,7 +45,7 @@ class Header:
         }
 
     def of_device(self) -> dict[str, str]:
-        """As attributes of a document that tells of the device."""
+        """As attributes of a document that reports the device."""
         return self.attributes() | {"deviceModelChangeTime": self.device_changed}
 
 

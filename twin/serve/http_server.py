@@ -65,7 +65,7 @@ def application(
         boundary = secrets.token_hex(16)
         kind = f"multipart/x-mixed-replace;boundary={boundary}"
         if request.method == "HEAD":
-            return Response(media_type=kind)  # A stream would go on, though nobody is told of it.
+            return Response(media_type=kind)  # A stream would go on, though nobody receives it.
         writer = _Writer(_form(request), boundary)
         parts = _parts(agent, query, writer, document, following)
         return StreamingResponse(parts, media_type=kind)
@@ -152,7 +152,7 @@ class _Writer(NamedTuple):
         return head.encode() + text + b"\r\n"
 
     def end(self) -> bytes:
-        """What stands behind the last one."""
+        """What is behind the last one."""
         return f"--{self.boundary}--\r\n".encode()
 
 

@@ -99,14 +99,14 @@ def _execution(now: Snapshot) -> Execution:
 
 
 def _condition(now: Snapshot) -> Condition:
-    """The alarm that stands, or else a fault that the trainer has put in, or nothing."""
+    """The alarm that is active, or else a fault that the trainer has put in, or nothing."""
     if now.alarm is not None:
         return Condition("Fault", now.alarm.code, now.alarm.message)
     if now.faults:
-        return Condition("Warning", now.faults[-1].kind, _told(now.faults[-1]))
+        return Condition("Warning", now.faults[-1].kind, _text_of(now.faults[-1]))
     return NORMAL
 
 
-def _told(fault: FaultTable) -> str:
+def _text_of(fault: FaultTable) -> str:
     where = f" of {fault.axis}" if fault.axis else ""
     return f"the trainer's fault: {fault.kind}{where}, {fault.value:g}"

@@ -85,7 +85,7 @@ class MachineGeometry:
         Args:
             joints: Where the axes stand, shape (n, k) [mm or deg].
             rotary: Column of the axis that turns the table, or None.
-            center: Machine X and Y at which the tool stands over the table's axis [mm].
+            center: Machine X and Y at which the tool is over the table's axis [mm].
 
         Yields:
             A name, and what is added, shape (n, k) [mm or deg].
@@ -116,7 +116,7 @@ class MachineGeometry:
         Args:
             joints: Where the axes stand, shape (n, k) [mm or deg].
             rotary: Column of the axis that turns the table, or None.
-            center: Machine X and Y at which the tool stands over the table's axis [mm].
+            center: Machine X and Y at which the tool is over the table's axis [mm].
         """
         found = joints.copy()
         for _, added in self.contributions(joints, rotary, center):

@@ -64,7 +64,10 @@ class PathColumns(NamedTuple):
 
 
 def path_columns(
-    moves: Moves, frame: PartFrame, part_zero: FloatArray, longer: FloatArray | float = 0.0
+    moves: Moves,
+    frame: PartFrame,
+    part_zero: FloatArray,
+    length_difference: FloatArray | float = 0.0,
 ) -> PathColumns:
     """Lay out canonical moves for the nearest-point kernels.
 
@@ -72,16 +75,20 @@ def path_columns(
         moves: Moves in part coordinates (program zero).
         frame: How the part turns under the tool.
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
-        longer: How much longer than the first the tool of each move is, shape (n,) [mm]; looked at where a
+        length_difference: How much longer than the first the tool of each move is, shape (n,) [mm]; looked at where a
             chain tilts it.
     """
     if frame.chain is None:
         columns = _turntable_columns(moves, frame, part_zero)
     else:
-        columns = _chain_columns(moves, frame, frame.chain, part_zero, longer)
+        columns = _chain_columns(moves, frame, frame.chain, part_zero, length_difference)
     curves = np.flatnonzero(moves.shape == Shape.CURVE)
     if len(curves):
-        by = np.broadcast_to(longer, len(moves))[curves] if frame.chain is not None else 0.0
+        by = (
+            np.broadcast_to(length_difference, len(moves))[curves]
+            if frame.chain is not None
+            else 0.0
+        )
         _follow_tips(columns, curves, moves[curves], frame, part_zero, by)
     return columns
 
@@ -92,10 +99,12 @@ def _follow_tips(
     curves: Moves,
     frame: PartFrame,
     part_zero: FloatArray,
-    longer: FloatArray | float,
+    length_difference: FloatArray | float,
 ) -> None:
     """Put in what the tip does in the part along m curves: lines and arcs that no table turns any more."""
-    start, end = (frame.position(place + part_zero, longer) for place in (curves.start, curves.end))
+    start, end = (
+        frame.position(place + part_zero, length_difference) for place in (curves.start, curves.end)
+    )
     arc = ~np.isnan(curves.radius)[:, None]
     normal, spoke = (np.where(arc, each, 0.0) for each in (curves.normal, -curves.center))
     lead = np.einsum("ij,ij->i", end - start, normal)[:, None] * normal
@@ -153,7 +162,7 @@ def _chain_columns(
     frame: PartFrame,
     chain: Kinematics,
     part_zero: FloatArray,
-    longer: FloatArray | float,
+    length_difference: FloatArray | float,
 ) -> PathColumns:
     """The columns of a machine that is more than a table about Z."""
     count, arc = len(moves), moves.shape == Shape.ARC
@@ -168,7 +177,7 @@ def _chain_columns(
     second = np.cross(normal, first)
     turning = chain.column[chain.rotary]
     turns = np.any(delta[:, turning] != 0.0, axis=1)
-    at_zero, steps = with_rotary_at_rest(chain, start, longer)
+    at_zero, steps = with_rotary_at_rest(chain, start, length_difference)
     still, carried = ~turns[:, None], np.where(turns[:, None, None], np.eye(3), steps)
 
     def seen(vectors: FloatArray) -> FloatArray:
@@ -195,7 +204,7 @@ def _chain_columns(
         turn=zeros,
         turn_rate=zeros,
         facing=np.tile([1.0, 0.0], (count, 1)),
-        tip=-chain.tool * np.broadcast_to(longer, count)[:, None],
+        tip=-chain.tool * np.broadcast_to(length_difference, count)[:, None],
         begin=start[:, chain.column] * unit,
         rate=delta[:, chain.column] * unit,
         joint=np.tile(joint, (count, 1, 1)),

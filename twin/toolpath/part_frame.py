@@ -35,7 +35,7 @@ class PartFrame:
 
     Attributes:
         rotary: Column of the axis that turns the part about +Z, or None when nothing turns it.
-        center: Machine X and Y at which the tool stands over the axis of rotation [mm].
+        center: Machine X and Y at which the tool is over the axis of rotation [mm].
         turn_zero: Rotary machine value at which the part's frame is parallel to the machine's
             [deg]: the part zero of that axis, so that the part lies as its program describes it.
         geometry: How far the machine is from straight and square.
@@ -102,12 +102,14 @@ class PartFrame:
             found[name] = self.position(moved)[0] - here
         return found
 
-    def position(self, joints: FloatArray, longer: float | FloatArray = 0.0) -> FloatArray:
+    def position(
+        self, joints: FloatArray, length_difference: float | FloatArray = 0.0
+    ) -> FloatArray:
         """Where the tip of a tool is, seen from the part.
 
         Args:
             joints: Machine coordinates of all axes, shape (n, k) [mm or deg].
-            longer: How much longer than the first the tool is, one or shape (n,) [mm].
+            length_difference: How much longer than the first the tool is, one or shape (n,) [mm].
 
         Returns:
             Shape (n, 3) [mm], origin on the axis of rotation at machine Z 0: X and Y of the tool
@@ -115,16 +117,16 @@ class PartFrame:
             its frame.
         """
         if self.chain is not None:
-            return tool_point(self.chain, self.counted(joints), longer)
+            return tool_point(self.chain, self.counted(joints), length_difference)
         relative = joints[:, :3] - np.array([*self.center, 0.0])
         if self.rotary is None:
-            return _lowered(relative, longer)
+            return _lowered(relative, length_difference)
         angle = np.deg2rad(joints[:, self.rotary] - self.turn_zero)
         cosine, sine = np.cos(angle), np.sin(angle)
         turned = relative.copy()
         turned[:, 0] = cosine * relative[:, 0] - sine * relative[:, 1]
         turned[:, 1] = sine * relative[:, 0] + cosine * relative[:, 1]
-        return _lowered(turned, longer)
+        return _lowered(turned, length_difference)
 
     def program_zero(self, part_zero: FloatArray) -> FloatArray:
         """Where program zero lies in the frame of its part, shape (3,) [mm]."""
@@ -139,7 +141,7 @@ class PartFrame:
             joints: Machine coordinates of all axes, shape (n, k) [mm or deg].
 
         Returns:
-            Unit vectors, shape (n, 2); with a chain only where the tool stands along Z.
+            Unit vectors, shape (n, 2); with a chain only where the tool is along Z.
         """
         if self.chain is not None:
             return rotated(
@@ -188,7 +190,7 @@ class PartFrame:
         return int(self.chain.column[tables[-1]]), self.chain.anchor[tables[-1]]
 
     def tilts(self, joints: FloatArray) -> bool:
-        """Whether the tool ever stands off the part's Z, joints of shape (n, k) [mm or deg]."""
+        """Whether the tool ever is off the part's Z, joints of shape (n, k) [mm or deg]."""
         if self.chain is None:
             return False
         return bool(np.any(self.tool_direction(joints)[:, 2] < _ALONG_Z))
@@ -226,6 +228,6 @@ def chain_from_text(text: str) -> tuple[Kinematics | None, FloatArray | None]:
     return Kinematics(**fields), zero
 
 
-def _lowered(points: FloatArray, longer: float | FloatArray) -> FloatArray:
-    points[:, 2] -= longer
+def _lowered(points: FloatArray, length_difference: float | FloatArray) -> FloatArray:
+    points[:, 2] -= length_difference
     return points

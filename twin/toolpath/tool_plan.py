@@ -31,7 +31,7 @@ class ToolPlan:
 
     Attributes:
         tools: In the order in which they come into the spindle; the first is in it at the start.
-            A tool whose speed changes stands there once for each speed.
+            A tool whose speed changes is there once for each speed.
         first_move: Number of the first move that each is in the spindle for, never falling from 0.
         changes: Those of the program, also where no move follows.
     """
@@ -50,7 +50,7 @@ class ToolPlan:
         place = numbers.index(tool.number) if tool.number in numbers else 0
         return self.tools[place - 1] if place else None
 
-    def longer(self, tool: ToolTable) -> float:
+    def length_difference(self, tool: ToolTable) -> float:
         """How much lower a tool's tip is than that of the first, which positions count for [mm]."""
         return tool.length - self.tools[0].length
 
@@ -58,7 +58,7 @@ class ToolPlan:
         """How much lower the tip is than that of the first tool, by the moves of samples, shape (n,) [mm]."""
         lower = np.zeros(len(move))
         for run, tool in self.runs(move):
-            lower[run] = self.longer(tool)
+            lower[run] = self.length_difference(tool)
         return lower
 
     def runs(self, move: IntArray) -> list[tuple[slice, ToolTable]]:

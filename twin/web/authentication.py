@@ -1,8 +1,8 @@
 """Authentication: a token for each role, kept as a cookie; guesses are rate limited.
 
-A token stands behind the ``#`` of an address, which browsers tell no server: so it is in no log and
+A token is behind the ``#`` of an address, which browsers tell no server: so it is in no log and
 in no referrer. The page hands it in once and gets a cookie that no script can read: a pass that is
-derived from the token, so that whoever has it is known again by a server that was started anew with
+derived from the token, so that whoever has it is known again by a server that was started again with
 the same tokens.
 
 A token of 128 bits cannot be guessed, so that the right one is let in whatever else has come: a class

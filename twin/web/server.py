@@ -90,7 +90,7 @@ class SocketServer:
         Args:
             listener: Listens already; it is closed with the server.
             certificate: For https, with its key.
-            key: None: it stands in the certificate's file.
+            key: None: it is in the certificate's file.
         """
         self._certificate, self._key = certificate, key
         self._socket = listener
@@ -166,7 +166,7 @@ class WebServer(SocketServer):
             host: Address to listen on.
             port: Port; 0: the first free one from ``FIRST_PORT``.
             certificate: For https, with its key.
-            key: None: it stands in the certificate's file.
+            key: None: it is in the certificate's file.
 
         Raises:
             UsageError: The host is open to others and there is no certificate, the certificate

@@ -20,7 +20,7 @@ from tests.cutting.forces.test_tooth_forces import (
     plate,
     turned,
 )
-from twin.cutting.kernels.tooth_forces import ToothBench
+from twin.cutting.kernels.tooth_forces import ToothScratch
 from twin.job.job_file import ToolTable
 from twin.nc.canonical import FloatArray
 
@@ -78,9 +78,9 @@ def off(
     """
     mean, peak, torque = expected
     again = Plate(part.map.copy(), part.walls.copy())
-    bench: ToothBench = forces(again, tool, along(*way)[-round(10.0 * LENGTH) :])
-    by = float(np.linalg.norm(turned(bench, way[0]) - mean) / np.linalg.norm(mean))
-    return Off(by, abs(bench.figures[0] / peak - 1.0), abs(bench.figures[1] / torque - 1.0))
+    scratch: ToothScratch = forces(again, tool, along(*way)[-round(10.0 * LENGTH) :])
+    by = float(np.linalg.norm(turned(scratch, way[0]) - mean) / np.linalg.norm(mean))
+    return Off(by, abs(scratch.figures[0] / peak - 1.0), abs(scratch.figures[1] / torque - 1.0))
 
 
 def worst(cell: float, width: float) -> Off:

@@ -10,7 +10,7 @@ from twin.cutting.forces.load_log import FIGURES, LoadLog
 from twin.recording.form import Samples, ToolLoad
 
 
-def felt(samples: Motion, force: list[float], lines: list[int], start: float = 0.0) -> Samples:
+def loads(samples: Motion, force: list[float], lines: list[int], start: float = 0.0) -> Samples:
     count, size = len(force), np.array(force)
     motion = samples(np.zeros((count, 3)), np.array(lines), start)
     zero = np.zeros(count)
@@ -23,8 +23,8 @@ def felt(samples: Motion, force: list[float], lines: list[int], start: float = 0
 
 def test_every_line_keeps_its_greatest(samples: Motion) -> None:
     log = LoadLog()
-    log.add(felt(samples, [0.0, 10.0, 30.0, 20.0], [1, 2, 2, 3]))
-    log.add(felt(samples, [25.0, 5.0], [3, 2], start=1.0))
+    log.add(loads(samples, [0.0, 10.0, 30.0, 20.0], [1, 2, 2, 3]))
+    log.add(loads(samples, [25.0, 5.0], [3, 2], start=1.0))
     rows = log.as_json()
     assert [(row["line"], row["force_n"]) for row in rows] == [(2, 30.0), (3, 25.0)]
     assert rows[1]["deflection_um"] == pytest.approx(25.0)
@@ -36,7 +36,7 @@ def test_every_line_keeps_its_greatest(samples: Motion) -> None:
 def test_of_many_lines_the_foremost_are_kept(samples: Motion) -> None:
     log = LoadLog(remembered=10)
     for line in range(100):
-        log.add(felt(samples, [float(line + 1)], [line]))
+        log.add(loads(samples, [float(line + 1)], [line]))
     assert len(log.as_json()) <= 20
     assert log.as_json()[-1]["force_n"] == 100.0
 

@@ -5,7 +5,7 @@ import pytest
 
 from tests.cutting.conftest import Motion
 from twin.cutting.cut import Cutter
-from twin.cutting.cut_log import BINS
+from twin.cutting.cut_log import TIME_BINS
 from twin.cutting.forces.direction import RADIAL_SHARE
 from twin.cutting.forces.materials import materials
 from twin.job.job_file import StockTable, ToolTable
@@ -122,7 +122,7 @@ def test_removal_over_time_adds_up_in_bounded_memory(samples: Motion) -> None:
     cutter = shoulder(samples, 2.0, 60.0)
     result = cutter.result()
     assert sum(result.removed_over_time) == pytest.approx(result.removed_mm3)
-    assert len(result.removed_over_time) <= BINS
+    assert len(result.removed_over_time) <= TIME_BINS
     assert result.bin_s * (len(result.removed_over_time) - 1) <= 80.0
     # The plate is 60 mm long: the tool meets it at -35 and leaves it at 30, at 1 mm/s.
     cutting = np.flatnonzero(np.array(result.removed_over_time) > 0)

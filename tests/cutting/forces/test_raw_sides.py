@@ -9,7 +9,7 @@ import pytest
 from tests.cutting.forces.test_tooth_forces import FEED, STEEL, Plate, by_hand, cut
 from twin.cutting.forces.cutter_form import cutter_form, force_law
 from twin.cutting.height_map import blank, raw_walls
-from twin.cutting.kernels.tooth_forces import ToothBench, tooth_bench, tooth_forces
+from twin.cutting.kernels.tooth_forces import ToothScratch, tooth_bench, tooth_forces
 from twin.cutting.tools import default_cell
 from twin.job.job_file import StockTable, ToolTable
 from twin.nc.canonical import FloatArray
@@ -31,18 +31,18 @@ def raw(stock: StockTable) -> Plate:
     return Plate(uncut, raw_walls(uncut))
 
 
-def felt(part: Plate, points: FloatArray, ahead: FloatArray) -> ToothBench:
+def loads(part: Plate, points: FloatArray, ahead: FloatArray) -> ToothScratch:
     cut(part, TOOL, points)
-    bench, law = tooth_bench(), force_law(TOOL, STEEL)
-    tooth_forces(part.material, points[-1], FEED * ahead, cutter_form(TOOL), law, 1.0, bench)
-    return bench
+    scratch, law = tooth_bench(), force_law(TOOL, STEEL)
+    tooth_forces(part.material, points[-1], FEED * ahead, cutter_form(TOOL), law, 1.0, scratch)
+    return scratch
 
 
-def assert_within(bench: ToothBench, expected: tuple[FloatArray, float, float]) -> None:
+def assert_within(scratch: ToothScratch, expected: tuple[FloatArray, float, float]) -> None:
     mean, peak, torque = expected
-    assert np.linalg.norm(bench.mean) == pytest.approx(np.linalg.norm(mean), rel=0.05)
-    assert bench.figures[0] == pytest.approx(peak, rel=0.05)
-    assert bench.figures[1] == pytest.approx(torque, rel=0.05)
+    assert np.linalg.norm(scratch.mean) == pytest.approx(np.linalg.norm(mean), rel=0.05)
+    assert scratch.figures[0] == pytest.approx(peak, rel=0.05)
+    assert scratch.figures[1] == pytest.approx(torque, rel=0.05)
 
 
 @pytest.mark.parametrize("size", [59.8, *thoroughly(60.0, 60.1), 60.3])
@@ -58,7 +58,7 @@ def test_a_thin_cut_on_the_side_of_a_box(size: float, width: float, turn: int) -
         way = np.column_stack([-way[:, 1], way[:, 0], way[:, 2]])
     ahead = (way[-1] - way[0]) / np.linalg.norm(way[-1] - way[0])
     first = -QUARTER, -math.asin(1.0 - width / RADIUS)
-    assert_within(felt(part, way, ahead), by_hand(TOOL, DEPTH, *first))
+    assert_within(loads(part, way, ahead), by_hand(TOOL, DEPTH, *first))
 
 
 @pytest.mark.parametrize("diameter", [60.0, *thoroughly(60.3)])
@@ -74,4 +74,4 @@ def test_a_thin_cut_around_a_cylinder(diameter: float, width: float, degrees: fl
     ahead = np.array([-math.sin(angle[-1]), math.cos(angle[-1]), 0.0])
     meets = (around**2 + RADIUS**2 - 0.25 * diameter**2) / (2.0 * around * RADIUS)
     arc = QUARTER - math.acos(meets), QUARTER
-    assert_within(felt(part, way, ahead), by_hand(TOOL, DEPTH, *arc))
+    assert_within(loads(part, way, ahead), by_hand(TOOL, DEPTH, *arc))

@@ -10,8 +10,8 @@ from twin.cutting.forces.cutter_form import cutter_form, force_law
 from twin.cutting.forces.materials import materials
 from twin.cutting.height_map import HeightMap, blank
 from twin.cutting.kernels.tooth_forces import (
-    BINS,
-    ToothBench,
+    ANGLE_BINS,
+    ToothScratch,
     add_force_between,
     tooth_bench,
     tooth_forces,
@@ -53,15 +53,15 @@ def cut(part: Plate, tool: ToolTable, points: FloatArray) -> None:
         leave_walls(part.material, trace, tip, edge.radius, cutter_form(tool).side_from)
 
 
-def forces(part: Plate, tool: ToolTable, points: FloatArray, sense: float = 1.0) -> ToothBench:
+def forces(part: Plate, tool: ToolTable, points: FloatArray, sense: float = 1.0) -> ToothScratch:
     """What the teeth feel at the end of a way that was cut."""
     cut(part, tool, points)
-    bench = tooth_bench()
+    scratch = tooth_bench()
     ahead = points[-1] - points[0]
     feed = FEED * ahead / np.linalg.norm(ahead)
     law = force_law(tool, STEEL)
-    tooth_forces(part.material, points[-1], feed, cutter_form(tool), law, sense, bench)
-    return bench
+    tooth_forces(part.material, points[-1], feed, cutter_form(tool), law, sense, scratch)
+    return scratch
 
 
 def along(direction: float, depth: float, aside: float = 0.0) -> FloatArray:
@@ -103,20 +103,20 @@ def by_hand(
     return found.mean(axis=0), float(np.hypot(*found[:, :2].T).max()), float(np.mean(torque))
 
 
-def turned(bench: ToothBench, direction: float) -> FloatArray:
+def turned(scratch: ToothScratch, direction: float) -> FloatArray:
     """The mean force seen along the feed: ahead, left, up."""
     angle = math.radians(direction)
     cosine, sine = math.cos(angle), math.sin(angle)
-    x, y, z = bench.mean
+    x, y, z = scratch.mean
     return np.array([cosine * x + sine * y, cosine * y - sine * x, z])
 
 
-def assert_like(bench: ToothBench, direction: float, expected: tuple[FloatArray, float, float]):
+def assert_like(scratch: ToothScratch, direction: float, expected: tuple[FloatArray, float, float]):
     mean, peak, torque = expected
     size = float(np.linalg.norm(mean))
-    np.testing.assert_allclose(turned(bench, direction), mean, atol=0.05 * size)
-    assert bench.figures[0] == pytest.approx(peak, rel=0.1)
-    assert bench.figures[1] == pytest.approx(torque, rel=0.05)
+    np.testing.assert_allclose(turned(scratch, direction), mean, atol=0.05 * size)
+    assert scratch.figures[0] == pytest.approx(peak, rel=0.1)
+    assert scratch.figures[1] == pytest.approx(torque, rel=0.05)
 
 
 @pytest.mark.seconds("the kernel of the tooth is loaded")
@@ -124,11 +124,11 @@ def assert_like(bench: ToothBench, direction: float, expected: tuple[FloatArray,
 @pytest.mark.parametrize("helix", [0.0, 30.0, 45.0])
 def test_a_slot_is_what_hand_integration_gives(direction: float, helix: float) -> None:
     tool = ToolTable(number=1, diameter=10.0, teeth=4, helix=helix)
-    bench = forces(plate(), tool, along(direction, 4.0))
+    scratch = forces(plate(), tool, along(direction, 4.0))
     half = 0.5 * math.pi
-    assert_like(bench, direction, by_hand(tool, 4.0, -half, half))
-    assert bench.figures[2] == pytest.approx(FEED, rel=0.01)
-    ahead, left, up = turned(bench, direction)
+    assert_like(scratch, direction, by_hand(tool, 4.0, -half, half))
+    assert scratch.figures[2] == pytest.approx(FEED, rel=0.01)
+    ahead, left, up = turned(scratch, direction)
     assert ahead < 0.0 < left, "held back and pushed to the left"
     assert up <= 0.0, "a right-hand helix pulls the tool out"
 
@@ -146,11 +146,11 @@ def test_partial_immersion_up_and_down(
     way = along(direction, 6.0, -side * (0.5 * wide - 5.0 + width))
     ahead = (way[-1] - way[0]) / 50.0
     cut(part, clearing, np.concatenate([way, way[-1:] + 40.0 * ahead]))
-    bench = forces(part, tool, along(direction, 3.0))
+    scratch = forces(part, tool, along(direction, 3.0))
     bound = math.asin(1.0 - width / 5.0)
     first, last = (bound, 0.5 * math.pi) if side > 0 else (-0.5 * math.pi, -bound)
-    assert_like(bench, direction, by_hand(tool, 3.0, first, last))
-    away = -side * turned(bench, direction)[1]
+    assert_like(scratch, direction, by_hand(tool, 3.0, first, last))
+    away = -side * turned(scratch, direction)[1]
     assert (away > 0.0) == (name == "down"), (
         "climb milling pushes off, conventional milling draws in"
     )
@@ -158,10 +158,10 @@ def test_partial_immersion_up_and_down(
 
 def test_counter_clockwise_mirrors_the_slot() -> None:
     tool = ToolTable(number=1, diameter=10.0, teeth=3)
-    bench = forces(plate(), tool, along(30.0, 4.0), sense=-1.0)
+    scratch = forces(plate(), tool, along(30.0, 4.0), sense=-1.0)
     half = 0.5 * math.pi
-    assert_like(bench, 30.0, by_hand(tool, 4.0, -half, half, sense=-1.0))
-    assert turned(bench, 30.0)[1] < 0.0
+    assert_like(scratch, 30.0, by_hand(tool, 4.0, -half, half, sense=-1.0))
+    assert turned(scratch, 30.0)[1] < 0.0
 
 
 def test_a_wall_that_was_cut_before_pushes_no_more() -> None:
@@ -174,9 +174,9 @@ def test_a_wall_that_was_cut_before_pushes_no_more() -> None:
             part, way = plate(), along(direction, 4.0)
             ahead = (way[-1] - way[0]) / 50.0
             cut(part, tool, np.concatenate([way, way[-1:] + 30.0 * ahead]))
-            bench = forces(part, tool, way)
+            scratch = forces(part, tool, way)
             slot = forces(plate(), tool, way)
-            share = np.linalg.norm(bench.mean) / np.linalg.norm(slot.mean)
+            share = np.linalg.norm(scratch.mean) / np.linalg.norm(slot.mean)
             assert share < 0.02, (direction, tool.kind)
 
 
@@ -192,7 +192,7 @@ def ball_by_hand(
     out, rise = np.sin(lead)[:, None], np.cos(lead)[:, None]
     c, s = np.cos(angle), np.sin(angle)
     surface = np.stack([out * c, out * s, -rise + 0.0 * c])
-    # The plane's surface stands ``depth`` above the ball's lowest point along its normal.
+    # The plane's surface is ``depth`` above the ball's lowest point along its normal.
     below = radius * np.tensordot(normal, surface, 1) < depth - radius
     chip = FEED * np.maximum(np.tensordot(ahead, surface, 1), 0.0) * below
     push = law.kc * np.maximum(chip, 1e-3) ** -law.mc * chip * radius * step
@@ -220,42 +220,42 @@ def test_a_ball_on_a_slope(direction: float, slope: float) -> None:
     part.map.heights[:] = np.minimum(plane, part.map.top)
     center = (radius - depth) * normal - [0.0, 0.0, 10.0]
     tip = center - [0.0, 0.0, radius]
-    bench = forces(part, tool, tip + np.linspace(-20.0, 0.0, 201)[:, None] * ahead)
+    scratch = forces(part, tool, tip + np.linspace(-20.0, 0.0, 201)[:, None] * ahead)
     mean, torque = ball_by_hand(tool, ahead, normal, depth)
-    np.testing.assert_allclose(bench.mean, mean, atol=0.1 * float(np.linalg.norm(mean)))
-    assert bench.figures[1] == pytest.approx(torque, rel=0.1)
+    np.testing.assert_allclose(scratch.mean, mean, atol=0.1 * float(np.linalg.norm(mean)))
+    assert scratch.figures[1] == pytest.approx(torque, rel=0.1)
 
 
 def test_a_drill_feels_the_thrust_of_its_formula() -> None:
     tool = ToolTable(number=1, kind="drill", diameter=8.0, teeth=2)
-    bench = forces(plate(), tool, np.linspace([0.0, 0.0, 1.0], [0.0, 0.0, -10.0], 200))
+    scratch = forces(plate(), tool, np.linspace([0.0, 0.0, 1.0], [0.0, 0.0, -10.0], 200))
     sine = math.sin(math.radians(59.0))
     kc = STEEL.kc * (FEED * sine) ** -STEEL.mc
-    assert bench.mean[2] == pytest.approx(0.5 * kc * 4.0 * 2 * FEED * sine, rel=0.05)
-    assert np.abs(bench.mean[:2]).max() < 1e-6
+    assert scratch.mean[2] == pytest.approx(0.5 * kc * 4.0 * 2 * FEED * sine, rel=0.05)
+    assert np.abs(scratch.mean[:2]).max() < 1e-6
     # Every tooth pushes with kc h b at half of the radius.
-    assert bench.figures[1] == pytest.approx(2 * kc * FEED * 4.0 * 2.0, rel=0.05)
+    assert scratch.figures[1] == pytest.approx(2 * kc * FEED * 4.0 * 2.0, rel=0.05)
 
 
 def test_force_over_a_turn_is_the_mean_and_over_little_the_force_of_the_teeth_there() -> None:
     tool = ToolTable(number=1, diameter=10.0, teeth=3)
-    bench, cutter = forces(plate(), tool, along(30.0, 4.0)), cutter_form(tool)
+    scratch, cutter = forces(plate(), tool, along(30.0, 4.0)), cutter_form(tool)
     for angle, turned_by in ((0.0, -1.0), (0.3, -1.0 / 3.0), (0.9, 1.0), (0.2, -7.0 / 3.0)):
         force = np.zeros(3)
-        add_force_between(cutter, bench, angle, turned_by, force)
-        np.testing.assert_allclose(force, bench.mean, rtol=1e-9)
+        add_force_between(cutter, scratch, angle, turned_by, force)
+        np.testing.assert_allclose(force, scratch.mean, rtol=1e-9)
     for bin_ in (0, 5, 23):
         force = np.zeros(3)
-        add_force_between(cutter, bench, (bin_ + 0.5) / BINS, 0.0, force)
-        at = (bin_ + BINS // 3 * np.arange(3)) % BINS
-        np.testing.assert_allclose(force, bench.tooth[at].sum(axis=0), rtol=1e-6, atol=1e-6)
+        add_force_between(cutter, scratch, (bin_ + 0.5) / ANGLE_BINS, 0.0, force)
+        at = (bin_ + ANGLE_BINS // 3 * np.arange(3)) % ANGLE_BINS
+        np.testing.assert_allclose(force, scratch.tooth[at].sum(axis=0), rtol=1e-6, atol=1e-6)
 
 
 def test_in_the_air_there_is_none() -> None:
     tool, part = ToolTable(number=1, diameter=10.0), plate()
-    bench = forces(part, tool, along(30.0, -1.0))
-    assert not bench.mean.any()
-    assert not bench.figures.any()
+    scratch = forces(part, tool, along(30.0, -1.0))
+    assert not scratch.mean.any()
+    assert not scratch.figures.any()
 
 
 @pytest.mark.parametrize("direction", [0.0, 17.0])
@@ -269,18 +269,18 @@ def test_a_cut_narrower_than_a_cell_is_what_hand_integration_gives(
     part = plate(cell=0.5)
     way = along(direction, 6.0, -side * (15.0 + width))
     cut(part, clearing, np.concatenate([way, way[-1:] + 40.0 * (way[-1] - way[0]) / 50.0]))
-    bench = forces(part, tool, along(direction, 3.0)[-120:])
+    scratch = forces(part, tool, along(direction, 3.0)[-120:])
     bound = math.asin(1.0 - width / 5.0)
     bounds = (bound, 0.5 * math.pi) if side > 0 else (-0.5 * math.pi, -bound)
-    assert_like(bench, direction, by_hand(tool, 3.0, *bounds))
+    assert_like(scratch, direction, by_hand(tool, 3.0, *bounds))
 
 
 def test_the_greatest_force_of_straight_edges_is_that_of_the_thickest_chip() -> None:
     tool, part = ToolTable(number=1, diameter=10.0, teeth=4, helix=0.0), plate(cell=0.5)
     way = along(17.0, 6.0, -15.2)
     cut(part, ToolTable(number=2, diameter=40.0), np.concatenate([way, way + (way[-1] - way[0])]))
-    bench = forces(part, tool, along(17.0, 3.0)[-120:])
+    scratch = forces(part, tool, along(17.0, 3.0)[-120:])
     law, chip = force_law(tool, STEEL), FEED * math.sqrt(1.0 - 0.96**2)
     push = law.kc * chip ** (1.0 - law.mc) * 3.0
-    assert bench.figures[0] == pytest.approx(push * math.hypot(1.0, law.radial), rel=0.02)
-    assert bench.figures[2] == pytest.approx(chip, rel=0.02)
+    assert scratch.figures[0] == pytest.approx(push * math.hypot(1.0, law.radial), rel=0.02)
+    assert scratch.figures[2] == pytest.approx(chip, rel=0.02)

@@ -14,7 +14,7 @@ from twin.cutting.colours import MACHINED_RGB, RAW_RGB, deviation_colours
 from twin.cutting.cut import Cutter
 from twin.cutting.height_map import HeightMap, blank
 from twin.cutting.measuring.inspection import inspect
-from twin.cutting.measuring.nominal import nominal_map
+from twin.cutting.measuring.nominal_from_above import nominal_map
 from twin.cutting.part import part_mesh, write_glb, write_stl
 from twin.errors import ConfigError
 from twin.job.job_file import JobFile, StockTable, ToolTable
@@ -116,7 +116,7 @@ def plate_with(solids: list[trimesh.Trimesh], file: Path) -> HeightMap:
     """The nominal part of a slot of 10 mm, or of a boss, on the grid of a cut one."""
     mesh = trimesh.util.concatenate(solids)
     mesh.export(file)
-    return nominal_map(cut_along(slot(0.0), 0.25), file, FRAME, np.zeros(3))
+    return nominal_map(cut_along(slot(0.0), 0.25), file, FRAME.program_zero(np.zeros(3)))
 
 
 def test_the_walls_of_a_mesh_are_known_closer_than_by_cells(tmp_path: Path) -> None:

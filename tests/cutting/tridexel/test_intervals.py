@@ -74,8 +74,8 @@ def test_the_surface_that_a_cut_leaves_remembers_its_tool() -> None:
     subtract_and_grow(part, 2.5, 4.0, tool=9)
     first = int(part.dexels.first[LINE])
     assert material(part) == [(0.0, 2.0), (4.0, 10.0)]
-    assert part.dexels.skin[first, 1] == 7
-    assert part.dexels.skin[first + 1, 0] == 9
+    assert part.dexels.facet[first, 1] == 7
+    assert part.dexels.facet[first + 1, 0] == 9
 
 
 def test_a_copy_is_not_cut() -> None:
@@ -91,7 +91,7 @@ def test_a_copy_is_not_cut() -> None:
 
 def test_memory_that_is_full_grows() -> None:
     part = box(LOW, HIGH, 1.0)
-    part.dexels = part.dexels._replace(ends=part.dexels.ends[:21], skin=part.dexels.skin[:21])
+    part.dexels = part.dexels._replace(ends=part.dexels.ends[:21], facet=part.dexels.facet[:21])
     for place in np.linspace(0.25, 9.75, 200):
         subtract_and_grow(part, float(place), float(place) + 0.01)
     assert len(material(part)) == 201

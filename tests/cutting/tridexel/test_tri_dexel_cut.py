@@ -160,9 +160,9 @@ def test_a_holder_just_above_a_turned_part_meets_nothing() -> None:
 
 
 def test_a_longer_tool_reaches_along_its_own_axis() -> None:
-    longer = FLAT.model_copy(update={"number": 2, "length": FLAT.length + 5.0})
+    length_difference = FLAT.model_copy(update={"number": 2, "length": FLAT.length + 5.0})
     cutter = bar(FLAT)
-    plan = dataclasses.replace(cutter.plan, tools=(FLAT, longer), first_move=(0, 1))
+    plan = dataclasses.replace(cutter.plan, tools=(FLAT, length_difference), first_move=(0, 1))
     cutter = Cutter(
         StockTable(shape="box", size=(30.0, 20.0, 20.0), position=(15.0, 0.0, 10.0), cell=0.2),
         plan,

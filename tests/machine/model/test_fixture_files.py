@@ -1,4 +1,4 @@
-"""Fixtures from STL files: their hollows count, they are met where they stand, and refused where something is."""
+"""Fixtures from STL files: their hollows count, they are met where they are, and refused where something is."""
 
 import io
 from pathlib import Path

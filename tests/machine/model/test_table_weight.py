@@ -10,7 +10,6 @@ import pytest
 import trimesh
 
 from tests.machine.machine_fixtures import PERIOD, setpoints, shipped_machine, with_fixtures
-from twin.cutting.blank_weight import blank_weight
 from twin.files.shipped import resource_root
 from twin.job.fixture import FixtureTable
 from twin.job.job_file import JobFile, StockTable
@@ -18,7 +17,7 @@ from twin.machine.description.config import Blank, Machine
 from twin.machine.load import read_machine
 from twin.machine.model.model import BLANK, build_spec, drives, moved, physics_model
 from twin.machine.simulation.servo import Servo
-from twin.run.layout import lay_out
+from twin.run.layout import blank_weight, lay_out
 
 DISC = StockTable(shape="cylinder", diameter=340.0, height=98.21564381, density=7.85)
 """70 kg; its inertia about its axis is m r²/2 = 1.01 kg m²."""
@@ -109,7 +108,7 @@ def test_a_tube_lacks_its_bore() -> None:
 
 @pytest.mark.parametrize("closed", [True, False])
 def test_a_shape_from_a_file_weighs_what_its_solid_does(tmp_path: Path, closed: bool) -> None:
-    """A box that stands askew on its corner is the box: same mass, same moments."""
+    """A box that is askew on its corner is the box: same mass, same moments."""
     mesh = trimesh.creation.box((60.0, 40.0, 20.0))
     mesh.apply_transform(trimesh.transformations.euler_matrix(0.4, 0.3, 0.2))
     if not closed:

@@ -50,7 +50,7 @@ def grown(machine: Machine, samples: Samples, turns: FloatArray, rows: int) -> F
 
 @pytest.mark.parametrize("rows", [6000, 777, 1])
 def test_a_spindle_warms_and_cools_as_a_lag_of_first_order(rows: int) -> None:
-    """u (1 - exp(-t/T)) while it turns, and down by exp(-t/T) when it stands; either way round."""
+    """u (1 - exp(-t/T)) while it turns, and down by exp(-t/T) when it is at rest; either way round."""
     turns = np.where(np.arange(6000) < 4000, -6000.0, 0.0)
     found = grown(growing(nose=SPINDLE), driven(6000, 0.0, 0.0), turns, rows)
     time = PERIOD * np.arange(1, 6001)

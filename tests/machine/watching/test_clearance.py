@@ -144,7 +144,7 @@ def test_the_end_of_a_cutter_has_its_shape(kind: str, gap: float) -> None:
     position = np.zeros((len(down), 4))
     position[:, 2] = table + gap + down
     assert bool(watch(Clearance(MACHINE, clearance_model(MACHINE, spec)), position)) == (gap < 0)
-    aside = 3.0  # the tool's axis stands so far beside the jaw's face
+    aside = 3.0  # the tool's axis is so far beside the jaw's face
     rise = {
         "flat": 0.0,
         "ball": 5.0 - np.sqrt(25.0 - 9.0),

@@ -93,7 +93,7 @@ def test_an_overlap_of_a_twentieth_is_seen_and_a_gap_of_one_is_none(
     machine, spec = lone(machines, name, one, two)
     for gap, seen in ((0.05, False), (-0.05, True)):
         placed = spec.copy()
-        # What stands lowest in the tree is set off by the gap above the other, wherever that is.
+        # What is lowest in the tree is set off by the gap above the other, wherever that is.
         model = clearance_model(machine, placed)
         data = mujoco.MjData(model)
         mujoco.mj_kinematics(model, data)

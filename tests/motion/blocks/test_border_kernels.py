@@ -3,8 +3,7 @@ from hypothesis import given
 from motion_programs import SETTINGS, Program, programs
 
 from twin.columns import join
-from twin.motion.blocks.block_kernels import largest_travels
-from twin.motion.blocks.blocks import Blocks, BlocksOfChunks
+from twin.motion.blocks.blocks import Blocks, BlocksOfChunks, largest_travels
 from twin.motion.blocks.border_kernels import (
     STEP_NOISE,
     border_steps,

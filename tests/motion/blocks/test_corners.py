@@ -11,7 +11,7 @@ from motion_checks import assert_consistent, assert_on_path, assert_within_limit
 from motion_programs import PERIOD, SETTINGS, ZERO, Program, duration, limits, mill, programs, run
 
 from twin.columns import join
-from twin.motion.corner_trials import PiecesOfChunks
+from twin.motion.corner_candidates import PiecesOfChunks
 from twin.motion.limits import MotionLimits
 from twin.motion.pieces.rounding_kernels import add_rounding
 from twin.motion.setpoints.setpoints import Setpoints

@@ -17,7 +17,7 @@ from twin.motion.blocks.knee_kernels import (
     Chain,
     slow_bending_chords,
 )
-from twin.motion.corner_trials import PiecesOfChunks
+from twin.motion.corner_candidates import PiecesOfChunks
 from twin.motion.limits import MotionLimits
 from twin.motion.phases_of_pieces import phases_of_pieces
 from twin.nc.canonical import Corner, FloatArray

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from motion_programs import SETTINGS
 
 from twin.motion.profile.backward_pass_kernels import backward_pass
-from twin.motion.profile.forward_pass_kernels import STATE_AT_REST, Stands, forward_pass
+from twin.motion.profile.forward_pass_kernels import STATE_AT_REST, SegmentTimes, forward_pass
 from twin.nc.canonical import FloatArray
 
 
@@ -15,7 +15,7 @@ def one_piece(length: float, velocity: float, acceleration: float, jerk: float) 
     limits = np.array([[length], [velocity], [acceleration], [acceleration], [jerk]])
     entry = np.zeros(2)
     brakes = backward_pass(limits, entry, np.zeros((4, 0)))
-    state, still = STATE_AT_REST.copy(), Stands(np.zeros(1), np.zeros(1))
+    state, still = STATE_AT_REST.copy(), SegmentTimes(np.zeros(1), np.zeros(1))
     phases, _ = forward_pass(limits, entry, brakes, still, 1, math.inf, state)
     return phases[phases[:, 1] > 1e-6]
 

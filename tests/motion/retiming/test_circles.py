@@ -9,7 +9,7 @@ from motion_checks import assert_within_limits
 from motion_programs import PERIOD, Program, circles, duration, mill, run
 
 from twin.motion.limits import MotionLimits
-from twin.motion.phase_planner import plan_phases
+from twin.motion.planner import plan_phases
 from twin.nc.canonical import Corner
 
 PLACES = 240

@@ -21,7 +21,7 @@ from motion_programs import PERIOD, SETTINGS, ZERO, Program, circles, limits, mi
 from twin.columns import join
 from twin.motion.limits import MotionLimits
 from twin.motion.live.live_motion import LiveMotion
-from twin.motion.phase_planner import plan_phases
+from twin.motion.planner import plan_phases
 from twin.nc.canonical import Corner
 
 FEWER = hypothesis.settings(SETTINGS, max_examples=examples(25))

@@ -378,7 +378,7 @@ REFUSED = {
     ),
     "TCPM": ("FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS", "TCPM"),
     "M128": ("M128", "M128"),
-    "normal vectors": ("LN X+1 Y+2 Z+3 NX0 NY0 NZ1 F100", "LN"),
+    "a vector without a led tip": ("LN X+1 Y+2 Z+3 TX0 TY0 TZ1 F100", "M128"),
     "a table of points": ('SEL PATTERN "A.PNT"', "SEL PATTERN"),
     "a datum that FN 17 cannot write": ("FN 17: SYSWRITE ID210 NR4 IDX3 = +1", "ID50"),
     "back boring without a direction": (

@@ -14,7 +14,7 @@ from twin.nc.text.reporter import NOTICE
 PROGRAMS = ROOT / "programs"
 
 GOST_EXAMPLES = [
-    # first target, second target, second move, where the table stands in the end
+    # first target, second target, second move, where the table is in the end
     ("359.999", "10", -349.999, 10.0),
     ("360.000", "10", 10.0, 370.0),
     ("721.000", "10", 9.0, 730.0),

@@ -191,7 +191,7 @@ FAGOR = {
     "bolt circle with a loop": Job(
         "P1=0\nG00 Z20\nG81 Z2 I-10 F200\nG30 I0 J0\n$WHILE P1<6\nG00 R25 Q[60*P1]\nG81 Z2 I-10\n"
         "P1+=1\n$ENDWHILE\nG80\nG00 X0 Y0\nM30",
-        # The first G81 drills where the tool stands.
+        # The first G81 drills where the tool is.
         (0, 0, 20, 0), 7 * 12,
     ),
     "keyway with a local subroutine": Job(

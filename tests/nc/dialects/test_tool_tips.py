@@ -58,8 +58,10 @@ def test_a_machine_without_rotary_axes_leads_no_tip(dialect: str) -> None:
 def test_a_longer_tool_is_led_at_its_own_tip() -> None:
     text = LED["fanuc"].replace("T1", "T2").replace("H1", "H2")
     end = _led("fanuc", text).moves.end[-1]
-    longer = ToolCenter(on_machine(trunnion()), 15.0, [0.0] * 5)
-    assert longer.tip(end.tolist()) == pytest.approx([40.0, -10.0, 5.0, 30.0, 90.0], abs=1e-9)
+    length_difference = ToolCenter(on_machine(trunnion()), 15.0, [0.0] * 5)
+    assert length_difference.tip(end.tolist()) == pytest.approx(
+        [40.0, -10.0, 5.0, 30.0, 90.0], abs=1e-9
+    )
 
 
 def test_behind_the_control_of_the_tip_positions_are_those_of_the_axes() -> None:
@@ -96,8 +98,8 @@ TILTED = {
 @pytest.mark.parametrize("dialect", TILTED)
 def test_every_control_cuts_in_the_same_tilted_plane(dialect: str) -> None:
     moves = _led(dialect, TILTED[dialect]).moves
-    longer = ToolCenter(on_machine(trunnion()), 15.0, [0.0] * 5)
-    tip = np.array(longer.tip(moves.end[-1].tolist()))
+    length_difference = ToolCenter(on_machine(trunnion()), 15.0, [0.0] * 5)
+    tip = np.array(length_difference.tip(moves.end[-1].tolist()))
     # 10 along and 10 up a plane that turns by 30 degrees about X through X10, 1 below it.
     sine, cosine = 0.5, np.sqrt(0.75)
     assert tip[:3] == pytest.approx((20.0, 10.0 * cosine + sine, 10.0 * sine - cosine), abs=1e-9)
@@ -137,8 +139,8 @@ def test_move_keeps_the_tip_at_the_part_while_the_axes_turn() -> None:
     text = TILTED["heidenhain"].replace("TURN FMAX", "MOVE FMAX")
     moves = _led("heidenhain", text).moves
     curves = moves[moves.shape == Shape.CURVE]
-    longer = ToolCenter(on_machine(trunnion()), 15.0, [0.0] * 5)
-    tips = np.array([longer.tip(place.tolist())[:3] for place in curves.end])
+    length_difference = ToolCenter(on_machine(trunnion()), 15.0, [0.0] * 5)
+    tips = np.array([length_difference.tip(place.tolist())[:3] for place in curves.end])
     assert np.abs(tips - tips[0]).max() < 1e-9
 
 
@@ -170,9 +172,9 @@ def test_seq_is_the_sign_of_the_axis_next_to_the_tool(words: str, sign: float) -
     moves = _led("heidenhain", text).moves
     assert moves.end[-1, 3] == pytest.approx(30.0 * sign)
     expected = _led("heidenhain", TILTED["heidenhain"]).moves.end[-1]
-    longer = ToolCenter(on_machine(trunnion()), 15.0, [0.0] * 5)
-    assert longer.tip(moves.end[-1].tolist())[:3] == pytest.approx(
-        longer.tip(expected.tolist())[:3], abs=1e-9
+    length_difference = ToolCenter(on_machine(trunnion()), 15.0, [0.0] * 5)
+    assert length_difference.tip(moves.end[-1].tolist())[:3] == pytest.approx(
+        length_difference.tip(expected.tolist())[:3], abs=1e-9
     )
 
 
@@ -310,3 +312,124 @@ def test_what_cannot_be_followed_is_refused(dialect: str, text: str, code: str) 
     outcome = run(text, dialect, SETTINGS)
     assert outcome.error is not None
     assert outcome.error.code == code, outcome.error
+
+
+TOWARD = ["0.3", "0.4", "0.8660254"]
+IN_A_PLANE = {
+    "fanuc P1": ("fanuc", "O1\nT1 M6\nG43.4 H1 P1\nG1 X10. Y20. Z5. A25. C10. F500.\nX40. Y-10. A40. C100.\nG49\nM30\n"),
+    "fanuc vectors": ("fanuc", "O1\nT1 M6\nG43.5 H1 P1\nG1 X10. Y20. Z5. I.1 J-.5 K.8 F500.\nX40. Y-10. I{0} J{1} K{2}\nG49\nM30\n"),
+    "sinumerik": ("sinumerik", "T1 D1 M6\nTRAORI\nG1 X10 Y20 Z5 A3=0.1 B3=-0.5 C3=0.8 F500\nX40 Y-10 A3={0} B3={1} C3={2}\nTRAFOOF\nM30\n"),
+    "sinumerik plane": ("sinumerik", "T1 D1 M6\nORIMKS ORIPLANE\nTRAORI\nG1 X10 Y20 Z5 A3=0.1 B3=-0.5 C3=0.8 F500\nX40 Y-10 A3={0} B3={1} C3={2}\nTRAFOOF\nM30\n"),
+    "heidenhain": ("heidenhain", "BEGIN PGM A MM\nTOOL CALL 1 Z S1000\nFUNCTION TCPM F TCP AXIS POS PATHCTRL VECTOR\nL X+10 Y+20 Z+5 A+25 C+10 F500\nL X+40 Y-10 A+40 C+100\nM129\nEND PGM A MM\n"),
+    "heidenhain LN": ("heidenhain", "BEGIN PGM A MM\nTOOL CALL 1 Z S1000\nFUNCTION TCPM F TCP AXIS POS PATHCTRL VECTOR REFPNT TIP-TIP\nLN X+10 Y+20 Z+5 NX+0 NY+0 NZ+1 TX+0.1 TY-0.5 TZ+0.8 F500\nLN X+40 Y-10 Z+5 NX+0 NY+0 NZ+1 TX+{0} TY+{1} TZ+{2}\nM129\nEND PGM A MM\n"),
+}  # fmt: skip
+"""Each turns the tool in the plane of both directions between its two blocks."""
+
+
+def _plane_error(moves: Moves, line: int) -> tuple[float, float]:
+    """How far the direction leaves the plane of both ends of a block's curves, and how far it turns [rad]."""
+    curves = moves[(moves.line == line) & (moves.shape == Shape.CURVE)]
+    places = np.concatenate([curves.start[:1], curves.end]) + TIP_ZERO
+    directions = tool_direction(trunnion(), places)
+    across = np.cross(directions[0], directions[-1])
+    size = float(np.linalg.norm(across))
+    return float(np.abs(directions @ across).max()) / size, size
+
+
+@pytest.mark.parametrize("name", IN_A_PLANE)
+def test_a_direction_is_interpolated_as_a_vector_where_the_control_does(name: str) -> None:
+    dialect, text = IN_A_PLANE[name]
+    text = text.format(*TOWARD)
+    line = next(
+        number for number, row in enumerate(text.splitlines(), 1) if "40" in row and "-10" in row
+    )
+    moves = _led(dialect, text).moves
+    off, angle = _plane_error(moves, line)
+    assert angle > 0.3
+    assert off < 1e-8
+    assert _tips(moves)[-1, :3] == pytest.approx((40.0, -10.0, 5.0), abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new"),
+    [
+        ("fanuc P1", " P1", " P0"),
+        ("fanuc vectors", " P1", ""),
+        ("sinumerik", "TRAORI", "ORIAXES\nTRAORI"),
+        ("sinumerik", "TRAORI", "ORIMKS\nTRAORI"),
+        ("heidenhain", "VECTOR", "AXIS"),
+    ],
+)
+def test_else_the_rotary_axes_go_evenly(name: str, old: str, new: str) -> None:
+    dialect, text = IN_A_PLANE[name]
+    text = text.format(*TOWARD).replace(old, new, 1)
+    line = next(
+        number for number, row in enumerate(text.splitlines(), 1) if "40" in row and "-10" in row
+    )
+    moves = _led(dialect, text).moves
+    off, _ = _plane_error(moves, line)
+    assert off > 1e-3
+    curves = moves[(moves.line == line) & (moves.shape == Shape.CURVE)]
+    assert curves.curve is not None
+    assert not curves.curve[:, 3:, 1:].any()
+
+
+FORMS = {
+    "P1 Q123": ("fanuc", "G68.2 P1 Q123 X10. Y0 Z0 I30. J20. K40.", _turn(2, 40) @ _turn(1, 20) @ _turn(0, 30)),
+    "P1": ("fanuc", "G68.2 P1 X10. Y0 Z0 I90. J0 K60.", _turn(2, 60) @ _turn(0, 90)),
+    "P2": ("fanuc", "G68.2 P2 Q0 X10. Y0 Z0 R15.\nG68.2 P2 Q1 X5. Y0 Z2.\nG68.2 P2 Q2 X9. Y0 Z2.\nG68.2 P2 Q3 X-3. Y.8660254037844386 Z2.5", _turn(0, 30) @ _turn(2, 15)),
+    "P3": ("fanuc", "G68.2 P3 Q1 I0 J-.5 K.8660254\nG68.2 P3 Q0 X10. Y0 Z0 I1. J0 K0", _turn(0, 30)),
+    "G268": ("haas", "G268 X10. Y0 Z0 I30. J20. K40. Q123", _turn(2, 40) @ _turn(1, 20) @ _turn(0, 30)),
+    "G268 Q321": ("haas", "G268 X10. Y0 Z0 I30. J20. K40. Q321", _turn(0, 30) @ _turn(1, 20) @ _turn(2, 40)),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", FORMS)
+def test_forms_of_tilted_planes(name: str) -> None:
+    """The post's example of P1 is, by Euler's angles, I60. J90. K0."""
+    dialect, words, matrix = FORMS[name]
+    orient, end = ("G253", "G269") if dialect == "haas" else ("G53.1", "G69")
+    text = f"O1\nT1 M6\nG0 Z100.\n{words}\n{orient}\nG43 H1\nG0 X3. Y4. Z20.\nG1 Z5. F200.\n{end}\nM30\n"
+    end_place = _led(dialect, text).moves.end[-1]
+    tip = np.array(TIP.tip(end_place.tolist())[:3])
+    assert tip == pytest.approx(np.array([10.0, 0.0, 0.0]) + matrix @ (3.0, 4.0, 5.0), abs=1e-6)
+
+
+def test_g53_6_turns_about_the_tip() -> None:
+    text = TILTED["fanuc"].replace("G53.1", "G53.6")
+    moves = _led("fanuc", text).moves
+    curves = moves[moves.shape == Shape.CURVE]
+    longer = ToolCenter(on_machine(trunnion()), 0.0, [0.0] * 5)
+    tips = np.array([longer.tip(place.tolist())[:3] for place in curves.end])
+    assert len(tips) > 5
+    assert np.abs(tips - tips[0]).max() < 1e-9
+    assert moves.end[-1] == pytest.approx(_led("fanuc", TILTED["fanuc"]).moves.end[-1], abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("dialect", "block", "said"),
+    [
+        ("fanuc", "G68.2 P4 X0 Y0 Z0 I10. J10. K0", "P0 to P3"),
+        ("fanuc", "G68.2 P1 Q122 X0 Y0 Z0 I10. J10. K0", "Q123"),
+        ("fanuc", "G68.2 P2 Q4 X0 Y0 Z0", "Q0 to Q3"),
+        ("fanuc", "G68.2 P3 Q0 X0 Y0 Z0 I1. J0 K0\nG68.2 P3 Q1 I1. J0 K1.", "right angles"),
+        ("fanuc", "G43.4 H1 P3", "P0"),
+        ("fanuc", "G43.5 H1 Q2.", "inclination"),
+        ("fanuc", "G43.5 H1\nG1 X1. A10. F100.", "rotary axis"),
+        ("fanuc", "G68.2 X0 Y0 Z0 I0 J30. K0\nG53.6 R10.", "distance R"),
+        ("haas", "G268 X0 Y0 Z0", "rotary axes"),
+        ("haas", "G268 X0 Y0 Z0 I10. J20. K0", "order"),
+        ("haas", "G253", "G268"),
+        ("sinumerik", "ORICONCW", "ORIVECT"),
+        ("heidenhain", "LN X+1 TX+0 TY+0 TZ+1 F100", "M128"),
+    ],
+)
+def test_what_is_not_followed_is_refused_by_name(dialect: str, block: str, said: str) -> None:
+    head, tail = (
+        ("BEGIN PGM A MM\nTOOL CALL 1 Z S1000\n", "\nEND PGM A MM\n")
+        if dialect == "heidenhain"
+        else ("", "\nM30\n")
+    )
+    outcome = run(head + block + tail, dialect, SETTINGS)
+    assert outcome.error is not None
+    assert said in f"{outcome.error.message} {outcome.error.hint}"

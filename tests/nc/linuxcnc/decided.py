@@ -58,7 +58,7 @@ def for_rs274(text: str) -> tuple[str, frozenset[str]]:
 
     It remembers a break, even of a loop that was passed over, until a do loop ends, which it then ends:
     behind each while loop that may break an empty do loop stands, which takes the break away. M61
-    leaves its tool table as it was: M6 stands in its place.
+    leaves its tool table as it was: M6 is in its place.
     """
     looped = list(_with_empty_loops(text.split("\n")))
     loaded = list(_with_tools(looped))
@@ -103,7 +103,7 @@ def is_computed_too_early(said: str) -> bool:
 def slips_of(forgotten: list[Slip]) -> Slips:
     """How far the moves of ``rs274`` may lie beside those of the control, axis by axis [mm].
 
-    After a tool change its model of the machine stands where the last move ended as it was
+    After a tool change its model of the machine is where the last move ended as it was
     programmed, without the lengths that have come into force since; each change may add its own.
     """
     axes: list[list[float]] = []

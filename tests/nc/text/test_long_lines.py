@@ -1,4 +1,4 @@
-"""A line takes no longer than its length asks for, whatever stands in it."""
+"""A line takes no longer than its length asks for, whatever is in it."""
 
 import contextlib
 import time

@@ -14,7 +14,7 @@ from twin.training.scene.scene_file import Scene, scene_of_job
 
 WELCOME = "Grbl 1.1h ['$' for help]"
 START_Z = -445.0
-"""Where the shipped job's machine stands first, 60 mm over its part zero [mm]."""
+"""Where the shipped job's machine is first, 60 mm over its part zero [mm]."""
 
 
 @pytest.fixture(scope="module")
@@ -38,7 +38,7 @@ class Bench:
         return [line for line in out.decode().split("\r\n") if line]
 
     def settle(self) -> list[str]:
-        """What is answered until the machine stands."""
+        """What is answered until the machine is at rest."""
         lines: list[str] = []
         for _ in range(3000):
             lines += self.send(b"", 1)

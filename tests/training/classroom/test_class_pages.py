@@ -71,7 +71,7 @@ def test_no_mark_is_lost_and_the_teachers_page_is_right(tmp_path):
             server.stop()
             server = ClassServer(roster, out)
             assert server.links == before
-            # Pages that were open find their rooms anew, without a link.
+            # Pages that were open find their rooms again, without a link.
             for name, page in pages.items():
                 page.wait_for_selector("body[data-line=up]")
                 page.wait_for_selector("[data-key=finish]", state="attached")

@@ -1,4 +1,4 @@
-"""The drawn way of a program against the way that the room then drives."""
+"""The drawn path of a program against the way that the room then drives."""
 
 import numpy as np
 import pytest
@@ -31,7 +31,7 @@ def driven(session: Session) -> FloatArray:
     do(session, "cycle_start")
     for _ in range(6000):
         session.advance()
-        found.append(room.standing_setpoint - room.setup.tables.longer)
+        found.append(room.standing_setpoint - room.setup.tables.length_difference)
         if room.slot.run is None:
             return room.setup.part_frame.position(np.array(found))
         if room.slot.held:

@@ -1,4 +1,4 @@
-"""The cut in the room: what tool and spindle bear is shown, and a tool that breaks is told of."""
+"""The cut in the room: what tool and spindle bear is shown, and a tool that breaks is reported."""
 
 import dataclasses
 import math
@@ -153,7 +153,7 @@ def test_every_shipped_scene_cuts_a_named_material():
         preparation = read_scene(scene_path(name)).preparation
         stock = preparation.job.file.stock
         if stock is None:
-            # Nothing stands there that could be cut: a fixture is what swings up.
+            # Nothing is there that could be cut: a fixture is what swings up.
             assert preparation.machine.part_frame.chain is not None, name
             continue
         assert stock.material, name

@@ -115,7 +115,7 @@ class MeasuredRoom:
         return True
 
     def run_steadily(self) -> None:
-        """Let the program run at its steady feed: go on where it is held, begin anew at its end."""
+        """Let the program run at its steady feed: go on where it is held, begin again at its end."""
         end = time.perf_counter() + PATIENCE_S
         while not self._steady():
             room = self._room.session.room

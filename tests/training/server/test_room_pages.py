@@ -511,7 +511,7 @@ def test_the_way_of_the_program_is_told_before_it_runs_and_why_it_is_not(chromiu
 
 
 def test_what_cannot_be_taken_back_asks_once_and_the_lesson_is_told_in_the_page(chromium, room):
-    context = chromium.new_context(bypass_csp=True)
+    context = chromium.new_context(bypass_csp=True, viewport={"width": 390, "height": 844})
     without_view(context)
     page = open_page(room, context, query="?language=en")
     player, first = Player(room, page), room.folder
@@ -523,6 +523,9 @@ def test_what_cannot_be_taken_back_asks_once_and_the_lesson_is_told_in_the_page(
     assert player.done("finish") == 0
     player.hand_in()
     page.wait_for_selector("#score >> text=The trap of this scene")
+    box = page.locator("#score").bounding_box()
+    assert box, "the sheet"
+    assert (box["y"] > 0, box["y"] + box["height"] <= 844, box["height"] > 500) == (True,) * 3
     assert findings(page) == []
     page.click("[data-key=close_sheet]")
     page.click("[data-key='score sheet']")
@@ -540,6 +543,8 @@ def test_the_next_scene_follows_in_the_same_page_and_only_behind_a_hand_in(chrom
     context = chromium.new_context()
     without_view(context)
     page = open_page(room, context, query="?language=en")
+    wrong: list[str] = []
+    page.on("pageerror", lambda error: wrong.append(str(error)))
     scene = room.session.scene.name
     for asked in (next_scene(scene), "fagor_climb", "../x"):
         page.evaluate("(name) => { const line = new WebSocket(new URL('stream', location.href).href.replace('http', 'ws')); line.onopen = () => line.send(JSON.stringify({ attempt: name })); }", asked)  # fmt: skip
@@ -550,6 +555,7 @@ def test_the_next_scene_follows_in_the_same_page_and_only_behind_a_hand_in(chrom
     player.until(lambda: room.session.scene.name == next_scene(scene), "the next scene")
     page.wait_for_selector(f"#sheet >> text={room.session.scene.file.title['en']}")
     context.close()
+    assert not wrong
 
 
 REACHED = """() => {

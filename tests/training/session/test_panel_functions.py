@@ -69,7 +69,7 @@ def second_tool(session: Session) -> float:
 
 
 def test_a_tool_change_takes_the_time_that_the_machine_file_says(session):
-    """As in a run: twin.run.waits; a tool that is there already takes none."""
+    """As in a run: twin.run.spindle_dwells; a tool that is there already takes none."""
     change_s = second_tool(session)
     same = seconds(session, "N10 T1 M6\nN20 G90 G1 F500 X1\nN30 M30")
     other = seconds(session, "N10 T2 M6\nN20 G90 G1 F500 X2\nN30 M30")
@@ -663,7 +663,7 @@ def test_a_reset_stops_spindle_and_coolant_in_every_state(session, state):
     ids=["subprogram", "loop", "cycle", "rotated", "incremental"],
 )  # fmt: skip
 def test_a_search_comes_to_where_its_block_begins(text, line, begins, ends):
-    """What stands before the block is computed, its first pass counts (SINUMERIK: block search)."""
+    """What is before the block is computed, its first pass counts (SINUMERIK: block search)."""
     session = Session(read_scene(scene_path("linuxcnc_round_corners")))
     load(session, text)
     do(session, "search", line=line)
@@ -685,7 +685,7 @@ def test_a_tool_that_is_added_is_mounted_and_cuts(session):
     assert (row.kind, row.diameter, row.length, row.radius) == ("flat", 4.0, 70.0, 2.0)
     assert "T7" in refused(session, "add_tool", **added)
     do(session, "change_tool", number=7)
-    assert session.room.setup.tables.longer[2] == 10.0
+    assert session.room.setup.tables.length_difference[2] == 10.0
     do(session, "mode", mode="auto")
     load(session, "N10 T7 M6\nN20 S3000 M3\nN30 G90 G1 F500 X1\nN40 M30")
     do(session, "cycle_start")

@@ -53,7 +53,7 @@ def heights_of(room: Room) -> FloatArray:
 
 
 def speed(session: Session) -> float:
-    """What the axes are told [mm/min]: the joints tremble under the teeth."""
+    """What the axes are commanded [mm/min]: the joints tremble under the teeth."""
     return 60.0 * float(np.linalg.norm(session.room.samples.setpoint.velocity[-1, :3]))
 
 

@@ -91,7 +91,7 @@ def circle_line(circle: BallBarFit) -> str:
 
 
 _SCALE, _SQUARE, _LAG = 3, 4, 5
-"""Columns of ``_columns``; what stands before is the circle, what comes after the backlash."""
+"""Columns of ``_columns``; what is before is the circle, what comes after the backlash."""
 
 
 def _columns(log: BallBarLog, angle: FloatArray, sense: int) -> FloatArray:

@@ -34,14 +34,14 @@ _FEW = 100
 
 
 class Give(NamedTuple):
-    """Backlash and stiffness of an axis, with 95 % intervals; None where they are not told."""
+    """Backlash and stiffness of an axis, with 95 % intervals; None where they are not determined."""
 
     backlash: Interval | None
     """[mm or deg]."""
     stiffness: Interval | None
     """[N/mm or N m/deg]."""
     why: str
-    """What is not told, and why; empty where all is."""
+    """What is not determined, and why; empty where all is."""
 
 
 NO_SECOND_ENCODER = "no second encoder at the axis: the log has no column 'load'"
@@ -161,7 +161,7 @@ def rigid_errors(stretches: Sequence[Stretch]) -> dict[str, float]:
             speed, change = _kinematics(stretch.time, place, _SMOOTHED_S[0])
             moves = np.abs(speed) > 0.01 * np.abs(speed).max(initial=1e-9)
             table = [change, speed, np.sign(speed) * moves, np.ones(len(speed))]
-            columns.append(np.column_stack(table)[stretch.felt])
+            columns.append(np.column_stack(table)[stretch.measured])
         fitted, *_ = np.linalg.lstsq(np.vstack(columns), force, rcond=None)
         found.append(fitted)
     shares = np.abs(found[1] - found[0])[:3] / np.maximum(np.abs(found[0][:3]), 1e-12)

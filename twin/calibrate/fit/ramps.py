@@ -30,7 +30,7 @@ _ALIKE = 1.0
 _TELLING = 0.3
 """Where likely courses make lags that differ by more than this share, a sample tells nothing."""
 _TYPICAL_LAG_S = 0.008
-"""Lag by which courses are told apart [s]."""
+"""Lag by which courses are distinguished [s]."""
 NEEDED = ("command_velocity", "velocity", "command_acceleration")
 """Columns without which ramps tell nothing."""
 
@@ -70,7 +70,7 @@ def find_cycle(log: MachineLog, rows: tuple[tuple[int, int], ...]) -> float:
 
 
 def axes_with_ramps(log: MachineLog) -> list[str]:
-    """Axes whose columns tell of ramps."""
+    """Axes whose columns report ramps."""
     return [name for name, axis in log.axes.items() if set(NEEDED) <= set(axis.more)]
 
 
@@ -196,6 +196,6 @@ def predict_ramp(parameters: Parameters, ramp: Ramp) -> Seen:
     velocity = seen_at(motion.speed, acceleration, command, parameters.delay)
     change = seen_at(acceleration, rate, command, parameters.delay)
     place = ramp.place
-    told = _averaged(command.position[:, 1], ramp.window)[place]
+    own = _averaged(command.position[:, 1], ramp.window)[place]
     done = _averaged(velocity, ramp.window)[place]
-    return Seen(float(told - done), float(done), float(change[place]))
+    return Seen(float(own - done), float(done), float(change[place]))

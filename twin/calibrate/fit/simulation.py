@@ -29,7 +29,7 @@ _HELD = slice(1, 3)
 _FASTEST_FILTER_S = 1e-6
 """A filter faster than this is none [s]."""
 _STANDS = 1e-3
-"""An axis slower than this stands [mm/s or deg/s]."""
+"""An axis slower than this is at rest [mm/s or deg/s]."""
 _ON_AN_INPUT = 1e-3
 """A sample that is taken so near to an input, in steps, is taken at it."""
 _START_S = 0.01
@@ -38,7 +38,7 @@ _START_S = 0.01
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Command:
-    """What an axis was told, at even steps of the simulation.
+    """What an axis was commanded, at even steps of the simulation.
 
     Attributes:
         kind: Of the axis.
@@ -150,7 +150,7 @@ def simulate_axis(parameters: Parameters, command: Command) -> Response:
 
     Args:
         parameters: The axis.
-        command: What it was told.
+        command: What it was commanded.
     """
     inertia = parameters.mass * to_si(command.kind)
     system = _system(parameters, inertia)
@@ -158,15 +158,17 @@ def simulate_axis(parameters: Parameters, command: Command) -> Response:
     transition, now, then = _discrete(system.rates, system.forward, step)
     now[:, _HELD] += then[:, _HELD]
     then[:, _HELD] = 0.0
-    told = np.column_stack([command.position, (command.push + parameters.constant_force) / inertia])
-    inputs = _held(told, step)
-    start = _start_state(parameters, system, told[0], command.start)
+    demand = np.column_stack(
+        [command.position, (command.push + parameters.constant_force) / inertia]
+    )
+    inputs = _held(demand, step)
+    start = _start_state(parameters, system, demand[0], command.start)
     dry = parameters.dry_friction / inertia
     push = now[:, 3] + then[:, 3]
     states = step_axis(transition, now, then, push, inputs, start, dry, _SPEED)
     width = system.width
-    drive = states @ system.force[:width] + told @ system.force[width:]
-    drive -= _POLYLINE_LOSS * step**2 * _bulge(parameters, system) * told[:, 2]
+    drive = states @ system.force[:width] + demand @ system.force[width:]
+    drive -= _POLYLINE_LOSS * step**2 * _bulge(parameters, system) * demand[:, 2]
     shown = system.places.get("measuring_filter")
     position, rate = states[:, 0], states[:, 1]
     if shown is not None:
@@ -175,21 +177,21 @@ def simulate_axis(parameters: Parameters, command: Command) -> Response:
     return Response(position=position, velocity=rate, speed=states[:, 1], force=drive * inertia)
 
 
-def _held(told: FloatArray, step: float) -> FloatArray:
-    """What the drive is told, as it holds it between inputs.
+def _held(command: FloatArray, step: float) -> FloatArray:
+    """What the drive is commanded, as it holds it between inputs.
 
     Args:
-        told: Setpoint, its velocity and acceleration, and what pushes, shape (n, 4).
+        command: Setpoint, its velocity and acceleration, and what pushes, shape (n, 4).
         step: Between inputs [s].
 
     Returns:
         Shape (n, 4): the setpoint's polyline at the inputs, the velocity along it and the mean
         acceleration of the step that follows, and what pushes.
     """
-    inputs = told.copy()
-    inputs[:, 0] -= _POLYLINE_LOSS * step**2 * told[:, 2]
+    inputs = command.copy()
+    inputs[:, 0] -= _POLYLINE_LOSS * step**2 * command[:, 2]
     inputs[:-1, 1] = np.diff(inputs[:, 0]) / step
-    inputs[:-1, 2] = np.diff(told[:, 1]) / step
+    inputs[:-1, 2] = np.diff(command[:, 1]) / step
     return inputs
 
 
@@ -238,13 +240,13 @@ def _system(parameters: Parameters, inertia: float) -> _System:
     width = 2 + len(added)
     every = np.eye(width + 4)
     place, speed = every[0], every[1]
-    setpoint, told_speed, told_change, pushed = every[width:]
+    setpoint, command_speed, command_acceleration, pushed = every[width:]
     rates = np.zeros((width, width + 4))
     if "command_filter_s" in places:
         behind, lag = every[places["command_filter_s"]], parameters.command_filter_s
         filtered_speed = (setpoint - behind) / lag
-        told_change = (told_speed - filtered_speed) / lag
-        setpoint, told_speed = behind, filtered_speed
+        command_acceleration = (command_speed - filtered_speed) / lag
+        setpoint, command_speed = behind, filtered_speed
         rates[places["command_filter_s"]] = filtered_speed
     seen_speed = speed
     if "velocity_filter_s" in places:
@@ -255,12 +257,12 @@ def _system(parameters: Parameters, inertia: float) -> _System:
     damping = 2.0 * parameters.damping_ratio * frequency
     reset = 1.0 / parameters.reset_time_s if "reset_time_s" in places else 0.0
     law = (frequency**2 + damping * reset) * (setpoint - place)
-    law = law + damping * (parameters.velocity_feedforward * told_speed - seen_speed)
-    law = law + parameters.acceleration_feedforward * told_change
+    law = law + damping * (parameters.velocity_feedforward * command_speed - seen_speed)
+    law = law + parameters.acceleration_feedforward * command_acceleration
     if "reset_time_s" in places:
         trail = (1.0 - parameters.velocity_feedforward) / loop
         law = law + damping * reset * loop * every[places["reset_time_s"]]
-        rates[places["reset_time_s"]] = setpoint - trail * told_speed - place
+        rates[places["reset_time_s"]] = setpoint - trail * command_speed - place
     force = law
     if "loop_delay_s" in places:
         late = every[places["loop_delay_s"]]
@@ -275,7 +277,7 @@ def _system(parameters: Parameters, inertia: float) -> _System:
 
 
 def _start_state(
-    parameters: Parameters, system: _System, told: FloatArray, start: tuple[float, float]
+    parameters: Parameters, system: _System, command: FloatArray, start: tuple[float, float]
 ) -> FloatArray:
     """The states at the first input: filters that have settled, an integrator that holds the axis."""
     place, speed = start
@@ -284,17 +286,17 @@ def _start_state(
     state[:2] = place, speed
     for name, value in (
         ("measuring_filter", place - speed * parameters.measuring_filter),
-        ("command_filter_s", told[0] - told[1] * parameters.command_filter_s),
+        ("command_filter_s", command[0] - command[1] * parameters.command_filter_s),
         ("velocity_filter_s", speed),
     ):
         if name in places:
             state[places[name]] = value
 
     def law() -> float:
-        return float(system.law[:width] @ state + system.law[width:] @ told)
+        return float(system.law[:width] @ state + system.law[width:] @ command)
 
     if "reset_time_s" in places and abs(speed) < _STANDS:
-        state[places["reset_time_s"]] = -(law() + told[3]) / system.law[places["reset_time_s"]]
+        state[places["reset_time_s"]] = -(law() + command[3]) / system.law[places["reset_time_s"]]
     if "loop_delay_s" in places:
         state[places["loop_delay_s"]] = law()
     return state

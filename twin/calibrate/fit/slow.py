@@ -21,9 +21,9 @@ _OUTLIER = 2.0
 _STILL = 0.02
 """An axis slower than this share of its greatest speed counts as standing."""
 _REACHES = 0.3
-"""Share of the rapid velocity that a log must reach to tell of friction that grows with speed."""
+"""Share of the rapid velocity that a log must reach to report friction that grows with speed."""
 _TOO_SLOW = "the log is too slow to show how the position loop settles"
-_NOT_TOLD = {
+_UNDETERMINED = {
     "kv": _TOO_SLOW,
     "damping_ratio": _TOO_SLOW,
     "mass": "the log is too slow for accelerations",
@@ -39,20 +39,20 @@ class SlowLog:
         rows: First and last row, exclusive, of each stretch.
         ramps: Its samples that fell into ramps.
         speed: Commanded, of every row, 0 where it is not told [mm/s or deg/s].
-        told: Rows whose speed is told.
+        known: Rows whose speed is known.
     """
 
     axis: AxisLog
     rows: tuple[tuple[int, int], ...]
     ramps: list[Ramp]
     speed: FloatArray
-    told: BoolArray
+    known: BoolArray
 
 
 def commanded_speed(
     axis: AxisLog, time: FloatArray, whole: BoolArray
 ) -> tuple[FloatArray, BoolArray]:
-    """Commanded velocity of every row, 0 where it is not told, and where it is; shape (n,) each.
+    """Commanded velocity of every row, 0 where it is not determined, and where it is; shape (n,) each.
 
     Args:
         axis: Of a slow log.
@@ -61,14 +61,14 @@ def commanded_speed(
     """
     if "command_velocity" in axis.more:
         return axis.more["command_velocity"], np.ones(len(time), np.bool_)
-    told = np.append(True, whole) & np.append(whole, True)
+    known = np.append(True, whole) & np.append(whole, True)
     with np.errstate(divide="ignore", invalid="ignore"):
         speed = np.gradient(axis.command, time)
-    return np.where(told, speed, 0.0), told
+    return np.where(known, speed, 0.0), known
 
 
 def fit_slow(kind: AxisKind, logs: Sequence[SlowLog], base: Parameters, fastest: float) -> AxisFit:
-    """Fit what slow logs tell of an axis; everything else stays at the base's value.
+    """Fit what slow logs say about an axis; everything else stays at the base's value.
 
     Args:
         kind: Of the axis.
@@ -79,10 +79,10 @@ def fit_slow(kind: AxisKind, logs: Sequence[SlowLog], base: Parameters, fastest:
     ramps = [ramp for log in logs for ramp in log.ramps]
     if len(ramps) >= _FEW:
         best = _fit_ramps(kind, ramps, base)
-        told = dict(_NOT_TOLD)
+        reasons = dict(_UNDETERMINED)
     else:
         best = _fit_trail(kind, logs, base)
-        told = _NOT_TOLD | {
+        reasons = _UNDETERMINED | {
             "velocity_feedforward": "the log does not tell a drive's lag from a delay of its columns"
         }
     fitted = dict(best.intervals)
@@ -92,7 +92,7 @@ def fit_slow(kind: AxisKind, logs: Sequence[SlowLog], base: Parameters, fastest:
     parameters = best.parameters
     of_ramps = {} if feed is None else {"velocity_feedforward": (feed, ("kv",))}
     if feed is not None:
-        told["velocity_feedforward"] = (
+        reasons["velocity_feedforward"] = (
             f"only the lag that it leaves is told; {feed.value:.3g} holds for the base's kv "
             f"{parameters.kv:.4g}"
         )
@@ -100,23 +100,27 @@ def fit_slow(kind: AxisKind, logs: Sequence[SlowLog], base: Parameters, fastest:
         reached = max(float(np.abs(log.speed).max(initial=0.0)) for log in logs)
         reaches = reached >= _REACHES * fastest
         parameters, conditional = _fit_friction(kind, logs, parameters, viscous=reaches)
-        told |= {
+        reasons |= {
             name: f"only its ratio to the force per ampere is told; {interval.value:.4g} holds for "
             f"current_scale {parameters.current_scale:.4g}"
             for name, (interval, _) in conditional.items()
         }
         if not reaches:
-            told["viscous_friction"] = (
+            reasons["viscous_friction"] = (
                 f"the log reaches {reached:.3g} of {fastest:.3g} {unit}/s, and a friction that grows "
                 "with speed would be extrapolated"
             )
-        told["current_scale"] = "too few samples within ramps tell force per ampere from friction"
+        reasons["current_scale"] = (
+            "too few samples within ramps tell force per ampere from friction"
+        )
     else:
-        told |= dict.fromkeys(
+        reasons |= dict.fromkeys(
             ("dry_friction", "viscous_friction", "constant_force"),
             "positions of a slow log do not tell it",
         )
-    return AxisFit(parameters, fitted, of_ramps | conditional, told, best.free, best.correlations)
+    return AxisFit(
+        parameters, fitted, of_ramps | conditional, reasons, best.free, best.correlations
+    )
 
 
 def _fit_ramps(kind: AxisKind, ramps: list[Ramp], base: Parameters) -> Solution:
@@ -146,7 +150,7 @@ def _fit_trail(kind: AxisKind, logs: Sequence[SlowLog], base: Parameters) -> Sol
     lags, speeds = [], []
     for log in logs:
         for begin, end in log.rows:
-            part = np.arange(begin, end)[log.told[begin:end]]
+            part = np.arange(begin, end)[log.known[begin:end]]
             lags.append((log.axis.command - log.axis.actual)[part])
             speeds.append(log.speed[part])
     lag, speed = np.concatenate(lags), np.concatenate(speeds)

@@ -250,7 +250,7 @@ def _as_far_as_straight(
     """What share of the way to an interval's end is open.
 
     It ends at the bounds of the one that leads, and where what is left has changed by more than tangents say
-    of the whole way: a short filter is not told from a delay, a long one is.
+    of the whole way: a short filter is not distinguished from a delay, a long one is.
 
     Args:
         problem: What is minimised.

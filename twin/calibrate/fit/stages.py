@@ -51,7 +51,7 @@ class AxisFit:
         parameters: Those of the machine file and of the log.
         fitted: What the log determines, by name.
         conditional: What it determines only as long as a base's value is true: name to interval and
-            the names that it stands on.
+            the names that it is on.
         undetermined: What it does not determine, and why.
         names: In the order of ``correlations``.
         correlations: Of what was fitted, shape (p, p).
@@ -107,8 +107,8 @@ def fit_axis(
     }  # fmt: skip
     if any(stretch.command.is_drawn for stretch in stretches):
         fitted = _allowing_for_drawing(kind, stretches, best, fitted)
-    told = _told(stretches, best, fitted, undetermined)
-    return dataclasses.replace(told, tried=choice.tried)
+    fit = _explained(stretches, best, fitted, undetermined)
+    return dataclasses.replace(fit, tried=choice.tried)
 
 
 def _core_fits(
@@ -161,8 +161,8 @@ def _allowing_for_others(problem: Problem, choice: Choice) -> dict[str, Interval
             fitted[name] = interval.spanning(held)
     if "delay" not in fitted:
         late = [freed["delay"], *choice.rivals]
-        told = [one.intervals["delay"] for one in late if "delay" in one.intervals]
-        fitted["delay"] = Interval(0.0, 0.0, 0.0).spanning(*told)
+        delays = [one.intervals["delay"] for one in late if "delay" in one.intervals]
+        fitted["delay"] = Interval(0.0, 0.0, 0.0).spanning(*delays)
     return fitted
 
 
@@ -213,7 +213,7 @@ def _first_guess(kind: AxisKind, stretches: Sequence[Stretch], base: Parameters)
     trail = (1.0 - base.velocity_feedforward) / kv_per_second(base.kv)
     kv = base.kv * trail / slope if slope > 0.05 * trail and trail else base.kv
     guess = dataclasses.replace(base, kv=kv)
-    speed, change = np.vstack([_kinematics(stretch)[stretch.felt] for stretch in stretches]).T
+    speed, change = np.vstack([_kinematics(stretch)[stretch.measured] for stretch in stretches]).T
     columns = np.column_stack([change, speed, np.sign(speed), np.ones(len(speed))])
     logged = [stretch.logged_force for stretch in stretches]
     shown = np.concatenate([column for column in logged if column is not None] or [_NOTHING])
@@ -269,9 +269,9 @@ def _columns_left(stretches: Sequence[Stretch], parameters: Parameters) -> list[
         predicted = predict(parameters, stretch)
         columns = [(predicted.actual - stretch.actual)[stretch.seen]]
         if forced and stretch.force is not None:
-            columns.append((predicted.force - stretch.force)[stretch.felt])
+            columns.append((predicted.force - stretch.force)[stretch.measured])
         elif shown and stretch.current is not None:
-            columns.append((predicted.current - stretch.current)[stretch.felt])
+            columns.append((predicted.current - stretch.current)[stretch.measured])
         parts.append(columns)
     return parts
 
@@ -283,7 +283,7 @@ def _batches(stretches: Sequence[Stretch], *, forced: bool) -> IntArray:
     for stretch in stretches:
         number = (before + np.cumsum(stretch.seen) - stretch.seen) * BATCHES // total
         number = np.minimum(number, BATCHES - 1)
-        parts += [number[rows] for rows in (stretch.seen, *[stretch.felt] * forced)]
+        parts += [number[rows] for rows in (stretch.seen, *[stretch.measured] * forced)]
         before += np.count_nonzero(stretch.seen)
     return np.concatenate(parts).astype(np.int64)
 
@@ -292,16 +292,16 @@ def _without_undetermined(
     problem: Problem, best: Solution, base: Parameters
 ) -> tuple[Solution, dict[str, str]]:
     """Let go of what is anybody's guess, the worst first; it stays at the base's value."""
-    told: dict[str, str] = {}
+    reasons: dict[str, str] = {}
     while True:
         widths = {
             name: _width(problem, name, interval) for name, interval in best.intervals.items()
         }
         worst = max(widths, key=lambda name: widths[name], default="")
         if not worst or widths[worst] <= _WIDE or len(best.free) == 1:
-            return best, told
+            return best, reasons
         interval = best.intervals[worst]
-        told[worst] = _why(best, worst, interval, problem.coordinates[worst].unit)
+        reasons[worst] = _why(best, worst, interval, problem.coordinates[worst].unit)
         kept = [name for name in best.free if name != worst]
         stays = dataclasses.replace(best.parameters, **{worst: getattr(base, worst)})
         best = solve(problem, stays, kept)
@@ -336,35 +336,35 @@ def _why(best: Solution, name: str, interval: Interval, unit: str) -> str:
     return f"the log hardly depends on it: {span} would fit as well"
 
 
-def _told(
+def _explained(
     stretches: Sequence[Stretch], best: Solution, fitted: dict[str, Interval],
     undetermined: dict[str, str],
 ) -> AxisFit:  # fmt: skip
     """Say what each value stands on."""
-    told = dict(undetermined)
+    reasons = dict(undetermined)
     conditional: dict[str, tuple[Interval, tuple[str, ...]]] = {}
     mass = best.parameters.mass
     if "constant_force" not in best.free:
-        told.setdefault("constant_force", "an integrating drive takes up whatever is constant")
+        reasons.setdefault("constant_force", "an integrating drive takes up whatever is constant")
     if not _has(stretches, "force"):
         known = _has(stretches, "current")
         if "constant_force" not in best.free and "current_at_rest" in fitted:
             at_rest = fitted.pop("current_at_rest")
             conditional["current_at_rest"] = (at_rest, ("constant_force",))
-            told["current_at_rest"] = "the log does not tell it from a constant force"
-        told["mass"] = (
+            reasons["current_at_rest"] = "the log does not tell it from a constant force"
+        reasons["mass"] = (
             "a current of unknown scale does not tell it" if known
             else "positions alone do not tell it"
         )  # fmt: skip
         for name in ("dry_friction", "constant_force", "viscous_friction", "current_scale"):
             if name in fitted:
                 conditional[name] = (fitted.pop(name), ("mass",))
-                told[name] = (
+                reasons[name] = (
                     f"only its ratio to the mass is told; {conditional[name][0].value:.4g} holds "
                     f"for the base's {mass:.5g}"
                 )
         if not known and "viscous_friction" not in best.free:
-            told["viscous_friction"] = (
+            reasons["viscous_friction"] = (
                 "positions alone do not tell it from kv (correlation 1.000); kv holds from the base's "
                 f"viscous friction to {100 * _VISCOUS_SHARE:g} % of the velocity loop's gain"
             )
@@ -376,4 +376,4 @@ def _told(
             if damping is not None:
                 low = damping.low / (1.0 + _VISCOUS_SHARE)
                 fitted["damping_ratio"] = Interval(damping.value, low, damping.high)
-    return AxisFit(best.parameters, fitted, conditional, told, best.free, best.correlations)
+    return AxisFit(best.parameters, fitted, conditional, reasons, best.free, best.correlations)

@@ -21,7 +21,7 @@ class Sound:
 
     Attributes:
         command: The others repeat the one before, or are spikes.
-        actual: The same of the actual position, and of what stands beside a force that was cut off.
+        actual: The same of the actual position, and of what is beside a force that was cut off.
         force: The same of force or current.
     """
 
@@ -40,7 +40,7 @@ class Stretch:
 
     Attributes:
         time: Shape (n,) [s].
-        command: What it was told.
+        command: What it was commanded.
         asked: Logged commanded positions, shape (n,) [mm or deg].
         actual: Logged actual positions, shape (n,) [mm or deg].
         force: Logged force, (n,) [N or N m]; None where none is.
@@ -50,7 +50,7 @@ class Stretch:
         pushed: Force that is injected at the load, (n,); None where none is.
         knots: Samples of the command that are its own, shape (n,).
         seen: Rows of actual positions that are looked at.
-        felt: Rows of force or current that are looked at.
+        measured: Rows of force or current that are looked at.
     """
 
     time: FloatArray
@@ -64,7 +64,7 @@ class Stretch:
     pushed: FloatArray | None
     knots: BoolArray
     seen: BoolArray
-    felt: BoolArray
+    measured: BoolArray
 
     @property
     def lag(self) -> FloatArray:
@@ -75,7 +75,7 @@ class Stretch:
     def logged_force(self) -> FloatArray | None:
         """Force, else current, of the rows that are looked at; None where neither is logged."""
         column = self.current if self.force is None else self.force
-        return None if column is None else column[self.felt]
+        return None if column is None else column[self.measured]
 
 
 def stretches_of(

@@ -8,12 +8,12 @@ the same two.
 import math
 from typing import NamedTuple
 
-from twin.compare.statistics_kernels import BINS, FIRST_CODE, MANTISSA_BITS, bin_of
+from twin.compare.statistics import BINS, FIRST_CODE, MANTISSA_BITS, bin_of
 from twin.compilation.kernel import kernel
 from twin.nc.canonical import BoolArray, FloatArray, IntArray
 
 COARSER = 3
-"""Passages are told apart by bins 2 to this power times wider than those of a whole run: 0.8 %."""
+"""Passages are distinguished by bins 2 to this power times wider than those of a whole run: 0.8 %."""
 PASSAGE_BINS = (BINS >> COARSER) + 1
 NOBODY = -1
 """Row of a passage that has not begun."""

@@ -1,4 +1,4 @@
-"""The plots of the report, as SVG that stands inside a page."""
+"""The plots of the report, as SVG that is inside a page."""
 
 import numpy as np
 from matplotlib.artist import Artist

@@ -7,7 +7,7 @@ import numpy as np
 
 from twin.cutting.forces.direction import RADIAL_SHARE
 from twin.cutting.forces.materials import Kienzle
-from twin.cutting.kernels.tooth_forces import BINS, CutterForm, ForceLaw
+from twin.cutting.kernels.tooth_forces import ANGLE_BINS, CutterForm, ForceLaw
 from twin.cutting.tools import Profile, profile
 from twin.job.job_file import ToolTable
 from twin.nc.canonical import FloatArray
@@ -26,7 +26,7 @@ def cutter_form(tool: ToolTable) -> CutterForm:
     edge = profile(tool)
     rings = _rings(edge)
     helix = math.radians(tool.helix_angle)
-    rise = math.tau / BINS * edge.radius / math.tan(helix) if helix else math.inf
+    rise = math.tau / ANGLE_BINS * edge.radius / math.tan(helix) if helix else math.inf
     return CutterForm(
         profile=edge,
         side_from=float(edge.height(np.array(edge.radius))),

@@ -24,7 +24,7 @@ class Overlap(NamedTuple):
 
 
 class Stood(NamedTuple):
-    """What stands on the table.
+    """What is on the table.
 
     Attributes:
         heights: The height map, shape (ny, nx) [mm].

@@ -6,6 +6,7 @@ whichever is less. Where walls lie is known closer than by whole cells (``wall_d
 maps hold tells by how much one wall lies before the other.
 """
 
+import enum
 import math
 from typing import NamedTuple
 
@@ -21,8 +22,15 @@ SAME_MM = 1e-3
 _SIDEWAYS = 0.35
 """By the nearest middle behind it, a wall that is not along the grid seems up to this farther [cells]."""
 
-BY_HEIGHT, BY_WALL, BY_CELLS = range(3)
-"""What tells a distance: heights; a wall whose place is known; cells alone, of which one may be wrong."""
+
+class FoundBy(enum.IntEnum):
+    """What a distance was found by."""
+
+    HEIGHT = 0
+    WALL = 1
+    """A wall whose place is known."""
+    CELLS = 2
+    """Cells alone, of which one may be wrong."""
 
 
 class Surface(NamedTuple):
@@ -45,7 +53,7 @@ def surface_distances(
     wanted: BoolArray,
     flat: BoolArray,
     found: FloatArray,
-    told_by: IntArray,
+    found_by: IntArray,
 ) -> None:
     """Distances of a part's surface from the nominal one.
 
@@ -57,23 +65,23 @@ def surface_distances(
         flat: Cells around which both are no steeper than 45 degrees, shape (ny, nx): a floor at the foot of
             walls that both have is held against the other's floor, not against the walls.
         found: Set there: positive where the part has more material [mm].
-        told_by: Set there: ``BY_HEIGHT``, ``BY_WALL`` or ``BY_CELLS``.
+        found_by: Set there: ``FoundBy.HEIGHT``, ``FoundBy.WALL`` or ``FoundBy.CELLS``.
     """
     for row in range(wanted.shape[0]):
         for column in range(wanted.shape[1]):
             if not wanted[row, column]:
                 continue
             above = part.heights[row, column] - nominal.heights[row, column]
-            distance, how = 0.0, BY_HEIGHT
+            distance, how = 0.0, FoundBy.HEIGHT
             if above > SAME_MM:
                 distance, how = _distance(part, nominal, cell, (row, column), flat[row, column])
             elif above < -SAME_MM:
                 distance, how = _distance(nominal, part, cell, (row, column), flat[row, column])
                 distance = -distance
             before, seen = _wall_difference(part, nominal, row, column)
-            if seen and how != BY_CELLS and abs(before * cell) >= abs(distance):
-                distance, how = before * cell, BY_WALL
-            found[row, column], told_by[row, column] = distance, how
+            if seen and how != FoundBy.CELLS and abs(before * cell) >= abs(distance):
+                distance, how = before * cell, FoundBy.WALL
+            found[row, column], found_by[row, column] = distance, how
 
 
 @inlined
@@ -102,7 +110,7 @@ def _distance(
     rows, columns = lower.heights.shape
     top = higher.heights[row, column] - SAME_MM
     down = higher.heights[row, column] - lower.heights[row, column]
-    nearest, how = min(down / cell, REACH + 0.0), BY_HEIGHT
+    nearest, how = min(down / cell, REACH + 0.0), FoundBy.HEIGHT
     compared, difference = math.inf, -math.inf
     for ring in range(1, REACH):
         if ring - 1.0 >= nearest:
@@ -118,11 +126,11 @@ def _distance(
                 before = there if there > 0.0 else _slope_share(lower, y, x, (row, column), top)
                 gap = math.hypot(y - row, x - column) - before
                 if gap < nearest:
-                    nearest, how = gap, BY_WALL if there > 0.0 else BY_CELLS
+                    nearest, how = gap, FoundBy.WALL if there > 0.0 else FoundBy.CELLS
                 if there > 0.0 and here > 0.0 and gap < compared:
                     compared, difference = gap, here - there
-    if how == BY_HEIGHT:
-        return nearest * cell, BY_HEIGHT
+    if how == FoundBy.HEIGHT:
+        return nearest * cell, FoundBy.HEIGHT
     outer = _known(higher, row, column, top)
     across = max(nearest, 0.0) + outer
     if difference >= across - _SIDEWAYS:

@@ -24,8 +24,8 @@ _WHOLE = 1.5 * 2.0**52
 """Added to a number that is much smaller, it leaves no room for what is behind the point."""
 
 
-class _Tally(enum.IntEnum):
-    """What a line took off: columns of ``tally``."""
+class _Sum(enum.IntEnum):
+    """What a line took off: columns of ``sums``."""
 
     LOST = 0
     """Height [mm]."""
@@ -79,7 +79,7 @@ class Marks(NamedTuple):
     mark: FloatArray
 
 
-class _Bench(NamedTuple):
+class _Scratch(NamedTuple):
     """What is at hand while lines are swept.
 
     Attributes:
@@ -91,7 +91,7 @@ class _Bench(NamedTuple):
         low: Row at which the disc that the tool covers begins, at either end of a line, shape (2,).
         spans: First column of that disc in each of its rows and the one after its last, shape (2, 2, m).
         lowest: Heights of the tool over a run of cells, shape (RUN,) [mm].
-        tally: As ``sweep`` has it.
+        sums: As ``sweep`` has it.
         changed: Row, row end, column, column end of the cells that changed, shape (4,).
     """
 
@@ -103,7 +103,7 @@ class _Bench(NamedTuple):
     low: IntArray
     spans: FloatArray
     lowest: FloatArray
-    tally: FloatArray
+    sums: FloatArray
     changed: IntArray
 
 
@@ -113,7 +113,7 @@ def sweep(
     grid: Grid,
     points: FloatArray,
     profile: Profile,
-    tally: FloatArray,
+    sums: FloatArray,
     marks: Marks,
     stood: bool,
     rows: tuple[int, int],
@@ -128,9 +128,9 @@ def sweep(
         grid: Where its cells lie.
         points: Tool tip positions, shape (n, 3) [mm].
         profile: Of the tool.
-        tally: What each line took off of rows of even and of odd number is added to it, shape
+        sums: What each line took off of rows of even and of odd number is added to it, shape
             (n - 1, 2, 4): height [mm], that times the number of the column and of the row, and the
-            greatest height. ``tally_removal`` reads it.
+            greatest height. ``removal_of_sums`` reads it.
         marks: What each leaves where it cut.
         stood: Whether the tool has been at the first point, and has cut what it meets there.
         rows: Of the map, which are cut: the first, and how far it is to the next.
@@ -139,74 +139,74 @@ def sweep(
         First and last-but-one row, first and last-but-one column of the cells that changed.
     """
     count = int(2.0 * profile.radius / grid.cell) + 2
-    bench = _Bench(
+    scratch = _Scratch(
         heights, grid, profile, marks, rows, np.zeros(2, np.int64),
-        np.zeros((2, 2, count)), np.zeros(RUN), tally, np.zeros(4, np.int64),
+        np.zeros((2, 2, count)), np.zeros(RUN), sums, np.zeros(4, np.int64),
     )  # fmt: skip
-    bench.changed[0], bench.changed[2] = heights.shape
-    _sweep_lines(bench, points, stood)
-    return bench.changed[0], bench.changed[1], bench.changed[2], bench.changed[3]
+    scratch.changed[0], scratch.changed[2] = heights.shape
+    _sweep_lines(scratch, points, stood)
+    return scratch.changed[0], scratch.changed[1], scratch.changed[2], scratch.changed[3]
 
 
 @arithmetic_kernel
-def tally_removal(tally: FloatArray, points: FloatArray, grid: Grid, removal: Removal) -> None:
+def removal_of_sums(sums: FloatArray, points: FloatArray, grid: Grid, removal: Removal) -> None:
     """Say what each line took off.
 
     Args:
-        tally: Of ``sweep``, shape (n - 1, 2, 4).
+        sums: Of ``sweep``, shape (n - 1, 2, 4).
         points: Tool tip positions, shape (n, 3) [mm].
         grid: Where the cells lie.
         removal: Set to it.
     """
-    for i in range(len(tally)):
-        even, odd = tally[i, 0], tally[i, 1]
-        lost = even[_Tally.LOST] + odd[_Tally.LOST]
+    for i in range(len(sums)):
+        even, odd = sums[i, 0], sums[i, 1]
+        lost = even[_Sum.LOST] + odd[_Sum.LOST]
         removal.volume[i] = lost * grid.cell * grid.cell
-        removal.depth[i] = max(even[_Tally.DEEPEST], odd[_Tally.DEEPEST])
+        removal.depth[i] = max(even[_Sum.DEEPEST], odd[_Sum.DEEPEST])
         removal.aside[i] = 0.0
         dx, dy = points[i + 1, 0] - points[i, 0], points[i + 1, 1] - points[i, 1]
         length = math.hypot(dx, dy)
         if lost > 0.0 and length > 0.0:
-            column = (even[_Tally.COLUMNS] + odd[_Tally.COLUMNS]) / lost
-            row = (even[_Tally.ROWS] + odd[_Tally.ROWS]) / lost
+            column = (even[_Sum.COLUMNS] + odd[_Sum.COLUMNS]) / lost
+            row = (even[_Sum.ROWS] + odd[_Sum.ROWS]) / lost
             x = grid.origin[0] + column * grid.cell - points[i, 0]
             y = grid.origin[1] + row * grid.cell - points[i, 1]
             removal.aside[i] = (y * dx - x * dy) / length
 
 
 @arithmetic_kernel
-def _sweep_lines(bench: _Bench, points: FloatArray, stood: bool) -> None:
-    known, flat = False, bench.profile.flat >= bench.profile.radius
+def _sweep_lines(scratch: _Scratch, points: FloatArray, stood: bool) -> None:
+    known, flat = False, scratch.profile.flat >= scratch.profile.radius
     for i in range(len(points) - 1):
         a, b = points[i], points[i + 1]
-        if min(a[2], b[2]) >= bench.grid.top:
+        if min(a[2], b[2]) >= scratch.grid.top:
             known = False
             continue
         if not known:
-            _lay_disc(bench, a, i % 2)
-        _lay_disc(bench, b, (i + 1) % 2)
+            _lay_disc(scratch, a, i % 2)
+        _lay_disc(scratch, b, (i + 1) % 2)
         known = True
-        # What the tool stands in already, no line that does not sink can take off again.
+        # What the tool is in already, no line that does not sink can take off again.
         done = (stood or i > 0) and b[2] >= a[2]
-        if done and flat and a[2] == b[2] and not bench.marks.cells.size:
-            _sweep_level(bench, a, b, i)
+        if done and flat and a[2] == b[2] and not scratch.marks.cells.size:
+            _sweep_level(scratch, a, b, i)
         else:
-            _sweep_line(bench, a, b, i, done)
+            _sweep_line(scratch, a, b, i, done)
 
 
 @arithmetic_kernel
-def _lay_disc(bench: _Bench, center: FloatArray, which: int) -> None:
+def _lay_disc(scratch: _Scratch, center: FloatArray, which: int) -> None:
     """Note the columns of the disc that a tool covers; a row outside of it begins behind its end.
 
     Columns are counted as floating-point numbers, several at a time, and rounded by a sum whose last
     bit is one.
     """
-    grid, columns = bench.grid, float(bench.heights.shape[1])
+    grid, columns = scratch.grid, float(scratch.heights.shape[1])
     radius, cell, first, end = (
-        bench.profile.radius, grid.cell, bench.spans[which, 0], bench.spans[which, 1],
+        scratch.profile.radius, grid.cell, scratch.spans[which, 0], scratch.spans[which, 1],
     )  # fmt: skip
     low = math.ceil((center[1] - radius - grid.origin[1]) / cell)
-    bench.low[which] = low
+    scratch.low[which] = low
     offset = grid.origin[1] - center[1]
     for k in range(len(first)):
         y = offset + (low + k) * cell
@@ -260,22 +260,22 @@ class _Outline(NamedTuple):
 
 
 @arithmetic_kernel
-def _outline(bench: _Bench, a: FloatArray, b: FloatArray, line: int) -> _Outline:
+def _outline(scratch: _Scratch, a: FloatArray, b: FloatArray, line: int) -> _Outline:
     before, after = line % 2, (line + 1) % 2
-    low_a, low_b, (begin, step) = bench.low[before], bench.low[after], bench.rows
+    low_a, low_b, (begin, step) = scratch.low[before], scratch.low[after], scratch.rows
     low = max(0, min(low_a, low_b))
-    high = min(bench.heights.shape[0], max(low_a, low_b) + bench.spans.shape[2])
+    high = min(scratch.heights.shape[0], max(low_a, low_b) + scratch.spans.shape[2])
     right, left = (
-        _side(bench, a, b, bench.profile.radius),
-        _side(bench, a, b, -bench.profile.radius),
+        _side(scratch, a, b, scratch.profile.radius),
+        _side(scratch, a, b, -scratch.profile.radius),
     )
     return _Outline(before, after, right, left, low + (begin - low) % step, high)
 
 
 @arithmetic_kernel
-def _side(bench: _Bench, a: FloatArray, b: FloatArray, right: float) -> _Side:
+def _side(scratch: _Scratch, a: FloatArray, b: FloatArray, right: float) -> _Side:
     """The side of an outline that lies so far right of the way."""
-    grid = bench.grid
+    grid = scratch.grid
     dx, dy = b[0] - a[0], b[1] - a[1]
     if dy == 0.0:
         # It lies along the rows, which meet the discs at its ends.
@@ -288,11 +288,11 @@ def _side(bench: _Bench, a: FloatArray, b: FloatArray, right: float) -> _Side:
 
 
 @inlined
-def _columns(bench: _Bench, outline: _Outline, row: int) -> tuple[int, int]:
+def _columns(scratch: _Scratch, outline: _Outline, row: int) -> tuple[int, int]:
     """Columns that the tool covers in a row: the first, and the one after the last."""
-    grid, columns = bench.grid, bench.heights.shape[1]
-    first_a, end_a = _span(bench, outline.before, row)
-    first_b, end_b = _span(bench, outline.after, row)
+    grid, columns = scratch.grid, scratch.heights.shape[1]
+    first_a, end_a = _span(scratch, outline.before, row)
+    first_b, end_b = _span(scratch, outline.after, row)
     first, end = min(first_a, first_b), max(end_a, end_b)
     for side in (outline.right, outline.left):
         if side.low <= row <= side.high:
@@ -304,26 +304,26 @@ def _columns(bench: _Bench, outline: _Outline, row: int) -> tuple[int, int]:
 
 
 @inlined
-def _span(bench: _Bench, disc: int, row: int) -> tuple[int, int]:
+def _span(scratch: _Scratch, disc: int, row: int) -> tuple[int, int]:
     """Columns of a disc in a row; where it has none, the first is beyond all that there are."""
-    k = row - bench.low[disc]
-    if k < 0 or k >= bench.spans.shape[2]:
-        return bench.heights.shape[1], 0
-    return int(bench.spans[disc, 0, k]), int(bench.spans[disc, 1, k])
+    k = row - scratch.low[disc]
+    if k < 0 or k >= scratch.spans.shape[2]:
+        return scratch.heights.shape[1], 0
+    return int(scratch.spans[disc, 0, k]), int(scratch.spans[disc, 1, k])
 
 
 @arithmetic_kernel
-def _sweep_level(bench: _Bench, a: FloatArray, b: FloatArray, line: int) -> None:
-    """Cut along a level line with a flat tool that has cut all it stands in at its beginning.
+def _sweep_level(scratch: _Scratch, a: FloatArray, b: FloatArray, line: int) -> None:
+    """Cut along a level line with a flat tool that has cut all it is in at its beginning.
 
     Only the crescents before and beside it are left: in most rows a cell or two. They are taken in
     pairs, because the processor cannot guess of how many cells a row's crescent will be.
     """
-    heights, z = bench.heights, max(a[2], bench.grid.bottom)
-    outline = _outline(bench, a, b, line)
-    for row in range(outline.low, outline.high, bench.rows[1]):
-        first, end = _columns(bench, outline, row)
-        done, done_end = _span(bench, outline.before, row)
+    heights, z = scratch.heights, max(a[2], scratch.grid.bottom)
+    outline = _outline(scratch, a, b, line)
+    for row in range(outline.low, outline.high, scratch.rows[1]):
+        first, end = _columns(scratch, outline, row)
+        done, done_end = _span(scratch, outline.before, row)
         if done >= done_end:
             done = done_end = end
         left = max(done - first, 0)
@@ -341,48 +341,50 @@ def _sweep_level(bench: _Bench, a: FloatArray, b: FloatArray, line: int) -> None
                 moment += cut * column
                 deepest = max(deepest, cut)
         if lost > 0.0:
-            _add(bench, line, row, (first, end), (lost, moment, deepest))
+            _add(scratch, line, row, (first, end), (lost, moment, deepest))
 
 
 @arithmetic_kernel
-def _sweep_line(bench: _Bench, a: FloatArray, b: FloatArray, line: int, done: bool) -> None:
+def _sweep_line(scratch: _Scratch, a: FloatArray, b: FloatArray, line: int, done: bool) -> None:
     """Cut along one line.
 
     Args:
-        bench: With the discs at both ends.
+        scratch: With the discs at both ends.
         a: Tool tip at its beginning, shape (3,) [mm].
         b: At its end.
         line: Its number.
         done: Whether nothing is left of what the tool at the beginning meets, or behind it.
     """
-    flat, outline = bench.profile.flat >= bench.profile.radius, _outline(bench, a, b, line)
+    flat, outline = scratch.profile.flat >= scratch.profile.radius, _outline(scratch, a, b, line)
     begins_lower = a[2] <= b[2]
     lower = a if begins_lower else b
-    for row in range(outline.low, outline.high, bench.rows[1]):
-        first, end = _columns(bench, outline, row)
+    for row in range(outline.low, outline.high, scratch.rows[1]):
+        first, end = _columns(scratch, outline, row)
         if first >= end:
             continue
         inner, inner_end = end, end
         if flat:
             # All that the tool covers where it is lowest comes down to there.
-            inner, inner_end = _span(bench, outline.before if begins_lower else outline.after, row)
+            inner, inner_end = _span(
+                scratch, outline.before if begins_lower else outline.after, row
+            )
             if inner >= inner_end:
                 inner, inner_end = end, end
             elif not (done and begins_lower):
-                _lower_run(bench, lower, lower, row, (inner, inner_end), line)
+                _lower_run(scratch, lower, lower, row, (inner, inner_end), line)
         elif done:
-            inner, inner_end = _behind(bench, a, b, row, (first, end))
+            inner, inner_end = _behind(scratch, a, b, row, (first, end))
         for begin, stop in ((first, inner), (inner_end, end)):
             if begin < stop:
-                _lower_run(bench, a, b, row, (begin, stop), line)
+                _lower_run(scratch, a, b, row, (begin, stop), line)
 
 
 @arithmetic_kernel
 def _behind(
-    bench: _Bench, a: FloatArray, b: FloatArray, row: int, run: tuple[int, int]
+    scratch: _Scratch, a: FloatArray, b: FloatArray, row: int, run: tuple[int, int]
 ) -> tuple[int, int]:
     """Columns of a run over which a tool that comes from a, and does not sink, is lowest at a."""
-    grid = bench.grid
+    grid = scratch.grid
     dx, dy = b[0] - a[0], b[1] - a[1]
     y = grid.origin[1] + row * grid.cell - a[1]
     if dx == 0.0:
@@ -395,13 +397,13 @@ def _behind(
 
 @arithmetic_kernel
 def _lower_run(
-    bench: _Bench, a: FloatArray, b: FloatArray, row: int, run: tuple[int, int], line: int
+    scratch: _Scratch, a: FloatArray, b: FloatArray, row: int, run: tuple[int, int], line: int
 ) -> None:
     """Lower a run of cells to the height of the tool over each."""
-    grid = bench.grid
+    grid = scratch.grid
     tip = max(min(a[2], b[2]), grid.bottom)
     for begin in range(run[0], run[1], RUN):
-        cells = bench.heights[row, begin : min(begin + RUN, run[1])]
+        cells = scratch.heights[row, begin : min(begin + RUN, run[1])]
         first, count = 0, len(cells)
         while first < count and cells[first] <= tip:
             first += 1
@@ -409,10 +411,10 @@ def _lower_run(
             count -= 1
         if first == count:
             continue
-        cells, lowest = cells[first:count], bench.lowest[: count - first]
+        cells, lowest = cells[first:count], scratch.lowest[: count - first]
         x = grid.origin[0] + (begin + first) * grid.cell
         y = grid.origin[1] + row * grid.cell
-        lowest_in_run(lowest, (x, y), grid.cell, a, b, bench.profile)
+        lowest_in_run(lowest, (x, y), grid.cell, a, b, scratch.profile)
         lost, moment, deepest = 0.0, 0.0, 0.0
         for k in range(len(cells)):
             lower = min(cells[k], max(lowest[k], grid.bottom))
@@ -421,22 +423,22 @@ def _lower_run(
             lost += cut
             moment += cut * (begin + first + k)
             deepest = max(deepest, cut)
-            if bench.marks.cells.size and cut > 0.0:
-                bench.marks.cells[row, begin + first + k] = bench.marks.mark[line]
+            if scratch.marks.cells.size and cut > 0.0:
+                scratch.marks.cells[row, begin + first + k] = scratch.marks.mark[line]
         if lost > 0.0:
-            _add(bench, line, row, (begin + first, begin + count), (lost, moment, deepest))
+            _add(scratch, line, row, (begin + first, begin + count), (lost, moment, deepest))
 
 
 @inlined
 def _add(
-    bench: _Bench, line: int, row: int, run: tuple[int, int], cut: tuple[float, float, float]
+    scratch: _Scratch, line: int, row: int, run: tuple[int, int], cut: tuple[float, float, float]
 ) -> None:
     """Add what a run of cells lost: in all, that times the columns' numbers, and at most [mm]."""
-    tally, changed = bench.tally[line, row % 2], bench.changed
-    tally[_Tally.LOST] += cut[0]
-    tally[_Tally.COLUMNS] += cut[1]
-    tally[_Tally.ROWS] += cut[0] * row
-    tally[_Tally.DEEPEST] = max(tally[_Tally.DEEPEST], cut[2])
+    sums, changed = scratch.sums[line, row % 2], scratch.changed
+    sums[_Sum.LOST] += cut[0]
+    sums[_Sum.COLUMNS] += cut[1]
+    sums[_Sum.ROWS] += cut[0] * row
+    sums[_Sum.DEEPEST] = max(sums[_Sum.DEEPEST], cut[2])
     changed[0], changed[1] = min(changed[0], row), max(changed[1], row + 1)
     changed[2], changed[3] = min(changed[2], run[0]), max(changed[3], run[1])
 

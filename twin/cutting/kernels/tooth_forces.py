@@ -1,6 +1,6 @@
-"""The force of every tooth at every angle, from the material that stands before the cutter.
+"""The force of every tooth at every angle, from the material that is before the cutter.
 
-The edges are looked at in ``BINS`` directions about the axis. In each, the side of the cutter meets
+The edges are looked at in ``ANGLE_BINS`` directions about the axis. In each, the side of the cutter meets
 the material up to a depth that the height map tells, and the rings of its lower end meet it or do
 not. A tooth that passes there cuts a chip as thick as the feed per tooth along the normal of the
 surface that it sweeps, h = f·n, and is pushed by Kienzle's force kc1.1 h^(1 - mc) a millimetre of
@@ -26,14 +26,14 @@ from twin.nc.canonical import FloatArray
 
 THINNEST_CHIP_MM = 1e-3
 """Chips thinner than this are rubbed, not cut; the formula is not followed below [mm]."""
-BINS = 72
+ANGLE_BINS = 72
 """Directions about the axis that are looked at: 5 degrees each."""
-_ANGLES = (np.arange(BINS) + 0.5) * (2.0 * np.pi / BINS)
+_ANGLES = (np.arange(ANGLE_BINS) + 0.5) * (2.0 * np.pi / ANGLE_BINS)
 _COSINE, _SINE = np.cos(_ANGLES), np.sin(_ANGLES)
 _PLACES = 2
 """Places in each direction at which the depth of the side is looked at."""
-_BORDER_STEP = 2.0 * np.pi / (BINS * _PLACES)
-_BORDER = np.arange(BINS * _PLACES + 1) * _BORDER_STEP
+_BORDER_STEP = 2.0 * np.pi / (ANGLE_BINS * _PLACES)
+_BORDER = np.arange(ANGLE_BINS * _PLACES + 1) * _BORDER_STEP
 _BORDER_COSINE, _BORDER_SINE = np.cos(_BORDER), np.sin(_BORDER)
 _HALVINGS = 6
 """Halvings between two places, in search of where the depth changes."""
@@ -114,14 +114,14 @@ class Advance(NamedTuple):
     sense: float
 
 
-class ToothBench(NamedTuple):
+class ToothScratch(NamedTuple):
     """What ``tooth_forces`` leaves: of one tooth in each direction, and of all in the mean.
 
     Attributes:
-        side: Force a millimetre of side, shape (BINS, 3) [N/mm].
-        depth: How deep the side is in the material, shape (BINS,) [mm].
-        tooth: Force on the tool when a tooth's tip is in that direction, shape (BINS, 3) [N].
-        summed: ``tooth`` added up from the first direction on, shape (BINS + 1, 3).
+        side: Force a millimetre of side, shape (ANGLE_BINS, 3) [N/mm].
+        depth: How deep the side is in the material, shape (ANGLE_BINS,) [mm].
+        tooth: Force on the tool when a tooth's tip is in that direction, shape (ANGLE_BINS, 3) [N].
+        summed: ``tooth`` added up from the first direction on, shape (ANGLE_BINS + 1, 3).
         mean: Force on the tool in the mean of a turn, shape (3,) [N].
         figures: Greatest level force of a turn [N], torque in the mean [N mm], thickest chip [mm].
     """
@@ -134,10 +134,10 @@ class ToothBench(NamedTuple):
     figures: FloatArray
 
 
-def tooth_bench() -> ToothBench:
+def tooth_bench() -> ToothScratch:
     """A bench on which nothing lies."""
-    shapes = ((BINS, 3), (BINS,), (BINS, 3), (BINS + 1, 3), (3,), (3,))
-    return ToothBench(*(np.zeros(shape) for shape in shapes))
+    shapes = ((ANGLE_BINS, 3), (ANGLE_BINS,), (ANGLE_BINS, 3), (ANGLE_BINS + 1, 3), (3,), (3,))
+    return ToothScratch(*(np.zeros(shape) for shape in shapes))
 
 
 @kernel
@@ -148,54 +148,54 @@ def tooth_forces(
     cutter: CutterForm,
     law: ForceLaw,
     sense: float,
-    bench: ToothBench,
+    scratch: ToothScratch,
 ) -> bool:
     """Forces of a cutter that goes on as it does.
 
     Args:
         material: What is cut.
         tip: Tool tip, shape (3,) [mm].
-        feed: Way of the tip in the time between two teeth, shape (3,) [mm].
+        feed: Path of the tip in the time between two teeth, shape (3,) [mm].
         cutter: The cutter.
         law: What the material does.
         sense: 1: it turns clockwise, seen from above; -1: counter-clockwise.
-        bench: Set to what was found.
+        scratch: Set to what was found.
 
     Returns:
         Whether the cutter meets any material.
     """
     per_tooth = math.sqrt(feed[0] * feed[0] + feed[1] * feed[1] + feed[2] * feed[2])
-    bench.mean[:] = 0.0
-    bench.figures[:] = 0.0
+    scratch.mean[:] = 0.0
+    scratch.figures[:] = 0.0
     if per_tooth < _LEAST:
         return False
     way = (feed[0] / per_tooth, feed[1] / per_tooth, feed[2] / per_tooth)
     advance = Advance(tip, way, per_tooth, sense)
-    met = _meet_side(material, advance, cutter, law, bench)
-    for j in range(BINS):
+    met = _meet_side(material, advance, cutter, law, scratch)
+    for j in range(ANGLE_BINS):
         for k in range(3):
-            bench.tooth[j, k] = 0.0
-        met |= _meet_end(material, advance, cutter, law, j, bench)
+            scratch.tooth[j, k] = 0.0
+        met |= _meet_end(material, advance, cutter, law, j, scratch)
     if met:
-        _add_up(cutter, sense, bench)
+        _add_up(cutter, sense, scratch)
     return met
 
 
 @kernel
 def _meet_side(
-    material: Material, advance: Advance, cutter: CutterForm, law: ForceLaw, bench: ToothBench
+    material: Material, advance: Advance, cutter: CutterForm, law: ForceLaw, scratch: ToothScratch
 ) -> bool:
     """Depth and force of the side in all directions."""
-    bench.depth[:] = 0.0
+    scratch.depth[:] = 0.0
     way = advance.way
     if math.hypot(way[0], way[1]) <= _LEAST:
         return False
     met, edge, begun, deepest = False, 0.0, 0.0, 0.0
-    ahead = math.floor(math.atan2(way[1], way[0]) / (2.0 * math.pi) * BINS)
+    ahead = math.floor(math.atan2(way[1], way[0]) / (2.0 * math.pi) * ANGLE_BINS)
     last = 0.0
     # Behind the cutter there is nothing to meet.
-    for turned in range(ahead - BINS // 4 - 1, ahead + BINS // 4 + 2):
-        j = turned % BINS
+    for turned in range(ahead - ANGLE_BINS // 4 - 1, ahead + ANGLE_BINS // 4 + 2):
+        j = turned % ANGLE_BINS
         area, moment, share, begins, ends = 0.0, 0.0, 0.0, 1.0, 0.0
         for part in range(_PLACES):
             border = j * _PLACES + part + 1
@@ -224,8 +224,8 @@ def _meet_side(
                 )
         if share > 0.0:
             engaged = _Engaged(j, share, area / share, moment / area, begins, ends)
-            met |= _enter_side(advance, cutter, law, engaged, bench)
-    bench.figures[0] = edge
+            met |= _enter_side(advance, cutter, law, engaged, scratch)
+    scratch.figures[0] = edge
     return met
 
 
@@ -250,7 +250,7 @@ def _edge_force(
     """
     begin, end = arc
     lag = depth / cutter.rise
-    if end - begin + lag >= BINS / cutter.teeth:
+    if end - begin + lag >= ANGLE_BINS / cutter.teeth:
         return 0.0
     within = min(lag, end - begin)
     height = depth * (within / lag if within < lag else 1.0) / _SLICES
@@ -289,7 +289,7 @@ class _Engaged(NamedTuple):
 
 @kernel
 def _enter_side(
-    advance: Advance, cutter: CutterForm, law: ForceLaw, engaged: _Engaged, bench: ToothBench
+    advance: Advance, cutter: CutterForm, law: ForceLaw, engaged: _Engaged, scratch: ToothScratch
 ) -> bool:
     """Force of the side in one direction."""
     j, sense = engaged.bin, advance.sense
@@ -308,19 +308,19 @@ def _enter_side(
         chip,
     )
     force = _push(law, advance.per_tooth, chip) * engaged.share
-    bench.depth[j] = engaged.depth
-    bench.side[j, 0] = force * (-sense * sine - law.radial * cosine)
-    bench.side[j, 1] = force * (sense * cosine - law.radial * sine)
-    bench.side[j, 2] = -force * law.along
-    bench.figures[1] += force * bench.depth[j] * cutter.profile.radius
-    bench.figures[2] = max(bench.figures[2], advance.per_tooth * thickest)
+    scratch.depth[j] = engaged.depth
+    scratch.side[j, 0] = force * (-sense * sine - law.radial * cosine)
+    scratch.side[j, 1] = force * (sense * cosine - law.radial * sine)
+    scratch.side[j, 2] = -force * law.along
+    scratch.figures[1] += force * scratch.depth[j] * cutter.profile.radius
+    scratch.figures[2] = max(scratch.figures[2], advance.per_tooth * thickest)
     return True
 
 
 @kernel
 def _direction(place: float) -> tuple[float, float]:
     """Cosine and sine of a place around the axis [bins]."""
-    at = 2.0 * math.pi / BINS * place
+    at = 2.0 * math.pi / ANGLE_BINS * place
     return math.cos(at), math.sin(at)
 
 
@@ -373,7 +373,7 @@ def _meet_end(
     cutter: CutterForm,
     law: ForceLaw,
     j: int,
-    bench: ToothBench,
+    scratch: ToothScratch,
 ) -> bool:
     """Force of the rings of the lower end in one direction."""
     met, way, sense = False, advance.way, advance.sense
@@ -391,11 +391,11 @@ def _meet_end(
         force = _push(law, advance.per_tooth, chip) * share * cutter.width[i]
         inwards = force * (law.radial * cutter.outwards[i] + law.along * cutter.downwards[i])
         upwards = force * (law.radial * cutter.downwards[i] - law.along * cutter.outwards[i])
-        bench.tooth[j, 0] += -sense * sine * force - cosine * inwards
-        bench.tooth[j, 1] += sense * cosine * force - sine * inwards
-        bench.tooth[j, 2] += upwards
-        bench.figures[1] += force * cutter.radius[i]
-        bench.figures[2] = max(bench.figures[2], thickness)
+        scratch.tooth[j, 0] += -sense * sine * force - cosine * inwards
+        scratch.tooth[j, 1] += sense * cosine * force - sine * inwards
+        scratch.tooth[j, 2] += upwards
+        scratch.figures[1] += force * cutter.radius[i]
+        scratch.figures[2] = max(scratch.figures[2], thickness)
     return met
 
 
@@ -432,7 +432,7 @@ def _ring_share(
         if top <= lowest + min(0.0, way[2]) / level * max(0.0, ahead) + _LEAST:
             return 0.0
     if abs(top - profile_height(math.hypot(x, y), radius, flat, corner, slope)) <= _LEAST:
-        # The cutter stands on what it has cut itself, and goes on into it.
+        # The cutter is on what it has cut itself, and goes on into it.
         return 1.0
     if top <= low:
         return 0.0
@@ -447,65 +447,65 @@ def _push(law: ForceLaw, per_tooth: float, chip: float) -> float:
 
 
 @kernel
-def _add_up(cutter: CutterForm, sense: float, bench: ToothBench) -> None:
+def _add_up(cutter: CutterForm, sense: float, scratch: ToothScratch) -> None:
     """Force of a tooth by the direction of its tip, their sums, and the mean and greatest of a turn."""
-    share = cutter.teeth / BINS
-    for j in range(BINS):
+    share = cutter.teeth / ANGLE_BINS
+    for j in range(ANGLE_BINS):
         for k in range(3):
-            bench.mean[k] += share * (bench.tooth[j, k] + bench.side[j, k] * bench.depth[j])
-    bench.figures[1] *= share
-    behind = 1 if sense > 0.0 else BINS - 1
-    for j in range(BINS):
-        if bench.depth[j] <= 0.0:
+            scratch.mean[k] += share * (scratch.tooth[j, k] + scratch.side[j, k] * scratch.depth[j])
+    scratch.figures[1] *= share
+    behind = 1 if sense > 0.0 else ANGLE_BINS - 1
+    for j in range(ANGLE_BINS):
+        if scratch.depth[j] <= 0.0:
             continue
         below, to = 0.0, j
-        while below < bench.depth[j]:
-            part = min(cutter.rise, bench.depth[j] - below)
+        while below < scratch.depth[j]:
+            part = min(cutter.rise, scratch.depth[j] - below)
             for k in range(3):
-                bench.tooth[to, k] += part * bench.side[j, k]
+                scratch.tooth[to, k] += part * scratch.side[j, k]
             below += part
             # Higher up the edge is in this direction when its tip has gone on.
-            to = (to + BINS - behind) % BINS
+            to = (to + ANGLE_BINS - behind) % ANGLE_BINS
     for k in range(3):
-        bench.summed[0, k] = 0.0
-        for j in range(BINS):
-            bench.summed[j + 1, k] = bench.summed[j, k] + bench.tooth[j, k]
-    for j in range(math.ceil(BINS / cutter.teeth)):
+        scratch.summed[0, k] = 0.0
+        for j in range(ANGLE_BINS):
+            scratch.summed[j + 1, k] = scratch.summed[j, k] + scratch.tooth[j, k]
+    for j in range(math.ceil(ANGLE_BINS / cutter.teeth)):
         x, y = 0.0, 0.0
         for tooth in range(cutter.teeth):
-            at = (j + tooth * BINS // cutter.teeth) % BINS
-            x += bench.tooth[at, 0]
-            y += bench.tooth[at, 1]
-        bench.figures[0] = max(bench.figures[0], math.hypot(x, y))
+            at = (j + tooth * ANGLE_BINS // cutter.teeth) % ANGLE_BINS
+            x += scratch.tooth[at, 0]
+            y += scratch.tooth[at, 1]
+        scratch.figures[0] = max(scratch.figures[0], math.hypot(x, y))
 
 
 @kernel
 def add_force_between(
-    cutter: CutterForm, bench: ToothBench, angle: float, turned: float, force: FloatArray
+    cutter: CutterForm, scratch: ToothScratch, angle: float, turned: float, force: FloatArray
 ) -> None:
     """Force on the tool in the mean while it turns.
 
     Args:
         cutter: The cutter.
-        bench: What ``tooth_forces`` found.
+        scratch: What ``tooth_forces`` found.
         angle: Direction of the first tooth's tip at the beginning [turns, counter-clockwise].
         turned: How far it turns, signed [turns]; at least a thousandth of a bin is counted.
         force: The force is added to it, shape (3,) [N].
     """
-    width = max(abs(turned) * BINS, 1e-3)
-    first = angle * BINS - (width if turned < 0.0 else 0.0)
+    width = max(abs(turned) * ANGLE_BINS, 1e-3)
+    first = angle * ANGLE_BINS - (width if turned < 0.0 else 0.0)
     for tooth in range(cutter.teeth):
-        low = first + tooth * BINS / cutter.teeth
-        low -= BINS * math.floor(low / BINS)
+        low = first + tooth * ANGLE_BINS / cutter.teeth
+        low -= ANGLE_BINS * math.floor(low / ANGLE_BINS)
         for k in range(3):
-            force[k] += (_sum_up_to(bench, low + width, k) - _sum_up_to(bench, low, k)) / width
+            force[k] += (_sum_up_to(scratch, low + width, k) - _sum_up_to(scratch, low, k)) / width
 
 
 @kernel
-def _sum_up_to(bench: ToothBench, place: float, k: int) -> float:
+def _sum_up_to(scratch: ToothScratch, place: float, k: int) -> float:
     """Sum of a tooth's force over the directions up to a place from 0 on, in bins."""
-    turns = math.floor(place / BINS)
-    rest = place - turns * BINS
-    whole = min(int(rest), BINS - 1)
-    part = (rest - whole) * bench.tooth[whole, k]
-    return turns * bench.summed[BINS, k] + bench.summed[whole, k] + part
+    turns = math.floor(place / ANGLE_BINS)
+    rest = place - turns * ANGLE_BINS
+    whole = min(int(rest), ANGLE_BINS - 1)
+    part = (rest - whole) * scratch.tooth[whole, k]
+    return turns * scratch.summed[ANGLE_BINS, k] + scratch.summed[whole, k] + part

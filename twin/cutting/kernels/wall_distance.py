@@ -51,7 +51,7 @@ def note_walls(
 ) -> None:
     """Note what a tool has passed by.
 
-    Of a top that it has made a slope nothing is told: deeper, it goes on before the cell's middle.
+    Of a top that it has made a slope nothing is reported: deeper, it goes on before the cell's middle.
 
     Args:
         heights: The height map, cut along the way, shape (ny, nx) [mm].

@@ -7,12 +7,7 @@ import numpy as np
 
 from twin.cutting.height_map import HeightMap
 from twin.cutting.height_map_material import WALL_MM
-from twin.cutting.kernels.surface_distance import (
-    BY_CELLS,
-    BY_HEIGHT,
-    Surface,
-    surface_distances,
-)
+from twin.cutting.kernels.surface_distance import FoundBy, Surface, surface_distances
 from twin.cutting.kernels.wall_distance import KNOWN, WallDistance
 from twin.errors import ConfigError
 from twin.nc.canonical import BoolArray, FloatArray
@@ -55,6 +50,11 @@ class Inspection:
         return np.isfinite(self.deviation_mm)
 
     @property
+    def measured_share(self) -> float:
+        """Share of the cells that belong to what was machined, or should have been, that were measured."""
+        return int(self.measured.sum()) / self.judged if self.judged else 0.0
+
+    @property
     def most_standing_mm(self) -> float:
         """The most that was left standing [mm]."""
         return float(self.deviation_mm[self.measured].max(initial=0.0))
@@ -86,7 +86,7 @@ class Inspection:
             return {"measured_share": 0.0, **volumes}
         return {
             **volumes,
-            "measured_share": len(here) / self.judged,
+            "measured_share": self.measured_share,
             "bound_um": UM_PER_MM * self.bound_mm,
             "max_um": float(here.max()),
             "min_um": float(here.min()),
@@ -125,7 +125,7 @@ def inspect(part: HeightMap, nominal: HeightMap, tolerance_um: float) -> Inspect
     edge = _raw_sides(part) | _raw_sides(nominal)
     upright = (_beside_walls(part) | _beside_walls(nominal)) & ~edge
     rest = (touched & ~edge | upright) & ~gentle
-    told_by = np.full(rest.shape, BY_HEIGHT)
+    found_by = np.full(rest.shape, FoundBy.HEIGHT)
     one, other = (Surface(each.heights, _without(each.behind, edge)) for each in (part, nominal))
     surface_distances(
         one,
@@ -134,13 +134,13 @@ def inspect(part: HeightMap, nominal: HeightMap, tolerance_um: float) -> Inspect
         rest,
         flat,
         deviation,
-        told_by,
+        found_by,
     )
-    unseen = rest & upright & (told_by == BY_HEIGHT) & (deviation == 0.0)
+    unseen = rest & upright & (found_by == FoundBy.HEIGHT) & (deviation == 0.0)
     unseen &= ~_both_slope(part, nominal)
     unseen |= _nominal_within_raw_side(part, nominal)
     off = above * part.cell**2
-    coarse = unseen.any() or bool((told_by == BY_CELLS).any())
+    coarse = unseen.any() or bool((found_by == FoundBy.CELLS).any())
     return Inspection(
         deviation_mm=np.where(unseen, np.nan, deviation),
         bound_mm=part.cell if coarse else min(WALL_ERROR_MM, part.cell),

@@ -9,7 +9,8 @@ from twin.cutting.height_map import HeightMap
 from twin.cutting.height_map_material import HeightMapMaterial
 from twin.cutting.material import Material
 from twin.cutting.measuring.inspection import Inspection, inspect
-from twin.cutting.measuring.nominal import nominal_map
+from twin.cutting.measuring.nominal import Nominal
+from twin.cutting.measuring.nominal_from_above import nominal_map
 from twin.cutting.measuring.tridexel_inspection import deviations, inspect_stock, nominal_stock
 from twin.cutting.part import export_glb, write_glb
 from twin.cutting.tridexel.dexels import TriDexel
@@ -18,9 +19,6 @@ from twin.cutting.tridexel.mesh import Surface, part_mesh
 from twin.nc.canonical import FloatArray
 from twin.toolpath.part_frame import PartFrame
 from twin.units import UM_PER_MM
-
-Nominal = HeightMap | TriDexel
-"""What a part should be, on the grid of the part."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -76,10 +74,10 @@ def nominal_of(cutter: Cutter, file: Path, part_frame: PartFrame, part_zero: Flo
     Raises:
         ConfigError: The file cannot be read, or a part that is cut from several sides has one that is not closed.
     """
-    material = cutter.material
+    material, corner = cutter.material, part_frame.program_zero(part_zero)
     if isinstance(material, TriDexelMaterial):
-        return nominal_stock(material.stock, file, part_frame.program_zero(part_zero))
-    return nominal_map(cutter.map, file, part_frame, part_zero)
+        return nominal_stock(material.stock, file, corner)
+    return nominal_map(cutter.map, file, corner)
 
 
 def measured(part: Material, nominal: Nominal, tolerance_um: float) -> MeasuredPart:

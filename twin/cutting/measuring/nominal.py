@@ -1,23 +1,14 @@
 """The nominal part of a job: whether the tool has cut into it, and in which line."""
 
+import abc
 import dataclasses
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
 from twin.cutting.cut import Cutter
 from twin.cutting.height_map import HeightMap
-from twin.cutting.kernels.drape import drape, note_sides
-from twin.cutting.kernels.surface_distance import (
-    BY_CELLS,
-    REACH,
-    SAME_MM,
-    Surface,
-    surface_distances,
-)
-from twin.cutting.kernels.wall_distance import KNOWN
-from twin.cutting.measuring.inspection import RAW, STEEPEST, steepness
 from twin.cutting.tridexel.dexels import TriDexel
 from twin.errors import ConfigError
 from twin.files.stl import read_stl
@@ -27,8 +18,18 @@ from twin.recording.reader import Samples
 from twin.toolpath.part_frame import PartFrame
 from twin.units import UM_PER_MM
 
-_CELLS = 256
-"""Of the cells that a chunk cut too deep, so many are traced back to their samples."""
+_TRACED = 256
+"""Of the places that a chunk cut too deep, so many are traced back to their samples."""
+SMALL = 0.2
+"""A nominal part that is smaller than this share of the blank in every direction counts in other units, or is another
+part: a centimetre is a tenth of what it should be, an inch a twenty-fifth."""
+
+OUTSIDE = 1e-3
+"""Share of a nominal part outside its blank from which on it is told of: less is the grid's doing."""
+
+Nominal = HeightMap | TriDexel
+"""What a part should be, on the grid of the part."""
+NominalT = TypeVar("NominalT", HeightMap, TriDexel)
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -52,76 +53,58 @@ class NominalGouge:
         return dataclasses.asdict(self)
 
 
-def lies_beside(file: str) -> ConfigError:
-    """That a nominal part has nothing in common with the stock."""
-    return ConfigError(
-        f"job key 'nominal.file': {file} has nothing over the stock: it counts in "
-        "program coordinates, in mm"
-    )
+class ToolPath(NamedTuple):
+    """Where the tool was during m samples, in the part's frame.
 
-
-def nominal_map(
-    part: HeightMap, file: Path, part_frame: PartFrame, part_zero: FloatArray
-) -> HeightMap:
-    """A nominal part on the grid of a machined one: seen from above, the highest surface counts.
-
-    Args:
-        part: The machined part.
-        file: STL of the nominal part in program coordinates [mm].
-        part_frame: How the part turns under the tool.
-        part_zero: Machine coordinates of the program zero that the file counts from, shape (k,).
-
-    Raises:
-        ConfigError: The file cannot be read.
+    Attributes:
+        tip: Of the tool, shape (m, 3) [mm].
+        axis: Direction from the tip to the spindle, shape (m, 3).
+        radius: Of the tool, shape (m,) [mm].
+        flute: Length of its edge, shape (m,) [mm].
     """
-    corner = part_frame.program_zero(part_zero)
-    result = part.copy()
-    result.heights[:] = part.bottom
-    triangles = np.ascontiguousarray(read_stl(file).triangles + corner, dtype=np.float64)
-    drape(result.heights, result.origin, result.cell, triangles)
-    result.behind[:] = 0.0
-    note_sides(result.heights, result.behind, result.origin, result.cell, triangles)
-    return result
+
+    tip: FloatArray
+    axis: FloatArray
+    radius: FloatArray
+    flute: FloatArray
 
 
-class NominalWatch(Protocol):
-    """Looks after every chunk whether what it cut reaches into the nominal part."""
+class Deep(NamedTuple):
+    """n places that were cut too deep.
 
-    worst: NominalGouge | None
-    """The deepest so far, None without any."""
+    Attributes:
+        points: Shape (n, 3) [mm].
+        depth: In the nominal part, shape (n,) [mm].
+        marks: What the tool passes where it is the first to cut too deep, shape (n, 3) [mm].
+        aside: How much farther than its edge they are from it then, at most, shape (n,) [mm].
+        above: How far above them its tip is then, at most [mm].
+    """
 
-    @property
-    def nominal(self) -> HeightMap | TriDexel:
-        """The nominal part on the grid of the machined one."""
-        ...
+    points: FloatArray
+    depth: FloatArray
+    marks: FloatArray
+    aside: FloatArray
+    above: float
 
-    def look(self, samples: Samples) -> tuple[NominalGouge, int] | None:
-        """Look at what the cutter's last chunk cut.
-
-        Args:
-            samples: That chunk.
-
-        Returns:
-            Where it first went too deep, and in which sample; None where it did not.
-        """
-        ...
+    def only(self, rows: IntArray) -> "Deep":
+        """Some of them."""
+        points, depth, marks, aside, above = self
+        return Deep(points[rows], depth[rows], marks[rows], aside[rows], above)
 
 
-class HeightMapNominalWatch:
+class NominalWatch(abc.ABC, Generic[NominalT]):
     """Looks after every chunk whether what it cut reaches into the nominal part.
-
-    What counts is how far from what is left of the part the nominal surface is, straight down or sideways.
-    A gouge into a wall whose place is not known closer than by cells is seen from a cell more on.
 
     Attributes:
         nominal: The nominal part on the grid of the machined one.
+        misfit: Why the file can hardly be that of the part; None where it can.
         worst: The deepest so far, None without any.
     """
 
     def __init__(
         self, nominal: NominalTable, cutter: Cutter, part_frame: PartFrame, part_zero: FloatArray
     ) -> None:
-        """Lay the nominal part beside the blank.
+        """Lay the nominal part into the blank.
 
         Args:
             nominal: What the job says of it.
@@ -132,86 +115,99 @@ class HeightMapNominalWatch:
         Raises:
             ConfigError: Its file cannot be read, or it lies beside the blank.
         """
-        self.nominal = nominal_map(cutter.map, Path(nominal.file), part_frame, part_zero)
-        if not self.nominal.solid().any():
-            raise lies_beside(nominal.file)
-        self._allowed = nominal.gouge_um / UM_PER_MM
         self._cutter, self._frame = cutter, part_frame
         self._corner = part_frame.program_zero(part_zero)
+        self._allowed = nominal.gouge_um / UM_PER_MM
         self.worst: NominalGouge | None = None
+        file = Path(nominal.file)
+        self.nominal: NominalT = self._laid(file)
+        if self._is_empty():
+            raise ConfigError(
+                f"job key 'nominal.file': {file} has nothing over the stock: it counts in "
+                "program coordinates, in mm"
+            )
+        corners = self._corner + read_stl(file).bounds
+        self.misfit = _misfit(corners, cutter.material.corners, self._allowed)
+        if self.misfit is None and (outside := self._outside_share()) > OUTSIDE:
+            self.misfit = f"{outside:.1%} of the nominal part lie outside the stock"
 
     def look(self, samples: Samples) -> tuple[NominalGouge, int] | None:
-        """Look at what the cutter's last chunk cut; see ``NominalWatch``."""
-        row, row_end, column, column_end = self._cutter.changed
-        if row >= row_end:
+        """Look at what the cutter's last chunk cut.
+
+        Args:
+            samples: That chunk.
+
+        Returns:
+            Where it first went too deep, and in which sample; None where it did not.
+        """
+        deep = self._too_deep(samples) if len(samples) else None
+        if deep is None or not len(deep.depth):
             return None
-        # Walls are noted beside what was cut, and what is left of the part is looked for around it.
-        rows, columns = (
-            slice(max(0, first - REACH), end + REACH)
-            for first, end in ((row, row_end), (column, column_end))
-        )
-        depth = self._depths(rows, columns)
-        if depth.max() <= self._allowed:
-            return None
-        deepest = np.unravel_index(int(depth.argmax()), depth.shape)
-        cells = np.argwhere(depth > self._allowed)
-        cells = np.concatenate([cells[:: max(1, len(cells) // _CELLS)], [deepest]])
-        depths = depth[tuple(cells.T)]
-        cells += [rows.start, columns.start]
-        reached = self._first_samples(samples, cells)
-        if self.worst is None or depths[-1] > self.worst.depth_mm:
-            self.worst = self._gouge(samples, int(reached[-1]), cells[-1], float(depths[-1]))
+        rows = np.arange(len(deep.depth))[:: max(1, len(deep.depth) // _TRACED)]
+        deep = deep.only(np.append(rows, deep.depth.argmax()))
+        reached = _first_within(deep, self._tool_path(samples))
+        if self.worst is None or deep.depth[-1] > self.worst.depth_mm:
+            self.worst = self._gouge(samples, int(reached[-1]), deep, -1)
         first = int(reached.argmin())
         sample = int(reached[first])
-        return self._gouge(samples, sample, cells[first], float(depths[first])), sample
+        return self._gouge(samples, sample, deep, first), sample
 
-    def _depths(self, rows: slice, columns: slice) -> FloatArray:
-        """How deep it is cut into the nominal part over the cells of a window [mm]."""
-        cut, cell = self._cutter.map, self._cutter.map.cell
-        heights, behind = cut.heights[rows, columns], cut.behind[rows, columns]
-        nominal, walls = self.nominal.heights[rows, columns], self.nominal.behind[rows, columns]
-        before = (walls[..., 0] - behind[..., 0]) * cell
-        before[(walls[..., 0] <= KNOWN) | (behind[..., 0] <= KNOWN)] = 0.0
-        inside = cut.outline.inside(cut.x[columns], cut.y[rows, None]) / cell
-        before[np.abs(behind[..., 0] - KNOWN - inside) < RAW] = 0.0
-        wanted = (nominal - heights > self._allowed) | (before > self._allowed)
-        found, told_by = np.zeros(heights.shape), np.zeros(heights.shape, np.int64)
-        flat = np.maximum(steepness(heights, cell), steepness(nominal, cell)) <= STEEPEST
-        part, whole = Surface(heights, behind), Surface(nominal, walls)
-        surface_distances(part, whole, cell, wanted, flat, found, told_by)
-        return np.where(told_by == BY_CELLS, -found - cell, -found)
+    @abc.abstractmethod
+    def _laid(self, file: Path) -> NominalT:
+        """The nominal part on the grid of the machined one."""
 
-    def _gouge(
-        self, samples: Samples, sample: int, cell: IntArray, depth_mm: float
-    ) -> NominalGouge:
-        height_map = self._cutter.map
-        x, y = height_map.x[cell[1]], height_map.y[cell[0]]
-        place = np.array([x, y, height_map.heights[cell[0], cell[1]]]) - self._corner
-        asked = samples.setpoint
-        spot = (float(place[0]), float(place[1]), float(place[2]))
-        return NominalGouge(depth_mm, int(asked.line[sample]), float(asked.time[sample]), spot)
+    @abc.abstractmethod
+    def _is_empty(self) -> bool:
+        """Whether nothing of it lies in the blank."""
 
-    def _first_samples(self, samples: Samples, cells: IntArray) -> IntArray:
-        """In which sample the tool first cuts too deep at each cell."""
-        tip = self._frame.position(samples.real(self._frame))
-        radius = np.zeros(len(tip))
-        for run, tool in self._cutter.plan.runs(samples.setpoint.move):
-            tip[run, 2] -= self._cutter.plan.longer(tool)
-            radius[run] = tool.diameter / 2.0
-        cut = self._cutter.map
-        found = np.full(len(cells), len(tip) - 1)
-        for index, (row, column) in enumerate(cells):
-            top = self.nominal.heights[row, column]
-            below = np.full(len(tip), top - self._allowed)
-            reach = radius
-            if cut.heights[row, column] >= below[0]:
-                # It stands, and the wall before it is where it should not be.
-                below[:] = top - SAME_MM
-                behind = self.nominal.behind[row, column, 0] - KNOWN
-                reach = radius + behind * cut.cell - self._allowed
-            away = np.hypot(tip[:, 0] - cut.x[column], tip[:, 1] - cut.y[row]) - reach
-            low = tip[:, 2] <= below + 1e-6
-            if low.any():
-                away[~low] = np.inf
-                found[index] = int((away <= max(0.0, float(away.min()))).argmax())
-        return found
+    @abc.abstractmethod
+    def _outside_share(self) -> float:
+        """Share of it, within the box around the blank, that the uncut blank does not hold."""
+
+    @abc.abstractmethod
+    def _too_deep(self, samples: Samples) -> Deep | None:
+        """What the cutter's last chunk cut too deep; None where it cut nothing."""
+
+    def _tool_path(self, samples: Samples) -> ToolPath:
+        joints, plan, move = samples.real(self._frame), self._cutter.plan, samples.setpoint.move
+        tip = self._frame.position(joints, plan.lower(move))
+        radius, flute = np.zeros((2, len(tip)))
+        for run, tool in plan.runs(move):
+            radius[run], flute[run] = tool.diameter / 2.0, tool.flute
+        return ToolPath(tip, self._frame.tool_direction(joints), radius, flute)
+
+    def _gouge(self, samples: Samples, sample: int, deep: Deep, row: int) -> NominalGouge:
+        x, y, z = (float(value) for value in deep.points[row] - self._corner)
+        asked, depth = samples.setpoint, float(deep.depth[row])
+        return NominalGouge(depth, int(asked.line[sample]), float(asked.time[sample]), (x, y, z))
+
+
+def _first_within(deep: Deep, path: ToolPath) -> IntArray:
+    """The first of m samples in which each mark is as near to the tool's axis as its edge; else the nearest, shape (n,)."""
+    found = np.zeros(len(deep.depth), np.int64)
+    for number, (mark, aside) in enumerate(zip(deep.marks, deep.aside, strict=True)):
+        arm = mark - path.tip
+        height = (arm * path.axis).sum(axis=1)
+        away = np.linalg.norm(arm - height[:, None] * path.axis, axis=1) - path.radius - aside
+        away = np.where(height < -deep.above, np.inf, away)
+        found[number] = int((away <= max(0.0, float(away.min()))).argmax())
+    return found
+
+
+def _misfit(nominal: FloatArray, blank: FloatArray, allowed: float) -> str | None:
+    """Why a nominal part can hardly be what a blank is to become; None where it can.
+
+    Args:
+        nominal: Two opposite corners of the box around it, shape (2, 3) [mm].
+        blank: The same of the blank.
+        allowed: How far the two may be off [mm].
+    """
+    beyond = np.maximum(blank[0] - nominal[0], nominal[1] - blank[1])
+    if beyond.max() > allowed:
+        axis = "XYZ"[int(beyond.argmax())]
+        return f"the nominal part reaches {beyond.max():.3g} mm out of the stock along {axis}"
+    size, whole = (np.diff(corners, axis=0)[0] for corners in (nominal, blank))
+    if (size < SMALL * whole).all():
+        told = (" x ".join(f"{side:.3g}" for side in sides) for sides in (size, whole))
+        return "the nominal part has {} mm in a stock of {} mm".format(*told)
+    return None

@@ -8,7 +8,7 @@ import numpy as np
 from twin.cutting.measuring.inspection import Inspection
 from twin.cutting.tridexel.blanks import require_closed
 from twin.cutting.tridexel.closed_mesh import mesh_dexels
-from twin.cutting.tridexel.dexels import DIRECTIONS, Lattice, SkinArray, TriDexel
+from twin.cutting.tridexel.dexels import DIRECTIONS, FacetArray, Lattice, TriDexel
 from twin.cutting.tridexel.intervals import Node
 from twin.cutting.tridexel.mesh import Surface
 from twin.cutting.tridexel.normals import OWN, normals, tools
@@ -37,19 +37,19 @@ class Crossings(NamedTuple):
 
     Attributes:
         points: Shape (n, 3) [mm].
-        skin: Normal and tool there, shape (n,).
+        facet: Normal and tool there, shape (n,).
         line: Number of the line, shape (n,).
         along: Its direction, shape (n,).
     """
 
     points: FloatArray
-    skin: SkinArray
+    facet: FacetArray
     line: IntArray
     along: IntArray
 
     def only(self, rows: BoolArray) -> "Crossings":
         """Some of them."""
-        return Crossings(self.points[rows], self.skin[rows], self.line[rows], self.along[rows])
+        return Crossings(self.points[rows], self.facet[rows], self.line[rows], self.along[rows])
 
 
 def crossings(stock: TriDexel, box: FloatArray | None = None) -> Crossings:
@@ -65,20 +65,20 @@ def crossings(stock: TriDexel, box: FloatArray | None = None) -> Crossings:
     within = np.arange(int(count.sum())) - np.repeat(np.cumsum(count) - count, count)
     place = np.repeat(dexels.first[lines], count) + within
     line = np.repeat(lines, 2 * count)
-    ends, skin = dexels.ends[place].ravel(), dexels.skin[place].ravel()
+    ends, facet = dexels.ends[place].ravel(), dexels.facet[place].ravel()
     along = np.searchsorted(lattice.base, line, "right") - 1
-    part = np.take_along_axis(normals(skin), along[:, None], axis=1)[:, 0]
+    part = np.take_along_axis(normals(facet), along[:, None], axis=1)[:, 0]
     chosen = np.abs(part) >= _MAIN - _ROUNDING
     if box is not None:
         chosen &= (ends >= box[0][along]) & (ends <= box[1][along])
-    line, ends, skin, along = line[chosen], ends[chosen], skin[chosen], along[chosen]
+    line, ends, facet, along = line[chosen], ends[chosen], facet[chosen], along[chosen]
     rows, u, v = np.arange(len(line)), (along + 1) % 3, (along + 2) % 3
     number = line - lattice.base[along]
     points = np.zeros((len(line), 3))
     points[rows, along] = ends
     points[rows, u] = lattice.origin[u] + lattice.cell * (number % lattice.shape[u])
     points[rows, v] = lattice.origin[v] + lattice.cell * (number // lattice.shape[u])
-    return Crossings(points, skin, line, along)
+    return Crossings(points, facet, line, along)
 
 
 def _lines_within(lattice: Lattice, box: FloatArray) -> IntArray:
@@ -135,7 +135,7 @@ def _gaps(stock: TriDexel, points: FloatArray, farthest: int) -> Gaps:
 
 def deviations(nominal: TriDexel, found: Surface) -> FloatArray:
     """How far the vertices of a part's surface stand out of the nominal one, shape (n,) [mm]; NaN on the blank's own skin."""
-    result, cut = np.full(len(found.points), np.nan), tools(found.skin) != OWN
+    result, cut = np.full(len(found.points), np.nan), tools(found.facet) != OWN
     result[cut] = gaps(nominal, found.points[cut]).away
     return result
 
@@ -158,16 +158,16 @@ def inspect_stock(part: TriDexel, nominal: TriDexel, tolerance_um: float) -> Ins
     if any(not np.array_equal(a, b) for a, b in zip(part.lattice, nominal.lattice, strict=True)):
         raise ConfigError("the two parts do not lie on the same grid of the same blank")
     machined = crossings(part)
-    machined = machined.only(tools(machined.skin) != OWN)
+    machined = machined.only(tools(machined.facet) != OWN)
     ideal = crossings(nominal)
     low, high = part.corners
     within = ((ideal.points >= low - RAW_MM) & (ideal.points <= high + RAW_MM)).all(axis=1)
     ideal = ideal.only(within)
     of_part, of_ideal = gaps(nominal, machined.points), gaps(part, ideal.points)
-    raw = (tools(of_ideal.skin) == OWN) & (np.abs(of_ideal.away) <= RAW_MM)
+    raw = (tools(of_ideal.facet) == OWN) & (np.abs(of_ideal.away) <= RAW_MM)
     deviation = np.concatenate([of_part.away, -of_ideal.away[~raw]])
     unsure = [
-        _unsure(found, each.skin, part.cell)[chosen]
+        _unsure(found, each.facet, part.cell)[chosen]
         for found, each, chosen in (
             (of_part, machined, slice(None)),
             (of_ideal, ideal, ~raw),
@@ -178,12 +178,12 @@ def inspect_stock(part: TriDexel, nominal: TriDexel, tolerance_um: float) -> Ins
         bound_mm=EXACT_MM + float(np.nanmax(np.concatenate(unsure), initial=0.0)),
         judged=len(deviation),
         tolerance_um=tolerance_um,
-        standing_mm3=_alone(part, nominal),
-        missing_mm3=_alone(nominal, part),
+        standing_mm3=volume_alone(part, nominal),
+        missing_mm3=volume_alone(nominal, part),
     )
 
 
-def _alone(one: TriDexel, other: TriDexel) -> float:
+def volume_alone(one: TriDexel, other: TriDexel) -> float:
     """What lies in one of two stocks on the same lattice alone [mm³]."""
     lattice = one.lattice
     ends = [*lattice.base.tolist(), lattice.lines]
@@ -195,8 +195,8 @@ def _alone(one: TriDexel, other: TriDexel) -> float:
     return max(0.0, lattice.cell**2 * sum(lines))
 
 
-def _unsure(found: Gaps, skin: SkinArray, cell: float) -> FloatArray:
+def _unsure(found: Gaps, facet: FacetArray, cell: float) -> FloatArray:
     """How far the distance of points, whose surface is known, from another surface may be off, shape (n,) [mm]."""
-    sine = np.linalg.norm(np.cross(found.normal, normals(skin)), axis=1)
+    sine = np.linalg.norm(np.cross(found.normal, normals(facet)), axis=1)
     unsure = np.where(found.beside <= DISC_CELLS * cell, found.beside * np.minimum(sine, 1.0), cell)
     return np.where(np.isnan(found.away), 0.0, unsure)

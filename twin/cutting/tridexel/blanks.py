@@ -67,7 +67,7 @@ def box(low: FloatArray, high: FloatArray, cell: float) -> TriDexel:
         lines = slice(ends[d], ends[d + 1])
         x, y, z = (float(part) for part in np.eye(3)[d])
         dexels.ends[lines] = low[d], high[d]
-        dexels.skin[lines] = packed(-x, -y, -z, OWN), packed(x, y, z, OWN)
+        dexels.facet[lines] = packed(-x, -y, -z, OWN), packed(x, y, z, OWN)
     return TriDexel(lattice, dexels, np.array([low, high]))
 
 
@@ -121,7 +121,7 @@ def _fill(dexels: Dexels, lattice: Lattice, poses: Poses, solid: Solid) -> None:
                 dexels.filled[line] = 1
                 dexels.ends[place, 0], dexels.ends[place, 1] = low, high
                 for end, t in enumerate((low, high)):
-                    dexels.skin[place, end] = surface(poses, solid, (d, t, x, y), 0, 0.0, 1.0, OWN)
+                    dexels.facet[place, end] = surface(poses, solid, (d, t, x, y), 0, 0.0, 1.0, OWN)
 
 
 def require_closed(mesh: "trimesh.Trimesh", path: Path) -> "trimesh.Trimesh":

@@ -115,6 +115,6 @@ def _join(
                 for side, place in enumerate((entered, i)):
                     normal = normals[int(triangle[place])]
                     dexels.ends[kept, side] = places[place]
-                    dexels.skin[kept, side] = packed(normal[0], normal[1], normal[2], 0)
+                    dexels.facet[kept, side] = packed(normal[0], normal[1], normal[2], 0)
                 kept += 1
         dexels.filled[line] = kept - dexels.first[line]

@@ -22,7 +22,7 @@ SPARE_INTERVALS = 1.25
 """Intervals that there is memory for at first, and how much more whenever it is full, as a factor."""
 LEAST_INTERVALS = 4096
 
-SkinArray = npt.NDArray[np.int32]
+FacetArray = npt.NDArray[np.int32]
 
 
 class Lattice(NamedTuple):
@@ -62,7 +62,7 @@ class Dexels(NamedTuple):
         filled: Intervals of each line, shape (n,).
         capacity: Intervals that each line has memory for, shape (n,).
         ends: Where material begins and ends, rising along a line, shape (m, 2) [mm].
-        skin: Normal and tool of the surface there (``normals``), shape (m, 2).
+        facet: Normal and tool of the surface there (``normals``), shape (m, 2).
         used: How much of the memory is given away, shape (1,).
     """
 
@@ -70,7 +70,7 @@ class Dexels(NamedTuple):
     filled: npt.NDArray[np.int16]
     capacity: npt.NDArray[np.int16]
     ends: FloatArray
-    skin: SkinArray
+    facet: FacetArray
     used: IntArray
 
     def copy(self) -> "Dexels":
@@ -80,7 +80,7 @@ class Dexels(NamedTuple):
             self.filled.copy(),
             self.capacity.copy(),
             self.ends.copy(),
-            self.skin.copy(),
+            self.facet.copy(),
             self.used.copy(),
         )
 
@@ -97,7 +97,7 @@ class Dexels(NamedTuple):
             np.array([total]),
         )
         (_, source), (_, target) = self.places(), larger.places()
-        larger.ends[target], larger.skin[target] = self.ends[source], self.skin[source]
+        larger.ends[target], larger.facet[target] = self.ends[source], self.facet[source]
         return larger
 
     def places(self) -> tuple[IntArray, IntArray]:

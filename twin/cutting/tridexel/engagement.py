@@ -8,20 +8,47 @@ import numpy as np
 from twin.cutting.tridexel.dexels import DIRECTIONS, TriDexel
 from twin.cutting.tridexel.intervals import Node, total_worth
 from twin.cutting.tridexel.moving_solid import Poses
-from twin.cutting.tridexel.poses import in_short_steps
 from twin.cutting.tridexel.solids import Solid
-from twin.cutting.tridexel.sweep import (
-    COLUMNS,
-    HIGHEST,
-    LENGTH,
-    LONGEST,
-    LOWEST,
-    MEASURE,
-    MOMENT,
-    VOLUME,
-    sweep,
-)
-from twin.nc.canonical import BoolArray, FloatArray
+from twin.cutting.tridexel.sweep import MEASURE, Sum, sweep
+from twin.nc.canonical import BoolArray, FloatArray, IntArray
+
+STEP_SHARE = 0.1
+"""Longest step as a share of a solid's radius: what rims leave between their places is of that size squared."""
+STEP_DEGREES = 2.0
+"""Largest turn of the axis in a step [deg]."""
+FINEST_STEP_MM = 0.05
+"""Steps need not be shorter than this [mm]: of a pointed tool its whole radius counts, of a stub nothing."""
+
+
+def in_short_steps(poses: Poses, solids: Sequence[Solid]) -> tuple[Poses, IntArray]:
+    """Put poses between those that are far from each other.
+
+    Args:
+        poses: Ends of n steps.
+        solids: What moves.
+
+    Returns:
+        Poses of m short steps, and which of the n steps each of them is part of, shape (m,).
+    """
+    tip, axis = poses
+    radius = max(max(solid.low_radius, solid.high_radius) + solid.rounding for solid in solids)
+    longest = max(STEP_SHARE * radius, FINEST_STEP_MM)
+    way = np.zeros(len(tip) - 1)
+    for height in (solids[0].low, max(solid.high for solid in solids)):
+        way = np.maximum(way, np.linalg.norm(np.diff(tip + height * axis, axis=0), axis=1))
+    turn = np.linalg.norm(np.diff(axis, axis=0), axis=1) / np.deg2rad(STEP_DEGREES)
+    parts = np.maximum(np.ceil(np.maximum(way / longest, turn)), 1.0).astype(np.int64)
+    if (parts == 1).all():
+        return poses, np.arange(len(parts))
+    step = np.repeat(np.arange(len(parts)), parts)
+    place = np.arange(len(step)) - np.repeat(np.cumsum(parts) - parts, parts)
+    share = ((place + 1.0) / parts[step])[:, None]
+    between = [
+        np.concatenate([ends[:1], (1.0 - share) * ends[step] + share * ends[step + 1]])
+        for ends in (tip, axis)
+    ]
+    direction: FloatArray = between[1] / np.linalg.norm(between[1], axis=1, keepdims=True)
+    return Poses(between[0], direction), step
 
 
 class Engagement(NamedTuple):
@@ -64,16 +91,16 @@ def cut(stock: TriDexel, poses: Poses, edge: Sequence[Solid], tool: int) -> Enga
         edge: The bodies that cut.
         tool: Number that the cut surface remembers, from 1 to ``normals.MOST_TOOLS``.
     """
-    tally = _swept(stock, poses, edge, tool)
-    length = tally[:, LENGTH]
+    sums = _swept(stock, poses, edge, tool)
+    length = sums[:, Sum.LENGTH]
     touched = length > 0.0
     some = np.where(touched, length, 1.0)
     return Engagement(
-        tally[:, VOLUME],
+        sums[:, Sum.VOLUME],
         touched,
-        np.where(touched, tally[:, HIGHEST] - tally[:, LOWEST], 0.0),
-        tally[:, MOMENT : MOMENT + 3] / some[:, None],
-        tally[:, LONGEST : LONGEST + 3].max(axis=1, initial=0.0),
+        np.where(touched, sums[:, Sum.HIGHEST] - sums[:, Sum.LOWEST], 0.0),
+        sums[:, Sum.MOMENT : Sum.MOMENT + 3] / some[:, None],
+        sums[:, Sum.LONGEST : Sum.LONGEST + 3].max(axis=1, initial=0.0),
     )
 
 
@@ -84,7 +111,7 @@ def met(stock: TriDexel, poses: Poses, solid: Solid) -> FloatArray:
     is any, and the shortest of these counts: on a face that looks along an axis it is the depth below the
     face, on one that looks between all three at most 1.73 times as much.
     """
-    longest = _swept(stock, poses, (solid,), MEASURE)[:, LONGEST : LONGEST + 3]
+    longest = _swept(stock, poses, (solid,), MEASURE)[:, Sum.LONGEST : Sum.LONGEST + 3]
     least = np.where(longest > 0.0, longest, np.inf).min(axis=1, initial=np.inf)
     return np.where(np.isfinite(least), least, 0.0)
 
@@ -92,18 +119,18 @@ def met(stock: TriDexel, poses: Poses, solid: Solid) -> FloatArray:
 def _swept(stock: TriDexel, poses: Poses, solids: Sequence[Solid], tool: int) -> FloatArray:
     """Bring solids along steps, in shorter ones where they are long; what each step did."""
     short, step = in_short_steps(poses, solids)
-    tally = np.zeros((len(step), COLUMNS))
-    tally[:, LOWEST], tally[:, HIGHEST] = np.inf, -np.inf
+    sums = np.zeros((len(step), Sum.COLUMNS))
+    sums[:, Sum.LOWEST], sums[:, Sum.HIGHEST] = np.inf, -np.inf
     bodies, done = np.array(solids, np.float64), 0
     while True:
-        done = sweep(stock.dexels, stock.lattice, short, bodies, tally, tool, done)
-        if done >= len(tally):
+        done = sweep(stock.dexels, stock.lattice, short, bodies, sums, tool, done)
+        if done >= len(sums):
             break
         stock.dexels = stock.dexels.grown()
-    if len(tally) < len(poses.tip):
-        return tally
+    if len(sums) < len(poses.tip):
+        return sums
     first = np.flatnonzero(np.diff(step, prepend=-1))
-    whole = np.add.reduceat(tally, first)
-    whole[:, LOWEST] = np.minimum.reduceat(tally[:, LOWEST], first)
-    whole[:, HIGHEST:] = np.maximum.reduceat(tally[:, HIGHEST:], first)
+    whole = np.add.reduceat(sums, first)
+    whole[:, Sum.LOWEST] = np.minimum.reduceat(sums[:, Sum.LOWEST], first)
+    whole[:, Sum.HIGHEST :] = np.maximum.reduceat(sums[:, Sum.HIGHEST :], first)
     return whole

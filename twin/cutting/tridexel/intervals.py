@@ -47,7 +47,7 @@ class Node(NamedTuple):
 
 
 @arithmetic_kernel
-def worth(t: float, skin: int, node: Node) -> float:
+def worth(t: float, facet: int, node: Node) -> float:
     """What the material below a place on a line adds to the volume, over the area of a cell [mm].
 
     The volume is c³ N, with the number N of nodes in the material taken as the mean of what the lines of the
@@ -59,7 +59,7 @@ def worth(t: float, skin: int, node: Node) -> float:
     """
     below = math.floor((t - node.first) / node.cell)
     beyond = t - node.first - (below + 0.5) * node.cell
-    return node.cell * below / 3.0 + squared_part(skin, node.direction) * beyond
+    return node.cell * below / 3.0 + squared_part(facet, node.direction) * beyond
 
 
 @arithmetic_kernel
@@ -68,8 +68,8 @@ def total_worth(dexels: Dexels, line: int, end: int, node: Node) -> float:
     total = 0.0
     for each in range(line, end):
         for place in range(dexels.first[each], dexels.first[each] + dexels.filled[each]):
-            total += worth(dexels.ends[place, 1], dexels.skin[place, 1], node)
-            total -= worth(dexels.ends[place, 0], dexels.skin[place, 0], node)
+            total += worth(dexels.ends[place, 1], dexels.facet[place, 1], node)
+            total -= worth(dexels.ends[place, 0], dexels.facet[place, 0], node)
     return total
 
 
@@ -110,7 +110,7 @@ def subtract(
     dexels: Dexels,
     line: int,
     cut: tuple[float, float],
-    skin: tuple[int, int],
+    facet: tuple[int, int],
     node: Node,
 ) -> Piece:
     """Take what lies between two places off a line.
@@ -119,7 +119,7 @@ def subtract(
         dexels: The material.
         line: Number of the line.
         cut: Lower and upper end [mm].
-        skin: Surface that is left below the lower end, and above the upper.
+        facet: Surface that is left below the lower end, and above the upper.
         node: Where the line's nodes are.
     """
     low, high = cut
@@ -145,22 +145,22 @@ def subtract(
             shift = dexels.first[line] - (end - dexels.filled[line])
             place, kept, end = place + shift, kept + shift, end + shift
         length += b - a
-        volume += worth(b, skin[1] if above else dexels.skin[place, 1], node)
-        volume -= worth(a, skin[0] if below else dexels.skin[place, 0], node)
+        volume += worth(b, facet[1] if above else dexels.facet[place, 1], node)
+        volume -= worth(a, facet[0] if below else dexels.facet[place, 0], node)
         moment += 0.5 * (b - a) * (a + b)
         longest = max(longest, b - a)
         lowest, highest = min(lowest, a), max(highest, b)
         if below and above:
             for other in range(end, place, -1):
                 _move(dexels, other - 1, other)
-            dexels.ends[place, 1], dexels.skin[place, 1] = a, skin[0]
-            dexels.ends[place + 1, 0], dexels.skin[place + 1, 0] = b, skin[1]
+            dexels.ends[place, 1], dexels.facet[place, 1] = a, facet[0]
+            dexels.ends[place + 1, 0], dexels.facet[place + 1, 0] = b, facet[1]
             dexels.filled[line] += 1
             return Piece(length, volume, moment, lowest, highest, longest)
         if below:
-            dexels.ends[place, 1], dexels.skin[place, 1] = a, skin[0]
+            dexels.ends[place, 1], dexels.facet[place, 1] = a, facet[0]
         elif above:
-            dexels.ends[place, 0], dexels.skin[place, 0] = b, skin[1]
+            dexels.ends[place, 0], dexels.facet[place, 0] = b, facet[1]
         if below or above:
             if kept != place:
                 _move(dexels, place, kept)
@@ -174,7 +174,7 @@ def subtract(
 def _move(dexels: Dexels, source: int, target: int) -> None:
     for end in range(2):
         dexels.ends[target, end] = dexels.ends[source, end]
-        dexels.skin[target, end] = dexels.skin[source, end]
+        dexels.facet[target, end] = dexels.facet[source, end]
 
 
 @arithmetic_kernel

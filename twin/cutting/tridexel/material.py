@@ -8,8 +8,8 @@ from numpy.typing import ArrayLike
 
 from twin.cutting.events import SCRAPE_MM
 from twin.cutting.kernels.overlap import Overlap
+from twin.cutting.kernels.simplify import simplify
 from twin.cutting.kernels.sweep import Removal
-from twin.cutting.kernels.thin import thin
 from twin.cutting.material import (
     AIR_MM,
     EDGE,
@@ -27,7 +27,7 @@ from twin.cutting.tools import Profile
 from twin.cutting.tridexel.boxes import Box, boxes_met
 from twin.cutting.tridexel.dexels import TriDexel
 from twin.cutting.tridexel.engagement import cut, met
-from twin.cutting.tridexel.mesh import part_mesh, skin_colours, surface
+from twin.cutting.tridexel.mesh import part_colours, part_mesh, surface
 from twin.cutting.tridexel.moving_solid import Poses
 from twin.cutting.tridexel.normals import MOST_TOOLS
 from twin.cutting.tridexel.solids import Solid, cutting_edge, cylinder, thinner
@@ -71,7 +71,7 @@ class TriDexelMaterial:
         """Choose samples between which tip and edge moved straight: a turning tool keeps no direction."""
         poses = _poses(points)
         reach = np.linalg.norm(np.diff(self.stock.corners, axis=0))
-        return thin(
+        return simplify(
             np.stack([poses.tip, poses.tip + reach * poses.axis]),
             group,
             min(STRAIGHT_SHARE * self.cell, STRAIGHT_MM),
@@ -116,7 +116,7 @@ class TriDexelMaterial:
 
     def write_glb(self, path: Path) -> None:
         """Write the part as binary glTF."""
-        export_glb(part_mesh(self.stock, skin_colours), path)
+        export_glb(part_mesh(self.stock, part_colours), path)
 
     def picture(self) -> bytes:
         """None: from above a part that was cut from several sides is not seen whole."""

@@ -7,7 +7,7 @@ import numpy as np
 
 from twin.cutting.colours import MACHINED_RGB, RAW_RGB, Colours
 from twin.cutting.tridexel.cell_loops import cell_loops
-from twin.cutting.tridexel.dexels import SkinArray, TriDexel
+from twin.cutting.tridexel.dexels import FacetArray, TriDexel
 from twin.cutting.tridexel.normals import OWN, tools
 from twin.cutting.tridexel.surface import Coarse, Crossings, find_surface, mark_inside
 from twin.nc.canonical import FloatArray, IntArray
@@ -30,13 +30,13 @@ class Surface(NamedTuple):
 
     Attributes:
         points: Vertices, shape (n, 3) [mm].
-        skin: Normal and tool at each (``normals``), shape (n,).
+        facet: Normal and tool at each (``normals``), shape (n,).
         faces: Triangles, counter-clockwise from outside, the first corner a crossing, shape (m, 3).
         step: From one node of the lattice that was taken to the next, 1 for all of them.
     """
 
     points: FloatArray
-    skin: SkinArray
+    facet: FacetArray
     faces: IntArray
     step: int
 
@@ -71,7 +71,7 @@ def surface(stock: TriDexel, crossings: int = MESH_CROSSINGS, step: int = 1) -> 
     )
     patches = find_surface(stock.dexels, stock.lattice, coarse, inside, cell_loops(), found, count)
     vertices = count + patches
-    return Surface(found.point[:vertices], found.skin[:vertices], _faces(found.segment), step)
+    return Surface(found.point[:vertices], found.facet[:vertices], _faces(found.segment), step)
 
 
 def _marked(stock: TriDexel, coarse: Coarse) -> tuple[np.ndarray, int]:
@@ -123,7 +123,7 @@ def part_mesh(stock: TriDexel, colours: Paint | None = None) -> "trimesh.Trimesh
     return trimesh.Trimesh(found.points, found.faces, vertex_colors=painted, process=False)
 
 
-def skin_colours(found: Surface) -> Colours:
+def part_colours(found: Surface) -> Colours:
     """Raw where the blank's own surface is untouched, machined elsewhere, shape (n, 3)."""
-    machined = (tools(found.skin) != OWN)[:, None]
+    machined = (tools(found.facet) != OWN)[:, None]
     return np.where(machined, MACHINED_RGB, RAW_RGB).astype(np.uint8)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from twin.compilation.kernel import arithmetic_kernel
-from twin.cutting.tridexel.dexels import SkinArray
+from twin.cutting.tridexel.dexels import FacetArray
 from twin.nc.canonical import FloatArray, IntArray
 
 _STEPS = 2047
@@ -13,7 +13,7 @@ _STEPS = 2047
 _BITS = 11
 _LARGEST = (1 << _BITS) - 1
 MOST_TOOLS = 511
-"""Tools that are told apart."""
+"""Tools that are distinguished."""
 OWN = 0
 """In place of a tool's number: the blank's own surface."""
 
@@ -31,9 +31,9 @@ def packed(x: float, y: float, z: float, tool: int) -> int:
 
 
 @arithmetic_kernel
-def unpacked(skin: int) -> tuple[float, float, float]:
+def unpacked(facet: int) -> tuple[float, float, float]:
     """The direction of a normal, on the octahedron: not of unit length."""
-    column, row = skin & _LARGEST, skin >> _BITS & _LARGEST
+    column, row = facet & _LARGEST, facet >> _BITS & _LARGEST
     u, v = 2.0 * column / _STEPS - 1.0, 2.0 * row / _STEPS - 1.0
     z = 1.0 - abs(u) - abs(v)
     folded = max(-z, 0.0)
@@ -41,16 +41,16 @@ def unpacked(skin: int) -> tuple[float, float, float]:
 
 
 @arithmetic_kernel
-def squared_part(skin: int, direction: int) -> float:
+def squared_part(facet: int, direction: int) -> float:
     """Square of a unit normal's part along X, Y or Z."""
-    x, y, z = unpacked(skin)
+    x, y, z = unpacked(facet)
     part = z if direction == 2 else (x if direction == 0 else y)
     return part * part / (x * x + y * y + z * z)
 
 
-def normals(skin: SkinArray) -> FloatArray:
+def normals(facet: FacetArray) -> FloatArray:
     """Unit normals out of the material, shape (..., 3)."""
-    column, row = skin & _LARGEST, skin >> _BITS & _LARGEST
+    column, row = facet & _LARGEST, facet >> _BITS & _LARGEST
     u, v = 2.0 * column / _STEPS - 1.0, 2.0 * row / _STEPS - 1.0
     z = 1.0 - np.abs(u) - np.abs(v)
     folded = np.maximum(-z, 0.0)
@@ -58,6 +58,6 @@ def normals(skin: SkinArray) -> FloatArray:
     return normal / np.linalg.norm(normal, axis=-1, keepdims=True)
 
 
-def tools(skin: SkinArray) -> IntArray:
+def tools(facet: FacetArray) -> IntArray:
     """Which tool left each surface, 0 for the blank's own."""
-    return (skin >> 2 * _BITS).astype(np.int64)
+    return (facet >> 2 * _BITS).astype(np.int64)

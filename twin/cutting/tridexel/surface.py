@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from twin.compilation.kernel import arithmetic_kernel
 from twin.cutting.tridexel.cell_loops import CellLoops
-from twin.cutting.tridexel.dexels import Dexels, Lattice, SkinArray
+from twin.cutting.tridexel.dexels import Dexels, FacetArray, Lattice
 from twin.cutting.tridexel.normals import unpacked
 from twin.nc.canonical import FloatArray
 
@@ -38,14 +38,14 @@ class Crossings(NamedTuple):
 
     Attributes:
         point: Crossings, then one vertex for each patch, shape (n + p, 3) [mm].
-        skin: Normal and tool at each, shape (n + p,).
+        facet: Normal and tool at each, shape (n + p,).
         segment: Of the rims of patches: first crossing, next crossing, patch, shape (4 n, 3).
         layer: Numbers of the crossings of the layers of edges that are at hand: along X; along Y and Z before
             and behind, shape (5, ny, nz).
     """
 
     point: FloatArray
-    skin: SkinArray
+    facet: FacetArray
     segment: Numbers
     layer: Numbers
 
@@ -182,17 +182,17 @@ def _cross(
     line = lattice.base[d] + across[1] * lattice.shape[u] + across[0]
     low = lattice.origin[d] + cell * (first + node[d] * step)
     length = cell * step
-    best, nearest, skin = math.inf, low + 0.5 * length, 0
+    best, nearest, facet = math.inf, low + 0.5 * length, 0
     for place in range(dexels.first[line], dexels.first[line] + dexels.filled[line]):
         t = dexels.ends[place, ends]
         off = max(low - t, t - low - length, 0.0)
         if off < best:
-            best, nearest, skin = off, t, dexels.skin[place, ends]
+            best, nearest, facet = off, t, dexels.facet[place, ends]
     margin = _MARGIN * length
     found.point[number, d] = min(max(nearest, low + margin), low + length - margin)
     found.point[number, u] = lattice.origin[u] + cell * across[0]
     found.point[number, v] = lattice.origin[v] + cell * across[1]
-    found.skin[number] = skin
+    found.facet[number] = facet
 
 
 @arithmetic_kernel
@@ -271,7 +271,7 @@ def _place(
     for _ in range(count):
         number = _edge(loops, found, edge, j, k)
         point = found.point[number]
-        x, y, z = unpacked(found.skin[number])
+        x, y, z = unpacked(found.facet[number])
         scale = 1.0 / math.sqrt(x * x + y * y + z * z)
         x, y, z = x * scale, y * scale, z * scale
         off = x * (point[0] - mx) + y * (point[1] - my) + z * (point[2] - mz)
@@ -288,4 +288,4 @@ def _place(
     for axis, t in enumerate((mx + x, my + y, mz + z)):
         begin = lattice.origin[axis] + lattice.cell * (coarse.first + low[axis] * coarse.step)
         found.point[vertex, axis] = min(max(t, begin + margin), begin + length - margin)
-    found.skin[vertex] = found.skin[_edge(loops, found, start, j, k)]
+    found.facet[vertex] = found.facet[_edge(loops, found, start, j, k)]

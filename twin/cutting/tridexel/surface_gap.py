@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from twin.compilation.compilable import inlined
 from twin.compilation.kernel import arithmetic_kernel
-from twin.cutting.tridexel.dexels import Dexels, Lattice, SkinArray
+from twin.cutting.tridexel.dexels import Dexels, FacetArray, Lattice
 from twin.cutting.tridexel.intervals import Node, worth
 from twin.cutting.tridexel.normals import unpacked
 from twin.nc.canonical import FloatArray, IntArray
@@ -31,13 +31,13 @@ class Gaps(NamedTuple):
         away: Out of the material positive, shape (n,) [mm]; NaN: no surface is within reach.
         beside: Of the middle of the nearest disc, along it, shape (n,) [mm].
         normal: Of the disc, shape (n, 3).
-        skin: Normal and tool of the surface there, shape (n,).
+        facet: Normal and tool of the surface there, shape (n,).
     """
 
     away: FloatArray
     beside: FloatArray
     normal: FloatArray
-    skin: SkinArray
+    facet: FacetArray
 
 
 @arithmetic_kernel
@@ -113,15 +113,15 @@ def _nearest(
                     for end in range(2):
                         off = t - dexels.ends[place, end]
                         if abs(off) <= (reach + 1) * cell:
-                            skin = dexels.skin[place, end]
+                            facet = dexels.facet[place, end]
                             across = (points[number, u] - x, points[number, v] - y)
-                            best = _held(skin, d, off, across, radius, number, best, found)
+                            best = _held(facet, d, off, across, radius, number, best, found)
     return best
 
 
 @inlined
 def _held(
-    skin: int,
+    facet: int,
     d: int,
     off: float,
     across: tuple[float, float],
@@ -131,7 +131,7 @@ def _held(
     found: Gaps,
 ) -> float:
     """Hold a point against a disc, and keep it if none was nearer; the squared distance of the nearest."""
-    a, b, c = unpacked(skin)
+    a, b, c = unpacked(facet)
     scale = 1.0 / math.sqrt(a * a + b * b + c * c)
     a, b, c = a * scale, b * scale, c * scale
     if d == 0:
@@ -149,7 +149,7 @@ def _held(
     found.away[number] = math.copysign(math.sqrt(away * away + beyond * beyond), away)
     found.beside[number] = beside
     found.normal[number, 0], found.normal[number, 1], found.normal[number, 2] = a, b, c
-    found.skin[number] = skin
+    found.facet[number] = facet
     return distance
 
 
@@ -161,16 +161,16 @@ def difference(one: Dexels, other: Dexels, line: int, end: int, node: Node) -> f
         taken, last = other.first[each], other.first[each] + other.filled[each]
         for place in range(one.first[each], one.first[each] + one.filled[each]):
             stop = one.ends[place, 1]
-            here, skin = one.ends[place, 0], one.skin[place, 0]
+            here, facet = one.ends[place, 0], one.facet[place, 0]
             for held in range(taken, last):
                 begin, after = other.ends[held, 0], other.ends[held, 1]
                 if after <= here or begin >= stop:
                     continue
                 if begin > here:
-                    total += worth(begin, other.skin[held, 0], node) - worth(here, skin, node)
-                here, skin = after, other.skin[held, 1]
+                    total += worth(begin, other.facet[held, 0], node) - worth(here, facet, node)
+                here, facet = after, other.facet[held, 1]
             if here < stop:
-                total += worth(stop, one.skin[place, 1], node) - worth(here, skin, node)
+                total += worth(stop, one.facet[place, 1], node) - worth(here, facet, node)
     return total
 
 

@@ -1,5 +1,6 @@
 """Bring solids along steps through a tri-dexel stock, line by line."""
 
+import enum
 import math
 from typing import NamedTuple
 
@@ -21,10 +22,24 @@ from twin.cutting.tridexel.solids import Solid
 from twin.cutting.tridexel.swept import within_swept, within_swept_ball
 from twin.nc.canonical import FloatArray
 
-VOLUME, LENGTH, MOMENT, LOWEST, HIGHEST, LONGEST, COLUMNS = 0, 1, 2, 5, 6, 7, 10
-"""Columns of what is found out about a step: volume [mm³]; length of all that was taken off [mm]; that times
-its place along X, Y, Z [mm²]; its lowest and highest place along the tool's axis, above the tip [mm]; its longest
-piece along X, Y and Z, or how long what was met is [mm]."""
+
+class Sum(enum.IntEnum):
+    """Columns of what is found out about a step."""
+
+    VOLUME = 0
+    """[mm³]"""
+    LENGTH = 1
+    """Of all that was taken off [mm]."""
+    MOMENT = 2
+    """First of three: that length times its place along X, Y and Z [mm²]."""
+    LOWEST = 5
+    """Lowest place along the tool's axis, above the tip [mm]."""
+    HIGHEST = 6
+    LONGEST = 7
+    """First of three: the longest piece along X, Y and Z, or how long what was met is [mm]."""
+    COLUMNS = 10
+    """How many there are."""
+
 
 MEASURE = -1
 """In place of a tool's number: nothing is cut."""
@@ -52,7 +67,7 @@ def sweep(
     lattice: Lattice,
     poses: Poses,
     solids: FloatArray,
-    tally: FloatArray,
+    sums: FloatArray,
     tool: int,
     first: int,
 ) -> int:
@@ -63,7 +78,7 @@ def sweep(
         lattice: Where it lies.
         poses: Ends of n steps.
         solids: What moves: the fields of each ``Solid``, shape (m, 5).
-        tally: What each step did is added to it, shape (n, COLUMNS).
+        sums: What each step did is added to it, shape (n, COLUMNS).
         tool: Which it is; ``MEASURE``: it cuts nothing, and what it meets is measured.
         first: Step to begin with.
 
@@ -79,7 +94,7 @@ def sweep(
             if span[0] > span[1]:
                 continue
             for direction in range(3):
-                if not _sweep_lines(dexels, lattice, poses, solid, tally, step, span, direction):
+                if not _sweep_lines(dexels, lattice, poses, solid, sums, step, span, direction):
                     return number
     return len(poses.tip) - 1
 
@@ -129,7 +144,7 @@ def _sweep_lines(
     lattice: Lattice,
     poses: Poses,
     solid: Solid,
-    tally: FloatArray,
+    sums: FloatArray,
     step: Step,
     span: tuple[float, float],
     d: int,
@@ -168,7 +183,7 @@ def _sweep_lines(
             if not meeting(dexels, line + column, bottom, top):
                 continue
             x = lattice.origin[u] + column * cell
-            if not _meet(dexels, lattice, poses, solid, tally, step, (d, line + column, x, y)):
+            if not _meet(dexels, lattice, poses, solid, sums, step, (d, line + column, x, y)):
                 return False
     return True
 
@@ -224,7 +239,7 @@ def _meet(
     lattice: Lattice,
     poses: Poses,
     solid: Solid,
-    tally: FloatArray,
+    sums: FloatArray,
     step: Step,
     place: tuple[int, int, float, float],
 ) -> bool:
@@ -239,9 +254,9 @@ def _meet(
     meets = meeting(dexels, line, low, high) if low < high else 0
     if not meets:
         return True
-    row, a = tally[step.number], step.number
+    row, a = sums[step.number], step.number
     if not step.cuts:
-        row[LONGEST + d] = max(row[LONGEST + d], overlap(dexels, line, low, high))
+        row[Sum.LONGEST + d] = max(row[Sum.LONGEST + d], overlap(dexels, line, low, high))
         return True
     below = above = 0
     if meets & ENDS_BELOW:
@@ -257,16 +272,16 @@ def _meet(
         return True
     area = lattice.cell * lattice.cell
     u, v = (d + 1) % 3, (d + 2) % 3
-    row[VOLUME] += area * piece.volume
-    row[LENGTH] += piece.length
-    row[MOMENT + d] += piece.moment
-    row[MOMENT + u] += piece.length * x
-    row[MOMENT + v] += piece.length * y
-    row[LONGEST + d] = max(row[LONGEST + d], piece.longest)
+    row[Sum.VOLUME] += area * piece.volume
+    row[Sum.LENGTH] += piece.length
+    row[Sum.MOMENT + d] += piece.moment
+    row[Sum.MOMENT + u] += piece.length * x
+    row[Sum.MOMENT + v] += piece.length * y
+    row[Sum.LONGEST + d] = max(row[Sum.LONGEST + d], piece.longest)
     for end in (piece.low, piece.high):
         height = _height(poses, a + 1, d, end, x, y)
-        row[LOWEST] = min(row[LOWEST], height)
-        row[HIGHEST] = max(row[HIGHEST], height)
+        row[Sum.LOWEST] = min(row[Sum.LOWEST], height)
+        row[Sum.HIGHEST] = max(row[Sum.HIGHEST], height)
     return True
 
 

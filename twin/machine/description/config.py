@@ -113,7 +113,7 @@ class AxisTable(Table):
     """Time constant of the filter that the setpoint passes before the drive sees it [s]; 0: none. The
     axis trails by velocity times this besides what the loop leaves, whatever the feed-forward."""
     velocity_feedforward: Share = 0.0
-    """Share of the setpoint velocity that the drive is told; 1 removes the lag."""
+    """Share of the setpoint velocity that the drive is commanded; 1 removes the lag."""
     acceleration_feedforward: Share = 0.0
     """Share of the inertial force that the drive adds in advance."""
     force_limit: NonNegative = 0.0
@@ -165,7 +165,7 @@ class TableTable(Table):
     axis: str
     """Name of the rotary axis that turns the part."""
     center: tuple[Coordinate, Coordinate] = (0.0, 0.0)
-    """Machine X and Y at which the tool stands over the axis of rotation [mm]."""
+    """Machine X and Y at which the tool is over the axis of rotation [mm]."""
 
 
 class SpindleTable(Table):

@@ -66,7 +66,7 @@ class TableAxisTable(Table):
 class GeometryTable(Table):
     """Errors of the machine's geometry; what is not given is ideal.
 
-    They shift the actual tool point, not what the axes are told.
+    They shift the actual tool point, not what the axes are commanded.
     """
 
     squareness: SquarenessTable = SquarenessTable()

@@ -1,4 +1,4 @@
-"""What the planner is told of a machine file."""
+"""What the planner is told about a machine file."""
 
 import math
 

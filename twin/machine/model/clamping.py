@@ -21,7 +21,7 @@ _FAR = 1.0
 
 
 def refuse_overlaps(clamped: MachineModel, bore: float | None = None) -> None:
-    """Hold fixtures against each other, against the stock and against the table that they stand on.
+    """Hold fixtures against each other, against the stock and against the table that they are on.
 
     Args:
         clamped: The machine with all that is clamped on it.
@@ -65,7 +65,7 @@ _CARRIES = (*PARALLELS, POST)
 def _in_bore(
     model: mujoco.MjModel, data: mujoco.MjData, one: int, two: int, bore: float | None
 ) -> bool:
-    """Whether the one of the two that is no stock stands within the stock's hole."""
+    """Whether the one of the two that is no stock is within the stock's hole."""
     stock, fixture = (one, two) if model.geom(one).name == BLANK else (two, one)
     across = _corners(model, data, fixture)[:, :2] - data.geom_xpos[stock][:2]
     reach = float(np.hypot(*across.T).max())
@@ -122,7 +122,7 @@ def what_carries(clamped: MachineModel) -> str | None:
 
 
 TALLEST = 150.0
-"""How far parallels, blocks or a post carry a stock at most [mm]: what is higher stands on a fixture of its own."""
+"""How far parallels, blocks or a post carry a stock at most [mm]: what is higher is on a fixture of its own."""
 TOUCHES = 0.5
 """A fixture so near to the stock holds it [mm]: jaws are given to the millimetre."""
 

@@ -14,8 +14,8 @@ from twin.machine.model.drives import (
     Lag,
     feedforward_name,
     integral_name,
+    is_unstable,
     lag_name,
-    swings_up,
     tune,
 )
 from twin.machine.model.transmission import (
@@ -53,7 +53,7 @@ def add_drives(spec: mujoco.MjSpec, machine: Machine, found: Sequence[Drive]) ->
     period = machine.file.servo_period_s
     substeps = 1
     for name, drive in zip(machine.axes.names, found, strict=True):
-        _refuse_what_swings_up(machine, name, drive)
+        _refuse_unstable(machine, name, drive)
         _refuse_what_outruns_the_clock(machine, name, drive)
         needed = (need.substeps for need in _needs(machine, name, drive))
         substeps = max(substeps, *needed)
@@ -176,15 +176,15 @@ def _needs(machine: Machine, name: str, drive: Drive) -> Iterator[_Need]:
         yield _Need(key, math.ceil(period / lag.time_s / _LAG_STEP))
 
 
-def _refuse_what_swings_up(machine: Machine, name: str, drive: Drive) -> None:
+def _refuse_unstable(machine: Machine, name: str, drive: Drive) -> None:
     """A loop whose lags make it grow by itself is no drive that anybody runs."""
-    if not drive.lags or not swings_up(drive):
+    if not drive.lags or not is_unstable(drive):
         return
     axis = machine.axis(name)
     steady, growing = 0.0, axis.kv
     for _ in range(40):
         middle = (steady + growing) / 2.0
-        grows = swings_up(tune(axis.model_copy(update={"kv": middle}), drive.moved))
+        grows = is_unstable(tune(axis.model_copy(update={"kv": middle}), drive.moved))
         steady, growing = (steady, middle) if grows else (middle, growing)
     keys = [key for key in ("loop_delay_s", "velocity_filter_s") if getattr(axis, key)]
     raise ConfigError(

@@ -1,7 +1,7 @@
 """Servo drives: gains derived from what they move, never typed.
 
 Each axis is one ``<intvelocity>`` actuator, whose input is integrated to the position setpoint p
-(``sampling`` says why), and a ``<motor>`` that adds what the drive is told in advance. On the joint
+(``sampling`` says why), and a ``<motor>`` that adds what the drive is commanded in advance. On the joint
 q they push together with
 
     F = kp (p - q) - kv q' + ff.
@@ -152,7 +152,7 @@ def tune(axis: AxisTable, moved: float) -> Drive:
     )
 
 
-def swings_up(drive: Drive) -> bool:
+def is_unstable(drive: Drive) -> bool:
     """Whether the loop, on a rigid axis without friction, grows by itself because of its lags."""
     width = 3 + len(drive.lags)
     rates: FloatArray = np.zeros((width, width))
@@ -168,7 +168,7 @@ def swings_up(drive: Drive) -> bool:
 
 
 def feedforward_name(axis: str) -> str:
-    """Name of the actuator that adds what an axis's drive is told in advance."""
+    """Name of the actuator that adds what an axis's drive is commanded in advance."""
     return f"{axis} feed-forward"
 
 

@@ -47,7 +47,7 @@ class HeadShape:
     """The solids around the spindle, as the model's collision geoms say.
 
     A geom that is neither an upright cylinder nor an upright box counts as the box around it. So does what
-    carries a swivel head: it stands so above the spindle only while the head is upright, and is held
+    carries a swivel head: it is so above the spindle only while the head is upright, and is held
     against the stock only then.
     """
 

@@ -298,7 +298,7 @@ def drives(machine: Machine, model: mujoco.MjModel) -> tuple[Drive, ...]:
     """Derive every axis's position loop from the masses of the compiled model at home.
 
     They are those of the empty table: what a job clamps there changes no gain, as no control is
-    tuned anew for each part.
+    tuned again for each part.
 
     Returns:
         One drive per axis, in the order of ``machine.axes``.

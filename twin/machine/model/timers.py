@@ -1,7 +1,7 @@
 """MuJoCo's own timers, switched off: nobody reads them, and they take a fifth of a run.
 
 MuJoCo asks the clock around every stage of every step, of which RK4 has four passes. What it
-measures stands in ``MjData.timer``, for profilers of interactive viewers.
+measures is in ``MjData.timer``, for profilers of interactive viewers.
 """
 
 from typing import Any

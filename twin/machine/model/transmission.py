@@ -2,7 +2,7 @@
 
 A rigid axis is one joint that carries the motor's inertia as armature. Backlash or a springy screw
 splits it in two coincident joints: the first is the motor (with the armature, and the position loop
-closed on it), the second the give between motor and axis. The axis stands where both together say.
+closed on it), the second the give between motor and axis. The axis is where both together say.
 
 A screw without backlash is a spring with a damper on the give. With backlash the give runs between
 two walls, which are limits of its joint, and nothing acts within the gap:

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 INSET = 0.15
-"""How far they stand back from the blank's sides, as a share of its size."""
+"""How far they are back from the blank's sides, as a share of its size."""
 SMALLEST_GAP = 0.1
 """A blank that is so far above the table at most lies on it [mm]."""
 PARALLELS, POST = ("parallel 1", "parallel 2"), "post"
@@ -29,12 +29,12 @@ class Support(NamedTuple):
 
 
 def supports(size: tuple[float, float, float], gap: float, *, box: bool) -> tuple[Support, ...]:
-    """What stands between the table and a blank.
+    """What is between the table and a blank.
 
     Args:
         size: Of the box around the blank [mm].
         gap: Height of its lower face over the table [mm].
-        box: The blank is a box; else it stands on a post.
+        box: The blank is a box; else it is on a post.
     """
     if gap < SMALLEST_GAP:
         return ()

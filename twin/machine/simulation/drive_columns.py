@@ -43,10 +43,10 @@ def drive_columns(machine: Machine, model: mujoco.MjModel, loops: tuple[Drive, .
         position_gain=np.array([loop.position_gain for loop in loops]),
         velocity_gain=np.array([loop.damping_gain for loop in loops]),
         integral_gain=np.array([loop.integral_gain for loop in loops]),
-        velocity_told=np.array(
+        velocity_feedforward=np.array(
             [axis.velocity_feedforward * loop.velocity_gain for axis, loop in driven]
         ),
-        acceleration_told=np.array(
+        acceleration_feedforward=np.array(
             [axis.acceleration_feedforward * loop.moved for axis, loop in driven]
         ),
         trail=np.array(

@@ -19,8 +19,8 @@ class Drives(NamedTuple):
         position_gain: Force per position.
         velocity_gain: Force per velocity, as far as none is late.
         integral_gain: Force per integral of the position's error; 0: the drive has no integrator.
-        velocity_told: Force that is added in advance per commanded velocity.
-        acceleration_told: Force that is added in advance per commanded acceleration.
+        velocity_feedforward: Force that is added in advance per commanded velocity.
+        acceleration_feedforward: Force that is added in advance per commanded acceleration.
         trail: How long an axis that the integrator has settled trails its setpoint [s].
         speed_bulge: What the motor's speed is higher between samples than at them, on average, per
             commanded acceleration [s]: the speed that it is told stands still over a step.
@@ -43,8 +43,8 @@ class Drives(NamedTuple):
     position_gain: FloatArray
     velocity_gain: FloatArray
     integral_gain: FloatArray
-    velocity_told: FloatArray
-    acceleration_told: FloatArray
+    velocity_feedforward: FloatArray
+    acceleration_feedforward: FloatArray
     trail: FloatArray
     speed_bulge: FloatArray
     limit: FloatArray
@@ -62,7 +62,7 @@ class Drives(NamedTuple):
 
 
 class Points(NamedTuple):
-    """Setpoints, as far as drives are told of them: shape (n, k) each."""
+    """Setpoints, as far as drives receive them: shape (n, k) each."""
 
     position: FloatArray
     velocity: FloatArray
@@ -106,7 +106,9 @@ def hold_controls(drives: Drives, past: Points, points: Points, width: int) -> F
             velocity = held_velocity(before, node, h)
             acceleration = held_acceleration(speed_before, points.velocity[row, axis], h)
             controls[row, drives.velocity_input[axis]] = velocity * scale
-            controls[row, drives.force_input[axis]] = _told(drives, axis, velocity, acceleration)
+            controls[row, drives.force_input[axis]] = _feedforward_force(
+                drives, axis, velocity, acceleration
+            )
             if drives.position_input[axis] >= 0:
                 meant = (node + before) / 2 - drives.trail[axis] * velocity
                 controls[row, drives.position_input[axis]] = meant * scale
@@ -181,7 +183,9 @@ def read_states(
             push = drives.position_gain[axis] * ((points.position[row, axis] - motor) * scale)
             bulge = drives.speed_bulge[axis] * points.acceleration[row, axis]
             push -= drives.velocity_gain[axis] * (speed + bulge) * scale
-            push += _told(drives, axis, points.velocity[row, axis], points.acceleration[row, axis])
+            push += _feedforward_force(
+                drives, axis, points.velocity[row, axis], points.acceleration[row, axis]
+            )
             if drives.integral[axis] >= 0:
                 # Its input trails the polyline, whose nodes the setpoint passes at h²/12 a.
                 node_loss = drives.trail[axis] * (drives.period**2 / 12)
@@ -197,8 +201,9 @@ def read_states(
 
 
 @kernel
-def _told(drives: Drives, axis: int, velocity: float, acceleration: float) -> float:
+def _feedforward_force(drives: Drives, axis: int, velocity: float, acceleration: float) -> float:
     """Force that a drive adds in advance [N or N m]."""
     return drives.scale[axis] * (
-        drives.velocity_told[axis] * velocity + drives.acceleration_told[axis] * acceleration
+        drives.velocity_feedforward[axis] * velocity
+        + drives.acceleration_feedforward[axis] * acceleration
     )

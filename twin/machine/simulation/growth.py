@@ -14,7 +14,7 @@ from collections.abc import Callable
 import numpy as np
 
 from twin.machine.description.config import Machine
-from twin.machine.simulation.filter_kernels import relax
+from twin.machine.simulation.setpoint_filter import relax
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
 from twin.recording.form import Samples

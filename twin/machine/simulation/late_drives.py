@@ -72,7 +72,7 @@ class LateDrives:
         """Setpoints as the drives see them.
 
         Args:
-            past: What was followed last, or stands at the first.
+            past: What was followed last, or is at the first.
             points: What follows.
         """
         rows = Points(
@@ -140,10 +140,12 @@ class LateDrives:
     def _force(
         self, now: tuple[FloatArray, FloatArray], late: tuple[FloatArray, FloatArray]
     ) -> FloatArray:
-        """What a dead time adds to what a drive is told in advance, for velocities and accelerations."""
+        """What a dead time adds to what a drive is commanded in advance, for velocities and accelerations."""
         drives, dead = self._drives, self._half > 0.0
         behind = [2.0 * dead * (after - at) for at, after in zip(now, late, strict=True)]
-        force = drives.velocity_told * behind[0] + drives.acceleration_told * behind[1]
+        force = (
+            drives.velocity_feedforward * behind[0] + drives.acceleration_feedforward * behind[1]
+        )
         force += self._integral * drives.trail * now[0] - self._stiffness * late[0]
         force += self._integral * self._half * (late[0] - drives.trail * late[1])
         return np.asarray(force)

@@ -192,7 +192,7 @@ class LiveMachine:
         meanwhile: the first alarm is what counts.
 
         Args:
-            ticks: Number of servo periods; call again until the axes stand.
+            ticks: Number of servo periods; call again until the axes are at rest.
         """
         return self._step(self._ramp(ticks))
 
@@ -203,7 +203,7 @@ class LiveMachine:
             self.alarm = Alarm(code, int(now.line[0]), float(now.time[0]), axis, message)
 
     def clear(self) -> None:
-        """Clear the alarm and switch the drives on where the axes stand.
+        """Clear the alarm and switch the drives on where the axes are.
 
         Raises:
             AlarmStandsError: An axis still moves.

@@ -2,7 +2,7 @@
 
 Sample i of the recording belongs to the instant of setpoint i, and a control is held from sample i
 to sample i + 1. The drives hold a *velocity* and integrate it, so that their position setpoint is
-the polyline through the setpoints: at every sample it stands where the setpoint stands, whatever
+the polyline through the setpoints: at every sample it is where the setpoint stands, whatever
 the integrator, and no sample of slip is possible.
 
 Why not hold a position? A held position is a staircase, worth the setpoint in the middle of its
@@ -21,7 +21,7 @@ which undoes the loss to the second order. The velocity that runs from node to n
 
     u = (p1 - p0)/h - h/12 (a1 - a0),
 
-is at the same time what a drive must be told as its velocity: the setpoint's velocity, held, with
+is at the same time what a drive must be commanded as its velocity: the setpoint's velocity, held, with
 the loss of holding ((W h)²/24) undone, to the same order. The acceleration that belongs to it is the
 mean of the step, (v1 - v0)/h. ``tests/machine/test_sampling.py`` holds all of this to closed forms.
 """
@@ -40,7 +40,7 @@ _POLYLINE_LOSS = 1.0 / 12.0
 
 @array_kernel
 def polyline_node(position: Value, acceleration: Value, period_s: float) -> Value:
-    """Where a drive's position setpoint stands at a sample; elementwise of arrays.
+    """Where a drive's position setpoint is at a sample; elementwise of arrays.
 
     Args:
         position: Of the setpoint [mm or deg].

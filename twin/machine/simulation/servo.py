@@ -193,7 +193,7 @@ class Servo:
         self._warm_up()
 
     def switch_on(self) -> None:
-        """Take the drives' setpoints to where the axes stand, every axis carrying its load."""
+        """Take the drives' setpoints to where the axes are, every axis carrying its load."""
         model, data = self.model, self._data
         mujoco.mj_setState(model, data, self._state, _STATE)
         data.qvel[:] = 0.0
@@ -298,7 +298,7 @@ class Servo:
         return (self._data.qfrc_bias - self._data.qfrc_passive)[dofs] - pulled
 
     def _carry(self, load: FloatArray) -> FloatArray:
-        """Give the integrators their load; return what the others stand off for theirs, (k,)."""
+        """Give the integrators their load; return what the others are off for theirs, (k,)."""
         self._data.act[self._integral_state] = (
             load[self._integrates] / self._drives.integral_gain[self._integrates]
         )
@@ -313,7 +313,7 @@ class Servo:
     def _begin(self, chunk: Setpoints) -> None:
         """Put the machine at rest at the first setpoint, every axis carrying its load.
 
-        A drive that integrates has settled at its setpoint; another stands off it by load/kp, and a
+        A drive that integrates has settled at its setpoint; another is off it by load/kp, and a
         transmission that gives is strained by the load.
         """
         model, data = self.model, self._data
@@ -396,5 +396,5 @@ class Servo:
 
 
 def _points(setpoints: Setpoints) -> Points:
-    """What the drives are told of setpoints."""
+    """What the drives receive of setpoints."""
     return Points(setpoints.position, setpoints.velocity, setpoints.acceleration)

@@ -51,11 +51,11 @@ class ToolClearances:
         return None
 
     def finish(self) -> Alarm | None:
-        """Return the alarm of a tool that comes behind the last move, where the axes stand then."""
+        """Return the alarm of a tool that comes behind the last move, where the axes are then."""
         return self._look_at_changes(None)
 
     def _look_at_changes(self, move: int | None) -> Alarm | None:
-        """Hold the tools that come before a move against what is around them where the axes stand.
+        """Hold the tools that come before a move against what is around them where the axes are.
 
         Args:
             move: Its number; None: the program has ended.

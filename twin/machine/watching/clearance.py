@@ -1,6 +1,6 @@
 """How close the tool's side comes to the other side: collisions and near misses along a run.
 
-Whoever stands on the tool's side (cutter, shank, holder, spindle nose, housing, head) is held
+Whoever is on the tool's side (cutter, shank, holder, spindle nose, housing, head) is held
 against every solid on the other side (table, rotary table, fixtures, column), each as its exact
 convex shape. Where two of them are d apart, a plane with the normal n lies between them, and it
 keeps lying there while the one is displaced by s as long as
@@ -9,8 +9,8 @@ keeps lying there while the one is displaced by s as long as
 
 r being the farthest that a point of it is displaced by turning. That sum is linear in the displacement
 and costs a few operations for a sample, so all samples are judged by it, and between them the straight way from
-sample to sample. Only where it no longer tells is the distance measured anew (``mj_geomDistance``), which gives
-the next plane; where neither the plane before nor the plane behind tells of the way between two samples,
+sample to sample. Only where it no longer tells is the distance measured again (``mj_geomDistance``), which gives
+the next plane; where neither the plane before nor the plane behind reports the way between two samples,
 the way is halved until they do, or until it is shorter than ``SHORTEST_WAY``.
 
 So an overlap of more than ``TOUCH`` is found wherever two samples see it, and a thinner way through a corner
@@ -55,7 +55,7 @@ SHORTEST_WAY = 0.02
 WORSE = 0.1
 """What has met, and was acknowledged, may overlap by so much more before it is an alarm again [mm]."""
 NEAR_STEP = 0.01
-"""A near miss is told of to this [mm]."""
+"""A near miss is reported to this [mm]."""
 _FAR = 10.0
 """Distances beyond this are not measured [m]."""
 _BLOCK = 256
@@ -183,7 +183,7 @@ class Clearance:
         return moving, self._motion.follow(seen), seen.reach
 
     def begin(self) -> None:
-        """Look anew at the next sample: the axes have moved since the last one."""
+        """Look again at the next sample: the axes have moved since the last one."""
         self._last = None
         self._planes.forget()
 
@@ -264,14 +264,14 @@ class Clearance:
 
         Args:
             pair: Number of the pair.
-            before: The plane that tells of the first sample.
-            behind: The plane that tells of the second.
+            before: The plane that reports the first sample.
+            behind: The plane that reports the second.
             track: Where the geom is at both, shape (w, 2).
-            position: Where the axes stand at both, shape (2, k).
+            position: Where the axes are at both, shape (2, k).
         """
         way = np.abs(track[:, 1] - track[:, 0])
         length = float(np.linalg.norm(way[:3])) + before.reach * float(way[3:].sum())
-        if length < SHORTEST_WAY or _told(before, behind, track, self._threshold[pair]):
+        if length < SHORTEST_WAY or _is_certain(before, behind, track, self._threshold[pair]):
             return np.inf
         stand, there = position.mean(axis=0), track.mean(axis=1)
         clearance, middle = self._measure(pair, stand, there)
@@ -349,7 +349,7 @@ class _Way(NamedTuple):
         return int(setpoint.line[row - self.known]), float(setpoint.time[row - self.known])
 
 
-def _told(before: _Plane, behind: _Plane, track: FloatArray, threshold: float) -> bool:
+def _is_certain(before: _Plane, behind: _Plane, track: FloatArray, threshold: float) -> bool:
     """Whether two planes keep a pair apart on the whole straight way between two samples."""
     leaves = _share_above(before.bound(track) - threshold)
     comes = 1.0 - _share_above(behind.bound(track)[::-1] - threshold)

@@ -15,7 +15,7 @@ class Chain(NamedTuple):
 
     Attributes:
         parent: Row of the body that carries each, shape (b,).
-        place: Where it stands on it, shape (b, 3) [m].
+        place: Where it is on it, shape (b, 3) [m].
         turn: How it is turned on it, shape (b, 3, 3).
         first: First joint of each body and, last, j; shape (b + 1,).
         axis: Axis of each joint, shape (j,).
@@ -65,7 +65,7 @@ def follow_tracks(chain: Chain, followed: Followed, position: FloatArray) -> Flo
         position: Of the axes, shape (n, k) [mm or deg].
 
     Returns:
-        Each point in its frame [mm], and where each rotary axis stands [rad] if it turns the two
+        Each point in its frame [mm], and where each rotary axis is [rad] if it turns the two
         against each other, else 0; shape (t, 3 + r, n).
     """
     joint = position * chain.scale

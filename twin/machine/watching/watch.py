@@ -4,21 +4,14 @@ import numpy as np
 
 from twin.machine.description.config import AxisTable, Machine
 from twin.machine.watching.alarms import Alarm, AlarmCode
-from twin.machine.watching.watch_kernels import (
-    FOLLOWING_ERROR,
-    HARD_LIMIT,
-    NOTHING,
-    SATURATION,
-    Watched,
-    find_raised,
-)
+from twin.machine.watching.watch_kernels import Raised, Watched, find_raised
 from twin.nc.canonical import FloatArray
 from twin.recording.reader import Samples
 
 OVERTRAVEL = 2.0
 """How far beyond its travel an axis meets its limit switch where none is given [mm or deg]."""
 _ON_SWITCH = 0.1
-"""What an axis that stands on its limit switch may move further onto it, such as by settling
+"""What an axis that is on its limit switch may move further onto it, such as by settling
 [mm or deg]."""
 _AT_LIMIT = 1.0 - 1e-9
 """Share of the force limit from which a drive counts as being at it: rounding, not slack."""
@@ -60,14 +53,14 @@ class Watch:
         """Return the alarm of the first sample that raises one."""
         setpoint, position = samples.setpoint.position, samples.joint_position
         kind, row, axis = find_raised(self._watched, setpoint, position, samples.drive_force)
-        if kind == NOTHING:
+        if kind == Raised.NOTHING:
             return None
         here = float(position[row, axis])
         behind = abs(float(setpoint[row, axis]) - here)
         messages: dict[int, tuple[AlarmCode, str]] = {
-            HARD_LIMIT: ("hard-limit", self._at_switch(here, axis)),
-            FOLLOWING_ERROR: ("following-error", self._behind(behind, axis)),
-            SATURATION: ("drive-saturation", self._at_limit(axis)),
+            Raised.HARD_LIMIT: ("hard-limit", self._at_switch(here, axis)),
+            Raised.FOLLOWING_ERROR: ("following-error", self._behind(behind, axis)),
+            Raised.SATURATION: ("drive-saturation", self._at_limit(axis)),
         }
         code, message = messages[kind]
         line, time = int(samples.setpoint.line[row]), float(samples.setpoint.time[row])

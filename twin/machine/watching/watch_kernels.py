@@ -1,12 +1,19 @@
 """What a control sees in samples of its axes: limit switches, lag, force."""
 
+import enum
 from typing import NamedTuple
 
 from twin.compilation.kernel import kernel
 from twin.nc.canonical import FloatArray, IntArray
 
-NOTHING, HARD_LIMIT, FOLLOWING_ERROR, SATURATION = -1, 0, 1, 2
-"""What ``find_raised`` returns; of what comes in one sample the first counts."""
+
+class Raised(enum.IntEnum):
+    """What ends a run; of what comes in one sample the first counts."""
+
+    NOTHING = -1
+    HARD_LIMIT = 0
+    FOLLOWING_ERROR = 1
+    SATURATION = 2
 
 
 class Watched(NamedTuple):
@@ -42,29 +49,29 @@ def find_raised(
         force: Of the drives, shape (n, k).
 
     Returns:
-        ``HARD_LIMIT`` and so on or ``NOTHING``, the sample, and the axis that raises it.
+        ``Raised.HARD_LIMIT`` and so on or ``Raised.NOTHING``, the sample, and the axis that raises it.
     """
-    kind, first, raising = NOTHING, 0, 0
+    kind, first, raising = Raised.NOTHING, 0, 0
     count, axes = position.shape
     lowest, highest = watched.raised_at[0], watched.raised_at[1]
     saturated = watched.saturated
     for row in range(count):
-        found = NOTHING
+        found = Raised.NOTHING
         for axis in range(axes):
             at_limit = abs(force[row, axis]) >= watched.force[axis]
             saturated[axis] = saturated[axis] + 1 if at_limit else 0
-            here, own = position[row, axis], NOTHING
+            here, own = position[row, axis], Raised.NOTHING
             if here < lowest[axis] or here > highest[axis]:
-                own = HARD_LIMIT
+                own = Raised.HARD_LIMIT
             elif abs(setpoint[row, axis] - here) > watched.lag[axis]:
-                own = FOLLOWING_ERROR
+                own = Raised.FOLLOWING_ERROR
             elif saturated[axis] > watched.patience[axis]:
-                own = SATURATION
-            if own != NOTHING and (found == NOTHING or own < found):
+                own = Raised.SATURATION
+            if own != Raised.NOTHING and (found == Raised.NOTHING or own < found):
                 found = own
-                if kind == NOTHING:
+                if kind == Raised.NOTHING:
                     raising = axis
-        if kind == NOTHING and found != NOTHING:
+        if kind == Raised.NOTHING and found != Raised.NOTHING:
             kind, first = found, row
     for axis in range(axes):
         # An axis that has left its limit switch raises the alarm there again.

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from twin.columns import Columns, join
-from twin.motion.blocks.block_kernels import largest_travels
+from twin.compilation.kernel import array_kernel
 from twin.motion.steps import Step
 from twin.nc.canonical import (
     Chunk,
@@ -23,6 +23,32 @@ from twin.nc.canonical import (
 )
 from twin.toolpath.geometry import Geometry, geometry
 from twin.units import SECONDS_PER_MINUTE
+
+
+@array_kernel
+def largest_travels(
+    start: FloatArray, end: FloatArray, rotary: np.ndarray[tuple[int], np.dtype[np.bool_]]
+) -> tuple[FloatArray, FloatArray]:
+    """How far the axis goes that goes farthest.
+
+    Args:
+        start: Of the moves, shape (n, k) [mm or deg].
+        end: Shape (n, k) [mm or deg].
+        rotary: Whether an axis is one, shape (k,).
+
+    Returns:
+        Of all axes, and of the linear ones, shape (n,) each [mm or deg].
+    """
+    count, axes = start.shape
+    farthest, linear = np.zeros(count), np.zeros(count)
+    for i in range(count):
+        for axis in range(axes):
+            travel = abs(end[i, axis] - start[i, axis])
+            farthest[i] = max(farthest[i], travel)
+            if not rotary[axis]:
+                linear[i] = max(linear[i], travel)
+    return farthest, linear
+
 
 SHORTEST = 1e-9
 """A shorter block takes no time [mm or deg]: a thousandth of the nanometre the path is kept to."""
@@ -80,7 +106,7 @@ class BlocksOfChunks(Step[Chunk, Blocks]):
 
     Args:
         chunks: The program.
-        start: Where the axes stand before, part coordinates, shape (k,) [mm or deg].
+        start: Where the axes are before, part coordinates, shape (k,) [mm or deg].
 
     Raises:
         ValueError: When pulled: a move does not begin where the one before it ended.
@@ -180,7 +206,7 @@ def _of_moves(
 
 
 def _of_dwell(dwell: Dwell, move: int, position: FloatArray) -> Blocks:
-    """The block of a dwell: it stands at ``position``, the end of the move before."""
+    """The block of a dwell: it is at ``position``, the end of the move before."""
     zero = np.zeros(1)
     still = Geometry(
         base=position[None],

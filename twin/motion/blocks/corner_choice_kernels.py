@@ -79,7 +79,7 @@ LEAST_TURN = 1.5 * math.pi
 
 RUN_SHARE = 0.8
 """Share of the time under an arc's bounds that such a run takes from stop to stop. Shorter ones take less
-too; where that makes the stop faster, the plan tells (``twin.motion.corner_trials``)."""
+too; where that makes the stop faster, the plan tells (``twin.motion.corner_candidates``)."""
 
 FREE, PASSED, STOPPED = -1, 0, 1
 """How a border is passed: to be chosen, without a stop, at rest."""

@@ -3,7 +3,7 @@
 **How it works.** A program is planned as ``plan`` does it, but only as far as setpoints are asked
 for. The overrides are ceilings of the velocity along the path: of the programmed feed, or of what
 the axes can do in a rapid. Whatever is changed takes effect from the next setpoint on: the plan is
-broken off at the state (place, v, a) that it has there, and made anew under the new ceilings.
+broken off at the state (place, v, a) that it has there, and made again under the new ceilings.
 Where that state is too fast for them, a brake begins at once, with the acceleration and jerk that
 the pieces of the path allow, and ends where the new plan can take over; a brake that is under way
 is eased off as soon as the new plan allows. A hold is an override of zero.
@@ -24,7 +24,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from twin.columns import join
-from twin.motion.corner_trials import PiecesOfChunks
+from twin.motion.corner_candidates import PiecesOfChunks
 from twin.motion.limits import MotionLimits
 from twin.motion.live.overridden_plan import OverriddenPlan, Overrides
 from twin.motion.pieces.pieces import BATCH
@@ -60,7 +60,7 @@ class LiveMotion:
         limits: Of the axes and the path.
         period_s: Servo period [s].
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
-        start: Where the axes stand before the program, machine coordinates, shape (k,) [mm or deg].
+        start: Where the axes are before the program, machine coordinates, shape (k,) [mm or deg].
         largest_override: Highest feed override.
         look_ahead: Blocks that are cut and planned at a time, and seen at least beyond these.
 

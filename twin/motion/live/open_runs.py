@@ -23,12 +23,12 @@ class OpenRuns:
     """The run at the end of what is planned, and those that have got a new time law.
 
     Attributes:
-        gained: Time that the plan is ahead of its reference [s].
+        time_saved: Time that the plan is ahead of its reference [s].
         waiting: Phases of a run whose end is not planned yet, in the reference's time, or None.
     """
 
     def __init__(self) -> None:
-        self.gained = 0.0
+        self.time_saved = 0.0
         self.waiting: PhaseTable | None = None
         self._retimed: list[Retimed] = []
 
@@ -44,7 +44,9 @@ class OpenRuns:
     @property
     def begin(self) -> float:
         """When that run begins [s]."""
-        return math.inf if self.waiting is None else float(self.waiting.rows[0, 0]) - self.gained
+        return (
+            math.inf if self.waiting is None else float(self.waiting.rows[0, 0]) - self.time_saved
+        )
 
     def take(
         self, more: PhaseTable, pieces: RunPieces | None, machine: MachineLimits, override: float,
@@ -75,7 +77,9 @@ class OpenRuns:
             self.waiting = known[certain:]
         if certain == 0:
             return known[:0]
-        table, found, self.gained = retime(known[:certain], pieces, machine, override, self.gained)
+        table, found, self.time_saved = retime(
+            known[:certain], pieces, machine, override, self.time_saved
+        )
         self._retimed += found
         return table
 
@@ -106,7 +110,7 @@ class OpenRuns:
                 kept = PhaseTable(phases.rows[before], phases.rows_pieces[before])
                 kept.rows[-1, 1] = time - kept.rows[-1, 0]
                 rest = PhaseTable(phases.rows[after], phases.rows_pieces[after]).shifted(later)
-                self.gained -= later
+                self.time_saved -= later
                 return joined([kept, way, rest])
         return phases
 

@@ -1,4 +1,4 @@
-"""A plan that is made only as far as it is needed, and anew when the operator's overrides change."""
+"""A plan that is made only as far as it is needed, and again when the operator's overrides change."""
 
 import dataclasses
 import math
@@ -12,7 +12,7 @@ from twin.motion.live.open_runs import OpenRuns
 from twin.motion.live.transition_kernels import find_transition
 from twin.motion.pieces.pieces import Pieces
 from twin.motion.profile.backward_pass_kernels import ROUNDING, SLOWEST, backward_pass, find_brake
-from twin.motion.profile.forward_pass_kernels import STATE_AT_REST, Stands, forward_pass
+from twin.motion.profile.forward_pass_kernels import STATE_AT_REST, SegmentTimes, forward_pass
 from twin.motion.profile.phase_kernels import PhaseRows, write_brake
 from twin.motion.profile.phases import Phases, brakes_from, no_phases, phases_of
 from twin.motion.profile.state import Course, State
@@ -133,11 +133,11 @@ class OverriddenPlan:
             elif self._wishes.held or segment == stop:
                 self._stand_until(time)
             else:
-                until = time + self._runs.gained
+                until = time + self._runs.time_saved
                 if self._runs.waits:
                     until = max(until, float(self._state[4]) + FURTHER)
                 rows, segments = forward_pass(
-                    drive.limits, drive.entry, drive.brakes, Stands(window.overlap, window.pause),
+                    drive.limits, drive.entry, drive.brakes, SegmentTimes(window.overlap, window.pause),
                     min(stop, window.due), until, self._state,
                 )  # fmt: skip
                 phases = phases_of(window, rows, segments)
@@ -146,7 +146,7 @@ class OverriddenPlan:
     @property
     def _now(self) -> float:
         """When the plan is in its last state [s]."""
-        return float(self._state[4]) - self._runs.gained
+        return float(self._state[4]) - self._runs.time_saved
 
     def _planned_to(self) -> float:
         """Up to when the phases are known [s]."""
@@ -269,7 +269,7 @@ class OverriddenPlan:
             x = float(lengths[piece])
         row = np.array([[now, time - now, x, 0.0, 0.0, 0.0]])
         self._append(Phases(self._window.parts, row, np.array([[piece, piece]])))
-        self._state[4] = time + self._runs.gained
+        self._state[4] = time + self._runs.time_saved
 
     def _append(self, more: Phases) -> None:
         last = self.phases[-1]

@@ -1,7 +1,7 @@
 """Where blocks are cut into pieces, and what roundings add to each.
 
 Along the path the polynomials that are added change where a rounding begins, at its border, and
-where it ends. One sum of them is carried along; it is made anew before what rounding errors of a
+where it ends. One sum of them is carried along; it is made again before what rounding errors of a
 narrow rounding have left in its highest powers can grow.
 """
 
@@ -126,7 +126,7 @@ def place_pieces(
 
     Returns:
         Path fraction per x, path fraction at the begin, highest v there, overlap there; shape (m,)
-        each. A dwell stands at the end of the move before it.
+        each. A dwell is at the end of the move before it.
     """
     count = len(owner)
     scale, begin, highest = np.zeros(count), np.zeros(count), np.full(count, math.inf)

@@ -91,7 +91,7 @@ def blocks_to_cut(
 
     Args:
         chunks: The program.
-        start: Where the axes stand before, part coordinates, shape (k,) [mm or deg].
+        start: Where the axes are before, part coordinates, shape (k,) [mm or deg].
         batch: How many that are.
 
     Raises:

@@ -130,7 +130,7 @@ def narrowed(
         room: Room there.
 
     Returns:
-        The first five anew.
+        The first five again.
     """
     if room >= 0.0:
         return new, high, room, _damped(at_high, at_low, room) if side > 0 else at_high, 1

@@ -29,7 +29,7 @@ ROWS_PER_STEP = 8
 """Rows that one step may write at most, and some to spare."""
 
 
-class Stands(NamedTuple):
+class SegmentTimes(NamedTuple):
     """What happens where n segments are entered at rest.
 
     Attributes:
@@ -66,7 +66,7 @@ class Drive(NamedTuple):
 
 @array_kernel
 def forward_pass(
-    limits: FloatArray, entry: FloatArray, brakes: FloatArray, stands: Stands,
+    limits: FloatArray, entry: FloatArray, brakes: FloatArray, times: SegmentTimes,
     stop: int, until: float, state: FloatArray,
 ) -> tuple[FloatArray, IntArray]:  # fmt: skip
     """Drive from ``state`` to a segment or a time, on to the end of a phase or brake.
@@ -81,7 +81,7 @@ def forward_pass(
         limits: Of a ``Course``.
         entry: Of a ``Course``.
         brakes: From ``backward_pass``.
-        stands: Of the segments.
+        times: Of the segments.
         stop: Segment at which to end.
         until: Time at which to end [s].
         state: As ``STATE_AT_REST``; overwritten by the state at the end, shape (9,).
@@ -97,7 +97,7 @@ def forward_pass(
     phases_here, last_segment = 0, drive.state.segment
     while drive.state.segment < stop and drive.state.segment < count:
         i = drive.state.segment
-        overlaps = drive.last_jerk > 0.0 and stands.overlap[i] > 0.0
+        overlaps = drive.last_jerk > 0.0 and times.overlap[i] > 0.0
         if drive.now >= until and not overlaps:
             break
         phases_here = phases_here + 1 if i == last_segment else 0
@@ -108,7 +108,7 @@ def forward_pass(
                 np.concatenate((rows.segments, np.zeros_like(rows.segments))),
             )
         if limits[0, i] == 0.0:
-            drive = _wait(rows, drive, stands.pause[i])
+            drive = _wait(rows, drive, times.pause[i])
             continue
         _, x, v, _ = drive.state
         if v < SLOWEST and limits[0, i] - x <= ROUNDING * limits[0, i]:
@@ -126,7 +126,7 @@ def forward_pass(
             )
         if v <= 0.0 or phases_here < MAX_PHASES:
             before = drive.rows
-            drive = _extend(course, rows, drive, stands.overlap[i] if overlaps else 0.0)
+            drive = _extend(course, rows, drive, times.overlap[i] if overlaps else 0.0)
             if drive.rows > before:
                 continue
         drive = _brake_on(course, rows, drive)

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from twin.motion.limits import MotionLimits
-from twin.motion.phase_planner import plan_phases
+from twin.motion.planner import plan_phases
 from twin.motion.profile.brake_kernels import time_to
 from twin.motion.profile.phases import Phases
 from twin.motion.report.reasons import SHORT, STOP, Reasons, reasons
@@ -100,7 +100,7 @@ def summarize(
     Args:
         chunks: The program.
         limits: Of the axes and the path.
-        start: Where the axes stand before, part coordinates, shape (k,) [mm or deg].
+        start: Where the axes are before, part coordinates, shape (k,) [mm or deg].
         axes: Their names.
     """
     rows: dict[tuple[int, int], _Row] = defaultdict(_Row)

@@ -112,7 +112,7 @@ def pieces_for_runs(pieces: Pieces) -> RunPieces | None:
 
 
 def retime(
-    phases: PhaseTable, pieces: RunPieces | None, machine: MachineLimits, override: float, gained: float
+    phases: PhaseTable, pieces: RunPieces | None, machine: MachineLimits, override: float, time_saved: float
 ) -> tuple[PhaseTable, list[Retimed], float]:  # fmt: skip
     """Drive the runs among phases faster; what comes after them begins earlier.
 
@@ -121,7 +121,7 @@ def retime(
         pieces: Under them, None where none is an arc; phases that go beyond these stay as they are.
         machine: Limits of the axes and the path.
         override: Factor of the programmed feed.
-        gained: Time that the plan is ahead of the phases already [s].
+        time_saved: Time that the plan is ahead of the phases already [s].
 
     Returns:
         The phases, the runs that have changed, and the time gained after them [s].
@@ -129,23 +129,23 @@ def retime(
     parts, found = list[PhaseTable](), list[Retimed]()
     done = 0
     if pieces is None:
-        return phases.shifted(-gained), found, gained
+        return phases.shifted(-time_saved), found, time_saved
     runs = find_runs(phases.rows, phases.rows_pieces, pieces, override)
     for first, last, kind in runs[runs[:, 2] > 0]:
-        reference = phases[first:last].shifted(-gained)
+        reference = phases[first:last].shifted(-time_saved)
         ends = run_ends(reference.rows, reference.rows_pieces)
         begin = float(reference.rows[0, 0])
         share = JERK_SHARE if kind == RunKind.LONG else SHORT_JERK_SHARE
         faster = drive_run(ends, pieces, machine, override, begin, share)
         if faster is None or faster.end > reference.end - LEAST_GAIN * (reference.end - begin):
             continue
-        parts += [phases[done:first].shifted(-gained), faster]
+        parts += [phases[done:first].shifted(-time_saved), faster]
         found.append(Retimed(begin, faster, reference))
-        gained += reference.end - faster.end
+        time_saved += reference.end - faster.end
         done = last
-    if not found and gained == 0.0:
-        return phases, found, gained
-    return joined([*parts, phases[done:].shifted(-gained)]), found, gained
+    if not found and time_saved == 0.0:
+        return phases, found, time_saved
+    return joined([*parts, phases[done:].shifted(-time_saved)]), found, time_saved
 
 
 def drive_run(

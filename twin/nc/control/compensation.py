@@ -108,5 +108,6 @@ def compensate(control: Control, side: float, radius: float, *, led: bool = Fals
         side * radius * handedness(control.motion.frame.matrix),
         square=modal.square_corners,
         indirect=modal.indirect_leads,
+        look_ahead=modal.look_ahead,
         led=led,
     )

@@ -163,7 +163,7 @@ class Control:
         word: Word | Statement | None = None,
         hint: str | None = None,
     ) -> NoReturn:
-        """Refuse the block; the caret stands under a word, a statement's keyword or the last code."""
+        """Refuse the block; the caret is under a word, a statement's keyword or the last code."""
         self.report.fail(code, message, *self.span_of(word), hint)
 
     def warn(

@@ -8,6 +8,7 @@ from typing import Self, TypedDict
 from twin.nc.canonical import Corner
 from twin.nc.geometry.arcs import Bounds
 from twin.nc.geometry.planes import XY, Plane
+from twin.nc.path.compensation.gouge import KEPT
 from twin.nc.path.feed_rates import FeedMode
 
 
@@ -60,6 +61,7 @@ class ModalChanges(TypedDict, total=False):
     corner_tolerance: float
     square_corners: bool
     indirect_leads: bool
+    look_ahead: int
     correct_center: bool
 
 
@@ -106,6 +108,7 @@ class Modal:
         corner_tolerance: [mm]; NaN: the machine's.
         square_corners: Compensation extends lines at outside corners instead of rolling around them.
         indirect_leads: Compensation begins and ends around the contour's first and last point.
+        look_ahead: Elements of a compensated contour among which the control finds a crossing and refuses it.
         correct_center: A centre that start and end are not equally far from is moved to fit.
     """
 
@@ -122,6 +125,7 @@ class Modal:
     corner_tolerance: float = math.nan
     square_corners: bool = False
     indirect_leads: bool = False
+    look_ahead: int = KEPT
     correct_center: bool = True
 
     def put(self, changes: ModalChanges) -> None:

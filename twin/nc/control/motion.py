@@ -41,7 +41,7 @@ _STRAIGHT = (None, (NAN, NAN, NAN), 0.0)
 
 
 class Motion:
-    """Where a control stands and how fast it goes.
+    """Where a control is and how fast it goes.
 
     Attributes:
         frame: From programmed to part coordinates.
@@ -60,6 +60,7 @@ class Motion:
         axis_limits: Largest velocity of single axes, by column [mm/min or deg/min].
         axis_accelerations: Their largest acceleration [mm/s² or deg/s²].
         axis_decelerations: Their largest deceleration [mm/s² or deg/s²].
+        in_plane: As ``Segment.in_plane`` of the moves that follow.
         before_move: Given the length of each move of the block before it goes to the path.
     """
 
@@ -73,7 +74,7 @@ class Motion:
     ) -> None:
         """Stand where the program begins."""
         self.modal = modal
-        self._refuse_feed = refuse_feed
+        self._report, self._refuse_feed = report, refuse_feed
         self._default_feeds = (settings.default_feed, settings.default_rotary_feed)
         self.linear = tuple(kind == "linear" for kind in settings.axes.kinds)
         self.programmed = [settings.start.get(name, 0.0) for name in settings.axes.names]
@@ -90,6 +91,7 @@ class Motion:
         self.axis_limits: dict[int, float] = {}
         self.axis_accelerations: dict[int, float] = {}
         self.axis_decelerations: dict[int, float] = {}
+        self.in_plane = False
         self.before_move: Callable[[float], None] | None = None
 
     # --- moves
@@ -133,6 +135,10 @@ class Motion:
             add: What takes the move; None: the path, as it is.
         """
         end = self.frame.to_part(target)
+        led = self.path.tool_center
+        if led is not None and self.in_plane:
+            end = self._reached(led, end)
+            target = self.frame.to_programmed(end)
         center, normal, sweep = _STRAIGHT if arc is None else arc
         if center is None:
             length = line_length(self.part, end)
@@ -161,6 +167,7 @@ class Motion:
             sweep,
             None,
             self.frame.screen,
+            self.in_plane,
         )
         if add is None:
             self.path.add(move)
@@ -169,6 +176,13 @@ class Motion:
         self.last = move
         self.programmed = target
         self.part = end
+
+    def _reached(self, center: ToolCenter, end: list[float]) -> list[float]:
+        """Where the axes come to that turn the tool in a plane."""
+        try:
+            return center.reached(self.part, end)
+        except ValueError as error:
+            self._report.fail("tool-center", str(error))
 
     def take_rows(self, rows: Iterable[Any], programmed: list[float], part: list[float]) -> None:
         """Moves that were made elsewhere, rows as ``Path.add_rows`` takes them, lead to these positions, shape (k,)."""

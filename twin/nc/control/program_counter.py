@@ -71,7 +71,7 @@ class ProgramCounter:
         self._labels: FoundInText[int | str, list[Location]] | None = None
         self._cache = FoundInText[int, tuple[Block, ...]]()
         self._parsed = FoundInText[Hashable, object]()
-        self._told_to_end = False
+        self._end_asked = False
         self._here: tuple[Block, ...] = ()
         self._here_line = -1
 
@@ -120,7 +120,7 @@ class ProgramCounter:
                 return blocks[part]
             line, part = line + 1, 0
         self._line, self._part = line, 0
-        if not self._told_to_end:
+        if not self._end_asked:
             self._run_out()
         return None
 
@@ -182,7 +182,7 @@ class ProgramCounter:
 
     def end(self) -> None:
         """Go on behind the last line, which ends the program here."""
-        self._told_to_end = True
+        self._end_asked = True
         self.go(Location(len(self.lines), 0))
 
     def seek(self, wanted: Callable[[Block], bool]) -> bool:

@@ -17,6 +17,7 @@ class Tools:
         spindle: Number of the tool in the spindle.
         selected: Number of the tool that the next change brings.
         length_call: Number of the tool whose length the block that runs calls, or ``LENGTH_ENDED``; None: it calls none.
+        drills: The block that runs makes a hole by a drilling cycle, which neither bores, reams, taps nor counterbores.
     """
 
     def __init__(self, table: Mapping[int, ToolData], *, any_tool: bool = False) -> None:
@@ -28,6 +29,7 @@ class Tools:
         self._reference = 0.0 if first is None else table[first].length
         self.spindle = self.selected = first
         self.length_call: int | None = None
+        self.drills = False
 
     def change(self) -> None:
         """The selected tool goes into the spindle."""

@@ -1,14 +1,54 @@
 """The controls, one module or folder each, loaded when they are first asked for."""
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Container, Iterator, Mapping
 from functools import cache
 from importlib import import_module
+from importlib.metadata import EntryPoint, entry_points
 
 from twin.errors import UsageError
 from twin.nc.control.dialect import Dialect
-from twin.nc.dialects.outside import dialects_from_outside
 from twin.nc.text.source import Source
+
+GROUP = "twin.dialects"
+"""Entry points by which other packages bring dialects; each names a ``Dialect``."""
+
+
+def dialects_from_outside(
+    taken: Container[str],
+) -> tuple[dict[str, Dialect], dict[str, str]]:
+    """Load the dialects that other packages bring; those that are ``taken`` cannot be replaced.
+
+    ``tests/nc/dialects/test_dialects.py`` shows a package of twenty lines.
+
+    Returns:
+        Those that could be loaded, by name, and why the others could not.
+    """
+    found: dict[str, Dialect] = {}
+    failed: dict[str, str] = {}
+    for point in entry_points(group=GROUP):
+        reason = _load(point, taken, found)
+        if reason:
+            failed[point.name] = reason
+    return found, failed
+
+
+def _load(point: EntryPoint, taken: Container[str], found: dict[str, Dialect]) -> str:
+    """Load one; why that fails, or nothing."""
+    package = point.dist.name if point.dist is not None else point.value
+    try:
+        dialect = point.load()
+    except Exception as error:  # noqa: BLE001 (a foreign package may raise anything)
+        return f"{point.value} of {package} cannot be loaded: {type(error).__name__}: {error}"
+    if not isinstance(dialect, Dialect):
+        return f"{point.value} of {package} is a {type(dialect).__name__}, not a Dialect"
+    if dialect.name != point.name:
+        return f"{point.value} of {package} is called '{dialect.name}'"
+    if point.name in taken or point.name in found:
+        return f"{point.value} of {package} has the name of another dialect"
+    found[point.name] = dialect
+    return ""
+
 
 _MODULES = {
     "gost": "gost",
@@ -123,7 +163,7 @@ def marks_found(source: Source) -> dict[str, list[str]]:
     found: set[tuple[str, str]] = set()
     seen: set[str] = set()
     for line in source.lines:
-        shape = _VALUES.sub("0", _BRACKETS.sub(" ", line))
+        shape = _VALUES.sub("0", _REMARK.sub("; remark", _BRACKETS.sub(" ", line)))
         if shape not in seen:
             found |= {mark for mark, pattern in patterns.items() if pattern.search(shape)}
             if len(seen) < _MOST_SHAPES:
@@ -145,6 +185,8 @@ def marks_found(source: Source) -> dict[str, list[str]]:
 
 _BRACKETS = re.compile(r"\([^()]*\)")
 """A comment in every dialect: what it says decides nothing."""
+_REMARK = re.compile(r";(?![ \t]*\$PATH)[ \t]*[^ \t;].*")
+"""Text behind ; likewise, but for what names a SINUMERIK's folder."""
 _VALUES = re.compile(
     r"(?<=[XYZABCIJKRUVWN])(?!360(?![0-9.]))[-+]?(?=[.]?[0-9])[0-9.]+(?![0-9.]|[ \t]*=)",
     re.IGNORECASE,

@@ -330,5 +330,5 @@ def _is_binary_stl(data: bytes) -> bool:
     count = int.from_bytes(data[80:84], "little")
     if len(data) < HEAD:
         return count > 0 and 84 + 50 * count == len(data)
-    # Behind each triangle stands a number of further bytes, which is 0.
+    # Behind each triangle is a number of further bytes, which is 0.
     return 84 + 50 * count >= HEAD and not any(data[84 + 48 : HEAD - 1 : 50])

@@ -219,7 +219,7 @@ MEFI = Dialect(
     units="mm, degrees; F in mm/min, for rotary axes alone in deg/min",
     decisions=DECISIONS,
     marks=(
-        Mark(r'^[^;$#="]*"', 'a comment after "'),
+        Mark(r'^[^;$#="]*"[^"]*$', 'a comment after "'),
         Mark(r"\bG73\b.*\bL[ \t]*\d|\bL[ \t]*\d+.*\bG73\b", "G73 with L"),
         shared_marks.EXACT_STOP_ARC,
         shared_marks.G73_WITH_Q,

@@ -30,7 +30,7 @@ _COMMENT = re.compile(r"\(([^()]*)\)|;(.*)|^%(.*)")
 
 
 class Reading(NamedTuple):
-    """What a program tells of its dialect.
+    """What a program says about its dialect.
 
     Attributes:
         candidates: Dialects that it may be written in; one: it is given.

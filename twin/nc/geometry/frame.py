@@ -112,7 +112,7 @@ def moved_shift(shift: float, part: float, there: float) -> float:
 
     Args:
         shift: As it was.
-        part: Where the axis stands in part coordinates.
+        part: Where the axis is in part coordinates.
         there: Where it would stand with its new coordinates and the shift as it was.
     """
     return shift + part - there

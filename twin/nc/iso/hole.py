@@ -70,6 +70,14 @@ class Hole(NamedTuple):
     faster: float = 1.0
     rest: float = 0.0
 
+    @property
+    def is_drilled(self) -> bool:
+        """Whether it is made by a drill.
+
+        Reamers, taps and boring bars go back by feed or with a stopped spindle; counterbores dwell.
+        """
+        return self.retract is Retract.RAPID and (self.stops > 0 or not self.dwell)
+
     def next_peck(self, peck: float) -> float:
         """Depth of the peck behind one [mm]."""
         return max(peck * self.factor - self.reduction, self.least)
@@ -98,6 +106,7 @@ def turn_spindle(control: Control, function: str) -> None:
 
 def drill(control: Control, hole: Hole, target: list[float] | None = None) -> None:
     """Go over the hole, drill it, return; without a target, whose height is not used, the tool is over it."""
+    control.tools.drills |= hole.is_drilled
     axis = control.modal.plane.axes[2]
     over = max(control.motion.programmed[axis], hole.reference)
     go_to_height(control, over)

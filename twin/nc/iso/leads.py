@@ -213,7 +213,7 @@ def stand_at_height(control: Control, height: float, *, nowhere: bool = False) -
     Args:
         control: The control.
         height: Of the contour.
-        nowhere: The tool stands nowhere in the plane, so that the move must tell both coordinates.
+        nowhere: The tool is nowhere in the plane, so that the move must tell both coordinates.
     """
     target, (first, second, across) = list(control.motion.programmed), control.modal.plane.axes
     target[across] = height
@@ -223,7 +223,7 @@ def stand_at_height(control: Control, height: float, *, nowhere: bool = False) -
 
 
 def depart(control: Control, lead: Lead, target: list[float] | None) -> None:
-    """The contour ends where the tool stands; it leaves, and compensation has ended.
+    """The contour ends where the tool is; it leaves, and compensation has ended.
 
     Args:
         control: The control.

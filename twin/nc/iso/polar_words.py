@@ -23,7 +23,7 @@ def aim_by_polar(
         pole: In the plane [mm].
         last: Radius and angle as they were programmed last; NaN: they are measured [mm, deg].
         words: Of the radius and of the angle.
-        incremental: Both count from where the tool stands; else each by its own word.
+        incremental: Both count from where the tool is; else each by its own word.
 
     Returns:
         The new radius and angle [mm, deg].

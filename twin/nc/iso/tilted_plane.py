@@ -52,7 +52,7 @@ def directions_of(abscissa: Vector, ordinate: Vector) -> Matrix:
 
 
 def plane_of_axes(control: Control, angles: dict[int, float]) -> Matrix:
-    """The directions of the plane that the tool stands across while rotary axes stand at angles; as columns.
+    """The directions of the plane that the tool stands across while rotary axes are at angles; as columns.
 
     Args:
         control: The control, of a machine with rotary axes.
@@ -71,7 +71,12 @@ def _matrix(rows: FloatArray) -> Matrix:
 
 
 def point_tool(
-    control: Control, name: str, *, sense: float = 0.0, at: Statement | None = None
+    control: Control,
+    name: str,
+    *,
+    sense: float = 0.0,
+    at: Statement | None = None,
+    about_tip: bool = False,
 ) -> None:
     """Turn the rotary axes until the tool stands across the plane of the frame, then count in it.
 
@@ -80,15 +85,39 @@ def point_tool(
         name: What the program calls it, for diagnostics.
         sense: Sign of the axis next to the tool that is preferred; 0: whatever is nearest.
         at: What asks for it; None: the block's code.
+        about_tip: They turn about the tip; else X, Y and Z rest.
 
     Raises:
         ProgramError: The machine cannot, or radius compensation is in force.
     """
     end_tool_center(control, name, keeps_length=True)
-    target = list(control.motion.programmed)
-    target[3:] = rotary_axes_across(control, name, sense=sense, at=at)[3:]
-    control.line_to(target, rapid=True)
+    axes = rotary_axes_across(control, name, sense=sense, at=at)
+    if about_tip:
+        turn_about(control, name, axes)
+    else:
+        control.line_to([*control.motion.programmed[:3], *axes[3:]], rapid=True)
     begin_tool_center(control, name, tilted=True)
+
+
+def turn_about(
+    control: Control, name: str, axes: list[float], below: float = 0.0, *, rapid: bool = True
+) -> None:
+    """Turn the rotary axes about a point below the tip, where the part is.
+
+    Args:
+        control: The control.
+        name: What the program calls it, for diagnostics.
+        axes: Where the rotary axes go to, programmed, shape (k,); X, Y and Z are not looked at.
+        below: How far the point lies below the tip [mm].
+        rapid: At the machine's own speed.
+    """
+    begin_tool_center(control, name)
+    center = control.path.tool_center
+    assert center is not None
+    control.motion.lead_tip(center.with_length(center.length_difference + below))
+    control.line_to([*control.motion.programmed[:3], *axes[3:]], rapid=rapid)
+    control.motion.lead_tip(center)
+    end_tool_center(control, name, keeps_length=True)
 
 
 def rotary_axes_across(

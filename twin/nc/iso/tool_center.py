@@ -4,8 +4,9 @@ Decisions:
 
 * Programmed X, Y and Z count in a frame that is fixed to the part, and parallel to the machine's axes while the
   rotary axes that carry the part are at the zero of their work offset.
-* F counts the way of the tip in the part; where it rests, the degrees of the rotary axes.
-* Rotary axes go evenly between the angles of two blocks; the tip goes straight or on its arc also in rapids.
+* F counts the path of the tip in the part; where it rests, the degrees of the rotary axes.
+* Rotary axes go evenly between the angles of two blocks, or turn the tool in the plane of both directions where the
+  control says so (``path.great_circle``); the tip goes straight or on its arc also in rapids.
 """
 
 import math
@@ -17,13 +18,16 @@ from twin.nc.path.tool_center import ToolCenter
 from twin.nc.text.blocks import Word
 
 
-def begin_tool_center(control: Control, name: str, *, tilted: bool = False) -> None:
+def begin_tool_center(
+    control: Control, name: str, *, tilted: bool = False, in_plane: bool = False
+) -> None:
     """Lead the tip of the tool from now on.
 
     Args:
         control: The control.
         name: What the program calls it, for diagnostics.
         tilted: The tool stands across a tilted plane, and no rotary axis moves.
+        in_plane: The tool turns in the plane of both directions; else the rotary axes go evenly.
 
     Raises:
         ProgramError: No axis of the machine turns, or radius compensation is in force.
@@ -35,9 +39,12 @@ def begin_tool_center(control: Control, name: str, *, tilted: bool = False) -> N
             "tool-center", message, hint="leave it out, or run it on a machine with rotary axes"
         )
     _refuse_compensation(control, name)
-    longer = length_in_force(control)
+    length_difference = length_in_force(control)
     control.frame.set_shift("length", [0.0] * len(control.settings.axes))
-    control.motion.lead_tip(ToolCenter(setup, longer, control.frame.zero(), tilted=tilted))
+    control.motion.lead_tip(
+        ToolCenter(setup, length_difference, control.frame.zero(), tilted=tilted)
+    )
+    control.motion.in_plane = in_plane
 
 
 def end_tool_center(control: Control, name: str, *, keeps_length: bool = False) -> None:
@@ -54,24 +61,27 @@ def end_tool_center(control: Control, name: str, *, keeps_length: bool = False) 
     _refuse_compensation(control, name)
     if keeps_length:
         axes = range(len(control.settings.axes))
-        control.frame.set_shift("length", [center.longer if axis == 2 else 0.0 for axis in axes])
+        control.frame.set_shift(
+            "length", [center.length_difference if axis == 2 else 0.0 for axis in axes]
+        )
     control.motion.lead_tip(None)
 
 
-def point_by_words(control: Control, direction: Vector, at: Word) -> None:
+def point_by_words(control: Control, direction: Vector, at: Word, *, in_frame: bool = True) -> None:
     """Let the block's words of rotary axes be those that point the tool, whose tip is led, in a direction.
 
     Args:
         control: The control.
         direction: From the tip to the spindle, programmed coordinates, of any length above 0.
         at: Which word says it.
+        in_frame: The frame turns it; else it counts in the part as it is.
 
     Raises:
         ProgramError: The machine cannot, or the direction has no length.
     """
     center, names = control.path.tool_center, control.settings.axes.names
     assert center is not None
-    turned = applied(control.frame.matrix, direction)
+    turned = applied(control.frame.matrix, direction) if in_frame else direction
     length = math.hypot(*turned)
     if length == 0.0:
         control.fail("tool-center", "the direction of the tool has no length", at)
@@ -89,7 +99,7 @@ def point_by_words(control: Control, direction: Vector, at: Word) -> None:
 def length_in_force(control: Control) -> float:
     """How much longer than the first the tool in force is [mm]."""
     center = control.path.tool_center
-    return control.frame.shift("length")[2] if center is None else center.longer
+    return control.frame.shift("length")[2] if center is None else center.length_difference
 
 
 def _refuse_compensation(control: Control, name: str) -> None:

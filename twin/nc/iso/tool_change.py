@@ -12,7 +12,7 @@ def change_tool_at(usual: float | None) -> Action:
 
     The height is that of the machine file or the job (``[tool_change]``), else the control's own. Z goes
     there rapidly; where it is higher already it stays. Only a height that somebody wrote down asks for part
-    zero: the control's own is left out where nobody says where the part stands.
+    zero: the control's own is left out where nobody says where the part is.
 
     Args:
         usual: Height that the control goes to of its own accord, machine coordinates [mm]; None: it changes

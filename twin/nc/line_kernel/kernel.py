@@ -125,7 +125,7 @@ class PlainState(NamedTuple):
         feed_mode: What F counts, as ``FeedMode`` numbers it.
         feed_may_lack: It was warned of a missing feed already.
         spindle: S, NaN for none [1/min].
-        spindle_turns: 0 where the spindle stands.
+        spindle_turns: 0 where the spindle is stopped.
         rapid_feed: As ``feed_rates.rapid_feed`` has it.
         limits: Corner tolerance [mm], acceleration and deceleration [mm/s²].
     """

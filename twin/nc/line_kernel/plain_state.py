@@ -1,14 +1,15 @@
 """When a control may let plain lines run in the kernel, what it tells it, and what it takes back."""
 
+import enum
 import functools
 import math
+import os
 import string
 import sys
 from collections.abc import Callable
 
 import numpy as np
 
-from twin.compilation.speed import Speed, usual_speed
 from twin.nc.canonical import FloatArray
 from twin.nc.control.codes import GCode
 from twin.nc.control.control import WITHOUT_POINT
@@ -41,6 +42,26 @@ from twin.nc.line_kernel.reading import (
 from twin.nc.path.feed_rates import PATH_COUNTS
 from twin.nc.path.move_columns import CHUNK
 from twin.nc.text.comments import comment_marks
+
+VARIABLE = "MILL_TWIN_COMPILATION"
+"""Environment variable: ``wait`` lets everything wait for the compiler, as tests and benches want it."""
+
+
+class Speed(enum.Enum):
+    """What a run does while there is no compiled form."""
+
+    COLD = "cold"
+    """It never asks for one."""
+    WHEN_READY = "when ready"
+    """It begins without, has it compiled beside, and changes over when it is there."""
+    HOT = "hot"
+    """It waits for it."""
+
+
+def usual_speed() -> Speed:
+    """``WHEN_READY``, unless the environment wants everybody to wait."""
+    return Speed.HOT if os.environ.get(VARIABLE) == "wait" else Speed.WHEN_READY
+
 
 LineKernel = Callable[[PageColumns, PlainRules, PlainState, MoveRows], int]
 """``kernel.run_lines``, as CPython runs it or compiled."""
@@ -144,7 +165,7 @@ class LineRuns:
         return factors
 
     def _take_back(self, state: PlainState, line: int, rows: MoveRows) -> None:
-        """The control stands where the run has come to."""
+        """The control is where the run has come to."""
         control, motion, feed = self._control, self._control.motion, float(state.feed[0])
         kind = int(state.kind[0])
         if kind != kind_of(control.modal.interpolation):

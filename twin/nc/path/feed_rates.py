@@ -29,7 +29,7 @@ _BLOCKS_PER_MINUTE = int(FeedMode.BLOCKS_PER_MINUTE)
 
 KNOWN_FEED, WITHOUT_FEED, WITHOUT_SPEED, STANDING = range(4)
 """What is wrong with the feed rate of a move: nothing; no F is programmed; F counts per revolution, and no S is
-programmed; or the spindle stands."""
+programmed; or the spindle is stopped."""
 
 
 @inlined
@@ -40,7 +40,7 @@ def finding_of_feed(feed: float, mode: int, speed: float, turns: float) -> int:
         feed: F, or NaN where none is programmed.
         mode: What it counts, as ``FeedMode`` numbers it.
         speed: S [1/min]; NaN where none is programmed.
-        turns: 0 where the spindle stands.
+        turns: 0 where the spindle is stopped.
     """
     if feed != feed:
         return WITHOUT_FEED

@@ -68,6 +68,8 @@ class Segment:
         curve: How the axes go, where that is neither a line nor an arc; the arc is the tip's in the part then.
         screen: What a millimetre of X, Y and Z, of a curve of the tip in the part, adds to what the screen shows, as
             columns; None: the same.
+        in_plane: Under tool centre point control the direction of the tool turns in the plane of both ends; else the
+            rotary axes go evenly.
     """
 
     motion: Motion
@@ -86,6 +88,7 @@ class Segment:
     sweep: float = 0.0
     curve: Curve | None = None
     screen: Matrix | None = None
+    in_plane: bool = False
 
 
 class Refused(NamedTuple):

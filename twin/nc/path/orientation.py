@@ -33,7 +33,7 @@ def rotary_axes_for(
     """Where the rotary axes point the tool in a direction.
 
     Decision: of the solutions within the travel that one counts to which the axes go least, all of them together;
-    of two that are as far, the one in which the axis nearest to the tool stands at the greater angle. An axis
+    of two that are as far, the one in which the axis nearest to the tool is at the greater angle. An axis
     that changes nothing of the direction stays.
 
     Args:

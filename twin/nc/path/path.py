@@ -177,12 +177,18 @@ class Path:
         *,
         square: bool,
         indirect: bool,
+        look_ahead: int,
         led: bool = False,
     ) -> None:
         """Compensate from the next move on; arguments as for ``Compensation.begin``."""
         self.flush()
         self.compensation.begin(
-            plane.directions, signed_offset, square=square, indirect=indirect, led=led
+            plane.directions,
+            signed_offset,
+            square=square,
+            indirect=indirect,
+            look_ahead=look_ahead,
+            led=led,
         )
 
     def end_compensation(self, *, led: bool = False) -> None:

@@ -7,11 +7,13 @@ line or arc at every instant, whatever lies between two blocks, and the planner 
 """
 
 import dataclasses
+import functools
 import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from twin.kinematics import (
     Kinematics,
@@ -23,11 +25,21 @@ from twin.kinematics import (
     turns_part,
 )
 from twin.nc.canonical import Corner, FloatArray
-from twin.nc.geometry.matrices import Matrix
 from twin.nc.geometry.planes import Vector
+from twin.nc.path.great_circle import Turning, TwoAxes
 from twin.nc.path.move_columns import Curve, Segment
-from twin.nc.path.moves import arc_length, line_length
 from twin.nc.path.orientation import rotary_axes_for
+from twin.nc.path.tip_path import (
+    PathMotion,
+    advance_of,
+    hermite,
+    length_of,
+    part_of,
+    screen_from,
+    screen_matrix,
+    tip_motion,
+    vector,
+)
 from twin.units import DEGREE
 
 TIP_ERROR = 1e-10
@@ -35,6 +47,15 @@ TIP_ERROR = 1e-10
 
 FARTHEST_TURN = 36_000.0
 """What an axis may turn in one move of a tip that is led [deg]: beyond it, it is a slip of the pen."""
+
+DIRECTION_ERROR = 1e-8
+"""How far the direction may leave the plane that it turns in [rad]."""
+
+MOST_PARTS = 20_000
+"""Into which a move is cut."""
+
+_PROBES = (0.25, 0.5, 0.75)
+"""Fractions of a part at which it is looked at."""
 
 _HERMITE = 46080.0
 """``6! 2^6``: what the error of a polynomial of the fifth degree through both ends is divided by."""
@@ -61,14 +82,6 @@ class Setup(NamedTuple):
     travel: FloatArray
 
 
-class _Motion(NamedTuple):
-    """Values at n places with their first and second derivatives by the path fraction, shape (n, 3) each."""
-
-    value: FloatArray
-    first: FloatArray
-    second: FloatArray
-
-
 class ToolCenter:
     """From the tip in the part to the axes and back, in part coordinates.
 
@@ -77,46 +90,64 @@ class ToolCenter:
     """
 
     def __init__(
-        self, setup: Setup, longer: float, rotary_zero: list[float], *, tilted: bool = False
+        self,
+        setup: Setup,
+        length_difference: float,
+        rotary_zero: list[float],
+        *,
+        tilted: bool = False,
     ) -> None:
         """Control the tip of a tool.
 
         Args:
             setup: The part on the machine.
-            longer: How much longer than the first the tool is [mm].
+            length_difference: How much longer than the first the tool is [mm].
             rotary_zero: Where the work offset puts the zeros of the axes, part coordinates, shape (k,); of the
                 linear ones it is not looked at.
             tilted: The tool stands across a tilted plane: no rotary axis may move.
         """
         self.tilted = tilted
-        self._setup, self.longer, self.rotary_zero = setup, longer, list(rotary_zero)
+        self._setup, self.length_difference, self.rotary_zero = (
+            setup,
+            length_difference,
+            list(rotary_zero),
+        )
         self._zero = np.asarray(setup.zero, np.float64)
         counted = np.zeros(len(self._zero))
         columns = setup.chain.column[turns_part(setup.chain)]
         counted[columns] = self._zero[columns] + np.array(rotary_zero)[columns]
         self._counted_zero = self._zero - counted
         self._chain = counted_from(setup.chain, counted, setup.length)
+        self._travel = setup.travel - (self._zero - self._counted_zero)[:, None]
         self._seen_from_part = np.eye(3)
         if np.any(np.array(rotary_zero)[columns]):
             # The part's frame is parallel to the machine's axes at part zero, not at the work offset's.
             shifted = [0.0, 0.0, 0.0, *rotary_zero[3:]]
             level = [0.0] * len(rotary_zero)
-            self._seen_from_part = ToolCenter(setup, longer, level).frame_there(shifted)
+            self._seen_from_part = ToolCenter(setup, length_difference, level).frame_there(shifted)
 
-    def with_length(self, longer: float) -> "ToolCenter":
+    def with_length(self, length_difference: float) -> "ToolCenter":
         """The same for a tool of another length."""
-        return ToolCenter(self._setup, longer, self.rotary_zero, tilted=self.tilted)
+        return ToolCenter(self._setup, length_difference, self.rotary_zero, tilted=self.tilted)
 
     def with_zero(self, rotary_zero: list[float]) -> "ToolCenter":
         """The same with other zeros of the axes; itself where no rotary axis has another one."""
         if rotary_zero[3:] == self.rotary_zero[3:]:
             return self
-        return ToolCenter(self._setup, self.longer, rotary_zero, tilted=self.tilted)
+        return ToolCenter(self._setup, self.length_difference, rotary_zero, tilted=self.tilted)
+
+    @functools.cached_property
+    def _two_axes(self) -> TwoAxes | None:
+        """What turns a direction in a plane; None: a single axis across the tool, which does so anyway."""
+        axes = self._chain.axis[self._chain.rotary]
+        if len(axes) == 1 and abs(float(axes[0] @ self._chain.tool)) < _SQUARE:
+            return None
+        return TwoAxes(self._chain, self._travel)
 
     def tip(self, axes: list[float]) -> list[float]:
         """Where the tip is while the axes are at a place, with the rotary axes as they are, shape (k,)."""
         joints = np.array([axes]) + self._counted_zero
-        place = tool_point(self._chain, joints, self.longer)[0] - self._zero[:3]
+        place = tool_point(self._chain, joints, self.length_difference)[0] - self._zero[:3]
         return [*place.tolist(), *axes[3:]]
 
     def direction(self, axes: list[float]) -> FloatArray:
@@ -138,11 +169,26 @@ class ToolCenter:
             ValueError: None do, within their travel (``orientation``).
         """
         offset = self._counted_zero
-        travel = self._setup.travel - (self._zero - offset)[:, None]
-        here = np.array(axes) + offset
-        goal = np.array(direction)
-        found = rotary_axes_for(self._chain, goal, here, travel, sense, only=only)
+        here, goal = np.array(axes) + offset, np.array(direction)
+        found = rotary_axes_for(self._chain, goal, here, self._travel, sense, only=only)
         return (found - offset).tolist()
+
+    def reached(self, start: list[float], end: list[float]) -> list[float]:
+        """The end of a move in whose plane the direction turns, with the rotary axes where they come to, shape (k,).
+
+        Raises:
+            ValueError: They do not get there.
+        """
+        if start[3:] == end[3:] or self._two_axes is None:
+            return end
+        offset = self._counted_zero
+        turnings = self._two_axes.turnings(np.array(start) + offset, np.array(end) + offset)
+        found = list(end)
+        for column, angle in zip(
+            self._two_axes.columns.tolist(), turnings[-1].angles[1].tolist(), strict=True
+        ):
+            found[column] = angle - float(offset[column])
+        return found
 
     def axes(self, tip: list[float]) -> list[float]:
         """Where the axes bring the tip to a place; the inverse of ``tip``.
@@ -151,12 +197,11 @@ class ToolCenter:
             ValueError: With the rotary axes there X, Y and Z do not reach every point.
         """
         point = np.array([tip])
-        still = _Motion(point[:, :3], np.zeros((1, 3)), np.zeros((1, 3)))
-        return [*self._solved(still, point, np.zeros(len(tip))).value[0].tolist(), *tip[3:]]
+        return [*self._solved(_still(point[:, :3]), _still(point)).value[0].tolist(), *tip[3:]]
 
     def frame_there(self, axes: list[float]) -> FloatArray:
         """Directions of the machine's X, Y and Z as the part sees them, as columns, shape (3, 3)."""
-        _, steps = self._carried(np.array([axes]), np.zeros(len(axes)))
+        _, steps = self._carried(_still(np.array([axes])))
         return np.stack([step.value[0] for step in steps], axis=1)
 
     def tool_frame(self, axes: list[float]) -> FloatArray:
@@ -181,7 +226,10 @@ class ToolCenter:
             if straight is not None:
                 yield straight
                 return
-        yield from self._curves(move, rates)
+        elif move.in_plane and self._two_axes is not None:
+            yield from self._in_plane(move, self._two_axes)
+            return
+        yield from self._evenly(move, rates)
 
     # --- rotary axes at rest
 
@@ -193,58 +241,158 @@ class ToolCenter:
         center, normal, level = move.center, move.normal, np.array_equal(frame, np.eye(3))
         if center is not None:
             there = self.axes([*center, *move.start[3:]])
-            center, normal = _vector(there), _vector(frame.T @ np.array(normal))
+            center, normal = vector(there), vector(frame.T @ np.array(normal))
         return dataclasses.replace(
             move,
             start=self.axes(move.start),
             end=self.axes(move.end),
             center=center,
             normal=normal,
-            screen=move.screen if level else _screen(move, frame),
+            screen=move.screen if level else screen_from(move, frame),
         )
 
     # --- rotary axes in motion
 
-    def _curves(self, move: Segment, rates: FloatArray) -> Iterator[Segment]:
-        length = _length(move)
-        turning = length == 0.0
-        if turning:
-            others = rates[3:]
-            length = math.sqrt(float(others @ others))
+    def _evenly(self, move: Segment, rates: FloatArray) -> Iterator[Segment]:
+        """The rotary axes go evenly between both ends."""
         count = self._parts(move, rates)
         fraction = np.linspace(0.0, 1.0, count + 1)
         places = np.array(move.start) + fraction[:, None] * rates
         places[-1] = move.end
-        tip = _tip_motion(move, fraction)
-        places[:, :3] = tip.value
-        places[-1, :3] = move.end[:3]
-        axes = self._solved(tip, places, rates)
-        step, rows = 1.0 / count, places.copy()
-        rows[:, :3] = axes.value
+        first = np.tile(rates, (count + 1, 1))
+        tip, axes = self._led(move, fraction, PathMotion(places, first, np.zeros_like(first)))
+        steps = np.full(count, 1.0 / count)
         coefficients = np.zeros((count, len(rates), 5))
-        coefficients[:, 3:, 0] = np.diff(rows[:, 3:], axis=0)
-        coefficients[:, :3] = _hermite(axes.value, axes.first * step, axes.second * step * step)
-        matrix = np.eye(3) if move.screen is None else np.array(move.screen)
-        shown = places - places[-1]
-        shown[:, :3] = shown[:, :3] @ matrix.T
+        coefficients[:, 3:, 0] = np.diff(axes.value[:, 3:], axis=0)
+        linear = PathMotion(*(each[:, :3] for each in axes))
+        coefficients[:, :3] = hermite(linear, steps)
+        yield from self._curves(move, (fraction, steps), tip, axes.value, coefficients)
+
+    def _in_plane(self, move: Segment, axes: TwoAxes) -> Iterator[Segment]:
+        """The direction of the tool turns in the plane of both ends."""
+        offset = self._counted_zero
+        start, end = np.array(move.start) + offset, np.array(move.end) + offset
+        columns = axes.columns
+        for turning in axes.turnings(start, end):
+            part = part_of(move, turning.begin, turning.end)
+            for place, angles in zip((part.start, part.end), turning.angles, strict=True):
+                for column, angle in zip(
+                    columns.tolist(), (angles - offset[columns]).tolist(), strict=True
+                ):
+                    place[column] = angle
+            rates = np.array(part.end) - np.array(part.start)
+            if turning.circle is None:
+                yield from self._evenly(part, rates)
+            else:
+                yield from self._along_circle(part, rates, axes, turning)
+
+    def _along_circle(
+        self, move: Segment, rates: FloatArray, axes: TwoAxes, turning: Turning
+    ) -> Iterator[Segment]:
+        """The rotary axes follow a great circle; parts are halved until they lead tip and direction closely enough.
+
+        Raises:
+            ValueError: They would have to be too many.
+        """
+        fraction = np.linspace(0.0, 1.0, self._parts(move, rates) + 1)
+        while len(fraction) <= MOST_PARTS:
+            places = np.array(move.start) + fraction[:, None] * rates
+            first = np.tile(rates, (len(fraction), 1))
+            led = PathMotion(places, first, np.zeros_like(first))
+            angles = axes.motion(turning, fraction)
+            led.value[:, axes.columns] = angles.value - self._counted_zero[axes.columns]
+            led.first[:, axes.columns], led.second[:, axes.columns] = angles.first, angles.second
+            tip, led = self._led(move, fraction, led)
+            steps = np.diff(fraction)
+            coefficients = hermite(led, steps)
+            loose = self._loose(move, turning, fraction, led.value, coefficients)
+            if not np.any(loose):
+                yield from self._curves(move, (fraction, steps), tip, led.value, coefficients)
+                return
+            halves = 0.5 * (fraction[:-1] + fraction[1:])[loose]
+            fraction = np.sort(np.concatenate([fraction, halves]))
+        raise ValueError(
+            "the rotary axes would turn too fast next to the pole of the one that turns the part"
+        )
+
+    def _loose(
+        self,
+        move: Segment,
+        turning: Turning,
+        fraction: FloatArray,
+        places: FloatArray,
+        coefficients: FloatArray,
+    ) -> NDArray[np.bool_]:
+        """Which of n curves lead the tip or the direction too far from where they are meant to be, shape (n,)."""
+        assert turning.circle is not None
+        loose = np.zeros(len(coefficients), np.bool_)
+        for within in _PROBES:
+            at = fraction[:-1] + within * np.diff(fraction)
+            joints = places[:-1] + coefficients @ (within ** np.arange(1, 6)) + self._counted_zero
+            point = tool_point(self._chain, joints, self.length_difference) - self._zero[:3]
+            off = np.linalg.norm(point - tip_motion(move, at).value, axis=1)
+            leaning = tool_direction(self._chain, joints) - turning.circle.at(at)
+            loose |= (off > TIP_ERROR) | (np.linalg.norm(leaning, axis=1) > DIRECTION_ERROR)
+        return loose
+
+    def _led(
+        self, move: Segment, fraction: FloatArray, axes: PathMotion
+    ) -> tuple[PathMotion, PathMotion]:
+        """The tip along a move, and all axes with X, Y and Z as they bring it there.
+
+        Args:
+            move: The move of the tip.
+            fraction: Shape (n,).
+            axes: All axes there, shape (n, k) each; X, Y and Z are not looked at.
+        """
+        tip = tip_motion(move, fraction)
+        linear = self._solved(tip, axes)
+        for led, solved in zip(axes, linear, strict=True):
+            led[:, :3] = solved
+        return tip, axes
+
+    def _curves(
+        self,
+        move: Segment,
+        cuts: tuple[FloatArray, FloatArray],
+        tip: PathMotion,
+        places: FloatArray,
+        coefficients: FloatArray,
+    ) -> Iterator[Segment]:
+        """The curves of the axes between n + 1 fractions of a move.
+
+        Args:
+            move: The move of the tip.
+            cuts: The fractions, shape (n + 1,), and their steps, shape (n,).
+            tip: There.
+            places: Of the axes, likewise, shape (n + 1, k).
+            coefficients: Between them, shape (n, k, 5).
+        """
+        length = length_of(move)
+        turning = length == 0.0
+        if turning:
+            others = places[-1, 3:] - places[0, 3:]
+            length = math.sqrt(float(others @ others))
+        shown, points = places - places[-1], tip.value.copy()
+        points[-1] = move.end[:3]
+        shown[:, :3] = (points - points[-1]) @ screen_matrix(move).T
         shown += move.display
-        screen = _screen(move, self._seen_from_part.T)
-        advance = _advance(move)
-        for part in range(count):
-            last = part + 1 == count
+        screen = screen_from(move, self._seen_from_part.T)
+        (fraction, steps), advance, last = cuts, advance_of(move), len(coefficients) - 1
+        for part, step in enumerate(steps.tolist()):
             center = None
             if move.center is not None:
                 height = advance * fraction[part]
                 from_tip = np.array(move.center) + height * np.array(move.normal) - tip.value[part]
-                center = _vector(self._seen_from_part @ from_tip)
+                center = vector(self._seen_from_part @ from_tip)
             yield dataclasses.replace(
                 move,
-                start=rows[part].tolist(),
-                end=rows[part + 1].tolist(),
+                start=places[part].tolist(),
+                end=places[part + 1].tolist(),
                 display=shown[part + 1].tolist(),
-                corner=move.corner if last else Corner.EXACT_PATH,
+                corner=move.corner if part == last else Corner.EXACT_PATH,
                 center=center,
-                normal=_vector(self._seen_from_part @ np.array(move.normal)),
+                normal=vector(self._seen_from_part @ np.array(move.normal)),
                 sweep=move.sweep * step,
                 curve=Curve(coefficients[part], length * step, turning),
                 screen=screen,
@@ -260,22 +408,21 @@ class ToolCenter:
         if move.center is not None:
             reach += 2.0 * math.dist(move.start[:3], move.center)
         # Of a product of sines and a straight line: the sines' own, and six times the line's share.
-        bound = (reach + abs(self.longer) + 6.0 * math.dist(*ends.tolist())) / (
+        bound = (reach + abs(self.length_difference) + 6.0 * math.dist(*ends.tolist())) / (
             _HERMITE * TIP_ERROR
         )
         return max(1, math.ceil(angle * bound ** (1.0 / 6.0)))
 
-    def _solved(self, tip: _Motion, places: FloatArray, rates: FloatArray) -> _Motion:
+    def _solved(self, tip: PathMotion, axes: PathMotion) -> PathMotion:
         """X, Y and Z that bring the tip along its path, with their derivatives by the path fraction.
 
         Args:
             tip: The path.
-            places: Rotary axes and all further ones along it, shape (n, k); X, Y and Z are not looked at.
-            rates: How they go with the fraction, shape (k,).
+            axes: Rotary axes and all further ones along it, shape (n, k) each; X, Y and Z are not looked at.
         """
-        rest, steps = self._carried(places, rates)
+        rest, steps = self._carried(axes)
         matrix, matrix_first, matrix_second = (
-            np.stack([getattr(step, name) for step in steps], axis=2) for name in _Motion._fields
+            np.stack([getattr(step, name) for step in steps], axis=2) for name in PathMotion._fields
         )
         if np.any(np.abs(np.linalg.det(matrix)) < _SINGULAR):
             raise ValueError("with the rotary axes there X, Y and Z do not reach every point")
@@ -288,102 +435,53 @@ class ToolCenter:
         first = times(inverse, tip.first - rest.first - times(matrix_first, value))
         bent = times(matrix_second, value) + 2.0 * times(matrix_first, first)
         second = times(inverse, tip.second - rest.second - bent)
-        return _Motion(value - self._counted_zero[:3], first, second)
+        return PathMotion(value - self._counted_zero[:3], first, second)
 
-    def _carried(self, places: FloatArray, rates: FloatArray) -> tuple[_Motion, list[_Motion]]:
+    def _carried(self, axes: PathMotion) -> tuple[PathMotion, list[PathMotion]]:
         """The tip with X, Y and Z at zero, and what a millimetre of each moves it by."""
-        chain, count = self._chain, len(places)
-        joints = places + self._counted_zero
+        chain, count = self._chain, len(axes.value)
+        joints = axes.value + self._counted_zero
         none = np.zeros((count, 3))
-        point = _Motion(np.tile(-self.longer * chain.tool, (count, 1)), none, none)
-        steps: list[_Motion] = [point] * 3
+        point = PathMotion(np.tile(-self.length_difference * chain.tool, (count, 1)), none, none)
+        steps: list[PathMotion] = [point] * 3
         begun: list[int] = []
         for joint, column in enumerate(chain.column.tolist()):
             axis = chain.axis[joint]
+            value, first, second = (
+                each[:, column, None] for each in (joints, axes.first, axes.second)
+            )
             if chain.rotary[joint]:
-                angle, rate = joints[:, column, None], float(rates[column]) * DEGREE
+                angle = PathMotion(value, first * DEGREE, second * DEGREE)
                 anchor = chain.anchor[joint]
-                moved = _turned(point._replace(value=point.value - anchor), axis, angle, rate)
+                moved = _turned(point._replace(value=point.value - anchor), axis, angle)
                 point = moved._replace(value=moved.value + anchor)
                 for each in begun:
-                    steps[each] = _turned(steps[each], axis, angle, rate)
+                    steps[each] = _turned(steps[each], axis, angle)
             elif column < 3:
-                steps[column] = _Motion(np.tile(axis, (count, 1)), none, none)
+                steps[column] = PathMotion(np.tile(axis, (count, 1)), none, none)
                 begun.append(column)
             else:
-                along = joints[:, column, None] * axis
-                point = point._replace(
-                    value=point.value + along, first=point.first + rates[column] * axis
+                point = PathMotion(
+                    point.value + value * axis,
+                    point.first + first * axis,
+                    point.second + second * axis,
                 )
         return point, steps
 
 
-def _turned(motion: _Motion, axis: FloatArray, angle: FloatArray, rate: float) -> _Motion:
-    """Vectors in motion, turned about an axis through the origin that turns evenly [deg, rad by fraction]."""
-    value, first, second = (turned(each, axis, angle) for each in motion)
-    across = np.cross(axis, value)
-    return _Motion(
+def _still(value: FloatArray) -> PathMotion:
+    return PathMotion(value, np.zeros_like(value), np.zeros_like(value))
+
+
+def _turned(motion: PathMotion, axis: FloatArray, angle: PathMotion) -> PathMotion:
+    """Vectors in motion, turned about an axis through the origin by an angle [deg] in motion [rad]."""
+    value, first, second = (turned(each, axis, angle.value) for each in motion)
+    across, rate = np.cross(axis, value), angle.first
+    return PathMotion(
         value,
         first + rate * across,
-        second + 2.0 * rate * np.cross(axis, first) + rate * rate * np.cross(axis, across),
+        second
+        + 2.0 * rate * np.cross(axis, first)
+        + rate * rate * np.cross(axis, across)
+        + angle.second * across,
     )
-
-
-def _hermite(value: FloatArray, first: FloatArray, second: FloatArray) -> FloatArray:
-    """Polynomials of the fifth degree between n + 1 places, coefficients by powers 1 to 5, shape (n, 3, 5)."""
-    change = np.diff(value, axis=0)
-    v, w, a, b = first[:-1], first[1:], second[:-1], second[1:]
-    return np.stack(
-        [
-            v,
-            0.5 * a,
-            10.0 * change - 6.0 * v - 4.0 * w - 1.5 * a + 0.5 * b,
-            -15.0 * change + 8.0 * v + 7.0 * w + 1.5 * a - b,
-            6.0 * change - 3.0 * (v + w) - 0.5 * (a - b),
-        ],
-        axis=2,
-    )
-
-
-def _tip_motion(move: Segment, fraction: FloatArray) -> _Motion:
-    """The tip's path at fractions of a move, as ``canonical`` says it."""
-    start, end = np.array(move.start[:3]), np.array(move.end[:3])
-    u = fraction[:, None]
-    if move.center is None:
-        way = end - start
-        value = start + u * way
-        return _Motion(value, np.tile(way, (len(u), 1)), np.zeros_like(value))
-    center, normal, sweep = np.array(move.center), np.array(move.normal), math.radians(move.sweep)
-    arm, lead = start - center, _advance(move) * normal
-    cosine, sine = np.cos(sweep * u), np.sin(sweep * u)
-    across = np.cross(normal, arm)
-    around, along = cosine * arm + sine * across, cosine * across - sine * arm
-    # What rounding leaves between the arc's end and the move's is spread evenly, as in ``toolpath.geometry``.
-    miss = end - (center + math.cos(sweep) * arm + math.sin(sweep) * across + lead)
-    return _Motion(
-        center + around + u * (lead + miss), sweep * along + lead + miss, -sweep * sweep * around
-    )
-
-
-def _advance(move: Segment) -> float:
-    if move.center is None:
-        return 0.0
-    return sum((move.end[axis] - move.start[axis]) * move.normal[axis] for axis in range(3))
-
-
-def _length(move: Segment) -> float:
-    """Of the tip's way in the part [mm]."""
-    if move.center is None:
-        return line_length(move.start[:3], list(move.end[:3]))
-    return arc_length(move.start, move.end, move.center, move.normal, move.sweep)
-
-
-def _screen(move: Segment, frame: FloatArray) -> Matrix:
-    """What a move whose X, Y and Z are told in another frame adds to what the screen shows (``Segment.screen``)."""
-    rows = frame if move.screen is None else np.array(move.screen) @ frame
-    return (_vector(rows[0]), _vector(rows[1]), _vector(rows[2]))
-
-
-def _vector(values: FloatArray | list[float]) -> Vector:
-    x, y, z = (float(value) for value in values[:3])
-    return (x, y, z)

@@ -1,4 +1,4 @@
-"""A program's blocks: words with the place where they stand."""
+"""A program's blocks: words with the place where they are."""
 
 from typing import NamedTuple
 

@@ -118,7 +118,7 @@ def comment_end(line: Characters, begin: int, at: int, end: int, marks: CommentM
 
 @compilable
 def _may_hold(line: Characters, begin: int, end: int, kind: int, marks: CommentMarks) -> bool:
-    """Whether a comment of a kind may hold what stands between two places."""
+    """Whether a comment of a kind may hold what is between two places."""
     if marks.holds_opening[kind]:
         return True
     return _find_stop(line, begin, end, marks.openings[kind][0]) == end

@@ -116,7 +116,7 @@ class ExpressionSyntax:
         indirect: Character before a value that is a variable's number, such as ``#[#1+2]``; empty:
             there is none.
         quotients: Functions of two values, each in brackets, with a slash between them.
-        one_sign: No sign follows a sign, unless a bracket stands between them.
+        one_sign: No sign follows a sign, unless a bracket is between them.
         bracketed: Operators are within brackets only, so that a word's value is one operand.
         vacant: A variable without a value counts as 0 where something is computed of it; alone it
             leaves its word out.

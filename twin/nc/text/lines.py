@@ -145,7 +145,7 @@ class Lines(Sequence[str]):
         return page.decode(self._encoding).encode(_UTF_8)
 
     def any_holds(self, pattern: re.Pattern[bytes]) -> bool:
-        """Whether a pattern, which must not match line ends, stands in any line."""
+        """Whether a pattern, which must not match line ends, is in any line."""
         pages = range(len(self._pages))
         return any(pattern.search(self._utf_8(number)) is not None for number in pages)
 

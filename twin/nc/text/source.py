@@ -30,7 +30,7 @@ class Source:
     parts: tuple[tuple[int, str], ...] = ()
 
     def place(self, line: int) -> tuple[str, int]:
-        """The file that a line stands in, and its number there, from 1."""
+        """The file that a line is in, and its number there, from 1."""
         name, first = self.name, 1
         for begin, part in self.parts:
             if line >= begin:

@@ -233,7 +233,7 @@ class Canvas(abc.ABC):
 
     @abc.abstractmethod
     def _limit_shadows(self, radius: float) -> None:
-        """Spread the shadow map over a ball of a radius [m], where the renderer can be told."""
+        """Spread the shadow map over a ball of a radius [m], where the renderer has a setting for it."""
 
     def _aim_lamps(
         self, data: mujoco.MjData, directions: FloatArray, number: int, focus: Focus | None

@@ -28,7 +28,7 @@ STREAMS = (1, 2)
 
 
 @contextlib.contextmanager
-def hushed() -> Iterator[None]:
+def muted() -> Iterator[None]:
     """Drop what this process prints meanwhile, libraries past Python included."""
     sys.stdout.flush()
     sys.stderr.flush()
@@ -85,8 +85,8 @@ class FilamentCanvas(Canvas):
             ImportError: MuJoCo was installed without Filament.
         """
         super().__init__(model, size, quality)
-        self._hush = hushed if quiet else contextlib.nullcontext
-        with self._hush():
+        self._mute = muted if quiet else contextlib.nullcontext
+        with self._mute():
             self._start()
 
     def _start(self) -> None:
@@ -137,7 +137,7 @@ class FilamentCanvas(Canvas):
         return geoms[number]
 
     def _send_changes(self) -> None:
-        with self._hush():
+        with self._mute():
             super()._send_changes()
 
     def _send_mesh(self, mesh: int) -> None:
@@ -176,7 +176,7 @@ class FilamentCanvas(Canvas):
 
     def _update(self, data: mujoco.MjData, spray: Chips | None = None) -> None:
         mujoco.mjv_updateCamera(self._model, data, self._camera, self._scene)
-        with self._hush():
+        with self._mute():
             self._regroup()
             self._lights.update(data)
             self._bodies.update(data)
@@ -245,7 +245,7 @@ class FilamentCanvas(Canvas):
         pixels = np.zeros((height, width, 3), np.uint8)
         read = filament.ReadRequest(target=target)
         read.set_buffer(pixels)
-        with self._hush():
+        with self._mute():
             self._context.wait_for_frame(self._context.render([request], [read]))
         for sent in self._on_the_way:
             sent.free()

@@ -17,7 +17,7 @@ SIDE = 128
 ENVIRONMENT_INTENSITY = 18_000.0
 """Of white in the room [cd/m²]: its walls fill the shadows to a third of the lit side."""
 LAMP_LUX = 70_000.0
-"""What a white lamp brings where the machine stands [lx]; a model's ``diffuse`` dims it."""
+"""What a white lamp brings where the machine is [lx]; a model's ``diffuse`` dims it."""
 
 CEILING, HORIZON, FLOOR = 0.6, 0.45, 0.42
 """Brightness of the room overhead, at eye level and below, as shares of white."""

@@ -1,4 +1,4 @@
-"""The stock as it is drawn where it is cut from several sides: the surface of its intervals, laid anew when it was cut."""
+"""The stock as it is drawn where it is cut from several sides: the surface of its intervals, laid again when it was cut."""
 
 from collections.abc import Callable
 
@@ -14,7 +14,7 @@ from twin.render.drawing.canvas import Canvas
 from twin.render.scene.live_mesh import LiveMesh, add_live_mesh
 from twin.render.scene.placement import Placement
 from twin.render.scene.shading import SMOOTH_COSINE, face_normals
-from twin.render.scene.skin import MATERIAL
+from twin.render.scene.stock_texture import MATERIAL
 
 MESH = "stock_from_all_sides"
 RAW, MACHINED = 0, 1
@@ -23,7 +23,7 @@ _SKIN = np.array([RAW_RGB, MACHINED_RGB], np.uint8)
 _ROWS = 2
 """Of the texture, all alike."""
 _DEVIATIONS = np.linspace(-1.0, 1.0, 255)
-"""Shares of the scale whose colours are told apart."""
+"""Shares of the scale whose colours are distinguished."""
 
 Deviations = Callable[[Surface], FloatArray]
 """How far the vertices of a surface are off, as shares of a scale, shape (n,); NaN: as metal looks."""
@@ -111,12 +111,12 @@ class DexelSurface:
 
 def machined(found: Surface) -> BoolArray:
     """Which faces a tool left, shape (m,): of a face's first corner, a crossing, it is known."""
-    return tools(found.skin[found.faces[:, 0]]) != OWN
+    return tools(found.facet[found.faces[:, 0]]) != OWN
 
 
 def corner_normals(found: Surface) -> FloatArray:
     """Normals of the corners of faces, shape (m, 3, 3): the surface's own, across an edge of it the face's."""
     faces = face_normals(found.points[found.faces])[:, None]
-    smooth = normals(found.skin)[found.faces]
+    smooth = normals(found.facet)[found.faces]
     agree = (smooth * faces).sum(axis=2, keepdims=True) > SMOOTH_COSINE
     return np.where(agree, smooth, faces)

@@ -23,8 +23,8 @@ from twin.render.scene.cameras import PART_CAMERAS, SMALLEST_MM, add_part_camera
 from twin.render.scene.dexel_surface import Deviations, DexelSurface
 from twin.render.scene.placement import Joints, Placement, place, tip_position
 from twin.render.scene.scene import Scene
-from twin.render.scene.skin import Skin
 from twin.render.scene.stock_surface import StockSurface
+from twin.render.scene.stock_texture import StockTexture
 from twin.render.scene.tool_body import ToolBodies
 from twin.render.scene.trail import Trail, trail_points
 from twin.render.scene.work_holding import add_work_holding
@@ -59,7 +59,7 @@ TRAIL_MM = (0.1, 0.8)
 
 
 class _Props(NamedTuple):
-    """What is drawn beside the machine, and where it stands."""
+    """What is drawn beside the machine, and where it is."""
 
     placement: Placement
     cutter: Cutter | None
@@ -119,7 +119,7 @@ class Stage:
             self._rate = self._cut(samples[-late:]) / (late * period)
 
     def clear_view(self) -> None:
-        """Take the tool back to where it stood at the start, so that it does not hide the part."""
+        """Take the tool back to where it was at the start, so that it does not hide the part."""
         self._position, self._rate = self._start, 0.0
 
     def _cut(self, samples: Samples) -> float:
@@ -176,8 +176,11 @@ class Stage:
     @property
     def _tip(self) -> FloatArray:
         """Where the tool point is, in the part's frame, shape (3,) [mm]."""
-        frame, longer = self._scene.recording.header.part_frame, self._scene.summary.tools.longer
-        return frame.position(self._position[None], longer(self._tool))[0]
+        frame, length_difference = (
+            self._scene.recording.header.part_frame,
+            self._scene.summary.tools.length_difference,
+        )
+        return frame.position(self._position[None], length_difference(self._tool))[0]
 
     def _spray(self) -> Chips:
         """Chips of what was removed of late; out of a slot of a height map they fly from its upper edge."""
@@ -227,7 +230,7 @@ def stage(
         renderer: What draws.
         paint: Colours of the stock's cells, shape (ny, nx, 4), as metal looks where the fourth is 0; or, of one
             that is cut from several sides, what colours its surface; None: all looks like metal.
-        trail: Whether the way of the tool is seen.
+        trail: Whether the path of the tool is seen.
 
     Raises:
         RenderError: The renderer does not work here.
@@ -291,7 +294,7 @@ def _stock_surface(
     assert not callable(paint)
     cells = material.map.heights.shape
     step = max(1, -(-max(cells) // quality.drawn_cells))
-    return StockSurface(material, Skin(material.map, material.marks, step, paint), step)
+    return StockSurface(material, StockTexture(material.map, material.marks, step, paint), step)
 
 
 def _trail_radius(points: FloatArray) -> float:

@@ -13,14 +13,14 @@ import numpy.typing as npt
 
 from twin.cutting.colours import RAW_RGB
 from twin.cutting.height_map_material import HeightMapMaterial
-from twin.cutting.net import Net, net, open_edges
+from twin.cutting.surface_mesh import SurfaceMesh, open_edges, surface_mesh
 from twin.cutting.sweeping import Rectangle, union
 from twin.nc.canonical import FloatArray, IntArray
 from twin.render.drawing.canvas import Canvas
 from twin.render.scene.live_mesh import LiveMesh, add_live_mesh
 from twin.render.scene.placement import Placement
 from twin.render.scene.shading import corner_normals
-from twin.render.scene.skin import MATERIAL, Skin
+from twin.render.scene.stock_texture import MATERIAL, StockTexture
 
 TILE = 24
 """Squares along a tile's side."""
@@ -67,34 +67,34 @@ class StockSurface:
     after every cut and ``update`` before every picture.
     """
 
-    def __init__(self, material: HeightMapMaterial, skin: Skin, step: int) -> None:
+    def __init__(self, material: HeightMapMaterial, texture: StockTexture, step: int) -> None:
         """Lay the drawn net.
 
         Args:
             material: The stock before it is cut.
-            skin: What paints it.
+            texture: What paints it.
             step: Cells from one vertex to the next.
         """
         self._material = material
         self._map = material.map
         self._changed: Rectangle = (0, 0, 0, 0)
-        self._skin = skin
+        self._texture = texture
         self._step = step
-        self._net = net(self._map, step)
+        self._mesh = surface_mesh(self._map, step)
         self._look()
-        self._tiles = _tiles(self._net)
-        self._edges = open_edges(self._net.patches)
-        self._side_normals = _side_normals(self._net, self._edges)
+        self._tiles = _tiles(self._mesh)
+        self._edges = open_edges(self._mesh.patches)
+        self._side_normals = _side_normals(self._mesh, self._edges)
         self._meshes: dict[str, LiveMesh] = {}
 
     def add_to(self, spec: mujoco.MjSpec) -> None:
         """Add the stock's meshes, geoms and texture to a machine's specification."""
-        self._skin.add_to(spec)
+        self._texture.add_to(spec)
         raw = [value / 255 for value in (*RAW_RGB, 255)]
         spec.add_material(
             name=SIDE, rgba=raw, specular=0.45, shininess=0.55, metallic=0.3, roughness=0.45
         )
-        texels = self._skin.texels(self._net.x, self._net.y)
+        texels = self._texture.texels(self._mesh.x, self._mesh.y)
         for tile in self._tiles:
             block = texels[tile.rows, tile.columns].reshape(-1, 2)
             add_live_mesh(spec, tile.name, MATERIAL, block, tile.corners)
@@ -110,7 +110,7 @@ class StockSurface:
         names = [SIDE, *(tile.name for tile in self._tiles)]
         names += [tile.flat_name for tile in self._tiles if tile.whole]
         self._meshes = {name: LiveMesh(model, name, placement) for name in names}
-        self._skin.bind(model)
+        self._texture.bind(model)
         for tile in self._tiles:
             self._set_tile(tile)
         self._set_side()
@@ -139,12 +139,12 @@ class StockSurface:
                 canvas.upload_mesh(self._set_tile(tile))
         if not np.array_equal(self._z.ravel()[self._edges], before):
             canvas.upload_mesh(self._set_side())
-        self._skin.update(canvas, changed)
+        self._texture.update(canvas, changed)
 
     def _look(self) -> None:
         """Take over the heights of the vertices and where they lie."""
-        self._z = self._net.heights(self._map)
-        self._x, self._y = self._net.places(self._map)
+        self._z = self._mesh.heights(self._map)
+        self._x, self._y = self._mesh.places(self._map)
 
     def _vertices(self, tile: _Tile) -> FloatArray:
         block = (tile.rows, tile.columns)
@@ -168,14 +168,14 @@ class StockSurface:
         solid = np.any(corner[..., 2] > self._map.bottom, axis=1)
         fine.put_faces(np.where(solid[:, None], tile.corners, 0))
         normals = corner_normals(
-            self._z, tile.rows, tile.columns, self._net.spacing, corner, tile.corners
+            self._z, tile.rows, tile.columns, self._mesh.spacing, corner, tile.corners
         )
         fine.put(vertices, normals)
         return fine.id
 
     def _side_vertices(self) -> FloatArray:
         start, end = self._edges.T
-        x, y, z = self._net.x.ravel(), self._net.y.ravel(), self._z.ravel()
+        x, y, z = self._mesh.x.ravel(), self._mesh.y.ravel(), self._z.ravel()
         bottom = np.full(len(start), self._map.bottom)
         corners = [
             np.stack([x[start], y[start], z[start]], 1),
@@ -191,7 +191,7 @@ class StockSurface:
         return self._meshes[SIDE].id
 
 
-def _tiles(grid: Net) -> list[_Tile]:
+def _tiles(grid: SurfaceMesh) -> list[_Tile]:
     tiles = []
     rows, columns = grid.patches.shape
     for row in range(0, rows, TILE):
@@ -216,7 +216,7 @@ def _tiles(grid: Net) -> list[_Tile]:
     return tiles
 
 
-def _side_normals(grid: Net, edges: IntArray) -> npt.NDArray[np.float64]:
+def _side_normals(grid: SurfaceMesh, edges: IntArray) -> npt.NDArray[np.float64]:
     """Horizontal normals of the walls below the edges, shape (n, 3)."""
     start, end = edges.T
     x, y = grid.x.ravel(), grid.y.ravel()

@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from twin.cutting.kernels.thin import thin
+from twin.cutting.kernels.simplify import simplify
 from twin.cutting.program_summary import ProgramSummary
 from twin.nc.canonical import BoolArray, FloatArray, IntArray
 from twin.recording.reader import Recording
@@ -73,7 +73,7 @@ class TrailPoints:
         if not len(self.position):
             return self
         group = self.rapid.astype(np.int64)
-        return self[thin(self.position[None], group, tolerance, np.inf, MOST_JOINED)]
+        return self[simplify(self.position[None], group, tolerance, np.inf, MOST_JOINED)]
 
 
 def trail_points(recording: Recording, summary: ProgramSummary) -> TrailPoints:

@@ -142,9 +142,9 @@ def _commented_tools(source: Source, *, inches: bool) -> dict[int, ToolData]:
     inches = inches or any(_INCHES.search(line) for line in blocks)
     listed = listed_tools(_comments(source), numbers, inches=inches)
     return {
-        number: ToolData(radius=tool.diameter / 2.0, length=USUAL_LENGTH)
+        number: ToolData(radius=tool.table_radius, length=USUAL_LENGTH)
         for number, tool in listed.items()
-        if tool.diameter is not None
+        if tool.table_radius is not None
     }
 
 
@@ -167,21 +167,26 @@ def _bare_number(source: Source) -> str:
 
     Such a program writes its fractions with a point and its whole numbers without one. Where a whole number
     has a point somewhere (``X20.``), one without is a slip or counts increments. Where no number has a
-    point, increments would put the whole program within a millimetre if all are below 1000. Empty: it is none.
+    point, increments would put the whole program, or all its heights, within a millimetre if they are below 1000,
+    and as whole units it fits a mill. Empty: it is none.
     """
-    first, fractions, largest = "", False, 0.0
+    first, fractions, largest, highest = "", False, 0.0, 0.0
     for line in _blocks(source):
         for found in _LENGTH.finditer(line):
-            number = found[2]
+            number, letter = found[2], found[1].upper()
             if number.endswith("."):
                 return ""
             if "." in number:
                 fractions = True
             elif float(number):
                 first = first or found[0]
-                largest = max(largest, float(number) if found[1] not in "fF" else 0.0)
-    return first if fractions or 0 < largest < _INCREMENTS else ""
+                largest = max(largest, float(number) if letter != "F" else 0.0)
+                highest = max(highest, float(number) if letter == "Z" else 0.0)
+    flat = 0.0 < highest < _INCREMENTS and largest <= _LARGEST_PART
+    return first if fractions or flat or 0.0 < largest < _INCREMENTS else ""
 
 
+_LARGEST_PART = 2000.0
+"""No larger coordinate is one of a mill [mm]."""
 _INCREMENTS = 1000
 """So many least input increments are a millimetre."""

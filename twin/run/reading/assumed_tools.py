@@ -49,23 +49,33 @@ _THREAD = re.compile(r"\bM([0-9]+(?:\.[0-9]+)?)(?:\s*[Xx][0-9.]+)?\s*(?:TAP|GEWI
 _CORNER = re.compile(
     rf"\b(?:CR|R|RAD(?:IUS)?|CORNER RAD(?:IUS)?)\s*[=:.-]?\s*({_NUMBER})", re.IGNORECASE
 )
-_TAPER = re.compile(r"\bTAPER\s*=\s*([0-9.]+)\s*DEG", re.IGNORECASE)
+_WEAR = re.compile(r"\bWEAR\b")
+_COMPENSATION = re.compile(r"\b(?:WEAR|CONTROL|COMPUTER) COMP")
+"""What posts write of how the radius is compensated: by the control, or in the program and the wear by the control."""
 
 
 class ToolComment(NamedTuple):
-    """What a comment tells of a tool.
+    """What a comment says about a tool.
 
     Attributes:
-        kind: As ``ToolTable`` has it; empty: it is not told.
-        diameter: [mm]; None: it is not told.
+        kind: As ``ToolTable`` has it; empty: it is not stated.
+        diameter: [mm]; None: it is not stated.
         corner: Radius of a bull-nose's corner [mm].
         text: The comment.
+        wear: Its contours are the path of its centre, so that D holds its wear alone; None: that is not told.
     """
 
     kind: str
     diameter: float | None
     corner: float | None
     text: str
+    wear: bool | None = None
+
+    @property
+    def table_radius(self) -> float | None:
+        """What it has as its radius in the control's table [mm]; None: it is not told."""
+        whole = None if self.diameter is None else self.diameter / 2.0
+        return 0.0 if self.wear else whole
 
 
 def numbered_tool(comment: str) -> tuple[int, str] | None:
@@ -78,7 +88,7 @@ def numbered_tool(comment: str) -> tuple[int, str] | None:
 
 
 def tool_of_comment(text: str, *, inches: bool) -> ToolComment:
-    """What a comment tells of a tool; numbers without a unit are the program's."""
+    """What a comment says about a tool; numbers without a unit are the program's."""
     upper = text.upper()
     kind = next((kind for words, kind in _KINDS if re.search(words, upper)), "")
     diameter = _diameter(upper, inches=inches)
@@ -90,7 +100,8 @@ def tool_of_comment(text: str, *, inches: bool) -> ToolComment:
         kind = "flat"
     if kind == "bull" and (not diameter or not radius or 2.0 * radius > diameter):
         kind, radius = "flat", None
-    return ToolComment(kind, diameter, radius if kind == "bull" else None, text.strip())
+    wear = bool(_WEAR.search(upper)) if _COMPENSATION.search(upper) else None
+    return ToolComment(kind, diameter, radius if kind == "bull" else None, text.strip(), wear)
 
 
 def _diameter(text: str, *, inches: bool) -> float | None:
@@ -102,10 +113,13 @@ def _diameter(text: str, *, inches: bool) -> float | None:
         return int(fraction[1]) / int(fraction[2]) * _INCH
     for pattern in _DIAMETERS:
         found = re.search(pattern, text)
-        if found is not None and 0.0 < _value(found[1]) < 500.0:
-            by_unit = bool(found[2]) and not found[2].startswith("M")
-            inch = by_unit or (inches and not found[2])
-            return _value(found[1]) * (_INCH if inch else 1.0)
+        if found is None:
+            continue
+        by_unit = bool(found[2]) and not found[2].startswith("M")
+        inch = by_unit or (inches and not found[2] and _ALWAYS_MM not in text)
+        diameter = _value(found[1]) * (_INCH if inch else 1.0)
+        if 0.0 < diameter <= _LARGEST_DIAMETER:
+            return diameter
     return None
 
 
@@ -114,6 +128,15 @@ def _value(text: str) -> float:
 
 
 _USUAL_DIAMETER = 10.0
+_LARGEST_DIAMETER = 160.0
+"""Numbers that would be larger diameters are none: so large are face mills [mm]."""
+_ALWAYS_MM = "COMPENSATED TOOL PATH"
+"""FreeCAD's comment counts millimetres whatever the program does."""
+_SAYS_DIAMETER = re.compile(
+    rf"{_ALWAYS_MM}. DIAMETER|\b(?:TOOL|CUTTER|BIT|MILL|DRILL)\b.*\b(?:DIA|DIAMETER|DIAM)\b",
+    re.IGNORECASE,
+)
+"""Comments that speak of a tool's diameter."""
 USUAL_LENGTH, _USUAL_FLUTE = 60.0, 25.0
 _NEAR_LINES = 3
 """So far from the call of a tool a comment may stand that describes it."""
@@ -128,6 +151,9 @@ def tool_lines(
     declared: Mapping[int, ToolComment],
     *,
     inches: bool,
+    top: float,
+    least_length: float,
+    worn: Collection[int] = (),
 ) -> tuple[list[str], list[str], float]:
     """Lines of the tools that the program calls, how each came about, and the largest diameter [mm].
 
@@ -137,8 +163,13 @@ def tool_lines(
         moves: What the program makes.
         declared: Tools that the program itself gives their data.
         inches: Comments count in inches.
+        top: Of the stock [mm].
+        least_length: So long is each tool at least [mm].
+        worn: Tools of which the control's table holds the wear alone.
     """
-    numbers = list(dict.fromkeys(number for number, _, _ in calls if number)) or [1]
+    numbers = list(dict.fromkeys(number for number, _, _ in calls if number)) or (
+        [0] if calls else [1]
+    )
     listed = listed_tools((comment for _, comment in comments), numbers, inches=inches)
     lines: list[str] = []
     told: list[str] = []
@@ -148,9 +179,12 @@ def tool_lines(
             declared.get(number)
             or listed.get(number)
             or _near_comment(number, calls, comments, inches=inches)
+            or _while_in_spindle(number, calls, comments, inches=inches)
         )
         rows = _rows_of(number, calls, len(moves))
-        more, said, diameter = _tool_table(number, tool, moves, rows)
+        more, said, diameter = _tool_table(
+            (number, tool), moves, rows, top=top, least_length=least_length, worn=number in worn
+        )
         lines += more
         told.append(said)
         largest = max(largest, diameter)
@@ -160,7 +194,7 @@ def tool_lines(
 def listed_tools(
     comments: Iterable[str], numbers: Collection[int], *, inches: bool
 ) -> dict[int, ToolComment]:
-    """What comments that begin with a tool's number tell of the tools, by number."""
+    """What comments that begin with a tool's number say about the tools, by number."""
     listed: dict[int, ToolComment] = {}
     for comment in comments:
         found = numbered_tool(comment)
@@ -178,7 +212,7 @@ def _near_comment(
     *,
     inches: bool,
 ) -> ToolComment | None:
-    """What a comment beside a tool's call tells of it; without a list, and one tool alone, any comment of the head."""
+    """What a comment beside a tool's call says about it; without a list, and one tool alone, any comment of the head."""
     lines = [line for each, line, _ in calls if each == number]
     near = [
         (abs(line - call), text)
@@ -196,6 +230,25 @@ def _near_comment(
     return None
 
 
+def _while_in_spindle(
+    number: int,
+    calls: list[tuple[int, int, int]],
+    comments: list[tuple[int, str]],
+    *,
+    inches: bool,
+) -> ToolComment | None:
+    """What the first comment says that speaks of a diameter before another tool comes; without tools any one."""
+    for line, text in comments:
+        if not _SAYS_DIAMETER.search(text):
+            continue
+        before = [each for each, call, _ in calls if call <= line]
+        if not calls or (before and before[-1] == number):
+            tool = tool_of_comment(text, inches=inches)
+            if tool.diameter is not None:
+                return tool
+    return None
+
+
 def _rows_of(number: int, calls: list[tuple[int, int, int]], count: int) -> list[int]:
     """Moves with a tool; all of them where no tool is called."""
     if not calls:
@@ -209,17 +262,24 @@ def _rows_of(number: int, calls: list[tuple[int, int, int]], count: int) -> list
 
 
 def _tool_table(
-    number: int, tool: ToolComment | None, moves: Moves, rows: list[int]
+    called: tuple[int, ToolComment | None],
+    moves: Moves,
+    rows: list[int],
+    *,
+    top: float,
+    least_length: float,
+    worn: bool,
 ) -> tuple[list[str], str, float]:
     """A tool's lines, how it came about, and its diameter [mm]."""
+    number, tool = called
     feeds = [row for row in rows if moves.motion[row] == Motion.FEED]
     ways = moves.end[feeds, :2] - moves.start[feeds, :2]
     drills = bool(feeds) and bool((np.abs(ways) < BELOW).all())
-    depth = max(0.0, -float(moves.end[feeds, 2].min())) if feeds else 0.0
+    depth = max(0.0, top - float(moves.end[feeds, 2].min())) if feeds else 0.0
     kind = (tool.kind if tool else "") or ("drill" if drills else "flat")
     diameter = (tool.diameter if tool else None) or _USUAL_DIAMETER
     flute = max(_USUAL_FLUTE, np.ceil(depth + 5.0))
-    length = max(USUAL_LENGTH, np.ceil(flute * 1.6 + 20.0))
+    length = max(USUAL_LENGTH, np.ceil(flute * 1.6 + 20.0), np.ceil(least_length))
     kind_from = "its comment" if tool and tool.kind else "what it does"
     size_from = "its comment" if tool and tool.diameter else "a guess"
     lines = [
@@ -228,6 +288,7 @@ def _tool_table(
         f'kind = "{kind}"  # flat, ball, bull, drill, chamfer: from {kind_from}',
         f"diameter = {round(float(diameter), 4)}  # mm: {size_from}",
         *([f"corner = {tool.corner}  # mm"] if tool and tool.corner and kind == "bull" else []),
+        *(["radius_offset = 0.0  # D holds its wear alone"] if worn else []),
         f"flute = {flute:.1f}  # mm: a guess",
         f"length = {length:.1f}  # from the spindle nose to the tip, mm: a guess",
         "",
@@ -237,6 +298,7 @@ def _tool_table(
         if tool and tool.diameter
         else "diameter is a guess"
     )
+    said += "; D holds its wear alone, the contours are the path of its centre" if worn else ""
     return lines, said, diameter
 
 

@@ -15,7 +15,7 @@ from twin.nc.control.dialect import Dialect
 from twin.nc.control.settings import ControlSettings, MachineFunction
 from twin.nc.dialects import DIALECTS
 from twin.nc.dialects.foreign import require_program
-from twin.nc.dialects.recognition import reading_of
+from twin.nc.dialects.recognition import head_of, reading_of
 from twin.nc.interpreter import Interpretation
 from twin.nc.text.diagnostics import Diagnostic, ProgramError
 from twin.nc.text.source import Source, read_source
@@ -31,7 +31,7 @@ _SAME = 1e-6
 _CLEARANCE = 1.0
 """How far between pecks a drill withdraws is a parameter of the control; rapids that differ by less ask nobody [mm]."""
 _NEARLY = 0.1
-"""Feeds on the same path that differ by less are told, but they ask nobody: F of a helix counts its arc or its path."""
+"""Feeds on the same path that differ by less are stated, but they ask nobody: F of a helix counts its arc or its path."""
 _CRAWLS = 1.0
 """A dialect that alone reads a program, and in which it feeds slower than this, was not meant [mm/min]."""
 _TOO_SLOW = 1.0 / 200.0
@@ -39,6 +39,11 @@ _TOO_SLOW = 1.0 / 200.0
 without a point as 0.3 mm/min, and a post for it writes F300."""
 _INCH = 25.4
 _PROGRAM_NUMBER = re.compile(r"\s*[:O]\s*(?:\d+|<)", re.IGNORECASE)
+_ROUTERS = "grbl"
+"""The control of most routers, which passes over words that others refuse: taken where these refuse a program without a number."""
+_POSTS = re.compile(r"pcb2gcode|\bpycam|dxf2gcode|gcodetools|heekscnc", re.IGNORECASE)
+_OF_POSTS = "linuxcnc"
+"""What these posts write, which asks nobody where others would move differently."""
 _NUMBERED = ("fanuc", "haas")
 """Controls whose programs begin with their number."""
 
@@ -82,7 +87,7 @@ def chosen_dialect(path: Path, settings: ControlSettings, source: Source | None 
 
     Args:
         path: The program.
-        settings: What its control is told of machine and job.
+        settings: What its control is told about machine and job.
         source: The program, where it was read already.
 
     Raises:
@@ -112,6 +117,11 @@ def chosen_dialect(path: Path, settings: ControlSettings, source: Source | None 
     refusing = [trial for trial in trials if trial.error is not None]
     if refusing and all(0.0 < trial.fastest < _CRAWLS for trial in good):
         good, trials = [], refusing
+    numbered = any(map(_PROGRAM_NUMBER.match, source.lines))
+    if not good and _ROUTERS in rare and not numbered:
+        router = _tried(path, DIALECTS[_ROUTERS], settings)
+        if router.error is None:
+            return Choice(DIALECTS[_ROUTERS], f"it alone reads it; {_first_refusal(trials)}")
     if not good:
         further = [_tried(path, DIALECTS[name], settings) for name in rare] if common else []
         raise _refused(trials, [trial.name for trial in further if trial.error is None])
@@ -119,13 +129,16 @@ def chosen_dialect(path: Path, settings: ControlSettings, source: Source | None 
     least = min(len(trial.unknown) for trial in quick)
     meant = [trial for trial in quick if len(trial.unknown) == least]
     why = _dropped(good, quick, meant)
-    numbered = any(map(_PROGRAM_NUMBER.match, source.lines))
     left = [trial for trial in meant if (trial.name in _NUMBERED) == numbered]
     apart = any(_difference(meant[0], other) for other in meant[1:])
     if apart and left and (numbered or not any(_paths_apart(meant[0], each) for each in meant)):
         others = [trial.name for trial in meant if trial not in left]
         reason = f"programs of {_either(_NUMBERED, 'and')} begin with their number, O"
         meant, why = left, "; ".join(filter(None, (why, reason if others else "")))
+    post = _POSTS.search(head_of(source)) if apart and not numbered else None
+    own = [trial for trial in meant if trial.name == _OF_POSTS]
+    if post is not None and own:
+        meant, why = own, f"its head names {post[0]}, which writes {_OF_POSTS}'s language"
     return _choice(source.name, meant, why)
 
 
@@ -137,10 +150,20 @@ def _crawls(one: _Trial, other: _Trial) -> bool:
     return bool(((slow < _CRAWLS * _INCH) & (slow < fast * _TOO_SLOW)).any())
 
 
+def _farthest(trials: Sequence[_Trial]) -> _Trial:
+    """The one that reads a program farthest before it refuses it."""
+    return max(trials, key=lambda trial: trial.error.line if trial.error else 0)
+
+
+def _first_refusal(trials: Sequence[_Trial]) -> str:
+    farthest = _farthest(trials)
+    assert farthest.error is not None
+    return f"{farthest.name}, which reads it farthest of others, refuses line {farthest.error.line}: {farthest.error.message}"
+
+
 def _refused(trials: Sequence[_Trial], others: Sequence[str]) -> ProgramError:
     """The error of the dialect that reads a program farthest, and what else may be tried."""
-    farthest = max(trials, key=lambda trial: trial.error.line if trial.error else 0).error
-    name = next(trial.name for trial in trials if trial.error is farthest)
+    farthest, name = _farthest(trials).error, _farthest(trials).name
     assert farthest is not None
     message = f"read as {name}, which reads it farthest: {farthest.message}"
     further = f"; {_either(others, 'and')} would read it" if others else ""

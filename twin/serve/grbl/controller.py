@@ -18,9 +18,8 @@ from twin.serve.grbl.reports import BUILD, HELP, WELCOME, ParserState, Reporter,
 from twin.serve.grbl.serial_buffer import SerialBuffer, cleaned
 from twin.serve.grbl.settings import GrblSettings
 from twin.serve.grbl.stream import MOST_AHEAD, GrblStream
-from twin.training.program.inherited import Inherited
 from twin.training.program.program_run import ProgramRun
-from twin.training.program.run_options import RunOptions
+from twin.training.program.run_options import Inherited, RunOptions
 from twin.training.room.room import Room
 from twin.training.room.run_settings import run_settings
 from twin.training.session import commands as c
@@ -51,13 +50,13 @@ class GrblController:
         self._left: Inherited | None = None
         self._checking: Executor | None = None
         self._locked = self._halted = self._homing = self._door = False
-        self._told_lost = 0
+        self._reported_lost = 0
         self._reset_state(room, None)
 
     # --- what the line asks for
 
     def welcome(self) -> bytes:
-        """What a sender that has just come is told; a line that another one has not ended is forgotten."""
+        """What is sent to a sender that has just come; a line that another one has not ended is forgotten."""
         self.serial.forget_open()
         self._greet()
         return self._take_output()
@@ -71,7 +70,7 @@ class GrblController:
     def work(self, room: Room, data: bytes = b"") -> bytes:
         """Take bytes from the line, do what they ask for as far as the machine is ready; what is to be sent."""
         if data and self._stream is not None:
-            self._stream.heard = time.monotonic()
+            self._stream.last_received = time.monotonic()
         for command in self.serial.receive(data):
             if command == realtime.RESET:
                 self._reset(room)
@@ -80,9 +79,9 @@ class GrblController:
             elif not self._halted:
                 realtime.obey(room, command, jogging=self._jogs)
                 self._door = self._door_behind(command)
-        if self.serial.lost > self._told_lost:
+        if self.serial.lost > self._reported_lost:
             self._tell(f"the serial buffer ran over: {self.serial.lost} bytes are lost")
-        self._told_lost = self.serial.lost
+        self._reported_lost = self.serial.lost
         self._look(room)
         if not self._halted:
             self._run_lines(room)

@@ -15,7 +15,7 @@ from twin.units import SECONDS_PER_MINUTE
 
 WELCOME = "\r\nGrbl 1.1h ['$' for help]"
 BUILD = ("[VER:1.1h.20190825:mill-twin]", f"[OPT:VML,{MOST_AHEAD},{BUFFER_SIZE}]")
-"""V: variable spindle, M: mist, L: no lock when it is switched on, since the twin knows where it stands."""
+"""V: variable spindle, M: mist, L: no lock when it is switched on, since the twin knows where it is."""
 HELP = "[HLP:$$ $# $G $I $N $x=val $Nx=line $J=line $SLP $C $X $H ~ ! ? ctrl-x]"
 _INCH = 25.4
 _OFFSET_EVERY, _OVERRIDES_EVERY = 30, 20

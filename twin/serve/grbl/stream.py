@@ -48,7 +48,7 @@ class GrblStream:
         answers: What is to be sent.
         jogging: Whether it is jogs that are run, and no G code.
         executor: What ran the last block; None before the first.
-        heard: When the last byte came, by ``time.monotonic`` [s].
+        last_received: When the last byte came, by ``time.monotonic`` [s].
     """
 
     def __init__(self, serial: SerialBuffer, machine: Machine, *, jogging: bool) -> None:
@@ -56,18 +56,18 @@ class GrblStream:
         self.answers: list[str] = []
         self.jogging = jogging
         self.executor: Executor | None = None
-        self.heard = time.monotonic()
+        self.last_received = time.monotonic()
         self._machine = machine
         self._before: _Before | None = None
         self._number = 0
 
     @property
-    def quiet(self) -> bool:
+    def is_idle(self) -> bool:
         """Whether no line for this run has come for a while."""
         head = self.serial.head
         if head is not None:
             return not self._takes(head)
-        return time.monotonic() - self.heard > QUIET_S
+        return time.monotonic() - self.last_received > QUIET_S
 
     def _takes(self, line: bytes) -> bool:
         text = cleaned(line)

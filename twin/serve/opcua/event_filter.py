@@ -1,7 +1,7 @@
 """Event filters of clients by type: an event is also of all types that its own type is a subtype of.
 
 OPC UA 10000-4, 7.7.3 has ``OfType`` so; ``asyncua`` compares the event's own type alone, and clients that ask for all
-alarms by ``AlarmConditionType`` or ``AcknowledgeableConditionType`` would be told of none.
+alarms by ``AlarmConditionType`` or ``AcknowledgeableConditionType`` would receive none.
 """
 
 from typing import Any

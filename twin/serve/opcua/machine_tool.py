@@ -1,6 +1,6 @@
 """The address space of one machine: a MachineToolType of OPC 40501-1, kept up to date.
 
-What the specification has no place for, positions and loads of axes, stands in a folder of the machine's own
+What the specification has no place for, positions and loads of axes, is in a folder of the machine's own
 namespace below Monitoring, as analogue items with engineering units.
 """
 

@@ -36,7 +36,7 @@ async def import_node_sets(server: Server) -> None:
         UsageError: The node sets are not there.
     """
     require_node_sets()
-    # By their numbers: each stands on those before it.
+    # By their numbers: each builds on those before it.
     for file in sorted(FOLDER.glob("*.xml")):
         # Some nodes of DI are for design tools only and have no parent: they are left out.
         await server.import_xml(str(file), strict_mode=False)

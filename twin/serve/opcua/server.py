@@ -61,7 +61,7 @@ class Place(NamedTuple):
 
 
 class Content(NamedTuple):
-    """What a server tells of.
+    """What a server reports.
 
     Attributes:
         machine: The machine.
@@ -112,14 +112,14 @@ async def opcua_server(place: Place, content: Content) -> AsyncIterator[MachineT
 
     Args:
         place: Where it listens.
-        content: What it tells of.
+        content: What it reports.
 
     Raises:
         UsageError: The node sets are missing.
     """
     logging.getLogger("asyncua").setLevel(logging.CRITICAL)
     server = Server(user_manager=_Readers())
-    # Clients that come later ask for what stands (ConditionRefresh).
+    # Clients that come later ask for what does not turn (ConditionRefresh).
     server.iserver.bind_condition_methods = 1
     filter_by_subtypes()
     await server.init()
@@ -167,7 +167,7 @@ async def mirror(
     Args:
         agent: What observes.
         place: Where clients come in.
-        content: What is told of.
+        content: What is reported.
         ready: Told the address once clients may come.
     """
     items = [item.id for part in agent.device.walk() for item in part.items]

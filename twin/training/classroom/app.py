@@ -126,7 +126,7 @@ class ClassApp:
                     door = await self._rooms.opened(seat)
                     await _splice(page, door, f"/{role}/stream")
                 except (RoomError, OSError, WebSocketException):
-                    pass  # The page is told by the closed line, and asks again.
+                    pass  # The page sees the closed line, and asks again.
                 with contextlib.suppress(RuntimeError):
                     await page.close(1013)
 

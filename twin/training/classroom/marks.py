@@ -73,7 +73,7 @@ _COLUMNS = tuple(field.name for field in dataclasses.fields(Mark))
 class ClassFile:
     """What a class keeps: marks, who has which scene, tokens of the links, the port.
 
-    It is opened anew for each question, so that any thread and any process may ask.
+    It is opened again for each question, so that any thread and any process may ask.
     """
 
     def __init__(self, folder: Path) -> None:

@@ -36,7 +36,7 @@ class Seat:
         left_at: When the last of them was closed, by the monotonic clock [s].
         status: What its room has told last; empty: there is none.
         acted_at: When the pupil has done something last, by the monotonic clock [s].
-        alarmed_at: Since when an alarm stands, by the monotonic clock [s]; None: none does.
+        alarmed_at: Since when an alarm is active, by the monotonic clock [s]; None: none does.
         failed: Why its room could not be begun, or ended by itself; empty: it did not.
         process: The room's; None: there is none.
         pipe: To the room.
@@ -172,7 +172,7 @@ class Rooms:
         self.say(seat, {"do": "freeze" if held else "go_on"})
 
     def hand_out(self, seat: Seat, scene: str) -> None:
-        """Give a pupil another scene, or the same anew; he finds it also when he comes later."""
+        """Give a pupil another scene, or the same again; he finds it also when he comes later."""
         self._file.hand_out(seat.pupil.name, scene)
         seat.scene = scene
         self.say(seat, {"attempt": scene})

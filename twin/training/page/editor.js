@@ -1,6 +1,6 @@
 // The program as a whole: typed, opened from a file, saved to one; what the control says of it stands below.
 
-import { act_on, make, write } from "./parts.js";
+import { act_on, make, reveal, write } from "./parts.js";
 
 const TYPED_MS = 350;
 const LONGEST = 60000;
@@ -41,7 +41,8 @@ export class Editor {
       this.text, make("div", { role: "status" }, this.said),
     );
     this.box.hidden = false;
-    this.text.focus();
+    reveal(this.box);
+    this.text.focus({ preventScroll: true });
     this.check_soon();
   }
 

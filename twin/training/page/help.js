@@ -1,6 +1,6 @@
 // Help on demand: the keys of the keyboard, and a first minute that says what to press for who has never seen a control.
 
-import { act_on, make, write } from "./parts.js";
+import { act_on, make, reveal, write } from "./parts.js";
 
 /** What is pressed, when it has been done, and what must hold for it: where that is lost, the step before comes again. */
 const MINUTE = [
@@ -22,6 +22,7 @@ export class Help {
 
   turn(open) {
     this.box.hidden = !open;
+    if (open) reveal(this.box);
     this.opener.setAttribute("aria-expanded", open);
   }
 
@@ -61,6 +62,7 @@ export class Help {
     const over = step === MINUTE.length, { key, say } = over ? { say: "guide_over" } : MINUTE[step];
     const target = key === "emergency" ? document.getElementById("emergency") : document.querySelector(`#control-desk [data-key="${key}"]`);
     target?.classList.add("press-this");
+    target?.scrollIntoView({ block: "nearest" });
     const text = make("span", { role: "status" });
     guide.replaceChildren(text, this.button("end guide", over ? "close" : "skip", () => this.end()));
     write(text, over ? words.label(say) : `${step + 1}/${MINUTE.length}: ${words.label(say, { key: words.label(key) })}`);

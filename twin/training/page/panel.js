@@ -22,7 +22,7 @@ if (location.hash) history.replaceState(null, "", location.pathname + location.s
 
 const scene = await room_scene();
 const now = {};
-let words, told = null, tool = null, follow = "start", queued = false;
+let words, told = null, tool = null, follow = "start", queued = false, reloads = false;
 const changed = new Set();
 
 const base = new URL("./", location.href).pathname;
@@ -70,11 +70,12 @@ function banner(name, detail = "") {
 function hear(data) {
   if (typeof data === "string") {
     const said = JSON.parse(data);
+    // Another attempt has another machine, and perhaps another scene: the page begins anew with it, and shows nothing of it before.
+    attempt ??= said.attempt;
+    if (said.attempt !== undefined && said.attempt !== attempt) reloads = true;
+    if (reloads) return location.reload();
     for (const name of Object.keys(said)) changed.add(name);
     Object.assign(now, said);
-    // Another attempt has another machine, and perhaps another scene: the page begins anew with it.
-    attempt ??= now.attempt;
-    if (now.attempt !== attempt) return location.reload();
     if (now.tool !== tool) view.say("load", tool = now.tool);
     return show_soon();
   }

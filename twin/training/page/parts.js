@@ -43,6 +43,11 @@ export function light(button, on) {
   button.setAttribute("aria-pressed", on);
 }
 
+/** Scroll to a box over the view, where a small screen has it out of sight. */
+export function reveal(box) {
+  box.closest("#view").scrollIntoView({ block: "nearest" });
+}
+
 /** Set a text only where it changes: what is read aloud or laid out need not be done again. */
 export function write(element, text) {
   if (element.textContent !== text) element.textContent = text;

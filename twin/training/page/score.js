@@ -1,6 +1,6 @@
 // The score sheet of a scene that was handed in, over the view: what went wrong, and what comes next.
 
-import { act_on, make } from "./parts.js";
+import { act_on, make, reveal } from "./parts.js";
 
 export class Score {
   constructor(scene, line) {
@@ -32,6 +32,7 @@ export class Score {
     this.box.replaceChildren(make("div", { class: "row next" }, ...this.keys(), this.key("close_sheet", words.label("close"), () => this.close())), make("article", {}, ...sheet.body.childNodes));
     this.box.hidden = false;
     this.box.scrollTop = 0;
+    reveal(this.box);
     this.box.focus({ preventScroll: true });
   }
 

@@ -169,7 +169,7 @@ class BlockWalk(Forkable):
         return self.blocks[index].line if index < len(self.blocks) else 0
 
     def due(self, place: float, line: int) -> list[Function]:
-        """Functions that have happened and were not told yet: what they wait for is over.
+        """Functions that have happened and were not reported yet: what they wait for is over.
 
         Args:
             place: How many moves, and which share of the next, lie behind.

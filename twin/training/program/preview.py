@@ -1,4 +1,4 @@
-"""The way of a program, before it is run: what the room's own interpreter makes of it, drawn and not driven.
+"""The path of a program, before it is run: what the room's own interpreter makes of it, drawn and not driven.
 
 A program is read through all its parts as ``ProgramReader`` would read it, from the place and with the
 tables of the moment in which it was asked for, also behind a search. Nothing is planned and nothing
@@ -76,9 +76,9 @@ class PathToCome:
         search: Source line that the next start begins at; 0: the first.
         stand: Where the setpoints stand, machine coordinates, shape (k,) [mm or deg].
         zero: Machine coordinates of program zero for the first tool, as the control has it, shape (k,).
-        longer: How much longer than the first each tool is in the control's table, by number [mm].
+        length_difference: How much longer than the first each tool is in the control's table, by number [mm].
         tool: Number of the tool in the spindle.
-        spindle: What it has been told.
+        spindle: What it has been commanded.
         frame: How the part turns under the tool.
     """
 
@@ -89,7 +89,7 @@ class PathToCome:
     search: int
     stand: FloatArray
     zero: FloatArray
-    longer: dict[int, float]
+    length_difference: dict[int, float]
     tool: int
     spindle: SpindleState
     frame: PartFrame
@@ -97,7 +97,11 @@ class PathToCome:
     @property
     def key(self) -> tuple[Any, ...]:
         """What two ways that are the same have in common."""
-        numbers = self.stand.round(3).tobytes(), self.zero.tobytes(), tuple(self.longer.items())
+        numbers = (
+            self.stand.round(3).tobytes(),
+            self.zero.tobytes(),
+            tuple(self.length_difference.items()),
+        )
         return self.source.sha256, self.search, self.tool, repr(self.settings), *numbers
 
     def drawn(self) -> Preview:
@@ -144,11 +148,11 @@ class PathToCome:
 
     def _zero_with(self, tool: int | None) -> FloatArray:
         zero = self.zero.copy()
-        zero[2] += self.longer.get(tool or 0, 0.0)
+        zero[2] += self.length_difference.get(tool or 0, 0.0)
         return zero
 
     def _changed(self, reader: ProgramReader) -> int | None:
-        if reader.tool not in self.longer:
+        if reader.tool not in self.length_difference:
             raise TwinError(f"no tool {reader.tool}")
         return reader.tool
 

@@ -4,6 +4,7 @@ A part ends at a program stop, a tool change, an error, or the end. The axes res
 so that each part can be planned on its own.
 """
 
+import bisect
 import dataclasses
 from collections import deque
 from collections.abc import Iterator
@@ -22,12 +23,59 @@ from twin.nc.path.feed_rates import FEED_FACTORS
 from twin.nc.text.blocks import Block
 from twin.nc.text.diagnostics import Diagnostic, ProgramError
 from twin.nc.text.source import Source
-from twin.run.waits import Waits
+from twin.run.spindle_dwells import SpindleDwells
 from twin.training.program.block_search import BlockSearch
 from twin.training.program.block_walk import BlockWalk, ModalState
-from twin.training.program.inherited import Inherited
-from twin.training.program.move_window import MoveWindow
-from twin.training.program.run_options import RunOptions
+from twin.training.program.run_options import Inherited, RunOptions
+
+MOVES_KEPT_BEHIND = 2
+"""Moves behind the axes that are remembered: a stop at a block's end may count as the next one's beginning."""
+
+
+class MoveWindow:
+    """Moves of a part by their number.
+
+    Attributes:
+        count: Moves that have been interpreted so far.
+    """
+
+    def __init__(self) -> None:
+        self.count = 0
+        self._moves: list[Moves] = []
+        self._firsts: list[int] = []
+
+    def add(self, moves: Moves) -> None:
+        """Moves that come next."""
+        self._firsts.append(self.count)
+        self._moves.append(moves)
+        self.count += len(moves)
+
+    def forget_behind(self, move: int) -> None:
+        """Drop what nobody asks for once the axes are past it: a program may be endless."""
+        while len(self._firsts) > 1 and self._firsts[1] < move - MOVES_KEPT_BEHIND:
+            del self._firsts[0], self._moves[0]
+
+    def rapid(self, move: int) -> bool:
+        """Whether a move is a rapid."""
+        found = self._find(move)
+        return found is not None and int(found[0].motion[found[1]]) == Motion.RAPID
+
+    def line(self, move: int) -> int | None:
+        """Source line of a move; None: it is not known."""
+        found = self._find(move)
+        return None if found is None else int(found[0].line[found[1]])
+
+    def target(self, move: int) -> tuple[FloatArray, FloatArray] | None:
+        """Where a move ends and what the screen shows there, part coordinates, (k,) each."""
+        found = self._find(move)
+        return None if found is None else (found[0].end[found[1]], found[0].display[found[1]])
+
+    def _find(self, move: int) -> tuple[Moves, int] | None:
+        if not self._firsts or not self._firsts[0] <= move < self.count:
+            return None
+        chunk = bisect.bisect_right(self._firsts, move) - 1
+        return self._moves[chunk], move - self._firsts[chunk]
+
 
 MOVES_AT_ONCE = 256
 """Moves that are interpreted before they are handed on."""
@@ -105,12 +153,12 @@ class ProgramReader:
         Args:
             start: Where the setpoints are, machine coordinates, shape (k,) [mm or deg].
             zero: Machine coordinates of program zero, shape (k,) [mm or deg].
-            spindle: What it has been told: the axes wait until it has come to its speed.
+            spindle: What it has been commanded: the axes wait until it has come to its speed.
         """
         self._clear_part()
         tools = self._control.tools
         table = self._machine.file.spindle
-        self._waits = Waits(table, {}, tools.spindle or 0, spindle, tools.selected)
+        self._spindle_dwells = SpindleDwells(table, {}, tools.spindle or 0, spindle, tools.selected)
         self.start, self.zero = start, zero
         self.ending = None
 
@@ -247,7 +295,7 @@ class ProgramReader:
         # No time passes for a tool that is not there: the change is reported at once.
         changes = self.ending == "tool"
         happen = [one for one in chunk.events if changes or not _is_tool_change(one)]
-        chunk = Chunk(chunk.moves, tuple(self._waits.among(happen)))
+        chunk = Chunk(chunk.moves, tuple(self._spindle_dwells.among(happen)))
         for event in chunk.events:
             self.walk.note_event(self.moves.count, event)
         self.moves.add(chunk.moves)

@@ -21,8 +21,12 @@ from twin.nc.control.settings import ControlSettings
 from twin.nc.functions import SpindleState
 from twin.nc.text.source import Source
 from twin.training.program.block_walk import ModalState
-from twin.training.program.move_window import MOVES_KEPT_BEHIND
-from twin.training.program.program_reader import MOVES_AT_ONCE, READ_AT_ONCE, ProgramReader
+from twin.training.program.program_reader import (
+    MOVES_AT_ONCE,
+    MOVES_KEPT_BEHIND,
+    READ_AT_ONCE,
+    ProgramReader,
+)
 from twin.training.program.run_options import RunOptions
 
 CHUNKS_AHEAD = 2 * math.ceil(LOOK_AHEAD / MOVES_AT_ONCE)
@@ -107,7 +111,7 @@ class ProgramRun:
         Args:
             start: Where the setpoints stand, machine coordinates, shape (k,) [mm or deg].
             zero: Machine coordinates of program zero, shape (k,) [mm or deg].
-            spindle: What it has been told: the axes wait until it has come to its speed.
+            spindle: What it has been commanded: the axes wait until it has come to its speed.
             paused: Whether start is waited for before its first block.
         """
         self._clear_part()
@@ -223,7 +227,7 @@ class ProgramRun:
         if reader.ending is None and (stream is not None or len(reader.waiting) < self._ahead):
             reader.interpret(most, self._move)
         self._looks += 1
-        if stream is not None and self._motion is None and reader.ending is None and stream.quiet:
+        if stream is not None and self._motion is None and reader.ending is None and stream.is_idle:
             reader.end_stream()
         long_enough = self._looks > SLICES_AT_REST and stream is None
         if self._motion is None and long_enough:

@@ -20,7 +20,7 @@ class AlarmLog:
     Attributes:
         active: The alarm that has not been cleared; None: there is none.
         history: Those that came, the newest last.
-        moments: How the tool stood in the part at each of them.
+        moments: How the tool was in the part at each of them.
         broken: Tools that have lost their edge, by number, with the alarm of each.
     """
 
@@ -66,7 +66,7 @@ class AlarmLog:
         self.broken[tool] = self.enter(room, notice)
 
     def note_broken(self, tool: int) -> None:
-        """What the active alarm tells of is a tool that has broken."""
+        """The active alarm is about a tool that has broken."""
         if self.active is not None:
             self.broken.setdefault(tool, self.active)
 

@@ -21,7 +21,7 @@ class Auxiliaries:
         self.coolant = False
 
     def turn(self, state: SpindleState) -> None:
-        """Change what the spindle is told."""
+        """Change what the spindle is commanded."""
         self.spindle = state
 
     def mount(self, tool_speed: float | None) -> None:

@@ -25,7 +25,7 @@ class Evidence:
         answers: What was answered, by number of the task.
         since_touch_s: Machine time since the panel was touched first [s].
         made: The program has finished the part at least once.
-        brought: The axes stand where a program has brought them that finished the part.
+        brought: The axes are where a program has brought them that finished the part.
         blanks: How many have been clamped.
     """
 

@@ -48,7 +48,7 @@ class EdgeFinder:
         """Give way to the part.
 
         Args:
-            touch: How the tip stands to it.
+            touch: How the tip is to it.
             turns: Whether the spindle turns: an electronic one must stand.
 
         Returns:

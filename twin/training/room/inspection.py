@@ -1,4 +1,4 @@
-"""What the score sheet shows: how the tool stood in the part at an alarm, and the part that was handed in."""
+"""What the score sheet shows: how the tool was in the part at an alarm, and the part that was handed in."""
 
 import dataclasses
 import io
@@ -26,7 +26,7 @@ class Moment:
     Attributes:
         alarm: The alarm.
         text: The block that ran, as it is written; empty: none did.
-        tip: Where the tool stood in the part's frame, shape (3,) [mm].
+        tip: Where the tool was in the part's frame, shape (3,) [mm].
         tool: What was in the spindle.
         heights: Of the stock, every few cells, shape (ny, nx) [mm]; empty: there was none.
         origin: X and Y of the first cell [mm].
@@ -90,7 +90,7 @@ class Moment:
 
 
 def moment_of(room: Observed, alarm: Notice) -> Moment:
-    """How the tool stands in the part, in so few cells that it costs the machine nothing."""
+    """How the tool is in the part, in so few cells that it costs the machine nothing."""
     setup, lines = room.setup, room.program.lines
     running = room.slot.run is not None and room.slot.running == "program"
     text = lines[alarm.line - 1].strip() if running and 0 < alarm.line <= len(lines) else ""

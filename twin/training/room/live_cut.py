@@ -62,7 +62,7 @@ class LiveCut:
         self._simulated = job.cutting_force == "teeth" and part_frame.chain is None
         self._operation = OperatorOperation(job.tools[0])
         self._frame, self._zero = part_frame, zero
-        self._told: set[int] = set()
+        self._reported: set[int] = set()
 
     def clamp(self, stock: StockTable) -> None:
         """Lay a new blank on the table; its cell must be given."""
@@ -81,47 +81,47 @@ class LiveCut:
                 self.process.breaks = before.breaks
         self._machine.step_with(self.process)
 
-    def mount(self, tool: ToolTable, longer: float) -> None:
+    def mount(self, tool: ToolTable, length_difference: float) -> None:
         """Put a tool into the spindle that is so much longer than the first [mm]."""
-        self._operation.tool, self._operation.longer = tool, longer
+        self._operation.tool, self._operation.length_difference = tool, length_difference
 
     def renew(self, number: int) -> None:
         """Put a new tool into the place of one that may have lost its edge."""
-        self._told.discard(number)
+        self._reported.discard(number)
         if self.process is not None:
             self.process.renew(number)
 
     def new_breaks(self) -> list[ToolBreak]:
         """Tools that have lost their edge since the last call."""
         breaks = [] if self.process is None else self.process.breaks
-        found = [one for one in breaks if one.tool not in self._told]
-        self._told |= {one.tool for one in found}
+        found = [one for one in breaks if one.tool not in self._reported]
+        self._reported |= {one.tool for one in found}
         return found
 
     def turn(self, spindle: SpindleState, override: float) -> None:
         """Tell the drive of the spindle what is asked of it; ``override`` is a factor.
 
-        An edge that stands may touch the part, as a feeler: what it must not do is the part's to see.
+        An edge that is may touch the part, as a feeler: what it must not do is the part's to see.
         """
         self._operation.speed = override * spindle.turning if spindle.turning else None
 
-    def told_speed(self, setpoints: Setpoints) -> FloatArray:
+    def commanded_speed(self, setpoints: Setpoints) -> FloatArray:
         """How fast the spindle shall turn, at n setpoints, shape (n,) [1/min]; see ``turn``."""
         speed = self._operation.speed
         return np.full(len(setpoints), np.nan if speed is None else speed)
 
-    def loads(self, felt: ToolLoad | None) -> Loads:
+    def loads(self, loads: ToolLoad | None) -> Loads:
         """What there is to show of what the tool felt."""
-        if felt is None or not len(felt):
+        if loads is None or not len(loads):
             return Loads()
         strength = tool_strength(self._operation.tool)
-        force, chip = float(felt.peak_force.max()), float(felt.chip.max())
+        force, chip = float(loads.peak_force.max()), float(loads.chip.max())
         return Loads(
-            spindle_speed=abs(float(felt.spindle_speed[-1])),
-            spindle=float(felt.spindle_load.max()),
+            spindle_speed=abs(float(loads.spindle_speed[-1])),
+            spindle=float(loads.spindle_load.max()),
             force=force,
             force_share=force / strength.force,
-            bend=float(np.linalg.norm(felt.deflection, axis=1).max()),
+            bend=float(np.linalg.norm(loads.deflection, axis=1).max()),
             chip=chip,
             chip_share=chip / strength.chip,
         )

@@ -61,7 +61,7 @@ def block_number(language: Language, program: Source, line: int) -> str:
         try:
             numbers = [block.number for block in lexer.blocks(text, line)]
         except ProgramError as error:
-            # What stands before a mistake can be read.
+            # What is before a mistake can be read.
             text = text[: min(error.diagnostic.column, len(text)) - 1]
         else:
             return next((f"N{one}" for one in numbers if one != NO_BLOCK_NUMBER), "")

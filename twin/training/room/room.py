@@ -170,7 +170,7 @@ class Room:
         _halt(self.machine, alarm)
 
     def turn_spindle(self, state: SpindleState, line: int = 0) -> None:
-        """Change what the spindle is told; a speed that is limited is a warning, and stops nothing."""
+        """Change what the spindle is commanded; a speed that is limited is a warning, and stops nothing."""
         limit = state.limit_of(state.speed)
         if limit and state.speed != self.auxiliaries.spindle.speed:
             self.alarms.warn(self, Notice(SPINDLE_LIMITED, limit, line=line))
@@ -236,7 +236,7 @@ class Room:
         slot.drop(self.machine.setpoint)
 
     def start_run(self, source: Source, kind: Kind, options: RunOptions | None = None) -> None:
-        """Interpret and drive a source from where the axes stand.
+        """Interpret and drive a source from where the axes are.
 
         Raises:
             UsageError: It cannot be started now.

@@ -1,4 +1,4 @@
-"""What the interpreter is told of the machine as it stands, for a start and for the path before one."""
+"""What the interpreter is told about the machine as it stands, for a start and for the path before one."""
 
 import dataclasses
 
@@ -42,7 +42,7 @@ def path_to_come(room: Observed) -> PathToCome:
         search=room.program.searched,
         stand=room.machine.setpoint.position[0].copy(),
         zero=tables.zero.copy(),
-        longer=tables.longer_by_table(),
+        length_difference=tables.longer_by_table(),
         tool=tables.spindle,
         spindle=room.auxiliaries.spindle,
         frame=room.setup.part_frame,

@@ -62,7 +62,7 @@ class Setup:
         self.cut = LiveCut(machine, job, self.part_frame, tables.true_zero)
         self.work = self._clamped_blank()
         self.finder = None if tables.finder is None else EdgeFinder(tables.finder)
-        self._growth = Growth(machine.machine, self.cut.told_speed)
+        self._growth = Growth(machine.machine, self.cut.commanded_speed)
 
     def _clamped_blank(self) -> Workpiece | None:
         if self._stock is None:
@@ -93,7 +93,7 @@ class Setup:
             raise UsageError(f"no tool {number}")
         self.tables.mount(number)
         self._machine.mount(self.tables.tool)
-        self.cut.mount(self.tables.tool, float(self.tables.longer[2]))
+        self.cut.mount(self.tables.tool, float(self.tables.length_difference[2]))
         if self.work is not None:
             self.work.mount(self.tables.tool)
 
@@ -118,7 +118,7 @@ class Setup:
         self, finder: EdgeFinder, work: Workpiece, samples: Samples, turns: bool
     ) -> Alarm | None:
         """Let the edge finder give way; the alarm with which it breaks."""
-        last = samples.joint_position[-1] - self.tables.longer
+        last = samples.joint_position[-1] - self.tables.length_difference
         said = finder.push(work.touch(last), turns=turns)
         setpoint = samples.setpoint
         alarm = broken_alarm(said, int(setpoint.line[-1]), float(setpoint.time[-1]))
@@ -142,13 +142,13 @@ class Setup:
         finder = self.sound_finder
         if finder is not None:
             return self._push_finder(finder, self.work, samples, turns=not edges_stand)
-        longer = self.tables.longer
+        length_difference = self.tables.length_difference
         tips = dataclasses.replace(
             samples,
             setpoint=dataclasses.replace(
-                samples.setpoint, position=samples.setpoint.position - longer
+                samples.setpoint, position=samples.setpoint.position - length_difference
             ),
-            joint_position=samples.joint_position - longer,
+            joint_position=samples.joint_position - length_difference,
         )
         moves = [] if run is None else [run.reader.moves.rapid(int(i)) for i in tips.setpoint.move]
         rapid = np.array(moves or [False] * len(tips), np.bool_)
@@ -171,7 +171,7 @@ class Setup:
     @property
     def tip(self) -> FloatArray:
         """Where the tool's tip is, seen from the part, shape (3,) [mm]."""
-        place = self._machine.position - self.tables.longer
+        place = self._machine.position - self.tables.length_difference
         return self.part_frame.position(place[None])[0]
 
     def touches(self, spindle: SpindleState) -> bool:
@@ -179,7 +179,7 @@ class Setup:
         finder_is_gone = self.tables.spindle == self.tables.finder and self.sound_finder is None
         if self.work is None or spindle.turns or finder_is_gone:
             return False
-        return self.work.touches(self._machine.position - self.tables.longer)
+        return self.work.touches(self._machine.position - self.tables.length_difference)
 
 
 def scene_tables(scene: Scene, zero: FloatArray) -> Tables:

@@ -15,7 +15,7 @@ MAGAZINE_PLACES = 40
 class Tables:
     """Part zero and tool lengths, as the control has them and as they are.
 
-    Machine coordinates count for the first tool; with a longer one the head stands higher by the
+    Machine coordinates count for the first tool; with a longer one the head is higher by the
     difference, which the control takes from its table and the material from the tool.
 
     Attributes:
@@ -40,7 +40,7 @@ class Tables:
         self.zero = true_zero.copy()
         self.tools = {tool.number: tool for tool in tools}
         self.lengths = {tool.number: tool.length for tool in tools}
-        self.radii = {tool.number: tool.diameter / 2.0 for tool in tools}
+        self.radii = {tool.number: tool.table_radius for tool in tools}
         self.offsets = {name: dict(values) for name, values in offsets.items()}
         self.spindle = self.first = tools[0].number
         self.finder: int | None = None
@@ -62,12 +62,12 @@ class Tables:
 
     @property
     def tip_zero(self) -> FloatArray:
-        """Machine coordinates at which the tip stands on the part's true zero, shape (k,)."""
-        return self.true_zero + self.longer
+        """Machine coordinates at which the tip is on the part's true zero, shape (k,)."""
+        return self.true_zero + self.length_difference
 
     @property
-    def longer(self) -> FloatArray:
-        """How much higher the head stands than with the first tool, shape (k,) [mm]."""
+    def length_difference(self) -> FloatArray:
+        """How much higher the head is than with the first tool, shape (k,) [mm]."""
         return self._along_z(self.tool.length - self._reference)
 
     def mount(self, number: int) -> None:
@@ -111,7 +111,7 @@ class Tables:
     def _enter(self, tool: ToolTable) -> None:
         self.tools[tool.number] = tool
         self.lengths[tool.number] = tool.length
-        self.radii[tool.number] = tool.diameter / 2.0
+        self.radii[tool.number] = tool.table_radius
 
     def add_finder(self, finder: ToolTable) -> None:
         """Put an edge finder into a place of its own, under a number that is free."""

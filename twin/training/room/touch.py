@@ -17,7 +17,7 @@ FAR_MM = 1e3
 
 
 class Touch(NamedTuple):
-    """How a tool's end stands to the part.
+    """How a tool's end is to the part.
 
     Attributes:
         gap: Between the two; negative: so deep the end is in the material [mm].

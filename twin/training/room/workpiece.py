@@ -98,7 +98,7 @@ class Workpiece:
         Args:
             tips: n samples, with positions as if the first tool were in the spindle.
             rapid: Which belong to rapids, shape (n,).
-            standing: During which the spindle stands, shape (n,).
+            standing: During which the spindle is stopped, shape (n,).
             at_once: Whether to cut along all of them now.
 
         Returns:
@@ -168,7 +168,7 @@ class Workpiece:
         self.mount(self._cutter.tool)
 
     def touch(self, tip: FloatArray) -> Touch:
-        """How the end of the tool stands to the part.
+        """How the end of the tool is to the part.
 
         Args:
             tip: Machine coordinates of the tip, shape (k,) [mm or deg].

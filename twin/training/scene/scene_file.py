@@ -56,7 +56,7 @@ class StartTable(Table):
     rapid_override: Annotated[int, Field(ge=RAPID_OVERRIDES[0], le=RAPID_OVERRIDES[1])] = 100
     """Of rapids [%]."""
     alarm: str = ""
-    """An alarm that stands when the operator comes: ``hard-limit`` for an axis on its switch."""
+    """An alarm that is active when the operator comes: ``hard-limit`` for an axis on its switch."""
 
 
 class PictureTable(Table):
@@ -80,7 +80,7 @@ class PartTable(Table):
 
 
 class LessonTable(Table):
-    """What the score sheet tells of the scene's trap to somebody who fell into it."""
+    """What the score sheet says about the scene's trap to somebody who fell into it."""
 
     cause: Text
     """What went wrong, and at which block."""

@@ -2,7 +2,7 @@
 
 A task is done at the moment at which its condition holds, and stays done. A task with ``to_end``
 is one that must never be broken: it fails at the moment at which it is, and is done at the end. What
-stands in the control's tables is judged when the scene is handed in, so that no value can be found
+is in the control's tables is judged when the scene is handed in, so that no value can be found
 by trying.
 """
 
@@ -16,7 +16,7 @@ from twin.training.scene.vocabulary import Text
 
 
 class ReachedTable(Table):
-    """The axes stand at a place."""
+    """The axes are at a place."""
 
     at: Annotated[dict[str, float], Field(min_length=1)]
     """By axis [mm or deg]."""

@@ -16,7 +16,7 @@ Language = Literal["en", "ru", "it", "cs"]
 LANGUAGES: tuple[Language, ...] = ("en", "ru", "it", "cs")
 
 Text = Annotated[dict[Language, str], Field(min_length=1)]
-"""A text by language; where one is missing, English stands in, else whichever there is."""
+"""A text by language; where one is missing, English is in, else whichever there is."""
 
 _FOLDER = Path(__file__).resolve().parent / "vocabularies"
 

@@ -52,7 +52,7 @@ def with_work_holding(preparation: Preparation) -> Preparation:
 
 
 def _vise(blank: Blank) -> Iterator[FixtureTable]:
-    """A bed along Y, with the jaw that stands behind the part and the one that is screwed against it."""
+    """A bed along Y, with the jaw that is behind the part and the one that is screwed against it."""
     (length, width, _), (x, y, _) = blank.size, blank.center
     across = _within(JAW_SHARE * length, JAW_WIDTH_MM)
     foot, top = _heights(blank)

@@ -238,7 +238,7 @@ class ScoreSheetWriter:
                 self._over.wait(WRITTEN_EVERY_S)
 
     def _write(self) -> None:
-        """Write what there is by now: lines are added to the log, the sheet is written anew.
+        """Write what there is by now: lines are added to the log, the sheet is written again.
 
         A sheet that was handed in is final: where a trainer goes back behind the hand-in, what
         follows has a folder of its own.

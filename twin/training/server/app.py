@@ -57,7 +57,7 @@ STATIC = (("/view", ASSETS), ("/page", PAGE))
 """What a room's pages load that is the same in every room."""
 
 PICTURES_PER_S = 30.0
-"""How often a page is told of the machine, at most."""
+"""How often a page is sent the state of the machine, at most."""
 LONGEST_SEND_S = 10.0
 """Time for a page to read what it was sent."""
 _EXAMPLE = (10.0, 600.0)

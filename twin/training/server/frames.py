@@ -20,7 +20,7 @@ from twin.training.session.snapshot import Snapshot
 STATE = 1
 """First byte of the state; patches have their own."""
 MOST_TOOL = 255
-"""Tools of higher numbers are told apart from this one no more by what they have cut."""
+"""Tools of higher numbers are distinguished from this one no more by what they have cut."""
 PATCHES_KEPT = 512
 """Changes of the stock that are remembered; a page that is further behind gets the whole stock."""
 

@@ -1,4 +1,4 @@
-"""The part that is cut from any side as pages draw it: a mesh, laid anew beside the machine while it is cut."""
+"""The part that is cut from any side as pages draw it: a mesh, laid again beside the machine while it is cut."""
 
 import asyncio
 import struct
@@ -31,7 +31,7 @@ def mesh_message(stock: TriDexel, crossings: int) -> bytes:
         crossings: How finely it is drawn; see ``surface``.
     """
     found = surface(stock, crossings)
-    by = np.minimum(tools(found.skin[found.faces[:, 0]]), _MOST_TOOL).astype(np.uint8)
+    by = np.minimum(tools(found.facet[found.faces[:, 0]]), _MOST_TOOL).astype(np.uint8)
     head = struct.pack("<BxxxII", MESH, len(found.points), len(found.faces))
     content = (
         found.points.astype("<f4").tobytes() + found.faces.astype("<u4").tobytes() + by.tobytes()

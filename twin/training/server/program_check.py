@@ -41,7 +41,7 @@ class ProgramCheck:
 
         Args:
             page: Its number.
-            text: What stands there now.
+            text: What is there now.
             tell: Sends it.
         """
         self._typed[page] = text
@@ -77,13 +77,13 @@ class ProgramCheck:
             preview = await anyio.to_thread.run_sync(path.drawn)
         found = preview.finding
         if found is not None:
-            return _told(found)
+            return _as_json(found)
         if preview.message:
             message = {language: translated(preview.message, language) for language in LANGUAGES}
             return {"line": preview.line, "column": 0, "width": 0, "message": message}
         return {"moves": preview.moves}
 
 
-def _told(found: Diagnostic) -> dict[str, Any]:
+def _as_json(found: Diagnostic) -> dict[str, Any]:
     message = {language: finding_in(found, language) for language in LANGUAGES}
     return {"line": found.line, "column": found.column, "width": found.width, "message": message}

@@ -86,7 +86,7 @@ def write_scene(scene: SceneText, folder: Path) -> Path:
         The scene's file.
 
     Raises:
-        UsageError: It cannot be written, or is none that stands alone; nothing is left of it.
+        UsageError: It cannot be written, or is none that is on its own; nothing is left of it.
     """
     (title,) = scene.content["title"].values()
     name = _free_name(folder, title)
@@ -120,7 +120,7 @@ def _start(room: Room) -> dict[str, Any]:
     """How the machine and its control stand."""
     names, tables = room.machine.machine.axes.names, room.setup.tables
     off = tables.zero - tables.true_zero
-    longer = tables.lengths[tables.spindle] - tables.tool.length
+    length_difference = tables.lengths[tables.spindle] - tables.tool.length
     start: dict[str, Any] = {
         "mode": room.panel.mode,
         "position": {
@@ -130,7 +130,7 @@ def _start(room: Room) -> dict[str, Any]:
         "zero_error": {
             name: round(float(value), 4) for name, value in zip(names, off, strict=True) if value
         },
-        "tool_length_error": round(longer, 4),
+        "tool_length_error": round(length_difference, 4),
         "feed_override": room.panel.feed_override,
         "rapid_override": room.panel.rapid_override,
     }

@@ -277,8 +277,8 @@ def _set_zero(room: Room, command: c.SetZero) -> None:
     _require_no_run(room)
     tables = room.setup.tables
     place = float(room.machine.position[column])
-    longer = float((tables.program_zero - tables.zero)[column])
-    tables.set_zero(column, place - command.reading - longer)
+    length_difference = float((tables.program_zero - tables.zero)[column])
+    tables.set_zero(column, place - command.reading - length_difference)
     room.faults.forget_offset(command.axis)
 
 
@@ -348,7 +348,7 @@ def _require_no_run(
 
 
 def _require_jog(room: Room, axis: str) -> None:
-    """An axis may be jogged; off its limit switch also while that alarm stands."""
+    """An axis may be jogged; off its limit switch also while that alarm is active."""
     if room.panel.mode != "jog":
         raise UsageError("jogging needs the mode manual jog")
     _column(room, axis)
@@ -361,7 +361,7 @@ def _require_jog(room: Room, axis: str) -> None:
 
 
 def _require_still(room: Room) -> None:
-    """Nothing runs, and no alarm stands."""
+    """Nothing runs, and no alarm is active."""
     _require_no_alarm(room)
     if room.panel.mode != "jog":
         raise UsageError("that is done in the mode manual jog")

@@ -138,7 +138,7 @@ class ReturnToPath(Table):
 
 
 class Search(Table):
-    """Let the next start begin at a line: what stands before it is only computed."""
+    """Let the next start begin at a line: what is before it is only computed."""
 
     do: Literal["search"] = "search"
     line: Annotated[int, Field(ge=0, le=MOST)]
@@ -167,7 +167,7 @@ class Enter(Table):
 
 
 class Edit(Table):
-    """Write a line of the program anew; several lines replace it by several, none deletes it."""
+    """Write a line of the program again; several lines replace it by several, none deletes it."""
 
     do: Literal["edit"] = "edit"
     line: Annotated[int, Field(ge=1, le=MOST)]
@@ -212,7 +212,7 @@ class Coolant(Table):
 
 
 class SetZero(Table):
-    """Make the place where an axis stands read a value: the part zero moves."""
+    """Make the place where an axis is read a value: the part zero moves."""
 
     do: Literal["set_zero"] = "set_zero"
     axis: AxisName

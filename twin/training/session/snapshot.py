@@ -64,7 +64,7 @@ class Snapshot:
     rapid_override: int
     spindle: SpindleState
     spindle_turning: float | None
-    """Speed that it is told, negative counter-clockwise, 0 at a stand; None: not known [1/min]."""
+    """Commanded speed, negative counter-clockwise, 0 at a standstill; None: not known [1/min]."""
     spindle_override: int
     counter_clockwise: bool
     coolant: bool
@@ -124,7 +124,7 @@ def take_snapshot(room: Room) -> Snapshot:
     zero = room.setup.tables.program_zero
     to_go, modal = _from_run(room, zero)
     limits = np.array([machine.axis(name).force_limit or np.inf for name in machine.axes.names])
-    tip = room.setup.part_frame.position((position - room.setup.tables.longer)[None])[0]
+    tip = room.setup.part_frame.position((position - room.setup.tables.length_difference)[None])[0]
     return Snapshot(
         time_s=room.time_s,
         axes=machine.axes.names,

@@ -171,7 +171,8 @@ async function read_cuts() {
   show(now);
 }
 
-at("title").textContent = run.program;
+at("title").textContent = run.program.split(/[\\/]/).at(-1);
+at("title").title = run.program;
 at("about").textContent = `${run.machine} · ${run.dialect}`;
 at("axes").tBodies[0].replaceChildren(...run.axes.map((axis) => {
   const row = document.createElement("tr");

@@ -6,13 +6,18 @@ from twin.nc.control.dialect import Dialect
 from twin.nc.control.settings import ControlSettings
 from twin.nc.dialects.fagor8070 import (
     arcs,
-    corners,
     frames,
     statements,
     subroutines,
     variables,
 )
-from twin.nc.dialects.fagor8070.codes import CODES, REPLACEMENTS, auxiliary, plain_dwell
+from twin.nc.dialects.fagor8070.codes import (
+    CODES,
+    REPLACEMENTS,
+    auxiliary,
+    plain_dwell,
+    prepare_blends,
+)
 from twin.nc.dialects.fagor8070.decisions import DECISIONS
 from twin.nc.dialects.fagor8070.memory import FagorMemory, acts_on_lines
 from twin.nc.dialects.fagor8070.subroutines import LIBRARY
@@ -24,7 +29,7 @@ from twin.nc.text.syntax import Comment, Mark, Syntax
 
 def _prepare(control: Control) -> None:
     subroutines.begin(control)
-    corners.prepare(control)
+    prepare_blends(control)
 
 
 def _feed_rule(settings: ControlSettings) -> FeedRule:

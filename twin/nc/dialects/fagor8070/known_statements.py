@@ -12,7 +12,7 @@ def _each(of_keywords: Mapping[str, str]) -> dict[str, str]:
     return {word: said for words, said in of_keywords.items() for word in words.split(", ")}
 
 
-_NO_TILT = "the machine's tool does not tilt"
+_BY_AXES = "write the rotary axes themselves, and #RTCP ON, which leads the tip while they turn"
 _NO_SPLINES = "splines of this control are not simulated"
 _NO_PROBE = "the twin has no probe to touch with"
 
@@ -34,9 +34,10 @@ PASSED_OVER = _each(
 
 ENDED_ONLY = _each(
     {
-        "#TLC": _NO_TILT,
+        "#TLC": "the length of the tool is that of the job, and #RTCP counts it",
+        "#CSROT": _BY_AXES,
         "#TCAM": "electronic cams are not simulated",
-        "#CS, #ACS": "inclined planes are not simulated",
+        "#CS, #ACS": f"inclined planes are not; {_BY_AXES}",
         "#CAX, #FACE": "a spindle as an axis is not simulated",
         "#CYL": "wrapping around a cylinder is not simulated; write C itself",
         "#TANGCTRL": "the twin has no axis that turns the tool",
@@ -48,9 +49,9 @@ ENDED_ONLY = _each(
 
 REFUSED = _each(
     {
-        "#TOOL ORI": _NO_TILT,
+        "#TOOL ORI, #DEFROT, #SELECT ORI": _BY_AXES,
         "#TOOL AX": "the tool lies along Z",
-        "#KINORG": _NO_TILT,
+        "#KINORG": "the part's zero goes with the table where #RTCP ON leads the tip",
         "#ASPLINE, #POLY": _NO_SPLINES,
         "#PROBE, #SELECT PROBE": _NO_PROBE,
         "#ANGAX": "inclined axes are not simulated",

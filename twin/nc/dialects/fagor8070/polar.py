@@ -5,7 +5,6 @@ import math
 
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.memory import memory_of
-from twin.nc.geometry.polar import seen_from
 from twin.nc.iso.polar_words import aim_by_angle, aim_by_polar
 
 
@@ -25,13 +24,13 @@ class Goal:
 
 
 def forget_polar(control: Control) -> None:
-    """The last polar values no longer hold: they are seen anew from where the tool stands."""
+    """The last polar values no longer hold: they are seen again from where the tool is."""
     memory = memory_of(control)
     memory.polar_radius = memory.polar_angle = math.nan
 
 
 def set_polar_origin(control: Control) -> None:
-    """G30: I abscissa and J ordinate of the polar origin; neither: where the tool stands.
+    """G30: I abscissa and J ordinate of the polar origin; neither: where the tool is.
 
     Raises:
         ProgramError: Only one of both is given.
@@ -67,12 +66,6 @@ def temporary_polar_origin(control: Control) -> None:
     if control.modal.active.get("motion") not in (2, 3):
         control.fail("temporary-origin", "G31 needs an arc, G02 or G03", control.code_word(31))
     memory_of(control).temporary = True
-
-
-def current_polar(control: Control) -> tuple[float, float]:
-    """R and Q of where the tool stands: as last programmed, else measured [mm, deg]."""
-    here, memory = control.modal.plane.point(control.motion.programmed), memory_of(control)
-    return seen_from(memory.polar_origin, here, memory.polar_radius, memory.polar_angle)
 
 
 def take_goal(control: Control, *, arc: bool) -> Goal:

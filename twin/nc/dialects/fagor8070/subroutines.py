@@ -185,7 +185,7 @@ def _name_of(control: Control, statement: Statement, *, alone: bool = False) -> 
 
 
 def _arguments(control: Control, statement: Statement) -> Iterator[tuple[str, Expression, int]]:
-    """Parameters that #PCALL or #MCALL sets, their values, and where these stand."""
+    """Parameters that #PCALL or #MCALL sets, their values, and where these are."""
     match = _NAME.match(statement.text)
     at = 0 if match is None else match.end()
     while at < len(statement.text.rstrip()):

@@ -96,9 +96,9 @@ class Assignment:
     Attributes:
         name: The variable, or ``P`` where its number is computed.
         index: That number, or None.
-        index_column: Where it stands.
+        index_column: Where it is.
         value: What it becomes.
-        column: Where it stands.
+        column: Where it is.
     """
 
     name: str
@@ -149,7 +149,7 @@ def assignments(control: Control, statement: Statement) -> tuple[list[Assignment
 
 
 def _rest(control: Control, column: int, text: str) -> Block:
-    """The block whose words stand behind assignments."""
+    """The block whose words are behind assignments."""
     (block,) = control.statements.blocks(text, column, control.block.line)
     return block._replace(number=control.block.number)
 

@@ -46,6 +46,7 @@ def before_motion(control: Control, rapid: bool) -> None:
     """
     reference_points.warn_of_cancelled_length(control)
     tool_tips.require_orientation(control)
+    tool_tips.point_by_vector(control)
     if not rapid:
         base.require_feed_of_block(control)
         if memory_of(control).feed_lost and control.motion.feed is None:
@@ -100,7 +101,7 @@ FANUC = Dialect(
         start=codes.START,
         m=codes.M_CODES,
         last_of_group_counts=True,
-        start_state={"square_corners": True},
+        start_state={"square_corners": True, "look_ahead": tool_offsets.BLOCKS_AHEAD},
         statements={**flow.STATEMENTS, **macro_calls.CALLS_BY_CODE},
     ),
     words=Words(

@@ -13,6 +13,7 @@ from twin.nc.dialects.fanuc import (
     offsets,
     programs,
     reference_points,
+    tilted_planes,
     tool_tips,
     transformations,
 )
@@ -52,7 +53,7 @@ def passed_over(meaning: str, letters: str, *, modes: tuple[float, ...] = ()) ->
 
 
 NO_PROBE = "the twin has no probe to touch with"
-_NO_TILT = "the machine's tool does not tilt"
+_TIP_LED = "G43.4 leads the tip, G234 on a Haas"
 _NO_ANGLE = "the twin's spindle has no angle"
 _UNKNOWN = "its effect on the path is not documented well enough to be followed"
 _LIMITS = "the limits are the machine file's"
@@ -113,6 +114,7 @@ _TOOL: Mapping[float, GCode] = {
     43: modal("tool length by H", "length", length_code(43, 1.0)),
     44: modal("tool length by H, reversed", "length", length_code(44, -1.0)),
     43.4: modal("length by H, the tip led while axes turn", "length", tool_tips.begin("G43.4")),
+    43.5: modal("as G43.4, vectors I J K point the tool", "length", tool_tips.begin("G43.5")),
     49: modal("tool length off", "length", end_length),
 }
 _TRANSFORMATIONS: Mapping[float, GCode] = {
@@ -121,8 +123,19 @@ _TRANSFORMATIONS: Mapping[float, GCode] = {
     50.1: replacement("mirror off", transformations.end_mirror, "mirror"),
     51.1: replacement("mirror the axes at the places named", transformations.mirror, "mirror"),
     68: replacement("rotation by R about a point of the plane", transformations.rotate, "rotation"),
-    68.2: replacement("tilted plane: origin and Euler's angles I J K", tool_tips.tilt, "rotation"),
-    53.1: replacement("rotary axes set the tool across the tilted plane", tool_tips.orient),
+    68.2: replacement(
+        "tilted plane: origin, and by P angles I J K, points or vectors",
+        tilted_planes.tilt,
+        "rotation",
+    ),
+    53.1: replacement(
+        "rotary axes set the tool across the tilted plane",
+        tool_tips.orient("G53.1", "G68.2 X0 Y0 Z0 I J K"),
+    ),
+    53.6: replacement(
+        "as G53.1, about the tip of the tool",
+        tool_tips.orient("G53.6", "G68.2 X0 Y0 Z0 I J K", about_tip=True),
+    ),
     69: modal("rotation and tilted plane off", "rotation", tool_tips.level),
 }
 _FEEDS: Mapping[float, GCode] = {
@@ -149,7 +162,7 @@ _REFUSED: Mapping[float, GCode] = {
     **refused(
         "tool position offset", "write the coordinates, or compensate by G41", 45, 46, 47, 48
     ),
-    **refused("tool centre point control", _NO_TILT, 43.1, 43.3, 43.5, 43.8, 43.9, 53.6),
+    **refused("tool centre point control", _TIP_LED, 43.1, 43.3, 43.8, 43.9),
     **refused("normal direction control", "the twin has no axis that turns the tool", 41.1, 42.1),
     **refused("tilted plane by other forms", "G68.2 X Y Z I J K is", 68.3, 68.4),
     **refused("single direction positioning", "the backlash is the machine file's", 60),

@@ -31,6 +31,8 @@ _CALLS = frozenset({97.0, 98.0, 99.0})
 """M functions with a P that names a program or a block."""
 _SCALED = 51.0
 _TURNED = 68.0
+_PLANES = frozenset({68.2, 268.0})
+"""Codes of tilted planes: their I, J, K and R are angles, their Q is a number."""
 _CYLINDER = frozenset({7.1, 107.0})
 """Codes whose rotary axis gives a radius."""
 _FEED_MODES = {
@@ -84,7 +86,10 @@ def _counted(
         return _time(control, word) if waits else _scale(word, codes)
     if not word.without_point or not isinstance(word.value, float) or word.value == 0.0:
         return word
-    if codes & _UNTOUCHED or (cycles and _is_number(control, word.address, codes)):
+    numbers_block = word.address == "Q" and bool(codes & _PLANES)
+    if codes & _UNTOUCHED or numbers_block:
+        return word
+    if cycles and _is_number(control, word.address, codes):
         return word
     factor, unit = _increment(control, word.address, codes)
     if factor == 1.0:
@@ -142,7 +147,8 @@ def _increment(control: Control, address: str, codes: set[float | Expression]) -
         return _feed_increment(control, codes, inches=inches)
     if address in ANGLES and codes & _CYLINDER:
         return length
-    if address in ANGLES or (address == "R" and _TURNED in codes):
+    plane_angle = address in "IJKR" and bool(codes & _PLANES)
+    if address in ANGLES or plane_angle or (address == "R" and _TURNED in codes):
         return _MILLI, "degrees"
     if 4.0 in codes:
         return _MILLI, "seconds"

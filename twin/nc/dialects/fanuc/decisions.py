@@ -77,6 +77,12 @@ DECISIONS: tuple[Decision, ...] = (
         example="compensation_corners",
     ),
     Decision(
+        "What happens where a compensated contour is narrower than the tool?",
+        "Paths that cross among three elements are refused, as the control's interference check does; a crossing that lies farther apart is driven, with a warning.",
+        "Parameter 19625 is how many blocks the control reads ahead, three when it comes from its maker; it gouges beyond them.",
+        example="narrow_contour",
+    ),
+    Decision(
         "What do H and D name?",
         "Rows of the offset memory, geometry and wear (memory C); the job's tools are the geometry "
         "of the rows of their numbers. Lengths count against the job's first tool, H0 is none. D "

@@ -2,7 +2,7 @@
 
 Fanuc, feed per minute and per revolution: a line counts all its axes together, a degree as much as 1 mm, or as
 1 inch in G20 (operator's manual, linear interpolation: ``G91 G1 X20. C40. F300.`` takes 0.149 min); an arc counts
-the circle in its plane, unless parameter 1403 #5 (HTG) lets it count the way of all axes. Inverse time (G93): F of
+the circle in its plane, unless parameter 1403 #5 (HTG) lets it count the path of all axes. Inverse time (G93): F of
 an arc is its speed by its radius, since the manual computes it of the radius and not of the distance.
 
 Haas: rotary axes count by the surface whose diameter setting 34 holds; F of a helix counts the helix; F of G93 is

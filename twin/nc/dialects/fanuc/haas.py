@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from twin.nc.control.codes import GCode, MCode
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Decision
-from twin.nc.dialects.fanuc import offsets, programs, tool_tips, transformations
+from twin.nc.dialects.fanuc import offsets, programs, tilted_planes, tool_tips, transformations
 from twin.nc.dialects.fanuc.codes import GROUPS as FANUC_GROUPS
 from twin.nc.dialects.fanuc.codes import M_CODES, NO_PROBE, codes, passed_over
 from twin.nc.dialects.fanuc.cycles.bolt_holes import bolt_holes
@@ -18,7 +18,7 @@ from twin.nc.iso.declared import flow_function, modal, refused, replacement
 from twin.nc.iso.tool_change import change_tool_at
 
 _LACKING = (
-    *(5, 5.1, 7.1, 8, 15, 16, 27, 30, 43.4, 50.1, 51.1, 53.1),
+    *(5, 5.1, 7.1, 8, 15, 16, 27, 30, 43.4, 43.5, 50.1, 51.1, 53.1, 53.6),
     *(54.1, 62, 63, 68.2, 68.3, 68.4, 87, 92.1),
 )
 """Codes that the control lacks."""
@@ -130,15 +130,23 @@ _OWN: Mapping[float, GCode] = {
     **{number: bolt_holes(number) for number in (70, 71)},
     **refused("bolt holes on a line", _FIRST_HOLE, 72),
     **refused("probing", NO_PROBE, 35, 36, 136),
-    **refused("compensation in space", "the machine's tool does not tilt", 141, 143),
+    **refused("compensation in space", "G234 leads the tip", 141, 143),
     234: modal("length by H, the tip led while axes turn", "length", tool_tips.begin("G234")),
     254: modal(
         "work offset goes with the turned part", "dynamic offset", tool_tips.begin_dynamic_offset
     ),
     255: modal("G254 off", "dynamic offset", tool_tips.end_dynamic_offset),
-    **refused("tilted plane", "write G254, and what it turns", 268),
+    253: replacement(
+        "rotary axes set the tool across the plane of G268",
+        tool_tips.orient("G253", "G268 X0 Y0 Z0 I J K Q123"),
+    ),
+    268: replacement(
+        "tilted plane: origin, turns I J K in the order of Q",
+        tilted_planes.tilt_by_order,
+        "rotation",
+    ),
+    269: modal("G268 off", "rotation", tool_tips.level),
     **refused("feed on the cylinder", "write the rotary axis itself, with G93", 107),
-    **refused("tilted plane's own orientation", "write the rotary axes", 253, 269),
     **refused("left-hand and any-direction tapping", "the tool stays along Z", 174, 184),
     **refused("back boring, boring by hand", "write its moves", 77),
 }
@@ -258,6 +266,7 @@ _SHARED_EXAMPLES = {
     "arc_centre_moved_to_fit",
     "compensation_start",
     "compensation_corners",
+    "narrow_contour",
     "work_offsets",
     "chip_clearance",
     "main_ends_by_m99",

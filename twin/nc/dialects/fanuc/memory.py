@@ -22,7 +22,7 @@ def letter_patterns(letter: str, rest: bytes) -> tuple[re.Pattern[bytes], ...]:
 
 
 def holds_any(lines: Lines, patterns: Iterable[re.Pattern[bytes]]) -> bool:
-    """Whether one of the patterns stands in any line."""
+    """Whether one of the patterns is in any line."""
     return any(lines.any_holds(pattern) for pattern in patterns)
 
 
@@ -72,7 +72,7 @@ class Variant(NamedTuple):
         adds_rotation: When controls of this kind add the R of G68 in G91 to the rotation in force.
         reference_cancels_any_length: G28 cancels the tool length whatever axes it names, not with Z alone.
         side_change: How the tool goes over to the other side of a contour.
-        transformed_keeps_origin: Neither work offsets nor presets nor moves to reference points stand under
+        transformed_keeps_origin: Neither work offsets nor presets nor moves to reference points are under
             a scale, a mirror or a rotation.
     """
 
@@ -172,6 +172,14 @@ class ToolOffset:
     radius_wear: float = 0.0
 
 
+class PlaneBlock(NamedTuple):
+    """What a block says of a tilted plane: X Y Z [mm], I J K [deg, or a vector], and R [deg]."""
+
+    place: Vector
+    angles: Vector
+    turn: float
+
+
 @dataclasses.dataclass(slots=True)
 class FanucMemory:
     """Programs, offsets, transformations.
@@ -199,6 +207,8 @@ class FanucMemory:
         mirror: Coordinates of the axes of mirror images by column [mm].
         rotation: Angle [deg] and centre [mm] of a rotation in the plane, or None.
         tilt: Directions of a tilted plane's axes, as columns, and its origin [mm], or None.
+        plane_form: P of a G68.2 that further blocks go on with, or None.
+        plane_blocks: Those so far, by Q.
         cylinder: Column of the rotary axis and radius [mm] of G107, or None.
         loops: Those of the file; None before they were asked for.
         modal_call: G66 in force.
@@ -230,6 +240,8 @@ class FanucMemory:
     mirror: dict[int, float] = dataclasses.field(default_factory=dict)
     rotation: tuple[float, Point] | None = None
     tilt: tuple[Matrix, Vector] | None = None
+    plane_form: int | None = None
+    plane_blocks: dict[int, PlaneBlock] = dataclasses.field(default_factory=dict)
     cylinder: tuple[int, float] | None = None
     loops: Structure | None = None
     modal_call: ModalCall | None = None

@@ -34,6 +34,10 @@ _NUMBER = re.compile(r"O?0*([0-9]{1,8})")
 _NAME = re.compile(r"[-+_.A-Z0-9]{1,32}")
 """Names of programs (manual of the 30i: 32 characters at most)."""
 _BLANK = re.compile(r"[ \t]*(?:%.*)?")
+_OF_A_PROGRAM = re.compile(r"(?<![A-Z])[GXYZMO][ \t]*[-+]?[.0-9]", re.IGNORECASE)
+"""A word of a program, which text before the first % does not hold."""
+_LONGEST_TEXT = 200
+"""So many lines of text may stand there."""
 _REPEATS = 10_000
 """P of M98 holds how often the subprogram runs in the digits above the last four."""
 
@@ -86,23 +90,41 @@ def begin(control: Control) -> None:
     """Find the programs of the file."""
     memory, lines = memory_of(control), control.program_counter.lines
     before: int | None = None
+    start = _pass_text_before_tape(control)
     for line, key in _headings(lines):
+        if line < start:
+            continue
         memory.headings.append(line)
         if memory.main is None:
             memory.main = line
         if key not in memory.programs or _follows(control, before, line, key):
             memory.programs[key] = line + 1
         before = line
-    _warn_of_tape_end(control)
+    _warn_of_tape_end(control, start)
 
 
-def _warn_of_tape_end(control: Control) -> None:
+def _pass_text_before_tape(control: Control) -> int:
+    """Begin behind the first % where text that is no program stands before it, as the control does; the line, from 0."""
+    lines = control.program_counter.lines
+    first = next((at for at, _ in lines.holding("%") if lines[at].lstrip().startswith("%")), 0)
+    text = [lines[at] for at in range(min(first, _LONGEST_TEXT + 1))]
+    blank = all(_BLANK.fullmatch(each) for each in text)
+    if blank or len(text) > _LONGEST_TEXT or any(map(_OF_A_PROGRAM.search, text)):
+        return 0
+    control.program_counter.go(Location(first + 1, 0))
+    control.report.line = 1
+    message = f"the control reads a file from its first % on, in line {first + 1}: what stands before it is passed over"
+    control.report.warn_once("before-tape-start", message)
+    return first + 1
+
+
+def _warn_of_tape_end(control: Control, start: int) -> None:
     """Warn of blocks behind a % within a program: a control reads no further, and the twin does."""
     lines, begun = control.program_counter.lines, False
     for line, _ in lines.holding("%"):
         if not lines[line].lstrip().startswith("%"):
             continue
-        begun = begun or any(not _BLANK.fullmatch(lines[each]) for each in range(line))
+        begun = begun or any(not _BLANK.fullmatch(lines[each]) for each in range(start, line))
         behind = next(
             (each for each in range(line + 1, len(lines)) if not _BLANK.fullmatch(lines[each])),
             None,
@@ -119,7 +141,7 @@ def _warn_of_tape_end(control: Control) -> None:
 
 
 def _follows(control: Control, before: int | None, line: int, key: Key) -> bool:
-    """A file's own heading stands right behind the one that its name has given it."""
+    """A file's own heading is right behind the one that its name has given it."""
     lines = control.program_counter.lines
     if before is None or memory_of(control).programs.get(key) != before + 1:
         return False
@@ -144,7 +166,7 @@ def heading(control: Control, word: Word) -> None:
 
 
 def lines_around(control: Control, line: int | None = None) -> range:
-    """The program that a line, from 0, stands in, else the one that is being run; labels are its own."""
+    """The program that a line, from 0, is in, else the one that is being run; labels are its own."""
     headings, count = memory_of(control).headings, len(control.program_counter.lines)
     here = control.block.line - 1 if line is None else line
     first = max((each for each in headings if each <= here), default=0)

@@ -23,6 +23,8 @@ from twin.nc.iso.tool_compensation import LEFT, RIGHT, set_length
 from twin.nc.text.blocks import Word
 
 LARGEST_OFFSET = 999
+BLOCKS_AHEAD = 3
+"""Among so many blocks of a contour the control finds an interference (parameter 19625)."""
 
 
 def geometry_of(control: Control, number: int, field: str) -> float | None:
@@ -41,7 +43,7 @@ def _tool_of(control: Control, number: int) -> int:
 def set_length_number(control: Control, word: Word) -> None:
     """H: the row of the tool length; alone it changes the length in force."""
     memory_of(control).length_number = whole(control, word, "tool-offset", "offset number")
-    if not any(code in (43.0, 43.4, 44.0, 49.0, 234.0) for code in _codes(control)):
+    if not any(code in (43.0, 43.4, 43.5, 44.0, 49.0, 234.0) for code in _codes(control)):
         sign = {43: 1.0, 44: -1.0}.get(int(control.modal.active.get("length", 49)))
         if sign is not None:
             apply_length(control, sign, word)

@@ -1,4 +1,4 @@
-"""Tool centre point control and tilted planes of the family: G43.4 or G234, G68.2 with G53.1, G254.
+"""Tool centre point control and tilted planes of the family: G43.4, G43.5 or G234, G53.1, G254.
 
 Sources: operator's manuals of the Series 30i (tool center point control type 1, tilted working plane
 command) and of Haas mills with G234, G254. Angles of G68.2 are Euler's: I about Z, J about the new X, K about the new Z.
@@ -9,54 +9,83 @@ from twin.nc.control.control import Control
 from twin.nc.dialects.fanuc.memory import memory_of
 from twin.nc.dialects.fanuc.tool_offsets import apply_length
 from twin.nc.dialects.fanuc.transformations import set_tilt
-from twin.nc.geometry.matrices import Matrix, product
-from twin.nc.iso.tilted_plane import about, machine_directions, point_tool
-from twin.nc.iso.tool_center import begin_tool_center, end_tool_center
+from twin.nc.iso.tilted_plane import machine_directions, point_tool
+from twin.nc.iso.tool_center import begin_tool_center, end_tool_center, point_by_words
+
+VECTORS = "G43.5"
+_BY_VECTORS = 43.5
 
 
 def begin(name: str) -> Action:
-    """G43.4 H1, G234 H1: the tip of the tool is led while rotary axes turn; F counts its way."""
+    """G43.4 H1, G43.5 H1, G234 H1: the tip of the tool is led while rotary axes turn; F counts its way.
+
+    G43.4 P1 and G43.5 P1 turn the tool in the plane of both directions (tool posture control); P0, or no P, does not.
+    """
 
     def action(control: Control) -> None:
         end_tool_center(control, name)
+        posture = control.take("P") if name in ("G43.4", VECTORS) else None
+        if posture is not None and control.number(posture) not in (0.0, 1.0):
+            message = f"{name} takes P0, rotary axes go evenly, or P1, the tool turns in a plane"
+            control.fail("tool-center", message, posture)
+        inclination = control.take("Q") if name == VECTORS else None
+        if inclination is not None and control.number(inclination) != 0.0:
+            message = "an inclination Q of the tool is not followed"
+            control.fail("tool-center", message, inclination, "post vectors of the tool itself")
         apply_length(control, 1.0, control.codes[-1][0])
-        begin_tool_center(control, name)
+        in_plane = posture is not None and control.number(posture) == 1.0
+        begin_tool_center(control, name, in_plane=in_plane)
 
     return action
 
 
-def tilt(control: Control) -> None:
-    """G68.2 X Y Z I J K: the origin of the tilted plane, and its Euler angles.
+def point_by_vector(control: Control) -> None:
+    """I, J and K of a block in G43.5: the direction of the tool at its end, from its tip to the spindle.
 
     Raises:
-        ProgramError: It has another form, or another one is in force.
+        ProgramError: A rotary axis is named too.
     """
-    mode = control.take("P")
-    if mode is not None and control.number(mode) != 0.0:
-        message = "of the forms of G68.2 the one by Euler's angles (P0) is simulated"
-        control.fail("tilted-plane", message, mode, "G68.2 X0 Y0 Z0 I0 J30. K0")
-    if memory_of(control).tilt is not None:
-        control.fail("tilted-plane", "a tilted plane is in force", hint="end it by G69 first")
-    origin = list(control.motion.programmed[:3])
-    for index, word in control.take_axis_words():
-        if index > 2:
-            control.fail("tilted-plane", f"{word.address} has no place in G68.2", word)
-        origin[index] = control.axis_value(index, word)
-    angles = [control.number(control.take(letter)) for letter in "IJK"]
-    set_tilt(control, euler(*angles), (origin[0], origin[1], origin[2]))
+    if control.modal.active.get("length") != _BY_VECTORS or control.path.tool_center is None:
+        return
+    names = control.settings.axes.names
+    turning = next(
+        (control.words[each] for each in "ABC" if each in names and each in control.words), None
+    )
+    if turning is not None:
+        message = f"in {VECTORS} vectors I J K point the tool, and no rotary axis is named"
+        control.fail("tool-center", message, turning, "G43.4 takes the rotary axes")
+    words = [control.take(letter) for letter in "IJK"]
+    first = next((word for word in words if word is not None), None)
+    if first is not None:
+        x, y, z = (control.number(word) for word in words)
+        point_by_words(control, (x, y, z), first)
 
 
-def euler(first: float, second: float, third: float) -> Matrix:
-    """Turns about Z, the new X and the new Z [deg]; its columns are the directions of the plane's axes."""
-    return product(about(2, first), product(about(0, second), about(2, third)))
+def orient(name: str, plane: str, *, about_tip: bool = False) -> Action:
+    """G53.1, G53.6, G253: rotary axes turn until the tool stands across the tilted plane, rapidly.
+
+    Args:
+        name: The code.
+        plane: The code that tilts the plane.
+        about_tip: They turn about the tip (G53.6); else X, Y and Z rest.
+    """
+
+    def action(control: Control) -> None:
+        if memory_of(control).tilt is None:
+            message = f"{name} sets the tool across a tilted plane, and none is in force"
+            control.fail("tilted-plane", message, hint=f"{plane} before")
+        if about_tip:
+            _refuse_distance(control)
+        point_tool(control, name, about_tip=about_tip)
+
+    return action
 
 
-def orient(control: Control) -> None:
-    """G53.1: rotary axes turn until the tool stands across the tilted plane, rapidly; X, Y and Z rest."""
-    if memory_of(control).tilt is None:
-        message = "G53.1 sets the tool across a tilted plane, and none is in force"
-        control.fail("tilted-plane", message, hint="G68.2 X0 Y0 Z0 I J K before")
-    point_tool(control, "G53.1")
+def _refuse_distance(control: Control) -> None:
+    word = control.take("R")
+    if word is not None and control.number(word) != 0.0:
+        message = "G53.6 turns about the tip here, and not about a place at a distance R from it"
+        control.fail("tilted-plane", message, word, "leave R out, and retract before")
 
 
 def require_orientation(control: Control) -> None:
@@ -69,14 +98,15 @@ def require_orientation(control: Control) -> None:
     word = next((control.words[each] for each in "XYZ" if each in control.words), None)
     if tilted and word is not None:
         message = "the tool does not stand across the tilted plane yet"
-        control.fail("tilted-plane", message, word, "G53.1 behind G68.2, before X, Y and Z move")
+        hint = "G53.1 behind G68.2, or G253 behind G268, before X, Y and Z move"
+        control.fail("tilted-plane", message, word, hint)
 
 
 def level(control: Control) -> None:
-    """G69: no tilted plane and no rotation; the axes stay where they are."""
+    """G69, G269: no tilted plane and no rotation; the axes stay where they are."""
     center = control.path.tool_center
     if center is not None and center.tilted:
-        end_tool_center(control, "G69", keeps_length=True)
+        end_tool_center(control, "the end of the tilted plane", keeps_length=True)
     memory_of(control).rotation = None
     set_tilt(control, None)
 

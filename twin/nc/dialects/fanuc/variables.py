@@ -139,7 +139,7 @@ def write_variable(
 
 
 def rounds(expression: Expression) -> bool:
-    """Whether ROUND stands in it."""
+    """Whether ROUND is in it."""
     return not expression.functions.isdisjoint(_ROUNDING)
 
 

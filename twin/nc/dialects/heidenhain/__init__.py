@@ -3,17 +3,19 @@
 from twin.nc.control.codes import Codes, Words
 from twin.nc.control.control import Control, Rules
 from twin.nc.control.dialect import Dialect
-from twin.nc.dialects.heidenhain import corners, feeds, flow, parameters, paths, sides
+from twin.nc.dialects.heidenhain import corners, feeds, flow, parameters, paths
 from twin.nc.dialects.heidenhain.cycles.planes import enter_plane
 from twin.nc.dialects.heidenhain.decisions import DECISIONS
 from twin.nc.dialects.heidenhain.functions import FUNCTIONS, reduce_rotary, take_shortest_way
+from twin.nc.dialects.heidenhain.leads import SIDES, compensation_word, refuse_paraxial
 from twin.nc.dialects.heidenhain.memory import KlartextMemory, acts_on_lines, memory_of
 from twin.nc.dialects.heidenhain.page import TABLES
 from twin.nc.dialects.heidenhain.statements import STATEMENTS, other_statement
 from twin.nc.dialects.heidenhain.syntax import SYNTAX
-from twin.nc.dialects.heidenhain.tool_tip import take_spatial_angles
+from twin.nc.dialects.heidenhain.tool_tip import begin_tcpm_with_feed, take_spatial_angles
 from twin.nc.iso import shared_marks
 from twin.nc.iso.base import spindle_speed
+from twin.nc.path.compensation.gouge import NEIGHBOURS
 from twin.nc.text.blocks import Word
 from twin.nc.text.syntax import Mark
 
@@ -46,6 +48,7 @@ HEIDENHAIN = Dialect(
     code_page="cp1252",
     syntax=SYNTAX,
     codes=Codes(
+        start_state={"look_ahead": NEIGHBOURS},
         groups=(),
         g={},
         start=(),
@@ -63,16 +66,19 @@ HEIDENHAIN = Dialect(
             "FAUTO": feeds.feed_of_tool,
             "FMAX": feeds.go_rapidly,
             "S": spindle_speed,
-            **{name: sides.compensation_word(side) for name, side in sides.SIDES.items()},
+            **{name: compensation_word(side) for name, side in SIDES.items()},
             **dict.fromkeys(("M94A", "M94B", "M94C"), reduce_rotary),
-            "R+": sides.refuse_paraxial,
-            "R-": sides.refuse_paraxial,
+            "M128F": begin_tcpm_with_feed,
+            "R+": refuse_paraxial,
+            "R-": refuse_paraxial,
         },
         meanings={
             **dict.fromkeys(_AXES, "axis; incremental as IX; as LIN_Z beside an arc"),
             "PR": "polar radius; incremental as IPR",
             "PA": "polar angle; incremental as IPA",
             "R": "radius of CR, RND and a lead",
+            **{f"N{axis}": "normal of the surface (LN)" for axis in "XYZ"},
+            **{f"T{axis}": "direction of the tool, from its tip (LN)" for axis in "XYZ"},
             "LEN": "length of a straight lead",
             "CCA": "angle of a lead's arc",
             "DR+": "arc counter-clockwise",
@@ -94,6 +100,7 @@ HEIDENHAIN = Dialect(
             "R-": "one axis shorter by the radius",
             "S": "spindle speed",
             "M": "machine function",
+            "M128F": "M128 with the feed of its own moves",
             "MB": "way of M140; as MB MAX",
             "MBMAX": "M140 to the end of the travel",
             **{f"M94{axis}": f"M94 of the axis {axis} alone" for axis in "ABC"},

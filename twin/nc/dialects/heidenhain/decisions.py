@@ -112,6 +112,12 @@ DECISIONS = (
         example="corners_of_a_contour",
     ),
     Decision(
+        "What happens where a compensated contour is narrower than the tool?",
+        "A corner that leaves the tool no room is refused; paths that cross farther apart are driven, with a warning.",
+        "Without M120 the control looks at neighbours alone.",
+        example="narrow_contour",
+    ),
+    Decision(
         "What does FN 18 read?",
         "The number, length and radius of tools, and where the axes stand; all else is refused.",
         "The twin keeps no other data of the control.",

@@ -102,7 +102,7 @@ def refuse_end_of_called(control: Control) -> None:
     """M2 or M30.
 
     Raises:
-        ProgramError: It stands in a program that another one calls, which the manual forbids.
+        ProgramError: It is in a program that another one calls, which the manual forbids.
     """
     if _first_line(control, control.block.line) > 1:
         message = "a program that another one calls holds neither M2 nor M30"
@@ -123,7 +123,7 @@ def stop(control: Control, statement: Statement) -> None:
 
 
 def _first_line(control: Control, line: int) -> int:
-    """First line of the file that a line stands in, both from 1."""
+    """First line of the file that a line is in, both from 1."""
     firsts = (first for first, _ in control.report.parts if first <= line)
     return max(firsts, default=1)
 

@@ -34,7 +34,7 @@ class KlartextMemory:
     Attributes:
         pole: Of CC, by column of its axes, programmed coordinates [mm].
         circle_plane: That the axes of CC name; None: that of the tool axis.
-        rapid: FMAX stands in the block that runs.
+        rapid: FMAX is in the block that runs.
         was_rapid: It stood in the last block of a path.
         machine: What M91 or M92 has put in the block that runs, or empty.
         tool_feed: F of the last TOOL CALL, for F AUTO; None: it had none.

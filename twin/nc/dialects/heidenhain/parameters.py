@@ -52,7 +52,7 @@ SPINDLE_STANDS, SPINDLE_TURNS = -1.0, 0.0
 
 
 def is_local(name: str) -> bool:
-    """Whether programs that are called have a parameter of this name anew."""
+    """Whether programs that are called have a parameter of this name again."""
     return name.startswith("QL")
 
 
@@ -108,7 +108,7 @@ def function(control: Control, statement: Statement) -> None:
 
 
 def _read_system(control: Control, statement: Statement) -> None:
-    """FN 18: the tool in the spindle, its radius and length, and where the axes stand.
+    """FN 18: the tool in the spindle, its radius and length, and where the axes are.
 
     Raises:
         ProgramError: It asks for something else.

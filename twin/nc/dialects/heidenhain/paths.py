@@ -9,6 +9,7 @@ from twin.nc.control.control import Control
 from twin.nc.control.modal import LineRule
 from twin.nc.dialects.heidenhain.corners import refuse_chamfered_arc
 from twin.nc.dialects.heidenhain.memory import memory_of
+from twin.nc.dialects.heidenhain.vectors import take_vector
 from twin.nc.geometry.arcs import (
     SAME_POINT,
     Bounds,
@@ -43,7 +44,7 @@ SAME_ANGLE = 1e-9
 """Angles nearer than this are one [deg]: rounding of what was computed."""
 
 _MEASURED = (math.nan, math.nan)
-"""A polar radius and an angle that are those of where the tool stands."""
+"""A polar radius and an angle that are those of where the tool is."""
 After = Callable[[Control, list[float]], None]
 
 
@@ -89,6 +90,15 @@ def _line(control: Control) -> None:
 LINE = Interpolation(_line, rule=LineRule())
 
 
+def _line_by_vectors(control: Control) -> None:
+    """LN: L with the normal of the surface, and the direction of the tool."""
+    take_vector(control)
+    _line(control)
+
+
+LINE_BY_VECTORS = Interpolation(_line_by_vectors)
+
+
 def _polar_line(control: Control) -> None:
     """LP: to the point at PR and PA about the pole."""
     with circle_plane(control) as pole:
@@ -126,7 +136,7 @@ def pole_alone(control: Control, _statement: Statement) -> None:
 
 
 def set_pole(control: Control) -> None:
-    """CC: its axes name the plane; without any the pole is where the tool stands.
+    """CC: its axes name the plane; without any the pole is where the tool is.
 
     Decision: of one coordinate alone the other stays that of the last pole.
     """
@@ -267,6 +277,7 @@ POLAR_TANGENT_ARC = Interpolation(_polar_tangent_arc)
 
 KEYWORDS: dict[str, Interpolation] = {
     "L": LINE,
+    "LN": LINE_BY_VECTORS,
     "LP": POLAR_LINE,
     "C": ARC,
     "CR": ARC_BY_RADIUS,

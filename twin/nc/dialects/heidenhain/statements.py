@@ -22,7 +22,6 @@ FREE_CONTOURS = (
     "free contours (FK) compute points that the program leaves open, which the twin does not"
 )
 REFUSED: Mapping[str, tuple[str, str]] = {
-    "LN": ("moves with a surface normal need five axes", "write L with X, Y and Z"),
     "SPL": ("splines are not followed", "write L and C"),
     **dict.fromkeys(
         ("FL", "FLT", "FC", "FCT", "FPOL", "FSELECT"),

@@ -12,7 +12,7 @@ _AXES = "XYZABCUVW"
 
 WORDED = frozenset(
     (
-        *("L", "C", "CC", "CR", "CT", "LP", "CP", "CTP", "CYCL CALL", "CYCL CALL POS"),
+        *("L", "LN", "C", "CC", "CR", "CT", "LP", "CP", "CTP", "CYCL CALL", "CYCL CALL POS"),
         *(f"APPR {polar}{kind}" for kind in ("LT", "LN", "CT", "LCT") for polar in ("", "P")),
         *("DEP LT", "DEP LN", "DEP CT", "DEP LCT", "DEP PLCT"),
     )
@@ -33,8 +33,10 @@ KEYWORDS = (
 
 _OF_AXIS = r"M[ \t]*94[ \t]+[ABC](?![ \t]*[-+.0-9Q])"
 """M94 with the axis that it is for."""
+_FEED_OF_M128 = rf"M128 F{_VALUE}"
+"""M128 with the feed of the moves by which it makes up for what axes turn: the F behind it is no feed of the block."""
 _ADDRESS = (
-    rf"I?(?:PR|PA){_VALUE}|LIN_[XYZ]|I[{_AXES}]{_VALUE}|LEN|CCA|DL|DR{_VALUE}|DR2|DIST|RI|MB{_VALUE}|LA"
+    rf"{_FEED_OF_M128}|I?(?:PR|PA){_VALUE}|[NT][XYZ]{_VALUE}|LIN_[XYZ]|I[{_AXES}]{_VALUE}|LEN|CCA|DL|DR{_VALUE}|DR2|DIST|RI|MB{_VALUE}|LA"
     rf"|FU|FZ|FT|R(?!0(?![.,0-9]))|L{_VALUE}|(?!{_OF_AXIS})[{_AXES}FSMDN]"
 )
 _FLAG = (
@@ -80,7 +82,7 @@ SYNTAX = Syntax(
     line_keyword="L",
     flag=_FLAG,
     relative={**{f"I{axis}": axis for axis in _AXES}, "IPR": "PR", "IPA": "PA"},
-    aliases={f"LIN_{axis}": axis for axis in "XYZ"},
+    aliases={**{f"LIN_{axis}": axis for axis in "XYZ"}, "M128 F": "M128F"},
     decimal_comma=True,
     continued="~",
 )

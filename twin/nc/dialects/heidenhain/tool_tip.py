@@ -10,19 +10,24 @@ from twin.nc.control.control import Control
 from twin.nc.dialects.heidenhain.cycles.plane_directions import spatial
 from twin.nc.dialects.heidenhain.memory import memory_of
 from twin.nc.iso.tool_center import begin_tool_center, end_tool_center, point_by_words
-from twin.nc.text.blocks import Statement
+from twin.nc.text.blocks import Statement, Word
 
 _TCPM = re.compile(
-    r"[ \t]*F[ \t]+TCP[ \t]+AXIS[ \t]+(?P<axis>POS|SPAT)[ \t]+PATHCTRL[ \t]+AXIS"
+    r"[ \t]*F[ \t]+TCP[ \t]+AXIS[ \t]+(?P<axis>POS|SPAT)[ \t]+PATHCTRL[ \t]+(?P<path>AXIS|VECTOR)"
     r"(?:[ \t]+REFPNT[ \t]+TIP-TIP)?(?:[ \t]+F[ \t]*[0-9.]+)?[ \t]*",
     re.IGNORECASE,
 )
 
 
 def begin_tcpm(control: Control) -> None:
-    """M128: F counts the way of the tip; A, B and C are axes of the machine."""
+    """M128: F counts the path of the tip; A, B and C are axes of the machine."""
     memory_of(control).spatial = None
     begin_tool_center(control, "M128")
+
+
+def begin_tcpm_with_feed(control: Control, _word: Word) -> None:
+    """M128 F: the feed bounds moves by which the control follows an axis turned by hand, of which there are none here."""
+    begin_tcpm(control)
 
 
 def end_tcpm(control: Control) -> None:
@@ -45,13 +50,12 @@ def function(control: Control, statement: Statement) -> None:
     elif text.startswith("TCPM"):
         match = _TCPM.fullmatch(text.removeprefix("TCPM"))
         if match is None:
-            message = "FUNCTION TCPM is simulated as F TCP AXIS POS or SPAT PATHCTRL AXIS"
-            hint = (
-                "the axes go evenly between blocks, and the tip's own path is led (REFPNT TIP-TIP)"
-            )
+            message = "FUNCTION TCPM is simulated as F TCP AXIS POS or SPAT PATHCTRL AXIS or VECTOR"
+            hint = "F counts the tip's way, and the tip's own path is led (REFPNT TIP-TIP)"
             control.fail("tool-center", message, statement, hint)
-        begin_tool_center(control, "FUNCTION TCPM")
-        memory_of(control).spatial = (0.0, 0.0, 0.0) if match["axis"] == "SPAT" else None
+        in_plane = match["path"].upper() == "VECTOR"
+        begin_tool_center(control, "FUNCTION TCPM", in_plane=in_plane)
+        memory_of(control).spatial = (0.0, 0.0, 0.0) if match["axis"].upper() == "SPAT" else None
     elif not text.startswith("MODE MILL"):
         name = " ".join(statement.text.split()[:2])
         message = f"FUNCTION {name} is not followed"

@@ -18,7 +18,7 @@ _HEAD = re.compile(
     r'[ \t]*(?:(?P<name>"[^"]*"|QS[0-9]+)|(?P<number>[-+.0-9]+|Q[LR]?[0-9]+))?[ \t]*(?P<axis>[XYZUVW](?=[ \t]|$))?',
     re.IGNORECASE,
 )
-"""What stands behind TOOL CALL and TOOL DEF: name or number, and the axis of the tool."""
+"""What is behind TOOL CALL and TOOL DEF: name or number, and the axis of the tool."""
 _CHANGE = change_tool_at(0.0)
 """Decision: the macro that the machine's builder has put behind TOOL CALL lifts the tool to machine zero."""
 _CORNER = re.compile(
@@ -74,7 +74,7 @@ def _number_of(control: Control, statement: Statement, match: re.Match[str]) -> 
 
 
 def _change(control: Control, number: Word) -> None:
-    """The tool goes into the spindle, which stands.
+    """The tool goes into the spindle, which is stopped.
 
     Raises:
         ProgramError: The job has no such tool.
@@ -98,8 +98,10 @@ def _put_length(control: Control) -> None:
     """The length of the tool in the spindle counts, with DL."""
     tool, number = control.tools.data(control.tools.spindle), control.tools.spindle
     control.tools.length_call = number
-    longer = 0.0 if tool is None or number == 0 else control.tools.length_difference(tool)
-    set_length(control, longer + memory_of(control).deltas.length)
+    length_difference = (
+        0.0 if tool is None or number == 0 else control.tools.length_difference(tool)
+    )
+    set_length(control, length_difference + memory_of(control).deltas.length)
 
 
 def define_tool(control: Control, statement: Statement) -> None:

@@ -12,7 +12,7 @@ def computed_words(control: Control, statement: Statement, at: int) -> dict[str,
     """The words of a statement's text from a place on, computed, by address.
 
     Raises:
-        ProgramError: One cannot be read, or stands twice.
+        ProgramError: One cannot be read, or occurs twice.
     """
     found: dict[str, Word] = {}
     column = statement.text_column + at
@@ -34,7 +34,7 @@ def _computed(control: Control, word: Word) -> Word:
 
 
 def refuse_rest(control: Control, column: int, text: str) -> NoReturn:
-    """Something stands where a statement has ended.
+    """Something is where a statement has ended.
 
     Raises:
         ProgramError: Always.

@@ -38,7 +38,7 @@ def refuse(
 
 
 def values_of(control: Control, word: OWord, statement: Statement) -> list[tuple[Expression, int]]:
-    """The values behind a keyword, with their columns; each stands in square brackets."""
+    """The values behind a keyword, with their columns; each is in square brackets."""
     return control.program_counter.parsed(word, lambda: _read_values(control, word, statement))
 
 

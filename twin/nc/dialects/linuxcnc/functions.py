@@ -42,7 +42,7 @@ def choose_spindle(control: Control, word: Word) -> None:
 
 
 def change_tool(control: Control) -> None:
-    """M6: the prepared tool goes into the spindle, which stands then."""
+    """M6: the prepared tool goes into the spindle, which is stopped then."""
     refuse_in_compensation(control, "the tool cannot change")
     if not memory_of(control).prepared:
         control.fail("tool-number", "M6 needs a tool that T has prepared", hint="write T1 M6")

@@ -60,7 +60,7 @@ def reframe(control: Control) -> None:
     elif any(shift[:2]) or any(shift[3:]):
         message = "under M428 the offset of a tool is its length, along Z"
         control.fail("tool-center", message, hint="write M429 before it")
-    elif center.longer != shift[2]:
+    elif center.length_difference != shift[2]:
         control.motion.lead_tip(center.with_length(shift[2]))
     control.motion.reframed()
 

@@ -11,6 +11,7 @@ from twin.nc.dialects.sinumerik.flow import calls, programs
 from twin.nc.dialects.sinumerik.memory import SinumerikMemory, acts_on_lines
 from twin.nc.iso import base, shared_marks
 from twin.nc.iso.declared import flow_function
+from twin.nc.path.compensation.gouge import NEIGHBOURS
 from twin.nc.text.blocks import Word
 from twin.nc.text.syntax import Comment, Mark, Syntax
 
@@ -62,6 +63,7 @@ SINUMERIK = Dialect(
         },
     ),
     codes=Codes(
+        start_state={"look_ahead": NEIGHBOURS},
         groups=(
             "language",
             "units",
@@ -79,6 +81,8 @@ SINUMERIK = Dialect(
             "compensation watch",
             "compensation",
             "spindle",
+            "orientation frame",
+            "orientation",
             "motion",
         ),
         g=CODES,

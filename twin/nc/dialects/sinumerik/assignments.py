@@ -5,8 +5,7 @@ import re
 
 from twin.nc.control.control import Control
 from twin.nc.dialects.sinumerik.expressions import NAME, SECOND
-from twin.nc.dialects.sinumerik.memory import CallFrame, memory_of
-from twin.nc.dialects.sinumerik.types import TEXTS, VariableType
+from twin.nc.dialects.sinumerik.memory import TEXTS, CallFrame, VariableType, memory_of
 from twin.nc.dialects.sinumerik.values import bracketed, split_values
 from twin.nc.dialects.sinumerik.variables import axis_at, write_variable
 from twin.nc.text.blocks import Statement

@@ -5,19 +5,46 @@ from functools import partial
 from twin.nc.canonical import Corner
 from twin.nc.control.codes import Action, GCode
 from twin.nc.control.control import Control
-from twin.nc.dialects.sinumerik import arcs, frames, words
+from twin.nc.dialects.sinumerik import arcs, frames, orientation, words
 from twin.nc.dialects.sinumerik.known import PASSED_CODES, REFUSED_CODES
 from twin.nc.dialects.sinumerik.leads import LEADS
-from twin.nc.dialects.sinumerik.reference_points import to_reference
-from twin.nc.dialects.sinumerik.targets import set_pole
+from twin.nc.dialects.sinumerik.targets import forget_polar, set_pole
 from twin.nc.geometry.planes import XY, YZ, ZX
 from twin.nc.iso.declared import modal, motion_code, plane_code, refused, replacement
+from twin.nc.iso.machine_coordinates import machine_frame
 from twin.nc.iso.tool_compensation import LEFT, RIGHT
 from twin.nc.path.feed_rates import FeedMode
 
+
+def to_reference(number: int) -> Action:
+    """Decision: both lie at machine zero, as the machine data have it in the state of delivery.
+
+    The values of the words do not count; ``Z1=0`` names the axis of the machine.
+    """
+
+    def action(control: Control) -> None:
+        control.take("FP")
+        for name in control.settings.axes.names:
+            word = control.take(f"{name}1")
+            if word is not None:
+                control.words[name] = word._replace(address=name)
+        words = dict(control.take_axis_words())
+        if not words:
+            message = f"G{number} needs the axes that it moves"
+            control.fail("reference-axes", message, hint=f"write G{number} Z1=0")
+        with machine_frame(control, f"G{number}"):
+            target = list(control.motion.programmed)
+            for axis in words:
+                target[axis] = 0.0
+            control.line_to(target, rapid=True)
+        forget_polar(control)
+
+    return action
+
+
 _ACTING = (
     *("CIP", "CT", "TRANS", "ATRANS", "ROT", "AROT", "SCALE", "ASCALE", "MIRROR", "AMIRROR"),
-    *("SUPA", "NORM", "KONT"),
+    *("SUPA", "NORM", "KONT", "ORIWKS", "ORIMKS", "ORIVECT", "ORIPLANE", "ORIAXES"),
 )
 _NAMED = (*_ACTING, *PASSED_CODES, *REFUSED_CODES)
 NUMBERS = {
@@ -154,6 +181,10 @@ CODES: dict[float, GCode] = {
     NUMBERS["MIRROR"]: _frame("mirror of the frame", frames.mirroring),
     NUMBERS["AMIRROR"]: _frame("mirror on top of the frame", frames.mirroring, additive=True),
     NUMBERS["SUPA"]: _machine_code("SUPA"),
+    **{
+        NUMBERS[name]: modal(meaning, group, orientation.interpolate(name))
+        for name, (meaning, group) in orientation.INTERPOLATIONS.items()
+    },
     NUMBERS["NORM"]: modal(
         "leads of compensation go straight", "compensation leads", indirect_leads=False
     ),

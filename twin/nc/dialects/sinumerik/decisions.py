@@ -30,6 +30,12 @@ DECISIONS = (
         example="corners",
     ),
     Decision(
+        "What happens where a compensated contour is narrower than the tool?",
+        "A corner that leaves the tool no room is refused; paths that cross farther apart are driven, with a warning.",
+        "CDOF is in force at the start: the control looks for the crossing of neighbours alone. What CDON leaves out is the control's.",
+        example="narrow_contour",
+    ),
+    Decision(
         "Which path does F count under radius compensation?",
         "That of the tool's centre, whatever CFC, CFTCP or CFIN says.",
         "The simulated machine moves the centre.",

@@ -61,7 +61,7 @@ NAME = rf"(?!(?:{_RESERVED})\b)[A-Z_][A-Z_]\w*\b"
 CONSTANT = r"'H[0-9A-F]+'|'B[01]+'"
 """A whole number by its digits to the base 16 or 2."""
 SYSTEM = r"\$[A-Z_]\w*(?:[ \t]*\[[^\]]*\])?"
-"""A variable of the control; what stands in its brackets may be the name of an axis."""
+"""A variable of the control; what is in its brackets may be the name of an axis."""
 
 EXPRESSIONS = ExpressionSyntax(
     operators={

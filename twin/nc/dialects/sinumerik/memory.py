@@ -1,16 +1,41 @@
 """What only the SINUMERIK remembers from block to block."""
 
 import dataclasses
+import enum
 import math
 
 from twin.nc.control.constructs import Structure
 from twin.nc.control.control import Control
-from twin.nc.dialects.sinumerik.types import VariableType
 from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.matrices import IDENTITY, Matrix
 from twin.nc.geometry.planes import Vector
 from twin.nc.iso.machine_coordinates import PartFrame
+from twin.nc.text.arithmetic import nearest_whole_away
 from twin.nc.text.blocks import Statement
+
+
+class VariableType(enum.Enum):
+    """Types of variables that the twin computes with: what an assignment makes of a value; texts are kept as written."""
+
+    REAL = "REAL"
+    INT = "INT"
+    BOOL = "BOOL"
+    CHAR = "CHAR"
+    STRING = "STRING"
+    AXIS = "AXIS"
+
+    def converted(self, value: float) -> float:
+        """A value as a variable of this type holds it."""
+        if self is VariableType.BOOL:
+            return 1.0 if value != 0.0 else 0.0
+        if self in (VariableType.INT, VariableType.CHAR):
+            return nearest_whole_away(value)
+        return value
+
+
+TEXTS = (VariableType.STRING, VariableType.AXIS)
+"""Types whose values are texts."""
+
 
 DEEPEST_CALL = 16
 """Subprograms that may call each other (manual)."""
@@ -80,6 +105,8 @@ class SinumerikMemory:
     Attributes:
         matrix: Of the programmable frame.
         swivel: Directions of the axes of CYCLE800's plane, as columns, and its origin [mm]; None: there is none.
+        vector_turns: A vector is reached in the plane of both directions, or not; None: ORIWKS and ORIMKS say which.
+        machine_vectors: ORIMKS: no frame turns a vector.
         uneven: It scales the axes differently.
         translation: Of the programmable frame, before it shifts by a work offset [mm].
         fine: Its fine part (G59), which TRANS ends [mm].
@@ -91,7 +118,7 @@ class SinumerikMemory:
         carried: How far the last change of a frame has moved programmed coordinates, which the next
             incremental word of an axis makes up for, shape (k,) [mm or deg].
         pole: In the working plane [mm].
-        polar_radius: RP as programmed last [mm]; NaN: it is seen from where the tool stands.
+        polar_radius: RP as programmed last [mm]; NaN: it is seen from where the tool is.
         polar_angle: AP as programmed last, likewise [deg].
         tool_on: The tool in the spindle has its offset D.
         unit: Of lengths, as it was before the block [mm].
@@ -112,6 +139,8 @@ class SinumerikMemory:
 
     matrix: Matrix = IDENTITY
     swivel: tuple[Matrix, Vector] | None = None
+    vector_turns: bool | None = None
+    machine_vectors: bool = False
     uneven: bool = False
     translation: Vector = (0.0, 0.0, 0.0)
     fine: Vector = (0.0, 0.0, 0.0)

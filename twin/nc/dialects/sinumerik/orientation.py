@@ -4,6 +4,7 @@ Sources: programming manuals "Job planning" (transformations) and "Measuring cyc
 the machine's own rotary axes as they are programmed, or a vector (A3=, B3=, C3=) for which they are computed.
 """
 
+from twin.nc.control.codes import Action
 from twin.nc.control.control import Control
 from twin.nc.dialects.sinumerik.frames import put_programmable
 from twin.nc.dialects.sinumerik.memory import memory_of
@@ -27,6 +28,19 @@ machine's rotary axes themselves."""
 _UPRIGHT = 90.0
 """Projection angles lie below it [deg]."""
 _VECTOR = ("A3", "B3", "C3")
+
+_FRAME, _TURN = "orientation frame", "orientation"
+INTERPOLATIONS = {
+    "ORIWKS": (
+        "A3= B3= C3= count in the frame, and are reached in the plane of both directions",
+        _FRAME,
+    ),
+    "ORIMKS": ("A3= B3= C3= count without frames, and the rotary axes go to them evenly", _FRAME),
+    "ORIVECT": ("A3= B3= C3= are reached in the plane of both directions (a great circle)", _TURN),
+    "ORIPLANE": ("as ORIVECT", _TURN),
+    "ORIAXES": ("the rotary axes go evenly to A3= B3= C3=", _TURN),
+}
+"""What codes of orientation say, and the group of each."""
 
 
 def begin_transformation(control: Control, statement: Statement) -> None:
@@ -153,23 +167,45 @@ def _directly(control: Control, statement: Statement, angles: list[float]) -> Ma
     return plane_of_axes(control, dict(zip(columns, angles, strict=False)))
 
 
+def interpolate(name: str) -> Action:
+    """ORIVECT, ORIPLANE, ORIAXES; ORIWKS, ORIMKS: how a vector is reached, and what it counts in.
+
+    Decision: ORIAXES, ORIVECT and ORIPLANE say how as soon as the program has one of them, as with machine data 21104 at 1;
+    before, ORIWKS and ORIMKS do, as it comes from its maker.
+    """
+
+    def action(control: Control) -> None:
+        memory = memory_of(control)
+        if name in ("ORIWKS", "ORIMKS"):
+            memory.machine_vectors = name == "ORIMKS"
+        else:
+            memory.vector_turns = name != "ORIAXES"
+
+    return action
+
+
 def point_by_vector(control: Control) -> None:
     """A3=, B3= and C3= of a block: the direction of the tool, from its tip to the spindle, in the part.
 
-    Decision: between two blocks the rotary axes go evenly.
+    It turns in the plane of both directions, or the rotary axes go evenly; these do, too, to their own words (manual: rotary
+    axis interpolation). With ORIMKS no frame turns the vector.
 
     Raises:
         ProgramError: TRAORI is not in force.
     """
     words = [control.take(name) for name in _VECTOR]
     first = next((word for word in words if word is not None), None)
+    control.motion.in_plane = False
     if first is None:
         return
     if control.path.tool_center is None:
         message = "a direction of the tool needs TRAORI"
         control.fail("tool-center", message, first, "write TRAORI before, or the rotary axes")
+    memory = memory_of(control)
     x, y, z = (control.number(word) for word in words)
-    point_by_words(control, (x, y, z), first)
+    point_by_words(control, (x, y, z), first, in_frame=not memory.machine_vectors)
+    turns = memory.vector_turns
+    control.motion.in_plane = not memory.machine_vectors if turns is None else turns
 
 
 def _vector(values: list[float]) -> Vector:

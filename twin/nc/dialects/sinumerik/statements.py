@@ -8,12 +8,45 @@ from twin.nc.dialects.sinumerik import orientation
 from twin.nc.dialects.sinumerik.assignments import assign, define
 from twin.nc.dialects.sinumerik.codes import NUMBERS
 from twin.nc.dialects.sinumerik.cycles import CYCLES, call_cycle
+from twin.nc.dialects.sinumerik.cycles.calls import CycleCall, CycleForm, read_call
 from twin.nc.dialects.sinumerik.flow import calls, structures
 from twin.nc.dialects.sinumerik.flow.repeats import repeat_blocks
 from twin.nc.dialects.sinumerik.known import PASSED_STATEMENTS, REFUSED_STATEMENTS
 from twin.nc.dialects.sinumerik.values import bracketed
-from twin.nc.dialects.sinumerik.workpiece import workpiece
+from twin.nc.functions import BLANK
 from twin.nc.text.blocks import Statement
+
+_BOX, _CYLINDER = 112.0, 192.0
+"""Modes in which all that is written counts from the datum, as the control's mask writes them."""
+
+
+def _report_workpiece(call: CycleCall) -> None:
+    """Report a box by two corners, or a cylinder, by heights from the datum; others only in words."""
+    shape, mode = call.texts.get("SHAPE", "").upper(), call.get("MODE")
+    top, bottom = call.length("ZA"), call.length("ZI")
+    if shape == "BOX" and mode == _BOX:
+        corners = {
+            f"{name}{side}": call.length(f"{name}{side}") for name in "XY" for side in (1, 2)
+        }
+        call.control.function(BLANK, {**corners, "Z1": bottom, "Z2": top})
+    elif shape == "CYLINDER" and mode == _CYLINDER:
+        sizes = {"D": call.length("X1"), "L": top - bottom, "Z2": top}
+        call.control.function(BLANK, sizes)
+    else:
+        message = f"{call.statement.keyword} in this form gives the twin no stock: the job does"
+        report = call.control.report
+        report.notice("WORKPIECE", message, call.statement.column, len(call.statement.keyword))
+
+
+_WORKPIECE_FORM = CycleForm(
+    "WP REF OFFSET SHAPE MODE ZA ZI ZB X1 Y1 X2 Y2 W1 W2 W3 W4", _report_workpiece
+)
+
+
+def workpiece(control: Control, statement: Statement) -> None:
+    """WORKPIECE(, , , "BOX", 112, ZA, ZI, ZB, X1, Y1, X2, Y2)."""
+    _WORKPIECE_FORM.run(read_call(control, statement, _WORKPIECE_FORM))
+
 
 _INDEXED = re.compile(r"[ \t]*\[[^\]]*\][ \t]*=[ \t]*[-+.\w]+")
 """What ``ACC[X]=50`` is set to."""
@@ -30,7 +63,7 @@ def _pass_over(control: Control, statement: Statement) -> None:
 
 
 def _run_rest(control: Control, statement: Statement, at: int) -> None:
-    """Run what stands in a line behind a statement as a block."""
+    """Run what is in a line behind a statement as a block."""
     text, column = statement.text[at:], statement.text_column + at
     for block in control.statements.blocks(text, column, control.block.line):
         control.run(block)

@@ -7,8 +7,7 @@ import re
 from twin.nc.control.control import Control
 from twin.nc.control.settings import ToolData
 from twin.nc.dialects.sinumerik import frames
-from twin.nc.dialects.sinumerik.memory import memory_of
-from twin.nc.dialects.sinumerik.types import VariableType
+from twin.nc.dialects.sinumerik.memory import VariableType, memory_of
 from twin.nc.text.expressions import ExpressionError
 
 _NAME = re.compile(r"(\$\w+)(?:\[([^\]]*)\])?")

@@ -1,6 +1,6 @@
 """Where a block of the SINUMERIK goes: Cartesian or polar, each word by its own way to count.
 
-``X=IC(5)`` counts from where the tool stands, ``X=AC(5)`` from zero, ``C=DC(90)`` goes there the shorter way,
+``X=IC(5)`` counts from where the tool is, ``X=AC(5)`` from zero, ``C=DC(90)`` goes there the shorter way,
 ``C=ACP(90)`` and ``C=ACN(90)`` in one direction. A frame that has changed is made up for by the next
 incremental word of an axis (setting data 42440 and 42442 in the state of delivery).
 """
@@ -20,13 +20,13 @@ POLAR_WORDS = frozenset(("AP", "RP"))
 
 
 def forget_polar(control: Control) -> None:
-    """The last polar values no longer hold: they are seen anew from where the tool stands."""
+    """The last polar values no longer hold: they are seen again from where the tool is."""
     memory = memory_of(control)
     memory.polar_radius = memory.polar_angle = math.nan
 
 
 def frame_changes(control: Control) -> list[float]:
-    """A frame is about to change: where the tool stands as programmed, for ``frame_changed``."""
+    """A frame is about to change: where the tool is as programmed, for ``frame_changed``."""
     return list(control.motion.programmed)
 
 
@@ -126,7 +126,7 @@ def _polar_target(control: Control) -> list[float]:
 
 
 def set_pole(number: int, control: Control) -> None:
-    """G110, G111, G112: the pole from where the tool stands, from zero, or from the pole before.
+    """G110, G111, G112: the pole from where the tool is, from zero, or from the pole before.
 
     The pole is given by axes of the plane, or by AP and RP. A coordinate that is missing is 0.
     """

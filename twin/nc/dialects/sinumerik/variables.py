@@ -96,7 +96,7 @@ _AXIS = re.compile(r"\(?[ \t]*(\w+)[ \t]*\)?")
 
 
 def axis_at(control: Control, line: str, at: int, column: int) -> tuple[str, int]:
-    """The axis that stands in a line, also in brackets, and the place behind it.
+    """The axis that is in a line, also in brackets, and the place behind it.
 
     Raises:
         ProgramError: None does.

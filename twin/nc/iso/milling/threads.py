@@ -1,7 +1,7 @@
 """Threads and holes that a milling tool cuts on helices.
 
 Decision, since the manuals say no more than tangentially and in a helix: the tool comes to its helix and leaves it on
-half a turn about the middle between where it stands and the point of the helix on the abscissa.
+half a turn about the middle between where it is and the point of the helix on the abscissa.
 """
 
 import dataclasses

@@ -25,7 +25,7 @@ from twin.nc.geometry.planes import (
     vector_of,
 )
 from twin.nc.path.compensation.beside import arc_moves, driven, level_arc
-from twin.nc.path.compensation.gouge import Passed
+from twin.nc.path.compensation.gouge import KEPT, Passed
 from twin.nc.path.move_columns import Segment
 from twin.nc.path.segments import IN_PLANE, MoveReport
 
@@ -81,6 +81,7 @@ class Compensation:
         self._side_change: SideChange | None = None
         """How the offset that comes next puts the tool on the other side; None: it does not."""
         self._square = self._indirect = self._led = False
+        self._look_ahead = KEPT
         self._held: list[Segment] = []
         """The move that waits for its successor, and moves along the normal that wait for its end."""
         self._events: list[list[Event]] = []
@@ -119,6 +120,7 @@ class Compensation:
         *,
         square: bool,
         indirect: bool,
+        look_ahead: int = KEPT,
         led: bool = False,
     ) -> None:
         """Compensate from the next move on.
@@ -128,8 +130,10 @@ class Compensation:
             signed_offset: The tool's radius, positive left of the contour [mm].
             square: Outside corners between lines are extended as far as 90°.
             indirect: Leads go around the contour's first and last point.
+            look_ahead: Among so many elements a crossing of the path is refused; one farther apart is driven.
             led: The path has come to the compensated beginning of the contour already.
         """
+        self._look_ahead = look_ahead
         self.plane, self._signed_offset = plane, signed_offset
         self._square, self._indirect, self._led = square, indirect, led
         self.stage, self._here = STARTED, None
@@ -375,11 +379,15 @@ class Compensation:
         self._report.refuse(move, code, message)
 
     def _pass(self, element: Curve, own: Curve | None) -> None:
-        """Pass an element of the path; refuse one that crosses another that was passed."""
-        line = self._passed.add(element, own, self._held[0].line)
-        if line is not None:
-            where = f"between this element and that of line {line}: the path crosses itself"
+        """Pass an element of the path; refuse one that crosses another that the control still sees."""
+        crossing = self._passed.add(element, own, self._held[0].line)
+        if crossing is None:
+            return
+        where = f"between this element and that of line {crossing.line}: the path crosses itself"
+        if crossing.back < self._look_ahead:
             self._refuse_radius(self._held[0], "compensation-gouge", where)
+        message = f"the tool's radius {abs(self.signed_offset):g} does not fit {where}; the control does not see so far ahead and cuts into the contour"
+        self._report.warn(self._held[0], "compensation-neck", message)
 
     def _warn_of_cut(self, move: Segment, way: str, lead: Curve, element: Curve) -> None:
         """Warn of a lead that cuts into an element of the contour."""

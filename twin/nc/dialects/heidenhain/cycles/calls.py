@@ -14,7 +14,7 @@ SURFACE, SECOND_CLEARANCE, CLEARANCE, DEPTH = 203, 204, 200, 201
 
 
 def call_cycle(control: Control) -> None:
-    """M99, or CYCL CALL: the cycle runs where the tool stands.
+    """M99, or CYCL CALL: the cycle runs where the tool is.
 
     Raises:
         ProgramError: None is defined, or compensation is in force.
@@ -116,7 +116,7 @@ def defined(control: Control) -> Parameters:
 
 
 def go_over(control: Control, target: list[float], height: float, *, rapid: bool) -> None:
-    """Go over a place, never below a height; where the tool stands higher it stays so high."""
+    """Go over a place, never below a height; where the tool is higher it stays so high."""
     go_to_height(control, max(control.motion.programmed[HEIGHT], height))
     there = list(target)
     there[HEIGHT] = control.motion.programmed[HEIGHT]

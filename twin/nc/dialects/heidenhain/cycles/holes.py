@@ -145,7 +145,7 @@ def _break_chips(control: Control, given: Parameters, hole: Hole, breaking: floa
 
 
 def boring(control: Control, given: Parameters) -> None:
-    """202: at the bottom the spindle stands, the tool leaves the wall by Q214, and comes back with Q208."""
+    """202: at the bottom the spindle is stopped, the tool leaves the wall by Q214, and comes back with Q208."""
     way = _ASIDE.get(int(given.number(214)))
     if way is None:
         control.fail("cycle-word", f"Q214 is 0 to 4, not {given.number(214):g}")

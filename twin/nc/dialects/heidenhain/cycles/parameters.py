@@ -43,7 +43,7 @@ def take_parameters(
     """Take the parameters of a definition and give Q their values.
 
     Raises:
-        ProgramError: One is none of the cycle's, has no value, or stands twice.
+        ProgramError: One is none of the cycle's, has no value, or occurs twice.
     """
     line, values = control.block.line, {}
     begin = statement.text_column

@@ -22,7 +22,12 @@ from twin.nc.dialects.heidenhain.values import refuse_rest, value_at
 from twin.nc.geometry.matrices import IDENTITY, Matrix
 from twin.nc.iso.machine_coordinates import machine_frame
 from twin.nc.iso.plane_moves import at_feed
-from twin.nc.iso.tilted_plane import rotary_axes_across, stands_across, turned_with_plane
+from twin.nc.iso.tilted_plane import (
+    rotary_axes_across,
+    stands_across,
+    turn_about,
+    turned_with_plane,
+)
 from twin.nc.iso.tool_center import begin_tool_center, end_tool_center
 from twin.nc.text.blocks import Statement
 
@@ -153,23 +158,12 @@ def _turn(control: Control, statement: Statement, words: PlaneWords) -> None:
     with at_feed(control, feed if feed is not None else control.motion.feed):
         if "MOVE" in turns:
             distance = words.values.get("DIST", 0.0) * control.modal.unit
-            _turn_about(control, axes, distance, rapid=feed is None)
+            turn_about(control, "PLANE", axes, distance, rapid=feed is None)
         else:
             here = control.motion.programmed[:3]
             control.line_to([*here, *axes[3:]], rapid=feed is None)
     if tilted:
         begin_tool_center(control, "PLANE", tilted=True)
-
-
-def _turn_about(control: Control, axes: list[float], distance: float, *, rapid: bool) -> None:
-    """MOVE: the axes turn about the point that lies so far below the tip [mm], where the part is."""
-    begin_tool_center(control, "PLANE")
-    center = control.path.tool_center
-    assert center is not None
-    control.motion.lead_tip(center.with_length(center.longer + distance))
-    control.line_to([*control.motion.programmed[:3], *axes[3:]], rapid=rapid)
-    control.motion.lead_tip(center)
-    end_tool_center(control, "PLANE", keeps_length=True)
 
 
 def _write_angles(control: Control, axes: list[float]) -> None:

@@ -24,7 +24,7 @@ _CORNERS = {0: (0.0, 0.0), 1: (1.0, 1.0), 2: (-1.0, 1.0), 3: (-1.0, -1.0), 4: (1
 _ENDS = {0: (0.0, 0.0), 1: (1.0, 0.0), 2: (1.0, 0.0), 3: (-1.0, 0.0), 4: (-1.0, 0.0)}
 """The same of a slot: its left end, the centre of its left arc, that of its right arc, its right end."""
 _PLACES = {1: 0.0, 2: 0.5, 3: 1.0}
-"""At which share of a curved slot the tool stands when it is called, by Q367."""
+"""At which share of a curved slot the tool is when it is called, by Q367."""
 
 
 def _choice(control: Control, given: Parameters, parameter: int, known: dict[int, Point]) -> Point:
@@ -128,7 +128,7 @@ def slot(control: Control, given: Parameters) -> None:
 def curved_slot(control: Control, given: Parameters) -> None:
     """254: slots Q219 wide on the pitch circle Q375, from Q376 on Q248 long, Q377 of them Q378 apart.
 
-    With Q367 0 the pitch circle lies about Q216 and Q217; with 1, 2 or 3 the tool stands over the first end, the middle
+    With Q367 0 the pitch circle lies about Q216 and Q217; with 1, 2 or 3 the tool is over the first end, the middle
     or the last end of the first slot, at the angle Q376 of it.
     """
     radius, width = given.length(375) / 2.0, given.length(219) / 2.0

@@ -1,6 +1,6 @@
 """Old cycles whose parameters stand in steps: 1 pecking, 2 tapping, 4 rectangular and 5 circular pocket.
 
-They count from where the tool stands when they are called, which is the set-up clearance above the surface (manual).
+They count from where the tool is when they are called, which is the set-up clearance above the surface (manual).
 """
 
 import re

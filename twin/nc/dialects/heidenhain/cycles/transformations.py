@@ -40,7 +40,7 @@ class Step(NamedTuple):
     Attributes:
         cycle: Its number.
         step: That of the block.
-        text: What stands behind both.
+        text: What is behind both.
         column: Where that begins.
     """
 
@@ -185,7 +185,7 @@ def dwell(control: Control, step: Step) -> None:
 
 
 def orient_spindle(control: Control, step: Step) -> None:
-    """13: the spindle stands at an angle, as M19."""
+    """13: the spindle is at an angle, as M19."""
     if step.step > 0:
         control.function("M19", {"R": _last_value(control, step)[0]})
 

@@ -1,4 +1,4 @@
-"""CYCLE72: milling along a contour that is a subprogram, or stands between two labels.
+"""CYCLE72: milling along a contour that is a subprogram, or is between two labels.
 
 The contour's first move says where it begins; the tool comes there by a lead. Decision: its blocks run once for each
 pass.

@@ -1,7 +1,7 @@
 """Drilling cycles of the SINUMERIK: CYCLE81 to CYCLE89, CYCLE84 and CYCLE840.
 
 RTP is the height to which they return, RFP the surface, SDIS the safety distance above it; DP the bottom, or DPR below
-the surface. They drill where the tool stands.
+the surface. They drill where the tool is.
 """
 
 import math
@@ -89,6 +89,7 @@ def _feed(control: Control, height: float, feed: float | None = None) -> None:
 
 def _drill(call: CycleCall) -> None:
     heights = _approach(call)
+    call.control.tools.drills = not call.get("DTB")
     _feed(call.control, heights.bottom)
     _wait(call, "DTB")
     go_to_height(call.control, heights.back)
@@ -125,6 +126,7 @@ def pecks(total: float, first: float, degression: float, least: float = 0.0) -> 
 def _deep(call: CycleCall) -> None:
     heights = heights_of(call)
     control, surface = call.control, heights.surface
+    control.tools.drills = True
     total = surface - heights.bottom
     first = (
         surface - call.length("FDEP") if "FDEP" in call.values else abs(call.length("FDPR", total))

@@ -11,12 +11,13 @@ from twin.nc.dialects.sinumerik.flow.repeats import call_part, repeat_blocks
 from twin.nc.dialects.sinumerik.frames import put_programmable
 from twin.nc.dialects.sinumerik.memory import (
     DEEPEST_CALL,
+    TEXTS,
     CallFrame,
     Formal,
     Subprogram,
+    VariableType,
     memory_of,
 )
-from twin.nc.dialects.sinumerik.types import TEXTS, VariableType
 from twin.nc.dialects.sinumerik.values import bracketed, split_values
 from twin.nc.dialects.sinumerik.variables import axis_of_value, text_named, write_variable
 from twin.nc.text.blocks import Block, Location, Statement
@@ -81,7 +82,7 @@ def _enter(
     values: Sequence[tuple[str, int]],
     times: float,
 ) -> None:
-    """Call a subprogram with the texts of its values, and where they stand."""
+    """Call a subprogram with the texts of its values, and where they are."""
     formals, memory = subprogram.formals, memory_of(control)
     if len(values) > len(formals):
         message = f"the subprogram takes {len(formals)} values, not {len(values)}"

@@ -1,0 +1,5 @@
+PART OF THE PUMP
+%
+O1
+M30
+%
