@@ -87,3 +87,20 @@ def test_of_files_that_end_in_h_those_in_klartext_are_programs(tmp_path: Path) -
     (tmp_path / "board.h").write_text("#ifndef BOARD_H\n#define BOARD_H\n#endif\n")
     assert names(tmp_path, find_programs([tmp_path])) == ["part.h"]
     assert names(tmp_path, checkable(sorted(tmp_path.iterdir()))) == ["part.h"]
+
+
+def test_a_job_is_checked_where_what_it_uses_has_changed(tmp_path: Path) -> None:
+    folder = tmp_path / "parts"
+    folder.mkdir()
+    (folder / "one.nc").write_text("G0 X1\n")
+    (folder / "one.toml").write_text('program = "one.nc"\nextends = "base.toml"\n')
+    (folder / "two.nc").write_text("G0 X1\n")
+    (folder / "two.toml").write_text('program = "two.nc"\n')
+    (folder / "base.toml").write_text("default_feed = 500.0\n")
+    (tmp_path / "other.toml").write_text("")
+    for changed, jobs in (
+        (folder / "base.toml", ["one.toml"]),
+        (tmp_path / "twin.toml", ["one.toml", "two.toml"]),  # it is gone
+        (tmp_path / "other.toml", []),
+    ):
+        assert [path.name for path in checkable([changed], tmp_path)] == jobs

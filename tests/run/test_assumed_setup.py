@@ -59,8 +59,15 @@ def test_a_path_that_slopes_down_has_no_steps(tmp_path: Path) -> None:
 
 def test_a_router_that_calls_t0_has_a_tool_0(tmp_path: Path) -> None:
     """MakerCam writes T0 M6 before everything: an empty spindle would cut nothing, and pass."""
-    made, _ = raw(tmp_path, f"{HEAD.replace('T1', 'T0')}{passes(-1.0)}{END}")
-    assert [tool.number for tool in made.job.file.tools] == [0]
+    first = f"{HEAD.replace('T1', 'T0')}{passes(-1.0)}"
+    for text, numbers in (
+        (END, [0]),
+        (f"T1 M6\n{passes(-2.0)}{END}", [0, 1]),
+    ):
+        made, _ = raw(tmp_path, first + text)
+        assert [tool.number for tool in made.job.file.tools] == numbers
+    made, _ = raw(tmp_path, f"{HEAD}{passes(-1.0)}T0 M6\n{END}")  # the spindle is emptied
+    assert [tool.number for tool in made.job.file.tools] == [1]
 
 
 def test_flutes_are_as_long_as_the_deepest_cut_below_the_top(tmp_path: Path) -> None:

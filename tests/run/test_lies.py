@@ -187,6 +187,30 @@ def test_the_right_slot_keeps_its_nominal_part(tmp_path: Path) -> None:
     assert not codes(run(tmp_path, CUT_, {"more": NOMINAL + "standing_um = 100.0"}))
 
 
+@pytest.mark.parametrize(
+    ("scale", "shift", "match"),
+    [(1 / 25.4, 0.0, "1.57 x 1.57 x 0.394 mm"), (1.0, 5.0, "5 mm out of the stock along X")],
+    ids=["inches", "another zero"],
+)
+def test_a_nominal_part_that_the_stock_cannot_become(
+    scale: float, shift: float, match: str, tmp_path: Path
+) -> None:
+    mesh = trimesh.load_mesh(tmp_path / "nominal.stl")
+    mesh.apply_scale(scale)
+    mesh.apply_translation([shift, 0.0, 0.0])
+    mesh.export(tmp_path / "nominal.stl")
+    found = {each.code: each.message for each in run(tmp_path, CUT_, {"more": NOMINAL}).warnings}
+    assert match in found["nominal-misfit"]
+
+
+def test_a_nominal_part_with_an_open_surface_is_told(tmp_path: Path) -> None:
+    mesh = trimesh.load_mesh(tmp_path / "nominal.stl")
+    mesh.update_faces(mesh.triangles_center[:, 2] < -1e-6)
+    mesh.export(tmp_path / "nominal.stl")
+    outcome = run(tmp_path, CUT_ + "", {"more": NOMINAL})
+    assert "nominal-misfit" in codes(outcome)
+
+
 @pytest.mark.parametrize("name", TOLD)
 def test_a_lie_is_told_at_its_line(name: str, tmp_path: Path) -> None:
     program, parts, code, line = TOLD[name]

@@ -22,7 +22,7 @@ Z = {start}
 [stock]
 shape = "box"
 size = [40.0, 40.0, 10.0]
-cell = 0.5
+cell = {cell}
 {stock}
 [[tools]]
 number = 1
@@ -49,7 +49,15 @@ def run(
     strict: bool = False,
 ) -> Outcome:
     """Run a program on a small block."""
-    usual = {"top": "", "stock": "", "tool": "", "more": "", "start": "20.0", "dialect": "fanuc"}
+    usual = {
+        "top": "",
+        "stock": "",
+        "tool": "",
+        "more": "",
+        "start": "20.0",
+        "dialect": "fanuc",
+        "cell": "0.5",
+    }
     keys = {**usual, **parts}
     (folder / "p.nc").write_text(dedent(program))
     (folder / "p.toml").write_text(JOB.format(**keys))
@@ -136,6 +144,20 @@ SLIPS: dict[str, tuple[str, dict[str, str], str, int]] = {
     "force limit without a material": (
         HEAD + CUT + "M30\n", {"tool": "force_limit = 5.0"}, "limit-not-judged", 6,
     ),
+    "the program waits in the slot": (
+        HEAD + "G0 X-30. Y0.\nG0 Z-2.\nG1 X0. F600.\nM00\nG1 X30.\nG0 Z20.\nM30\n", {}, "stops-in-cut", 7,
+    ),
+    "a tap that is an end mill": (
+        HEAD + "G0 X0. Y0.\nG84 Z-4. R2. F500.\nG80\nG0 Z20.\nM30\n", {}, "cutter-in-cycle", 5,
+    ),
+    "a drill that is an end mill": (
+        HEAD + "G0 X0. Y0.\nG83 Z-4. R2. Q1. F100.\nG80\nG0 Z20.\nM30\n", {}, "cutter-in-cycle", 5,
+    ),
+    "rapids between the middles of cells": (
+        HEAD + "T2 M6\nG43 H2\nG0 X5. Y5.\nG0 Z-3.\nG0 Z20.\nM30\n",
+        {"stock": "", "cell": "5.0"}, "coarse-cell", 6,
+    ),
+    "only rapids": (HEAD + "G0 X5.\nG0 Z5.\nM30\n", {}, "nothing-cut", 3),
     "begin in the block": (
         HEAD + "G1 X9. F600.\nG0 Z20.\nM30\n", {"start": "-4.0"}, "starts-in-stock", 4,
     ),
@@ -147,6 +169,22 @@ def test_slip_is_told_at_its_line(name: str, tmp_path: Path) -> None:
     program, parts, code, line = SLIPS[name]
     found = codes(run(tmp_path, program, parts))
     assert found.get(code) == line, found
+
+
+@pytest.mark.parametrize(
+    "cycle", ["G82 Z-4. R2. P100 F100.", "G85 Z-4. R2. F100."], ids=["counterbore", "reamer"]
+)
+def test_cycles_that_are_no_drills_take_end_mills(cycle: str, tmp_path: Path) -> None:
+    program = HEAD + f"G0 X0. Y0.\n{cycle}\nG80\nG0 Z20.\nM30\n"
+    assert codes(run(tmp_path, program)) == {}
+
+
+def test_a_cut_on_a_side_that_is_thinner_than_a_cell_is_one(tmp_path: Path) -> None:
+    """No cell's middle is reached, and the force shows it."""
+    program = HEAD + "G0 X-30. Y23.9\nG0 Z-3.\nG1 X30. F480.\nG0 Z20.\nM30\n"
+    outcome = run(tmp_path, program, {"stock": 'material = "C45"'})
+    assert outcome.scope.removed_mm3 == 0.0
+    assert codes(outcome) == {}
 
 
 def test_strict_makes_them_failures(tmp_path: Path) -> None:

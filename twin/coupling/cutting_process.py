@@ -1,5 +1,6 @@
 """A tool that cuts while the machine moves: the process that the drives are stepped with."""
 
+import abc
 import dataclasses
 import math
 from collections.abc import Iterator
@@ -7,23 +8,11 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from twin.coupling.cutting_kernels import (
-    Cut,
-    CutNumber,
-    Edge,
-    Memory,
-    Place,
-    ToolLoads,
-    follow_cutting,
-)
 from twin.coupling.spindle_kernels import SpindleDrive
+from twin.coupling.turning_tool import CutNumber, Edge, ToolLoads, TurningTool, new_memory
 from twin.cutting.forces.cutter_form import cutter_form, force_law
 from twin.cutting.forces.materials import Kienzle
 from twin.cutting.forces.tool_strength import ToolStrength, tool_strength
-from twin.cutting.height_map import HeightMap, raw_walls
-from twin.cutting.kernels.sweep import Marks
-from twin.cutting.kernels.tooth_forces import tooth_bench
-from twin.cutting.kernels.walls import Material, no_trace
 from twin.job.job_file import ToolTable
 from twin.machine.description.config import SpindleTable
 from twin.machine.simulation.process import Physics
@@ -31,7 +20,6 @@ from twin.machine.watching.alarms import Alarm
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
 from twin.recording.form import ToolLoad
-from twin.toolpath.part_frame import PartFrame
 from twin.units import SECONDS_PER_MINUTE
 
 STALLED_SHARE = 0.1
@@ -90,10 +78,24 @@ class Operation(Protocol):
         ...
 
 
-class CuttingProcess:
-    """Cuts a height map of its own along the simulated motion, and pushes the axes by what the teeth feel.
+class Rows(NamedTuple):
+    """What the machine is told in n periods, and what is set by them.
 
-    It is not the map of ``twin.cutting.cut.Cutter``, which becomes the part. A tooth wants the material cut again every
+    Attributes:
+        controls: What the drives are commanded on the way to each setpoint, shape (n, nu).
+        states: Set to the states there, shape (n, width).
+        loads: Set to what the tool loads.
+    """
+
+    controls: FloatArray
+    states: FloatArray
+    loads: ToolLoads
+
+
+class CuttingProcess(abc.ABC):
+    """Cuts a material of its own along the simulated motion, and pushes the axes by what the teeth feel.
+
+    It is not the material of ``twin.cutting.cut.Cutter``, which becomes the part. A tooth wants the material cut again every
     quarter of a cell; the depth and width of a cut are those of a long straight stretch (of a ball of 6 mm, 1 mm deep, pieces
     of a quarter of a cell are 0.07 mm deep), and what must not meet the material is held against it before it is cut.
     Cutting twice takes 1 to 3 % of the processor time of a run.
@@ -101,45 +103,35 @@ class CuttingProcess:
     Attributes:
         breaks: The tools that broke, in order.
         alarm: The spindle's alarm of the last ``follow``.
-        material: The height map as cut so far.
-        walls: Those that tools have left in it, of ``twin.cutting.kernels.walls``.
     """
 
-    def __init__(
-        self,
-        material: HeightMap,
-        resists: Kienzle,
-        operation: Operation,
-        part_frame: PartFrame,
-        spindle: SpindleTable,
-    ) -> None:
-        """Lay the material on the table.
+    def __init__(self, resists: Kienzle, operation: Operation, spindle: SpindleTable) -> None:
+        """Begin with the spindle as it turns.
 
         Args:
-            material: It is cut; nobody else may.
-            resists: What it resists with.
+            resists: What the material resists with.
             operation: What is in the spindle when.
-            part_frame: How the part turns under the tool.
             spindle: What turns the tool.
         """
         self.breaks: list[ToolBreak] = []
         self.alarm: Alarm | None = None
-        self.material = material
-        self.walls = raw_walls(material)
         self._resists = resists
         self._operation = operation
-        self._frame = part_frame
         self._table = spindle
         self._drive = spindle_drive(spindle)
-        self._memory = _memory(0)
+        self._memory = new_memory(0)
         self._memory.numbers[CutNumber.SPEED] = operation.speed_at_start / SECONDS_PER_MINUTE
         self._tool: ToolTable | None = None
         self._overloaded_s = 0.0
 
+    @abc.abstractmethod
+    def _cut_along(self, physics: Physics, turning: Turning, tool: TurningTool, rows: Rows) -> None:
+        """Step the machine from setpoint to setpoint while one tool cuts."""
+
     def begin(self, position: FloatArray) -> None:
         """Begin with the machine at rest; see ``Process``."""
         speed = self._memory.numbers[CutNumber.SPEED]
-        self._memory = _memory(len(position))
+        self._memory = new_memory(len(position))
         self._memory.numbers[CutNumber.SPEED] = speed
 
     def renew(self, number: int) -> None:
@@ -168,17 +160,12 @@ class CuttingProcess:
         for turning in self._operation.turnings(setpoints):
             rows, tool = turning.rows, turning.tool
             self._mount(tool)
-            cut = self._cut(turning)
-            follow_cutting(
-                physics,
-                controls[rows],
-                states[rows],
-                turning.speed / SECONDS_PER_MINUTE,
-                cut,
-                self._memory,
-                ToolLoads(*(column[rows] for column in loads)),
+            turned = TurningTool(
+                cutter_form(tool), force_law(tool, self._resists), tool_strength(tool), self._drive
             )
-            self._note_break(tool, cut.strength, setpoints[rows], loads.broken[rows])
+            here = ToolLoads(*(column[rows] for column in loads))
+            self._cut_along(physics, turning, turned, Rows(controls[rows], states[rows], here))
+            self._note_break(tool, turned.strength, setpoints[rows], loads.broken[rows])
             self._watch_spindle(setpoints[rows], turning.speed, loads, rows, physics.drives.period)
         return _load(loads)
 
@@ -190,18 +177,6 @@ class CuttingProcess:
         self.lift()
         broken = any(found.tool == tool.number for found in self.breaks)
         self._memory.numbers[CutNumber.EDGE] = Edge.BY_FORCE if broken else Edge.WHOLE
-
-    def _cut(self, turning: Turning) -> Cut:
-        tool, frame = turning.tool, self._frame
-        rotary = -1 if frame.rotary is None else frame.rotary
-        return Cut(
-            Material(self.material.heights, self.material.grid, self.walls),
-            cutter_form(tool),
-            force_law(tool, self._resists),
-            tool_strength(tool),
-            self._drive,
-            Place(rotary, frame.center, frame.turn_zero, turning.length_difference),
-        )
 
     def _note_break(
         self, tool: ToolTable, strength: ToolStrength, setpoints: Setpoints, state: FloatArray
@@ -267,17 +242,6 @@ def spindle_drive(table: SpindleTable) -> SpindleDrive:
         fastest,
         rate,
     )
-
-
-def _memory(axes: int) -> Memory:
-    numbers = np.zeros(len(CutNumber))
-    numbers[CutNumber.FRESH] = 1.0
-    three = np.zeros((6, 3))
-    return Memory(
-        numbers, three[0].copy(), np.zeros((2, 3)), no_trace(), three[1].copy(), three[2].copy(),
-        three[3].copy(), np.zeros(axes), tooth_bench(), three[4].copy(), three[5].copy(),
-        np.zeros((1, 2, 4)), Marks(np.zeros((0, 0)), np.zeros(1)),
-    )  # fmt: skip
 
 
 def _felt(count: int) -> ToolLoads:

@@ -5,10 +5,13 @@ from collections.abc import Iterator
 import numpy as np
 
 from twin.coupling.cutting_process import CuttingProcess, Operation, Turning
+from twin.coupling.height_map_process import HeightMapProcess
+from twin.coupling.leaning_process import LeaningProcess
 from twin.cutting.forces.materials import kienzle
 from twin.cutting.height_map import HeightMap, blank
 from twin.cutting.program_summary import ProgramSummary
 from twin.cutting.tools import default_cell
+from twin.cutting.tridexel import blanks
 from twin.job.job_file import JobFile, StockTable, ToolTable
 from twin.machine.description.config import Machine
 from twin.motion.setpoints.setpoints import Setpoints
@@ -133,11 +136,11 @@ def cutting_process(
 ) -> CuttingProcess | None:
     """What tools do to a stock.
 
-    None where its material is not named, where the machine turns it about more than Z, or where it is a cylinder that lies.
+    None where its material is not named, or where it is a cylinder that lies on a machine that turns the part about Z at most.
 
     Args:
         stock: The blank.
-        cell: Of its height map [mm].
+        cell: Of its height map, or between the lines of its tri-dexel [mm].
         operation: What is in the spindle when.
         machine: Its spindle turns the tool.
         part_frame: How the part turns under the tool.
@@ -147,11 +150,30 @@ def cutting_process(
     Raises:
         ConfigError: As for ``program_process``.
     """
+    if part_frame.chain is None:
+        return height_map_process(stock, cell, operation, machine, part_frame, part_zero, laid)
     resists = kienzle(stock)
-    if resists is None or part_frame.chain is not None or stock.lies:
+    if resists is None:
+        return None
+    material = blanks.blank(stock, part_frame.program_zero(part_zero), cell)
+    return LeaningProcess(material, resists, operation, part_frame, machine.file.spindle)
+
+
+def height_map_process(
+    stock: StockTable,
+    cell: float,
+    operation: Operation,
+    machine: Machine,
+    part_frame: PartFrame,
+    part_zero: FloatArray,
+    laid: HeightMap | None = None,
+) -> HeightMapProcess | None:
+    """As ``cutting_process``, on a machine that turns the part about Z at most."""
+    resists = kienzle(stock)
+    if resists is None or stock.lies:
         return None
     if laid is None:
         material = blank(stock, part_frame.program_zero(part_zero), cell)
     else:
         material = laid.copy()
-    return CuttingProcess(material, resists, operation, part_frame, machine.file.spindle)
+    return HeightMapProcess(material, resists, operation, part_frame, machine.file.spindle)

@@ -142,10 +142,6 @@ class ProgramSummary:
         place[:3] = screen.matrix @ place[:3]
         return place + screen.shift
 
-    def leads_tip(self, move: int) -> bool:
-        """Whether the tip is led during a move while rotary axes turn: feed and place are its own."""
-        return self.screen is not None and self.screen.at(move).led
-
     def standing(self, setpoint: Setpoints) -> BoolArray:
         """During which setpoints the spindle is off, shape (n,)."""
         place = setpoint.move + np.clip(setpoint.fraction, 0.0, _BEFORE_THE_NEXT)

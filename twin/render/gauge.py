@@ -59,11 +59,9 @@ class Gauge:
         summary = self._scene.summary
         tool = summary.tools.at(move)
         velocity = SECONDS_PER_MINUTE * last.joint_velocity[0]
-        feed = float(np.linalg.norm(velocity[:3]))
-        if summary.leads_tip(move):
-            feed = SECONDS_PER_MINUTE * self._tip_speed(summary.tools.length_difference(tool))
         turning = float(np.linalg.norm(velocity[header.axes.rotary()]))
-        only_turns = feed < 1.0 < turning
+        only_turns = float(np.linalg.norm(velocity[:3])) < 1.0 < turning
+        feed = SECONDS_PER_MINUTE * self._tip_speed(summary.tools.length_difference(tool))
         raised = [text for since, text in self._alarms if since <= time]
         return Reading(
             line=line,
@@ -79,7 +77,11 @@ class Gauge:
         )
 
     def _tip_speed(self, length_difference: float) -> float:
-        """How fast the tip of a tool, so much longer than the first [mm], goes over the part [mm/s]."""
+        """How fast the tip of a tool, so much longer than the first [mm], goes over the part [mm/s].
+
+        It is the feed that the part feels, whatever a control's F counts where rotary axes turn beside X, Y and Z; where
+        they turn alone every control counts degrees.
+        """
         assert self._last is not None
         here, way = self._last.joint_position, _INSTANT_S * self._last.joint_velocity
         tips = self._scene.recording.header.part_frame.position(

@@ -80,8 +80,8 @@ def with_assumptions(
     made = dataclasses.replace(
         made, dialect_reason=preparation.dialect_reason, reading=preparation.reading
     )
-    notes = tuple(reading_notes(made, assumed.assumptions))
-    return dataclasses.replace(made, assumptions=notes), assumed
+    read = (_reading_line(made),) if made.dialect_reason else ()
+    return dataclasses.replace(made, assumptions=(*read, *assumed.assumptions)), assumed
 
 
 def assumed_job(preparation: Preparation) -> AssumedJob:

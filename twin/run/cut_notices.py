@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from twin.cutting.cut_log import CutResult
 from twin.cutting.cut_watch import CutSlip
+from twin.cutting.forces.load_log import LoadLog
 from twin.job.job_file import JobFile, ToleranceTable, ToolTable
 from twin.run.dry_run import DryRun
 from twin.run.machining import Machining
@@ -15,7 +16,7 @@ LEAST_CUT_MM3 = 1e-3
 
 
 def cut_notices(
-    job: JobFile, dry_run: DryRun, machining: Machining, cut: CutResult
+    job: JobFile, dry_run: DryRun, machining: Machining, cut: CutResult, loads: LoadLog
 ) -> Iterator[Notice]:
     """Warnings about the cut of a whole program.
 
@@ -24,11 +25,14 @@ def cut_notices(
         dry_run: What the program does.
         machining: The cut.
         cut: What it came to.
+        loads: What the tools bore: a cut on a side that is thinner than a cell shows there alone.
     """
     cutter, watch = machining.cutter, dry_run.watch
     assert cutter is not None
     begins = watch.first_feed or watch.spindle_line or watch.first_line
-    if not cut.removed_mm3 and begins:
+    force = loads.greatest.get("force_n")
+    cuts = cut.removed_mm3 > 0.0 or (force is not None and force.value > 0.0)
+    if not cuts and begins:
         yield Notice("nothing-cut", begins, "no move of the program takes anything off the stock")
     if cutter.start_depth:
         yield Notice(
@@ -37,8 +41,7 @@ def cut_notices(
             f"the tool stands {cutter.start_depth:.2f} mm deep in the stock before it moves",
         )
     if machining.misfit is not None:
-        message = f"{machining.misfit}: its file counts in mm from program zero"
-        yield Notice("nominal-misfit", 0, message)
+        yield Notice("nominal-misfit", 0, machining.misfit)
     for stop in machining.stopped:
         yield Notice("stops-in-cut", stop.line, f"{stop.what} while the tool is in the cut")
     if machining.ended_in_cut:

@@ -135,7 +135,7 @@ def outcome_of(
     if not alarms:
         blind = tuple(_unjudged(preparation, judged, dry_run, figures))
         notices = [
-            *_notices(preparation, dry_run, machining, cut, floats),
+            *_notices(preparation, dry_run, machining, cut, loads, floats),
             *(() if forces else _unsimulated_notices(job.file, dry_run.watch, cut)),
         ]
     failing = [
@@ -200,12 +200,13 @@ def _notices(
     dry_run: DryRun,
     machining: Machining,
     cut: CutResult | None,
+    loads: LoadLog,
     floats: str | None,
 ) -> Iterator[Notice]:
     """Warnings about a run that came to its end."""
     job, watch = preparation.job.file, dry_run.watch
     if cut is not None:
-        yield from cut_notices(job, dry_run, machining, cut)
+        yield from cut_notices(job, dry_run, machining, cut, loads)
         yield from lost_length_notices(dry_run.fed_without_length, cut)
     elif watch.spindle_line and watch.first_feed and job.stock is None:
         message = "the spindle turns, and the job has no [stock]: nothing that is cut is judged"

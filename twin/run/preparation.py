@@ -17,7 +17,7 @@ from twin.machine.description.config import Machine
 from twin.machine.load import load_machine
 from twin.nc.control.settings import ControlSettings, MachineFunction, ToolData
 from twin.nc.dialects import Dialect, dialect_named
-from twin.nc.dialects.foreign import require_program
+from twin.nc.dialects.foreign import require_text
 from twin.nc.functions import SpindleState
 from twin.nc.interpreter import Interpretation
 from twin.nc.path.tool_center import Setup
@@ -112,7 +112,7 @@ def prepare(
 
 def _assumed(job: Job, machine: str | None) -> tuple[Job, AssumedReading]:
     """A raw program's job with what its text shows of machine and reading."""
-    require_program(job.program)
+    require_text(job.program)
     source = read_source(job.program)
     reading = assumed_reading(source)
     says_machine = machine is not None or "machine" in job.file.model_fields_set

@@ -217,7 +217,7 @@ def _why_no_forces(job: JobFile) -> str:
         return f'cutting_force is "{job.cutting_force}"'
     if job.stock.lies:
         return "of a blank that lies no force is simulated tooth by tooth"
-    return "neither program nor job says how fast the spindle turns, or the machine turns the part about more than Z"
+    return "neither program nor job says how fast the spindle turns"
 
 
 def nothing_judged(

@@ -20,7 +20,7 @@ from tests.cutting.forces.test_tooth_forces import (
     plate,
     turned,
 )
-from twin.cutting.kernels.tooth_forces import ToothScratch
+from twin.cutting.kernels.teeth import ToothScratch
 from twin.job.job_file import ToolTable
 from twin.nc.canonical import FloatArray
 

@@ -1,5 +1,6 @@
 """Files that are no programs of any control here: each is named, and none is taken for a program."""
 
+import re
 import struct
 from pathlib import Path
 
@@ -7,7 +8,7 @@ import pytest
 
 from tests.nc.running import ROOT, SHIPPED
 from twin.errors import UsageError
-from twin.nc.dialects.foreign import TEXTS, foreign_kind, require_program
+from twin.nc.dialects.foreign import foreign_files, foreign_kind, require_program, require_text
 from twin.nc.dialects.recognition import reading_of
 from twin.nc.text.source import source_from_bytes
 
@@ -26,7 +27,7 @@ FOREIGN: dict[str, list[bytes]] = {
     "PNG": [b"\x89PNG\r\n\x1a\n"],
     "JPEG": [b"\xff\xd8\xff\xe0"],
     "DWG": [b"AC1032\0\0"],
-    "Windows": [b"MZ\x90\0"],
+    "Windows": [b"MZ\x90\0\x03\0\0\0"],
     "STL": [
         STL,
         b"made by CAD".ljust(80, b" ")
@@ -40,18 +41,38 @@ FOREIGN: dict[str, list[bytes]] = {
     "STEP file": [b"ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('AUTOMOTIVE_DESIGN'));"],
     "DXF": [b"0\nSECTION\n2\nHEADER\n", b"  0\r\nSECTION\r\n"],
     "SVG": [b'<?xml version="1.0"?>\n<svg width="10">', b"<svg>"],
-    "UTF-16": ["\ufeffG21 G90\nG0 X1\n".encode("utf-16-le"), b"\xfe\xff\0G\x002\x001"],
+    "UTF-16": [
+        "\ufeffG21 G90\nG0 X1\n".encode("utf-16-le"),
+        "G21 G90\n".encode("utf-16-be"),
+        b"\xfe\xff\0G\x002\x001",
+    ],
     "binary": [
         b"\x7fCAD\x8e\x0b\0\0\0\0\0\0\x36\0\0\0",
-        b"\0\1\0\0cmap\0\2\3\4" + b"\x9a\0\7" * 90_000,
+        b"\0\1\2\0data\0\2\3\4" + b"\x9a\0\7" * 90_000,
     ],
+    "font": [b"\0\1\0\0cmap\0\2\3\4", b"wOF2\0\1\0\0"],
+    "Word": [b"PK\x03\x04\x14\0\6\0[Content_Types].xml word/document.xml"],
+    "3MF": [b"PK\x03\x04\x14\0\6\0[Content_Types].xml 3D/3dmodel.model"],
+    "NetCDF": [b"CDF\x01\0\0\0\0"],
+    "Git LFS": [b"version https://git-lfs.github.com/spec/v1\noid sha256:4d\nsize 1\n"],
+    "web server": [b"404: Not Found"],
+    "KiCad": [b"(kicad_pcb (version 20221018)\n  (general (thickness 1.6))\n)\n"],
+    "OBJ": [b"v 0.0 1.0 2.0\nv 1.0 1.0 2.0\nf 1 2 3\n"],
+    "patch": [b"--- a/part.nc\n+++ b/part.nc\n@@ -1 +1 @@\n-G0 X1\n+G0 X2\n"],
+    "ShopMill": [b'E_HEAD(0,"G54",90)\nE_CP_CE(1,2,3)\nE_END(1)\n'],
+    "Fagor 8025": [b"%P12EXP_22049,MX--,\nN0010 G55\nN0020 T2 D05\n"],
+    "WoodWOP": [b'[H\nVERSION="4.0 Alpha"\n<102 \\BohrVert\\\nXA="10"\n'],
+    "DSTV": [b"ST\n** E3.nc1\n  PROJECT-1\n  1\nEN\n"],
+    "ShopBot": [b"SA\nMS,2,1\nJZ,0.5\nM3,1.0,2.0,-0.1\n"],
+    "KAREL": [b"PROGRAM pick\n%NOLOCKGROUP\n%COMMENT = 'A'\nBEGIN\nEND pick\n"],
+    "isel": [b"N10 FASTABS Z0\nN20 MOVEABS X1000 Y2000\n"],
+    "tool table": [b"T1 P1 D0.125 Z+0.5 ;flat\nT2 P2 D0.25 Z+0.1 ;ball\n"],
     "GIF": [b"GIF89a\x10\0\x10\0\xf0\0\0\x01\x02\x03"],
     "BMP": [b"BM\x8e\x0b\0\0\0\0\0\0\x36\0\0\0"],
-    "MATLAB": [b"%%Copyright\n%\nfunction [a, b] = blockDistance(file, n)\na = 1;\nend\n"],
     "settings": [
         b"[DISPLAY]\nPROGRAM = axis\n",
         b'[package]\nname = "x"\n',
-        b"importers:\n  .: 1\n",
+        b"importers:\n  .: 1\npackages:\n  a: 2\n",
     ],
     "Philips": [b"%PM\n\nN9000 (PHILIPS SYSTEM 3000)\nN10 G54\n", b"%5\nN180 G14 N1=80 N2=90\n"],
     "before the 840D": [b"%MPF 90\n( SINUMERIK 850 )\nR11=384.5\n", b"N1 @371 R52 K2 K0\n"],
@@ -92,9 +113,7 @@ FOREIGN: dict[str, list[bytes]] = {
     ],
     "KUKA": [b"&ACCESS RVP\nDEF PICK( )\nPTP {A1 0,A2 -90}\nLIN {X 10,Y 5}\nEND\n"],
     "ABB": [b"MODULE Main\nPROC main()\nMoveJ p10, v100, fine, tool0;\nENDPROC\nENDMODULE\n"],
-    "Python": [b"import math\nprint(1)\n"],
     "JSON": [b'{"moves": [1, 2]}', b"[[1, 2]]"],
-    "C program": [b"#include <stdio.h>\nint main() {}\n"],
     "RML plot": [b"^IN;!MC0;\n^PA;V15.0;\nZ0,0,100;Z100,100,-50;\n"],
     "post processor": [
         b'/**\n  A post.\n*/\ndescription = "Mill";\nvendor = "me";\n',
@@ -139,11 +158,51 @@ def test_a_head_that_names_another_control_is_believed(name: str, data: bytes) -
     assert any(each.lower() in str(raised.value).lower() for each in name.split("|"))
 
 
+@pytest.mark.parametrize(
+    ("file", "text", "name"),
+    [
+        ("part.c", "int main(void)\n{\n  return 0;\n}\n", "a program in C or C++"),
+        ("part.h", "#pragma once\nvoid cut(void);\nvoid stop(void);\n", "a program in C or C++"),
+        ("part.ts", "export const feed = 1;\n", "a program in JavaScript or TypeScript"),
+        ("part.m", "function area = b(c)\narea = c;\nend\n", "a program in MATLAB, R or Julia"),
+        ("points.csv", "name;x;y\nfirst;1;2\nsecond;3;4\n", "a table of values"),
+        ("part.txt", "name,x,y\nfirst,1,2\nsecond,3,4\n", "a table of values"),
+        ("part.nc", "int main(void)\n{\n  return 0;\n}\n", "source code"),
+        ("part.nc", "Bitte fräse das Teil morgen.\nEs ist eilig.\nViele Grüße!\n", "prose"),
+        ("part.nc", "Пожалуйста, обработайте деталь.\nОчень срочно.\nСпасибо вам!\n", "prose"),
+        ("part.nc", "one\ntwo\nthree\n", "a text without blocks"),
+    ],
+)
+def test_a_text_without_blocks_is_named_by_its_name_or_its_shape(
+    file: str, text: str, name: str
+) -> None:
+    found = foreign_kind(text.encode(), file)
+    assert found is not None
+    assert found.name.removesuffix(", by its name") == name
+
+
+def test_a_dialect_that_is_asked_for_reads_what_looks_foreign(tmp_path: Path) -> None:
+    path = tmp_path / "part.nc"
+    path.write_text('{"sr":null}\nG21 G90 F100\nG0 X1\nM2\n')
+    require_text(path)
+    with pytest.raises(UsageError, match="TinyG"):
+        require_program(path)
+
+
+def test_the_list_is_whole() -> None:
+    kinds = foreign_files()
+    for kind in (*kinds.binary, *kinds.program, *kinds.text, *kinds.control):
+        assert kind.advice in kinds.advice, kind.name
+    for kind in (*kinds.program, *kinds.text, *kinds.control):
+        assert re.compile(kind.pattern).match("") is None, kind.name
+
+
 def test_no_pattern_goes_over_empty_lines_again_for_each_of_them() -> None:
     """``^`` matches at each line, and ``\\s`` goes on over line ends: 5,000 empty lines took 14 s."""
-    assert not [kind.name for kind in TEXTS if r"^\s*" in kind.pattern]
+    kinds = foreign_files()
+    assert not [kind.name for kind in (*kinds.program, *kinds.text) if r"^\s*" in kind.pattern]
 
 
 def test_no_program_of_ours_is_taken_for_a_foreign_file() -> None:
     assert len(PROGRAMS) > 1000
-    assert not [path for path in PROGRAMS if foreign_kind(path.read_bytes())]
+    assert not [path for path in PROGRAMS if foreign_kind(path.read_bytes(), path.name)]

@@ -7,7 +7,7 @@ import numpy as np
 
 from twin.cutting.forces.direction import RADIAL_SHARE
 from twin.cutting.forces.materials import Kienzle
-from twin.cutting.kernels.tooth_forces import ANGLE_BINS, CutterForm, ForceLaw
+from twin.cutting.kernels.teeth import ANGLE_BINS, CutterForm, ForceLaw
 from twin.cutting.tools import Profile, profile
 from twin.job.job_file import ToolTable
 from twin.nc.canonical import FloatArray

@@ -14,7 +14,16 @@ from typing import NamedTuple
 import numpy as np
 
 from twin.compilation.kernel import kernel
-from twin.cutting.kernels.tool_height import Profile, profile_height
+from twin.cutting.kernels.teeth import (
+    ANGLE_BINS,
+    CutterForm,
+    ForceLaw,
+    ToothScratch,
+    bin_direction,
+    push,
+    sum_teeth,
+)
+from twin.cutting.kernels.tool_height import profile_height
 from twin.cutting.kernels.walls import (
     Material,
     cell_number,
@@ -24,10 +33,6 @@ from twin.cutting.kernels.walls import (
 )
 from twin.nc.canonical import FloatArray
 
-THINNEST_CHIP_MM = 1e-3
-"""Chips thinner than this are rubbed, not cut; the formula is not followed below [mm]."""
-ANGLE_BINS = 72
-"""Directions about the axis that are looked at: 5 degrees each."""
 _ANGLES = (np.arange(ANGLE_BINS) + 0.5) * (2.0 * np.pi / ANGLE_BINS)
 _COSINE, _SINE = np.cos(_ANGLES), np.sin(_ANGLES)
 _PLACES = 2
@@ -52,52 +57,6 @@ _LEAST = 1e-9
 """Lengths below this are the arithmetic's doing [mm]."""
 
 
-class CutterForm(NamedTuple):
-    """A cutter as forces see it.
-
-    Attributes:
-        profile: Of its lower end.
-        side_from: Height above the tip at which its side begins [mm].
-        flute: Height above the tip at which its edges end [mm].
-        teeth: Number of edges, evenly spaced.
-        rise: Height over which a helical edge falls back by one bin [mm]; infinite: it is straight.
-        radius: Of each ring of the lower end, shape (m,) [mm]; so on.
-        height: Above the tip of its lower edge [mm].
-        span: How much higher its upper edge is [mm].
-        width: Length of edge [mm].
-        outwards: Share of the normal that points outwards.
-        downwards: Share of it that points down.
-    """
-
-    profile: Profile
-    side_from: float
-    flute: float
-    teeth: int
-    rise: float
-    radius: FloatArray
-    height: FloatArray
-    span: FloatArray
-    width: FloatArray
-    outwards: FloatArray
-    downwards: FloatArray
-
-
-class ForceLaw(NamedTuple):
-    """What a material does to an edge.
-
-    Attributes:
-        kc: Specific force of a chip 1 mm wide and 1 mm thick [N/mm²].
-        mc: Its fall with the chip's thickness.
-        radial: Force along the normal as a share of the tangential one.
-        along: Force along the edge as a share of it.
-    """
-
-    kc: float
-    mc: float
-    radial: float
-    along: float
-
-
 class Advance(NamedTuple):
     """How a cutter goes on.
 
@@ -112,32 +71,6 @@ class Advance(NamedTuple):
     way: tuple[float, float, float]
     per_tooth: float
     sense: float
-
-
-class ToothScratch(NamedTuple):
-    """What ``tooth_forces`` leaves: of one tooth in each direction, and of all in the mean.
-
-    Attributes:
-        side: Force a millimetre of side, shape (ANGLE_BINS, 3) [N/mm].
-        depth: How deep the side is in the material, shape (ANGLE_BINS,) [mm].
-        tooth: Force on the tool when a tooth's tip is in that direction, shape (ANGLE_BINS, 3) [N].
-        summed: ``tooth`` added up from the first direction on, shape (ANGLE_BINS + 1, 3).
-        mean: Force on the tool in the mean of a turn, shape (3,) [N].
-        figures: Greatest level force of a turn [N], torque in the mean [N mm], thickest chip [mm].
-    """
-
-    side: FloatArray
-    depth: FloatArray
-    tooth: FloatArray
-    summed: FloatArray
-    mean: FloatArray
-    figures: FloatArray
-
-
-def tooth_bench() -> ToothScratch:
-    """A bench on which nothing lies."""
-    shapes = ((ANGLE_BINS, 3), (ANGLE_BINS,), (ANGLE_BINS, 3), (ANGLE_BINS + 1, 3), (3,), (3,))
-    return ToothScratch(*(np.zeros(shape) for shape in shapes))
 
 
 @kernel
@@ -155,7 +88,7 @@ def tooth_forces(
     Args:
         material: What is cut.
         tip: Tool tip, shape (3,) [mm].
-        feed: Path of the tip in the time between two teeth, shape (3,) [mm].
+        feed: Way of the tip in the time between two teeth, shape (3,) [mm].
         cutter: The cutter.
         law: What the material does.
         sense: 1: it turns clockwise, seen from above; -1: counter-clockwise.
@@ -258,9 +191,9 @@ def _edge_force(
     for first in (begin, end - within):
         x, y = 0.0, 0.0
         for number in range(_SLICES):
-            cosine, sine = _direction(first + within * (number + 0.5) / _SLICES)
+            cosine, sine = bin_direction(first + within * (number + 0.5) / _SLICES)
             chip = advance.way[0] * cosine + advance.way[1] * sine
-            force = height * _push(law, advance.per_tooth, max(chip, 0.0))
+            force = height * push(law, advance.per_tooth, max(chip, 0.0))
             x += force * (-sense * sine - law.radial * cosine)
             y += force * (sense * cosine - law.radial * sine)
         greatest = max(greatest, math.hypot(x, y))
@@ -297,8 +230,8 @@ def _enter_side(
     ends = (_BORDER_COSINE[j * _PLACES], _BORDER_SINE[j * _PLACES])
     other = (_BORDER_COSINE[(j + 1) * _PLACES], _BORDER_SINE[(j + 1) * _PLACES])
     if engaged.share < 1.0:
-        cosine, sine = _direction(j + engaged.middle)
-        ends, other = _direction(j + engaged.begin), _direction(j + engaged.end)
+        cosine, sine = bin_direction(j + engaged.middle)
+        ends, other = bin_direction(j + engaged.begin), bin_direction(j + engaged.end)
     chip = advance.way[0] * cosine + advance.way[1] * sine
     if chip <= _LEAST:
         return False
@@ -307,7 +240,7 @@ def _enter_side(
         advance.way[0] * other[0] + advance.way[1] * other[1],
         chip,
     )
-    force = _push(law, advance.per_tooth, chip) * engaged.share
+    force = push(law, advance.per_tooth, chip) * engaged.share
     scratch.depth[j] = engaged.depth
     scratch.side[j, 0] = force * (-sense * sine - law.radial * cosine)
     scratch.side[j, 1] = force * (sense * cosine - law.radial * sine)
@@ -315,13 +248,6 @@ def _enter_side(
     scratch.figures[1] += force * scratch.depth[j] * cutter.profile.radius
     scratch.figures[2] = max(scratch.figures[2], advance.per_tooth * thickest)
     return True
-
-
-@kernel
-def _direction(place: float) -> tuple[float, float]:
-    """Cosine and sine of a place around the axis [bins]."""
-    at = 2.0 * math.pi / ANGLE_BINS * place
-    return math.cos(at), math.sin(at)
 
 
 @kernel
@@ -336,7 +262,7 @@ def _step_between(
     j, begin, end = place
     for _ in range(_HALVINGS):
         middle = 0.5 * (begin + end)
-        cosine, sine = _direction(j + middle)
+        cosine, sine = bin_direction(j + middle)
         depth = _side_depth(material, advance, cutter, cosine, sine)
         if abs(depth - depths[0]) < abs(depth - depths[1]):
             begin = middle
@@ -388,7 +314,7 @@ def _meet_end(
             continue
         met = True
         thickness = advance.per_tooth * chip
-        force = _push(law, advance.per_tooth, chip) * share * cutter.width[i]
+        force = push(law, advance.per_tooth, chip) * share * cutter.width[i]
         inwards = force * (law.radial * cutter.outwards[i] + law.along * cutter.downwards[i])
         upwards = force * (law.radial * cutter.downwards[i] - law.along * cutter.outwards[i])
         scratch.tooth[j, 0] += -sense * sine * force - cosine * inwards
@@ -432,18 +358,11 @@ def _ring_share(
         if top <= lowest + min(0.0, way[2]) / level * max(0.0, ahead) + _LEAST:
             return 0.0
     if abs(top - profile_height(math.hypot(x, y), radius, flat, corner, slope)) <= _LEAST:
-        # The cutter is on what it has cut itself, and goes on into it.
+        # The cutter stands on what it has cut itself, and goes on into it.
         return 1.0
     if top <= low:
         return 0.0
     return 1.0 if top >= low + span else (top - low) / span
-
-
-@kernel
-def _push(law: ForceLaw, per_tooth: float, chip: float) -> float:
-    """Tangential force a millimetre of edge, of a chip that is a share of the feed [N/mm]."""
-    thickness = per_tooth * chip
-    return law.kc * max(thickness, THINNEST_CHIP_MM) ** -law.mc * thickness
 
 
 @kernel
@@ -466,46 +385,4 @@ def _add_up(cutter: CutterForm, sense: float, scratch: ToothScratch) -> None:
             below += part
             # Higher up the edge is in this direction when its tip has gone on.
             to = (to + ANGLE_BINS - behind) % ANGLE_BINS
-    for k in range(3):
-        scratch.summed[0, k] = 0.0
-        for j in range(ANGLE_BINS):
-            scratch.summed[j + 1, k] = scratch.summed[j, k] + scratch.tooth[j, k]
-    for j in range(math.ceil(ANGLE_BINS / cutter.teeth)):
-        x, y = 0.0, 0.0
-        for tooth in range(cutter.teeth):
-            at = (j + tooth * ANGLE_BINS // cutter.teeth) % ANGLE_BINS
-            x += scratch.tooth[at, 0]
-            y += scratch.tooth[at, 1]
-        scratch.figures[0] = max(scratch.figures[0], math.hypot(x, y))
-
-
-@kernel
-def add_force_between(
-    cutter: CutterForm, scratch: ToothScratch, angle: float, turned: float, force: FloatArray
-) -> None:
-    """Force on the tool in the mean while it turns.
-
-    Args:
-        cutter: The cutter.
-        scratch: What ``tooth_forces`` found.
-        angle: Direction of the first tooth's tip at the beginning [turns, counter-clockwise].
-        turned: How far it turns, signed [turns]; at least a thousandth of a bin is counted.
-        force: The force is added to it, shape (3,) [N].
-    """
-    width = max(abs(turned) * ANGLE_BINS, 1e-3)
-    first = angle * ANGLE_BINS - (width if turned < 0.0 else 0.0)
-    for tooth in range(cutter.teeth):
-        low = first + tooth * ANGLE_BINS / cutter.teeth
-        low -= ANGLE_BINS * math.floor(low / ANGLE_BINS)
-        for k in range(3):
-            force[k] += (_sum_up_to(scratch, low + width, k) - _sum_up_to(scratch, low, k)) / width
-
-
-@kernel
-def _sum_up_to(scratch: ToothScratch, place: float, k: int) -> float:
-    """Sum of a tooth's force over the directions up to a place from 0 on, in bins."""
-    turns = math.floor(place / ANGLE_BINS)
-    rest = place - turns * ANGLE_BINS
-    whole = min(int(rest), ANGLE_BINS - 1)
-    part = (rest - whole) * scratch.tooth[whole, k]
-    return turns * scratch.summed[ANGLE_BINS, k] + scratch.summed[whole, k] + part
+    sum_teeth(cutter, scratch)

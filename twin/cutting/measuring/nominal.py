@@ -126,9 +126,14 @@ class NominalWatch(abc.ABC, Generic[NominalT]):
                 f"job key 'nominal.file': {file} has nothing over the stock: it counts in "
                 "program coordinates, in mm"
             )
-        corners = self._corner + read_stl(file).bounds
+        mesh = read_stl(file)
+        corners = self._corner + mesh.bounds
         self.misfit = _misfit(corners, cutter.material.corners, self._allowed)
-        if self.misfit is None and (outside := self._outside_share()) > OUTSIDE:
+        if (np.bincount(mesh.edges_unique_inverse) % 2).any():
+            self.misfit = (
+                "the surface of the nominal part is open, and cuts where it is missing are not seen"
+            )
+        elif self.misfit is None and (outside := self._outside_share()) > OUTSIDE:
             self.misfit = f"{outside:.1%} of the nominal part lie outside the stock"
 
     def look(self, samples: Samples) -> tuple[NominalGouge, int] | None:

@@ -20,6 +20,12 @@ FINEST_STEP_MM = 0.05
 """Steps need not be shorter than this [mm]: of a pointed tool its whole radius counts, of a stub nothing."""
 
 
+def longest_step(solids: Sequence[Solid]) -> float:
+    """How far what moves may go in a step [mm]."""
+    radius = max(max(solid.low_radius, solid.high_radius) + solid.rounding for solid in solids)
+    return max(STEP_SHARE * radius, FINEST_STEP_MM)
+
+
 def in_short_steps(poses: Poses, solids: Sequence[Solid]) -> tuple[Poses, IntArray]:
     """Put poses between those that are far from each other.
 
@@ -31,8 +37,7 @@ def in_short_steps(poses: Poses, solids: Sequence[Solid]) -> tuple[Poses, IntArr
         Poses of m short steps, and which of the n steps each of them is part of, shape (m,).
     """
     tip, axis = poses
-    radius = max(max(solid.low_radius, solid.high_radius) + solid.rounding for solid in solids)
-    longest = max(STEP_SHARE * radius, FINEST_STEP_MM)
+    longest = longest_step(solids)
     way = np.zeros(len(tip) - 1)
     for height in (solids[0].low, max(solid.high for solid in solids)):
         way = np.maximum(way, np.linalg.norm(np.diff(tip + height * axis, axis=0), axis=1))

@@ -117,7 +117,9 @@ class ToolBodies:
 def _add_cylinder(
     body: mujoco.MjsBody, name: str, material: str, radius: float, bottom: float, top: float = 0.0
 ) -> None:
-    """Add an upright cylinder between heights over the spindle nose [mm]."""
+    """Add an upright cylinder between heights over the spindle nose, where it has any height [mm]."""
+    if top <= bottom:
+        return
     body.add_geom(
         name=f"{body.name}_{name}",
         type=mujoco.mjtGeom.mjGEOM_CYLINDER,

@@ -167,9 +167,8 @@ def tool_lines(
         least_length: So long is each tool at least [mm].
         worn: Tools of which the control's table holds the wear alone.
     """
-    numbers = list(dict.fromkeys(number for number, _, _ in calls if number)) or (
-        [0] if calls else [1]
-    )
+    called = dict.fromkeys(number for number, _, _ in calls)
+    numbers = [number for number in called if number or _feeds(0, calls, moves)] or [1]
     listed = listed_tools((comment for _, comment in comments), numbers, inches=inches)
     lines: list[str] = []
     told: list[str] = []
@@ -259,6 +258,11 @@ def _rows_of(number: int, calls: list[tuple[int, int, int]], count: int) -> list
         if each == number:
             rows += range(begin, end)
     return rows
+
+
+def _feeds(number: int, calls: list[tuple[int, int, int]], moves: Moves) -> bool:
+    """Whether a tool is fed anywhere; T0 that is not means an empty spindle."""
+    return bool((moves.motion[_rows_of(number, calls, len(moves))] == Motion.FEED).any())
 
 
 def _tool_table(

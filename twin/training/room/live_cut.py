@@ -4,8 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twin.coupling.cutting_process import CuttingProcess, ToolBreak
-from twin.coupling.operations import OperatorOperation, cutting_process
+from twin.coupling.cutting_process import ToolBreak
+from twin.coupling.height_map_process import HeightMapProcess
+from twin.coupling.operations import OperatorOperation, height_map_process
 from twin.cutting.forces.tool_strength import tool_strength
 from twin.job.job_file import JobFile, StockTable, ToolTable
 from twin.machine.simulation.live import LiveMachine
@@ -56,7 +57,7 @@ class LiveCut:
             part_frame: How the part turns under the tool.
             zero: Machine coordinates of program zero, shape (k,) [mm or deg].
         """
-        self.process: CuttingProcess | None = None
+        self.process: HeightMapProcess | None = None
         self._machine = machine
         # Teeth are felt in a height map alone.
         self._simulated = job.cutting_force == "teeth" and part_frame.chain is None
@@ -69,7 +70,7 @@ class LiveCut:
         assert stock.cell is not None
         if self._simulated:
             before = self.process
-            self.process = cutting_process(
+            self.process = height_map_process(
                 stock,
                 stock.cell,
                 self._operation,

@@ -1,0 +1,83 @@
+"""Teeth in a part that is cut from any side: the cut of any machine."""
+
+import numpy as np
+
+from twin.coupling.cutting_process import CuttingProcess, Operation, Rows, Turning
+from twin.coupling.leaning_kernels import Chain, LeaningCut, follow_leaning, nowhere
+from twin.coupling.turning_tool import ToolLoads, TurningTool
+from twin.cutting.forces.materials import Kienzle
+from twin.cutting.tools import profile
+from twin.cutting.tridexel.dexels import TriDexel
+from twin.cutting.tridexel.engagement import longest_step
+from twin.cutting.tridexel.normals import MOST_TOOLS
+from twin.cutting.tridexel.solids import cutting_edge
+from twin.machine.description.config import SpindleTable
+from twin.machine.simulation.process import Physics
+from twin.nc.canonical import FloatArray
+from twin.toolpath.part_frame import PartFrame
+from twin.units import SECONDS_PER_MINUTE
+
+
+class LeaningProcess(CuttingProcess):
+    """Cuts a tri-dexel stock with a tool that leans against the part.
+
+    Attributes:
+        material: The stock as cut so far.
+    """
+
+    def __init__(
+        self,
+        material: TriDexel,
+        resists: Kienzle,
+        operation: Operation,
+        part_frame: PartFrame,
+        spindle: SpindleTable,
+    ) -> None:
+        """Lay the material on the table.
+
+        Args:
+            material: It is cut; nobody else may.
+            resists: As for ``CuttingProcess``; so on.
+            operation: What is in the spindle when.
+            part_frame: How the axes carry tool and part; it has a chain.
+            spindle: What turns the tool.
+        """
+        super().__init__(resists, operation, spindle)
+        assert part_frame.chain is not None
+        assert part_frame.zero is not None
+        self.material = material
+        self._chain = Chain(part_frame.chain, part_frame.zero, 0.0)
+        self._pose = nowhere(len(part_frame.zero))
+
+    def begin(self, position: FloatArray) -> None:
+        """Begin with the machine at rest; see ``Process``."""
+        super().begin(position)
+        self._pose = nowhere(len(position))
+
+    def _cut_along(self, physics: Physics, turning: Turning, tool: TurningTool, rows: Rows) -> None:
+        job, stock = turning.tool, self.material
+        solids = cutting_edge(profile(job), job.flute)
+        number = min(max(job.number, 1), MOST_TOOLS)
+        speed, chain = (
+            turning.speed / SECONDS_PER_MINUTE,
+            self._chain._replace(length_difference=turning.length_difference),
+        )
+        done = 0
+        while done < len(speed):
+            left = slice(done, None)
+            cut = LeaningCut(
+                stock.dexels, stock.lattice, np.array(solids, np.float64), number,
+                longest_step(solids), tool, chain,
+            )  # fmt: skip
+            done += follow_leaning(
+                physics,
+                rows.controls[left],
+                rows.states[left],
+                speed[left],
+                cut,
+                self._memory,
+                self._pose,
+                ToolLoads(*(column[left] for column in rows.loads)),
+            )
+            if done < len(speed):
+                stock.dexels = stock.dexels.grown()
