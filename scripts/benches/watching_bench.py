@@ -10,10 +10,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from benches.row import Row, cpu_seconds_in_turns
-from twin.motion.setpoints.sampling import settle
 
 from twin.files.shipped import resource_root
 from twin.machine.simulation.simulate import simulate
+from twin.motion.setpoints.sampling import settle
 from twin.run.pipeline import cutting_forces, planned
 from twin.run.preparation import prepare
 from twin.run.run import Run
