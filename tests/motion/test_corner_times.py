@@ -123,19 +123,49 @@ def never_slower(first: int, last: int) -> None:
         assert times[1] <= times[2] * SLACK, seed
 
 
-def test_long_chains_of_chords_are_no_slower_for_being_continuous() -> None:
-    """Two of them, more blocks than are cut together."""
+def long_chain(rng: np.random.Generator, corner: Corner) -> Program:
+    """Chords without a stop, more than are cut together, whose roughness changes on the way, now and then with arcs."""
+    program = Program()
+    program.corner = corner
+    feed = float(np.exp(rng.uniform(np.log(1000.0), np.log(15000.0))))
+    step, angle = float(rng.choice([0.007, 0.02, 0.05, 0.2])), 0.0
+    rough, radius = np.exp(rng.uniform(np.log([1e-4, 2.0]), np.log([0.1, 300.0])))
+    changes, arcs = rng.random(2) < [0.5, 0.3]
+    for number in range(int(rng.integers(4500, 10000))):
+        rougher = 10.0 if changes and number // 1500 % 2 else 1.0
+        angle += step / radius * np.sin(number * step / 5.0) + rng.normal() * rough * rougher
+        along = np.array([np.cos(angle), np.sin(angle), 0.0, 0.0])
+        here = program.position
+        if arcs and number % 400 == 399:
+            center = (here[0] - 5.0 * along[1], here[1] + 5.0 * along[0], 0.0)
+            program.arc(center, (0.0, 0.0, 1.0), 30.0, feed=feed)
+            angle += np.deg2rad(30.0)
+        else:
+            program.line(*np.round(here + step * along, 4), feed=feed)
+    return program
+
+
+def long_chain_is_no_slower(seed: int) -> None:
+    """Continuous beside exact path."""
     times = []
     for corner in (Corner.CONTINUOUS, Corner.EXACT_PATH):
-        program = Program(20.0, 0.0, 0.0, 0.0)
-        for turn in (1.0, 2.0):
-            for angle in turn - 1.0 + np.linspace(0.0, 1.0, 2801)[1:]:
-                program.corner = corner if angle < turn else Corner.EXACT_STOP
-                x, y = np.round(20.0 * np.array([np.cos(angle), np.sin(angle)]), 4)
-                program.line(x, y, 0.0, 0.0, feed=9000.0)
-        machine = motion_limits(read_machine(machine_file("mill4")))
-        times.append(seconds(program.chunks(), machine, program.start))
-    assert times[0] <= times[1] * SLACK
+        rng = np.random.default_rng(seed)
+        machine, program = knee_machine(rng), long_chain(rng, corner)
+        times.append(seconds(program.chunks(3000, 4000), machine, program.start))
+    # Where chords are joined to segments depends on how they are counted.
+    assert times[0] <= times[1] * (1.0 + 1e-6), seed
+
+
+@pytest.mark.seconds("chains of thousands of blocks are planned in both ways")
+@pytest.mark.parametrize("seed", [101, 102])
+def test_long_chains_are_no_slower_for_being_continuous(seed: int) -> None:
+    long_chain_is_no_slower(seed)
+
+
+@pytest.mark.thorough
+def test_many_long_chains_are_no_slower_for_being_continuous() -> None:
+    for seed in range(12):
+        long_chain_is_no_slower(seed)
 
 
 @pytest.mark.seconds("40 programs are planned in three ways")

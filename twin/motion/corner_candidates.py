@@ -17,16 +17,19 @@ from twin.columns import join
 from twin.motion.blocks.blocks import Blocks, BoolArray, Surroundings
 from twin.motion.blocks.corners import Borders, find_borders
 from twin.motion.limits import MotionLimits
-from twin.motion.phases_of_pieces import phases_of_pieces
+from twin.motion.open_chains import (
+    MOST_SLOW_ARCS,
+    OpenChains,
+    first_pieces,
+    slow_arcs,
+)
+from twin.motion.phases_of_pieces import seconds_alone
 from twin.motion.pieces.pieces import BATCH, Pieces, blocks_to_cut, cut
 from twin.motion.steps import Step
 from twin.nc.canonical import Chunk, Corner, FloatArray, IntArray
 
 MOST_BLOCKS = 64
 """Between two stops: of more, stops do not make up for what passing their corners gains."""
-
-MOST_LINES = BATCH
-"""Between two stops that are asked for, of lines alone, which are planned thirty times as fast as arcs."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -60,25 +63,26 @@ class _Span:
 
 
 class _Spans(Step[Surroundings, _Span]):
-    """Cuts blocks, and tells between which stops there is something to try."""
+    """Cuts blocks, and tells between which stops there is something to try.
+
+    A path that goes on from the blocks before or to the next ones is tried at once: these depend on what is chosen.
+    """
 
     def __init__(
         self, parts: Iterable[Surroundings], limits: MotionLimits, largest_override: float
     ) -> None:
         super().__init__(parts)
-        self._limits, self._largest_override = limits, largest_override
-        steps = limits.junction_velocity_step, limits.junction_acceleration_step
-        self._has_knees = any(np.any(np.asarray(step) > 0.0) for step in steps)
+        self._largest_override = largest_override
+        self._chains = OpenChains(limits, largest_override)
 
     def take(self, part: Surroundings) -> Iterator[_Span]:
         """The pieces of some blocks."""
-        borders = find_borders(part.blocks, self._limits, self._largest_override)
-        pieces = cut(part, borders, self._limits, self._largest_override)
-        begins = np.append(
-            np.flatnonzero((pieces.begin == 0.0) | (pieces.length == 0.0)), len(pieces)
-        )
+        part, borders, pieces = self._chains.choose(part)
+        begins = first_pieces(pieces)
         stopping = _worth_stopping(part, borders)
-        whole = set(_continuous(part, borders)) if self._has_knees else set()
+        whole = set[tuple[int, int]]()
+        if self._chains.has_knees and np.any(part.blocks.corner == Corner.CONTINUOUS):
+            whole |= set(_continuous(part, borders, slow_arcs(pieces, self._largest_override)))
         waiting, done = deque(stopping), 0
         for first, last in _outermost(whole, stopping):
             begin, end = begins[[first - part.first, last - part.first]].tolist()
@@ -134,10 +138,10 @@ class PiecesOfChunks(Step[_Span, Pieces]):
                 (0, len(pieces)) if whole else (candidate.begin + shift, candidate.end + shift)
             )
             if known is None or not whole:
-                known = _seconds(pieces[begin:end], self._limits)
+                known = seconds_alone(pieces[begin:end], self._limits)
             tried = self._cut(candidate)
             tried.overlap[0] = pieces.overlap[begin]
-            seconds = _seconds(tried, self._limits)
+            seconds = seconds_alone(tried, self._limits)
             if seconds < known:
                 shift += len(tried) - (end - begin)
                 pieces = join([pieces[:begin], tried, pieces[end:]])
@@ -172,8 +176,15 @@ def _worth_stopping(surroundings: Surroundings, borders: Borders) -> list[tuple[
     ]
 
 
-def _continuous(surroundings: Surroundings, borders: Borders) -> list[tuple[int, int]]:
+def _continuous(
+    surroundings: Surroundings, borders: Borders, slow_arcs: BoolArray
+) -> list[tuple[int, int]]:
     """Between which stops that are asked for a continuous corner is rounded, or stops.
+
+    Args:
+        surroundings: The blocks.
+        borders: Before each of them.
+        slow_arcs: From ``slow_arcs``, of those to work on.
 
     Returns:
         First block and the one after the last.
@@ -181,11 +192,12 @@ def _continuous(surroundings: Surroundings, borders: Borders) -> list[tuple[int,
     blocks = surroundings.blocks
     asked = np.flatnonzero(blocks.corner == Corner.EXACT_STOP)
     slowed = (blocks.corner == Corner.CONTINUOUS) & ((borders.width > 0.0) | (borders.entry == 0.0))
-    bent = np.append(0, np.cumsum(blocks.geometry.angle != 0.0))
+    bent = np.append(0, np.cumsum(slow_arcs))
+    first_known = surroundings.first
     return [
         (first, last)
         for first, last in _between(surroundings, asked, slowed)
-        if last - first <= (MOST_LINES if bent[first] == bent[last] else MOST_BLOCKS)
+        if bent[last - first_known] - bent[first - first_known] <= MOST_SLOW_ARCS
     ]
 
 
@@ -212,8 +224,3 @@ def _outermost(
         if not spans or first >= spans[-1][1]:
             spans.append((first, last))
     return spans
-
-
-def _seconds(pieces: Pieces, limits: MotionLimits) -> float:
-    """How long pieces take from rest to rest [s]."""
-    return sum(phases.end_time for phases in phases_of_pieces([pieces], limits))

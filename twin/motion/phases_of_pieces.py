@@ -40,3 +40,8 @@ def phases_of_pieces(parts: Iterable[Pieces], limits: MotionLimits) -> Iterator[
         known = brakes_from(brakes, window.due)
         state[[0, 5]] -= window.due
         state[7:] = 0.0
+
+
+def seconds_alone(pieces: Pieces, limits: MotionLimits) -> float:
+    """How long pieces take from rest to rest [s]."""
+    return max((phases.end_time for phases in phases_of_pieces([pieces], limits)), default=0.0)

@@ -57,13 +57,13 @@ def test_what_lies_behind_the_axes_is_forgotten(contour):
 def test_the_room_is_heard_while_the_corners_of_a_program_are_tried(monkeypatch):
     """A corner beside an arc is planned in three ways, two of them in parts: a slice of time tries few of them."""
     tried = []
-    seconds = corner_candidates._seconds
+    seconds = corner_candidates.seconds_alone
 
     def counted(pieces, limits):
         tried.append(pieces)
         return seconds(pieces, limits)
 
-    monkeypatch.setattr(corner_candidates, "_seconds", counted)
+    monkeypatch.setattr(corner_candidates, "seconds_alone", counted)
     bend = "G64 P0.05\nG1 X3 Y1\nG2 X6 Y1 R2\nG1 X8 Y0\nG61.1\nX0 Y0\n"
     session = session_of("G1 F3000 X0 Y0 Z50\n" + bend * 60 + "M2\n")
     do(session, "cycle_start")

@@ -72,6 +72,8 @@ def find_borders(blocks: Blocks, limits: MotionLimits, largest_override: float =
         largest_override: Of the feed.
     """
     shapes, axes = blocks.geometry, len(limits)
+    wanted = blocks.feed * blocks.parameter_scale
+    wanted = wanted * np.where(blocks.rapid, 1.0, largest_override)
     tangent_step, curvature_step = border_steps(shapes.curves(), blocks.length)
     corner = blocks.corner.copy()
     corner[0] = Corner.EXACT_STOP
@@ -83,12 +85,9 @@ def find_borders(blocks: Blocks, limits: MotionLimits, largest_override: float =
         shares = tolerance_shares(tangent_step, curvature_step, tolerance, further)
         place = np.append(0.0, np.cumsum(blocks.length))
         width = find_widths(place, rounded, *shares)
-        wanted = blocks.feed * blocks.parameter_scale
         stops, overlap = choose_stops(
             BlockMotion(
-                blocks.move, shapes.curves(), blocks.length,
-                wanted * np.where(blocks.rapid, 1.0, largest_override),
-                blocks.acceleration, blocks.deceleration, blocks.parameter_scale,
+                blocks.move, shapes.curves(), blocks.length, wanted, blocks.acceleration, blocks.deceleration, blocks.parameter_scale,
                 blocks.rotary_alone,
             ),
             Corners(tangent_step, curvature_step, rounded, width, tolerance, further),
@@ -104,6 +103,10 @@ def find_borders(blocks: Blocks, limits: MotionLimits, largest_override: float =
         np.broadcast_to(limits.junction_acceleration_step, axes),
     )  # fmt: skip
     if np.any(corner == Corner.EXACT_PATH):
+        # What is asked for bounds the velocity beside a knee in any case.
+        entry[1:] = np.where(
+            entry[1:] < np.inf, np.minimum(entry[1:], np.minimum(wanted[:-1], wanted[1:])), np.inf
+        )
         _slow_close_knees(blocks, entry, tangent_step, width, limits)
     return Borders(tangent_step, curvature_step, width, entry, overlap)
 

@@ -48,12 +48,15 @@ def slow_dense_knees(
             if angle[j - 1] != 0.0 or velocity[j] == 0.0:
                 break
             way += length[j - 1]
-            lowest = math.inf
+            lowest, fastest = math.inf, max(velocity[i], velocity[j])
+            per_fastest = 1.0 / fastest
             for axis in range(axes):
                 sums[axis] += tangent_step[j, axis]
                 turn, step = abs(sums[axis]), velocity_step[axis]
-                if turn > 0.0:
-                    gained = math.sqrt(step * step + 4.0 * turn * acceleration[axis] * way)
+                gain = acceleration[axis] * way
+                # The root waits for what it lowers.
+                if turn > 0.0 and turn * fastest > step + gain * per_fastest:
+                    gained = math.sqrt(step * step + 4.0 * turn * gain)
                     lowest = min(lowest, 0.5 * (step + gained) / turn)
             velocity[i], velocity[j] = min(velocity[i], lowest), min(velocity[j], lowest)
 
