@@ -168,7 +168,7 @@ def is_unstable(drive: Drive) -> bool:
 
 
 def feedforward_name(axis: str) -> str:
-    """Name of the actuator that adds what an axis's drive is commanded in advance."""
+    """Name of the actuator that adds an axis's feed-forward."""
     return f"{axis} feed-forward"
 
 
