@@ -79,7 +79,7 @@ class PlacedPart(NamedTuple):
     zero: FloatArray
 
     def tilts(self, axes: FloatArray) -> bool:
-        """Whether the tool ever is off the part's Z, part coordinates of shape (n, k) [mm or deg]."""
+        """Whether the tool is ever tilted from the part's Z, part coordinates of shape (n, k) [mm or deg]."""
         return self.frame.tilts(axes + self.zero)
 
     def tip(self, axes: FloatArray, length_difference: FloatArray | float) -> FloatArray:
@@ -164,7 +164,7 @@ class SummaryBuilder:
         Args:
             job: Its tools are those that the program may bring.
             spindle: As the machine and the control have it; None: without a limit.
-            part: Where the part is on the machine; None: the tool never is off its Z.
+            part: Where the part is on the machine; None: the tool is never tilted from its Z.
         """
         self._tools = {tool.number: tool for tool in job.tools}
         # Without a list of tools every number means the default tool, as in a run without one.

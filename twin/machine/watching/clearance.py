@@ -9,9 +9,9 @@ keeps lying there while the one is displaced by s as long as
 
 r being the farthest that a point of it is displaced by turning. That sum is linear in the displacement
 and costs a few operations for a sample, so all samples are judged by it, and between them the straight way from
-sample to sample. Only where it no longer tells is the distance measured again (``mj_geomDistance``), which gives
-the next plane; where neither the plane before nor the plane behind reports the way between two samples,
-the way is halved until they do, or until it is shorter than ``SHORTEST_WAY``.
+sample to sample. Only where it no longer decides is the distance measured again (``mj_geomDistance``), which gives
+the next plane; where neither the plane before nor the plane behind separates the two all the way between two samples,
+the path is halved until they do, or until it is shorter than ``SHORTEST_WAY``.
 
 So an overlap of more than ``TOUCH`` is found wherever two samples see it, and a thinner way through a corner
 between two samples where it is longer than ``SHORTEST_WAY``, whatever the speed.
@@ -264,8 +264,8 @@ class Clearance:
 
         Args:
             pair: Number of the pair.
-            before: The plane that reports the first sample.
-            behind: The plane that reports the second.
+            before: The plane that separates the pair at the first sample.
+            behind: The plane that separates it at the second.
             track: Where the geom is at both, shape (w, 2).
             position: Where the axes are at both, shape (2, k).
         """
