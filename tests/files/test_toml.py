@@ -72,3 +72,16 @@ def test_a_job_without_its_program_is_refused(tmp_path: Path):
     path = job_text(tmp_path, 'program = "absent.nc"')
     with pytest.raises(ConfigError, match=r"absent\.nc: no such NC program"):
         load_job(path)
+
+
+def test_true_is_no_number_in_any_table(tmp_path: Path) -> None:
+    (tmp_path / "a.nc").write_text("G0 X1\n")
+    job = tmp_path / "a.toml"
+    job.write_text('program = "a.nc"\n[offsets.G54]\nX = false\n[tolerance]\ncontour_um = true\n')
+    with pytest.raises(
+        ConfigError, match=r"'tolerance.contour_um': a number is wanted.*true"
+    ) as told:
+        load_job(job)
+    assert "'offsets.G54.X'" in str(told.value)
+    job.write_text('program = "a.nc"\nblock_skip = true\ncutting_load = false\n')
+    assert load_job(job).file.block_skip is True

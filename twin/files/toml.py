@@ -2,7 +2,7 @@
 
 import difflib
 import tomllib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -58,14 +58,50 @@ def checked(data: Data, table: type[TableT], where: str | Callable[[str], str | 
     Raises:
         ConfigError: A wrong key or value.
     """
+
+    def placed(key: str) -> str:
+        return str(where if isinstance(where, str) else where(key))
+
     try:
-        return table.model_validate(data)
+        made = table.model_validate(data)
     except pydantic.ValidationError as error:
         lines = "\n".join(
-            f"{where if isinstance(where, str) else where(_key(detail))}: {_explain(detail, table)}"
-            for detail in error.errors()
+            f"{placed(_key(detail))}: {_explain(detail, table)}" for detail in error.errors()
         )
         raise ConfigError(lines) from error
+    if wrong := list(_switches_as_numbers(data, made)):
+        raise ConfigError(
+            "\n".join(
+                f"{placed(key)}: '{key}': a number is wanted here (got {str(value).lower()})"
+                for key, value in wrong
+            )
+        )
+    return made
+
+
+def _switches_as_numbers(written: Any, made: Any, key: str = "") -> Iterator[tuple[str, bool]]:
+    """Keys that say true or false and were read as 1 or 0, which pydantic takes for numbers, and what they say."""
+    if isinstance(written, bool):
+        if isinstance(made, int | float) and not isinstance(made, bool):
+            yield key, written
+    elif isinstance(written, dict):
+        for name, value in written.items():
+            inner = _made_of(made, name)
+            yield from _switches_as_numbers(value, inner, f"{key}.{name}" if key else str(name))
+    elif isinstance(written, list | tuple) and isinstance(made, list | tuple):
+        for index, (value, inner) in enumerate(zip(written, made, strict=False)):
+            yield from _switches_as_numbers(value, inner, f"{key}.{index}")
+
+
+def _made_of(made: Any, name: str) -> Any:
+    """What a key of a table has become; None where a validator has made something else of it."""
+    if isinstance(made, Mapping):
+        return made.get(name)
+    if not isinstance(made, pydantic.BaseModel):
+        return None
+    fields = type(made).model_fields.items()
+    field = next((own for own, info in fields if name in (own, info.alias)), None)
+    return None if field is None else getattr(made, field)
 
 
 def load_toml(path: Path) -> Data:
