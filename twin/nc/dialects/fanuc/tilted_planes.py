@@ -7,6 +7,7 @@ of FreeCAD. Decision: where the manual's figure alone says which sense an angle 
 
 import enum
 import math
+from collections.abc import Mapping
 
 from twin.nc.control.control import Control
 from twin.nc.dialects.fanuc.memory import PlaneBlock, memory_of
@@ -26,7 +27,7 @@ class _Form(enum.IntEnum):
     VECTORS = 3
 
 
-_BLOCKS = {_Form.POINTS: 4, _Form.VECTORS: 2}
+_BLOCKS: Mapping[int, int] = {_Form.POINTS: 4, _Form.VECTORS: 2}
 """How many blocks say a plane, numbered by Q."""
 
 _SQUARE = 1e-3

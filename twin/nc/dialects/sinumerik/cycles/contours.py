@@ -77,7 +77,7 @@ class _Milling:
         control.report.line = self.block.line
         depart(control, self.leads[1], None)
         here, safe = control.motion.programmed[across], self.heights.safe
-        rise = {
+        rise: dict[int, float] = {
             _Rise.TO_SAFETY: safe,
             _Rise.BY_SAFETY: here + safe - self.heights.surface,
             _Rise.NOT_AT_ALL: here,
