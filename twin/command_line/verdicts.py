@@ -49,7 +49,7 @@ def check(
     strict: StrictOption = False,
 ) -> None:
     """Run many programs without pictures; one table, exit 1 if any falls short."""
-    from twin.check.discovery import checkable
+    from twin.check.dependents import dependents
     from twin.check.task import CheckSettings
     from twin.commands.check import check_and_print, write_forms
 
@@ -58,7 +58,7 @@ def check(
         update_baseline=update_baseline, reports=reports,
     )  # fmt: skip
     if changed:
-        paths = [str(path) for path in checkable(map(Path, paths))]
+        paths = [str(path) for path in dependents(map(Path, paths), machine=machine)]
         if not paths:
             typer.echo(
                 "no program or job has to do with these files: nothing was checked", err=True
