@@ -2,7 +2,8 @@ from pathlib import Path
 
 import pytest
 
-from twin.check.discovery import baselines_without_programs, checkable, find_programs, without_jobs
+from twin.check.dependents import dependents
+from twin.check.discovery import baselines_without_programs, find_programs, without_jobs
 from twin.errors import UsageError
 
 
@@ -78,15 +79,15 @@ def test_of_files_of_any_kind_programs_and_jobs_are_checked_each_once(tmp_path: 
     for name in ("run.nc", "alone.nc", "readme.md"):
         (tmp_path / name).write_text("M30\n")
     files = [*sorted(tmp_path.iterdir()), tmp_path / "gone.nc"]
-    assert [path.name for path in checkable(files)] == ["job.toml", "alone.nc"]
-    assert checkable([tmp_path / "pyproject.toml"]) == []
+    assert [path.name for path in dependents(files, tmp_path)] == ["job.toml", "alone.nc"]
+    assert dependents([tmp_path / "pyproject.toml"], tmp_path) == []
 
 
 def test_of_files_that_end_in_h_those_in_klartext_are_programs(tmp_path: Path) -> None:
     (tmp_path / "part.h").write_text("; roughing\n0 BEGIN PGM PART MM\n1 END PGM PART MM\n")
     (tmp_path / "board.h").write_text("#ifndef BOARD_H\n#define BOARD_H\n#endif\n")
     assert names(tmp_path, find_programs([tmp_path])) == ["part.h"]
-    assert names(tmp_path, checkable(sorted(tmp_path.iterdir()))) == ["part.h"]
+    assert names(tmp_path, dependents(sorted(tmp_path.iterdir()), tmp_path)) == ["part.h"]
 
 
 def test_a_job_is_checked_where_what_it_uses_has_changed(tmp_path: Path) -> None:
@@ -103,4 +104,56 @@ def test_a_job_is_checked_where_what_it_uses_has_changed(tmp_path: Path) -> None
         (tmp_path / "twin.toml", ["one.toml", "two.toml"]),  # it is gone
         (tmp_path / "other.toml", []),
     ):
-        assert [path.name for path in checkable([changed], tmp_path)] == jobs
+        assert [path.name for path in dependents([changed], tmp_path)] == jobs
+
+
+def test_a_program_is_checked_where_a_file_that_it_calls_has_changed_or_is_gone(
+    tmp_path: Path,
+) -> None:
+    for name, text in {
+        "siemens.mpf": "G0 X1\nL10\nM30\n",
+        "L10.spf": "DEEP\nM17\n",
+        "deep.spf": "G1 X2 F100\nM17\n",
+        "fanuc.nc": "O1\nM98 P0031001\nM30\n",
+        "O1001.nc": "O1001\nG0 X1\nM99\n",
+        "linux.ngc": "o<in side> call\nM2\n",
+        "inside.ngc": "o<inside> sub\no<inside> endsub\n",
+        "klartext.h": "0 BEGIN PGM K MM\n1 CALL PGM sub\\hole.h\n2 END PGM K MM\n",
+        "alone.nc": "G0 X7\nM30\n",
+        "job.toml": 'program = "fanuc.nc"\n',
+        "second.toml": 'program = "alone.nc"\n',
+    }.items():
+        (tmp_path / name).write_text(text)
+    for changed, callers in (
+        ("deep.spf", {"siemens.mpf", "L10.spf"}),
+        ("L10.spf", {"siemens.mpf"}),
+        ("O1001.nc", {"job.toml"}),
+        ("inside.ngc", {"linux.ngc"}),
+        ("hole.h", {"klartext.h"}),
+        ("alone.nc", {"second.toml"}),
+        ("job.baseline", {"job.toml"}),
+        ("alone.stl", set()),
+    ):
+        (tmp_path / changed).unlink(missing_ok=True)
+        found = dependents([tmp_path / changed], tmp_path)
+        assert {path.name for path in found} >= callers, changed
+        assert len(found) == len(callers) or changed == "alone.nc", changed
+        if changed == "O1001.nc":
+            (tmp_path / changed).write_text("O1001\nM99\n")
+
+
+def test_a_job_is_checked_where_its_machine_or_a_solid_has_changed_or_is_gone(
+    tmp_path: Path,
+) -> None:
+    (tmp_path / "shop").mkdir()
+    (tmp_path / "shop" / "own.toml").write_text('base = "below.toml"\n')
+    (tmp_path / "shop" / "below.toml").write_text('base = "mill4"\n')
+    (tmp_path / "one.nc").write_text("G0 X1\n")
+    (tmp_path / "one.toml").write_text(
+        'program = "one.nc"\nmachine = "shop/own.toml"\n[nominal]\nfile = "part.stl"\n'
+    )
+    (tmp_path / "two.nc").write_text("G0 X1\n")
+    for changed in ("shop/below.toml", "shop/own.toml", "part.stl", "one.nc"):
+        (tmp_path / changed).unlink(missing_ok=True)
+        assert names(tmp_path, dependents([tmp_path / changed], tmp_path)) == ["one.toml"]
+    assert dependents([tmp_path / "README.md"], tmp_path / "shop") == []

@@ -55,7 +55,7 @@ def test_a_run_writes_all_that_the_contract_names(twin: Twin, tmp_path: Path):
         ("G0 X0 Y0\nG102 X360\n", "gost", "X360"),
         ("N10 G0 X0 Y0\nN20 G2 X10 I5 J5 T1200 F1\n", "codesys", "T1200"),
         ("G0 X0 Y0\nG2 X10 Y0 R2 F100\nM30\n", "fagor8070", "R2"),
-        ("G0 X0 Y0\nG1 A5 F100\n", "gost", "A5"),
+        ("G0 X0 Y0\nG1 W5 F100\n", "gost", "W5"),
     ],
 )
 def test_a_wrong_program_is_refused_with_a_caret(

@@ -12,7 +12,7 @@ from twin.nc.canonical import concatenate
 from twin.nc.text.diagnostics import ProgramError
 from twin.run.assumed_job import AssumedJob, text_beside, with_assumptions
 from twin.run.preparation import Preparation, prepare
-from twin.run.reading.assumed_tools import numbered_tool, tool_of_comment
+from twin.run.reading.assumed_tools import SPEED_BY_HAND, numbered_tool, tool_of_comment
 
 CONTOUR = """%
 O01001 (PLATE)
@@ -310,6 +310,27 @@ def test_a_tool_that_only_drills_is_a_drill(tmp_path: Path) -> None:
     made, assumed = raw(tmp_path, text)
     assert made.job.file.tools[1].kind == "drill"
     assert "diameter is a guess" in assumed.assumptions[2]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "by_hand"),
+    [
+        (" S5000", "", True),
+        (" S5000", " S0", False),
+        (" S5000 M3", "", False),
+        ("S5000 M3", "S5000", False),
+    ],
+)
+def test_a_spindle_that_is_started_without_any_speed_has_one_by_hand(
+    tmp_path: Path, old: str, new: str, by_hand: bool
+) -> None:
+    text = CONTOUR.split("N75", maxsplit=1)[0].replace(
+        "N30 S5000 M3", "N30" + " S5000 M3".replace(old, new)
+    )
+    preparation, assumed = raw(tmp_path, text + "M30\n")
+    speeds = [tool.speed for tool in preparation.job.file.tools]
+    assert speeds == [SPEED_BY_HAND if by_hand else None]
+    assert any("set by hand" in line for line in assumed.assumptions) == by_hand
 
 
 def test_a_tool_that_is_called_ahead_does_not_cut_yet(tmp_path: Path) -> None:

@@ -13,6 +13,9 @@ from twin.run.progress import no_progress
 from twin.run.run import Run
 
 A_FEW, BATCH = 2, 10
+_AS_MANY_AGAIN = pytest.mark.by_hand(
+    "a hundred more programs take a minute, and show what the first do"
+)
 
 
 def drawn(folder: Path, seed: int) -> dict[str, int]:
@@ -30,7 +33,13 @@ def test_a_few_ordinary_programs_draw_nothing(tmp_path: Path) -> None:
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("first", range(0, 200, BATCH))
+@pytest.mark.parametrize(
+    "first",
+    [
+        *range(0, 100, BATCH),
+        *(pytest.param(first, marks=_AS_MANY_AGAIN) for first in range(100, 200, BATCH)),
+    ],
+)
 def test_ordinary_programs_draw_nothing(first: int, tmp_path: Path) -> None:
     seeds = range(first, first + BATCH)
     assert {seed: found for seed in seeds if (found := drawn(tmp_path, seed))} == {}

@@ -32,35 +32,26 @@ def name_of(job: Path) -> str:
 
 
 each_job = pytest.mark.parametrize("job", JOBS, ids=name_of)
+each_final = pytest.mark.parametrize(
+    "job", [job for job in JOBS if name_of(job) in FINAL], ids=name_of
+)
+each_other = pytest.mark.parametrize(
+    "job", [job for job in JOBS if name_of(job) not in FINAL], ids=name_of
+)
 
 
-def every_day(*, final: bool) -> pytest.MarkDecorator:
-    """Each job: every day those whose final position is said, or those others, the rest thoroughly."""
-    return pytest.mark.parametrize(
-        "job",
-        [
-            pytest.param(
-                job,
-                marks=() if (name_of(job) in FINAL) == final else pytest.mark.thorough,
-                id=name_of(job),
-            )
-            for job in JOBS
-        ],
-    )
-
-
-@every_day(final=False)
+@each_other
 def test_it_passes(job: Path):
     done = check_program(job, CheckSettings())
     assert done.passed, "\n".join(map(str, done.findings))
 
 
-@every_day(final=True)
+@each_final
 def test_it_runs_and_ends_where_it_shall(twin: Twin, tmp_path: Path, job: Path):
     done = twin("run", job, "--out", tmp_path)
     assert done.code == 0, done.stderr
     final = json.loads((tmp_path / "result.json").read_text(encoding="utf-8"))["final"]
-    for axis, value in FINAL.get(name_of(job), {}).items():
+    for axis, value in FINAL[name_of(job)].items():
         assert final["commanded"][axis] == pytest.approx(value, abs=1e-9)
         assert final["simulated"][axis] == pytest.approx(value, abs=2e-3)
 

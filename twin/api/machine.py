@@ -23,7 +23,7 @@ class Machine:
             the position setpoint (the page of ``twin/machine`` says why).
         integral_actuators: The one that integrates what each axis leaves behind, of axes whose drive does; its
             input is the position setpoint [m or rad].
-        feedforward_actuators: The motor of each axis that adds what its drive is commanded in advance [N or N m].
+        feedforward_actuators: The motor of each axis that adds its drive's feed-forward [N or N m].
     """
 
     def __init__(self, name: str | Path) -> None:

@@ -4,10 +4,10 @@ import glob
 import os
 import re
 import tomllib
-from collections.abc import Collection, Iterable
+from collections.abc import Iterable
 from pathlib import Path
 
-from twin.errors import TwinError, UsageError
+from twin.errors import UsageError
 
 NC_SUFFIXES = frozenset(
     {".nc", ".cnc", ".ngc", ".tap", ".mpf", ".spf", ".iso", ".gcode", ".eia", ".min", ".h"}
@@ -40,7 +40,7 @@ def find_programs(paths: Iterable[str | Path]) -> list[Path]:
     paths = list(paths)
     for path in _expanded(paths):
         if path.is_dir():
-            found.update(dict.fromkeys(_programs_in(path)))
+            found.update(dict.fromkeys(programs_in(path)))
         else:
             found[path] = None
     if not found:
@@ -50,51 +50,6 @@ def find_programs(paths: Iterable[str | Path]) -> list[Path]:
             f"ending in {', '.join(sorted(NC_SUFFIXES))}"
         )
     return list(found)
-
-
-def checkable(files: Iterable[Path], root: Path = Path()) -> list[Path]:
-    """Job files and programs among files of any kind, and jobs that use another one of them.
-
-    A program that one of these jobs runs is left out.
-
-    Args:
-        files: What a commit changes, say. Of those that are gone a ``twin.toml`` alone counts.
-        root: Where jobs are looked for that share settings, use an STL file, or run on a machine among the files.
-    """
-    files = list(files)
-    there = [path for path in files if path.is_file()]
-    run_by = {path: program_of(path) for path in there if path.suffix == ".toml"}
-    jobs = [path for path, program in run_by.items() if program is not None]
-    programs = [path for path in there if _is_program(path)]
-    known = {path.resolve() for path in (*jobs, *programs)}
-    used = {path.resolve() for path in files} - known
-    if used:
-        found = (path for path in _programs_in(root) if path.suffix == ".toml")
-        jobs += [path for path in found if path.resolve() not in known and _uses(path, used)]
-    taken = {program_of(path) for path in jobs}
-    return jobs + [path for path in programs if path.resolve() not in taken]
-
-
-def _uses(path: Path, files: Collection[Path]) -> bool:
-    """Whether a job takes settings from one of some files, or names it as solid or machine."""
-    # Most who look for programs need no job to be read.
-    from twin.job.load import SHARED_NAME, load_job
-
-    folder = path.resolve().parent
-    if any(each.name == SHARED_NAME and folder.is_relative_to(each.parent) for each in files):
-        return True
-    try:
-        job = load_job(path)
-    except TwinError:
-        return False  # it is told of where it is checked itself
-    file, named = job.file, [layer.path for layer in job.layers]
-    named.append(job.folder / file.machine)
-    named += [
-        Path(each.file)
-        for each in (file.stock, file.nominal, *file.fixtures)
-        if each is not None and each.file
-    ]
-    return any(each.resolve() in files for each in named)
 
 
 def _expanded(paths: Iterable[str | Path]) -> Iterable[Path]:
@@ -108,7 +63,8 @@ def _expanded(paths: Iterable[str | Path]) -> Iterable[Path]:
             raise UsageError(f"{path}: no such file or folder")
 
 
-def _programs_in(folder: Path) -> list[Path]:
+def programs_in(folder: Path) -> list[Path]:
+    """Job files in a folder and those below it, and programs that none of them runs."""
     jobs: list[Path] = []
     programs: list[Path] = []
     for root, folders, files in os.walk(folder):
@@ -117,7 +73,7 @@ def _programs_in(folder: Path) -> list[Path]:
             path = Path(root) / name
             if path.suffix == ".toml":
                 jobs.append(path)
-            elif _is_program(path):
+            elif is_program(path):
                 programs.append(path)
     run_by = {job: program_of(job) for job in jobs}
     taken = {program for program in run_by.values() if program is not None}
@@ -125,7 +81,8 @@ def _programs_in(folder: Path) -> list[Path]:
     return sorted([*jobs, *(path for path in programs if path.resolve() not in taken)])
 
 
-def _is_program(path: Path) -> bool:
+def is_program(path: Path) -> bool:
+    """Whether a file is an NC program by its name, or by its head where others end so too."""
     if path.suffix.lower() != ".h":
         return path.suffix.lower() in NC_SUFFIXES
     try:

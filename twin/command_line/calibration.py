@@ -13,7 +13,7 @@ def calibrate(
         list[Path] | None, typer.Argument(help="Logs to fit.", show_default=False)
     ] = None,
     base: Annotated[
-        str, typer.Option("--base", help="Machine that keeps what the logs do not tell.")
+        str, typer.Option("--base", help="Machine whose values stay where the logs determine none.")
     ] = "mill4",
     columns: Annotated[
         Path | None, typer.Option("--columns", help="Map of columns and units (TOML).")

@@ -6,7 +6,9 @@ import typer
 
 
 def dialects(
-    name: Annotated[str | None, typer.Argument(help="One of them.", show_default=False)] = None,
+    name: Annotated[
+        str | None, typer.Argument(help="Dialect to describe.", show_default=False)
+    ] = None,
 ) -> None:
     """Print the dialects, or what one of them understands, refuses and decided."""
     from twin.nc.dialects import dialect_named

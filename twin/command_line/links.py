@@ -16,7 +16,9 @@ def linuxcnc(
     out: Annotated[Path, typer.Option("--out", help="Folder for results and LinuxCNC's files.")],
     headless: Annotated[
         Path | None,
-        typer.Option("--headless", metavar="PROGRAM|JOB.toml", help="Run this and end."),
+        typer.Option(
+            "--headless", metavar="PROGRAM|JOB.toml", help="Run this without a screen and end."
+        ),
     ] = None,
     opened: Annotated[
         Path | None,
@@ -37,7 +39,7 @@ def linuxcnc(
     ] = None,
     dialect: DialectOption = None,
     view: Annotated[
-        bool, typer.Option("--view", help="Show the machine on a page meanwhile.")
+        bool, typer.Option("--view", help="Show the machine on a page during the run.")
     ] = False,
 ) -> None:
     """LinuxCNC drives the twin in lock-step: its planner, the twin's drives and axes."""

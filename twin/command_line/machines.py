@@ -27,7 +27,7 @@ def machine_list(form: FormatOption = "text") -> None:
 def machine_show(
     name: MachineArgument,
     feed: Annotated[
-        float, typer.Option("--feed", help="For the lag (mm/min or deg/min).")
+        float, typer.Option("--feed", help="Feed at which the lag is computed (mm/min or deg/min).")
     ] = 3000.0,
     form: FormatOption = "text",
 ) -> None:
@@ -48,8 +48,8 @@ def machine_check(name: MachineArgument) -> None:
 @machine_app.command("circle", epilog=epilog("machine circle"))
 def machine_circle(
     machine: Annotated[str, typer.Option("--machine", help="Name or machine.toml.")] = "mill4",
-    radius: Annotated[float, typer.Option("--radius", help="Of the circle (mm).")] = 50.0,
-    feed: Annotated[float, typer.Option("--feed", help="Along the circle (mm/min).")] = 3000.0,
+    radius: Annotated[float, typer.Option("--radius", help="Radius of the circle (mm).")] = 50.0,
+    feed: Annotated[float, typer.Option("--feed", help="Feed along the circle (mm/min).")] = 3000.0,
     plane: Annotated[
         str, typer.Option("--plane", help="XY, ZX, YZ; with the table XYC, ZXB, YZA.")
     ] = "XY",

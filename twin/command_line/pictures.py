@@ -35,7 +35,7 @@ _Camera = Annotated[
     list[str] | None,
     typer.Option("--camera", help="One after the other; part and riding fit any machine."),
 ]
-_Split = Annotated[bool, typer.Option("--split", help="All cameras at once.")]
+_Split = Annotated[bool, typer.Option("--split", help="Show all cameras at once.")]
 _Display = Annotated[
     bool | None,
     typer.Option("--display/--no-display", help="Program, axes and error over the picture."),

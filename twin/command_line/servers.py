@@ -42,13 +42,15 @@ def train(
         ),
     ] = None,
     host: Annotated[
-        str | None, typer.Option("--host", help="Listen there; needs --certificate.")
+        str | None, typer.Option("--host", help="Address to listen at; needs --certificate.")
     ] = None,
     port: Annotated[
         int, typer.Option("--port", min=0, max=65535, help="0: the first free from 8080.")
     ] = 0,
-    certificate: Annotated[Path | None, typer.Option("--certificate", help="For https.")] = None,
-    key: Annotated[Path | None, typer.Option("--key", help="Of the certificate.")] = None,
+    certificate: Annotated[
+        Path | None, typer.Option("--certificate", help="Certificate for https.")
+    ] = None,
+    key: Annotated[Path | None, typer.Option("--key", help="Key of the certificate.")] = None,
     out: Annotated[
         Path | None,
         typer.Option(
@@ -101,11 +103,13 @@ def serve(
     job: Annotated[
         Path | None,
         typer.Argument(
-            metavar="PROGRAM|JOB.toml", help="Made again and again.", show_default=False
+            metavar="PROGRAM|JOB.toml",
+            help="Program or job, run again and again.",
+            show_default=False,
         ),
     ] = None,
     scene: Annotated[
-        str | None, typer.Option("--scene", help="A training room instead; it opens.")
+        str | None, typer.Option("--scene", help="Open this training room in place of a program.")
     ] = None,
     host: Annotated[str, typer.Option("--host", help="Address to listen at.")] = "127.0.0.1",
     port: Annotated[
@@ -113,15 +117,17 @@ def serve(
     ] = 0,
     speed: Annotated[
         float,
-        typer.Option("--speed", min=0.01, max=1000.0, help="How much faster than the day."),
+        typer.Option("--speed", min=0.01, max=1000.0, help="Times faster than real time."),
     ] = 1.0,
     buffer: Annotated[
         int,
-        typer.Option("--buffer", min=100, max=1 << 24, help="Observations that are remembered."),
+        typer.Option("--buffer", min=100, max=1 << 24, help="Observations that are kept."),
     ] = 1 << 17,
     opcua: Annotated[
         int | None,
-        typer.Option("--opcua", metavar="PORT", min=1, max=65535, help="OPC UA beside MTConnect."),
+        typer.Option(
+            "--opcua", metavar="PORT", min=1, max=65535, help="Serve OPC UA too, at this port."
+        ),
     ] = None,
     opcua_trust: Annotated[
         Path | None,

@@ -25,10 +25,12 @@ def check(
     json_file: JsonOption = None,
     form: FormatOption = "text",
     baseline: Annotated[
-        Path | None, typer.Option("--baseline", help="Hold runs to the baselines in this folder.")
+        Path | None,
+        typer.Option("--baseline", help="Compare runs with the baselines in this folder."),
     ] = None,
     update_baseline: Annotated[
-        bool, typer.Option("--update-baseline", help="Store baselines instead.")
+        bool,
+        typer.Option("--update-baseline", help="Store baselines in place of comparing with them."),
     ] = False,
     changed: Annotated[
         bool,
@@ -47,7 +49,7 @@ def check(
     strict: StrictOption = False,
 ) -> None:
     """Run many programs without pictures; one table, exit 1 if any falls short."""
-    from twin.check.discovery import checkable
+    from twin.check.dependents import dependents
     from twin.check.task import CheckSettings
     from twin.commands.check import check_and_print, write_forms
 
@@ -56,7 +58,7 @@ def check(
         update_baseline=update_baseline, reports=reports,
     )  # fmt: skip
     if changed:
-        paths = [str(path) for path in checkable(map(Path, paths))]
+        paths = [str(path) for path in dependents(map(Path, paths), machine=machine)]
         if not paths:
             typer.echo(
                 "no program or job has to do with these files: nothing was checked", err=True
@@ -111,7 +113,7 @@ def sweep(
 
 def compare(
     first: Annotated[Path, typer.Argument(help="Recording, or log.", show_default=False)],
-    second: Annotated[Path, typer.Argument(help="The same.", show_default=False)],
+    second: Annotated[Path, typer.Argument(help="Recording, or log.", show_default=False)],
     form: FormatOption = "text",
     period: Annotated[
         float | None, typer.Option("--period", help="Sample period of logs without time (s).")
@@ -140,11 +142,17 @@ def export(
     recording: Annotated[
         Path | None, typer.Argument(help="recording.h5", show_default=False)
     ] = None,
-    out: Annotated[Path | None, typer.Option("--out", help="Default: beside it, .csv.")] = None,
-    every: Annotated[int, typer.Option("--every", help="Write one of so many samples.")] = 1,
+    out: Annotated[
+        Path | None, typer.Option("--out", help="CSV file; default: next to the recording.")
+    ] = None,
+    every: Annotated[int, typer.Option("--every", help="Write every Nth sample.")] = 1,
     fmu: Annotated[
         str | None,
-        typer.Option("--fmu", metavar="MACHINE", help="A unit for co-simulation (FMI 3) instead."),
+        typer.Option(
+            "--fmu",
+            metavar="MACHINE",
+            help="Write a unit for co-simulation (FMI 3) in place of CSV.",
+        ),
     ] = None,
 ) -> None:
     """Write a recording as CSV, units in the header; or a machine for other simulators."""

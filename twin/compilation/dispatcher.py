@@ -17,7 +17,7 @@ _WITHOUT_WRAPPERS = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 
 class KernelDispatcher(CPUDispatcher):
-    """What is in the place of a kernel's function.
+    """Replaces a kernel's function.
 
     The function is lowered once for each type of its arguments, as a part. Machine code is made of it
     when Python calls it, and kept; a kernel that is called by kernels alone has none.

@@ -60,7 +60,7 @@ class OperatorOperation:
     Attributes:
         tool: The tool.
         length_difference: How much lower its tip is than that which positions count for [mm].
-        speed: How fast the spindle shall turn [1/min], negative counter-clockwise; None: not known.
+        speed: Commanded speed of the spindle [1/min], negative counter-clockwise; None: not known.
     """
 
     def __init__(self, tool: ToolTable) -> None:
@@ -70,7 +70,7 @@ class OperatorOperation:
 
     @property
     def speed_at_start(self) -> float:
-        """As it was reported before."""
+        """The speed as last set."""
         return self.speed or 0.0
 
     def turnings(self, setpoints: Setpoints) -> Iterator[Turning]:

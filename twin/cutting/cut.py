@@ -69,7 +69,7 @@ class Cutter:
                 rapid, a feed with the spindle off, shank, holder or head. The part is then as it
                 was at that moment.
             head: What is above a tool's holder; None: nothing.
-            tilts: Whether the tool ever is off the part's Z: the material is then described by
+            tilts: Whether the tool is ever tilted from the part's Z: the material is then described by
                 intervals along three directions, else by a height map.
 
         Raises:

@@ -1,4 +1,4 @@
-"""What a program says beside its moves, by the number of the move that it holds from."""
+"""What a program says in addition to its moves, by the number of the move that it holds from."""
 
 import bisect
 import dataclasses
@@ -79,7 +79,7 @@ class PlacedPart(NamedTuple):
     zero: FloatArray
 
     def tilts(self, axes: FloatArray) -> bool:
-        """Whether the tool ever is off the part's Z, part coordinates of shape (n, k) [mm or deg]."""
+        """Whether the tool is ever tilted from the part's Z, part coordinates of shape (n, k) [mm or deg]."""
         return self.frame.tilts(axes + self.zero)
 
     def tip(self, axes: FloatArray, length_difference: FloatArray | float) -> FloatArray:
@@ -96,7 +96,7 @@ class PlacedPart(NamedTuple):
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
 class ProgramSummary:
-    """What a whole program says beside its moves.
+    """What a whole program says in addition to its moves.
 
     Attributes:
         tools: What is in the spindle when, at which speed.
@@ -164,7 +164,7 @@ class SummaryBuilder:
         Args:
             job: Its tools are those that the program may bring.
             spindle: As the machine and the control have it; None: without a limit.
-            part: Where the part is on the machine; None: the tool never is off its Z.
+            part: Where the part is on the machine; None: the tool is never tilted from its Z.
         """
         self._tools = {tool.number: tool for tool in job.tools}
         # Without a list of tools every number means the default tool, as in a run without one.

@@ -1,7 +1,7 @@
 """The twin under a control that asks for a position every servo period and waits for the answer.
 
 Time stands still while nobody asks, so that a stall on either side delays both and is none of the
-machine's. The drives are commanded no more than the positions: velocity and acceleration are backward
+machine's. The drives are sent positions only: velocity and acceleration are backward
 differences of them. Commands are rounded as a recording rounds them before they are used, so that
 a recording, played back, gives the joints of the run bit for bit.
 """

@@ -28,8 +28,8 @@ from twin.motion.pieces.pieces import BATCH, Pieces, blocks_to_cut, cut
 from twin.motion.steps import Step
 from twin.nc.canonical import Chunk, Corner, FloatArray, IntArray
 
-MOST_BLOCKS = 64
-"""Between two stops: of more, stops do not make up for what passing their corners gains."""
+MOST_BLOCKS = 512
+"""Between two stops, for stopping everywhere to be tried: of more, a plan takes too long beside what it may gain."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)

@@ -18,7 +18,7 @@ from twin.motion.phases_of_pieces import seconds_alone
 from twin.motion.pieces.pieces import Pieces, cut
 from twin.nc.canonical import Corner, IntArray
 
-MOST_SLOW_ARCS = 64
+MOST_SLOW_ARCS = 512
 """In a path for which the exact one is tried: arcs that are slower than the feed get a time law of their own, which
 takes most of a plan."""
 

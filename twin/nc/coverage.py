@@ -61,7 +61,7 @@ class Coverage:
         try:
             blocks = lexer.blocks(self._source.lines[line - 1], line)
         except ProgramError:
-            return False  # what cannot be read reports no motion
+            return False  # what cannot be read has no motion
         codes = self._dialect.codes.g
         return any(
             any(word.address in self._dialect.words.axes for word in block.words)

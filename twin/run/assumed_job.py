@@ -16,7 +16,7 @@ from twin.job.load import ASSUMED, Job, Layer
 from twin.machine.description.config import Machine
 from twin.nc.canonical import Chunk, FloatArray, Function, Motion, Moves, concatenate
 from twin.nc.dialects.recognition import comments_of, without_comments
-from twin.nc.functions import TOOL_CHANGE
+from twin.nc.functions import SPINDLE_SPEED, SPINDLE_STARTS, TOOL_CHANGE
 from twin.nc.interpreter import Interpretation
 from twin.nc.text.diagnostics import ProgramError
 from twin.run.layout import lay_out
@@ -29,7 +29,7 @@ from twin.run.reading.assumed_stock import (
     top_of_stock,
     turns_about_x,
 )
-from twin.run.reading.assumed_tools import BELOW, tool_lines
+from twin.run.reading.assumed_tools import BELOW, SPEED_BY_HAND, tool_lines
 from twin.run.reading.declared import declared_stock, declared_tools
 
 _MACHINE_ZERO_UNKNOWN = "no-machine-zero"
@@ -101,6 +101,7 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
     blank = declared_stock(functions)
     top = top_of_stock(moves) if blank is None else float(blank.top[2])
     worn = {number for number, tool in preparation.settings.tools.items() if not tool.radius}
+    by_hand = _speed_is_set_by_hand(functions)
     tools, told, diameter = tool_lines(
         calls,
         comments,
@@ -110,6 +111,7 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
         top=top,
         least_length=length,
         worn=worn,
+        by_hand=by_hand,
     )
     stock, position, said = blank or assumed_stock(moves, comments, diameter / 2.0, inches=inches)
     lines = [
@@ -138,7 +140,16 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
     left_out = tuple(f"{word} stays at 0: the machine has no such axis" for word in lacking)
     rapids = f"rapids may leave their path by {_RAPID_TOLERANCE_UM:g} µm"
     told += [rapids] if (moves.motion == Motion.RAPID).any() else []
+    speed = f"the spindle turns at {SPEED_BY_HAND:g} /min, set by hand, where the program starts it: it holds no S"
+    told += [speed] if by_hand else []
     return AssumedJob("\n".join(lines), (*preparation.reading.notes, said, *told, *left_out))
+
+
+def _speed_is_set_by_hand(functions: Iterable[Function]) -> bool:
+    """Whether a program starts the spindle and never gives it a speed, as for routers with a dial."""
+    started = {each.word for each in functions if each.word in SPINDLE_STARTS}
+    speeds = [each for each in functions if each.word == SPINDLE_SPEED or "S" in each.arguments]
+    return bool(started) and not speeds
 
 
 def _least_length(machine: Machine, moves: Moves) -> float:

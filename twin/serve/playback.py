@@ -26,9 +26,9 @@ from twin.toolpath.part_frame import PartFrame
 TICK_S = 0.01
 """Machine time between two observations of the axes [s]."""
 BEFORE_START_S = 1.0
-"""How long the machine is ready before each part [s]."""
+"""How long the machine stays ready before each part [s]."""
 STANDSTILL_S = 5.0
-"""How long it is with an alarm before somebody resets it [s]."""
+"""How long an alarm stays active before somebody resets it [s]."""
 _WAKE_S = 0.02
 """Pause between two looks at the clock [s]."""
 _TICKS_AT_ONCE = 100

@@ -190,7 +190,7 @@ class PartFrame:
         return int(self.chain.column[tables[-1]]), self.chain.anchor[tables[-1]]
 
     def tilts(self, joints: FloatArray) -> bool:
-        """Whether the tool ever is off the part's Z, joints of shape (n, k) [mm or deg]."""
+        """Whether the tool is ever tilted from the part's Z, joints of shape (n, k) [mm or deg]."""
         if self.chain is None:
             return False
         return bool(np.any(self.tool_direction(joints)[:, 2] < _ALONG_Z))

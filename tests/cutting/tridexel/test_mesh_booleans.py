@@ -22,6 +22,8 @@ SECTIONS = 256
 ROUND = math.sqrt(2.0 * math.pi / SECTIONS / math.sin(2.0 * math.pi / SECTIONS))
 FLUTE_MM = 25.0
 CELL_MM = 0.1
+MESHED = (0, 3)
+"""A bar and a block whose meshes are compared too: that takes ten seconds and a gigabyte for each."""
 
 
 def revolved(tool: ToolTable) -> trimesh.Trimesh:
@@ -41,7 +43,7 @@ def revolved(tool: ToolTable) -> trimesh.Trimesh:
 
 
 def swept(tool: ToolTable, start: FloatArray, end: FloatArray, axis: FloatArray) -> trimesh.Trimesh:
-    """A convex tool on a straight way: the hull of both ends."""
+    """A convex tool on a straight path: the hull of both ends."""
     mesh = revolved(tool)
     mesh.apply_transform(trimesh.geometry.align_vectors([0.0, 0.0, 1.0], axis))
     return trimesh.convex.convex_hull(np.concatenate([mesh.vertices + start, mesh.vertices + end]))
@@ -75,10 +77,14 @@ def test_indexed_cuts(seed: int) -> None:
         )
     removed, other_removed = before - volume(part), other_before - other.volume
     assert removed == pytest.approx(other_removed, rel=1e-3)
-    mesh = part_mesh(part)
+    if seed in MESHED:
+        assert apart(part_mesh(part), other) < 3e-3 * other_removed
+
+
+def apart(mesh: trimesh.Trimesh, other: trimesh.Trimesh) -> float:
+    """Volume that one of two parts has and the other has not [mm³]."""
     assert mesh.is_watertight
-    apart = sum(
+    return sum(
         trimesh.boolean.difference(pair, engine="manifold").volume
         for pair in ([mesh, other], [other, mesh])
     )
-    assert apart < 3e-3 * other_removed

@@ -151,7 +151,7 @@ def test_on_a_constant_acceleration_the_lag_grows_as_its_closed_form_says():
     ],
 )
 def test_the_recorded_force_is_what_accelerates_the_axis(told: dict[str, float]):
-    """Whatever the drive is commanded in advance, and although it holds it over a step."""
+    """With any feed-forward, although the drive holds it over a step."""
     machine = shipped_machine(**told)
     samples = run(machine, line(0, 400.0, 0.4))
     moved = drives(machine, build_spec(machine).compile())[0].moved

@@ -58,7 +58,7 @@ def for_rs274(text: str) -> tuple[str, frozenset[str]]:
 
     It remembers a break, even of a loop that was passed over, until a do loop ends, which it then ends:
     behind each while loop that may break an empty do loop stands, which takes the break away. M61
-    leaves its tool table as it was: M6 is in its place.
+    leaves its tool table as it was: M6 is written in place of it.
     """
     looped = list(_with_empty_loops(text.split("\n")))
     loaded = list(_with_tools(looped))

@@ -70,7 +70,7 @@ def find_cycle(log: MachineLog, rows: tuple[tuple[int, int], ...]) -> float:
 
 
 def axes_with_ramps(log: MachineLog) -> list[str]:
-    """Axes whose columns report ramps."""
+    """Axes whose columns suffice to fit their ramps."""
     return [name for name, axis in log.axes.items() if set(NEEDED) <= set(axis.more)]
 
 

@@ -21,7 +21,7 @@ _OUTLIER = 2.0
 _STILL = 0.02
 """An axis slower than this share of its greatest speed counts as standing."""
 _REACHES = 0.3
-"""Share of the rapid velocity that a log must reach to report friction that grows with speed."""
+"""Share of the rapid velocity that a log must reach to show friction that grows with speed."""
 _TOO_SLOW = "the log is too slow to show how the position loop settles"
 _UNDETERMINED = {
     "kv": _TOO_SLOW,

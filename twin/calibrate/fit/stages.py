@@ -51,7 +51,7 @@ class AxisFit:
         parameters: Those of the machine file and of the log.
         fitted: What the log determines, by name.
         conditional: What it determines only as long as a base's value is true: name to interval and
-            the names that it is on.
+            the names that it depends on.
         undetermined: What it does not determine, and why.
         names: In the order of ``correlations``.
         correlations: Of what was fitted, shape (p, p).

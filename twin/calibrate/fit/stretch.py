@@ -21,7 +21,7 @@ class Sound:
 
     Attributes:
         command: The others repeat the one before, or are spikes.
-        actual: The same of the actual position, and of what is beside a force that was cut off.
+        actual: The same of the actual position, and of what follows a force that was cut off.
         force: The same of force or current.
     """
 

@@ -1,7 +1,7 @@
 """Servo drives: gains derived from what they move, never typed.
 
 Each axis is one ``<intvelocity>`` actuator, whose input is integrated to the position setpoint p
-(``sampling`` says why), and a ``<motor>`` that adds what the drive is commanded in advance. On the joint
+(``sampling`` says why), and a ``<motor>`` that adds the drive's feed-forward. On the joint
 q they push together with
 
     F = kp (p - q) - kv q' + ff.
@@ -168,7 +168,7 @@ def is_unstable(drive: Drive) -> bool:
 
 
 def feedforward_name(axis: str) -> str:
-    """Name of the actuator that adds what an axis's drive is commanded in advance."""
+    """Name of the actuator that adds an axis's feed-forward."""
     return f"{axis} feed-forward"
 
 

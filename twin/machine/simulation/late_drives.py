@@ -140,7 +140,7 @@ class LateDrives:
     def _force(
         self, now: tuple[FloatArray, FloatArray], late: tuple[FloatArray, FloatArray]
     ) -> FloatArray:
-        """What a dead time adds to what a drive is commanded in advance, for velocities and accelerations."""
+        """What a dead time adds to a drive's feed-forward of velocity and acceleration."""
         drives, dead = self._drives, self._half > 0.0
         behind = [2.0 * dead * (after - at) for at, after in zip(now, late, strict=True)]
         force = (

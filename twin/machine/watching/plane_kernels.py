@@ -19,7 +19,7 @@ class PlaneColumns(NamedTuple):
         place: Where that geom's track was when it was measured, shape (p, w).
         reach: Farthest that a point of the geom is displaced by turning [mm/rad], shape (p,).
         slack: 1 where there is no plane, and any displacement may bring the two together; else 0.
-        track: Which track reports each pair, shape (p,).
+        track: Number of the track of each pair, shape (p,).
         near: As in ``least_clearance``, shape (p,).
         threshold: Likewise.
     """

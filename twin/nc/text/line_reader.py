@@ -17,6 +17,7 @@ from twin.nc.text.expressions import (
 from twin.nc.text.grammar import Grammar
 from twin.nc.text.plain_word import BLANKS
 from twin.nc.text.reporter import Reporter
+from twin.nc.text.slips import NESTED_COMMENT
 from twin.nc.text.unreadable import Unreadable
 
 LARGEST_LABEL = 4_294_967_295
@@ -150,7 +151,7 @@ class LineReader:
         again = text.find(begun.opening, len(begun.opening))
         if not begun.holds_opening and 0 <= again < text.find(begun.closing):
             message = f"a comment that '{begun.opening}' began holds no further '{begun.opening}'"
-            self._fail("open-comment", message, at + again, hint="close the first comment before")
+            self._fail("open-comment", message, at + again, hint=NESTED_COMMENT)
         message = f"the comment is not closed by '{begun.closing}'"
         self._fail("open-comment", message, at, hint="close it on its own line")
 

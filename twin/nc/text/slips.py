@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 _MOST_NEAR = 4
+NESTED_COMMENT = "close the first comment before, or leave the inner ( ) out"
 
 
 class Slip(NamedTuple):
@@ -28,6 +29,7 @@ def _slip(pattern: str, hint: str, statement: str = "", *, foreign: bool = False
 
 
 SLIPS: tuple[Slip, ...] = (
+    _slip(r"\([^()]*\([^()]*\)[^()]*\)", NESTED_COMMENT),
     _slip(
         r"(?<![A-Z])[A-Z][ \t]*[-+]?[0-9.]*O[O0-9.]*(?![A-Z<\[#])",
         "the letter O is no 0",

@@ -138,6 +138,9 @@ _SAYS_DIAMETER = re.compile(
 )
 """Comments that speak of a tool's diameter."""
 USUAL_LENGTH, _USUAL_FLUTE = 60.0, 25.0
+SPEED_BY_HAND = 10_000.0
+"""What a spindle turns at whose speed no program sets: the dials of trim routers reach from there to 30,000 [1/min]."""
+_SPEED_LINE = f"speed = {SPEED_BY_HAND}  # 1/min: a guess"
 _NEAR_LINES = 3
 """So far from the call of a tool a comment may stand that describes it."""
 BELOW = 1e-6
@@ -154,6 +157,7 @@ def tool_lines(
     top: float,
     least_length: float,
     worn: Collection[int] = (),
+    by_hand: bool = False,
 ) -> tuple[list[str], list[str], float]:
     """Lines of the tools that the program calls, how each came about, and the largest diameter [mm].
 
@@ -166,6 +170,7 @@ def tool_lines(
         top: Of the stock [mm].
         least_length: So long is each tool at least [mm].
         worn: Tools of which the control's table holds the wear alone.
+        by_hand: The spindle's speed is set by hand.
     """
     called = dict.fromkeys(number for number, _, _ in calls)
     numbers = [number for number in called if number or _feeds(0, calls, moves)] or [1]
@@ -184,7 +189,7 @@ def tool_lines(
         more, said, diameter = _tool_table(
             (number, tool), moves, rows, top=top, least_length=least_length, worn=number in worn
         )
-        lines += more
+        lines += [*more, *([_SPEED_LINE] if by_hand else []), ""]
         told.append(said)
         largest = max(largest, diameter)
     return lines, told, largest
@@ -295,7 +300,6 @@ def _tool_table(
         *(["radius_offset = 0.0  # D holds its wear alone"] if worn else []),
         f"flute = {flute:.1f}  # mm: a guess",
         f"length = {length:.1f}  # from the spindle nose to the tip, mm: a guess",
-        "",
     ]
     said = f"T{number} {kind} of {diameter:g} mm: " + (
         f"from its comment ({_plain(tool.text)})"

@@ -48,8 +48,8 @@ class EdgeFinder:
         """Give way to the part.
 
         Args:
-            touch: How the tip is to it.
-            turns: Whether the spindle turns: an electronic one must stand.
+            touch: Where the tip is relative to the part.
+            turns: Whether the spindle turns: an electronic one must not.
 
         Returns:
             Why it has broken; empty: it has not.

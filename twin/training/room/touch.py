@@ -1,4 +1,4 @@
-"""How near the end of a standing tool is to the part as it has been cut so far."""
+"""How near the end of a stopped tool is to the part as it has been cut so far."""
 
 import math
 from typing import NamedTuple
@@ -17,7 +17,7 @@ FAR_MM = 1e3
 
 
 class Touch(NamedTuple):
-    """How a tool's end is to the part.
+    """Where a tool's end is relative to the part.
 
     Attributes:
         gap: Between the two; negative: so deep the end is in the material [mm].

@@ -168,7 +168,7 @@ class Workpiece:
         self.mount(self._cutter.tool)
 
     def touch(self, tip: FloatArray) -> Touch:
-        """How the end of the tool is to the part.
+        """Where the end of the tool is relative to the part.
 
         Args:
             tip: Machine coordinates of the tip, shape (k,) [mm or deg].

@@ -101,7 +101,7 @@ class KeptMap:
                 yield slice(row, row + TILE), slice(column, column + TILE)
 
     def __deepcopy__(self, _memo: dict[int, Any]) -> Cells:
-        """In a room that goes on the map is in its place."""
+        """Copied as the map itself, with which a room can continue."""
         return self.laid_out()
 
     def laid_out(self) -> Cells:

@@ -32,7 +32,7 @@ class FagorMemory:
         part_frame: What #MCS has put aside while machine coordinates are in force, or None.
         offset_on: The tool in the spindle has its offset.
         polar_origin: In the working plane, from part zero [mm].
-        polar_radius: R as programmed last [mm]; NaN: it is seen from where the tool is.
+        polar_radius: R as programmed last [mm]; NaN: computed from where the tool is.
         polar_angle: Q as programmed last, likewise [deg].
         signs: Of X, Y and Z, -1 where they are mirrored.
         scale: Of all three.

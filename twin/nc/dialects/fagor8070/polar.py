@@ -24,7 +24,7 @@ class Goal:
 
 
 def forget_polar(control: Control) -> None:
-    """The last polar values no longer hold: they are seen again from where the tool is."""
+    """The last polar values no longer hold: they are computed again from where the tool is."""
     memory = memory_of(control)
     memory.polar_radius = memory.polar_angle = math.nan
 

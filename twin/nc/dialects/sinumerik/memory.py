@@ -118,7 +118,7 @@ class SinumerikMemory:
         carried: How far the last change of a frame has moved programmed coordinates, which the next
             incremental word of an axis makes up for, shape (k,) [mm or deg].
         pole: In the working plane [mm].
-        polar_radius: RP as programmed last [mm]; NaN: it is seen from where the tool is.
+        polar_radius: RP as programmed last [mm]; NaN: computed from where the tool is.
         polar_angle: AP as programmed last, likewise [deg].
         tool_on: The tool in the spindle has its offset D.
         unit: Of lengths, as it was before the block [mm].

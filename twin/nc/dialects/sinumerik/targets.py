@@ -20,7 +20,7 @@ POLAR_WORDS = frozenset(("AP", "RP"))
 
 
 def forget_polar(control: Control) -> None:
-    """The last polar values no longer hold: they are seen again from where the tool is."""
+    """The last polar values no longer hold: they are computed again from where the tool is."""
     memory = memory_of(control)
     memory.polar_radius = memory.polar_angle = math.nan
 
