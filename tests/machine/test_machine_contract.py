@@ -4,6 +4,8 @@ import shutil
 
 import pytest
 
+from twin.commands.machine import print_check
+from twin.errors import ExitCode
 from twin.files.shipped import machine_file, machine_names, variant_names
 from twin.machine.check import check_machine
 from twin.machine.circle.circular_test import circular_test
@@ -50,6 +52,8 @@ def broken(tmp_path, file: str, old: str, new: str) -> dict[str, tuple[str, ...]
         ("mill4.xml", '<camera name="tool"', '<camera name="nose"', POINTS[3], "camera 'tool' is missing"),
         ("mill4.xml", 'group="2" mass="0"', 'group="2" mass="5"', POINTS[3], "geoms add to the masses"),
         ("mill4.xml", "</worldbody>", "</worldbody><custom/>", POINTS[2], "unknown section 'custom'"),
+        ("mill4.xml", '<site name="spindle_nose"/>', '<site name="spindle_nose"/><site name="spindle_nose2"/>', POINTS[7], "site 'spindle_nose2' is a second spindle"),
+        ("mill4.xml", '<body name="base"', '<body name="spindle_2"/><body name="base"', POINTS[7], "body 'spindle_2' is a second spindle"),
         ("README.md", "## Quality", "## Grade", POINTS[1], "no section 'Quality'"),
     ],
 )  # fmt: skip
@@ -58,12 +62,15 @@ def test_a_broken_contract_is_seen(tmp_path, file, old, new, point, fault):
     assert any(fault in found for found in faults.get(point, ())), faults
 
 
-def test_a_missing_file_is_named(tmp_path):
+def test_a_missing_file_is_named_and_no_failure_of_a_machine_that_does_not_ship(tmp_path, capsys):
     folder = tmp_path / "mill4"
     shutil.copytree(machine_file("mill4").parent, folder)
     (folder / "LICENSE").unlink()
-    findings = check_machine(read_machine(folder / "machine.toml"))
-    assert findings[0].faults == ("LICENSE is missing",)
+    assert print_check(str(folder / "machine.toml")) == ExitCode.OK
+    printed = capsys.readouterr().out
+    assert "note   the folder is complete (asked of machines that ship)\n" in printed
+    assert "         LICENSE is missing\n" in printed
+    assert "FAULT" not in printed
 
 
 def test_a_model_that_does_not_compile_is_a_finding_and_no_traceback(tmp_path):

@@ -49,7 +49,7 @@ def circle(radius: float, turns: float, places: int = 160) -> Path:
 
 
 def helix(radius: float, turns: float, advance: float, turned: float, places: int) -> Path:
-    """A helix about Z whose feed counts the way along it, with C going on evenly.
+    """A helix about Z whose feed counts the path along it, with C going on evenly.
 
     Args:
         radius: [mm]

@@ -77,6 +77,15 @@ def test_moves_under_compensation_say_that_they_are_those_of_the_tool_centre() -
     assert moves[2]["end"]["X"] == pytest.approx(-5.0)
 
 
+def test_moves_beside_a_contour_of_heidenhain_say_so_too() -> None:
+    text = "BEGIN PGM P MM\nTOOL CALL 1 Z S1000\nL X-20 Y+0 R0 FMAX\nL X+0 RL F100\nL Y+30\nL X+50 R0\nEND PGM P MM\n"
+    made = Interpretation(source_from_text(text), dialect_named("heidenhain"), TWO_TOOLS)
+    moves = [each for each in all_records(made) if each["type"] == "move"]
+    assert [(each["line"], "tool_center" in each) for each in moves] == [
+        (3, False), (4, True), (5, True), (6, False),
+    ]  # fmt: skip
+
+
 def test_what_the_screen_shows_as_the_position_is_not_said_twice() -> None:
     text = "G21 G90 G54\nG0 X-20. Y0.\nG1 Z-5. F100.\nM30\n"
     made = Interpretation(source_from_text(text), dialect_named("fanuc"), TWO_TOOLS)

@@ -276,9 +276,10 @@ def test_every_dialect_refuses_and_the_one_that_reads_farthest_says_why(tmp_path
     assert "--dialect" in str(raised.value)
 
 
-def test_comments_alone_are_an_empty_program(tmp_path: Path) -> None:
+@pytest.mark.parametrize("data", [b"(nothing)\n%\n", b"\0" * 300, b"\0\0\r\n\0"])
+def test_comments_or_blank_tape_alone_are_an_empty_program(data: bytes, tmp_path: Path) -> None:
     path = tmp_path / "part.nc"
-    path.write_text("(nothing)\n%\n")
+    path.write_bytes(data)
     with pytest.raises(EmptyProgramError):
         prepare(path)
 

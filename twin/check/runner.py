@@ -72,7 +72,7 @@ def check_all(
                 began = time.perf_counter()
                 patience_s = LONG_S if at_a_time < workers else None
                 done, _ = concurrent.futures.wait(running, patience_s, FIRST_COMPLETED)
-                # The first program takes the worker's own start besides.
+                # The first program also takes the worker's own start.
                 left_s = (time.perf_counter() - began) * len(waiting) * is_warm
                 if not done or left_s > WORKER_PAYS_S:
                     at_a_time = workers

@@ -178,7 +178,7 @@ def _first_of(reasons: Iterator[Reason]) -> list[Reason]:
 
 
 class _Pair(NamedTuple):
-    """What is beside each other: a stored block, a block of the program, or both."""
+    """A pair that was matched: a stored block, a block of the program, or both."""
 
     before: Entry | None
     now: Entry | None

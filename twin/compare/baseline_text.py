@@ -39,7 +39,7 @@ _DECIMALS = 6
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class RunFigures:
-    """What a baseline keeps beside the path.
+    """What a baseline keeps in addition to the path.
 
     Attributes:
         cycle_time_s: Machine time of the program [s].

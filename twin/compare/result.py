@@ -22,7 +22,7 @@ BLOCKS_KEPT = 1000
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
 class RunSummary:
-    """What the result says beside the figures; the caller knows it.
+    """What the result says in addition to the figures; the caller knows it.
 
     Attributes:
         program: Name of the program, as the user gave it.

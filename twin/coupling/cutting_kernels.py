@@ -139,7 +139,7 @@ def _go_to(
         turn = math.radians(axis_place(drives, state, place.rotary) - place.turn_zero)
         cosine, sine = math.cos(turn), math.sin(turn)
     tip = (cosine * x - sine * y, sine * x + cosine * y, z)
-    # A chip is as thick as the way between two teeth: the speed in the mean of that time.
+    # A chip is as thick as the path between two teeth: the speed in the mean of that time.
     share = share_of_tooth(cut.tool, memory, drives.period)
     for k in range(3):
         if numbers[CutNumber.FRESH] > 0.0:

@@ -179,7 +179,7 @@ def _go_to(
 
 @array_kernel
 def _carry(chain: Chain, tip: FloatArray, pose: Pose) -> None:
-    """Carry a tool from joint to joint: tip, frame, and the way of the tip by each axis.
+    """Carry a tool from joint to joint: tip, frame, and the displacement of the tip by each axis.
 
     Args:
         chain: The chain.

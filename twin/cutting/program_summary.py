@@ -1,4 +1,4 @@
-"""What a program says beside its moves, by the number of the move that it holds from."""
+"""What a program says in addition to its moves, by the number of the move that it holds from."""
 
 import bisect
 import dataclasses
@@ -96,7 +96,7 @@ class PlacedPart(NamedTuple):
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
 class ProgramSummary:
-    """What a whole program says beside its moves.
+    """What a whole program says in addition to its moves.
 
     Attributes:
         tools: What is in the spindle when, at which speed.

@@ -125,7 +125,7 @@ def _cut_rim(height_map: HeightMap, band: IntArray) -> tuple[IntArray, FloatArra
         band: The cells near the edge, counted through the map's heights.
 
     Returns:
-        The cells, the way from each one's middle to its wall, shape (n, 2) [mm], and the height at
+        The cells, the displacement from each one's middle to its wall, shape (n, 2) [mm], and the height at
         the wall's foot, shape (n,) [mm]; of a cut so thin that it took no cell at all, none.
     """
     heights, size = height_map.heights, height_map.cell

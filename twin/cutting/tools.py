@@ -37,7 +37,7 @@ EMPTY_SPINDLE = ToolTable(
 def default_cell(tools: Iterable[ToolTable], stock: StockTable) -> float:
     """Grid for a job that names none: a tenth of the smallest tool's radius, 0.1 mm at least [mm].
 
-    A stock that is small beside its tools still gets ``FEWEST_CELLS`` along its shorter side.
+    A stock that is small compared with its tools still gets ``FEWEST_CELLS`` along its shorter side.
     """
     width, depth, _ = stock.extent
     tenth = 0.05 * min(tool.diameter for tool in tools if tool.length != EMPTY_SPINDLE.length)

@@ -353,7 +353,7 @@ class JobFile(Table):
     tool_change: ToolChangeTable = ToolChangeTable()
     """Where Z goes by itself before a tool changes; it comes before the machine's."""
     fixtures: tuple[FixtureTable, ...] = ()
-    """What holds the part, beside what the machine file puts on its table."""
+    """What holds the part, in addition to what the machine file puts on its table."""
     cutting_load: bool = False
     """The cutting force pushes the axes; the stock's material and a spindle speed must be known. With
     ``cutting_force = "teeth"`` it does so without this key."""
@@ -373,7 +373,7 @@ class JobFile(Table):
     variables: dict[str, float] = Field(default_factory=dict)
     """Values of variables that the program reads but does not set, by their name in it."""
     m_functions: MachineFunctions = Field(default_factory=dict)
-    """M codes of the machine's builder that the program holds, beside those of the machine file:
+    """M codes of the machine's builder that the program holds, in addition to the machine file's:
     ``M10 = "clamp the table"``, with a time ``M22 = { meaning = "pallet", dwell = 4.0 }``."""
     block_skip: bool | tuple[Annotated[int, Field(ge=1, le=9)], ...] = False
     """Blocks that begin with a slash are left out; ``[1, 3]``: those with ``/``, ``/1`` and ``/3``."""

@@ -20,7 +20,7 @@ _NANOSECONDS = 1e9
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
 class Settings:
-    """What a configuration says beside the machine.
+    """What a configuration says in addition to the machine.
 
     Attributes:
         display: The command line of LinuxCNC's screen.

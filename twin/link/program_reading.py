@@ -125,7 +125,7 @@ def _error(program: Path, lines: Sequence[str], told: str) -> LinuxcncProgramErr
 
 
 class _Writer:
-    """Follows canonical calls and writes what moves, and what the twin wants to know beside."""
+    """Follows canonical calls and writes what moves, and what else the twin needs to know."""
 
     def __init__(self, axes: Axes, part_zero: FloatArray) -> None:
         self._axes = axes

@@ -13,7 +13,9 @@ import mujoco
 import numpy as np
 
 from twin.errors import TwinError
+from twin.files.shipped import is_shipped
 from twin.machine.description.config import Machine
+from twin.machine.description.kinematics import SPINDLE_NOSE, TABLE_TOP
 from twin.machine.model.drives import reflected_inertia
 from twin.machine.model.model import MachineModel, build_spec, compiled, drives, physics_model
 from twin.machine.simulation.simulate import simulate
@@ -34,6 +36,11 @@ _STILL = 1e-3
 _ROUNDED = 0.01
 """Share by which a gain written in the MJCF file may differ from the derived one."""
 
+_NUMBERED_SPINDLE = re.compile(r"spindle[ _-]?(\d+|[a-z])", re.IGNORECASE)
+"""Name of the body of one spindle among several."""
+
+_Points = tuple[tuple[str, Callable[[Machine], list[str]]], ...]
+
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class PointResult:
@@ -42,10 +49,12 @@ class PointResult:
     Attributes:
         point: What was checked.
         faults: What is wrong; empty where the point is kept.
+        notice: Only a machine that ships has to keep it, and this one does not ship.
     """
 
     point: str
     faults: tuple[str, ...]
+    notice: bool = False
 
 
 def check_machine(machine: Machine) -> tuple[PointResult, ...]:
@@ -55,11 +64,13 @@ def check_machine(machine: Machine) -> tuple[PointResult, ...]:
         machine: The machine, its folder that of its machine file.
 
     Returns:
-        One result per point, faults or none.
+        One result per point, faults or none; first those of machines that ship.
     """
-    points: tuple[tuple[str, Callable[[Machine], list[str]]], ...] = (
+    of_publication: _Points = (
         ("the folder is complete", _folder),
         ("the README derives its numbers step by step", _readme),
+    )
+    of_every_machine: _Points = (
         ("the MJCF file is in order", _layout),
         ("the model compiles with what other rooms need", _compiles),
         ("gains and inertias in the MJCF file are those that follow", _gains),
@@ -67,14 +78,18 @@ def check_machine(machine: Machine) -> tuple[PointResult, ...]:
         ("the machine survives pseudo-random commands", _survives_shaking),
         ("its axes are those of a mill", _carries_tool_and_part),
     )
-    results = []
-    for point, look in points:
-        try:
-            faults = look(machine)
-        except (TwinError, OSError, ET.ParseError) as error:
-            faults = [str(error)]
-        results.append(PointResult(point, tuple(faults)))
-    return tuple(results)
+    private = not is_shipped(machine.path)
+    return (
+        *(PointResult(point, _faults(look, machine), private) for point, look in of_publication),
+        *(PointResult(point, _faults(look, machine)) for point, look in of_every_machine),
+    )
+
+
+def _faults(look: Callable[[Machine], list[str]], machine: Machine) -> tuple[str, ...]:
+    try:
+        return tuple(look(machine))
+    except (TwinError, OSError, ET.ParseError) as error:
+        return (str(error),)
 
 
 def _folder(machine: Machine) -> list[str]:
@@ -93,7 +108,10 @@ def _folder(machine: Machine) -> list[str]:
 
 
 def _readme(machine: Machine) -> list[str]:
-    text = (machine.path.parent / "README.md").read_text(encoding="utf-8")
+    readme = machine.path.parent / "README.md"
+    if not readme.is_file():
+        return ["there is no README.md"]
+    text = readme.read_text(encoding="utf-8")
     faults = []
     if len(re.findall(r"^\d+\. ", text, re.MULTILINE)) < 5:
         faults.append("no numbered derivation steps")
@@ -105,7 +123,9 @@ def _readme(machine: Machine) -> list[str]:
 
 
 def _layout(machine: Machine) -> list[str]:
-    root = ET.parse(machine.path.parent / f"{machine.file.name}.xml").getroot()  # noqa: S314 (a model that is about to be run)
+    named = machine.path.parent / f"{machine.file.name}.xml"
+    model = named if named.is_file() else machine.model_path
+    root = ET.parse(model).getroot()  # noqa: S314 (a model that is about to be run)
     order = [SECTIONS.index(child.tag) for child in root if child.tag in SECTIONS]
     faults = [f"unknown section '{child.tag}'" for child in root if child.tag not in SECTIONS]
     if order != sorted(order):
@@ -130,10 +150,32 @@ def _compiles(machine: Machine) -> list[str]:
 
 
 def _carries_tool_and_part(machine: Machine) -> list[str]:
-    """An axis that is on the way neither to the tool nor to the part, or a model that is no mill, which raises."""
+    """Axes on the way neither to tool nor to part, and second spindles; a model that is no mill raises."""
     carried = {machine.axes.names[column] for column in machine.kinematics.column}
     idle = [name for name in machine.axes.names if name not in carried]
-    return [f"axis {name} moves neither tool nor part" for name in idle]
+    return [f"axis {name} moves neither tool nor part" for name in idle] + [
+        f"{what} is a second spindle or table: programs run on '{SPINDLE_NOSE}' and '{TABLE_TOP}', "
+        "and nothing looks at another"
+        for what in _second_ones(machine)
+    ]
+
+
+def _second_ones(machine: Machine) -> list[str]:
+    """Sites and bodies that are called like a second spindle or table: a model says what a body is by its name."""
+    spec = mujoco.MjSpec.from_file(str(machine.model_path))
+    marks = (SPINDLE_NOSE, TABLE_TOP)
+    sites = [
+        site.name for site in spec.sites if site.name.startswith(marks) and site.name not in marks
+    ]
+    on_sites = {spec.site(name).parent.name for name in sites}
+    bodies = [
+        body.name
+        for body in spec.bodies
+        if _NUMBERED_SPINDLE.fullmatch(body.name)
+        and body.name != spec.site(SPINDLE_NOSE).parent.name
+        and body.name not in on_sites
+    ]
+    return [f"site '{name}'" for name in sites] + [f"body '{name}'" for name in bodies]
 
 
 def _undriven(machine: Machine) -> list[str]:

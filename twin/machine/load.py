@@ -15,7 +15,7 @@ from twin.machine.description.config import Machine, MachineFile
 
 
 def load_machine(job: Job, name: str | None = None, changes: Sequence[Change] = ()) -> Machine:
-    """The machine of a job, with what the job clamps on its table beside the stock.
+    """The machine of a job, with what the job clamps on its table in addition to the stock.
 
     Args:
         job: The job.
@@ -38,7 +38,7 @@ def read_machine(
     Args:
         path: The file.
         changes: Values under ``machine.`` to change.
-        fixtures: What is clamped on its table besides; their files are absolute paths.
+        fixtures: Additional work holding on its table; their files are absolute paths.
 
     Raises:
         ConfigError: The file or the model that it names is missing or wrong, or a fixture has the name of

@@ -108,7 +108,8 @@ class Interpretation:
         control, tools = self._control, self._control.tools
         if not (block.skippable and control.settings.skips(block)):
             self.coverage.note_line(block.line)
-        if int(control.modal.active.get("compensation", _NO_COMPENSATION)) in _COMPENSATION:
+        code = int(control.modal.active.get("compensation", _NO_COMPENSATION))
+        if code in _COMPENSATION or control.path.compensation.in_force:
             self.compensated.add(block.line)
         if tools.drills:
             self.drilled.add(block.line)

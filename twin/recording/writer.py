@@ -71,7 +71,7 @@ PROGRAM_TEXT = "program_text"
 """Dataset of the program as UTF-8."""
 
 _BOOKKEEPING = 1 << 20
-"""What HDF5 may write besides columns [bytes]: attributes, and where the chunks lie."""
+"""What HDF5 may write in addition to columns [bytes]: attributes, and where the chunks lie."""
 _MOST_OF_A_LETTER = 4
 """In UTF-8 [bytes]."""
 

@@ -79,7 +79,7 @@ class Gauge:
     def _tip_speed(self, length_difference: float) -> float:
         """How fast the tip of a tool, so much longer than the first [mm], goes over the part [mm/s].
 
-        It is the feed that the part feels, whatever a control's F counts where rotary axes turn beside X, Y and Z; where
+        It is the feed that the part feels, whatever a control's F counts where rotary axes turn together with X, Y and Z; where
         they turn alone every control counts degrees.
         """
         assert self._last is not None

@@ -50,7 +50,7 @@ class MachineMotion(abc.ABC):
 
 
 class Forces(NamedTuple):
-    """What pushes the axes besides their drives.
+    """What pushes the axes in addition to their drives.
 
     Attributes:
         process: The cut, tooth by tooth, while the machine moves.

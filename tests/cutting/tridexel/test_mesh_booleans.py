@@ -43,7 +43,7 @@ def revolved(tool: ToolTable) -> trimesh.Trimesh:
 
 
 def swept(tool: ToolTable, start: FloatArray, end: FloatArray, axis: FloatArray) -> trimesh.Trimesh:
-    """A convex tool on a straight way: the hull of both ends."""
+    """A convex tool on a straight path: the hull of both ends."""
     mesh = revolved(tool)
     mesh.apply_transform(trimesh.geometry.align_vectors([0.0, 0.0, 1.0], axis))
     return trimesh.convex.convex_hull(np.concatenate([mesh.vertices + start, mesh.vertices + end]))

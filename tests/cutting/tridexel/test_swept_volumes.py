@@ -57,7 +57,7 @@ def groove(size: float) -> Case:
 
 
 def ball_on_five_axes(size: float) -> Case:
-    """A ball along a straight way while its axis swings and turns: a cylinder's segment."""
+    """A ball along a straight path while its axis swings and turns: a cylinder's segment."""
     block = box(np.array([-8.0, -6.0, -5.0]) * size, np.array([8.0, 6.0, 0.0]) * size, CELL_MM)
     share = np.linspace(0.0, 1.0, 400)
     radius, deep = 3.0 * size, 1.5 * size

@@ -62,6 +62,10 @@ def test_marks_are_a_table_and_statements():
         ("Anna", "7"),
         ('O"Brien,\nPat', "10"),
     ]
+    formulas = ["=1+2", "+1", "-1", "@SUM(A1)", "Eva=1"]
+    table = as_csv([dataclasses.replace(MARK, pupil=name) for name in formulas])
+    shown = [row["pupil"] for row in csv.DictReader(io.StringIO(table))]
+    assert shown == ["'=1+2", "'+1", "'-1", "'@SUM(A1)", "Eva=1"]
     statements = as_statements([MARK, strange, unfinished], "https://school.example")
     verbs = [one["verb"]["id"].rsplit("/", 1)[1] for one in statements]
     assert verbs == ["failed", "passed"]

@@ -106,8 +106,16 @@ def test_no_stock_and_no_called_file_leads_out(place):
     (place / "part.stl").symlink_to("../secret.stl")
     refused(scene(place, stock='[job.stock]\nshape = "stl"\nfile = "part.stl"'))
     (place / "part.stl").unlink()
+    (place / "unused.nc").symlink_to("/etc/passwd")
     (place / "called.nc").symlink_to("../secret.stl")
-    refused(scene(place))
+    read_scene(scene(place))
+    (place / "p.nc").write_text("#CALL inner\nM30\n")
+    (place / "inner.nc").write_text("G1 X1 F100\n#CALL called\nM17\n")
+    with pytest.raises(ConfigError, match=r"inner\.nc: line 2 calls .*called\.nc' leads out"):
+        read_scene(scene(place))
+    path = scene(place)
+    path.write_text(path.read_text().replace('dialect = "fagor8070"\n', ""))
+    refused(path)
 
 
 def test_what_is_no_model_and_what_never_ends_is_refused(place):

@@ -21,7 +21,7 @@ EXTRAS = (
     "delay", "force_delay", "velocity_feedforward", "acceleration_feedforward", "measuring_filter", "reset_time_s",
     "loop_delay_s", "velocity_filter_s", "command_filter_s",
 )  # fmt: skip
-"""What a drive or a log may have besides gain, damping, mass and friction."""
+"""What a drive or a log may have in addition to gain, damping, mass and friction."""
 INTEGRATOR = "reset_time_s"
 VISCOUS = "viscous_friction"
 _USUAL = {
@@ -63,7 +63,7 @@ class Core:
 
     @property
     def extras(self) -> tuple[str, ...]:
-        """What a structure may have besides."""
+        """What a structure may have in addition."""
         return tuple(name for name in EXTRAS if name not in self.names)
 
     def free(self, extras: Sequence[str]) -> list[str]:

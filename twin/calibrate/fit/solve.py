@@ -247,10 +247,10 @@ def intervals_beside(problem: Problem, solution: Solution, name: str) -> dict[st
 def _as_far_as_straight(
     problem: Problem, solution: Solution, shift: FloatArray, name: str
 ) -> float:
-    """What share of the way to an interval's end is open.
+    """What share of the distance to an interval's end is open.
 
     It ends at the bounds of the one that leads, and where what is left has changed by more than tangents say
-    of the whole way: a short filter is not distinguished from a delay, a long one is.
+    of the whole distance: a short filter is not distinguished from a delay, a long one is.
 
     Args:
         problem: What is minimised.

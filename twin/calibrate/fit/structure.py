@@ -29,7 +29,7 @@ class Tried:
     """A structure that was tried.
 
     Attributes:
-        extras: What it has besides gain, damping, friction and mass.
+        extras: What it has in addition to gain, damping, friction and mass.
         left: Root mean square of what it leaves, weighted.
     """
 
@@ -134,7 +134,7 @@ def _rivals(best: Solution, others: Sequence[Solution], core: Core) -> tuple[Sol
 
 
 def _without_idle(problem: Problem, best: Solution, core: Core) -> Solution:
-    """Give up what was taken in and does nothing beside the rest."""
+    """Give up what was taken in and adds nothing to the rest."""
     for name in core.extras_of(best):
         free = core.free([other for other in core.extras_of(best) if other != name])
         stays = dataclasses.replace(best.parameters, **core.unset_where(free))

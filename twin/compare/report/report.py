@@ -104,7 +104,7 @@ def write_report(path: Path, report: Report) -> None:
 
 
 def render_report(report: Report) -> str:
-    """The page as text; it needs nothing beside itself, no network and no other file."""
+    """The page as text; it needs nothing but itself, no network and no other file."""
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("twin.compare.report", "page"),
         autoescape=True,

@@ -135,7 +135,7 @@ def reach_before(stood, row, column, height):
 
 @inlined
 def nearest_foot(x, y, a, b):
-    """The place of a straight way from a to b that is nearest to another, seen from above [mm]."""
+    """The place of a straight path from a to b that is nearest to another, seen from above [mm]."""
     dx, dy = b[0] - a[0], b[1] - a[1]
     squared = dx * dx + dy * dy
     t = 0.0

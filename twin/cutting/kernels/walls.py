@@ -3,7 +3,7 @@
 A height map knows a wall to half a cell, which is most of a narrow cut. Of the cells beside a wall it
 is therefore kept how far their middles are from it and in which direction: a vector that points into
 the material, as long as that distance [cells] (negative: the middle lies in the free) plus ``BASE``;
-no vector, no wall. A wall stays where a tool goes away: beside a straight way, and around the place
+no vector, no wall. A wall stays where a tool goes away: along a straight path, and around the place
 where it turns or is drawn out.
 """
 
@@ -121,7 +121,7 @@ def _note(trace: FloatArray, tip: FloatArray, ahead_x: float, ahead_y: float) ->
 
 @kernel
 def _leave_sides(material: Material, begin: FloatArray, end: FloatArray, tool: _Tool) -> None:
-    """The walls on both sides of a straight way."""
+    """The walls on both sides of a straight path."""
     grid, cell = material.grid, material.grid.cell
     dx, dy = end[0] - begin[0], end[1] - begin[1]
     length = math.hypot(dx, dy)

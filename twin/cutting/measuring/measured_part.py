@@ -1,4 +1,4 @@
-"""A machined part beside what it should be, whatever describes them."""
+"""A machined part compared with what it should be, whatever describes them."""
 
 import dataclasses
 from pathlib import Path

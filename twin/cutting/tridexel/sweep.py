@@ -219,7 +219,7 @@ def _ahead(
     left: float,
     right: float,
 ) -> tuple[float, float]:
-    """The part of a row in which a ball takes off more than it does at the beginning of a straight way.
+    """The part of a row in which a ball takes off more than it does at the beginning of a straight path.
 
     A line whose nearest place to the way, as a share of it, lies so far before its beginning that both
     ends within the ball (``within_swept_ball``) are those at the beginning, is left out.

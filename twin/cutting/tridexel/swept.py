@@ -18,7 +18,7 @@ _SEARCH_STEPS = 10
 def within_swept_ball(
     poses: Poses, solid: Solid, a: int, d: int, x: float, y: float
 ) -> tuple[float, float, float, float]:
-    """Where a line is within a ball on a straight way, and at which shares of the way.
+    """Where a line is within a ball on a straight path, and at which shares of it.
 
     The ends are where c(s) -+ sqrt(R² - q(s)) is least and greatest, c being the centre's place along the
     line and q its squared distance from it, a parabola in the share s of the way.
@@ -62,7 +62,7 @@ def within_swept(
 ) -> tuple[float, float, float, float]:
     """Where a line is within a solid at any time of a step, and at which shares of it.
 
-    Over a step that is short beside the solid both ends of the line within it move along curves of the
+    Over a step that is short compared with the solid both ends of the line within it move along curves of the
     share that are nearly parabolas: through begin, middle and end, it is looked where they are extreme, and the
     line there taken as it is. A line that a rim comes to within the step, or leaves, is within the solid for a part of it.
     """

@@ -241,9 +241,9 @@ class ControlTable(Table):
     the path (1)."""
     rotary_diameter: Positive | None = None
     """``haas``, setting 34: diameter at which F counts the way of rotary axes [mm]; without it a degree counts
-    1 mm beside linear axes, and F of rotary axes alone is deg/min."""
+    1 mm together with linear axes, and F of rotary axes alone is deg/min."""
     feed_of_all_axes: bool = False
-    """``fagor8070``, FEEDND: F counts rotary axes beside X, Y and Z, a degree as 1 mm; the control's default is No."""
+    """``fagor8070``, FEEDND: F counts rotary axes together with X, Y and Z, a degree as 1 mm; the control's default is No."""
     length_returns: Literal["by code", "next block"] = "by code"
     """``fanuc``, parameter 5001 #6 (EVO): a tool length that G28, G30 or G53 has cancelled counts again from G43,
     G44 or H (0, the control's default), or from the next block (1)."""

@@ -8,7 +8,7 @@ keeps lying there while the one is displaced by s as long as
     d + n s - r |turn| > 0,
 
 r being the farthest that a point of it is displaced by turning. That sum is linear in the displacement
-and costs a few operations for a sample, so all samples are judged by it, and between them the straight way from
+and costs a few operations for a sample, so all samples are judged by it, and between them the straight path from
 sample to sample. Only where it no longer decides is the distance measured again (``mj_geomDistance``), which gives
 the next plane; where neither the plane before nor the plane behind separates the two all the way between two samples,
 the path is halved until they do, or until it is shorter than ``SHORTEST_WAY``.
@@ -248,7 +248,7 @@ class Clearance:
         return None
 
     def _pass(self, pair: int, position: FloatArray, track: FloatArray, row: int) -> float:
-        """Least clearance found of a pair at a row and on the way to it from the row before [mm]."""
+        """Least clearance found of a pair at a row and between it and the row before [mm]."""
         before = self._planes[pair]
         clearance, plane = self._measure(pair, position[row], track[:, row])
         self._planes[pair] = plane
@@ -350,14 +350,14 @@ class _Way(NamedTuple):
 
 
 def _is_certain(before: _Plane, behind: _Plane, track: FloatArray, threshold: float) -> bool:
-    """Whether two planes keep a pair apart on the whole straight way between two samples."""
+    """Whether two planes keep a pair apart on the whole straight path between two samples."""
     leaves = _share_above(before.bound(track) - threshold)
     comes = 1.0 - _share_above(behind.bound(track)[::-1] - threshold)
     return leaves >= comes
 
 
 def _share_above(ends: FloatArray) -> float:
-    """Share of a straight way from its beginning on along which a linear value is not negative."""
+    """Share of a straight path from its beginning on along which a linear value is not negative."""
     begin, end = float(ends[0]), float(ends[1])
     if begin < 0.0:
         return 0.0

@@ -8,6 +8,7 @@ every ``ANCHOR``-th move the choice is made for itself, from the corners nearby,
 between are chosen to fit.
 """
 
+import enum
 import math
 from typing import NamedTuple
 
@@ -81,8 +82,20 @@ RUN_SHARE = 0.8
 """Share of the time under an arc's bounds that such a run takes from stop to stop. Shorter ones take less
 too; where that makes the stop faster, the plan tells (``twin.motion.corner_candidates``)."""
 
-FREE, PASSED, STOPPED = -1, 0, 1
-"""How a border is passed: to be chosen, without a stop, at rest."""
+
+class Passage(enum.IntEnum):
+    """How a border is passed."""
+
+    FREE = -1
+    """To be chosen."""
+    PASSED = 0
+    """Without a stop."""
+    STOPPED = 1
+    """At rest."""
+
+
+_CHOICES = Passage.PASSED.value, Passage.STOPPED.value
+"""What a border that is free may become, as columns of arrays."""
 
 ANCHOR = 16
 """Moves between two corners whose choice is made for itself."""
@@ -95,7 +108,7 @@ class Ways(NamedTuple):
     """How the borders before n blocks can be passed.
 
     Attributes:
-        way: ``FREE``, ``PASSED`` or ``STOPPED``, shape (n,).
+        way: A ``Passage``, shape (n,).
         velocity: Without a stop, shape (n,).
         away: How far from a stop the moves may overlap, shape (n,).
         gain: How long they then do [s], shape (n,).
@@ -131,20 +144,20 @@ def choose_stops(
     chosen, scratch = ways.way.copy(), ways.way.copy()
     back = np.zeros((count, 2), np.int64)
     for i in range(count):
-        if ways.way[i] == FREE and blocks.move[i] % ANCHOR == 0:
+        if ways.way[i] == Passage.FREE and blocks.move[i] % ANCHOR == 0:
             first, last = max(0, i - SEEN), min(count - 1, i + SEEN)
             scratch[first : last + 1] = ways.way[first : last + 1]
             _choose_between(blocks, corners, ways, first, last, scratch, back)
             chosen[i] = scratch[i]
     first = 0
     for i in range(1, count):
-        if chosen[i] != FREE or i == count - 1:
-            if i > first + 1 or chosen[i] == FREE:
+        if chosen[i] != Passage.FREE or i == count - 1:
+            if i > first + 1 or chosen[i] == Passage.FREE:
                 _choose_between(blocks, corners, ways, first, i, chosen, back)
             first = i
     stops = np.zeros(count, np.bool_)
     for i in range(1, count):
-        stops[i] = corners.rounded[i] and chosen[i] == STOPPED
+        stops[i] = corners.rounded[i] and chosen[i] == Passage.STOPPED
         if not stops[i]:
             ways.away[i] = 0.0
     return stops, ways.away
@@ -155,13 +168,13 @@ def _find_ways(blocks: BlockMotion, corners: Corners, machine: MachineLimits) ->
     """The ways through each border, and what is needed to choose among them."""
     count = len(blocks.length)
     ways = Ways(
-        np.full(count, PASSED), np.full(count, math.inf), np.zeros(count), np.zeros(count),
+        np.full(count, Passage.PASSED.value), np.full(count, math.inf), np.zeros(count), np.zeros(count),
         np.zeros((count, 4)), np.ones(count),
     )  # fmt: skip
     known, after = -1, RampLimits(0.0, 0.0, 0.0, 0.0)
     for i in range(count):
         if i == 0 or not corners.rounded[i]:
-            ways.way[i] = STOPPED
+            ways.way[i] = Passage.STOPPED.value
             continue
         if blocks.length[i] == 0.0 or blocks.length[i - 1] == 0.0:
             continue
@@ -180,9 +193,9 @@ def _find_ways(blocks: BlockMotion, corners: Corners, machine: MachineLimits) ->
         lengths = blocks.length[i - 1], blocks.length[i]
         ways.gain[i] = _overlap_time(ways.away[i], lengths[0], lengths[1], before, after)
         if corners.width[i] == 0.0:
-            ways.way[i] = STOPPED
+            ways.way[i] = Passage.STOPPED.value
         elif ways.velocity[i] < min(before.velocity, after.velocity):
-            ways.way[i] = FREE
+            ways.way[i] = Passage.FREE.value
     return ways
 
 
@@ -202,29 +215,28 @@ def _choose_between(
         chosen: How each is passed, where it is known; the others are written.
         back: Scratch, shape (n, 2).
     """
-    passed = 0.0 if chosen[first] != STOPPED else math.inf
-    stopped = -ways.gain[first] if chosen[first] != PASSED else math.inf
+    passed = 0.0 if chosen[first] != Passage.STOPPED else math.inf
+    stopped = -ways.gain[first] if chosen[first] != Passage.PASSED else math.inf
     for i in range(first + 1, last + 1):
         best = math.inf, math.inf
-        for way in (PASSED, STOPPED):
+        for way in _CHOICES:
             if chosen[i] == 1 - way:
                 continue
             least = math.inf
-            for before in (PASSED, STOPPED):
-                time = passed if before == PASSED else stopped
+            for before in _CHOICES:
+                time = passed if before == Passage.PASSED else stopped
                 if time < math.inf:
                     time += _time_of_block(blocks, corners, ways, i - 1, before, way)
                     if time < least:
                         least, back[i, way] = time, before
-            best = (least, best[1]) if way == PASSED else (best[0], least - ways.gain[i])
+            best = (least, best[1]) if way == Passage.PASSED else (best[0], least - ways.gain[i])
         passed, stopped = best
     if last + 1 == len(chosen):
-        passed += _time_of_block(blocks, corners, ways, last, PASSED, STOPPED)
-        stopped += _time_of_block(blocks, corners, ways, last, STOPPED, STOPPED)
-    way = STOPPED if stopped < passed else PASSED
-    for i in range(last, first - 1, -1):
-        chosen[i] = way
-        way = back[i, way]
+        passed += _time_of_block(blocks, corners, ways, last, Passage.PASSED, Passage.STOPPED)
+        stopped += _time_of_block(blocks, corners, ways, last, Passage.STOPPED, Passage.STOPPED)
+    chosen[last] = Passage.STOPPED.value if stopped < passed else Passage.PASSED.value
+    for i in range(last, first, -1):
+        chosen[i - 1] = back[i, chosen[i]]
 
 
 @array_arithmetic_kernel
@@ -250,7 +262,7 @@ def _time_of_block(
     time = slower * (width / u if width > 0.0 else 0.0)
     time += slower * (next_width / v if next_width > 0.0 else 0.0)
     turns = abs(blocks.curves.angle[i]) >= LEAST_TURN and limits.velocity < blocks.velocity[i]
-    if turns and before == STOPPED and after == STOPPED:
+    if turns and before == Passage.STOPPED and after == Passage.STOPPED:
         return RUN_SHARE * travel_time(length, 0.0, 0.0, limits)
     room = length - rounded
     ramps = travel_time(room, u, v, limits)
@@ -275,10 +287,10 @@ def _end_of_block(
         other: How that at the other end is passed.
         length: Of the block.
     """
-    if way == STOPPED:
+    if way == Passage.STOPPED:
         return 0.0, 0.0
     speed, width = ways.velocity[border], corners.width[border]
-    if other == STOPPED and width > BESIDE_STOP * length:
+    if other == Passage.STOPPED and width > BESIDE_STOP * length:
         # A rounding beside a stop is made narrower, and is driven more slowly.
         narrower = BESIDE_STOP * length / width
         width, speed = narrower * width, speed * np.cbrt(narrower * narrower)

@@ -1,13 +1,12 @@
 """What a dialect is made of: its syntax, its codes, its words, its rules, and the decisions behind them."""
 
 import dataclasses
-from collections.abc import Callable, Collection, Mapping
-from pathlib import Path
+from collections.abc import Collection, Mapping
 
 from twin.nc.control.codes import Codes, Words
 from twin.nc.control.control import Rules
-from twin.nc.text.source import Source
-from twin.nc.text.syntax import Language, Mark, Syntax
+from twin.nc.text.library import Library
+from twin.nc.text.syntax import Mark, Syntax
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -50,7 +49,7 @@ class Dialect:
     marks: tuple[Mark, ...]
     suffixes: tuple[str, ...] = ()
     tables: Mapping[str, Mapping[str, str]] = dataclasses.field(default_factory=dict)
-    library: Callable[[Source, Path, Language], Source] | None = None
+    library: Library | None = None
 
     @property
     def keywords(self) -> Collection[str]:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from twin.errors import EmptyProgramError, UsageError
 from twin.nc.dialects import DIALECTS, marks_found
 from twin.nc.dialects.foreign import control_of_head, is_prose
-from twin.nc.text.source import Source
+from twin.nc.text.source import LEADER, Source
 
 HEAD_LINES = 60
 """Lines at the beginning in which comments may name the control or the post."""
@@ -40,6 +40,9 @@ class Reading(NamedTuple):
     reason: str
 
 
+_TAPE = LEADER.decode("ascii")
+
+
 def reading_of(source: Source) -> Reading:
     """Tell by a program's words and by its head in which dialects it may be written.
 
@@ -49,7 +52,7 @@ def reading_of(source: Source) -> Reading:
     for dialect in DIALECTS.values():
         if dialect.suffixes and source.name.lower().endswith(dialect.suffixes):
             return Reading((dialect.name,), "by the end of its file's name")
-    if not any(line.strip() for line in source.lines):
+    if not any(line.strip().strip(_TAPE).strip() for line in source.lines):
         raise EmptyProgramError(f"{source.name}: the program is empty")
     if not any(without_comments(line).strip() for line in source.lines):
         raise EmptyProgramError(f"{source.name}: the program is empty: it holds comments alone")

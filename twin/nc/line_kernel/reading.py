@@ -27,6 +27,8 @@ from twin.nc.text.plain_word import (
 
 ByteArray = npt.NDArray[np.uint8]
 
+# Numbers of the kernels of ``twin.nc``, here and elsewhere, are plain integers: CPython runs these functions too,
+# and takes three times as long to compare with a member of an enumeration.
 OTHER, NUMBER, CODE, FEED_WORD, RADIUS, CENTER, AXIS = -1, 0, 1, 2, 3, 4, 7
 """Roles of letters: none in a plain line; N, G, F, R; I, J, K from ``CENTER`` on; axes by their column from
 ``AXIS`` on."""

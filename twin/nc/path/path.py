@@ -1,4 +1,4 @@
-"""The way of moves from the control to the columns.
+"""The path of moves from the control to the columns.
 
 The stages, in order: splines through points, blends at corners, tool radius compensation, loops cut
 out, additional axes that go evenly, tool centre point control. Each is there only while a program asks for it,
@@ -98,7 +98,7 @@ class Path:
         return self._before
 
     def add_point(self, move: Segment, *, flat: bool) -> None:
-        """The straight way to the next point of a spline; ``flat``: its height goes linearly."""
+        """The straight path to the next point of a spline; ``flat``: its height goes linearly."""
         if self._spline is None:
             before = self._before
             cuts = before is not None and before.motion is Motion.FEED
@@ -132,18 +132,11 @@ class Path:
         else:
             self._rounding.add(move)
 
-    def hold_for_blends(self) -> None:
-        """From now on moves are kept until their successor is known."""
+    def hold_for_blends(self) -> Rounding:
+        """From now on moves are kept until their successor is known, by the stage that blends corners."""
         if self._rounding is None:
             self._rounding = Rounding(self._compensate, self.compensation.event, self._report)
-
-    def blend_next(self, blend: Blend) -> bool:
-        """Blend the corner between the last move and the next; False where there is no last."""
-        assert self._rounding is not None
-        if self._rounding.holding is None:
-            return False
-        self._rounding.once = blend
-        return True
+        return self._rounding
 
     def blend_always(self, blend: Blend | None) -> None:
         """Blend every corner between two moves that follow; None: no more."""

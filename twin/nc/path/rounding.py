@@ -28,10 +28,12 @@ class Rounding:
         self.always: Blend | None = None
         self.once: Blend | None = None
 
-    @property
-    def holding(self) -> Segment | None:
-        """The move that waits for its successor."""
-        return self._held
+    def blend_next(self, blend: Blend) -> bool:
+        """Blend the corner between the last move and the next; False where there is no last."""
+        if self._held is None:
+            return False
+        self.once = blend
+        return True
 
     def add(self, move: Segment) -> None:
         """The next move."""

@@ -38,7 +38,7 @@ class Spline:
         self._tangent: Vector | None = None
 
     def add(self, move: Segment, *, flat: bool) -> None:
-        """The straight way to the next point; ``flat``: Z goes linearly."""
+        """The straight path to the next point; ``flat``: Z goes linearly."""
         if self._held is None:
             self._tangent = _tangent_of(self._before, move, at_end=True)
         else:

@@ -27,6 +27,16 @@ _LONGEST = 200
 
 _MOST_KEPT = 4096
 """Expressions that are kept once they were read: loops compute the same ones again and again."""
+_COMPARISONS = (
+    ("<>", "unequal", ("NE", "<>")),
+    ("!=", "unequal", ("NE", "<>")),
+    ("<=", "less or equal", ("LE",)),
+    (">=", "greater or equal", ("GE",)),
+    ("<", "less", ("LT",)),
+    (">", "greater", ("GT",)),
+    ("=", "equal", ("EQ", "==")),
+)
+"""Signs of comparison, the longer before the shorter: what each means, and how languages that lack it write that."""
 
 
 class ExpressionReader:
@@ -244,16 +254,18 @@ class _Reading:
     def _expect(self, character: str) -> None:
         self._skip_blanks()
         if self._text[self.at : self.at + 1] != character:
-            self._fail("expression", f"'{character}' is missing here", self._hint_of_equal())
+            self._fail("expression", f"'{character}' is missing here", self._hint_of_comparison())
         self.at += 1
 
-    def _hint_of_equal(self) -> str | None:
-        """How two values are compared, where a single = replaces an operator."""
+    def _hint_of_comparison(self) -> str | None:
+        """How two values are compared, where the sign of another language replaces an operator."""
         operators = {name.upper() for name in self._syntax.operators}
-        spelling = next((each for each in ("EQ", "==") if each in operators), None)
-        if spelling is None or self._text[self.at : self.at + 1] != "=":
-            return None
-        return f"equal is written {spelling}"
+        behind = self._text[self.at : self.at + 2]
+        for sign, meaning, spellings in _COMPARISONS:
+            spelling = next((each for each in spellings if each in operators), None)
+            if spelling is not None and behind.startswith(sign):
+                return f"{meaning} is written {spelling}"
+        return None
 
     def _skip_blanks(self) -> None:
         while self._text[self.at : self.at + 1] in (" ", "\t") and self.at < len(self._text):

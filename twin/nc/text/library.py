@@ -7,11 +7,14 @@ import dataclasses
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
-from twin.nc.text.source import Source, read_source
+from twin.nc.text.source import Source, read_source, source_from_text
 from twin.nc.text.syntax import Language
 
 MOST_FILES = 100
 """Files that one program may call: more is no library but a slip."""
+
+Opening = Callable[[Path, Source, int], None]
+"""Is told of a file before it is read, with the program that calls it and the line, from 1; may refuse it."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -29,19 +32,27 @@ class Library:
     suffixes: tuple[str, ...]
     name_of: Callable[[str], str | None] = lambda name: name
 
-    def __call__(self, source: Source, folder: Path, dialect: Language) -> Source:
+    def __call__(
+        self, source: Source, folder: Path, dialect: Language, opening: Opening | None = None
+    ) -> Source:
         """The program with the files of a folder that it calls, and those that they call, as far as found."""
         found: set[str] = set()
-        wanted = list(self.calls(source))
+        wanted = [(source, name) for name in self.calls(source)]
         known = self._files(folder) if wanted else {}
         while wanted and len(found) < MOST_FILES:
-            name = wanted.pop(0)
+            caller, name = wanted.pop(0)
             if name in known and name not in found:
                 found.add(name)
+                if opening is not None:
+                    opening(known[name], caller, self._line_of_call(caller, name))
                 fresh = read_source(known[name], dialect)
                 source = source.followed_by(f"{self.mark}{name}", fresh)
-                wanted += self.calls(fresh)
+                wanted += ((fresh, each) for each in self.calls(fresh))
         return source
+
+    def _line_of_call(self, caller: Source, name: str) -> int:
+        lines = enumerate(caller.lines, start=1)
+        return next(line for line, text in lines if name in self.calls(source_from_text(text)))
 
     def _files(self, folder: Path) -> dict[str, Path]:
         found: dict[str, Path] = {}

@@ -34,7 +34,7 @@ _LIGHT_FAR = 2.0
 """Distance of a light from the middle of its shadows, as a share of their radius."""
 
 _SPARE_GEOMS = 200
-"""Scene geoms beside the model's own, for lights' and frames' decoration."""
+"""Scene geoms in addition to the model's own, for lights' and frames' decoration."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)

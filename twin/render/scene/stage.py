@@ -59,7 +59,7 @@ TRAIL_MM = (0.1, 0.8)
 
 
 class _Props(NamedTuple):
-    """What is drawn beside the machine, and where it is."""
+    """What is drawn in addition to the machine, and where it is."""
 
     placement: Placement
     cutter: Cutter | None

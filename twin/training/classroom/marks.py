@@ -165,13 +165,22 @@ def now_text() -> str:
     return dt.datetime.now().astimezone().isoformat(timespec="milliseconds")
 
 
+_FORMULA_BEGINS = tuple("=+-@\t\r")
+"""Spreadsheets calculate a cell that begins so (OWASP, CSV injection); an apostrophe makes it text."""
+
+
 def as_csv(marks: list[Mark]) -> str:
-    """Marks as a table for spreadsheets, with their columns' names above."""
+    """Marks as a table for spreadsheets, with their columns' names above; no text is a formula."""
     text = io.StringIO()
     table = csv.writer(text)
     table.writerow(_COLUMNS)
-    table.writerows(dataclasses.astuple(mark) for mark in marks)
+    table.writerows([_no_formula(value) for value in dataclasses.astuple(mark)] for mark in marks)
     return text.getvalue()
+
+
+def _no_formula(value: object) -> object:
+    dangerous = isinstance(value, str) and value.startswith(_FORMULA_BEGINS)
+    return f"'{value}" if dangerous else value
 
 
 def as_statements(marks: list[Mark], home: str) -> list[dict[str, Any]]:

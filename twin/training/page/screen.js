@@ -101,13 +101,13 @@ export class Screen {
       gauge(cells[3].firstChild, Math.abs(state.lag[i]) / LAG_SHOWN, `${Math.abs(1000 * state.lag[i]).toFixed(0)} ${THOUSANDTH[now.units[i]]}`);
       gauge(cells[4].firstChild, state.load[i], `${(100 * state.load[i]).toFixed(0)} %`);
     });
-    const feed = now.modal?.feed == null ? "-" : String(Math.round(1000 * now.modal.feed) / 1000);
+    const feed = now.modal?.feed == null ? "" : String(Math.round(1000 * now.modal.feed) / 1000);
     const per_second = now.modal?.per_minute === SECONDS_PER_MINUTE;
     const unit = words.label(per_second ? "per_second" : "per_minute"), shown = per_second ? (state.feed / SECONDS_PER_MINUTE).toFixed(1) : state.feed.toFixed(0);
     const turns = now.counter_clockwise ? "↺" : "↻";
     const spindle = now.spindle_turning === null ? "-" : Math.abs(0.01 * now.spindle_override * now.spindle_turning).toFixed(0);
     const real = Number.isNaN(state.spindleSpeed) || Math.abs(state.spindleSpeed - Number(spindle)) < 0.01 * Number(spindle) + 1 ? "" : `${state.spindleSpeed.toFixed(0)} → `;
-    const speeds = [["", `F ${shown}`], ["quiet", now.modal?.feed == null ? unit : `(${feed}) ${unit}`], [state.turns ? "on" : "quiet", `S ${real}${spindle}${state.turns ? ` ${turns}` : ""}`], [now.broken ? "broken" : "", `T ${now.tool}${now.broken ? " ✕" : ""}`]];
+    const speeds = [["", `F ${shown}`], ["quiet", feed ? `(${feed}) ${unit}` : unit, feed && words.label("feed_now", { feed, unit })], [state.turns ? "on" : "quiet", `S ${real}${spindle}${state.turns ? ` ${turns}` : ""}`], [now.broken ? "broken" : "", `T ${now.tool}${now.broken ? " ✕" : ""}`]];
     if (now.searched) speeds.push(["contact", `▶ ${now.searched}`]);
     for (const [name, mark] of [["optional_stop", "M01"], ["block_skip", "/"], ["dry_run", words.label("dry_run")]]) if (now[name]) speeds.push(["coolant", mark]);
     if (state.coolant) speeds.push(["coolant", words.label("coolant")]);
@@ -116,7 +116,7 @@ export class Screen {
     const key = JSON.stringify(speeds);
     if (key !== this.speeds) {
       this.speeds = key;
-      this.at("speeds").replaceChildren(...speeds.map(([name, text]) => make("span", { class: name }, text)));
+      this.at("speeds").replaceChildren(...speeds.map(([name, text, title]) => make("span", { class: name, title: title || null }, text)));
     }
     const lost = now.lost_s ? ` · ${words.label("lost", { seconds: now.lost_s })}` : "";
     write(this.at("clock"), `${state.time.toFixed(1)} ${words.label("seconds")} · ×${state.speed.toFixed(2)}${lost}`);

@@ -2,7 +2,7 @@
 
 A program is read through all its parts as ``ProgramReader`` would read it, from the place and with the
 tables of the moment in which it was asked for, also behind a search. Nothing is planned and nothing
-of the machine is touched, so that this can be done beside the machine's thread.
+of the machine is touched, so that this can be done in parallel with the machine's thread.
 """
 
 import dataclasses

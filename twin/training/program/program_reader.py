@@ -323,7 +323,7 @@ class ProgramReader:
             self.optional = OPTIONAL_STOP in words
 
     def _arrive(self, block: Block) -> Chunk | None:
-        """The block that was searched for comes next: the way to where it begins, and a stop there."""
+        """The block that was searched for comes next: the move to where it begins, and a stop there."""
         control, self._found = self._control, block
         self._search.end()
         control.path.columns.take()

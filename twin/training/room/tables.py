@@ -9,7 +9,7 @@ from twin.job.job_file import ToolTable
 from twin.nc.canonical import FloatArray
 
 MAGAZINE_PLACES = 40
-"""Tools that fit, beside the edge finder."""
+"""Tools that fit, in addition to the edge finder."""
 
 
 class Tables:

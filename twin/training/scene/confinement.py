@@ -13,6 +13,8 @@ from twin.errors import ConfigError
 from twin.files.shipped import is_shipped, machine_file
 from twin.files.toml import load_toml
 from twin.job.job_file import JobFile
+from twin.nc.dialects import DIALECTS, dialect_named
+from twin.nc.text.source import Source, read_source
 
 MOST_FILES = 100
 """Of a machine: each may name others."""
@@ -41,9 +43,8 @@ class Confinement:
         """
         program = self._folder / job.program
         self._require_inside(program)
-        for beside in program.parent.iterdir() if program.parent.is_dir() else ():
-            if beside.is_symlink() and beside.is_file():
-                self._require_inside(beside)
+        if program.is_file():
+            self._require_calls_inside(program, job.dialect)
         if job.stock is not None and job.stock.file:
             self._require_inside(self._folder / job.stock.file)
         waiting = [machine_file(job.machine, beside=self._folder)]
@@ -56,9 +57,20 @@ class Confinement:
                 waiting += _named_by_machine(path) if path.suffix == ".toml" else self._read(path)
         raise ConfigError(f"{self._scene}: its machine names more than {MOST_FILES} files")
 
-    def _require_inside(self, path: Path) -> None:
+    def _require_calls_inside(self, program: Path, named: str | None) -> None:
+        """Refuse a program that calls a file outside, read by its dialect, or by any if none is named."""
+
+        def look(called: Path, caller: Source, line: int) -> None:
+            self._require_inside(called, f"{caller.name}: line {line} calls a file: ")
+
+        for dialect in DIALECTS.values() if named is None else (dialect_named(named),):
+            if dialect.library is not None:
+                source = read_source(program, dialect)
+                dialect.library(source, program.parent, dialect, look)
+
+    def _require_inside(self, path: Path, why: str = "") -> None:
         if not path.resolve().is_relative_to(self._folder) and not is_shipped(path):
-            raise ConfigError(f"{self._scene}: '{path}' leads out of the scene's folder")
+            raise ConfigError(f"{self._scene}: {why}'{path}' leads out of the scene's folder")
 
     def _read(self, model: Path) -> Iterator[Path]:
         """What an MJCF file names: others of its kind that it includes; the rest is only looked at."""

@@ -231,7 +231,7 @@ class RoomApp:
         return Response(drawn[1], media_type="model/gltf-binary")
 
     async def _path(self, _request: Request) -> Response:
-        """The program's way, drawn beside the machine's thread; one at a time."""
+        """The program's path, drawn in parallel with the machine's thread; one at a time."""
         path = await asyncio.wrap_future(self._driver.inquire(path_to_come))
         async with self._one_path:
             key, message = self._last_path

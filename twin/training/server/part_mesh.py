@@ -1,4 +1,4 @@
-"""The part that is cut from any side as pages draw it: a mesh, laid again beside the machine while it is cut."""
+"""The part that is cut from any side as pages draw it: a mesh, made again in parallel with the machine while it is cut."""
 
 import asyncio
 import struct
@@ -65,7 +65,7 @@ class PartMesh:
         return self._message, self._version
 
     async def _make(self, *, fine: bool) -> None:
-        """Copy the part between two slices of the machine, and lay the mesh beside it."""
+        """Copy the part between two slices of the machine, and make the mesh in parallel."""
         self._made_at = time.monotonic()
 
         def copied(_room: Room) -> tuple[float, TriDexel] | None:

@@ -23,7 +23,7 @@ from twin.training.session.commands import Load
 
 
 class ProgramCheck:
-    """Reads programs beside the machine's thread, one at a time; of what a page types meanwhile the last."""
+    """Reads programs in parallel with the machine's thread, one at a time; of what a page types meanwhile the last."""
 
     def __init__(self, driver: Driver) -> None:
         """Prepare it.

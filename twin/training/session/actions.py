@@ -16,7 +16,7 @@ from twin.units import SECONDS_PER_MINUTE
 DRY_RUN_FEED = 3000.0
 """What all feeds are replaced by in a dry run [mm/min]."""
 HAND_FEED = 2000.0
-"""Of the handwheel, of the way to the reference point and back to the path [mm/min or deg/min]."""
+"""Of the handwheel, of the moves to the reference point and back to the path [mm/min or deg/min]."""
 _NO_TOUCH = (c.Sign, c.Answer, c.Hint, c.Inject, c.Repair)
 """What does not begin a scene's time."""
 ENDLESS = 3600.0

@@ -68,7 +68,7 @@ DECISIONS = (
     Decision(
         "How do additional axes move?",
         "Linearly with the path, A B C too; their slopes U V W are refused.",
-        "A polynomial of third degree with the slopes of the straight way at both ends is the line.",
+        "A polynomial of third degree with the slopes of the straight path at both ends is the line.",
         example="additional_axes",
     ),
     Decision(

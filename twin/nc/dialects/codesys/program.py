@@ -91,7 +91,7 @@ class Subprogram:
 
 @dataclasses.dataclass(slots=True)
 class CodesysMemory:
-    """What the dialect keeps beside the state that all have in common.
+    """What the dialect keeps in addition to the state that all have in common.
 
     Attributes:
         radius: That D has given compensation last [mm].

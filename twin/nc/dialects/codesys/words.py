@@ -1,4 +1,4 @@
-"""What the words of CODESYS SoftMotion do beside its G codes: feed rates, limits, periods, switch points."""
+"""What the words of CODESYS SoftMotion do in addition to its G codes: feed rates, limits, periods, switch points."""
 
 import math
 

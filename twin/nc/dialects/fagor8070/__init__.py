@@ -33,7 +33,7 @@ def _prepare(control: Control) -> None:
 
 
 def _feed_rule(settings: ControlSettings) -> FeedRule:
-    """F counts X, Y and Z; with FEEDND rotary axes beside them, a degree as one programmed unit."""
+    """F counts X, Y and Z; with FEEDND rotary axes too, a degree as one programmed unit."""
     return FeedRule(degree=1.0) if settings.feed_of_all_axes else PATH_COUNTS
 
 

@@ -45,7 +45,9 @@ def blend_code(kind: BlendKind, number: int) -> Action:
             control.fail(
                 "blend", message, hint=f"write G{number} I{memory.blend:g} in its own block"
             )
-        if not control.path.blend_next(Blend(kind, memory.blend, control.motion.part_plane)):
+        if not control.path.hold_for_blends().blend_next(
+            Blend(kind, memory.blend, control.motion.part_plane)
+        ):
             control.fail("blend", "there is no move before the corner")
 
     return action

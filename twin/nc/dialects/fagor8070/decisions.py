@@ -68,7 +68,7 @@ DECISIONS = (
     Decision(
         "How do the leads of compensation go (G138, G139)?",
         "G138 straight to the point beside the contour's first; G139 the same, but around the "
-        "contour's first and last point where the straight way would cut them off.",
+        "contour's first and last point where the straight path would cut them off.",
         "The manual calls the one direct and the other indirect.",
         example="leads",
     ),

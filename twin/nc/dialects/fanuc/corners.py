@@ -35,5 +35,5 @@ def blend_after_motion(control: Control) -> None:
     if scale is not None:
         size *= abs(scale[0][control.modal.plane.axes[0]])
     blend = Blend(_KINDS[word.address], size, control.motion.part_plane)
-    if not control.path.blend_next(blend):
+    if not control.path.hold_for_blends().blend_next(blend):
         control.fail("blend", "there is no move before the corner", word)

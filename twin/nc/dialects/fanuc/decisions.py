@@ -45,7 +45,7 @@ DECISIONS: tuple[Decision, ...] = (
     Decision(
         "How does rapid positioning go?",
         "Straight to its end.",
-        "Parameter 1401 #1 chooses; a straight way is the one that can be checked for collisions.",
+        "Parameter 1401 #1 chooses; a straight path is the one that can be checked for collisions.",
         example="rapids_go_straight",
     ),
     Decision(

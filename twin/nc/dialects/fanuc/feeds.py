@@ -15,7 +15,7 @@ from twin.nc.control.settings import ControlSettings
 from twin.nc.path.feed_rates import FeedRule
 
 DEGREE_AS_LENGTH = 1.0
-"""What a degree counts beside linear axes, in programmed units of length (Fanuc's manual). Decision: of a Haas
+"""What a degree counts together with linear axes, in programmed units of length (Fanuc's manual). Decision: of a Haas
 where nobody gave the diameter of setting 34 as well, which is the surface of 114.6 mm diameter."""
 
 

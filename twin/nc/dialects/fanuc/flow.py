@@ -26,6 +26,7 @@ _LOOP = re.compile(
 _LOOP_SOMEWHERE = letter_patterns("D", rb"[Oo][ \t]*[0-9]")
 _DO = re.compile(r"[ \t]*DO[ \t]*([0-9]+)[ \t]*\Z", re.IGNORECASE)
 _COUNT = re.compile(r"[ \t]*([0-9]+)[ \t]*\Z")
+_NAMED_BLOCK = re.compile(r"[ \t]*N[ \t]*([0-9]+)", re.IGNORECASE)
 _BEHIND_CONDITION = re.compile(r"[ \t]*(GOTO|THEN)(?![A-Z])", re.IGNORECASE)
 _EQUALS = re.compile(r"[ \t]*=")
 
@@ -168,6 +169,9 @@ def _go_to(control: Control, statement: Statement) -> None:
 
 
 def _target(control: Control, statement: Statement, at: int) -> Expression:
+    if (named := _NAMED_BLOCK.match(statement.text, at)) is not None:
+        message = "GOTO takes the number of the block without its N"
+        control.fail("jump-target", message, statement, f"GOTO {named[1]}")
     target, end = _operand(control, statement, at)
     if statement.text[end:].strip():
         control.fail("jump-target", "GOTO needs one number and no more", statement, "GOTO 10")

@@ -5,7 +5,9 @@ published G68.2 of LinuxCNC, and posts, by which roll, pitch and yaw turn about 
 of FreeCAD. Decision: where the manual's figure alone says which sense an angle has (P4), the form is refused.
 """
 
+import enum
 import math
+from collections.abc import Mapping
 
 from twin.nc.control.control import Control
 from twin.nc.dialects.fanuc.memory import PlaneBlock, memory_of
@@ -15,10 +17,17 @@ from twin.nc.geometry.planes import Vector, cross
 from twin.nc.iso.tilted_plane import about, directions_of
 from twin.nc.text.blocks import Word
 
-_EULER, _ROLL_PITCH_YAW, _POINTS, _VECTORS = range(4)
-"""Forms of G68.2 by P."""
 
-_BLOCKS = {_POINTS: 4, _VECTORS: 2}
+class _Form(enum.IntEnum):
+    """Forms of G68.2 by P."""
+
+    EULER = 0
+    ROLL_PITCH_YAW = 1
+    POINTS = 2
+    VECTORS = 3
+
+
+_BLOCKS: Mapping[int, int] = {_Form.POINTS: 4, _Form.VECTORS: 2}
 """How many blocks say a plane, numbered by Q."""
 
 _SQUARE = 1e-3
@@ -34,16 +43,16 @@ def tilt(control: Control) -> None:
     memory = memory_of(control)
     form_word, order = control.take("P"), control.take("Q")
     form = 0 if form_word is None else int(control.number(form_word))
-    if form not in range(4):
+    if form not in tuple(_Form):
         message = "of the forms of G68.2 P0 to P3 are followed"
         hint = "P0 Euler's angles, P1 roll, pitch and yaw, P2 three points, P3 two vectors"
         control.fail("tilted-plane", message, form_word, hint)
     if memory.tilt is not None:
         control.fail("tilted-plane", "a tilted plane is in force", hint="end it by G69 first")
     block = _block(control)
-    if form == _EULER:
+    if form == _Form.EULER:
         set_tilt(control, euler(*block.angles), block.place)
-    elif form == _ROLL_PITCH_YAW:
+    elif form == _Form.ROLL_PITCH_YAW:
         set_tilt(control, turned_in_order(control, order, block.angles, "123"), block.place)
     else:
         _collect(control, form, order, block)
@@ -118,7 +127,7 @@ def _collect(control: Control, form: int, number: Word | None, block: PlaneBlock
     if len(memory.plane_blocks) < _BLOCKS[form]:
         return
     blocks, memory.plane_form, memory.plane_blocks = memory.plane_blocks, None, {}
-    if form == _POINTS:
+    if form == _Form.POINTS:
         first, second, third = (blocks[each].place for each in (1, 2, 3))
         along, aside = _from(first, second), _from(first, third)
     else:

@@ -193,7 +193,9 @@ def run_command(control: Control, statement: Statement) -> None:
         return
     if command != "H":
         message = f"${command} is a command to Grbl's console, and no part of a program"
-        control.fail("unknown-word", message, statement, "a program may hold $H and $X")
+        control.fail(
+            "unknown-word", message, statement, "leave it out: a program may hold $H and $X"
+        )
     zero, names = machine_zero(control, "$H"), control.settings.axes.names
     for letters in ("Z", "XY"):
         goal = list(control.motion.part)

@@ -61,6 +61,8 @@ def _blend(
         control.fail("unused-word", f"nothing in {statement.keyword} uses '{word.text}'", word)
     if size <= 0.0 or rate <= 0.0:
         control.fail("blend", f"{statement.keyword} needs a size and a feed above 0", statement)
-    if not control.path.blend_next(Blend(kind, size, control.motion.part_plane, feed=rate)):
+    if not control.path.hold_for_blends().blend_next(
+        Blend(kind, size, control.motion.part_plane, feed=rate)
+    ):
         message = f"{statement.keyword} stands between two moves, and none is before it"
         control.fail("blend", message, statement)

@@ -4,6 +4,8 @@ Sources: programming manuals "Job planning" (transformations) and "Measuring cyc
 the machine's own rotary axes as they are programmed, or a vector (A3=, B3=, C3=) for which they are computed.
 """
 
+import enum
+
 from twin.nc.control.codes import Action
 from twin.nc.control.control import Control
 from twin.nc.dialects.sinumerik.frames import put_programmable
@@ -22,9 +24,20 @@ _RETRACT, _STATUS, _MODE, _ORIGIN, _ANGLES, _SHIFT, _DIRECTION = (
 )  # fmt: skip
 """Places of CYCLE800's parameters: _FR, _ST, _MODE, _X0 to _Z0, _A to _C, _X1 to _Z1, _DIR."""
 
-_BY_AXES, _BY_SOLID_ANGLES, _BY_PROJECTION, _DIRECTLY = range(4)
-"""Bits 6 and 7 of _MODE: angles about axes one after the other; about Z and the new Y; of the plane's traces; of the
-machine's rotary axes themselves."""
+
+class _Turn(enum.IntEnum):
+    """Bits 6 and 7 of _MODE: what the angles are."""
+
+    BY_AXES = 0
+    """About axes one after the other."""
+    BY_SOLID_ANGLES = 1
+    """About Z and the new Y."""
+    BY_PROJECTION = 2
+    """Of the plane's traces."""
+    DIRECTLY = 3
+    """Of the machine's rotary axes themselves."""
+
+
 _UPRIGHT = 90.0
 """Projection angles lie below it [deg]."""
 _VECTOR = ("A3", "B3", "C3")
@@ -128,12 +141,12 @@ def _retract(control: Control) -> None:
 def _matrix(control: Control, statement: Statement, mode: int, angles: list[float]) -> Matrix:
     """The turn that the angles say; its columns are the directions of the swivelled axes."""
     axes = [(mode >> 2 * place & 3) - 1 for place in range(3)]
-    kind = mode >> 6 if any(angles) else _BY_AXES
-    if kind == _BY_SOLID_ANGLES:
+    kind = mode >> 6 if any(angles) else _Turn.BY_AXES
+    if kind == _Turn.BY_SOLID_ANGLES:
         return product(about(2, angles[0]), about(1, angles[1]))
-    if kind == _BY_PROJECTION:
+    if kind == _Turn.BY_PROJECTION:
         return _by_projection(control, statement, axes, angles)
-    if kind == _DIRECTLY:
+    if kind == _Turn.DIRECTLY:
         return _directly(control, statement, angles)
     matrix = IDENTITY
     for axis, angle in zip(axes, angles, strict=True):

@@ -1,4 +1,4 @@
-"""What the words of the SINUMERIK do beside its G codes: feeds, tools, offsets, roundings of corners."""
+"""What the words of the SINUMERIK do in addition to its G codes: feeds, tools, offsets, roundings of corners."""
 
 import math
 import re
@@ -258,5 +258,5 @@ def _blend(control: Control) -> None:
     size, kind = control.length(words[0]), _BLENDS[words[0].address]
     if not size > 0.0:
         control.fail("blend", f"the size of the corner {words[0].text} is not above 0", words[0])
-    if not control.path.blend_next(Blend(kind, size, control.motion.part_plane)):
+    if not control.path.hold_for_blends().blend_next(Blend(kind, size, control.motion.part_plane)):
         control.fail("blend", "there is no move before the corner", words[0])

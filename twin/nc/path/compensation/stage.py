@@ -3,7 +3,7 @@
 It looks one move ahead. Outside corners are rolled around on an arc about the corner, inside
 corners end where the parallel paths meet, the straight lead-in ends square to the first element of
 the contour and the straight lead-out starts square to its last; indirect leads go around the
-contour's first and last point where the straight way would cut them off. What does not fit is refused: an
+contour's first and last point where the straight path would cut them off. What does not fit is refused: an
 inside arc smaller than the tool, an element that its neighbours leave no room for, or a neck of the
 contour that is narrower than the tool. A lead that cuts into the contour is driven with a warning.
 """

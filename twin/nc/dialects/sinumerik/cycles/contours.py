@@ -5,6 +5,7 @@ pass.
 """
 
 import dataclasses
+import enum
 import re
 
 from twin.nc.dialects.sinumerik.cycles.calls import CycleCall, CycleForm
@@ -20,8 +21,15 @@ from twin.nc.text.blocks import Block
 _SIDES = {40.0: 0.0, 41.0: 1.0, 42.0: -1.0}
 _SHAPES = {1.0: (LeadKind.TANGENT, 0.0), 2.0: (LeadKind.ARC, 90.0), 3.0: (LeadKind.ARC, 180.0)}
 _PART = re.compile(r"(\w+)[ \t]*:[ \t]*(\w+)")
-_TO_RETURN, _TO_SAFETY, _BY_SAFETY, _NOT_AT_ALL = range(4)
-"""Hundreds of VARI: how far the tool rises behind each pass."""
+
+
+class _Rise(enum.IntEnum):
+    """Hundreds of VARI: how far the tool rises after each pass."""
+
+    TO_RETURN = 0
+    TO_SAFETY = 1
+    BY_SAFETY = 2
+    NOT_AT_ALL = 3
 
 
 @dataclasses.dataclass(slots=True)
@@ -69,7 +77,11 @@ class _Milling:
         control.report.line = self.block.line
         depart(control, self.leads[1], None)
         here, safe = control.motion.programmed[across], self.heights.safe
-        rise = {_TO_SAFETY: safe, _BY_SAFETY: here + safe - self.heights.surface, _NOT_AT_ALL: here}
+        rise: dict[int, float] = {
+            _Rise.TO_SAFETY: safe,
+            _Rise.BY_SAFETY: here + safe - self.heights.surface,
+            _Rise.NOT_AT_ALL: here,
+        }
         go_to_height(control, rise.get(self.rises, self.heights.back))
         if self.levels:
             self.begin()
@@ -85,7 +97,7 @@ def _mill_contour(call: CycleCall) -> None:
         call.refuse("cycle-word", "needs KNAME, the contour: its name or labels in quotes", '"A:B"')
     kind, between = call.get("VARI") % 10.0, int(call.get("VARI") // 10.0 % 10.0)
     rises = int(call.get("VARI") // 100.0)
-    if kind not in (1.0, 2.0) or between not in (0, 1) or not 0 <= rises <= _NOT_AT_ALL:
+    if kind not in (1.0, 2.0) or between not in (0, 1) or not 0 <= rises <= _Rise.NOT_AT_ALL:
         call.refuse("cycle-word", "takes VARI 1 or 2, in tens 0 or 1, in hundreds 0 to 3")
     rest = abs(call.length("FALD")) if kind == 1.0 else 0.0
     depth = abs(call.length("MID")) or heights.surface - heights.bottom
