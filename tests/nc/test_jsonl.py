@@ -75,6 +75,10 @@ def test_moves_under_compensation_say_that_they_are_those_of_the_tool_centre() -
         (2, False), (3, True), (4, True), (5, True), (6, False),
     ]  # fmt: skip
     assert moves[2]["end"]["X"] == pytest.approx(-5.0)
+    again = Interpretation(source_from_text(text), dialect_named("fanuc"), TWO_TOOLS)
+    text_of = {line.split()[0]: line for line in text_lines(again)}
+    assert text_of["4"].split()[2:4] == ["X-5", "Y35"]
+    assert text_of["4"].endswith("tool centre")
 
 
 def test_moves_beside_a_contour_of_heidenhain_say_so_too() -> None:

@@ -39,7 +39,6 @@ def arc_moves(
         made.append(driven(move, here, there, center, plane[2], piece[4]))
         if number < len(pieces):
             made[-1].corner = Corner.EXACT_PATH
-            made[-1].display = shown_at(move, there)
         here = there
     return made
 
@@ -49,9 +48,7 @@ def level_arc(move: Segment, plane: Directions, arc: Curve, start: list[float]) 
     end = list(start)
     height = along(vector_of(start), plane[2])
     put_point(plane, arc[2], height, end)
-    made = driven(move, start, end, world(plane, arc[3], height), plane[2], arc[4])
-    made.display = shown_at(move, end)
-    return made
+    return driven(move, start, end, world(plane, arc[3], height), plane[2], arc[4])
 
 
 def driven(
@@ -62,14 +59,14 @@ def driven(
     normal: Vector,
     sweep: float,
 ) -> Segment:
-    """A move elsewhere, with all else of another."""
+    """A move elsewhere, with all else of another; the screen shows where it ends, which is the tool centre."""
     return Segment(
         move.motion,
         move.line,
         move.block,
         start,
         end,
-        move.display,
+        shown_at(move, end),
         move.feed,
         move.corner,
         move.corner_tolerance,
