@@ -100,16 +100,16 @@ TOLD: dict[str, tuple[str, dict[str, str], str, int]] = {
         SIDE, {"more": '[[fixtures]]\nname = "post"\nsize = [20, 20, 120]\nposition = [42, 40, 0]'},
         "collision", 10,
     ),
-    "direction too strict": (
-        LED.replace("G1 X-45 F800", "G1 X-45 B30 F3000"),
-        {**HEAD, "more": "[tolerance]\ndirection_mdeg = 0.001"}, "direction_mdeg", 8,
-    ),
+    "direction too strict": (SIDE, {"more": "[tolerance]\ndirection_mdeg = 0.001"}, "direction_mdeg", 14),
     "direction without a tilt": (
         "G90 G94 T1 M6\nG43 H1\nS6000 M3\nG0 X-35. Y0.\nG0 Z-2.\nG1 X35. F600.\nG0 Z20.\nM30\n",
         {**PLATE, "top": "", "more": "[tolerance]\ndirection_mdeg = 5.0"}, "direction_mdeg", 0,
     ),
     "force limit of a tilted tool": (
-        SIDE, {"stock": 'material = "C45"', "tool": "force_limit = 5.0"}, "limit-not-judged", 10,
+        SIDE, {"stock": 'material = "C45"', "tool": "force_limit = 5.0"}, "tool-broken", 10,
+    ),
+    "force of a tilted tool": (
+        SIDE, {"stock": 'material = "C45"', "more": "[tolerance]\nforce_n = 5.0"}, "force_n", 10,
     ),
     "chips of a tilted tool": (SIDE.replace("F600.", "F9000."), {"tool": "chip_limit = 0.05"}, "feed-per-tooth", 10),
     "backwards": (SIDE.replace("S6000 M3", "S6000 M4"), {}, "counter-clockwise", 4),
@@ -155,9 +155,6 @@ TOLD: dict[str, tuple[str, dict[str, str], str, int]] = {
 }  # fmt: skip
 
 REFUSED: dict[str, tuple[str, dict[str, str], str]] = {
-    "force of a tilted tool": (
-        SIDE, {"stock": 'material = "C45"', "more": "[tolerance]\nforce_n = 5.0"}, "force_n: .* not simulated",
-    ),
     "a plane that the tool does not stand across": (
         BEGIN + "G68.2 X0. Y0. Z0. I0. J30. K0.\n" + IN + "M30\n", {}, "does not stand across",
     ),

@@ -17,7 +17,7 @@ PROGRAMS = {
 
 
 @pytest.mark.parametrize(("block", "kind"), PROGRAMS.values(), ids=PROGRAMS)
-@pytest.mark.parametrize("longer", [0.0, 15.0])
+@pytest.mark.parametrize("length_difference", [0.0, 15.0])
 def test_the_path_in_the_part_is_the_programmed_one(
     block: str, kind: int, length_difference: float
 ) -> None:

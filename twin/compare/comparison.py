@@ -13,16 +13,7 @@ from twin.compare.figures import AxisTracking, ContourFigures, Figures, WorstPla
 from twin.compare.statistics import Distribution
 from twin.errors import RecordingError
 from twin.motion.setpoints.setpoints import Setpoints
-from twin.nc.canonical import (
-    Axes,
-    FeedUnit,
-    FloatArray,
-    IntArray,
-    Motion,
-    Moves,
-    Shape,
-    concatenate,
-)
+from twin.nc.canonical import Axes, FloatArray, IntArray, Moves, concatenate
 from twin.recording.reader import Samples
 from twin.toolpath.nearest import drop_moves, join_paths, path_columns
 from twin.toolpath.nearest_kernels import derivatives
@@ -136,6 +127,7 @@ class Comparison:
         self._duration = float(setpoint.time[-1])
         self._add_tracking(samples)
         real = samples.real(self._frame)
+        self._add_direction(real, setpoint)
         length_difference = self._lower(setpoint.move)
         point = np.ascontiguousarray(self._frame.position(real, length_difference))
         if int(setpoint.move.max()) >= self._first + len(self._moves):
@@ -160,7 +152,6 @@ class Comparison:
         rows = self._blocks.add(self._moves, place, line, error, setpoint.time)
         self._keep_worst(rows, setpoint)
         if place is not None:
-            self._add_direction(real, setpoint, place, fraction)
             self._corners.add(point, place, setpoint.time)
             at_corner = self._corners.at_corner(place, fraction)
             self._features.add(self._moves, place, at_corner, error, setpoint.time)
@@ -199,36 +190,16 @@ class Comparison:
                 place = int(setpoint.line[row]), float(setpoint.time[row])
                 self._axis_worst[column] = place
 
-    def _add_direction(
-        self, real: FloatArray, setpoint: Setpoints, place: IntArray, fraction: FloatArray
-    ) -> None:
-        """The angle to the direction that is commanded where the tip is nearest: being late is no error.
-
-        Rapids, and moves at whose tip the axes turn while it rests, which have no nearest place, are left out.
-        """
+    def _add_direction(self, real: FloatArray, setpoint: Setpoints) -> None:
         if self._frame.chain is None:
             return
-        moves = self._moves[place]
-        judged = np.flatnonzero(
-            (moves.motion == Motion.FEED) & (moves.feed_unit == FeedUnit.MM_PER_MIN)
-        )
-        if not len(judged):
-            return
-        moves, at = moves[judged], fraction[judged, None]
-        commanded = moves.start + at * (moves.end - moves.start)
-        if moves.curve is not None:
-            curved = moves.shape == Shape.CURVE
-            powers = at[:, :, None] ** np.arange(1, 6)
-            along = moves.start + (moves.curve * powers).sum(axis=2)
-            commanded[curved] = along[curved]
-        programmed = self._frame.tool_direction(commanded + self._part_zero)
-        simulated = self._frame.tool_direction(real[judged])
-        across = np.linalg.norm(np.cross(programmed, simulated), axis=1)
-        ahead = np.einsum("ij,ij->i", programmed, simulated)
-        row = self._direction.add(np.rad2deg(np.arctan2(across, ahead)) * MDEG_PER_DEGREE)
+        commanded = self._frame.tool_direction(setpoint.position)
+        simulated = self._frame.tool_direction(real)
+        across = np.linalg.norm(np.cross(commanded, simulated), axis=1)
+        along = np.einsum("ij,ij->i", commanded, simulated)
+        row = self._direction.add(np.rad2deg(np.arctan2(across, along)) * MDEG_PER_DEGREE)
         if row is not None:
-            worst = judged[row]
-            self._direction_worst = int(moves.line[row]), float(setpoint.time[worst])
+            self._direction_worst = int(setpoint.line[row]), float(setpoint.time[row])
 
     def _follow(self, samples: Samples, point: FloatArray) -> Followed:
         setpoint, late = samples.setpoint, self._late
