@@ -4,6 +4,7 @@ import contextlib
 import json
 import re
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -29,6 +30,13 @@ def until(come: Callable[[], Any], what: str) -> Any:
     raise AssertionError(f"it did not come: {what}")
 
 
+def _port_of_its_own() -> int:
+    """A port that is free, and is not among those that the command tries by itself."""
+    with socket.socket() as bound:
+        bound.bind(("127.0.0.1", 0))
+        return int(bound.getsockname()[1])
+
+
 class ClassServer:
     """``twin train --class`` in a process of its own.
 
@@ -39,8 +47,10 @@ class ClassServer:
 
     def __init__(self, roster: Path, out: Path, scene: str = "fagor_first_steps") -> None:
         command = [sys.executable, "-m", "twin", "train", scene, "--class", str(roster)]
+        # A class that begins anew keeps its port: one that no other test takes meanwhile.
+        port = [] if out.exists() and any(out.iterdir()) else ["--port", str(_port_of_its_own())]
         self._process = subprocess.Popen(
-            [*command, "--out", str(out)], stdout=subprocess.PIPE, text=True
+            [*command, *port, "--out", str(out)], stdout=subprocess.PIPE, text=True
         )
         self.links: dict[str, str] = {}
         assert self._process.stdout is not None
