@@ -9,6 +9,8 @@ from twin import ray_cluster
 from twin.errors import UsageError
 
 pytest.importorskip("ray", reason="the extra 'cluster' is not installed")
+pytestmark = pytest.mark.processes
+"""What brings Ray is set up for these kinds of tests alone: among the others it would be skipped everywhere."""
 
 
 def test_an_address_that_nobody_answers_is_refused_with_what_would_have_worked(monkeypatch):
