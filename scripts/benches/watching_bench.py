@@ -38,15 +38,15 @@ def rows() -> Iterator[Row]:
 
 def _watched(job: Path, out: Path) -> None:
     run = Run(prepare(job))
-    run.execute(run.dry_run(), out, lambda *_: None)
+    run.execute(out, lambda *_: None)
 
 
 def _bare(job: Path) -> None:
     run = Run(prepare(job))
-    dry_run = run.dry_run()
+    program, summary = run.dry_run.program, run.dry_run.summary
     model = run.model.physics
-    setpoints = planned(dry_run.program, run.machine, run.part_zero)
-    forces = cutting_forces(run.preparation.job.file, run.machine, dry_run, run.layout)
+    setpoints = planned(program, run.preparation)
+    forces = cutting_forces(run.preparation, summary)
     period_s = run.machine.file.servo_period_s
     for _ in simulate(
         run.machine, model, settle(setpoints, period_s), None, forces.load, forces.process

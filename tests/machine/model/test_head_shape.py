@@ -5,14 +5,14 @@ import pytest
 from twin.files.shipped import machine_file
 from twin.job.job_file import ToolTable
 from twin.machine.load import read_machine
-from twin.machine.model.head_shape import HeadShape, HeadSolid
+from twin.machine.model.head_shape import HeadSolid
 from twin.machine.model.model import MachineModel
 
 TOOL = ToolTable(number=1, diameter=12.0, length=100.0)
 
 
 def solids_of(name: str) -> dict[str, HeadSolid]:
-    head = HeadShape(MachineModel(read_machine(machine_file(name)), TOOL))
+    head = MachineModel(read_machine(machine_file(name)), TOOL).head
     return {solid.name: solid for solid in head.above_tip(TOOL)}
 
 

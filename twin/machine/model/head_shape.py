@@ -6,7 +6,6 @@ import mujoco
 import numpy as np
 
 from twin.job.job_file import ToolTable
-from twin.machine.model.model import MachineModel
 from twin.machine.model.tool_shape import (
     COLLISION_GROUP,
     TOOL_NAMES,
@@ -51,9 +50,14 @@ class HeadShape:
     against the stock only then.
     """
 
-    def __init__(self, whole: MachineModel) -> None:
-        """Measure a machine with all axes at zero; the tool in its spindle is passed over."""
-        self._flange, model = whole.machine.file.spindle.flange_diameter, whole.solids
+    def __init__(self, model: mujoco.MjModel, flange_diameter: float) -> None:
+        """Measure a machine with all axes at zero; the tool in its spindle is passed over.
+
+        Args:
+            model: Its solids.
+            flange_diameter: Of the tool holder [mm].
+        """
+        self._flange = flange_diameter
         data = mujoco.MjData(model)
         mujoco.mj_forward(model, data)
         nose = data.site("spindle_nose")
