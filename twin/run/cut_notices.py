@@ -21,10 +21,6 @@ def cut_notices(
     """Warnings about the cut of a whole program.
 
     Args:
-        job: Its stock is there.
-        dry_run: What the program does.
-        machining: The cut.
-        cut: What it came to.
         loads: What the tools bore: a cut on a side that is thinner than a cell shows there alone.
     """
     cutter, watch = machining.cutter, dry_run.watch
@@ -99,7 +95,6 @@ def tooth_feed_notices(watch: ProgramWatch, cut: CutResult | None) -> Iterator[N
     """Feeds per tooth that no edge bears, where no force is simulated that would show it.
 
     Args:
-        watch: What the program does.
         cut: What was cut; None without a stock: then only what no tool at all could bear is reported.
     """
     for line, feed in watch.tooth_feeds.items():

@@ -42,7 +42,6 @@ class InterpretedProgram:
         """Take what an interpreter makes.
 
         Args:
-            preparation: The job made concrete.
             chunks: The whole program, or its begin.
 
         Raises:
@@ -102,7 +101,6 @@ class DryRun:
     """What a program does, as far as that is known without moving anything.
 
     Attributes:
-        program: Its moves and events.
         warnings: What the interpreter and the spindle had to say.
         alarm: The soft-limit alarm of the first move that leaves the travel, if any.
         summary: Its tools, speeds of the spindle and rapids.
@@ -131,9 +129,7 @@ def interpret_all(preparation: Preparation, part_zero: FloatArray, clock: StageC
     """Interpret a whole program, so that no error is met with the machine half-way.
 
     Args:
-        preparation: The job made concrete.
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
-        clock: Counts the time as interpretation.
 
     Raises:
         ProgramError: The program is wrong.

@@ -42,8 +42,6 @@ class Preparation:
 
     Attributes:
         job: The job file and where it lies.
-        machine: The machine that it runs on.
-        source: The NC program.
         dialect: The language that the program is written in.
         settings: What the interpreter has to know of machine and job.
         dialect_reason: What showed the dialect of a program whose job names none; empty: the job does.
@@ -259,7 +257,6 @@ def prepare_recorded(header: RecordingHeader, *, machine: str | None = None) -> 
     """What a recording was made with, from its header.
 
     Args:
-        header: Of the recording.
         machine: Overrides the machine file; a path is relative to the working folder.
 
     Raises:

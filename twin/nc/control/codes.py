@@ -37,7 +37,6 @@ class GCode:
     Attributes:
         group: Modal group; codes of one group exclude each other in a block. Empty: not modal.
         action: Done before the block moves.
-        perform: Done in place of a move.
         consumes: Addresses that the code wants although they have a meaning of their own elsewhere.
         after_motion: Done when the block has moved.
         non_modal: What it sets holds for its block only.
