@@ -119,7 +119,6 @@ def moved_shift(shift: float, part: float, there: float) -> float:
     """A shift of an axis that gives the place where it is other programmed coordinates.
 
     Args:
-        shift: As it was.
         part: Where the axis is in part coordinates.
         there: Where it would stand with its new coordinates and the shift as it was.
     """
@@ -135,7 +134,6 @@ class Frame:
     Attributes:
         total: Sum of all shifts, shape (k,) [mm or deg].
         matrix: Mirror, rotation and scale of X, Y, Z.
-        is_identity: The matrix is the identity.
         screen: The inverse of the matrix; None where it is the identity.
     """
 

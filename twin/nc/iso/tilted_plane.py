@@ -81,7 +81,6 @@ def point_tool(
     """Turn the rotary axes until the tool stands across the plane of the frame, then count in it.
 
     Args:
-        control: The control.
         name: What the program calls it, for diagnostics.
         sense: Sign of the axis next to the tool that is preferred; 0: whatever is nearest.
         at: What asks for it; None: the block's code.
@@ -105,7 +104,6 @@ def turn_about(
     """Turn the rotary axes about a point below the tip, where the part is.
 
     Args:
-        control: The control.
         name: What the program calls it, for diagnostics.
         axes: Where the rotary axes go to, programmed, shape (k,); X, Y and Z are not looked at.
         below: How far the point lies below the tip [mm].
@@ -132,7 +130,6 @@ def rotary_axes_across(
     """Programmed position at which the tool stands across the plane of the frame, the tip not being led.
 
     Args:
-        control: The control.
         name: As for ``point_tool``.
         sense: Likewise.
         only: A solution with another sign is none.

@@ -24,7 +24,6 @@ def begin_tool_center(
     """Lead the tip of the tool from now on.
 
     Args:
-        control: The control.
         name: What the program calls it, for diagnostics.
         tilted: The tool stands across a tilted plane, and no rotary axis moves.
         in_plane: The tool turns in the plane of both directions; else the rotary axes go evenly.
@@ -51,7 +50,6 @@ def end_tool_center(control: Control, name: str, *, keeps_length: bool = False) 
     """Programmed positions are those of the axes again; nothing moves.
 
     Args:
-        control: The control.
         name: What the program calls it, for diagnostics.
         keeps_length: The length of the tool stays in force, along Z.
     """
@@ -71,9 +69,7 @@ def point_by_words(control: Control, direction: Vector, at: Word, *, in_frame: b
     """Let the block's words of rotary axes be those that point the tool, whose tip is led, in a direction.
 
     Args:
-        control: The control.
         direction: From the tip to the spindle, programmed coordinates, of any length above 0.
-        at: Which word says it.
         in_frame: The frame turns it; else it counts in the part as it is.
 
     Raises:

@@ -38,7 +38,6 @@ def rotary_axes_for(
     that changes nothing of the direction stays.
 
     Args:
-        chain: Of the machine.
         direction: From the tip to the spindle, seen from the part, unit vector, shape (3,).
         here: Where the axes are, as the chain counts them, shape (k,) [mm or deg].
         travel: Of each axis, as the chain counts them, shape (k, 2) [mm or deg]; of endless axes infinite.

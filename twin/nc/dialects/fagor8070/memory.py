@@ -51,7 +51,6 @@ class FagorMemory:
         headings: Lines of all headings, from 0, in order.
         main: Line of the program's heading, from 0, or None.
         structure: Which $ keywords belong together; None before it was asked for.
-        modal_call: #MCALL in force.
         part_frame: What #MCS has put aside while machine coordinates are in force, or None.
         offset_on: The tool in the spindle has its offset.
         polar_origin: In the working plane, from part zero [mm].

@@ -65,8 +65,6 @@ def orient(name: str, plane: str, *, about_tip: bool = False) -> Action:
     """G53.1, G53.6, G253: rotary axes turn until the tool stands across the tilted plane, rapidly.
 
     Args:
-        name: The code.
-        plane: The code that tilts the plane.
         about_tip: They turn about the tip (G53.6); else X, Y and Z rest.
     """
 
