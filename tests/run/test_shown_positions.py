@@ -29,5 +29,5 @@ def test_the_height_of_a_longer_tool_is_that_of_the_program(tmp_path: Path) -> N
     flat = [place for place in outcome.figures.worst if place.line in (7, 8)]
     assert flat
     assert [place.position[2] for place in flat] == pytest.approx([2.0] * len(flat), abs=0.2)
-    under = run.trace.tool[run.trace.line == 8]
+    under = outcome.trace.tool[outcome.trace.line == 8]
     assert under[:, 2].min() == pytest.approx(2.0, abs=0.2)

@@ -63,9 +63,6 @@ def compile_into_reach() -> Path:
     An installation that can be written to gets kernels for every processor of its architecture, so
     that an image of it needs no other folder; else, and in a checkout, the user's folder gets them.
 
-    Returns:
-        The folder that holds them.
-
     Raises:
         UsageError: Kernels cannot be kept anywhere.
     """
@@ -213,11 +210,7 @@ def _end_with_parent() -> None:
 
 
 def later_motion(run: Run) -> ProgramMotion:
-    """A motion that goes aslant into the middle of the blank and needs no planner.
-
-    Args:
-        run: The prepared job.
-    """
+    """A motion that goes aslant into the middle of the blank and needs no planner."""
     summary = run.dry_run.summary
     forces = cutting_forces(run.preparation, summary)
     return ProgramMotion(_aslant(run, run.dry_run.program), run.model, summary, forces)

@@ -21,9 +21,7 @@ def film_run(run: Run, folder: Path, progress: Progress) -> None:
     """Film a run that was recorded, and draw its end as a still.
 
     Args:
-        run: The run.
         folder: Where ``recording.h5`` lies and the pictures go.
-        progress: Told how far the film is.
 
     Raises:
         RenderError: Pictures cannot be made here.
@@ -55,7 +53,6 @@ def draw_contact(run: Run, folder: Path) -> None:
     """Draw the moment at which two things met, which is the last of its recording, near and from afar.
 
     Args:
-        run: The run.
         folder: Where ``recording.h5`` lies and the picture goes.
 
     Raises:

@@ -46,7 +46,6 @@ def rehearse(run: Run, tool: ToolTable, position: FloatArray) -> None:
     component gives up on a twin that is silent for two seconds.
 
     Args:
-        run: The prepared job.
         tool: What the spindle holds at the start.
         position: Where the axes stand, machine coordinates, shape (k,) [mm or deg].
 
@@ -105,10 +104,7 @@ def run_on_twin(
     """Let LinuxCNC work the twin; there can be one of both on a computer.
 
     Args:
-        run: The prepared job.
         folder: For the results; LinuxCNC's own files go into a folder in it.
-        progress: Told how far the run is.
-        wish: How.
         say: Told what LinuxCNC says.
         beside: Open while the control drives the machine, such as a page that shows it.
 

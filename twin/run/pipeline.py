@@ -73,9 +73,7 @@ class ProgramMotion(MachineMotion):
 
         Args:
             setpoints: As planned, machine coordinates, in chunks.
-            model: The machine.
             summary: Which tool is in the spindle during which move.
-            forces: What pushes the axes.
 
         Raises:
             ConfigError: The model does not compile.
@@ -120,8 +118,6 @@ def planned(
     """The setpoints of a program, in chunks.
 
     Args:
-        program: Its moves and events.
-        preparation: What it was made of.
         expect: Called with the moves before setpoints of theirs are made.
     """
 

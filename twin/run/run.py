@@ -36,8 +36,6 @@ class Run:
     """A prepared job laid out on its machine, its program interpreted; ``execute`` runs it.
 
     Attributes:
-        preparation: The job made concrete.
-        machine: Its machine.
         dry_run: What its program does.
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
         part_frame: How the part turns under the tool.
@@ -47,9 +45,6 @@ class Run:
 
     def __init__(self, preparation: Preparation) -> None:
         """Build the machine, and interpret the whole program, so that no error is met half-way.
-
-        Args:
-            preparation: The job made concrete.
 
         Raises:
             ConfigError: The model is wrong, or the program brings a tool that the job does not list.

@@ -37,7 +37,6 @@ class LiveRun:
         """Take a prepared job.
 
         Args:
-            preparation: The job made concrete.
             moment: Where the machine is, asked from another thread.
         """
         self._preparation = preparation

@@ -54,8 +54,6 @@ def read_model(model_path: Path, axes: Axes, joints: Sequence[Joint]) -> ModelAt
     """Read a machine's model, without its solids.
 
     Args:
-        model_path: The MJCF file.
-        axes: Of the machine.
         joints: Of each axis.
 
     Raises:
