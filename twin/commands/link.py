@@ -121,11 +121,7 @@ def _say(text: str) -> None:
 
 @contextmanager
 def _shown(run: Run, motion: "LockstepMotion") -> Iterator[None]:
-    """Show a machine that a control drives on the page of ``twin view``.
-
-    Raises:
-        UsageError: The view's library is missing.
-    """
+    """Show a machine that a control drives on the page of ``twin view``."""
     from twin.view.app import open_view
     from twin.view.live_run import LiveRun, Moment
 

@@ -165,11 +165,7 @@ def serve_grbl(job: Path | None, source: Source) -> ExitCode:
 
 @contextlib.contextmanager
 def _grbl_line(source: Source) -> "Iterator[socket.socket | int]":
-    """Where senders come in: a socket, or the twin's end of a pseudo-terminal.
-
-    Raises:
-        UsageError: Nobody can or may listen there.
-    """
+    """Where senders come in: a socket, or the twin's end of a pseudo-terminal."""
     from twin.serve.grbl.server import PSEUDO_TERMINAL, pseudo_terminal
     from twin.web.origin_check import LOCAL_NAMES
 
@@ -235,11 +231,7 @@ def _serve_room(
 
 @contextlib.contextmanager
 def _viewed(production: "Production", playhead: "Playhead", *, wanted: bool) -> Iterator[None]:
-    """Show the machine on a page as well, where that is asked for.
-
-    Raises:
-        UsageError: Nothing moved, or the view's library is missing.
-    """
+    """Show the machine on a page as well, where that is asked for."""
     if not wanted:
         yield
         return
@@ -269,11 +261,7 @@ def _tools(job: "JobFile") -> dict[int, str]:
 
 
 def _check_opcua(source: Source) -> None:
-    """Refuse an OPC UA server that cannot be, before anything is simulated.
-
-    Raises:
-        UsageError: It is not installed, would be open to anybody, or its port is taken.
-    """
+    """Refuse an OPC UA server that cannot be, before anything is simulated."""
     if source.opcua_port is None:
         if source.opcua_trust is not None:
             raise UsageError("--opcua-trust is for --opcua PORT")
@@ -338,9 +326,6 @@ def _served(
         listener: Where clients come in.
         stop: Set when the observation has come to an end by itself.
         failed: Called then, too.
-
-    Raises:
-        Exception: Whatever ended the observation.
     """
     import uvicorn
 

@@ -102,11 +102,7 @@ class Place:
 
 
 def _require_folder(out: Path) -> None:
-    """Refuse a place for results that is a file, or lies in one.
-
-    Raises:
-        UsageError: It does.
-    """
+    """Refuse a place for results that is a file, or lies in one."""
     for place in (out, *out.parents):
         if place.exists():
             if not place.is_dir():

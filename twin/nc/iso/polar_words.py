@@ -42,11 +42,7 @@ def aim_by_polar(
 
 
 def aim_by_angle(control: Control, target: list[float], word: Word, *, from_abscissa: bool) -> None:
-    """Aim a target of one coordinate, the abscissa or the ordinate, so that a line leaves the start at an angle.
-
-    Raises:
-        ProgramError: In that direction the coordinate is never reached.
-    """
+    """Aim a target of one coordinate, the abscissa or the ordinate, so that a line leaves the start at an angle."""
     plane = control.modal.plane
     cosine, sine = direction(control.number(word))
     along, across = (cosine, sine) if from_abscissa else (sine, cosine)

@@ -85,9 +85,6 @@ def point_tool(
         sense: Sign of the axis next to the tool that is preferred; 0: whatever is nearest.
         at: What asks for it; None: the block's code.
         about_tip: They turn about the tip; else X, Y and Z rest.
-
-    Raises:
-        ProgramError: The machine cannot, or radius compensation is in force.
     """
     end_tool_center(control, name, keeps_length=True)
     axes = rotary_axes_across(control, name, sense=sense, at=at)
@@ -133,9 +130,6 @@ def rotary_axes_across(
         sense: Likewise.
         only: A solution with another sign is none.
         at: As for ``point_tool``.
-
-    Raises:
-        ProgramError: The machine cannot.
     """
     setup = control.settings.setup
     if setup is None:

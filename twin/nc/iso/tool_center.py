@@ -27,9 +27,6 @@ def begin_tool_center(
         name: What the program calls it, for diagnostics.
         tilted: The tool stands across a tilted plane, and no rotary axis moves.
         in_plane: The tool turns in the plane of both directions; else the rotary axes go evenly.
-
-    Raises:
-        ProgramError: No axis of the machine turns, or radius compensation is in force.
     """
     setup = control.settings.setup
     if setup is None:
@@ -71,9 +68,6 @@ def point_by_words(control: Control, direction: Vector, at: Word, *, in_frame: b
     Args:
         direction: From the tip to the spindle, programmed coordinates, of any length above 0.
         in_frame: The frame turns it; else it counts in the part as it is.
-
-    Raises:
-        ProgramError: The machine cannot, or the direction has no length.
     """
     center, names = control.path.tool_center, control.settings.axes.names
     assert center is not None

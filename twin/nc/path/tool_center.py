@@ -285,11 +285,7 @@ class ToolCenter:
     def _along_circle(
         self, move: Segment, rates: FloatArray, axes: TwoAxes, turning: Turning
     ) -> Iterator[Segment]:
-        """The rotary axes follow a great circle; parts are halved until they lead tip and direction closely enough.
-
-        Raises:
-            ValueError: They would have to be too many.
-        """
+        """The rotary axes follow a great circle; parts are halved until they lead tip and direction closely enough."""
         fraction = np.linspace(0.0, 1.0, self._parts(move, rates) + 1)
         while len(fraction) <= MOST_PARTS:
             places = np.array(move.start) + fraction[:, None] * rates

@@ -82,11 +82,7 @@ def open_class(
 
 @contextlib.contextmanager
 def _alone(folder: Path) -> Iterator[None]:
-    """Keep a class's folder from a second server.
-
-    Raises:
-        UsageError: Another one has it.
-    """
+    """Keep a class's folder from a second server."""
     with (folder / "class.lock").open("w") as lock:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)

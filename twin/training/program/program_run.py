@@ -274,11 +274,7 @@ class ProgramRun:
         self._last_move = self._stopped_behind = -1
 
     def _next_chunk(self) -> Chunk | None:
-        """What the planner pulls; where it is quicker than the interpreter, the part ends there.
-
-        Raises:
-            _TooFewMovesError: The planner is to begin, and there are no more moves yet.
-        """
+        """What the planner pulls; where it is quicker than the interpreter, the part ends there."""
         reader = self.reader
         if not reader.waiting and reader.ending is None and not self._takes_any:
             raise _TooFewMovesError

@@ -112,9 +112,6 @@ def assignments(control: Control, statement: Statement) -> tuple[list[Assignment
 
     Returns:
         The assignments, and the words of a block that follow them on the line, if any.
-
-    Raises:
-        ProgramError: They cannot be read.
     """
     found: list[Assignment] = []
     name, text, at = statement.keyword.strip(), statement.text, 0

@@ -108,11 +108,7 @@ POLAR_LINE = Interpolation(_polar_line)
 
 
 def polar_target(control: Control, pole: Point) -> list[float]:
-    """Take PR, PA and the other axes; missing ones of both stay as they are.
-
-    Raises:
-        ProgramError: The radius is negative.
-    """
+    """Take PR, PA and the other axes; missing ones of both stay as they are."""
     words = (control.take("PR"), control.take("PA"))
     target = control.target()
     aim_by_polar(control, target, pole, _MEASURED, words)
@@ -160,11 +156,7 @@ POLE = Interpolation(set_pole)
 
 @contextmanager
 def circle_plane(control: Control) -> Iterator[Point]:
-    """Let the plane of CC be the working plane; the pole in it.
-
-    Raises:
-        ProgramError: No pole is set.
-    """
+    """Let the plane of CC be the working plane; the pole in it."""
     memory, kept = memory_of(control), control.modal.plane
     plane = memory.circle_plane or kept
     first, second, _ = plane.axes
@@ -181,11 +173,7 @@ def circle_plane(control: Control) -> Iterator[Point]:
 
 
 def take_sense(control: Control) -> bool:
-    """Take DR; whether the arc is clockwise.
-
-    Raises:
-        ProgramError: There is none.
-    """
+    """Take DR; whether the arc is clockwise."""
     left, right = control.take("DR+"), control.take("DR-")
     if (left is None) == (right is None):
         hint = "DR+ turns counter-clockwise, DR- clockwise"

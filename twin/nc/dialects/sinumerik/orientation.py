@@ -57,11 +57,7 @@ INTERPOLATIONS = {
 
 
 def begin_transformation(control: Control, statement: Statement) -> None:
-    """TRAORI, TRAORI(1): the tip is led; F counts its way.
-
-    Raises:
-        ProgramError: It asks for another transformation, or no axis turns.
-    """
+    """TRAORI, TRAORI(1): the tip is led; F counts its way."""
     inner = statement.text.strip().strip("()").strip()
     if inner not in ("", "1"):
         message = f"the machine has one transformation of orientation, TRAORI, not TRAORI({inner})"
@@ -79,9 +75,6 @@ def swivel(control: Control, statement: Statement) -> None:
 
     Decisions: _FR retracts Z to machine zero before; _DIR is the sign of the axis next to the tool, and where it
     is 0 only the frame turns, so that nothing moves until the tool stands across it.
-
-    Raises:
-        ProgramError: Its mode is not simulated, or the machine cannot.
     """
     inner, column, _ = bracketed(control, statement.text, statement.text_column)
     values = [
@@ -118,11 +111,7 @@ def swivel(control: Control, statement: Statement) -> None:
 
 
 def require_orientation(control: Control) -> None:
-    """In a swivelled plane X, Y and Z move when the tool stands across it.
-
-    Raises:
-        ProgramError: It does not.
-    """
+    """In a swivelled plane X, Y and Z move when the tool stands across it."""
     swivelled = memory_of(control).swivel
     word = next((control.words[each] for each in "XYZ" if each in control.words), None)
     if swivelled and swivelled[0] != IDENTITY and word and control.path.tool_center is None:
@@ -202,9 +191,6 @@ def point_by_vector(control: Control) -> None:
 
     It turns in the plane of both directions, or the rotary axes go evenly; these do, too, to their own words (manual: rotary
     axis interpolation). With ORIMKS no frame turns the vector.
-
-    Raises:
-        ProgramError: TRAORI is not in force.
     """
     words = [control.take(name) for name in _VECTOR]
     first = next((word for word in words if word is not None), None)

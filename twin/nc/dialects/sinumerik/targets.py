@@ -70,11 +70,7 @@ def take_target(control: Control) -> list[float]:
 
 
 def _by_way(control: Control, index: int, word: Word) -> float:
-    """Target of a rotary axis that is reached within a turn.
-
-    Raises:
-        ProgramError: The axis does not turn, or the target is no angle of a turn.
-    """
+    """Target of a rotary axis that is reached within a turn."""
     value = control.number(word)
     if control.motion.linear[index]:
         message = f"{word.mark} finds the way of a rotary axis, and {word.address} is none"

@@ -89,11 +89,7 @@ def levels_between(surface: float, bottom: float, depth: float) -> tuple[float, 
 
 
 def clear_pocket(control: Control, outline: Outline, clearing: Clearing) -> None:
-    """Mill a pocket or a slot.
-
-    Raises:
-        ProgramError: The tool does not fit into it, or it would need too many passes.
-    """
+    """Mill a pocket or a slot."""
     stock = clearing.stock if clearing.roughs else 0.0
     room, step = outline.room - stock, min(clearing.step, DIAGONAL * clearing.radius)
     if room < 0.0:
