@@ -113,13 +113,18 @@ def _tooth_feed_text(feed: ToothFeed) -> str:
 def unjudged_limit_notices(job: JobFile, watch: ProgramWatch) -> Iterator[Notice]:
     """Limits of tools that only a simulated force could judge, where none is simulated."""
     for tool in job.tools:
-        if tool.force_limit is not None and tool.number in watch.tools_used:
+        given = [limit for limit in _LIMITS_OF_FORCE if getattr(tool, limit) is not None]
+        if given and tool.number in watch.tools_used:
+            limits, are = " and ".join(given), "is" if len(given) == 1 else "are"
             yield Notice(
                 "limit-not-judged",
                 watch.first_feed,
-                f"force_limit of tool {tool.number} is not judged: no force is simulated; it needs a "
+                f"{limits} of tool {tool.number} {are} not judged: no force is simulated; it needs a "
                 '[stock] with a material, a spindle speed, and cutting_force = "teeth"',
             )
+
+
+_LIMITS_OF_FORCE = ("force_limit", "torque_limit", "thrust_limit")
 
 
 def tolerance_notices(tolerance: ToleranceTable, lines: int) -> Iterator[Notice]:

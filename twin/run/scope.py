@@ -13,6 +13,7 @@ from twin.job.job_file import JobFile
 from twin.job.load import DEFAULT
 from twin.machine.description.config import Machine
 from twin.machine.watching.alarms import Alarm
+from twin.nc.control.settings import ControlSettings
 from twin.run.dry_run import DryRun
 from twin.run.preparation import Preparation
 from twin.run.program_watch import ProgramWatch
@@ -129,6 +130,7 @@ def scope_of(
         *_blind(file, forces=forces, swivels=_swivels(dry_run.summary)),
         *(_silent_spindle(file, watch)),
         *_unknown_functions(file),
+        *_never_read(preparation.settings),
         *(Unwatched(reason.what, reason.message) for reason in unjudged),
         *(
             Unwatched(f"all behind line {each.line}", "the alarm ended the run")
@@ -181,6 +183,12 @@ def _unknown_functions(job: JobFile) -> Iterator[Unwatched]:
     unknown = [name for name, table in job.m_functions.items() if table.meaning == UNKNOWN_FUNCTION]
     if unknown:
         yield Unwatched(", ".join(unknown), UNKNOWN_FUNCTION)
+
+
+def _never_read(settings: ControlSettings) -> Iterator[Unwatched]:
+    """Values that the job gives the program, and that it never asked for."""
+    for table, names in settings.never_read.items():
+        yield Unwatched(f"{table} {', '.join(names)}", "the program never asks for them")
 
 
 def _blind(job: JobFile, *, forces: bool, swivels: bool) -> Iterator[Unwatched]:
