@@ -40,7 +40,6 @@ class Source:
     Attributes:
         port: 0: the first free one of ``PORTS``.
         speed: Seconds of the twin for each second of the day.
-        buffer: How many observations are remembered.
         dialect: Overrides the job's dialect.
         machine: Overrides the job's machine.
         opcua_port: Where OPC UA is told beside MTConnect; None: nowhere.
@@ -63,10 +62,6 @@ class Source:
 
 def serve_job(path: Path, source: Source) -> ExitCode:
     """Simulate a job once, then report it as if the machine made part after part.
-
-    Args:
-        path: NC program or job file.
-        source: Where, and how fast.
 
     Raises:
         UsageError: The web server is not installed, or nobody can listen there.
@@ -113,7 +108,6 @@ def serve_scene(name: str, source: Source) -> ExitCode:
 
     Args:
         name: A shipped scene's name, or a scene file.
-        source: Where.
 
     Raises:
         UsageError: The web server is not installed, nobody can listen there, or a room was to run
@@ -139,7 +133,6 @@ def serve_grbl(job: Path | None, source: Source) -> ExitCode:
 
     Args:
         job: NC program or job file: machine, blank, tool; none: of the shipped one.
-        source: Where, and how fast.
 
     Raises:
         UsageError: The web server is not installed, or nobody can or may listen there.

@@ -193,7 +193,6 @@ def tangent_arc_to(
 
     Args:
         target: Programmed position, shape (k,).
-        name: Of the code, for messages.
         or_straight: On a line where the target lies straight ahead.
     """
     direction = control.motion.direction

@@ -24,7 +24,6 @@ def begin_tool_center(
     """Lead the tip of the tool from now on.
 
     Args:
-        name: What the program calls it, for diagnostics.
         tilted: The tool stands across a tilted plane, and no rotary axis moves.
         in_plane: The tool turns in the plane of both directions; else the rotary axes go evenly.
     """
@@ -47,7 +46,6 @@ def end_tool_center(control: Control, name: str, *, keeps_length: bool = False) 
     """Programmed positions are those of the axes again; nothing moves.
 
     Args:
-        name: What the program calls it, for diagnostics.
         keeps_length: The length of the tool stays in force, along Z.
     """
     center = control.path.tool_center

@@ -122,7 +122,6 @@ class ProgramRun:
         """The next setpoints; None while the first moves are being interpreted.
 
         Args:
-            count: How many servo periods.
             feed: Factor of the feed override.
             rapid: Factor of the rapid override.
             single: Whether to stop at the end of every block.

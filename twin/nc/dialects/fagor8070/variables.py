@@ -96,8 +96,6 @@ class Assignment:
     Attributes:
         name: The variable, or ``P`` where its number is computed.
         index: That number, or None.
-        index_column: Where it is.
-        column: Where it is.
     """
 
     name: str

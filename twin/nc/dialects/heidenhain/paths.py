@@ -49,11 +49,7 @@ After = Callable[[Control, list[float]], None]
 
 
 def path_function(interpolation: Interpolation, after: After) -> StatementAction:
-    """A keyword whose block moves.
-
-    Args:
-        after: Done behind it.
-    """
+    """A keyword whose block moves."""
 
     def action(control: Control, statement: Statement) -> None:
         memory, modal = memory_of(control), control.modal

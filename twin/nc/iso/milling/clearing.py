@@ -27,7 +27,6 @@ class Clearing:
     """How a pocket or a stud is milled; heights are programmed coordinates.
 
     Attributes:
-        name: As messages call the cycle.
         radius: Of the tool [mm].
         reference: Height of the reference plane, where plunging begins [mm].
         surface: Height at which the first pass begins [mm].

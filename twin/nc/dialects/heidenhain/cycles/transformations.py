@@ -38,7 +38,6 @@ class Step(NamedTuple):
     """One block of a definition in steps, such as ``7.1 X+60``.
 
     Attributes:
-        text: What is behind both.
         column: Where that begins.
     """
 
