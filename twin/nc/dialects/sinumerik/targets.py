@@ -10,8 +10,7 @@ import math
 from twin.nc.control.control import Control
 from twin.nc.dialects.sinumerik.memory import memory_of
 from twin.nc.geometry.arcs import TURN
-from twin.nc.geometry.polar import point_at
-from twin.nc.iso.polar_words import aim_by_polar
+from twin.nc.iso.polar_words import aim_by_polar, point_at
 from twin.nc.text.blocks import Word
 
 _WAYS = ("DC", "ACP", "ACN")
