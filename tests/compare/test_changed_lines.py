@@ -58,3 +58,15 @@ def test_a_round_of_a_loop_before_its_changed_line_is_told_there():
 def test_without_a_changed_line_all_are_told():
     found = [Reason("baseline-path", "ends at X1", 2, 0.0), Reason("baseline-path", "lost", 3, 0.0)]
     assert list(differences_by_line(found, [])) == found
+
+
+def test_what_follows_from_a_path_is_one_finding_with_it() -> None:
+    reasons = [
+        Reason("baseline-path", "ends at X1", 2, 0.0),
+        Reason("baseline-feed", "feed 300, baseline 800", 4, 0.0),
+        Reason("baseline-feed", "feed 100, baseline 200", 7, 0.0),
+    ]
+    assert list(differences_by_line(reasons, [2, 7])) == [
+        Reason("baseline-path", "ends at X1 (and 1 more of this change)", 2, 0.0),
+        reasons[2],
+    ]
