@@ -14,6 +14,7 @@ from twin.nc.geometry.matrices import (
     applied,
     handedness,
     inverse,
+    product,
     rotated,
     stretched,
     turned_unit,
@@ -105,6 +106,13 @@ def composed(
     if rotation == rotation:
         matrix, shift = rotated(matrix, plane, rotation, center)
     return matrix, shift
+
+
+def chained(outer: tuple[Matrix, Vector], inner: tuple[Matrix, Vector]) -> tuple[Matrix, Vector]:
+    """Two maps, each a matrix and the shift that comes after it, one after the other."""
+    matrix, shift = outer
+    x, y, z = applied(matrix, inner[1])
+    return product(matrix, inner[0]), (x + shift[0], y + shift[1], z + shift[2])
 
 
 def moved_shift(shift: float, part: float, there: float) -> float:

@@ -75,7 +75,7 @@ def point_by_words(control: Control, direction: Vector, at: Word, *, in_frame: b
     Raises:
         ProgramError: The machine cannot, or the direction has no length.
     """
-    center, names = control.path.tool_center, control.settings.axes.names
+    center = control.path.tool_center
     assert center is not None
     turned = applied(control.frame.matrix, direction) if in_frame else direction
     length = math.hypot(*turned)
@@ -86,10 +86,20 @@ def point_by_words(control: Control, direction: Vector, at: Word, *, in_frame: b
         there = center.pointing((x / length, y / length, z / length), control.motion.part)
     except ValueError as error:
         control.fail("tool-center", str(error), at)
-    for column, name in enumerate(names):
-        if column > 2 and there[column] != control.motion.part[column]:
-            value = there[column] - control.frame.total[column]
-            control.words[name] = Word(name, value, at.column, at.width, mark="AC")
+    aim_words(control, [a - b for a, b in zip(there, control.frame.total, strict=True)], at)
+
+
+def aim_words(control: Control, axes: list[float], at: Word) -> None:
+    """Let the block's words of rotary axes lead to a programmed position, shape (k,), as absolute ones.
+
+    Args:
+        control: The control.
+        axes: The position; X, Y and Z are not looked at.
+        at: Which word says it.
+    """
+    for column, name in enumerate(control.settings.axes.names):
+        if column > 2 and axes[column] != control.motion.programmed[column]:
+            control.words[name] = Word(name, axes[column], at.column, at.width, mark="AC")
 
 
 def length_in_force(control: Control) -> float:

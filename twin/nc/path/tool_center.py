@@ -153,20 +153,27 @@ class ToolCenter:
         return tool_direction(self._chain, np.array([axes]) + self._counted_zero)[0]
 
     def pointing(
-        self, direction: Vector, axes: list[float], sense: float = 0.0, *, only: bool = False
+        self,
+        direction: Vector,
+        axes: list[float],
+        sense: float = 0.0,
+        *,
+        only: bool = False,
+        main: float = 0.0,
     ) -> list[float]:
         """Where the rotary axes point the tool in a direction of the part, the others as they are, shape (k,).
 
         Args:
             sense: Sign of the axis next to the tool that is preferred; 0: whatever is nearest.
             only: A solution with another sign is none.
+            main: As for ``rotary_axes_for``.
 
         Raises:
             ValueError: None do, within their travel (``orientation``).
         """
         offset = self._counted_zero
         here, goal = np.array(axes) + offset, np.array(direction)
-        found = rotary_axes_for(self._chain, goal, here, self._travel, sense, only=only)
+        found = rotary_axes_for(self._chain, goal, here, self._travel, sense, only=only, main=main)
         return (found - offset).tolist()
 
     def reached(self, start: list[float], end: list[float]) -> list[float]:
