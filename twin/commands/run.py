@@ -53,7 +53,7 @@ def run_and_print(
             raise UsageError(f"--save-job: {preparation.job.path} is the program's job already")
         run = Run(preparation)
         dry_run = run.dry_run()
-    with run_folder(folder, RESULT_FILES), without_verdict(folder):
+    with without_verdict(folder), run_folder(folder, RESULT_FILES):
         with shown_progress() as progress:
             outcome = run.execute(dry_run, folder, progress)
             if video and outcome.samples:
