@@ -33,12 +33,10 @@ def run_and_print(
     """Run a program or a job, write its results and print the verdict.
 
     Args:
-        path: NC program or job file.
         out: Folder for the results; ``out/<program>`` by default.
         dialect: Overrides the job's dialect.
         machine: Overrides the job's machine.
         video: Film the run too.
-        strict: Warnings of the interpreter are errors.
         save_job: Where the job is kept that is assumed for a raw program.
 
     Raises:
@@ -53,7 +51,7 @@ def run_and_print(
         elif save_job is not None:
             raise UsageError(f"--save-job: {preparation.job.path} is the program's job already")
         run = Run(preparation)
-    with run_folder(folder, RESULT_FILES), without_verdict(folder):
+    with without_verdict(folder), run_folder(folder, RESULT_FILES):
         with shown_progress() as progress:
             outcome = run.execute(folder, progress)
             if video and outcome.samples:

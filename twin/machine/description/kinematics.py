@@ -53,9 +53,6 @@ class ModelAtZero(NamedTuple):
 def read_model(model_path: Path, axes: Axes, joints: Sequence[Joint]) -> ModelAtZero:
     """Read a machine's model, without its solids.
 
-    Args:
-        joints: Of each axis.
-
     Raises:
         ConfigError: The model is no mill; the message says why.
     """
