@@ -340,7 +340,6 @@ class Machine:
     """A machine file that was read, with what other packages need of it.
 
     Attributes:
-        path: Where the machine file lies.
         axes: Names and kinds in the order of every column.
     """
 

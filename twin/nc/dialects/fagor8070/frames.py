@@ -30,11 +30,7 @@ def choose_plane(control: Control) -> None:
 
 
 def change_plane(control: Control) -> None:
-    """The plane becomes another, with part zero as polar origin.
-
-    Raises:
-        ProgramError: Compensation or a rotation is in force.
-    """
+    """The plane becomes another, with part zero as polar origin."""
     refuse_compensated_plane(control)
     memory = memory_of(control)
     if not math.isnan(memory.rotation):
