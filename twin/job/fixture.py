@@ -9,6 +9,7 @@ from pydantic import Field
 
 from twin.files.stl import read_stl
 from twin.files.toml import Table
+from twin.nc.canonical import FloatArray
 from twin.units import MM
 
 Positive = Annotated[float, Field(gt=0)]
@@ -33,6 +34,14 @@ class Weight(NamedTuple):
         """The same body elsewhere [mm]."""
         x, y, z = (here + way for here, way in zip(self.center, by, strict=True))
         return self._replace(center=(x, y, z))
+
+    def turned(self, rotation: FloatArray) -> "Weight":
+        """The same body seen in other axes: a rotation into these, shape (3, 3)."""
+        xx, yy, zz, xy, xz, yz = self.inertia
+        tensor = rotation @ [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]] @ rotation.T
+        x, y, z = (rotation @ self.center).tolist()
+        (xx, xy, xz), (_, yy, yz), (_, _, zz) = tensor.tolist()
+        return Weight(self.mass, (x, y, z), (xx, yy, zz, xy, xz, yz))
 
 
 def upright_weight(
