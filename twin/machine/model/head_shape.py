@@ -27,7 +27,6 @@ class HeadSolid:
     """A cylinder or box along the spindle's axis, with all axes at zero.
 
     Attributes:
-        name: Of the geom.
         round: A cylinder; else a box.
         half: Half of its size along machine X and Y [mm].
         offset: Its middle off the spindle's axis along machine X and Y [mm].
