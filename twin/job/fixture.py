@@ -4,12 +4,12 @@ from pathlib import Path
 from typing import Annotated, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 import pydantic
 from pydantic import Field
 
 from twin.files.stl import read_stl
 from twin.files.toml import Table
-from twin.nc.canonical import FloatArray
 from twin.units import MM
 
 Positive = Annotated[float, Field(gt=0)]
@@ -35,7 +35,7 @@ class Weight(NamedTuple):
         x, y, z = (here + way for here, way in zip(self.center, by, strict=True))
         return self._replace(center=(x, y, z))
 
-    def turned(self, rotation: FloatArray) -> "Weight":
+    def turned(self, rotation: npt.NDArray[np.float64]) -> "Weight":
         """The same body seen in other axes: a rotation into these, shape (3, 3)."""
         xx, yy, zz, xy, xz, yz = self.inertia
         tensor = rotation @ [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]] @ rotation.T

@@ -176,7 +176,9 @@ _LIGHTS = {
     "rim": ((-0.75, 0.25, -0.6), (0.22, 0.23, 0.26), False),
 }
 """Direction, colour and shadow of the lamps of a model that has none, as the shipped machines are lit."""
-_AMBIENT, _DIFFUSE, _SPECULAR = np.float32([[0.44, 0.44, 0.45], [0.24] * 3, [0.1] * 3])
+_AMBIENT, _DIFFUSE, _SPECULAR = np.array(
+    [[0.44, 0.44, 0.45], [0.24, 0.24, 0.24], [0.1, 0.1, 0.1]], np.float32
+)
 """Of the light at the camera."""
 _ZENITH, _HORIZON = (0.99, 0.99, 0.99), (0.80, 0.84, 0.88)
 
