@@ -107,6 +107,12 @@ class Points:
         return Points(self.tip.copy(), self.turn.copy(), axis)
 
 
+def runs_of(chosen: BoolArray) -> list[slice]:
+    """Where those that are chosen follow each other."""
+    edges = np.flatnonzero(np.diff(chosen, prepend=False, append=False))
+    return [slice(first, end) for first, end in edges.reshape(-1, 2).tolist()]
+
+
 class Contact(Protocol):
     """Measures one tool against the material."""
 
