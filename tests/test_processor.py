@@ -70,7 +70,8 @@ def test_items_made_ahead_come_in_order(cores):
     assert {thread == threading.get_ident() for _, thread in made} == {cores == 1}
 
 
-def test_an_error_is_raised_behind_the_items_before_it(cores):
+@pytest.mark.usefixtures("cores")
+def test_an_error_is_raised_behind_the_items_before_it():
     def items():
         yield 1
         raise ValueError("the second cannot be made")

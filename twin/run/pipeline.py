@@ -112,9 +112,7 @@ class ProgramMotion(MachineMotion):
 
         Args:
             setpoints: As planned, machine coordinates, in chunks.
-            model: The machine.
             summary: Which tool is in the spindle during which move.
-            forces: What pushes the axes.
             moves: Those that are planned; None: nobody asks for them.
 
         Raises:
@@ -146,11 +144,12 @@ class ProgramMotion(MachineMotion):
         Raises:
             SimulationError: The simulation failed.
         """
-        for samples, moves, self.planned_s, self._near_miss in made_ahead(self._stepped()):
+        for stepped in made_ahead(self._stepped()):
+            self.planned_s, self._near_miss = stepped.planned_s, stepped.near_miss
             if self._moves is not None:
-                for each in moves:
-                    self._moves.expect(each)
-            yield samples
+                for moves in stepped.moves:
+                    self._moves.expect(moves)
+            yield stepped.samples
         self.alarm, self._near_miss = self._simulation.alarm, self._simulation.near_miss
 
     def _stepped(self) -> Iterator[_Stepped]:
@@ -174,8 +173,6 @@ def planned(
     """The setpoints of a program, in chunks.
 
     Args:
-        program: Its moves and events.
-        machine: The machine.
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
         expect: Called with the moves before setpoints of theirs are made.
     """
@@ -201,8 +198,6 @@ def cutting_forces(
     """What the cut of a job pushes the axes with.
 
     Args:
-        job: Says which force is simulated.
-        machine: It is pushed.
         dry_run: What the program brings into the spindle when.
         layout: Where the part is.
         laid: The blank, if it is on the table already.
