@@ -62,7 +62,6 @@ class Swept(NamedTuple):
         tips: Where it was cut up to, shape (2, 3); the second row is the later [mm].
         trace: Where it has left walls up to, of ``leave_walls``.
         sums: What ``sweep`` adds to, shape (1, 2, 4).
-        marks: Nothing is marked.
     """
 
     tips: FloatArray

@@ -55,7 +55,6 @@ class LeaningCut(NamedTuple):
     """A tool in a part that is cut from any side.
 
     Attributes:
-        lattice: Where it lies.
         solids: The bodies of the edge, shape (m, 5).
         number: That the cut surface remembers.
         longest: Step that is swept at once at most [mm].

@@ -169,7 +169,6 @@ class Material(Protocol):
         """Cut what a tool meets on n stretches.
 
         Args:
-            points: Their ends.
             travelled: Way of all tools up to the end of each, shape (n,) [mm].
             stood: Whether the tool has been at the first point, and has cut what it meets there.
         """

@@ -199,7 +199,6 @@ def cutting_forces(
 
     Args:
         dry_run: What the program brings into the spindle when.
-        layout: Where the part is.
         laid: The blank, if it is on the table already.
 
     Raises:

@@ -32,7 +32,6 @@ class Stood(NamedTuple):
 
     Attributes:
         heights: The height map, shape (ny, nx) [mm].
-        grid: Where its cells lie.
         doubtful: Whether walls may be cut before the last of the stretches that are looked at: every
             one is then taken to be as near as it can be.
     """
@@ -55,7 +54,6 @@ def round_overlap(
 
     Args:
         points: Tool tip positions, shape (n + 1, 3) [mm].
-        profile: Of its lower end.
         above: Height of its lower end above the tip [mm].
         overlap: Set to what was found.
     """

@@ -99,7 +99,6 @@ def surface(
     """Normal at a point of a solid's surface and the tool, as ``normals.packed`` has them.
 
     Args:
-        poses: Ends of steps.
         point: Direction of the line it is on, place along it, and across it in both directions.
         side: 1.0: the normal out of the solid; -1.0: into it.
     """

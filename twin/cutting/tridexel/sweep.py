@@ -83,7 +83,6 @@ def sweep(
     """Bring solids along steps through the material.
 
     Args:
-        lattice: Where it lies.
         poses: Ends of n steps.
         solids: What moves: the fields of each ``Solid``, shape (m, 5).
         sums: What each step did is added to it, shape (n, COLUMNS).
