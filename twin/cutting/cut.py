@@ -61,7 +61,6 @@ class Cutter:
 
         Args:
             tool: What is in the spindle, or what is in it when.
-            part_frame: How the part turns under the tool.
             part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
             along: Whether the simulated motion cuts or the commanded one.
             keep_marks: Whether to note the cutter's marks, for pictures.

@@ -125,6 +125,12 @@ class Points(Columns):
         return self[np.arange(len(self))]
 
 
+def runs_of(chosen: BoolArray) -> list[slice]:
+    """Where those that are chosen follow each other."""
+    edges = np.flatnonzero(np.diff(chosen, prepend=False, append=False))
+    return [slice(first, end) for first, end in edges.reshape(-1, 2).tolist()]
+
+
 class Contact(Protocol):
     """Measures one tool against the material."""
 
@@ -181,7 +187,6 @@ class Material(Protocol):
         """Cut what a tool meets on n stretches.
 
         Args:
-            points: Their ends.
             travelled: Way of all tools up to the end of each, shape (n,) [mm].
             stood: Whether the tool has been at the first point, and has cut what it meets there.
         """

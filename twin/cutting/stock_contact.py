@@ -8,7 +8,7 @@ import numpy as np
 from twin.cutting.events import SCRAPE_MM
 from twin.cutting.height_map import HeightMap
 from twin.cutting.kernels.overlap import Overlap, Stood, box_overlap, round_overlap
-from twin.cutting.material import EDGE, Head, Points, Upright
+from twin.cutting.material import EDGE, Head, Points, Upright, runs_of
 from twin.cutting.tools import Profile
 from twin.job.job_file import ToolTable
 from twin.nc.canonical import BoolArray
@@ -83,8 +83,9 @@ class StockContact:
                 found[solid.name] = overlap
         if suspect.any() and points.tip[:, 2].min() < material.top:
             overlap = Overlap(*np.zeros((2, count)))
-            round_overlap(stood, points.tip, self._edge, 0.0, overlap)
-            overlap.reach[~suspect] = 0.0
+            for run in runs_of(suspect):
+                way = points.tip[run.start : run.stop + 1]
+                round_overlap(stood, way, self._edge, 0.0, overlap.part(run))
             found[EDGE] = overlap
         for name, overlap in found.items():
             overlap.depth[overlap.reach <= self._most[name]] = 0.0

@@ -57,7 +57,6 @@ def tool_motion(
     Args:
         samples: n samples.
         joints: Where the axes were then, shape (n, k) [mm or deg].
-        frame: How the part turns under the tool.
         reach: How far above the tip the edge ends, which a tool that lags in its direction is off by [mm]; None: the tool
             keeps to the part's Z.
         rapid: Which samples belong to rapids, shape (n,).

@@ -74,7 +74,6 @@ class Layout(NamedTuple):
 
     Attributes:
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
-        part_frame: How the part turns under the tool.
         blank: The uncut stock on the table; None without one.
     """
 

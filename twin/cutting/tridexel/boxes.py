@@ -40,7 +40,6 @@ def boxes_met(stock: TriDexel, poses: Poses, along_x: FloatArray, box: Box) -> F
     It is looked at in places on its way that lie no farther from each other than ``STEP_CELLS``.
 
     Args:
-        poses: Ends of the steps.
         along_x: Direction of machine X on the tool, seen from the part, shape (n + 1, 3).
     """
     depth = np.zeros(len(poses.tip) - 1)
@@ -73,7 +72,6 @@ def hold_box(
     """Hold a box on its way against the lines of a stock.
 
     Args:
-        lattice: Where it lies.
         poses: Ends of n steps.
         along_x: Direction of machine X on the tool at these ends, shape (n + 1, 3).
         box: Its lowest and highest corner in the tool's frame, shape (2, 3) [mm].

@@ -20,6 +20,7 @@ from twin.cutting.material import (
     Head,
     Points,
     Upright,
+    runs_of,
 )
 from twin.cutting.part import export_glb
 from twin.cutting.stock_contact import BRUSH_MM, above_edge
@@ -155,8 +156,13 @@ class TriDexelContact:
             depth = boxes_met(self._stock, _poses(places), places.turn, _box_around(solid))
             found[solid.name] = np.where(depth > SCRAPE_MM, depth, 0.0)
         if suspect.any():
-            depths = [self._depth(poses, solid, BRUSH_MM) for solid in self._edge]
-            found[EDGE] = np.where(suspect, np.max(depths, axis=0), 0.0)
+            found[EDGE] = np.zeros(len(suspect))
+        for run in runs_of(suspect):
+            here = slice(run.start, run.stop + 1)
+            part = Poses(poses.tip[here], poses.axis[here])
+            found[EDGE][run] = np.max(
+                [self._depth(part, solid, BRUSH_MM) for solid in self._edge], axis=0
+            )
         return {name: Overlap(depth, depth) for name, depth in found.items() if depth.any()}
 
     def _depth(self, poses: Poses, solid: Solid, layer: float) -> FloatArray:

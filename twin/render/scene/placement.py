@@ -73,7 +73,6 @@ def place(
 
     Args:
         tool_length: From the spindle nose to the tip [mm].
-        part_frame: How the part turns under the tool.
     """
     data = mujoco.MjData(model)
     joints = Joints(machine, model)
