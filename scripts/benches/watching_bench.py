@@ -1,4 +1,4 @@
-"""Whole runs with all that watches beside the same runs with nothing that does, in processor time.
+"""Whole runs with all that watches, and the same runs with nothing that does, in processor time.
 
 The simulation is what moves the axes: the program read, planned, followed by the simulated drives and stepped by MuJoCo,
 pushed by the cut where the job simulates its forces. What watches it are collisions, the cut of the part, loads, the

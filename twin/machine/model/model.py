@@ -35,7 +35,7 @@ BLANK = "stock"
 """Geom of the stock, as an alarm calls it."""
 
 _TUNED_FOR = "moved at tuning"
-"""Number field of a model: what the motors felt when their drives were tuned."""
+"""Number field of a model: what the motors moved when their drives were tuned."""
 
 _JOINT_TYPES = {"linear": mujoco.mjtJoint.mjJNT_SLIDE, "rotary": mujoco.mjtJoint.mjJNT_HINGE}
 

@@ -82,7 +82,7 @@ def _go_shortest(shortest: bool) -> Action:
 
 
 def take_shortest_way(control: Control, _rapid: bool) -> None:
-    """With M126 the start of each rotary axis is relabelled by whole turns, so that its way is the shorter one."""
+    """With M126 the start of each rotary axis is relabelled by whole turns, so that its path is the shorter one."""
     if not memory_of(control).shortest:
         return
     programmed = list(control.motion.programmed)
@@ -113,7 +113,7 @@ def _retract(control: Control) -> None:
     own = any(each.address == "F" for each in control.block.words)
     if most is None and word is None:
         hint = "write M140 MB 50 or M140 MB MAX"
-        control.fail("missing-words", "M140 needs its way MB", hint=hint)
+        control.fail("missing-words", "M140 needs its distance MB", hint=hint)
     if control.path.compensation.in_force or control.path.leads is not None:
         message = "the tool does not retract while radius compensation is in force"
         control.fail("compensation-change", message, hint="end it by R0 before")
