@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twin.compilation.kernel import array_kernel, kernel
+from twin.compilation.kernel import array_kernel, kernel, threaded_kernel
 from twin.coupling.turning_tool import (
     LOOK_CELLS,
     CutNumber,
@@ -76,7 +76,7 @@ def nothing_swept() -> Swept:
     return Swept(np.zeros((2, 3)), no_trace(), np.zeros((1, 2, 4)), marks)
 
 
-@array_kernel
+@threaded_kernel
 def follow_cutting(
     physics: Physics,
     controls: FloatArray,

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twin.compilation.kernel import array_kernel, kernel
+from twin.compilation.kernel import array_kernel, kernel, threaded_kernel
 from twin.coupling.turning_tool import (
     LOOK_CELLS,
     CutNumber,
@@ -104,7 +104,7 @@ def nowhere(axes: int) -> Pose:
     )  # fmt: skip
 
 
-@array_kernel
+@threaded_kernel
 def follow_leaning(
     physics: Physics,
     controls: FloatArray,

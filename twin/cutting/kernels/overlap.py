@@ -22,6 +22,10 @@ class Overlap(NamedTuple):
     reach: FloatArray
     depth: FloatArray
 
+    def part(self, rows: slice) -> "Overlap":
+        """Views of what was found along some of them."""
+        return Overlap(self.reach[rows], self.depth[rows])
+
 
 class Stood(NamedTuple):
     """What is on the table.
