@@ -311,6 +311,7 @@ def _control_settings(job: Job, machine: Machine, *, strict: bool) -> ControlSet
         },
         recalculate_on_rapid=control.recalculate_on_rapid,
         module_rotary=control.module_rotary,
+        rollover=job.file.rollover or control.rollover,
         helical_feed=control.helical_feed,
         rotary_diameter=control.rotary_diameter,
         feed_of_all_axes=control.feed_of_all_axes,
@@ -346,7 +347,7 @@ def _refuse_taken_functions(job: Job, machine: Machine, dialect: Dialect) -> Non
             )
 
 
-_KEYS_OF_SOME = ("decimal_point", "offset_rows")
+_KEYS_OF_SOME = ("decimal_point", "offset_rows", "rollover")
 """Keys of a job that some dialects read, and the others pass over."""
 
 
