@@ -164,7 +164,7 @@ def _with_radii(
 
 
 def _require_that_radii_fit(made: Preparation) -> None:
-    """Raise the error of a compensated contour that leaves the tool no room; other errors are told later."""
+    """Raise the error of a compensated contour that leaves the tool no room; other errors are reported later."""
     try:
         for _ in made.interpretation().chunks():
             pass
@@ -268,9 +268,9 @@ def prepare_recorded(header: RecordingHeader, *, machine: str | None = None) -> 
         raise RecordingError(
             "the recording does not hold the job that it was made with: run the job again"
         ) from error
-    beside = header.machine_file if Path(header.machine_file).is_file() else header.machine
+    recorded_on = header.machine_file if Path(header.machine_file).is_file() else header.machine
     job = Job(Path(), file)
-    found = load_machine(job, machine or beside)
+    found = load_machine(job, machine or recorded_on)
     layout = lay_out(file, found)
     dialect = dialect_named(header.dialect)
     source = source_from_text(header.program_text, header.program)

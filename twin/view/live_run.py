@@ -83,6 +83,9 @@ class LiveRun:
         row = [found.time_s, found.line, tool, 0.0, 0.0, 0.0, *tip, *found.position]
         return struct.pack("<II", 1, len(found.position)) + np.array(row, "<f4").tobytes()
 
+    has_part_mesh = False
+    """No cut is shown of a run that is made now: the blank is drawn as a height map."""
+
     def stock_grid(self) -> dict[str, object] | None:
         """The grid of the stock; None where there is none."""
         cutter = self._cutter()

@@ -188,7 +188,7 @@ class SpindleTable(Table):
 
 
 class GrowthTable(Table):
-    """One way in which a warm machine grows: a state of first order, cold where a run begins.
+    """One cause by which a warm machine grows: a state of first order, cold where a run begins.
 
     It tends to ``um`` times what drives it over ``at``.
     """
@@ -234,7 +234,7 @@ class ControlTable(Table):
     """``fanuc``, parameter 1403 #5 (HTG): F of a helix counts the arc in its plane (0, the control's default), or
     the path (1)."""
     rotary_diameter: Positive | None = None
-    """``haas``, setting 34: diameter at which F counts the way of rotary axes [mm]; without it a degree counts
+    """``haas``, setting 34: diameter at which F counts the path of rotary axes [mm]; without it a degree counts
     1 mm together with linear axes, and F of rotary axes alone is deg/min."""
     feed_of_all_axes: bool = False
     """``fagor8070``, FEEDND: F counts rotary axes together with X, Y and Z, a degree as 1 mm; the control's default is No."""
