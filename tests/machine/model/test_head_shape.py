@@ -60,7 +60,7 @@ def test_what_carries_the_tool_is_where_the_model_has_it(name: str) -> None:
     frame = machine.part_frame.at(np.zeros(axes), TOOL.length)
     data, generator = mujoco.MjData(model), np.random.default_rng(4)
     joints = np.vstack([np.zeros(axes), generator.uniform(-80.0, 80.0, (8, axes))])
-    solids = HeadShape(whole).above_tip(TOOL)
+    solids = whole.head.above_tip(TOOL)
     none = np.zeros(len(joints), np.bool_)
     beyond = {solid.beyond for solid in solids if solid.beyond}
     motion = tool_motion(standing(joints), joints, frame, 20.0, none, none, beyond)
