@@ -77,9 +77,6 @@ def is_loading(frame: types.FrameType | None) -> bool:
 
     Libraries try what may be missing, and take any exception for its absence: an interruption is lost
     there, or leaves a library half loaded. Modules of this package let it through.
-
-    Args:
-        frame: What is being executed.
     """
     while frame is not None:
         code = frame.f_code

@@ -36,7 +36,6 @@ class Picked(Columns, Generic[ColumnsT]):
 
     Attributes:
         row: Rows of ``table``, shape (n,).
-        table: Rows to pick from.
     """
 
     row: npt.NDArray[np.int64]

@@ -21,7 +21,6 @@ def require_extra(extra: str, what: str) -> None:
     """Refuse what needs an extra where a package of it is missing.
 
     Args:
-        extra: Its name.
         what: What needs it, as a message begins.
 
     Raises:

@@ -50,7 +50,6 @@ def tool_point(chain: Kinematics, joints: _Floats, length: float | _Floats = 0.0
     """Where a point on the axis of the tool is, seen from the part.
 
     Args:
-        chain: The machine.
         joints: Machine coordinates of all axes, shape (n, k) [mm or deg].
         length: From the spindle nose to the point, one or shape (n,) [mm].
 
@@ -81,7 +80,6 @@ def rotated(chain: Kinematics, vectors: _Floats, joints: _Floats, after: int = -
     """Directions that are fixed to the tool, or to what a joint carries, seen from the part.
 
     Args:
-        chain: The machine.
         vectors: In the machine's frame with all axes at zero, shape (n, 3).
         joints: Shape (n, k) [mm or deg].
         after: Joint beyond which the chain turns them; -1: all of it does.
@@ -99,7 +97,6 @@ def with_rotary_at_rest(
     """Where X, Y and Z carry the tip of a tool while the rotary axes stand still.
 
     Args:
-        chain: The machine.
         joints: Where the rotary axes stand, shape (n, k) [deg]; X, Y and Z are not looked at.
         length: From the spindle nose to the tip, one or shape (n,) [mm].
 
@@ -120,7 +117,6 @@ def linear_axes(chain: Kinematics, points: _Floats, joints: _Floats, length: flo
     """Machine coordinates that bring the tip of a tool to points of the part.
 
     Args:
-        chain: The machine.
         points: Where the tip is meant to be, seen from the part, shape (n, 3) [mm].
         joints: Where the rotary axes stand, shape (n, k) [deg]; X, Y and Z are not looked at.
         length: From the spindle nose to the tip [mm].
@@ -147,7 +143,6 @@ def counted_from(chain: Kinematics, zero: _Floats, length: float) -> Kinematics:
     and Z at zero.
 
     Args:
-        chain: The machine.
         zero: Coordinates of the axes that turn the part, shape (k,) [deg]; others are not looked at.
         length: From the spindle nose to the tip of the tool [mm].
     """

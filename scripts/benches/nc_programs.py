@@ -12,9 +12,6 @@ class Computing(NamedTuple):
     """One form.
 
     Attributes:
-        task: What it shows.
-        dialect: Ours.
-        ours: Our program.
         theirs: The same moves for ``rs274``.
         blocks: How many blocks ours runs, those of its loops among them.
     """

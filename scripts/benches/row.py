@@ -14,9 +14,6 @@ class Row:
     """A figure of this project beside that of a peer, taken in the same run.
 
     Attributes:
-        package: The package that is measured.
-        task: What was done.
-        figure: This project's figure.
         unit: Its unit; a rate is better when higher, a time or a share when lower.
         peer: The peer's name and version; empty where there is none.
         peer_figure: The peer's figure in the same unit; None where it is not installed.

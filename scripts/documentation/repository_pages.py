@@ -76,7 +76,6 @@ def with_links(text: str, source: str) -> str:
     keeps its words and loses its link. Code keeps what looks like a link in it.
 
     Args:
-        text: Markdown.
         source: The page's path in the repository.
 
     Raises:

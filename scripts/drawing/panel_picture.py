@@ -31,8 +31,6 @@ def take_panel(
     Args:
         out: PNG to write.
         scene: Name of a shipped scene.
-        language: Of the panel.
-        role: Whose page it is.
         line: Of the program, where it is held; 0: it is not started.
         size: Of the page [px].
     """

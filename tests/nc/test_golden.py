@@ -31,7 +31,7 @@ NEEDS_FIVE_AXES = (
     *("G253", "G268", "G269"),
     "TRAORI",
     *("ORIWKS", "ORIMKS", "ORIVECT", "ORIPLANE", "ORIAXES"),
-    "tip_led_by_kinematics",
+    *("tip_led_by_kinematics", "coordinate_systems", "tool_orientation", "offset_in_a_plane"),
 )
 """Programs that lead the tip, or tilt the plane."""
 ON_FIVE_AXES = settings(on_machine(trunnion()))

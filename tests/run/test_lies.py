@@ -120,6 +120,15 @@ TOLD: dict[str, tuple[str, dict[str, str], str, int]] = {
     "blocks behind the end of the tape": (
         "%\nO1\n" + HEAD + "%\n" + CUT + "M30\n%\n", {}, "behind-tape-end", 6,
     ),
+    "a variable that the program calls otherwise": (
+        CUT_.replace("Z-2.", "Z#101"), {"top": 'variables = { "#1O1" = -2.0 }'}, "value-never-read", 1,
+    ),
+    "a work offset in small letters": (
+        HEAD + "G54\n" + CUT + "M30\n", {"top": "offsets.g54 = { X = 5.0 }"}, "value-never-read", 1,
+    ),
+    "torque and thrust without a material": (
+        CUT_, {"tool": "torque_limit = 1e-4\nthrust_limit = 1e-4"}, "limit-not-judged", 6,
+    ),
     "no feed": (CUT_.replace(" F600.", ""), {}, "no-feed", 6),
 }  # fmt: skip
 
@@ -165,6 +174,21 @@ REFUSED: dict[str, tuple[dict[str, str], str]] = {
     ),
     "stock in the table": ({"top": "part_zero = { Z = -560.0 }"}, "below the table"),
     "a nominal part that is none": ({"more": '[nominal]\nfile = "p.nc"'}, "is not a readable STL|no solid"),
+    "a spindle stop declared a lamp": (
+        {"more": '[m_functions]\nM5 = "lamp"'}, r"p\.toml: 'm_functions\.M5': fanuc has M5 itself \(spindle stop\)",
+    ),
+    "a call declared a clamp": ({"more": '[m_functions]\nM98 = "clamp"'}, "M98 itself"),
+    "a code declared twice": ({"more": '[m_functions]\nM77 = "open"\nM077 = "shut"'}, "M77 and M077 are one code"),
+    "M3 of a control whose M codes are all the builder's": (
+        {"dialect": "codesys", "more": '[m_functions]\nM3 = "clamp"'}, "M3 itself",
+    ),
+    "increments of a control that has none": (
+        {"dialect": "linuxcnc", "top": 'decimal_point = "increments"'}, r"p\.toml: 'decimal_point': .* only fanuc, haas",
+    ),
+    "a row of a tool that is not there": ({"top": "offset_rows = { 31 = 9 }"}, "no tool of the job has the number 9"),
+    "an offset of an axis that is not there": (
+        {"top": "offsets.G54 = { Q = 5.0 }"}, r"offsets\.G54\.Q': mill4 has the axes X, Y, Z, C",
+    ),
     "a tool twice": ({"more": "[[tools]]\nnumber = 2"}, "each with its own number"),
 }  # fmt: skip
 

@@ -40,7 +40,6 @@ def calibrate(
 
     Args:
         machine: The base: what logs do not determine stays as it has it.
-        logs: What is fitted.
         hold_out: What the fit is judged by.
         axes: Which to fit; all that the logs have by default.
         ball_bars: Circles that tell what an axis loses where it turns round.

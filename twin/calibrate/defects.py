@@ -41,9 +41,7 @@ class Defects:
     """What is wrong with the samples of an axis.
 
     Attributes:
-        sound: Samples that are measurements.
         rows: First and last row, exclusive, of each stretch that counts from one reference.
-        findings: What was found.
         held: Whether columns are held over several samples throughout.
     """
 
@@ -59,7 +57,6 @@ def find_defects(
     """Look through the samples of an axis.
 
     Args:
-        name: Of the axis.
         axis: Its columns.
         time: Of the rows [s].
         rows: First and last row, exclusive, of each stretch without a gap.

@@ -20,13 +20,7 @@ _NOTHING = np.zeros(0)
 
 
 def figures_of(item: PreparedLog, name: str, parameters: Parameters) -> LogFigures:
-    """Run the model along an axis of a log and compare.
-
-    Args:
-        item: The log.
-        name: Of the axis.
-        parameters: As fitted.
-    """
+    """Run the model along an axis of a log and compare."""
     if item.is_slow:
         return _slow_figures(item, name, parameters)
     axis = item.log.axes[name]

@@ -59,7 +59,6 @@ class Health:
     Attributes:
         period_s: Between samples [s].
         stretches: First and last row, exclusive, of what was sampled evenly.
-        findings: About the clock.
     """
 
     period_s: float
@@ -149,10 +148,6 @@ def _period(rising: FloatArray) -> float:
 
 def refuse_broken_clock(log: MachineLog, health: Health) -> None:
     """Refuse a log without a single stretch that is long enough to be fitted.
-
-    Args:
-        log: The log.
-        health: Of its clock.
 
     Raises:
         UsageError: With what is wrong with the clock, and what would make it right.
@@ -266,7 +261,6 @@ def look_at_fit(
     """What a fit shows or explains: columns taken at different times, filtered, in other units.
 
     Args:
-        name: Of the axis.
         fitted: What its logs determine.
         base_mass: What the motor of the base moves [kg or kg m²].
         filtered: Whether the noise of its positions is that of a filtered column.

@@ -20,7 +20,6 @@ def jumps_of(log: MachineLog, period_s: float) -> BoolArray:
     as it comes in two samples of one direction, or by its logged speeds.
 
     Args:
-        log: A slow log.
         period_s: Between its samples [s].
     """
     found = np.zeros(len(log.time) - 1, np.bool_)

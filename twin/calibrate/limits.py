@@ -46,7 +46,6 @@ def planner_limits(
 
     Args:
         pieces: Even stretches of its logs, with their periods [s].
-        base: The axis of the base machine.
         slow: Whether derivatives of the positions are none: then logged columns of them count.
     """
     ramps: dict[str, list[float]] = {}

@@ -19,9 +19,7 @@ def machine_text(result: Calibration, *, base: str, name: str) -> str:
     """A machine file that is based on another.
 
     Args:
-        result: The calibration.
         base: What the file's ``base`` shall be: a shipped machine's name or a path.
-        name: Of the new machine.
     """
     fitted = [figures.log for figures in result.logs if figures.role == "fit"]
     logs = list(dict.fromkeys([*fitted, *(circle.log for circle in result.ball_bars)]))

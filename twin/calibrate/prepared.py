@@ -40,7 +40,6 @@ class PreparedLog:
     Attributes:
         log: Averaged, where it is fast.
         role: ``fit`` or ``hold-out``.
-        health: Of its clock.
         cycle_s: Over which a slow log's control forms velocities; 0 where nothing tells [s].
         defects: Of its axes; none of a slow log.
     """

@@ -94,9 +94,6 @@ def write_programs(machine: Machine, folder: Path, named: str = "") -> list[Path
         folder: Where they go.
         named: What jobs there call the machine: a shipped one's name, its own by default, or the path of
             its file from there.
-
-    Returns:
-        The programs.
     """
     written = []
     for dialect, wording in WORDINGS.items():

@@ -38,10 +38,6 @@ def refuse_wrong_log(
     """Refuse columns that cannot be commanded and actual position of such an axis.
 
     Args:
-        where: The log.
-        name: Of the axis.
-        axis: Its columns.
-        base: The axis in the base machine.
         period_s: Between samples [s].
         clipped: Where its force was cut off has been left out.
 
@@ -152,7 +148,6 @@ def refuse_wrong_force(place: str, force: FloatArray, acceleration: FloatArray) 
     """Refuse a force that pushes against the motion that it makes.
 
     Args:
-        place: Log and axis.
         force: Of the drive, shape (n,) [N or N m].
         acceleration: Of the axis, shape (n,).
 

@@ -69,16 +69,12 @@ class LogFigures:
     """How well one axis of one log is predicted.
 
     Attributes:
-        log: Its file.
         role: ``fit`` or ``hold-out``.
-        axis: Name.
-        kind: Of the axis.
         logged_rms: Of the logged following error [mm or deg].
         left_rms: Of what the model leaves of it [mm or deg].
         force_share: What it leaves of the force, as a share; None where none is logged.
         current_correlation: Of logged and predicted current where the axis moves; None likewise.
         ramps: What it leaves of the lag of velocity in ramps; None where not looked at.
-        course: For plots.
     """
 
     log: str
@@ -154,11 +150,7 @@ class AxisResult:
     """One axis.
 
     Attributes:
-        kind: Of the axis.
-        fit: What its logs came to.
         units: Of the parameters, by name.
-        limits: What the commands reach.
-        base: The axis of the base machine.
         moved: What its motor feels there [kg or kg m²].
         period_s: The base's servo period [s].
     """
@@ -181,7 +173,6 @@ class Calibration:
         axes: By name.
         logs: In the order of the command line.
         findings: About the logs, by file.
-        ball_bars: What circles came to.
     """
 
     base: str

@@ -31,10 +31,7 @@ def with_give(
     """A fit with backlash and stiffness, where a second encoder tells them.
 
     Args:
-        machine: The base.
-        name: Of the axis.
         fit: What else its logs came to.
-        logs: Those that are fitted.
         moved: What the motor of the base feels [kg or kg m²].
     """
     pieces = [
@@ -98,10 +95,7 @@ def with_ball_bars(
     """A fit with the backlash that ball-bars tell, where no second encoder does.
 
     Args:
-        axis: Of the base.
-        name: Of the axis.
         fit: What else its logs came to.
-        circles: What ball-bars came to.
     """
     lost = [circle.lost[name] for circle in circles if name in circle.lost]
     if not lost or "backlash" in fit.fitted:

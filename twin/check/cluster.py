@@ -18,7 +18,6 @@ def check_on_cluster(
     """Run tasks on a Ray cluster, whose nodes see the same files under the same paths.
 
     Args:
-        tasks: What to run.
         check: How one is run.
         address: Of the cluster (``ray://host:10001``, ``auto``), or ``local``.
 

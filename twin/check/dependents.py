@@ -37,7 +37,6 @@ def dependents(
     Args:
         files: What a commit changes or deletes, files of any kind.
         root: Where jobs are looked for that read one of the files.
-        machine: Overrides the jobs' machines.
     """
     files = list(files)
     if not files:

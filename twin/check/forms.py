@@ -116,7 +116,6 @@ def github_annotations(outcomes: Sequence[CheckOutcome], root: Path) -> list[str
     """Workflow commands that GitHub Actions shows at the program's line.
 
     Args:
-        outcomes: How the programs came out.
         root: Folder of the repository, which GitHub's paths are relative to.
     """
     errors = [("error", finding) for outcome in outcomes for finding in outcome.findings]

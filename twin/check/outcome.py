@@ -43,7 +43,6 @@ class CheckOutcome:
 
     Attributes:
         program: Path of the job file or program, as it was found.
-        verdict: How it came out.
         exit_code: What ``twin run`` would have returned for it.
         contour_um: Greatest contour error [µm]; None when it was not run.
         worst_line: Where that was; 0 when it was not run.

@@ -46,7 +46,6 @@ def check_all(
     """Check programs, several at a time.
 
     Args:
-        programs: What to check.
         check: How one is checked; sent to other processes, so a module's function or a partial.
         jobs: How many processes; by default as many as there are cores, where that pays: one begins.
 

@@ -12,7 +12,6 @@ class Variant:
 
     Attributes:
         path: The job or program.
-        changes: What is changed for it.
     """
 
     path: Path

@@ -36,7 +36,6 @@ class Request:
     """What is to be fitted, and what is to be written.
 
     Attributes:
-        logs: Logs to fit.
         base: Machine that keeps what they do not determine.
         columns: Map of their columns; by default what their headings say.
         hold_out: Logs to judge the fit by.
@@ -46,7 +45,6 @@ class Request:
         report: Where the page goes.
         require: Largest share of the following error that may be left on held-out logs.
         programs: Folder for test programs to run on the real machine.
-        ball_bars: Logs of a ball-bar.
     """
 
     logs: Sequence[Path] = ()

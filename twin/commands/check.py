@@ -45,7 +45,6 @@ def check_and_print(
 
     Args:
         paths: Programs, job files, folders, globs.
-        settings: How each is checked.
         junit: Write JUnit XML there; ``-`` is the standard output.
         json_file: Write every outcome as JSON there; ``-`` is the standard output.
         jobs: How many at a time; one for each core by default.

@@ -63,9 +63,6 @@ def compile_into_reach() -> Path:
     An installation that can be written to gets kernels for every processor of its architecture, so
     that an image of it needs no other folder; else, and in a checkout, the user's folder gets them.
 
-    Returns:
-        The folder that holds them.
-
     Raises:
         UsageError: Kernels cannot be kept anywhere.
     """
@@ -215,12 +212,7 @@ def _end_with_parent() -> None:
 
 
 def later_motion(run: Run, dry_run: DryRun) -> ProgramMotion:
-    """A motion that goes aslant into the middle of the blank and needs no planner.
-
-    Args:
-        run: The prepared job.
-        dry_run: What its dry run found.
-    """
+    """A motion that goes aslant into the middle of the blank and needs no planner."""
     forces = cutting_forces(run.preparation.job.file, run.machine, dry_run, run.layout)
     return ProgramMotion(_aslant(run, dry_run.program), run.model, dry_run.summary, forces)
 

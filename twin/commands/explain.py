@@ -19,8 +19,6 @@ class Code(NamedTuple):
 
     Attributes:
         group: ``alarm``, ``warning``, ``tolerance``, ``baseline`` or ``check``.
-        text: What it means.
-        remedy: What to do.
     """
 
     group: str

@@ -33,8 +33,6 @@ def export_csv(recording: Recording, path: Path, *, every: int = 1) -> int:
     """Write a recording as CSV, complete or not at all.
 
     Args:
-        recording: The recording.
-        path: The file to be.
         every: Write one of so many samples.
 
     Returns:

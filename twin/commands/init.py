@@ -17,7 +17,6 @@ def init_and_print(
     """Write a job file beside a program.
 
     Args:
-        program: The NC program.
         dialect: Its dialect; recognised by its words by default.
         machine: The machine; ``mill4`` or what ``twin.toml`` sets by default.
         force: Replace a job file that is there.

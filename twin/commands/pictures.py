@@ -22,10 +22,8 @@ def film_run(run: Run, dry_run: DryRun, folder: Path, progress: Progress) -> Non
     """Film a run that was recorded, and draw its end as a still.
 
     Args:
-        run: The run.
         dry_run: What the first pass over its program found.
         folder: Where ``recording.h5`` lies and the pictures go.
-        progress: Told how far the film is.
 
     Raises:
         RenderError: Pictures cannot be made here.
@@ -57,7 +55,6 @@ def draw_contact(run: Run, dry_run: DryRun, folder: Path) -> None:
     """Draw the moment at which two things met, which is the last of its recording, near and from afar.
 
     Args:
-        run: The run.
         dry_run: What the first pass over its program found.
         folder: Where ``recording.h5`` lies and the picture goes.
 

@@ -38,7 +38,6 @@ class Source:
     """What is reported, and where.
 
     Attributes:
-        host: Address to listen at.
         port: 0: the first free one of ``PORTS``.
         speed: Seconds of the twin for each second of the day.
         buffer: How many observations are remembered.
@@ -335,7 +334,6 @@ def _served(
     """Answer clients on a thread of its own while the block runs.
 
     Args:
-        agent: What answers.
         observe: Lets it observe the machine until it is cancelled.
         listener: Where clients come in.
         stop: Set when the observation has come to an end by itself.

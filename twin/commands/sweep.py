@@ -33,7 +33,6 @@ def sweep_and_print(
     Args:
         path: The job or program.
         vary: ``KEY=VALUES`` each, as ``variants`` reads them.
-        settings: How each run is checked.
         json_file: Write every outcome as JSON there.
         jobs: How many at a time; one for each core by default.
         cluster: Address of the Ray cluster to run on instead; ``local`` starts one here.

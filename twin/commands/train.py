@@ -92,8 +92,6 @@ class Place:
         language: By its name; None: the scene's.
         host: Where the server listens; None: on this computer alone.
         port: Its port; 0: the first free one.
-        certificate: For https.
-        key: Of the certificate.
     """
 
     language: str | None

@@ -63,10 +63,6 @@ def write_baseline(
     """Store a baseline, complete or not at all.
 
     Args:
-        path: The file.
-        figures: What the run came to.
-        axes: Of the moves.
-        chunks: The program.
         settings: Keys of the job and their values, as text.
         source: Lines of the program.
     """
@@ -87,9 +83,7 @@ def compare_baseline(
     """Hold a run to its baseline.
 
     Args:
-        path: The stored file.
         figures: What the run came to; None when it did not come to its end.
-        axes: Of the moves.
         chunks: The program; where it no longer interprets, the baseline tells what was there.
         limits: How far they may differ.
         settings: Keys of the job and their values, as text.

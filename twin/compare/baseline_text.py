@@ -56,7 +56,6 @@ class Head(NamedTuple):
     """What is before the entries.
 
     Attributes:
-        figures: What the run came to.
         axes: Names of the axes.
         settings: Keys of the job and their values, as text.
         source: The lines of the program without comments; none where it is too long to keep.
@@ -196,7 +195,6 @@ def write(file: TextIO, head: Head, program: Iterable[Entry]) -> None:
     Args:
         file: Where to.
         head: What is before the entries.
-        program: What the program does.
     """
     figures = head.figures
     file.write(f"{HEADING}\n")
@@ -237,7 +235,6 @@ def text(entry: Entry, names: tuple[str, ...], position: tuple[float, ...], feed
     """One line of a baseline.
 
     Args:
-        entry: What it is about.
         names: Of the axes.
         position: What need not be repeated [mm or deg].
         feed: What need not be repeated [mm/min or deg/min].

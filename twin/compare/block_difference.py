@@ -24,7 +24,6 @@ def same_end(before: Entry, now: Entry, tolerance: float) -> bool:
 
     Args:
         before: The stored one.
-        now: That of the program.
         tolerance: How far apart the ends may be [mm or deg].
     """
     if now.kind != before.kind:
@@ -43,8 +42,6 @@ def block_differences(
     """All that differs between two blocks of one kind, in the coordinates that the control shows.
 
     Args:
-        before: The stored block.
-        now: That of the program.
         names: Of the axes.
         limits: How far they may differ.
         begins_apart: The block before ends elsewhere, so that this one begins elsewhere.

@@ -23,7 +23,6 @@ def changed_lines(before: Sequence[str], now: Sequence[str]) -> list[int]:
 
     Args:
         before: The lines of the stored program that say anything, without comments.
-        now: All lines of the program.
     """
     numbered = [(n, line) for n, line in enumerate(without_comments(now), 1) if line]
     numbers, texts = [n for n, _ in numbered], [line for _, line in numbered]

@@ -61,7 +61,6 @@ class WorstPlace:
         error_um: Contour error [µm].
         position: Commanded, shape (k,) [mm or deg]: the part's coordinates, those of the control's screen once
             what it adds is known.
-        move: Number of the move.
     """
 
     line: int
@@ -200,7 +199,6 @@ class Figures:
         samples: How many samples were compared.
         duration_s: Time of the last sample [s].
         tracking: By axis name.
-        contour: Over the whole program.
         arcs: In program order.
         worst: The lines with the greatest contour errors, greatest first.
         blocks: By source line, feeds and rapids apart.

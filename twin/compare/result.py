@@ -26,8 +26,6 @@ class RunSummary:
 
     Attributes:
         program: Name of the program, as the user gave it.
-        dialect: Its dialect.
-        machine: Name of the machine.
         duration_s: Machine time of the program, without the settling after it [s].
         wall_s: How long the whole run took [s].
         stages: Seconds by stage: ``interpret_s``, ``plan_s``, ``simulate_s``, ``compare_s``,

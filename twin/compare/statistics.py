@@ -56,7 +56,6 @@ class Distribution:
     """Size of the values seen so far, sign left out, with a histogram of logarithmic bins.
 
     Attributes:
-        count: How many values.
         greatest: The greatest magnitude; 0 before the first.
     """
 

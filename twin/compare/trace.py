@@ -21,12 +21,8 @@ class Trace:
     thinning never hides a peak. When the groups become too many they are merged by twos.
 
     Args:
-        axes: Axes of the samples.
         part_frame: How the part turns under the tool.
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
-
-    Attributes:
-        axes: As given.
     """
 
     def __init__(self, axes: Axes, part_frame: PartFrame, part_zero: FloatArray) -> None:

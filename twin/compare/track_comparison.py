@@ -85,7 +85,6 @@ def compare_tracks(
     """Align two runs in time by what was commanded, and compare what was done.
 
     Args:
-        first: Compared at its own samples.
         second: Read in between its samples by straight lines.
         offset_s: Known offset [s]; found by least squares of the commanded positions by default.
 

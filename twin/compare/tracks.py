@@ -39,7 +39,6 @@ def read_track(
     """Read a recording (``.h5``) or a log of a real machine.
 
     Args:
-        path: The file.
         period_s: Time between the samples of a log without a time column [s].
         columns: What the columns of a log are; by default what its headings say.
 

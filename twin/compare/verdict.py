@@ -43,9 +43,7 @@ class Check:
     """One figure held to one tolerance.
 
     Attributes:
-        what: The key of the tolerance.
         figure: Name of the figure, such as ``contour error``.
-        value: Its worst value.
         limit: What is allowed; a value equal to it is within it.
         unit: Of both.
         line: Program line of the worst value; 0 where none applies.
@@ -151,9 +149,6 @@ def judge(
     Each tolerance gives one check, of its worst place.
 
     Args:
-        figures: What the comparison found.
-        tolerance: What the job allows.
-        alarms: What the machine raised.
         cycle_time_s: Machine time of the program; by default the time of the last sample, which
             holds the settling at the end too [s].
         more: Other figures that are held to a tolerance.

@@ -16,7 +16,6 @@ class Declared(NamedTuple):
 
     Attributes:
         called: What is in their text.
-        compiled: What is compiled for it.
         options: Of the compiler.
     """
 

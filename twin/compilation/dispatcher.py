@@ -27,7 +27,6 @@ class KernelDispatcher(CPUDispatcher):
         """Compile nothing yet.
 
         Args:
-            function: To be compiled.
             vectorize: Whether its loops may gain by several rounds at a time.
             **options: Of Numba's compiler.
         """

@@ -17,10 +17,7 @@ class Entry(NamedTuple):
     """A kernel compiled for arguments of one type, as Numba's dispatcher asks for it.
 
     Attributes:
-        signature: The types.
         entry_point: What Python calls.
-        library: Holds the machine code.
-        descriptor: Names of the code's functions.
         environment: Python's objects that the code uses.
         objectmode: Whether the code works on Python's objects; Numba asks.
     """
@@ -41,7 +38,6 @@ class EntryLibrary(JITCodeLibrary):
 
         Args:
             codegen: Numba's generator of code.
-            name: Of the kernel.
             vectorize: Whether loops are looked for that gain by several rounds at a time. To look for
                 them is a quarter of what it costs to compile a kernel that has none.
         """
@@ -94,7 +90,6 @@ def entry_of(part: CompileResult, *, release_gil: bool, vectorize: bool) -> Entr
     """Make machine code of a kernel.
 
     Args:
-        part: The kernel as it was lowered.
         release_gil: Whether other threads may run Python meanwhile.
         vectorize: Whether loops are looked for that gain by several rounds at a time.
     """
@@ -123,7 +118,6 @@ def unpacked(data: bytes, context: Any) -> Entry:
     """The entry that was kept.
 
     Args:
-        data: Packed.
         context: Numba's, which the kernel is loaded into.
     """
     object_code, descriptor, environment, signature = pickle.loads(data)  # noqa: S301 (from folders that nobody else writes to)

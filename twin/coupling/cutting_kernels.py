@@ -94,11 +94,9 @@ def follow_cutting(
     mean over the angle that they turn in a period.
 
     Args:
-        physics: The machine.
         controls: What the drives are commanded on the way to each setpoint, shape (n, nu).
         states: Set to the states there, shape (n, width).
         commanded: Speed that the spindle is commanded, shape (n,) [turns/s]; NaN: nothing is known of it.
-        cut: Tool and material.
         memory: Carried on.
         swept: Carried on.
         loads: Set to what the tool loads.

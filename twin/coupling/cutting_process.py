@@ -31,7 +31,6 @@ class ToolBreak:
     """A tool that lost its edge.
 
     Attributes:
-        tool: Its number.
         line: Source line of the program.
         time_s: When [s].
         reason: Why, with value and limit.
@@ -53,8 +52,6 @@ class Turning(NamedTuple):
     """What is in the spindle during some setpoints, and how fast it shall turn.
 
     Attributes:
-        rows: Which setpoints.
-        tool: The tool.
         length_difference: How much lower its tip is than that which positions count for [mm].
         speed: Of the spindle, shape (n,) [1/min], negative counter-clockwise; NaN where nothing is known.
     """
@@ -84,7 +81,6 @@ class Rows(NamedTuple):
     Attributes:
         controls: What the drives are commanded on the way to each setpoint, shape (n, nu).
         states: Set to the states there, shape (n, width).
-        loads: Set to what the tool loads.
     """
 
     controls: FloatArray
@@ -109,9 +105,7 @@ class CuttingProcess(abc.ABC):
         """Begin with the spindle as it turns.
 
         Args:
-            resists: What the material resists with.
             operation: What is in the spindle when.
-            spindle: What turns the tool.
         """
         self.breaks: list[ToolBreak] = []
         self.alarm: Alarm | None = None

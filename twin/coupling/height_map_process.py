@@ -17,7 +17,6 @@ class HeightMapProcess(CuttingProcess):
     """Cuts a height map, which turns with at most a table about Z.
 
     Attributes:
-        material: The height map as cut so far.
         walls: Those that tools have left in it, of ``twin.cutting.kernels.walls``.
     """
 
@@ -36,7 +35,6 @@ class HeightMapProcess(CuttingProcess):
             resists: As for ``CuttingProcess``; so on.
             operation: What is in the spindle when.
             part_frame: How the part turns under the tool.
-            spindle: What turns the tool.
         """
         super().__init__(resists, operation, spindle)
         self.material = material

@@ -42,7 +42,6 @@ class Chain(NamedTuple):
     """The joints between tool and part, and what they count from (``twin.toolpath.part_frame.PartFrame``).
 
     Attributes:
-        joints: The chain.
         zero: What its axes count from, shape (k,) [mm or deg].
         length_difference: How much longer the tool is than that which positions count for [mm].
     """
@@ -56,13 +55,10 @@ class LeaningCut(NamedTuple):
     """A tool in a part that is cut from any side.
 
     Attributes:
-        dexels: The material, which is cut.
         lattice: Where it lies.
         solids: The bodies of the edge, shape (m, 5).
         number: That the cut surface remembers.
         longest: Step that is swept at once at most [mm].
-        tool: The tool.
-        chain: How the axes carry it.
     """
 
     dexels: Dexels
@@ -84,7 +80,6 @@ class Pose(NamedTuple):
         lean: That in the time between two teeth, shape (3,).
         bend: Deflection of its tip in the part's frame, shape (3,) [mm].
         cut_to: Where the material was cut up to: two poses, the later one second.
-        step: The poses of a short step.
         sums: What ``sweep`` adds to, shape (1, ``Sum.COLUMNS``).
         edge: What of the edge is in the material.
     """
@@ -182,7 +177,6 @@ def _carry(chain: Chain, tip: FloatArray, pose: Pose) -> None:
     """Carry a tool from joint to joint: tip, frame, and the displacement of the tip by each axis.
 
     Args:
-        chain: The chain.
         tip: Set to where the tip is.
         pose: In the first column of ``ways`` are the axes' coordinates, which are replaced.
     """

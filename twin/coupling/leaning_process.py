@@ -19,11 +19,7 @@ from twin.units import SECONDS_PER_MINUTE
 
 
 class LeaningProcess(CuttingProcess):
-    """Cuts a tri-dexel stock with a tool that leans against the part.
-
-    Attributes:
-        material: The stock as cut so far.
-    """
+    """Cuts a tri-dexel stock with a tool that leans against the part."""
 
     def __init__(
         self,
@@ -40,7 +36,6 @@ class LeaningProcess(CuttingProcess):
             resists: As for ``CuttingProcess``; so on.
             operation: What is in the spindle when.
             part_frame: How the axes carry tool and part; it has a chain.
-            spindle: What turns the tool.
         """
         super().__init__(resists, operation, spindle)
         assert part_frame.chain is not None

@@ -58,7 +58,6 @@ class OperatorOperation:
     """What an operator has put into the spindle.
 
     Attributes:
-        tool: The tool.
         length_difference: How much lower its tip is than that which positions count for [mm].
         speed: Commanded speed of the spindle [1/min], negative counter-clockwise; None: not known.
     """
@@ -102,7 +101,6 @@ def program_process(
 
     Args:
         job: Its blank, and whether the force of the cut is simulated.
-        machine: Its spindle turns the tool.
         summary: What is in the spindle when.
         part_frame: How the part turns under the tool.
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
@@ -139,10 +137,8 @@ def cutting_process(
     None where its material is not named, or where it is a cylinder that lies on a machine that turns the part about Z at most.
 
     Args:
-        stock: The blank.
         cell: Of its height map, or between the lines of its tri-dexel [mm].
         operation: What is in the spindle when.
-        machine: Its spindle turns the tool.
         part_frame: How the part turns under the tool.
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
         laid: As for ``program_process``.

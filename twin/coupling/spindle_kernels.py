@@ -57,7 +57,6 @@ def next_speed(
     the drive can give slows it down.
 
     Args:
-        drive: The drive.
         speed: Now, signed [turns/s].
         commanded: What the control asks for, signed [turns/s].
         torque: Of the cut, against the turning [N m].

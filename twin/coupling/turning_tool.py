@@ -65,14 +65,7 @@ class CutNumber(enum.IntEnum):
 
 
 class TurningTool(NamedTuple):
-    """A tool in the spindle.
-
-    Attributes:
-        cutter: Its edges.
-        law: What the material does to them.
-        strength: What it gives way to.
-        spindle: What turns it.
-    """
+    """A tool in the spindle."""
 
     cutter: CutterForm
     law: ForceLaw
@@ -92,7 +85,6 @@ class Memory(NamedTuple):
         looked: Feed per tooth when the material was looked at, shape (3,) [mm].
         bend: Deflection of the tip, shape (3,) [mm].
         load: What pushes the axes, shape (k,) [N or N m].
-        scratch: The teeth's forces.
         force: On the tool in this period, shape (3,) [N].
         feed: Feed per tooth in this period, shape (3,) [mm].
     """
@@ -153,7 +145,6 @@ def turn_spindle(period: float, commanded: float, tool: TurningTool, memory: Mem
     Args:
         period: [s].
         commanded: Speed that the spindle is commanded [turns/s]; NaN: nothing is known of it.
-        tool: The tool.
         memory: Carried on.
     """
     numbers = memory.numbers
@@ -244,9 +235,6 @@ def note_load(
     """Enter what the tool feels.
 
     Args:
-        tool: The tool.
-        memory: What it feels.
-        loads: It is entered there.
         row: In this row.
         bend: How far the tip gives way along X, Y and Z of the machine [mm].
     """

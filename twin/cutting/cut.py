@@ -59,7 +59,6 @@ class Cutter:
         """Lay the uncut stock on the table.
 
         Args:
-            stock: The blank.
             tool: What is in the spindle, or what is in it when.
             part_frame: How the part turns under the tool.
             part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
@@ -257,7 +256,6 @@ class Cutter:
         """Cut with one tool from the last point of the run before through all of this one's.
 
         Args:
-            motion: Of the tool.
             edge: Whether it has its edge: without one it takes nothing off, and what it must not
                 meet it still meets.
 
@@ -305,7 +303,6 @@ class Cutter:
 
         Args:
             points: Ends of n stretches.
-            cutter: The form of the cutting edge.
             suspect: In which of them the edge must not cut, shape (n,).
             edge: As for ``_cut``.
 

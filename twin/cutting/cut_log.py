@@ -33,9 +33,7 @@ class BlockCut:
     """What one program line took off.
 
     Attributes:
-        removed_mm3: Material.
         path_mm: Path of the tool in the part, cutting.
-        depth_mm: Greatest depth of cut.
         width_mm: Greatest width of cut of a stretch, each stretch's mean.
         force_n: Greatest mean cutting force; None where it is not reckoned.
     """

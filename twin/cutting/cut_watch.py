@@ -25,7 +25,6 @@ class CutSlip:
     Attributes:
         what: ``sideways``, a drill; or ``plunge``, another tool straight down into the full material.
         line: Source line.
-        tool: Number of the tool.
     """
 
     what: str

@@ -96,7 +96,6 @@ def blank(stock: StockTable, corner: FloatArray, cell: float) -> HeightMap:
     Of an STL file's shape the highest surface counts, with material all the way down below it.
 
     Args:
-        stock: The blank.
         corner: Where the blank's program coordinates have their origin in the part's frame,
             shape (3,) [mm]: the part zero less the centre of the table.
         cell: Side of a cell [mm].
@@ -147,11 +146,7 @@ def blank(stock: StockTable, corner: FloatArray, cell: float) -> HeightMap:
 
 
 def raw_walls(uncut: HeightMap) -> WallArray:
-    """The blank's own sides as walls that forces know closer than by cells; none of an STL's.
-
-    Args:
-        uncut: The blank.
-    """
+    """The blank's own sides as walls that forces know closer than by cells; none of an STL's."""
     walls = no_walls(uncut.heights)
     if (uncut.uncut < uncut.top).any():
         return walls

@@ -34,7 +34,6 @@ class HeightMapMaterial:
     """Cuts a height map; see ``Material``.
 
     Attributes:
-        map: The height map.
         changed: Cells that changed since ``begin_chunk``: row, row end, column, column end; none when the rows
             end before they begin.
         marks: Path of the tool at which each cell was last cut, shape (ny, nx) [mm]: its lines are

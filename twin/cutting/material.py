@@ -150,7 +150,6 @@ class Material(Protocol):
         Args:
             points: n samples.
             group: Samples of different groups are never joined, shape (n,).
-            edge: Of the tool.
         """
         ...
 
@@ -165,8 +164,6 @@ class Material(Protocol):
 
         Args:
             points: Their ends.
-            tool: The tool.
-            edge: Its edge.
             travelled: Way of all tools up to the end of each, shape (n,) [mm].
             stood: Whether the tool has been at the first point, and has cut what it meets there.
         """
@@ -176,7 +173,6 @@ class Material(Protocol):
         """Write the part as binary STL [mm], complete or not at all.
 
         Args:
-            path: The file.
             zero: Where the file's coordinates have their origin in the part's frame, shape (3,) [mm].
 
         Raises:

@@ -18,7 +18,6 @@ class Outline:
     Attributes:
         center: X and Y of its middle [mm].
         half: Half of its size along X and Y [mm].
-        round: Whether it is a circle.
         bore: Radius of the hole [mm]; 0 for none.
     """
 

@@ -34,7 +34,6 @@ def part_mesh(height_map: HeightMap, colours: Colours | None = None) -> "trimesh
     A map of more than ``MESH_CELLS`` cells is thinned first. Nothing left gives an empty mesh.
 
     Args:
-        height_map: The cut stock.
         colours: One for each cell, shape (ny, nx, 3); the underside is raw. None: no colours.
     """
     import trimesh
@@ -103,7 +102,6 @@ def write_glb(height_map: HeightMap, path: Path, colours: Colours | None = None)
     Lengths are metres and Y points up, as glTF has it.
 
     Args:
-        height_map: The cut stock.
         path: The file, complete or not at all.
         colours: One for each cell, shape (ny, nx, 3); None: raw and machined surfaces differ.
 
@@ -129,8 +127,6 @@ def write_stl(height_map: HeightMap, path: Path, zero: ArrayLike = (0.0, 0.0, 0.
     """Write the part as binary STL [mm], complete or not at all.
 
     Args:
-        height_map: The cut stock.
-        path: The file.
         zero: Where the file's coordinates have their origin in the part's frame, shape (3,) [mm].
 
     Raises:

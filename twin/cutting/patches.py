@@ -25,8 +25,6 @@ def patch_message(
     """Kind, epoch, row, column, rows, columns, then deflated the cells' levels, and the tool that cut each.
 
     Args:
-        stock: The stock.
-        rectangle: Which cells.
         epoch: Grows when all that was sent is void.
         tools: Number of the tool that cut each cell of the stock, 0 where none did, shape (ny, nx);
             None: nothing is said of it.

@@ -42,7 +42,6 @@ class Steps(Generic[ValueT]):
     Attributes:
         first_move: Number of the first move that each value holds for, never falling from 0; a
             fraction counts within the move.
-        values: As many.
     """
 
     first_move: tuple[float, ...]
@@ -129,7 +128,6 @@ class ProgramSummary:
         """What the control's screen shows during a move while the axes are in a place, shape (k,) [mm or deg].
 
         Args:
-            move: Number of the move.
             axes: Part coordinates, shape (k,).
         """
         if self.screen is None:

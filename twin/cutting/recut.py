@@ -25,9 +25,7 @@ def recut(
     """Cut a stock along a whole recording.
 
     Args:
-        recording: The run.
         summary: What is in the spindle when, and which moves are rapids.
-        stock: The blank.
         along: Whether the simulated motion cuts or the commanded one.
 
     Raises:
@@ -57,9 +55,7 @@ def inspect_recorded(
     """Measure the part of a recording.
 
     Args:
-        recording: The run.
         summary: What is in the spindle when, and which moves are rapids.
-        stock: The blank.
         nominal: STL of the nominal part in program coordinates, or ``COMMANDED``.
         tolerance_um: Deviation that is still good [µm].
 

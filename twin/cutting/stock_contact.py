@@ -58,9 +58,6 @@ class StockContact:
         """Say what is above the edge.
 
         Args:
-            material: The material.
-            tool: The tool.
-            edge: Its cutting edge.
             head: What is above its holder; None: nothing.
         """
         self._material = material

@@ -53,9 +53,7 @@ def sweep_lines(
     is added up in one order: the result does not depend on how many cores there are.
 
     Args:
-        material: It is cut.
         points: Tool tip positions, shape (n, 3) [mm].
-        edge: Of the tool.
         marks: What each line leaves where it cut; None: nothing.
         stood: Whether the tool has been at the first point, and has cut what it meets there.
         cores: Cores to use, by default those that this process may run on.

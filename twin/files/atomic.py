@@ -100,7 +100,6 @@ def require_folder(folder: Path, *, named: Path | None = None) -> None:
     """Make sure that files can be put into a folder, which is made when missing.
 
     Args:
-        folder: The folder to be.
         named: What an error names instead of it.
 
     Raises:

@@ -34,7 +34,6 @@ def read_toml(
     """Read a TOML file into a table model.
 
     Args:
-        path: The file.
         table: The model that names its keys.
         prepare: Changes the file's content before the model checks it.
 
@@ -51,7 +50,6 @@ def checked(data: Data, table: type[TableT], where: str | Callable[[str], str | 
     """Check content against a table model.
 
     Args:
-        data: The content.
         table: The model that names its keys.
         where: What a message begins with, such as the file; or a function that gives it for a key with dots.
 

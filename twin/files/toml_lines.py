@@ -23,7 +23,6 @@ def place_of_key(files: Sequence[Path], key: str) -> tuple[Path, int]:
 
     Args:
         files: TOML files, the first over the others.
-        key: Its name with dots.
 
     Returns:
         File and line; where none sets it, those of the innermost table around it; line 1 of the first

@@ -23,7 +23,6 @@ class MachineUnit:
     """One machine, from its start on.
 
     Attributes:
-        machine: What it is.
         start: Where its axes are before the first step, machine coordinates, shape (k,) [mm or deg].
         position: Setpoint at the end of the next step, machine coordinates, shape (k,) [mm or deg].
         velocity: The same, shape (k,) [mm/s or deg/s]; what feed-forward is computed from.

@@ -1,8 +1,8 @@
 """What the machine's builder adds to a control: M codes and the tool change, in a job or a machine file."""
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
-from pydantic import BeforeValidator, Field
+from pydantic import AfterValidator, BeforeValidator, Field
 
 from twin.files.toml import Table
 
@@ -14,8 +14,6 @@ class MachineFunctionTable(Table):
     """For people, such as "clamp the table"."""
     dwell: Annotated[float, Field(ge=0)] = 0.0
     """How long the program waits for it [s]."""
-    wait: Literal["spindle"] | None = None
-    """``spindle``: the program waits until the spindle has its speed, which it has done since M3."""
 
 
 def _from_meaning(value: Any) -> Any:
@@ -23,9 +21,20 @@ def _from_meaning(value: Any) -> Any:
     return {"meaning": value} if isinstance(value, str) else value
 
 
-MachineFunctions = dict[
-    Annotated[str, Field(pattern="^M[0-9]{1,4}$")],
-    Annotated[MachineFunctionTable, BeforeValidator(_from_meaning)],
+def _each_once(functions: dict[str, MachineFunctionTable]) -> dict[str, MachineFunctionTable]:
+    names: dict[int, str] = {}
+    for name in functions:
+        if (first := names.setdefault(int(name[1:]), name)) != name:
+            raise ValueError(f"{first} and {name} are one code")
+    return functions
+
+
+MachineFunctions = Annotated[
+    dict[
+        Annotated[str, Field(pattern="^M[0-9]{1,4}$")],
+        Annotated[MachineFunctionTable, BeforeValidator(_from_meaning)],
+    ],
+    AfterValidator(_each_once),
 ]
 """By M code: ``M10 = "clamp the table"`` or ``M22 = { meaning = "change the pallet", dwell = 4.0 }``."""
 

@@ -44,7 +44,6 @@ def upright_weight(
         mass: [kg].
         size: Of the box around it [mm].
         center: Of that box [mm].
-        is_round: A cylinder or a tube.
         bore: Diameter of a tube's hole [mm].
     """
     x, y, z = (value * MM for value in size)
@@ -86,11 +85,7 @@ class FixtureTable(Table):
         return self
 
     def in_folder(self, folder: Path) -> "FixtureTable":
-        """This fixture with the whole path of its file.
-
-        Args:
-            folder: What the path is relative to.
-        """
+        """This fixture with the whole path of its file."""
         if self.file is None:
             return self
         return self.model_copy(update={"file": str((folder / self.file).absolute())})

@@ -403,6 +403,14 @@ class JobFile(Table):
             raise ValueError('cutting_load needs a force: cutting_force "mean" or "teeth"')
         return self
 
+    @pydantic.model_validator(mode="after")
+    def _rows_are_of_tools(self) -> "JobFile":
+        numbers = {0, *(tool.number for tool in self.tools)}
+        for row, number in self.offset_rows.items():
+            if "tools" in self.model_fields_set and number not in numbers:
+                raise ValueError(f"offset_rows.{row}: no tool of the job has the number {number}")
+        return self
+
     @pydantic.field_validator("tools")
     @classmethod
     def _tools_distinct(cls, tools: tuple[ToolTable, ...]) -> tuple[ToolTable, ...]:

@@ -48,7 +48,6 @@ class Job:
         folder: What relative paths in it are relative to.
         file: Its checked content; the files of an STL stock, of a nominal part and of fixtures are
             absolute paths.
-        program: The NC program.
         path: The job file; None where a program has none.
         layers: The files that it was merged from, the first over the others; none where it was made in memory.
         tolerances_from: Which file sets each tolerance, ``default`` where none does, by its key.
@@ -113,7 +112,6 @@ def layer_of(layers: Sequence[Layer], key: str) -> Path:
 
     Args:
         layers: The first over the others.
-        key: With dots.
     """
     for layer in layers:
         value: Any = layer.data

@@ -47,10 +47,6 @@ def write_configuration(folder: Path, machine: Machine, settings: Settings) -> P
     Args:
         folder: Where.
         machine: What it drives; the servo period is the machine's.
-        settings: The rest.
-
-    Returns:
-        The INI file.
 
     Raises:
         ConfigError: LinuxCNC cannot drive this machine.

@@ -47,8 +47,6 @@ class LinuxCnc:
     """A running LinuxCNC.
 
     Attributes:
-        folder: Of its configuration.
-        log: What it printed.
         lost: The part of it that has gone while others went on; empty where none has.
     """
 

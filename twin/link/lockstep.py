@@ -164,7 +164,6 @@ class LockstepMotion(MachineMotion):
 
         Args:
             live: The machine, at rest where the program starts.
-            places: Of the program's moves.
             part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
             session: Keep everything from the first question to the last, and not one program.
 

@@ -27,7 +27,6 @@ class Field(NamedTuple):
     """One field of a packet.
 
     Attributes:
-        name: As in C.
         kind: A letter of Python's ``struct``.
         length: How many; 1: no array.
     """

@@ -97,8 +97,6 @@ def _fractions(moves: Moves, move: int, position: FloatArray, before: float) -> 
     """How much of a move's path lies behind, nearest to positions, 0 to 1, shape (n,).
 
     Args:
-        moves: Of the program.
-        move: Which of them.
         position: Part coordinates, shape (n, k) [mm or deg].
         before: How much lay behind just before: tells the turns of an arc apart.
     """

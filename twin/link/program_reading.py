@@ -51,11 +51,8 @@ def read_program(
     """Let LinuxCNC's interpreter read a program, and write it down.
 
     Args:
-        program: The file.
-        axes: Of the machine.
         start: Where the axes stand, machine coordinates, shape (k,) [mm or deg].
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
-        job: Its tools.
 
     Returns:
         The program in the dialect ``DIALECT``; its N words are the lines of LinuxCNC's program.

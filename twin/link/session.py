@@ -46,8 +46,6 @@ def rehearse(run: Run, dry_run: DryRun, tool: ToolTable, position: FloatArray) -
     component gives up on a twin that is silent for two seconds.
 
     Args:
-        run: The prepared job.
-        dry_run: What its dry run found.
         tool: What the spindle holds at the start.
         position: Where the axes stand, machine coordinates, shape (k,) [mm or deg].
 
@@ -107,11 +105,7 @@ def run_on_twin(
     """Let LinuxCNC work the twin; there can be one of both on a computer.
 
     Args:
-        run: The prepared job.
-        dry_run: What its dry run found.
         folder: For the results; LinuxCNC's own files go into a folder in it.
-        progress: Told how far the run is.
-        wish: How.
         say: Told what LinuxCNC says.
         beside: Open while the control drives the machine, such as a page that shows it.
 

@@ -15,7 +15,6 @@ def offsets_text(axes: Axes, part_zero: FloatArray) -> str:
     """The parameter file, in which G54 is program zero.
 
     Args:
-        axes: Of the machine.
         part_zero: Machine coordinates of program zero, shape (k,), in LinuxCNC's units.
     """
     zero = axes.named(part_zero)
@@ -30,7 +29,6 @@ def tools_text(job: JobFile, unit_mm: float = 1.0) -> str:
     """The tool table; lengths count against the job's first tool, as in the twin's dialects.
 
     Args:
-        job: Its tools.
         unit_mm: LinuxCNC's unit of length [mm].
     """
     tools = job.tools

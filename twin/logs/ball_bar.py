@@ -60,7 +60,6 @@ class BallBarLog(NamedTuple):
     """A ball-bar's log.
 
     Attributes:
-        name: Its file.
         plane: The two axes, in the order in which positive turns go.
         radius: Commanded [mm].
         speed: Along the circle [mm/s].
@@ -81,7 +80,6 @@ def read_ball_bar(path: Path, columns: Path | None) -> BallBarLog:
 
     Args:
         path: The log: a table with a column of angles and one or two of deviations.
-        columns: The map that names them.
 
     Raises:
         UsageError: There is no map, the log cannot be read, or it is no turn of a ball-bar.

@@ -15,7 +15,6 @@ class Channel:
     """One recorded variable.
 
     Attributes:
-        name: Its heading.
         cells: Its n values, as numbers or as the file writes them.
         time: When each was recorded, shape (n,) [s]; None where one clock serves all channels.
         aliases: Other names that the file gives it, such as the path of its symbol.
@@ -59,7 +58,6 @@ class RawLog:
     """A file as it was read, before anybody says what its columns mean.
 
     Attributes:
-        path: The file.
         channels: In the order of the file.
         period_s: Between the samples, where the file states it without a time column [s].
     """

@@ -179,7 +179,6 @@ def guessed_map(log: RawLog, *, units_needed: bool) -> ColumnMap:
     """The map of a log whose headings say what its columns are.
 
     Args:
-        log: The log.
         units_needed: Leave out positions whose heading says no unit; else they are mm or degrees.
 
     Returns:

@@ -38,7 +38,6 @@ def read_delimited(
     """Read a table of text.
 
     Args:
-        path: The file, for messages.
         first: Its first lines, all that stand above its numbers among them.
         more: The others, some at a time.
         wanted: Names or numbers of the columns that are kept; all by default.

@@ -63,7 +63,6 @@ class MachineLog:
     """A log.
 
     Attributes:
-        name: Its file.
         time: As logged, which may jump, shape (n,) [s].
         axes: By name.
         line: Program line of every sample, 0 where none is known, shape (n,).
@@ -83,7 +82,6 @@ def read_raw_log(
     """Read a file of any known form.
 
     Args:
-        path: The file.
         tick_s: What a time stamp counts, where a trace does not say it [s].
         wanted: Names or numbers of the columns that are kept of a table; all by default.
 
@@ -113,7 +111,6 @@ def read_machine_log(
     """Read a log of any known form.
 
     Args:
-        path: The file.
         columns: What its columns are; by default what its headings say.
         period_s: Between the samples of a log without a clock [s].
         units_needed: Without a map, refuse headings that say no unit.
@@ -185,8 +182,6 @@ def channel_of(raw: RawLog, where: str, role: str, column: ColumnTable) -> Chann
     """A column of a log, as a map names it.
 
     Args:
-        raw: The log.
-        where: The map, for a message.
         role: What the map takes the column for.
         column: Its name or number.
 

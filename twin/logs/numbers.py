@@ -29,7 +29,6 @@ class NumberColumns:
         """Begin without rows.
 
         Args:
-            path: The file, for messages.
             width: Cells of a row.
             wanted: Numbers of the columns that are kept, counted from 0.
             separator: Between cells; None: white space.
@@ -44,7 +43,6 @@ class NumberColumns:
         """Take further lines.
 
         Args:
-            lines: Of the file.
             split: Makes rows of cells of them, without empty rows.
 
         Raises:

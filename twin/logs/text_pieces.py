@@ -48,11 +48,6 @@ def text_pieces(path: Path) -> Iterator[str]:
 def whole_text(path: Path, first: str, more: Iterator[str]) -> str:
     """All pieces as one, where a form needs that.
 
-    Args:
-        path: The file.
-        first: Its first piece.
-        more: The others.
-
     Raises:
         UsageError: It is too large for that.
     """

@@ -23,8 +23,6 @@ def read_codesys_trace(path: Path, text: str, tick_s: float | None) -> RawLog:
     """Read a trace that CODESYS saved as CSV: every variable with its own time stamps.
 
     Args:
-        path: The file, for messages.
-        text: Its content.
         tick_s: What a time stamp counts, where the file does not say it [s].
 
     Raises:

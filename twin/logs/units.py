@@ -55,7 +55,6 @@ def factor(quantity: str, kind: AxisKind, unit: str, where: str) -> float:
 
     Args:
         quantity: ``position``, ``velocity``, ``acceleration``, ``force`` or ``current``.
-        kind: Of the axis.
         unit: Of the column.
         where: What a message begins with.
 

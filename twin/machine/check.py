@@ -47,7 +47,6 @@ class PointResult:
     """One point of the contract.
 
     Attributes:
-        point: What was checked.
         faults: What is wrong; empty where the point is kept.
         notice: Only a machine that ships has to keep it, and this one does not ship.
     """

@@ -58,7 +58,6 @@ def describe(machine: Machine, feed: float = 1000.0) -> MachineFacts:
     """Gather a machine's figures.
 
     Args:
-        machine: The machine.
         feed: What the expected lag is given for [mm/min; for rotary axes deg/min].
 
     Raises:

@@ -18,7 +18,6 @@ def load_machine(job: Job, name: str | None = None, changes: Sequence[Change] = 
     """The machine of a job, with what the job clamps on its table in addition to the stock.
 
     Args:
-        job: The job.
         name: Overrides the job's machine; a path is relative to the working folder.
         changes: Values under ``machine.`` to change.
 
@@ -36,7 +35,6 @@ def read_machine(
     """Read a machine file.
 
     Args:
-        path: The file.
         changes: Values under ``machine.`` to change.
         fixtures: Additional work holding on its table; their files are absolute paths.
 

@@ -37,7 +37,6 @@ class _Candidate:
     """Another way through some blocks, from a stop to a stop.
 
     Attributes:
-        blocks: They.
         begin: First of a span's pieces that was cut from them.
         end: The one after the last.
         corner: How their borders are to be passed, where they do not ask for more.
@@ -54,7 +53,6 @@ class _Span:
     """Consecutive pieces of a program.
 
     Attributes:
-        pieces: They.
         candidates: What may be faster, in order; what is tried last covers what was tried before it.
     """
 
@@ -108,8 +106,6 @@ class PiecesOfChunks(Step[_Span, Pieces]):
     """Cuts a program into pieces, dwells included, in order.
 
     Args:
-        chunks: The program.
-        limits: Of the axes and the path.
         start: Where the axes are before, part coordinates, shape (k,) [mm or deg].
         largest_override: Of the feed that the limits of a piece must leave room for.
         batch: How many blocks are cut together.
@@ -182,7 +178,6 @@ def _continuous(
     """Between which stops that are asked for a continuous corner is rounded, or stops.
 
     Args:
-        surroundings: The blocks.
         borders: Before each of them.
         slow_arcs: From ``slow_arcs``, of those to work on.
 

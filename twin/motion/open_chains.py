@@ -47,10 +47,6 @@ class CutBlocks(NamedTuple):
 class OpenChains:
     """Chooses how paths are passed that go on over the ends of the blocks that are cut together.
 
-    Args:
-        limits: Of the axes and the path.
-        largest_override: Of the feed.
-
     Attributes:
         has_knees: Whether the exact path may step anywhere.
     """
@@ -128,7 +124,6 @@ class OpenChains:
         """The cut that keeps the path exactly between two borders; None where it is not faster.
 
         Args:
-            here: As the blocks are cut now.
             exact: The first of these borders, and the one behind the last.
             look: First block that is looked at, and the one after the last.
             own: Row of the first block that is only known: there it may be chosen otherwise.

@@ -14,12 +14,7 @@ from twin.motion.retiming.retiming import PhaseTable, pieces_for_runs, retime
 
 
 def phases_of_pieces(parts: Iterable[Pieces], limits: MotionLimits) -> Iterator[Phases]:
-    """Plan the velocity along pieces, from rest.
-
-    Args:
-        parts: Consecutive pieces.
-        limits: Of the axes and the path.
-    """
+    """Plan the velocity along pieces, from rest."""
     state = STATE_AT_REST.copy()
     known = np.zeros((4, 0))
     machine, time_saved = limits.arrays(), 0.0

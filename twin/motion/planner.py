@@ -22,8 +22,6 @@ def plan_phases(
     """Plan the velocity along a program.
 
     Args:
-        chunks: The program.
-        limits: Of the axes and the path.
         start: Where the axes are before, part coordinates, shape (k,) [mm or deg].
     """
     return phases_of_pieces(PiecesOfChunks(chunks, limits, start), limits)
@@ -45,7 +43,6 @@ def plan(
 
     Args:
         chunks: The program: consecutive moves in part coordinates.
-        limits: Of the axes and the path.
         period_s: Servo period [s].
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
         start: Where the axes are before the program, machine coordinates, shape (k,) [mm or deg].
@@ -76,7 +73,6 @@ class WatchedEnd(Step[Chunk, Chunk]):
     """Passes chunks on and notes where the program ends: moves too short to take time count too.
 
     Args:
-        chunks: The program.
         start: Where the axes are before, machine coordinates, shape (k,) [mm or deg].
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
 

@@ -13,9 +13,6 @@ class RampLimits(NamedTuple):
     """What a ramp must keep.
 
     Attributes:
-        velocity: Highest v.
-        acceleration: Highest a.
-        deceleration: Highest -a.
         jerk: Highest abs(j).
     """
 

@@ -28,6 +28,18 @@ PROGRAM_STOPS = frozenset({"M0", OPTIONAL_STOP})
 PROGRAM_ENDS = frozenset({"M2", "M30"})
 """The spindle and the coolant end with the program."""
 _SPINDLE_ENDS = SPINDLE_STOPS | PROGRAM_ENDS | {f"M{number}" for number in _STOPS}
+_ACTED_UPON = {
+    **dict.fromkeys(SPINDLE_STARTS, "spindle start"),
+    **dict.fromkeys(SPINDLE_STOPS, "spindle stop"),
+    **dict.fromkeys(PROGRAM_STOPS, "program stop"),
+    **dict.fromkeys(PROGRAM_ENDS, "end of program"),
+    TOOL_CHANGE: "tool change",
+}
+
+
+def acts(number: int) -> str:
+    """What the machine does at an M code in every dialect that has it; empty: it is reported, and no more."""
+    return _ACTED_UPON.get(f"M{number}", "")
 
 
 def starts_spindle(function: float) -> bool:

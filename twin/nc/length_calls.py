@@ -41,8 +41,6 @@ class LengthCalls:
         """A block was run.
 
         Args:
-            tools: As it left them.
-            line: Its line.
             move: Its first move, counted from the first of the chunk that is being made.
         """
         number, tools.length_call = tools.length_call, None

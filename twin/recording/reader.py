@@ -58,7 +58,6 @@ class Recording:
     """A recording, open for reading in chunks.
 
     Attributes:
-        path: The file.
         header: What it says about itself.
     """
 

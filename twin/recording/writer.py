@@ -42,7 +42,6 @@ class DiskSpace:
 
         Args:
             handle: The descriptor of the file.
-            path: Its path, for messages.
         """
         self._handle = handle
         self._path = path
@@ -214,10 +213,6 @@ def _write_attributes(file: h5py.File, header: RecordingHeader) -> None:
 @contextlib.contextmanager
 def record(path: Path, header: RecordingHeader) -> Iterator[RecordingWriter]:
     """Open a recording for writing; it appears under ``path`` when the block ends without error.
-
-    Args:
-        path: The file to be.
-        header: What the recording says about itself.
 
     Raises:
         OSError: It cannot be written.

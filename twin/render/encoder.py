@@ -26,9 +26,6 @@ class Format:
 
     Attributes:
         encoder: FFmpeg's name of the encoder.
-        pixels: What it takes.
-        encoder_options: For the encoder.
-        file_options: For the file.
         palette: Whether it shows 256 colours at a time.
     """
 

@@ -74,10 +74,6 @@ def _frames(
     """Draw a film's frames, with what there is to read off; each is drawn while the next one is cut.
 
     Args:
-        play: Draws.
-        gauge: Reads.
-        video: Which cameras are shown.
-        recording: What is filmed.
         ends: How many samples lie behind each frame.
     """
     begun: tuple[Callable[[], Pixels], Reading] | None = None

@@ -12,7 +12,6 @@ def frame_ends(count: int, frames: int) -> IntArray:
     """How many samples lie behind each of evenly spread frames; the last one shows the end.
 
     Args:
-        count: Samples of the recording.
         frames: Pictures to be spread over it.
     """
     shares = (np.arange(frames, dtype=np.int64) + 1) * count / frames
@@ -23,7 +22,6 @@ def deal(recording: Recording, ends: IntArray) -> Iterator[tuple[Samples, bool]]
     """Deal out samples in order, split at frames.
 
     Args:
-        recording: What to replay.
         ends: How many samples lie behind each frame, never falling, shape (n,).
 
     Yields:

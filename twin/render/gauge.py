@@ -101,12 +101,7 @@ class Gauge:
 
 
 def load_bars(load: ToolLoad, tool: ToolTable) -> tuple[LoadBar, ...]:
-    """What the cut asks for at a sample, as shares of what breaks the tool or overloads the spindle.
-
-    Args:
-        load: Of one sample.
-        tool: In the spindle.
-    """
+    """What the cut asks for at a sample, as shares of what breaks the tool or overloads the spindle."""
     bears = tool_strength(tool)
     force, chip = float(load.peak_force[0]), float(load.chip[0])
     torque, bend = float(load.spindle_load[0]), float(np.linalg.norm(load.deflection[0]))

@@ -43,7 +43,6 @@ class LoadBar(NamedTuple):
     """How much of what it bears a tool or the spindle is given.
 
     Attributes:
-        name: What is measured.
         text: Its value, with its unit.
         share: Of what breaks or stalls it; above 1 the bar is full.
     """
@@ -106,7 +105,6 @@ class Display:
         Args:
             title: Names of program and machine.
             source: Lines of the program.
-            axes: Names and kinds of the axes.
             size: Width and height of the frames [px].
             speed: How much faster than in reality the film runs; None for a still.
             error_name: What the error is called.
@@ -132,7 +130,6 @@ class Display:
 
         Args:
             frame: Shape (height, width, 3).
-            reading: What to show.
         """
         result = frame.copy()
         margin = self._px(18)

@@ -34,7 +34,6 @@ def inspection_still(
         scene: The run; it must have a stock.
         part: The measured part of that stock; the tolerance has the last colours.
         out: The picture (PNG), complete or not at all.
-        camera: Name of the camera.
         size: Width and height [px].
         quality: ``draft`` or ``final``.
         renderer: ``opengl`` or ``filament``.

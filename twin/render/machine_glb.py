@@ -45,10 +45,7 @@ class DrawnMachine:
     """A machine with a tool and what carries the stock, ready to be drawn by a page.
 
     Attributes:
-        model: The compiled model.
-        machine: Its machine file.
         placement: Where the part's frame lies on the turning table.
-        tool: What is in the spindle.
         part: The part, in its frame [mm]; None: it is not in the file.
     """
 
@@ -183,8 +180,6 @@ def drawn_machine(
     """Build the machine as a page draws it.
 
     Args:
-        machine: The machine file.
-        tool: What is in the spindle.
         part_frame: How the part turns under the tool.
         stock: The blank, for the parallels below it.
         true_zero: Machine coordinates of the part's zero, shape (k,) [mm or deg].

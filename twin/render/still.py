@@ -44,7 +44,6 @@ def stills(
     """Draw moments of a recorded run in one pass over it.
 
     Args:
-        scene: What is to be seen.
         shots: The moments, in any order.
         cameras: Names of the cameras; several are shown side by side.
         size: Width and height [px].

@@ -43,7 +43,6 @@ class AssumedJob:
     """A job's text, and what of it is no more than assumed.
 
     Attributes:
-        text: The job file.
         assumptions: What was assumed and from what, for people, a line each.
     """
 
@@ -64,7 +63,6 @@ def with_assumptions(
     What a ``twin.toml`` above it sets replaces what would be assumed.
 
     Args:
-        preparation: Of the program.
         machine: Overrides the job's machine.
         strict: Warnings of the interpreter are errors.
 
@@ -260,8 +258,6 @@ def _zero_line(
     """Where program zero lies: the stock in the table's middle, and its height.
 
     Args:
-        preparation: Of the program.
-        moves: What it makes.
         top: Centre of the stock's top face; None: there is no stock.
         decides_height: Lines of stock and tools, where the program counts from machine zero; else None.
     """

@@ -21,10 +21,6 @@ def cut_notices(
     """Warnings about the cut of a whole program.
 
     Args:
-        job: Its stock is there.
-        dry_run: What the program does.
-        machining: The cut.
-        cut: What it came to.
         loads: What the tools bore: a cut on a side that is thinner than a cell shows there alone.
     """
     cutter, watch = machining.cutter, dry_run.watch
@@ -99,7 +95,6 @@ def tooth_feed_notices(watch: ProgramWatch, cut: CutResult | None) -> Iterator[N
     """Feeds per tooth that no edge bears, where no force is simulated that would show it.
 
     Args:
-        watch: What the program does.
         cut: What was cut; None without a stock: then only what no tool at all could bear is reported.
     """
     for line, feed in watch.tooth_feeds.items():
@@ -118,13 +113,18 @@ def _tooth_feed_text(feed: ToothFeed) -> str:
 def unjudged_limit_notices(job: JobFile, watch: ProgramWatch) -> Iterator[Notice]:
     """Limits of tools that only a simulated force could judge, where none is simulated."""
     for tool in job.tools:
-        if tool.force_limit is not None and tool.number in watch.tools_used:
+        given = [limit for limit in _LIMITS_OF_FORCE if getattr(tool, limit) is not None]
+        if given and tool.number in watch.tools_used:
+            limits, are = " and ".join(given), "is" if len(given) == 1 else "are"
             yield Notice(
                 "limit-not-judged",
                 watch.first_feed,
-                f"force_limit of tool {tool.number} is not judged: no force is simulated; it needs a "
+                f"{limits} of tool {tool.number} {are} not judged: no force is simulated; it needs a "
                 '[stock] with a material, a spindle speed, and cutting_force = "teeth"',
             )
+
+
+_LIMITS_OF_FORCE = ("force_limit", "torque_limit", "thrust_limit")
 
 
 def tolerance_notices(tolerance: ToleranceTable, lines: int) -> Iterator[Notice]:

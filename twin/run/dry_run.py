@@ -2,6 +2,7 @@
 
 import dataclasses
 import pickle
+import re
 import tempfile
 import weakref
 from collections.abc import Iterable, Iterator
@@ -14,8 +15,8 @@ from twin.machine.watching.travel import soft_limit_alarm
 from twin.nc.canonical import Chunk, FloatArray, Function
 from twin.nc.text.diagnostics import Diagnostic
 from twin.run.layout import start_position
-from twin.run.messages import shown, speed_notice
-from twin.run.preparation import Preparation
+from twin.run.messages import Notice, shown, speed_notice
+from twin.run.preparation import Preparation, says_itself
 from twin.run.program_watch import ProgramWatch
 from twin.run.progress import StageClock
 from twin.run.spindle_dwells import with_spindle_dwells
@@ -41,7 +42,6 @@ class InterpretedProgram:
         """Take what an interpreter makes.
 
         Args:
-            preparation: The job made concrete.
             chunks: The whole program, or its begin.
 
         Raises:
@@ -101,7 +101,6 @@ class DryRun:
     """What a program does, as far as that is known without moving anything.
 
     Attributes:
-        program: Its moves and events.
         warnings: What the interpreter and the spindle had to say.
         alarm: The soft-limit alarm of the first move that leaves the travel, if any.
         summary: Its tools, speeds of the spindle and rapids.
@@ -130,9 +129,7 @@ def interpret_all(preparation: Preparation, part_zero: FloatArray, clock: StageC
     """Interpret a whole program, so that no error is met with the machine half-way.
 
     Args:
-        preparation: The job made concrete.
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
-        clock: Counts the time as interpretation.
 
     Raises:
         ProgramError: The program is wrong.
@@ -164,7 +161,7 @@ def interpret_all(preparation: Preparation, part_zero: FloatArray, clock: StageC
                 for line, message in islice(limited.items(), NOTICES_KEPT)
             ),
             *shown(
-                watch.notices(interpretation),
+                [*watch.notices(interpretation), *_never_read(preparation)],
                 preparation.source,
                 strict=preparation.settings.strict,
             ),
@@ -176,3 +173,19 @@ def interpret_all(preparation: Preparation, part_zero: FloatArray, clock: StageC
         fed_without_length=frozenset(interpretation.lengths.fed_without),
         drilled=frozenset(interpretation.drilled),
     )
+
+
+_WORK_OFFSET = re.compile(
+    r"G5[4-9](\.[123])?|G5(0[5-9]|[1-9]\d)|G(54\.1|154) P[1-9]\d*|G159=[1-9]\d*|PRESET\d+|M92"
+)
+"""What controls call their work offsets: a job may list some that one of its programs does not call."""
+
+
+def _never_read(preparation: Preparation) -> Iterator[Notice]:
+    """Values that the job itself gives and the program never asks for, work offsets of a real name left out."""
+    for table, names in preparation.settings.never_read.items():
+        for name in names:
+            if _WORK_OFFSET.fullmatch(name) or not says_itself(preparation.job, f"{table}.{name}"):
+                continue
+            message = f"{table} of the job has {name}, and the program never asks for it"
+            yield Notice("value-never-read", 0, message)

@@ -1,6 +1,7 @@
 """Where a job lies on its machine: program zero, the blank on the table, the part's frame."""
 
 import math
+from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple
 
@@ -149,11 +150,21 @@ def start_position(job: JobFile, machine: Machine) -> FloatArray:
     return start
 
 
-def _write_axes(row: FloatArray, values: dict[str, float], machine: Machine, key: str) -> None:
-    for name, value in values.items():
+def require_axes(names: Iterable[str], machine: Machine, key: str) -> None:
+    """Hold the axes that a table of the job names to those of its machine.
+
+    Raises:
+        ConfigError: An axis does not exist.
+    """
+    for name in names:
         if name not in machine.axes.names:
             known = ", ".join(machine.axes.names)
             raise ConfigError(f"job key '{key}.{name}': {machine.file.name} has the axes {known}")
+
+
+def _write_axes(row: FloatArray, values: dict[str, float], machine: Machine, key: str) -> None:
+    require_axes(values, machine, key)
+    for name, value in values.items():
         row[machine.axes.index(name)] = value
 
 

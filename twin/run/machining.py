@@ -184,13 +184,7 @@ def gouge_alarm(gouge: NominalGouge, tool: ToolTable) -> Alarm:
 
 
 def stock_alarm(event: CutEvent, tool: ToolTable, before: ToolTable | None = None) -> Alarm:
-    """The alarm of what met the stock: a rapid, a feed with the spindle off, shank, holder, head.
-
-    Args:
-        event: What the cutter noted.
-        tool: What was in the spindle.
-        before: The tool before it.
-    """
+    """The alarm of what met the stock: a rapid, a feed with the spindle off, shank, holder, head."""
     depth = f"{event.depth_mm:.2f} mm deep"
     if event.what == "rapid":
         message = f"a rapid drives tool {tool.number} {depth} into the stock"

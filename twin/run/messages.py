@@ -21,10 +21,6 @@ def alarm_diagnostic(alarm: Alarm, source: Source) -> Diagnostic:
     """Point an alarm at the word of its axis in the program line that raised it.
 
     A line that does not name the axis is marked at its first word.
-
-    Args:
-        alarm: The machine's alarm.
-        source: The program that ran.
     """
     marked = [_FIRST_WORD]
     if alarm.axis:
@@ -38,10 +34,6 @@ def near_miss_diagnostic(near_miss: NearMiss, source: Source) -> Diagnostic:
     """Show a near miss as a warning at the line in which it was closest.
 
     Two faces that lie on each other are no collision, since the axes tremble by as much.
-
-    Args:
-        near_miss: The closest approach of the run.
-        source: The program that ran.
     """
     one, two = near_miss.between
     passing = f"passes the {two} with {near_miss.clearance_mm:.2f} mm to spare"
@@ -52,13 +44,7 @@ def near_miss_diagnostic(near_miss: NearMiss, source: Source) -> Diagnostic:
 
 
 def speed_notice(line: int, message: str, source: Source) -> Diagnostic:
-    """Show a speed of the spindle that was limited as a warning at its S.
-
-    Args:
-        line: That asks for it.
-        message: What happened.
-        source: The program that runs.
-    """
+    """Show a speed of the spindle that was limited as a warning at its S."""
     return at_line(
         source, line, SPINDLE_LIMITED, message, _SPEED_WORD, _FIRST_WORD, severity="warning"
     )
@@ -69,7 +55,6 @@ def reason_text(reason: Reason, source: Source) -> str:
 
     Args:
         reason: Why the run does not pass.
-        source: The program that ran.
     """
     if not 0 < reason.line <= len(source.lines):
         return f"{source.name}: error {reason.what}: {reason.message}"
@@ -89,12 +74,8 @@ def at_line(
     """Point at a program line.
 
     Args:
-        source: The program that ran.
         line: Its line; without one, an empty line 1 is shown.
-        code: Of the diagnostic.
-        message: What happened.
         marked: What the caret is under: the first of these that the line holds; none: the line.
-        severity: Of the diagnostic.
     """
     text = source.lines[line - 1] if 0 < line <= len(source.lines) else ""
     patterns = marked or (_WITHOUT_INDENT,)

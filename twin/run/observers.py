@@ -51,7 +51,6 @@ def observed(
     """Let a motion be followed until one of the observers stops it.
 
     Args:
-        motion: The samples, in chunks.
         observers: In the order in which they see each chunk.
         clock: Counts the time of motion and observers.
     """
@@ -195,7 +194,6 @@ class ToolUse:
     """One tool of a run.
 
     Attributes:
-        tool: What it is.
         time_s: How long it is in the spindle while the program runs [s].
         removed_mm3: What it takes off [mm³]; None without a stock.
     """

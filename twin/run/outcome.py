@@ -50,7 +50,6 @@ class Outcome:
 
     Attributes:
         verdict: Pass, fail or alarm, with the reasons.
-        figures: Following and contour error.
         cut: What was cut; None without a stock.
         gouge: The deepest cut into the nominal part, beyond what the job allows.
         inspection: How far the part is from the nominal one; None without one.
@@ -58,7 +57,6 @@ class Outcome:
         alarms: Alarms of the machine, in order.
         near_miss: The closest that the tool's side and the part's came, below the machine's limit.
         warnings: Those of the interpreter, of the program and of the cut.
-        scope: What the verdict looked at.
         tools: Those that were in the spindle, with their times and what they took off.
         part: A picture of the part as it was cut, PNG; empty without a stock.
         samples: How many samples were recorded, settling included.
@@ -112,9 +110,6 @@ def outcome_of(
     """Judge what was run, with what was looked at.
 
     Args:
-        preparation: What was asked for.
-        dry_run: What the program does.
-        followers: What they have found.
         motion: What moved the machine; None: nothing did.
         alarms: Alarms of the machine, in order.
         floats: Why nothing carries the stock; None where something does.

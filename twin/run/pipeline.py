@@ -75,9 +75,7 @@ class ProgramMotion(MachineMotion):
 
         Args:
             setpoints: As planned, machine coordinates, in chunks.
-            model: The machine.
             summary: Which tool is in the spindle during which move.
-            forces: What pushes the axes.
 
         Raises:
             ConfigError: The model does not compile.
@@ -123,8 +121,6 @@ def planned(
     """The setpoints of a program, in chunks.
 
     Args:
-        program: Its moves and events.
-        machine: The machine.
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
         expect: Called with the moves before setpoints of theirs are made.
     """
@@ -150,8 +146,6 @@ def cutting_forces(
     """What the cut of a job pushes the axes with.
 
     Args:
-        job: Says which force is simulated.
-        machine: It is pushed.
         dry_run: What the program brings into the spindle when.
         layout: Where the part is.
         laid: The blank, if it is on the table already.

@@ -12,11 +12,11 @@ import pydantic
 from twin.errors import ConfigError, RecordingError
 from twin.files.toml import Change
 from twin.job.job_file import JobFile
-from twin.job.load import Job, load_job
+from twin.job.load import VARIED, Job, layer_of, load_job
 from twin.machine.description.config import Machine
 from twin.machine.load import load_machine
-from twin.nc.control.settings import ControlSettings, MachineFunction, ToolData
-from twin.nc.dialects import Dialect, dialect_named
+from twin.nc.control.settings import Consulted, ControlSettings, MachineFunction, ToolData
+from twin.nc.dialects import DIALECTS, Dialect, dialect_named
 from twin.nc.dialects.foreign import require_text
 from twin.nc.functions import SpindleState
 from twin.nc.interpreter import Interpretation
@@ -24,7 +24,7 @@ from twin.nc.path.tool_center import Setup
 from twin.nc.text.diagnostics import ProgramError
 from twin.nc.text.source import Source, read_source, source_from_text
 from twin.recording.reader import RecordingHeader
-from twin.run.layout import lay_out, start_position
+from twin.run.layout import lay_out, require_axes, start_position
 from twin.run.reading.assumed_machine import assumed_machine
 from twin.run.reading.assumed_reading import (
     NOTHING_ASSUMED,
@@ -42,8 +42,6 @@ class Preparation:
 
     Attributes:
         job: The job file and where it lies.
-        machine: The machine that it runs on.
-        source: The NC program.
         dialect: The language that the program is written in.
         settings: What the interpreter has to know of machine and job.
         dialect_reason: What showed the dialect of a program whose job names none; empty: the job does.
@@ -232,6 +230,8 @@ def prepare_job(
         choice = chosen_dialect(job.program, settings, source)
         named, reason = choice.dialect, choice.reason
     language = named
+    _refuse_taken_functions(job, twin_machine, language)
+    _refuse_unread_keys(job, language)
     if language.library is not None:
         source = language.library(source, job.program.parent, language)
     return Preparation(
@@ -257,7 +257,6 @@ def prepare_recorded(header: RecordingHeader, *, machine: str | None = None) -> 
     """What a recording was made with, from its header.
 
     Args:
-        header: Of the recording.
         machine: Overrides the machine file; a path is relative to the working folder.
 
     Raises:
@@ -290,6 +289,8 @@ def prepare_recorded(header: RecordingHeader, *, machine: str | None = None) -> 
 def _control_settings(job: Job, machine: Machine, *, strict: bool) -> ControlSettings:
     control = machine.file.control
     start = start_position(job.file, machine)
+    for name, values in job.file.offsets.items():
+        require_axes(values, machine, f"offsets.{name}")
     return ControlSettings(
         axes=machine.axes,
         periodic=frozenset(name for name in machine.axes.names if machine.axis(name).periodic),
@@ -302,14 +303,15 @@ def _control_settings(job: Job, machine: Machine, *, strict: bool) -> ControlSet
             for tool in job.file.tools
         },
         any_tool="tools" not in job.file.model_fields_set,
-        offsets=job.file.offsets,
+        offsets=Consulted(job.file.offsets),
         offset_rows=job.file.offset_rows,
         setup=_setup(job, machine),
         machine_zero=_machine_zero(job, machine),
-        variables=job.file.variables,
+        variables=Consulted(job.file.variables),
         m_functions={
             int(code[1:]): MachineFunction(declared.meaning, declared.dwell)
-            for code, declared in {**control.m_functions, **job.file.m_functions}.items()
+            for functions in (control.m_functions, job.file.m_functions)
+            for code, declared in functions.items()
         },
         recalculate_on_rapid=control.recalculate_on_rapid,
         module_rotary=control.module_rotary,
@@ -325,6 +327,53 @@ def _control_settings(job: Job, machine: Machine, *, strict: bool) -> ControlSet
         step_limit=job.file.step_limit,
         strict=strict,
     )
+
+
+def _refuse_taken_functions(job: Job, machine: Machine, dialect: Dialect) -> None:
+    """Refuse M codes of the machine's builder that control or machine act upon: the declaration would change nothing.
+
+    Raises:
+        ConfigError: There is one; the message names its file and key.
+    """
+    keys = [("control.m_functions", name) for name in machine.file.control.m_functions]
+    keys += [("m_functions", name) for name in job.file.m_functions]
+    for table, name in keys:
+        meaning = dialect.codes.meaning_acted_upon(int(name[1:]))
+        if meaning:
+            key = f"{table}.{name}"
+            place = (
+                layer_of(job.layers, key) if table == "m_functions" and job.layers else machine.path
+            )
+            raise ConfigError(
+                f"{place}: '{key}': {dialect.name} has {name} itself ({meaning}), and it stays that: "
+                "leave it out, or declare the number that the machine's builder has chosen"
+            )
+
+
+_KEYS_OF_SOME = ("decimal_point", "offset_rows")
+"""Keys of a job that some dialects read, and the others pass over."""
+
+
+def _refuse_unread_keys(job: Job, dialect: Dialect) -> None:
+    """Refuse keys of the job itself that its dialect passes over; a file that jobs of several dialects share may have them.
+
+    Raises:
+        ConfigError: There is one; the message names its file and key.
+    """
+    for key in _KEYS_OF_SOME:
+        if key not in job.file.model_fields_set or key in dialect.job_keys:
+            continue
+        if says_itself(job, key):
+            place = layer_of(job.layers, key) if job.layers else "job"
+            readers = ", ".join(name for name, each in DIALECTS.items() if key in each.job_keys)
+            raise ConfigError(
+                f"{place}: '{key}': {dialect.name} has no such setting, only {readers}"
+            )
+
+
+def says_itself(job: Job, key: str) -> bool:
+    """Whether the job, or the command line, sets a key, and not a file that several jobs share."""
+    return not job.layers or layer_of(job.layers, key) in (VARIED, job.path)
 
 
 def _setup(job: Job, machine: Machine) -> Setup | None:

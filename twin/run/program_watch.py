@@ -30,7 +30,6 @@ class Stop:
     Attributes:
         place: Number of the next move, and how much of it lies behind.
         line: Source line.
-        what: For a message.
     """
 
     place: float
@@ -44,7 +43,6 @@ class ToothFeed:
 
     Attributes:
         value: Of it [mm].
-        tool: What was in the spindle.
     """
 
     value: float

@@ -69,7 +69,6 @@ def event_time(scene: Scene, event: str) -> float | None:
     """When something happened in a run [s]; None for its end.
 
     Args:
-        scene: The run.
         event: One of ``EVENTS``.
 
     Raises:

@@ -40,8 +40,6 @@ def write_results(
     """Write the verdict and every figure behind it, for programs and for people.
 
     Args:
-        run: The run.
-        outcome: What it came to.
         folder: Where the files go; stills that were drawn there are put on the page.
         further: Additional keys of ``result.json``.
     """
@@ -76,8 +74,6 @@ def report_of(
     """What the page about a run is made of.
 
     Args:
-        run: The run.
-        outcome: What it came to.
         content: The content of ``result.json``.
         stills: Pictures for the page, with what each shows.
     """

@@ -36,8 +36,6 @@ class Run:
     """One run of a prepared job.
 
     Attributes:
-        preparation: The job made concrete.
-        machine: Its machine.
         layout: Where the job lies on it.
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
         part_frame: How the part turns under the tool.
@@ -48,9 +46,6 @@ class Run:
 
     def __init__(self, preparation: Preparation) -> None:
         """Lay the job out on its machine.
-
-        Args:
-            preparation: The job made concrete.
 
         Raises:
             ConfigError: The model is wrong, or the stock does not fit on the table.
@@ -86,7 +81,6 @@ class Run:
         A program that would leave the travel moves nothing and writes nothing.
 
         Args:
-            dry_run: What the dry run found.
             out: The folder; None writes neither, for who wants the verdict alone.
             progress: Called with how far the simulation is.
             motion: Moves the machine along the program; None: the twin's own planner and drives.

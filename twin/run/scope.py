@@ -13,6 +13,7 @@ from twin.job.job_file import JobFile
 from twin.job.load import DEFAULT
 from twin.machine.description.config import Machine
 from twin.machine.watching.alarms import Alarm
+from twin.nc.control.settings import ControlSettings
 from twin.run.dry_run import DryRun
 from twin.run.preparation import Preparation
 from twin.run.program_watch import ProgramWatch
@@ -31,7 +32,6 @@ class Unwatched:
     """Something that the verdict does not cover.
 
     Attributes:
-        what: It.
         why: The reason, and what would have it watched.
     """
 
@@ -45,7 +45,6 @@ class Scope:
 
     Attributes:
         watched: What was watched, and every figure that was held to a tolerance.
-        not_watched: What was not.
         stock: What described the material, ``height map`` or ``tri-dexel``; None without a stock.
         removed_mm3: Material taken off [mm³]; None without a stock.
         air_share: Share of the feed path that met no material; None without a stock.
@@ -115,13 +114,9 @@ def scope_of(
     """Put the scope of a run together.
 
     Args:
-        preparation: What was asked for.
-        dry_run: What the program does.
-        checks: What was held to tolerances.
         cut: What was cut; None without a stock.
         forces: Whether the force of the cut was simulated.
         unjudged: What was asked for and judged nothing.
-        alarms: What stopped the machine.
         inspection: How far the part is from the nominal one; None without one.
     """
     job, file, watch = preparation.job, preparation.job.file, dry_run.watch
@@ -135,6 +130,7 @@ def scope_of(
         *_blind(file, forces=forces, swivels=_swivels(dry_run.summary)),
         *(_silent_spindle(file, watch)),
         *_unknown_functions(file),
+        *_never_read(preparation.settings),
         *(Unwatched(reason.what, reason.message) for reason in unjudged),
         *(
             Unwatched(f"all behind line {each.line}", "the alarm ended the run")
@@ -189,6 +185,12 @@ def _unknown_functions(job: JobFile) -> Iterator[Unwatched]:
         yield Unwatched(", ".join(unknown), UNKNOWN_FUNCTION)
 
 
+def _never_read(settings: ControlSettings) -> Iterator[Unwatched]:
+    """Values that the job gives the program, and that it never asked for."""
+    for table, names in settings.never_read.items():
+        yield Unwatched(f"{table} {', '.join(names)}", "the program never asks for them")
+
+
 def _blind(job: JobFile, *, forces: bool, swivels: bool) -> Iterator[Unwatched]:
     if job.stock is None:
         yield Unwatched("stock, forces and walls", "the job has no [stock]")
@@ -226,10 +228,7 @@ def nothing_judged(
     """Tolerances that the job asks for and that no check was made of.
 
     Args:
-        job: What it allows.
-        checks: What was held to it.
         asked: Where each key is set; a default was not asked for.
-        figures: What was found.
     """
     judged, nominal = {check.what for check in checks}, job.nominal
     if nominal is not None and nominal.standing_um is not None and "standing_um" not in judged:

@@ -21,8 +21,6 @@ def with_spindle_dwells(
     goes on.
 
     Args:
-        chunks: The program.
-        spindle: How long the machine takes.
         job: Says the first tool, and the speeds of tools for programs that say none.
         state: The spindle before the program.
     """
@@ -51,7 +49,6 @@ class SpindleDwells:
         Args:
             spindle: How long the machine takes.
             speeds: Of the tools, for programs that say none [1/min].
-            tool: Number of the tool in the spindle.
             state: The spindle before the program.
             selected: Number of the tool that the next change brings; None: the one in the spindle.
         """

@@ -69,7 +69,6 @@ class RequestError(Exception):
 
     Attributes:
         code: One of the standard's error codes.
-        status: Of HTTP.
     """
 
     def __init__(self, code: str, message: str, status: int = 400) -> None:
@@ -86,7 +85,6 @@ class Query:
         request: ``current`` or ``sample``.
         wanted: Identifiers of the data items.
         first: Number of the first observation, or of the moment; None for the default.
-        count: How many observations.
         interval_ms: Least pause between two documents of a stream; None for one document.
         heartbeat_ms: Longest pause between two documents of a stream.
     """
@@ -103,9 +101,6 @@ class Agent:
     """Answers about one device.
 
     Attributes:
-        device: What is observed.
-        clock: The twin's.
-        buffer: What was observed.
         observed_s: Up to when, by the twin's clock since its start [s].
     """
 
@@ -120,11 +115,7 @@ class Agent:
         """Start with nothing observed.
 
         Args:
-            device: What is observed.
-            clock: The twin's.
-            description: Of the device, for people.
             size: How many observations are remembered.
-            tools: Of the device, which are its assets.
         """
         self.device = device
         self.clock = clock

@@ -13,7 +13,6 @@ def tool_assets(uuid: str, tools: Iterable[ToolTable], time: str) -> list[ET.Ele
 
     Args:
         uuid: Of the machine that has them.
-        tools: As the job lists them.
         time: Since when they are as they are, ISO 8601.
     """
     return [_tool_asset(uuid, tool, time) for tool in tools]

@@ -34,9 +34,7 @@ class Observation:
 
     Attributes:
         sequence: Number of the observation, from 1, one higher each.
-        item: Identifier of the data item.
         time: When, in ISO 8601 with the time zone UTC.
-        value: What was observed.
         xml: It as an element, once somebody asked for it: however many clients there are, it is
             written once.
     """
@@ -104,7 +102,6 @@ class ObservationBuffer:
         """The last observation of each data item.
 
         Args:
-            wanted: Identifiers of the data items.
             at: As it was when the observation of this number was made; now by default.
 
         Raises:

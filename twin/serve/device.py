@@ -17,7 +17,6 @@ class DataItem:
     """One thing that is observed.
 
     Attributes:
-        id: Unique on the device.
         category: Samples are measured, events change in steps, conditions report health.
         type: In the words of the standard, such as ``PATH_FEEDRATE``.
         units: Of a sample; empty for others.
@@ -42,10 +41,6 @@ class Component:
 
     Attributes:
         element: In the words of the standard, such as ``Linear``.
-        id: Unique on the device.
-        name: What people call it.
-        items: What is observed of it.
-        components: What it consists of.
     """
 
     element: str
@@ -69,7 +64,6 @@ def device_of(name: str, axes: Axes) -> Component:
     program only runs behind a closed one.
 
     Args:
-        name: Of the machine.
         axes: Its axes, in order.
     """
     pairs = zip(axes.names, axes.kinds, strict=True)

@@ -24,7 +24,6 @@ class Header:
         instance: Number of this start of the agent; sequence numbers of another mean nothing here.
         device_changed: When the description of the device last changed, ISO 8601.
         buffer_size: How many observations are remembered.
-        sender: Who answers.
     """
 
     time: str
@@ -50,13 +49,7 @@ class Header:
 
 
 def device_element(device: Component, uuid: str, description: str) -> ET.Element:
-    """The device with its components and data items; ``path`` requests search in it.
-
-    Args:
-        device: The device.
-        uuid: Its identifier everywhere.
-        description: For people.
-    """
+    """The device with its components and data items; ``path`` requests search in it."""
     element = _component_element(device)
     element.set("uuid", uuid)
     about = ET.Element("Description", manufacturer="mill-twin", model=device.name)
@@ -119,9 +112,6 @@ def streams_document(
     """The answer to ``current`` and ``sample``.
 
     Args:
-        header: Its head.
-        device: The device that was observed.
-        uuid: Its identifier everywhere.
         observations: In any order.
         sequences: Number of the first and the last observation that is remembered, and of the one
             with which the next request goes on.
@@ -211,9 +201,7 @@ def error_document(header: Header, code: str, message: str) -> ET.Element:
     """The answer to a request that cannot be met.
 
     Args:
-        header: Its head.
         code: One of the standard's, such as ``OUT_OF_RANGE``.
-        message: What would have worked.
     """
     root = _root("Error")
     ET.SubElement(root, "Header", header.attributes())

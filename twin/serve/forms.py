@@ -36,7 +36,6 @@ class Form(NamedTuple):
     """How documents are written.
 
     Attributes:
-        media_type: What HTTP calls it.
         written: A document's tree as bytes.
     """
 

@@ -31,7 +31,6 @@ def application(
     """The HTTP side of an agent.
 
     Args:
-        agent: What answers.
         feed: Observes the machine until it is cancelled; runs as long as the server does.
         local: Whether it listens to this computer alone. A browser that was sent here by another
             name, by the page of a stranger, is then refused.
@@ -134,12 +133,7 @@ def _response(request: Request, document: ET.Element, status: int = 200) -> Resp
 
 
 class _Writer(NamedTuple):
-    """How the documents of a stream are written.
-
-    Attributes:
-        form: Of each.
-        boundary: Between them.
-    """
+    """How the documents of a stream are written."""
 
     form: Form
     boundary: str

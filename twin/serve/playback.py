@@ -43,7 +43,6 @@ class Production(NamedTuple):
     """What is made, and how a run of it went.
 
     Attributes:
-        machine: What makes it.
         program: Name of the NC program.
         source: Its lines.
         summary: What is in the spindle when, and how fast it turns.
@@ -92,11 +91,7 @@ class Playhead:
 
 
 def coolant_of(chunks: Iterable[Chunk]) -> Steps[bool]:
-    """Whether coolant flows, by the number of the move; it ends with the program.
-
-    Args:
-        chunks: The whole program.
-    """
+    """Whether coolant flows, by the number of the move; it ends with the program."""
     first_move, flows, moves = [0], [False], 0
     for chunk in chunks:
         for event in chunk.events:
@@ -215,7 +210,6 @@ async def feed(agent: Agent, machine: Iterator[Tick], playhead: Playhead | None 
     """Let an agent observe a machine, as the twin's clock goes on; ends when it is cancelled.
 
     Args:
-        agent: What observes.
         machine: What is to be observed, in order of time.
         playhead: Moves with it; None: nobody looks on.
     """

@@ -38,11 +38,7 @@ class RoomObserver:
         self._was_running = False
 
     def values(self, now: Snapshot) -> Mapping[str, Value]:
-        """Values by identifier of the data item.
-
-        Args:
-            now: A look at the room.
-        """
+        """Values by identifier of the data item."""
         running = now.running == "program"
         if self._was_running and not running and now.alarm is None:
             self._parts += 1
@@ -81,8 +77,6 @@ async def observe_room(agent: Agent, observer: RoomObserver, look: Callable[[], 
     """Let an agent observe a room until it is cancelled.
 
     Args:
-        agent: What observes.
-        observer: What it makes of a look.
         look: The last look at the room; taken on another thread, and never changed.
     """
     while True:

@@ -39,7 +39,6 @@ def bend_of(bend: FloatArray, move: int, axis: int, u: float, order: int) -> flo
         bend: As in ``Geometry``.
         move: Its row.
         axis: Column of the axis.
-        u: Path fraction.
         order: Of the derivative, 0 for the position, 3 at most.
     """
     total = 0.0
@@ -59,7 +58,6 @@ def evaluate(
     """Position (order 0) or derivative by path fraction (order 1 to 3) of rows of a geometry.
 
     Args:
-        curves: The geometry.
         move: Rows, shape (m,).
         fraction: Path fractions, shape (m,).
         order: 0 to 3.

@@ -49,7 +49,6 @@ class MachineGeometry:
     """The errors of a machine, counted from one place of its axes.
 
     Attributes:
-        terms: Errors that tables give.
         center_offset: How far the table's axis is from where the control takes it to be, X and Y [mm].
         tilt: Slope of the table's axis: its turn about X and about Y [rad].
         origin: Where the errors are counted from, one value per axis [mm or deg]; empty: zero.

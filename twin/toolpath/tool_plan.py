@@ -17,7 +17,6 @@ class ToolChange(NamedTuple):
     Attributes:
         move: Number of the next move.
         line: Source line of the change.
-        tool: The tool that comes.
     """
 
     move: int

@@ -41,7 +41,6 @@ def view_app(
     """What the page of a run is served; everything is made once, when it is asked for.
 
     Args:
-        run: The run.
         report: Its report, to be read beside it; None: there is none.
         now: Where a machine is that makes the run: ``time`` [s], and where the run goes on what ``LiveRun.now``
             says; None: none does.
@@ -124,7 +123,6 @@ def open_view(
     """Serve a run on this computer while it is open; gives the page's address.
 
     Args:
-        run: The run.
         port: 0: the first free one.
         framed: Whether a page of this computer, such as a notebook, may hold it.
         report: As for ``view_app``.

@@ -36,7 +36,6 @@ class RecordedRun:
 
         Args:
             scene: The recording with its program, stock and tools.
-            machine: What it was made on.
         """
         self._scene = scene
         self._machine = machine

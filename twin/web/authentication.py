@@ -30,11 +30,7 @@ def new_tokens(roles: Iterable[str]) -> dict[str, str]:
 
 
 class Authentication:
-    """Checks tokens and cookies of roles.
-
-    Attributes:
-        tokens: By role.
-    """
+    """Checks tokens and cookies of roles."""
 
     def __init__(self, tokens: Mapping[str, str], port: int, *, encrypted: bool = False) -> None:
         """Take the tokens.

@@ -45,7 +45,6 @@ class OriginCheck:
 
         Args:
             app: What is wrapped; its paths begin with ``/ROLE/``.
-            authentication: Checks tokens and cookies.
             local: Whether only this computer's names lead here.
             framed: Whether pages of this computer may hold its pages in a frame.
         """

@@ -89,7 +89,6 @@ class SocketServer:
 
         Args:
             listener: Listens already; it is closed with the server.
-            certificate: For https, with its key.
             key: None: it is in the certificate's file.
         """
         self._certificate, self._key = certificate, key
@@ -101,7 +100,6 @@ class SocketServer:
         """Serve an application until ``stop``.
 
         Args:
-            app: What answers.
             promptly: Whether to ask the system for precedence, as what is told must not wait.
         """
         config = uvicorn.Config(
@@ -150,7 +148,6 @@ class WebServer(SocketServer):
 
     Attributes:
         host: Where it listens.
-        port: The port.
     """
 
     def __init__(
@@ -163,9 +160,7 @@ class WebServer(SocketServer):
         """Bind the port.
 
         Args:
-            host: Address to listen on.
             port: Port; 0: the first free one from ``FIRST_PORT``.
-            certificate: For https, with its key.
             key: None: it is in the certificate's file.
 
         Raises:

@@ -47,6 +47,13 @@ def test_no_plane_can_be_chosen_within_the_contour(plane: str) -> None:
     good(f"N1 G41 D2\nN2 {plane}\nN3 G1 X10 Y0 Z5 F10\nN4 X20 Y10\nN5 G40\nN6 X30", "codesys")
 
 
+def test_a_code_that_is_reported_and_no_more_takes_the_time_that_the_builder_says() -> None:
+    declared = {8: MachineFunction("coolant, its pressure waited for", 1.5)}
+    events = good("G1 X1 F100\nX2\nM8\nX3\nX4\nM30", "fanuc", m_functions=declared).events
+    shown = [getattr(event, "word", getattr(event, "seconds", None)) for event in events]
+    assert shown == ["M8", 1.5, "M30"]
+
+
 def test_an_axis_has_an_acceleration_and_a_deceleration() -> None:
     moves = good("N1 G1 X10 F5 EX10 EX-13\nN2 X20 Y10\nN3 X30 EX0\nN4 X40 EX7", "codesys").moves
     assert moves.acceleration[0] == 10.0

@@ -57,9 +57,7 @@ def fit_give(
     """Fit backlash and stiffness.
 
     Args:
-        kind: Of the axis.
         stretches: All that is fitted, with positions of a second encoder.
-        parameters: Of the axis, fitted.
         carried: What lies behind the gap: mass [kg] or inertia [kg m²], motor and screw excluded.
         friction: Dry friction, as far as it is known; what it may be off moves the backlash.
     """

@@ -37,10 +37,7 @@ class Coordinate:
     """How a fit moves one parameter.
 
     Attributes:
-        unit: For people.
         step: By which a derivative is taken, in the coordinate.
-        low: Lowest value.
-        high: Highest value.
         logarithmic: Moved by its logarithm: it is positive, and errors are shares.
         reciprocal: Moved by one over it, and 0 as 0: a time whose rate counts, 0 being none.
     """
@@ -115,7 +112,6 @@ def of_base(axis: AxisTable, mass: float) -> Parameters:
     """The base's own parameters.
 
     Args:
-        axis: Its table.
         mass: What its motor feels [kg or kg m²].
     """
     return Parameters(

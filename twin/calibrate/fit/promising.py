@@ -67,11 +67,7 @@ class Core:
         return tuple(name for name in EXTRAS if name not in self.names)
 
     def free(self, extras: Sequence[str]) -> list[str]:
-        """Names that are fitted in a structure.
-
-        Args:
-            extras: That it has.
-        """
+        """Names that are fitted in a structure."""
         integrates = INTEGRATOR in extras or self.unset.reset_time_s > 0.0
         if not integrates or self.forced:
             return [*self.names, *extras]
@@ -109,8 +105,6 @@ def promising(problem: Problem, best: Solution, core: Core) -> list[Promise]:
     smallest is kept.
 
     Args:
-        problem: What is minimised.
-        best: The optimum.
         core: What every structure has.
     """
     own = core.extras_of(best)

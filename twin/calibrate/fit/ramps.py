@@ -40,7 +40,6 @@ class Ramp:
     """A sample within a ramp.
 
     Attributes:
-        row: Of the log.
         command: The ramp, from well before the sample.
         place: Of the sample, in inputs of the command.
         window: Inputs per cycle of the control.
@@ -80,7 +79,6 @@ def find_ramps(
     """Find the samples of an axis that fell into ramps.
 
     Args:
-        log: The log.
         name: Of an axis with ``NEEDED``.
         rows: First and last row, exclusive, of each stretch.
         cycle_s: Over which the control forms its velocities [s].

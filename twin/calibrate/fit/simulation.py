@@ -41,7 +41,6 @@ class Command:
     """What an axis was commanded, at even steps of the simulation.
 
     Attributes:
-        kind: Of the axis.
         step_s: Between inputs [s].
         places: Of the logged samples, in steps from the first input, shape (samples,).
         position: Setpoint, velocity and acceleration, shape (n, 3) [mm or deg, per s, per s²].
@@ -97,7 +96,6 @@ def command_of(
     """A logged command as inputs of the simulation.
 
     Args:
-        kind: Of the axis.
         time: Of the samples, rising, as even as they were taken, shape (n,) [s].
         command: Commanded positions, shape (n,) [mm or deg].
         actual: Actual positions; the first tell how the axis starts, shape (n,).
@@ -146,12 +144,7 @@ def _start(since: FloatArray, actual: FloatArray, first: FloatArray) -> tuple[fl
 
 
 def simulate_axis(parameters: Parameters, command: Command) -> Response:
-    """Run an axis along a command.
-
-    Args:
-        parameters: The axis.
-        command: What it was commanded.
-    """
+    """Run an axis along a command."""
     inertia = parameters.mass * to_si(command.kind)
     system = _system(parameters, inertia)
     step = command.step_s
@@ -329,7 +322,6 @@ def seen_at(values: FloatArray, rates: FloatArray, command: Command, delay_s: fl
     Args:
         values: At the inputs, shape (n,).
         rates: Their rates, shape (n,).
-        command: Whose samples.
         delay_s: How late they are logged [s].
 
     Returns:

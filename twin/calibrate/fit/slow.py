@@ -55,7 +55,6 @@ def commanded_speed(
     """Commanded velocity of every row, 0 where it is not determined, and where it is; shape (n,) each.
 
     Args:
-        axis: Of a slow log.
         time: Of its rows [s].
         whole: Whether positions go on from each row to the next, shape (n - 1,).
     """
@@ -71,8 +70,6 @@ def fit_slow(kind: AxisKind, logs: Sequence[SlowLog], base: Parameters, fastest:
     """Fit what slow logs say about an axis; everything else stays at the base's value.
 
     Args:
-        kind: Of the axis.
-        logs: Of the axis.
         base: What is not determined stays at.
         fastest: Rapid velocity of the base's axis [mm/s or deg/s].
     """

@@ -111,7 +111,6 @@ def solve(
     """Fit some parameters and keep the others.
 
     Args:
-        problem: What is minimised.
         start: Where the search begins; the others stay so.
         free: Names of those that are fitted.
         until: ``EXACT`` or ``ROUGH``.
@@ -188,8 +187,6 @@ def movers(problem: Problem, best: Solution, names: Sequence[str]) -> list[str]:
     By the tangents at the optimum: how far the log lets one go, and what moves with it.
 
     Args:
-        problem: What is minimised.
-        best: The optimum.
         names: Of those that were not fitted, each of which is tried by itself.
     """
     here = problem.residuals(best.parameters)
@@ -217,8 +214,6 @@ def intervals_beside(problem: Problem, solution: Solution, name: str) -> dict[st
     """Intervals of the others, where one stays within the bounds that it has.
 
     Args:
-        problem: What is minimised.
-        solution: Its optimum.
         name: Of the fitted one.
     """
     covariance, index = solution.covariance, solution.free.index(name)
@@ -253,8 +248,6 @@ def _as_far_as_straight(
     of the whole distance: a short filter is not distinguished from a delay, a long one is.
 
     Args:
-        problem: What is minimised.
-        solution: Its optimum.
         shift: The way of all coordinates, shape (p,).
         name: Of the one that leads.
     """
@@ -290,7 +283,6 @@ def slope(problem: Problem, at: Parameters, name: str, here: FloatArray) -> Floa
     """Derivative of the residuals by a coordinate, shape (n,).
 
     Args:
-        problem: Whose residuals.
         at: Where it is taken.
         name: Of the parameter that is moved.
         here: The residuals there, shape (n,).

@@ -74,7 +74,6 @@ def fit_axis(
     """Fit one axis.
 
     Args:
-        kind: Of the axis.
         stretches: All that is fitted.
         base: What is not determined stays at.
         filtered: Whether the actual positions are known to be behind a filter of the log.

@@ -40,7 +40,6 @@ class Stretch:
 
     Attributes:
         time: Shape (n,) [s].
-        command: What it was commanded.
         asked: Logged commanded positions, shape (n,) [mm or deg].
         actual: Logged actual positions, shape (n,) [mm or deg].
         force: Logged force, (n,) [N or N m]; None where none is.

@@ -42,7 +42,6 @@ class Choice:
     """A structure that was chosen.
 
     Attributes:
-        best: Its optimum.
         rivals: Optima of other structures that leave no more, for all that the log tells.
         larger: Optima with one extra more, by its name: they leave less, but by chance.
         tried: All structures that were looked at, and the one that was chosen, which comes first.
@@ -66,7 +65,6 @@ def choose_structure(problem: Problem, cores: Sequence[tuple[Solution, Core]]) -
     """Take in what else a log asks for, and give up what it then does not ask for.
 
     Args:
-        problem: What is minimised.
         cores: Optima where a search begins, with what all structures that come of them have, the
             likeliest first. Another is asked where what comes of the first leaves more than noise.
     """

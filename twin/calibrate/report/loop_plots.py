@@ -128,7 +128,6 @@ def friction_points(figures: LogFigures, mass: float) -> tuple[FloatArray, Float
     """Speed and force of the drive where an axis runs evenly, a median of each class of speed.
 
     Args:
-        figures: Of a log with a force.
         mass: What the motor feels, by which inertia is taken out [kg or kg m²].
     """
     course = figures.course

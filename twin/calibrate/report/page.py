@@ -48,7 +48,6 @@ def calibration_page(result: Calibration, record: Record | None = None) -> str:
     """The page, as HTML that needs no other file.
 
     Args:
-        result: What the calibration came to.
         record: From what it was made; None: nobody signs for it.
     """
     environment = jinja2.Environment(

@@ -30,7 +30,6 @@ class Record(NamedTuple):
     Attributes:
         date: When it was made, UTC.
         machine_file: The base machine's file, as it was named.
-        machine_sha256: Its digest.
         map_text: The map of columns; empty where the headings told.
         logs: What was fitted, and what it was judged by.
     """

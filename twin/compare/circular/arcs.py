@@ -79,7 +79,6 @@ class ArcCollector:
         """Take in a chunk of n samples.
 
         Args:
-            moves: The moves at hand.
             path: The moves in the part's frame; arcs on which the table turns are no circles there.
             first: Number of the first of them in the program.
             place: Index in ``moves`` of each sample's nearest place, shape (n,).
@@ -149,7 +148,6 @@ def _in_their_planes(
     """Where tool points lie in the planes of arcs, about their centres.
 
     Args:
-        moves: The moves at hand.
         path: The moves in the part's frame.
         runs: Which arcs the tool runs through in turn, shape (m,).
         length: In how many points each, shape (m,).

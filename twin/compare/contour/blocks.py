@@ -66,7 +66,6 @@ class BlockCollector:
         """Take in a chunk of n samples.
 
         Args:
-            moves: The moves at hand.
             place: Index in ``moves`` of each sample's nearest place, or None without a path.
             line: Source line of that place, shape (n,).
             error: Contour error, shape (n,) [µm].

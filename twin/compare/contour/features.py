@@ -29,7 +29,6 @@ class FeatureCollector:
         """Take in a chunk of n samples.
 
         Args:
-            moves: The moves at hand.
             place: Index in ``moves`` of each sample's nearest place, shape (n,).
             at_corner: Which samples are at a corner rather than on their block, shape (n,).
             error: Contour error, shape (n,) [µm].

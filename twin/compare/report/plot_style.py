@@ -73,7 +73,6 @@ class Plot:
     """One plot.
 
     Attributes:
-        svg: The drawing.
         points: Where the points of the trace lie in its view box, shape (m, 2); empty where
             hovering tells nothing.
     """

@@ -43,7 +43,6 @@ def path_plot(trace: Trace, across: int, up: int, tolerance_um: float) -> Plot:
     """The tool's path on the part, coloured and widened by contour error.
 
     Args:
-        trace: The run.
         across: Column of the coordinate that runs to the right: 0 for X.
         up: The one that runs up.
         tolerance_um: Marks the colour scale.

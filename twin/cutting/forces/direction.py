@@ -34,8 +34,6 @@ def tool_force(
     Args:
         stretches: n stretches.
         tangential: Mean tangential force of all teeth, shape (n,) [N].
-        tool: What cuts.
-        material: What is cut.
 
     Returns:
         Shape (n, 3) [N].

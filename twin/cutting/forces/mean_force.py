@@ -40,7 +40,6 @@ def cutting_load(
         stretches: n stretches.
         duration: How long each took, shape (n,) [s].
         tool: Its ``speed`` must be given.
-        material: What is cut.
     """
     assert tool.speed is not None
     turns_per_second = tool.speed / SECONDS_PER_MINUTE
@@ -59,7 +58,6 @@ def cutting_width(stretches: Stretches, diameter: float) -> FloatArray:
     """Mean width of cut of each stretch: removed over path and depth, shape (n,) [mm].
 
     Args:
-        stretches: n stretches.
         diameter: Of the tool, which the width cannot exceed [mm].
     """
     area = stretches.path * stretches.depth

@@ -28,7 +28,6 @@ class Stood(NamedTuple):
 
     Attributes:
         heights: The height map, shape (ny, nx) [mm].
-        behind: What is known of its walls.
         grid: Where its cells lie.
         doubtful: Whether walls may be cut before the last of the stretches that are looked at: every
             one is then taken to be as near as it can be.
@@ -51,7 +50,6 @@ def round_overlap(
     """Hold a body of revolution about the tool's axis against the material.
 
     Args:
-        stood: The material.
         points: Tool tip positions, shape (n + 1, 3) [mm].
         profile: Of its lower end.
         above: Height of its lower end above the tip [mm].
@@ -110,7 +108,6 @@ def box_overlap(
     """Hold an upright box, such as the head, against the material.
 
     Args:
-        stood: The material.
         points: Middle of its lower face, shape (n + 1, 3) [mm].
         turn: Direction of its first side, shape (n + 1, 2).
         half: Half of its two level sides [mm].

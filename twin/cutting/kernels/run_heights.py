@@ -28,7 +28,6 @@ def lowest_in_run(
         cell: From one cell to the next [mm].
         a: Tool tip at the beginning, shape (3,) [mm].
         b: At the end.
-        profile: Of the tool.
     """
     radius, flat, corner, _ = profile
     standing = a[0] == b[0] and a[1] == b[1]

@@ -58,7 +58,6 @@ def surface_distances(
     """Distances of a part's surface from the nominal one.
 
     Args:
-        part: The part.
         nominal: What it should be, on the same grid.
         cell: Side of a cell [mm].
         wanted: Cells to look at, shape (ny, nx).

@@ -85,7 +85,6 @@ class _Scratch(NamedTuple):
     Attributes:
         heights: The height map, shape (ny, nx) [mm].
         grid: Where its cells lie.
-        profile: Of the tool.
         marks: As ``sweep`` has them.
         rows: Of the map, which are cut: the first, and how far it is to the next.
         low: Row at which the disc that the tool covers begins, at either end of a line, shape (2,).
@@ -127,7 +126,6 @@ def sweep(
         heights: The height map, shape (ny, nx) [mm]; changed in place.
         grid: Where its cells lie.
         points: Tool tip positions, shape (n, 3) [mm].
-        profile: Of the tool.
         sums: What each line took off of rows of even and of odd number is added to it, shape
             (n - 1, 2, 4): height [mm], that times the number of the column and of the row, and the
             greatest height. ``removal_of_sums`` reads it.
@@ -226,7 +224,6 @@ class _Side(NamedTuple):
 
     Attributes:
         x: Where it begins [mm].
-        y: And its Y.
         rise: By how much X grows with Y.
         low: First row that it crosses; so on.
         high: Last one.
@@ -246,7 +243,6 @@ class _Outline(NamedTuple):
         before: Which of the bench's discs is that at the beginning.
         after: Which is that at the end.
         right: The side to the right of the way.
-        left: The side to its left.
         low: First row, of those that are cut.
         high: The one after the last.
     """
@@ -352,7 +348,6 @@ def _sweep_line(scratch: _Scratch, a: FloatArray, b: FloatArray, line: int, done
         scratch: With the discs at both ends.
         a: Tool tip at its beginning, shape (3,) [mm].
         b: At its end.
-        line: Its number.
         done: Whether nothing is left of what the tool at the beginning meets, or behind it.
     """
     flat, outline = scratch.profile.flat >= scratch.profile.radius, _outline(scratch, a, b, line)

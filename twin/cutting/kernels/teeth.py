@@ -130,7 +130,6 @@ def add_force_between(
     """Force on the tool in the mean while it turns.
 
     Args:
-        cutter: The cutter.
         scratch: What ``tooth_forces`` found.
         angle: Direction of the first tooth's tip at the beginning [turns, counter-clockwise].
         turned: How far it turns, signed [turns]; at least a thousandth of a bin is counted.

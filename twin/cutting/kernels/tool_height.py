@@ -111,7 +111,6 @@ def cone_turning_point(
         offset: Squared distance of the place from the way's line [mm²].
         dz: How much the way rises [mm].
         flat: Radius of the cone's flat [mm].
-        slope: Of the cone.
 
     Returns:
         From where the way is nearest to the place, as a share of it; may be infinite.

@@ -86,11 +86,8 @@ def tooth_forces(
     """Forces of a cutter that goes on as it does.
 
     Args:
-        material: What is cut.
         tip: Tool tip, shape (3,) [mm].
         feed: Way of the tip in the time between two teeth, shape (3,) [mm].
-        cutter: The cutter.
-        law: What the material does.
         sense: 1: it turns clockwise, seen from above; -1: counter-clockwise.
         scratch: Set to what was found.
 
@@ -175,9 +172,6 @@ def _edge_force(
     Told for arcs that only one tooth meets at a time; else 0: more of them sum up.
 
     Args:
-        advance: How the cutter goes on.
-        cutter: Its form.
-        law: What the material does.
         arc: Where the material begins and ends [bins].
         depth: How deep the side is in it [mm].
     """
@@ -204,12 +198,9 @@ class _Engaged(NamedTuple):
     """Where the side meets material in one direction.
 
     Attributes:
-        bin: Number of the direction.
         share: Of the bin in which it does.
         depth: How deep it is there, in the mean [mm].
         middle: Place within the bin, 0 to 1: in the mean of the material.
-        begin: Where it begins.
-        end: Where it ends.
     """
 
     bin: int

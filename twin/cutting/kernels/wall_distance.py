@@ -120,9 +120,6 @@ def reach_before(stood, row, column, height):
     """How far before a cell's middle its material counts [mm]: what a wall is off by more than half a cell.
 
     Args:
-        stood: The material.
-        row: Of the cell.
-        column: And its column.
         height: Its height [mm].
     """
     if stood.doubtful:

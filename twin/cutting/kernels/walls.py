@@ -230,9 +230,7 @@ def height_by_wall(
     """Height of the material at a place, as the walls of a cell beside it say.
 
     Args:
-        material: What is cut.
         x: Of the cell whose walls count [mm].
-        y: And its Y.
         place: X and Y of the place, so far from that cell that a wall may be taken for a plane [mm].
         level: Above which material is looked for; not below the grid's bottom [mm].
 

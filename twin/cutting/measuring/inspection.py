@@ -101,7 +101,6 @@ def inspect(part: HeightMap, nominal: HeightMap, tolerance_um: float) -> Inspect
     """Measure a part against its nominal shape, at right angles to the nominal surface.
 
     Args:
-        part: The machined part.
         nominal: What it should be, on the same grid: the part cut along the commanded path, or
             ``height_map.blank`` of a nominal STL.
         tolerance_um: Deviation that is still good [µm].

@@ -23,13 +23,7 @@ from twin.units import UM_PER_MM
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class MeasuredPart:
-    """A machined part that was measured.
-
-    Attributes:
-        part: The part.
-        nominal: What it should be.
-        found: How far it is from that.
-    """
+    """A machined part that was measured."""
 
     part: Material
     nominal: Nominal
@@ -66,7 +60,6 @@ def nominal_of(cutter: Cutter, file: Path, part_frame: PartFrame, part_zero: Flo
     """A nominal part on the grid of the machined one.
 
     Args:
-        cutter: Of the machined part.
         file: STL of the nominal part in program coordinates [mm].
         part_frame: How the part turns under the tool.
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
@@ -84,8 +77,6 @@ def measured(part: Material, nominal: Nominal, tolerance_um: float) -> MeasuredP
     """Measure a part against its nominal shape, of the same kind.
 
     Args:
-        part: The machined part.
-        nominal: What it should be.
         tolerance_um: Deviation that is still good [µm].
 
     Raises:

@@ -38,7 +38,6 @@ class NominalGouge:
 
     Attributes:
         depth_mm: Below its surface.
-        line: Program line.
         time_s: When [s].
         place: Where, program coordinates with the table at its zero [mm].
     """
@@ -107,8 +106,6 @@ class NominalWatch(abc.ABC, Generic[NominalT]):
         """Lay the nominal part into the blank.
 
         Args:
-            nominal: What the job says of it.
-            cutter: What cuts the blank.
             part_frame: How the part turns under the tool.
             part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
 
@@ -138,9 +135,6 @@ class NominalWatch(abc.ABC, Generic[NominalT]):
 
     def look(self, samples: Samples) -> tuple[NominalGouge, int] | None:
         """Look at what the cutter's last chunk cut.
-
-        Args:
-            samples: That chunk.
 
         Returns:
             Where it first went too deep, and in which sample; None where it did not.

@@ -28,7 +28,6 @@ def nominal_map(part: HeightMap, file: Path, corner: FloatArray) -> HeightMap:
     """A nominal part on the grid of a machined one: seen from above, the highest surface counts.
 
     Args:
-        part: The machined part.
         file: STL of the nominal part in program coordinates [mm].
         corner: Where these have their origin in the part's frame, shape (3,) [mm].
 

@@ -56,7 +56,6 @@ def crossings(stock: TriDexel, box: FloatArray | None = None) -> Crossings:
     """Where lines cross the surface of a stock.
 
     Args:
-        stock: The stock.
         box: Two opposite corners of where it is looked at, shape (2, 3) [mm]; None: everywhere.
     """
     lattice, dexels = stock.lattice, stock.dexels
@@ -98,7 +97,6 @@ def nominal_stock(part: TriDexel, file: Path, corner: FloatArray) -> TriDexel:
     """A nominal part on the lattice of a machined one.
 
     Args:
-        part: The machined part.
         file: STL of the nominal part in program coordinates [mm].
         corner: Where these have their origin in the part's frame, shape (3,) [mm].
 
@@ -148,7 +146,6 @@ def inspect_stock(part: TriDexel, nominal: TriDexel, tolerance_um: float) -> Ins
     crossing lies beside a point, times the sine of the angle between them; the greatest of these is the bound.
 
     Args:
-        part: The machined part.
         nominal: What it should be, on the same lattice.
         tolerance_um: Deviation that is still good [µm].
 

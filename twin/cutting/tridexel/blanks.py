@@ -28,7 +28,6 @@ def blank(stock: StockTable, corner: FloatArray, cell: float) -> TriDexel:
     """The uncut stock.
 
     Args:
-        stock: The blank.
         corner: Where the blank's program coordinates have their origin in the part's frame, shape (3,) [mm].
         cell: Between neighbouring lines [mm].
 

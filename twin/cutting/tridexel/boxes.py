@@ -40,10 +40,8 @@ def boxes_met(stock: TriDexel, poses: Poses, along_x: FloatArray, box: Box) -> F
     It is looked at in places on its way that lie no farther from each other than ``STEP_CELLS``.
 
     Args:
-        stock: The material.
         poses: Ends of the steps.
         along_x: Direction of machine X on the tool, seen from the part, shape (n + 1, 3).
-        box: The box.
     """
     depth = np.zeros(len(poses.tip) - 1)
     if len(depth):
@@ -75,7 +73,6 @@ def hold_box(
     """Hold a box on its way against the lines of a stock.
 
     Args:
-        dexels: The stock.
         lattice: Where it lies.
         poses: Ends of n steps.
         along_x: Direction of machine X on the tool at these ends, shape (n + 1, 3).

@@ -135,8 +135,6 @@ def edge_forces(
         dexels: What is cut, up to where the cutter is.
         lattice: Where it lies.
         leaning: Where the cutter is, and how it goes on.
-        cutter: Its form.
-        law: What the material does.
         found: Set to what is in the material.
         scratch: Set to the forces, in the tool's frame.
 
@@ -367,8 +365,6 @@ def _push_at(
     """Force on the tool while a tooth is at a place [N], along X, Y and Z of the tool, and its chip [mm].
 
     Args:
-        edge: The edge.
-        law: What the material does to it.
         ring: Which part of it, looked at in the middle of what is in the material.
         place: Direction about the axis [bins].
         length: How much of the ring is in the material, as a share of it.

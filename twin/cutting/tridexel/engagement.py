@@ -31,7 +31,6 @@ def in_short_steps(poses: Poses, solids: Sequence[Solid]) -> tuple[Poses, IntArr
 
     Args:
         poses: Ends of n steps.
-        solids: What moves.
 
     Returns:
         Poses of m short steps, and which of the n steps each of them is part of, shape (m,).
@@ -91,9 +90,7 @@ def cut(stock: TriDexel, poses: Poses, edge: Sequence[Solid], tool: int) -> Enga
     """Take off what a tool's edge goes through.
 
     Args:
-        stock: It is cut.
         poses: Ends of n steps.
-        edge: The bodies that cut.
         tool: Number that the cut surface remembers, from 1 to ``normals.MOST_TOOLS``.
     """
     sums = _swept(stock, poses, edge, tool)

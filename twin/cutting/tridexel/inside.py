@@ -60,9 +60,7 @@ def inside(dexels: Dexels, lattice: Lattice, cutter: Standing, edge: EdgePoint) 
     bends within two cells, at the point of a drill, what it has just left itself says nothing if it looks another way.
 
     Args:
-        dexels: The material.
         lattice: Where it lies.
-        cutter: The cutter.
         edge: The point, and the normal of the edge there.
     """
     cell, point = lattice.cell, edge.point
@@ -89,9 +87,7 @@ def _nearest(
     """The crossing that is nearest to a point, and whether any line has material beside it.
 
     Args:
-        dexels: The material.
         lattice: Where it lies.
-        cutter: The cutter.
         edge: The point, and the normal of the edge there.
         than: One whose face is left out; only those count that put the point on the other side of the
             surface. At an infinite distance: there is none.

@@ -116,8 +116,6 @@ def subtract(
     """Take what lies between two places off a line.
 
     Args:
-        dexels: The material.
-        line: Number of the line.
         cut: Lower and upper end [mm].
         facet: Surface that is left below the lower end, and above the upper.
         node: Where the line's nodes are.

@@ -44,7 +44,6 @@ class TriDexelMaterial:
     """Cuts a tri-dexel stock; see ``Material``.
 
     Attributes:
-        stock: The stock.
         changed: Whether anything was taken off since ``begin_chunk``.
     """
 

@@ -51,7 +51,6 @@ def surface(stock: TriDexel, crossings: int = MESH_CROSSINGS, step: int = 1) -> 
     What is thinner than the distance of the nodes that are taken may be left out, on both sides.
 
     Args:
-        stock: The material.
         crossings: So many edges of the lattice may be crossed; if there are more, nodes are left out.
         step: From one node to the next at least, in nodes.
     """
@@ -113,7 +112,6 @@ def part_mesh(stock: TriDexel, colours: Paint | None = None) -> "trimesh.Trimesh
     """The material as a mesh; nothing left gives an empty one.
 
     Args:
-        stock: The material.
         colours: Of its vertices; None: none.
     """
     import trimesh  # As long to load as the rest of a run, and most runs cut no part.

@@ -91,12 +91,8 @@ def surface(
 
     Args:
         poses: Ends of steps.
-        solid: The solid.
         point: Direction of the line it is on, place along it, and across it in both directions.
-        number: Of the step.
-        share: Of the step.
         side: 1.0: the normal out of the solid; -1.0: into it.
-        tool: Number of the tool.
     """
     d, t, x, y = point
     u, v = (d + 1) % 3, (d + 2) % 3

@@ -18,7 +18,6 @@ class Ray(NamedTuple):
 
     Attributes:
         height: Above the tip at t = 0 [mm].
-        rise: Of the height with t.
         squared: Squared distance from the axis at t = 0 [mm²].
         half_slope: Half of that square's slope there [mm].
         across: Squared sine of the angle to the axis.
@@ -143,7 +142,6 @@ def outwards(solid: Solid, distance: float, height: float) -> tuple[float, float
     """Normal of a solid at a point of its surface: away from the axis and along it.
 
     Args:
-        solid: The solid.
         distance: Of the point from the axis [mm].
         height: Of the point above the tip [mm].
     """

@@ -81,9 +81,7 @@ def find_surface(
     """Find crossings, patches and the segments of their rims, one layer of cubes along X after the other.
 
     Args:
-        dexels: The material.
         lattice: Where it lies.
-        coarse: The nodes that are taken.
         inside: Which of them are in the material.
         loops: How the surface goes through a cube.
         found: Set to it.

@@ -47,7 +47,6 @@ def find_gaps(
     """How far points are from the surface of a stock.
 
     Args:
-        dexels: The stock.
         lattice: Where it lies.
         points: Shape (n, 3) [mm].
         farthest: Cells around a point beyond which nothing is looked for.
@@ -181,7 +180,6 @@ def depths_along_lines(
     """How deep places on lines are in the material along their lines, shape (n,) [mm]; 0 outside.
 
     Args:
-        dexels: The stock.
         lines: Numbers of the lines, shape (n,).
         places: Along them, shape (n,) [mm].
         depths: Set to it.

@@ -74,7 +74,6 @@ def sweep(
     """Bring solids along steps through the material.
 
     Args:
-        dexels: The material.
         lattice: Where it lies.
         poses: Ends of n steps.
         solids: What moves: the fields of each ``Solid``, shape (m, 5).

@@ -42,7 +42,6 @@ class CirclePath:
     point. The measured distance then tells the three axes apart from each other.
 
     Attributes:
-        machine: The machine.
         plane: One of ``PLANES``.
         radius: [mm].
         feed: Along the circle [mm/min].

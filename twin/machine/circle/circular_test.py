@@ -39,16 +39,13 @@ class CircularTest:
     """Result of a circular test.
 
     Attributes:
-        machine: Name of the machine.
         plane: As in ``PLANES``.
-        radius_mm: Commanded.
         feed: Commanded [mm/min].
         angle_deg: Shape (n,), from 0 in equal steps.
         counter_clockwise_um: Distance outward from the commanded circle, shape (n,) [µm].
         clockwise_um: That distance of the clockwise circle, shape (n,) [µm].
         circular_deviation_um: G(b).
         radial_deviation_um: F, largest and smallest.
-        hysteresis_um: H.
         mean_radius_error_um: Of both directions together.
         quadrant_peaks_um: At 0°, 90°, 180° and 270°, outward positive: of the direction that leaps
             further.
@@ -95,7 +92,6 @@ def circular_test(machine: Machine, radius: float, feed: float, plane: str = "XY
     """Run the circular test.
 
     Args:
-        machine: The machine.
         radius: [mm].
         feed: Along the circle [mm/min].
         plane: ``XY``, ``ZX`` or ``YZ``; ``XYC``, ``ZXB``, ``YZA`` follow a point of the turning table.

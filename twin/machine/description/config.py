@@ -337,7 +337,6 @@ class Machine:
 
     Attributes:
         path: Where the machine file lies.
-        file: Its checked content.
         axes: Names and kinds in the order of every column.
     """
 
@@ -411,7 +410,6 @@ class Machine:
         """A copy of the machine with some fields of one axis changed.
 
         Args:
-            axis: Its name.
             fields: Keys of ``AxisTable`` and their values.
 
         Raises:

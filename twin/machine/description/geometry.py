@@ -79,9 +79,6 @@ class GeometryTable(Table):
     def of(self, axes: Axes) -> MachineGeometry:
         """What the tables come to.
 
-        Args:
-            axes: The machine's.
-
         Raises:
             ValueError: A name is none of ISO 230-1's over these axes, or an error has the wrong unit.
         """

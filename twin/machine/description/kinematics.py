@@ -42,8 +42,6 @@ def read_kinematics(model_path: Path, axes: Axes, joints: Sequence[Joint]) -> Ki
     """Read which joints carry the tool and which the part, their order, directions and centres.
 
     Args:
-        model_path: The MJCF file.
-        axes: Of the machine.
         joints: Of each axis.
 
     Raises:

@@ -16,7 +16,6 @@ def set_measured_masses(spec: mujoco.MjSpec, machine: Machine) -> None:
 
     Args:
         spec: The model, its joints with the inertia of motor and screw.
-        machine: The machine file.
 
     Raises:
         ConfigError: What the axis carries weighs more than the measured mass.

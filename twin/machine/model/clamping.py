@@ -131,10 +131,7 @@ def _depth_below(model: mujoco.MjModel, data: mujoco.MjData, half: float, geom: 
     """How far a geom lies under the middle of the stock's lower face [mm]; infinite where it does not.
 
     Args:
-        model: The machine with the stock.
-        data: Where all of it is.
         half: Half the stock's height [m].
-        geom: The geom.
     """
     stock = data.geom(BLANK)
     down = -data.xmat[part_carrier(model)].reshape(3, 3)[:, 2]

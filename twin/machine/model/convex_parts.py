@@ -29,9 +29,6 @@ FLAT = 1e-6
 def convex_parts(path: Path) -> tuple[FloatArray, ...]:
     """The corners of the convex parts of an STL file's solid.
 
-    Args:
-        path: The file.
-
     Returns:
         For each part, shape (n, 3) [mm], in the file's coordinates; treat them as constant.
 

@@ -44,7 +44,6 @@ def add_drives(spec: mujoco.MjSpec, machine: Machine, found: Sequence[Drive]) ->
 
     Args:
         spec: The model, with an actuator and a joint for every axis.
-        machine: The machine file.
         found: One drive per axis, in the order of ``machine.axes``.
 
     Raises:
@@ -141,7 +140,6 @@ def lag_actuator(lag: Lag, step: float) -> LagActuator:
     """The motor that plays a lag.
 
     Args:
-        lag: The lag.
         step: h, of the simulation [s].
     """
     share = step / lag.time_s
@@ -198,7 +196,6 @@ def stiffest(axis: AxisTable, moved: float, period_s: float) -> float:
     """The stiffest spring of an axis that can be simulated [N/mm or N m/deg].
 
     Args:
-        axis: The axis.
         moved: What its drive moves [kg or kg m²].
         period_s: Servo period [s].
     """

@@ -32,8 +32,6 @@ def add_fixture(spec: mujoco.MjSpec, top: mujoco.MjsSite, fixture: FixtureTable)
     """Clamp a fixture to the work-holding surface.
 
     Args:
-        spec: The machine.
-        top: In the middle of that surface.
         fixture: It; an STL's convex parts are geoms of their own.
 
     Raises:

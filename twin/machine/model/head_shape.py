@@ -24,7 +24,6 @@ class HeadSolid:
     """An upright cylinder or box that is fixed to the spindle's housing.
 
     Attributes:
-        name: Of the geom.
         round: A cylinder; else a box.
         half: Half of its size along machine X and Y [mm].
         offset: Its middle off the spindle's axis along machine X and Y [mm].

@@ -47,9 +47,6 @@ class MachineModel:
     steps a model without geoms in less time, and distances need those that may not meet.
 
     Attributes:
-        machine: The machine.
-        blank: The uncut stock on its table.
-        tool: What the spindle holds.
         spec: The editable model, which compiles.
     """
 
@@ -59,9 +56,7 @@ class MachineModel:
         """Build the model.
 
         Args:
-            machine: The machine.
             tool: What the spindle holds; a 10 mm end mill by default.
-            blank: The uncut stock on its table.
 
         Raises:
             ConfigError: The model cannot be read, or lacks what the machine file or the twin names.

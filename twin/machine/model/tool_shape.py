@@ -43,7 +43,6 @@ class Cylinder:
     """A piece of the tool in the spindle's frame: z is 0 at the nose and negative below.
 
     Attributes:
-        name: Of the geom.
         radius: [mm].
         top: z of the upper end [mm].
         bottom: z of the lower end [mm].
@@ -115,7 +114,6 @@ def add_tool(spec: mujoco.MjSpec, tool: ToolTable, flange_diameter: float) -> No
 
     Args:
         spec: The machine; gains geoms, to look at and to collide, and the site ``tool_tip``.
-        tool: The tool.
         flange_diameter: Of the holder [mm].
     """
     nose = spec.site("spindle_nose")

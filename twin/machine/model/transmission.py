@@ -111,7 +111,6 @@ def add_friction_and_give(
 
     Args:
         spec: The model, its joints inert so far.
-        axis: The axis.
         moved: Moved mass [kg] or inertia [kg m²], motor and screw included.
         period_s: The servo period [s].
     """

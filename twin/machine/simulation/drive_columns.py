@@ -19,8 +19,6 @@ def drive_columns(machine: Machine, model: mujoco.MjModel, loops: tuple[Drive, .
     """Gains of the drives, and where their inputs, joints and states are in the model.
 
     Args:
-        machine: The machine file.
-        model: What it was built to.
         loops: One per axis.
     """
     everywhere, period, joined = len(loops), machine.file.servo_period_s, 1 + model.nq

@@ -86,7 +86,6 @@ def hold_controls(drives: Drives, past: Points, points: Points, width: int) -> F
     """Controls to hold on the way to each setpoint.
 
     Args:
-        drives: The drives.
         past: Setpoints that went before, of which the last counts.
         points: n setpoints.
         width: Of the model's controls.
@@ -124,7 +123,6 @@ def hold_pushes(drives: Drives, load: FloatArray, width: int) -> FloatArray:
     """Load and constant forces as generalised forces; they act beyond what gives.
 
     Args:
-        drives: The drives.
         load: What pushes the axes from outside, shape (n, k) [N or N m].
         width: The model's degrees of freedom.
 
@@ -142,7 +140,6 @@ def hold_push(drives: Drives, load: FloatArray, pushed: FloatArray) -> None:
     """One row of ``hold_pushes``.
 
     Args:
-        drives: The drives.
         load: What pushes the axes from outside, shape (k,) [N or N m].
         pushed: Set where an axis is pushed, shape (width,).
     """
@@ -165,7 +162,6 @@ def read_states(
     push is off by kp h²/12 a for a part of the step.
 
     Args:
-        drives: The drives.
         points: The setpoints of the same instants.
         states: Shape (n, width).
 

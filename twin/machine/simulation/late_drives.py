@@ -49,7 +49,6 @@ class LateDrives:
         """Begin at rest.
 
         Args:
-            machine: The machine file.
             loops: One per axis.
             drives: The same, as the kernels have them.
             places: Of the lags' states, by name.
@@ -73,7 +72,6 @@ class LateDrives:
 
         Args:
             past: What was followed last, or is at the first.
-            points: What follows.
         """
         rows = Points(
             *(
@@ -113,7 +111,6 @@ class LateDrives:
         """Force that is added at the instants of setpoints, shape (n, k) [N or N m].
 
         Args:
-            told: n setpoints.
             speed: Of the motors, shape (n, k) [mm/s or deg/s].
             states: Of the actuators, shape (n, width).
         """
@@ -185,8 +182,6 @@ def late_drives(
     """What is late in the drives; None where nothing is.
 
     Args:
-        machine: The machine file.
-        model: What it was built to.
         loops: One per axis.
         drives: The same, as the kernels have them.
     """

@@ -63,11 +63,9 @@ class LiveMachine:
         """Switch a machine on.
 
         Args:
-            machine: The machine.
             tool: What the spindle holds; a 10 mm end mill by default.
             position: Where the axes stand, machine coordinates, shape (k,) [mm or deg]; at zero by
                 default.
-            blank: The uncut stock on its table.
 
         Raises:
             ConfigError: The model is wrong.
@@ -224,7 +222,6 @@ class LiveMachine:
         given applies from the next step on.
 
         Args:
-            axis: Its name.
             fields: Keys of ``[axes.NAME]`` in the machine file, with their values.
 
         Raises:

@@ -14,10 +14,8 @@ class Physics(NamedTuple):
     """A machine that is stepped by a kernel; SI.
 
     Attributes:
-        stepper: What steps it.
         control: Its data's controls, shape (nu,).
         pushed: Its data's applied forces, shape (nv,).
-        drives: Its drives.
         substeps: Steps in a servo period.
         signature: Which parts of the state are read.
     """

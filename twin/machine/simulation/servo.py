@@ -67,7 +67,6 @@ class Servo:
     setpoint, so that how setpoints are cut into chunks changes no bit of the motion.
 
     Attributes:
-        model: What is stepped.
         process: What the tool does, which pushes the axes while they are stepped; None: nothing.
     """
 

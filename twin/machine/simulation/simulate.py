@@ -103,7 +103,6 @@ def simulate(
     same instant as setpoint i. How the setpoints are cut into chunks changes no bit of the result.
 
     Args:
-        machine: The machine file.
         model: Its model: the run then also watches for collisions. Or what that compiles to, of which the
             motion alone is simulated.
         setpoints: Chunks of setpoints at the servo period, machine coordinates [mm or deg].

@@ -18,8 +18,6 @@ class Stepper(NamedTuple):
     """Addresses of what is stepped and of what steps it.
 
     Attributes:
-        model: Of the model.
-        data: Of its data.
         step: Of ``mj_step``.
         get_state: Of ``mj_getState``.
         set_state: Of ``mj_setState``.

@@ -25,7 +25,6 @@ class Loop(NamedTuple):
     """A machine that is stepped, in as few arrays as hold it.
 
     Attributes:
-        stepper: What steps it.
         substeps: Steps in a servo period.
         signature: Which parts of the state are kept.
         period: Of ``Drives``.
@@ -69,8 +68,6 @@ def loop_of(
     """Lay out what the kernels take.
 
     Args:
-        drives: The drives.
-        stepper: What steps the machine.
         steps: Steps in a servo period, and the signature of the state.
         arrays: Of the data: controls, applied forces, warm start.
     """
@@ -87,7 +84,6 @@ def follow_setpoints(
     """Step from setpoint to setpoint, to the last bit as ``mujoco.rollout`` does.
 
     Args:
-        loop: The machine.
         state: Where it has come to, shape (width,).
         past: Setpoints that went before, of which the last counts.
         points: n setpoints.

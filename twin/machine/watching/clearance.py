@@ -263,7 +263,6 @@ class Clearance:
         """Least clearance that is measured between two samples [mm]; infinite where planes tell.
 
         Args:
-            pair: Number of the pair.
             before: The plane that separates the pair at the first sample.
             behind: The plane that separates it at the second.
             track: Where the geom is at both, shape (w, 2).
@@ -289,7 +288,6 @@ class Clearance:
         """Measure a pair.
 
         Args:
-            pair: Its number.
             position: Where the axes stand, shape (k,) [mm or deg].
             place: Where its track is then, shape (w,).
 

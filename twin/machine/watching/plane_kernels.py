@@ -136,7 +136,6 @@ def find_suspects(
     """The pairs that their planes do not clear wherever their tracks go within boxes.
 
     Args:
-        planes: Of all pairs.
         pairs: Numbers of m pairs.
         tracks: Shape (t, w, n).
         first: First sample; the boxes are those around it and what follows.

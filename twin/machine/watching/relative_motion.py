@@ -24,8 +24,6 @@ class Seen:
     """A geom as seen from a body that it moves against.
 
     Attributes:
-        frame: The body that it is seen from.
-        body: The body that it belongs to.
         point: The point that is followed, in the frame of ``body`` [m]: the geom's middle, moved
             along the axis about which the two turn, which changes no displacement.
         turning: The axes that turn the two against each other, by their columns.
@@ -52,7 +50,6 @@ class RelativeMotion:
         """Look at a machine.
 
         Args:
-            model: Its model.
             joints: The joint of each of k axes.
             scale: What each moves per unit of the axis, shape (k,) [m/mm or rad/deg].
         """

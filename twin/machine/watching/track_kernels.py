@@ -60,8 +60,6 @@ def follow_tracks(chain: Chain, followed: Followed, position: FloatArray) -> Flo
     """Follow points along samples.
 
     Args:
-        chain: The bodies.
-        followed: What is followed.
         position: Of the axes, shape (n, k) [mm or deg].
 
     Returns:
@@ -103,7 +101,6 @@ def _place_body(
     """Write place and orientation of a body whose carrier has its own.
 
     Args:
-        chain: The bodies.
         joint: Of the axes, shape (k,).
         body: Row of the body.
         place: Of the bodies, shape (b, 3).

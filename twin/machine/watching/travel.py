@@ -107,7 +107,6 @@ def soft_limit_alarm(machine: Machine, moves: Moves, part_zero: FloatArray) -> A
     """Find the first move of a chunk that leaves the travel.
 
     Args:
-        machine: The machine with its travel.
         moves: n canonical moves over the machine's k axes, part coordinates.
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
 

@@ -43,7 +43,6 @@ def find_raised(
     """The first sample that raises an alarm.
 
     Args:
-        watched: The axes.
         setpoint: Positions that were asked for, shape (n, k).
         position: Of the joints, shape (n, k).
         force: Of the drives, shape (n, k).

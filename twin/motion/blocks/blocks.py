@@ -105,7 +105,6 @@ class BlocksOfChunks(Step[Chunk, Blocks]):
     canonical moves demand; a function at a switch point within a move does not stop it.
 
     Args:
-        chunks: The program.
         start: Where the axes are before, part coordinates, shape (k,) [mm or deg].
 
     Raises:
@@ -158,10 +157,8 @@ def _of_moves(
     """The blocks of moves, and the corner and tolerance at their end.
 
     Args:
-        moves: The moves.
         first: Number of the first.
         corner: At its begin.
-        tolerance: There.
         within_rapid: The move before it is a part of the same rapid.
     """
     farthest, linear = largest_travels(moves.start, moves.end, moves.axes.rotary())

@@ -18,7 +18,6 @@ def border_steps(curves: Curves, length: FloatArray) -> tuple[FloatArray, FloatA
     """By how much dq/dx and d²q/dx² step at the border before each block.
 
     Args:
-        curves: Of the blocks.
         length: Of the blocks in x, 0 for dwells, shape (n,).
 
     Returns:

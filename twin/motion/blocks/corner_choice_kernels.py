@@ -36,7 +36,6 @@ class BlockMotion(NamedTuple):
 
     Attributes:
         move: Number of the move in the whole program, shape (n,).
-        curves: Their geometry.
         length: In path parameter x, 0 for dwells, shape (n,).
         velocity: Highest v that is asked for, shape (n,).
         acceleration: Highest a, shape (n,).
@@ -132,9 +131,7 @@ def choose_stops(
     """Choose the corners at which the path had better stop.
 
     Args:
-        blocks: The blocks.
         corners: The borders before them.
-        machine: Limits of the axes and the path.
 
     Returns:
         Whether to stop, shape (n,); how far from there the moves may overlap, shape (n,).
@@ -207,11 +204,7 @@ def _choose_between(
     """Choose the fastest way through consecutive borders, in place.
 
     Args:
-        blocks: The blocks.
         corners: The borders before them.
-        ways: Of the borders.
-        first: The first border.
-        last: The last border.
         chosen: How each is passed, where it is known; the others are written.
         back: Scratch, shape (n, 2).
     """
@@ -280,12 +273,8 @@ def _end_of_block(
     """Velocity at an end of a block, and how far its rounding reaches.
 
     Args:
-        corners: The borders.
-        ways: Of the borders.
         border: At this end.
-        way: How it is passed.
         other: How that at the other end is passed.
-        length: Of the block.
     """
     if way == Passage.STOPPED:
         return 0.0, 0.0

@@ -58,7 +58,6 @@ def _between(
         width: Of the roundings, shape (n,).
         per_width: As in ``find_widths``.
         per_square: As in ``find_widths``.
-        i: The block.
         before: Border before the first that may reach into the block.
         after: Border after the last.
     """
@@ -98,9 +97,7 @@ def _used(
         place: As in ``find_widths``.
         per_width: As in ``find_widths``.
         per_square: As in ``find_widths``.
-        i: The border.
         reached: The first border that reaches there and the one after the last.
-        width: Of all roundings.
     """
     ramps, slopes, curvature_steps = 0.0, 0.0, 0.0
     at, per_reach = place[i], 1.0 / width
@@ -126,7 +123,6 @@ def _reached(
 
     Args:
         place: As in ``find_widths``.
-        i: The border.
         walls: Border before the first that counts, and after the last.
         width: [mm or deg]
         near: Where to begin the search: a result for another width or border.
@@ -154,7 +150,6 @@ def _even_width(
         place: As in ``find_widths``.
         per_width: As in ``find_widths``.
         per_square: As in ``find_widths``.
-        i: The border.
         walls: Border before the first that counts, and after the last.
         high: The largest width.
         guess: Where to begin the search.

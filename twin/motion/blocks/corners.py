@@ -64,13 +64,7 @@ class Borders:
 
 
 def find_borders(blocks: Blocks, limits: MotionLimits, largest_override: float = 1.0) -> Borders:
-    """Decide how each border is passed; the first block's border counts as a stop.
-
-    Args:
-        blocks: Consecutive blocks.
-        limits: Of the axes and the path.
-        largest_override: Of the feed.
-    """
+    """Decide how each border is passed; the first block's border counts as a stop."""
     shapes, axes = blocks.geometry, len(limits)
     wanted = blocks.feed * blocks.parameter_scale
     wanted = wanted * np.where(blocks.rapid, 1.0, largest_override)

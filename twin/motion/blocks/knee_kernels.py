@@ -101,7 +101,6 @@ def slow_bending_chords(
 
     Args:
         velocity: Highest at each border, shape (n,); infinite where nothing steps.
-        chain: The blocks.
         velocity_step: Largest of each axis, shape (k,).
         jerk: Of each axis, shape (k,).
     """
@@ -133,7 +132,6 @@ def _slow_run(
     Args:
         velocity: As in ``slow_bending_chords``.
         alone: As it was before this bound.
-        chain: The blocks.
         run: First block and the one after the last.
         span: Distance of the points.
         velocity_step: As in ``slow_bending_chords``.

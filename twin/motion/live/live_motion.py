@@ -57,11 +57,9 @@ class LiveMotion:
 
     Args:
         chunks: The program: consecutive moves in part coordinates.
-        limits: Of the axes and the path.
         period_s: Servo period [s].
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
         start: Where the axes are before the program, machine coordinates, shape (k,) [mm or deg].
-        largest_override: Highest feed override.
         look_ahead: Blocks that are cut and planned at a time, and seen at least beyond these.
 
     Raises:

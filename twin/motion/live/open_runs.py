@@ -60,9 +60,6 @@ class OpenRuns:
             machine: Limits of the axes and the path.
             override: Factor of the programmed feed.
             at_end: Whether no run goes on beyond them.
-
-        Returns:
-            Phases that are certain.
         """
         known = more if self.waiting is None else joined([self.waiting, more])
         self.waiting = None
@@ -89,8 +86,6 @@ class OpenRuns:
         """Phases that come back from a retimed run to its reference as soon as they can.
 
         Args:
-            phases: What is planned.
-            pieces: Under the plan.
             machine: Limits of the axes and the path.
             override: Factor of the programmed feed that it was planned for.
             time: From when on they may change [s].

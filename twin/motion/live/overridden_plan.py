@@ -164,7 +164,6 @@ class OverriddenPlan:
         """Change the overrides; what is planned for later is dropped.
 
         Args:
-            overrides: What is wanted from now on.
             time: Now, up to which it is planned [s].
 
         Returns:

@@ -99,11 +99,9 @@ def piece_limits(
     """What any instant of a piece may use.
 
     Args:
-        block: Of the blocks.
         owner: Block of each of n pieces, shape (n,).
         length: Of the pieces, 0 for dwells, shape (n,).
         ceilings: Highest v at the borders of the pieces, shape (n + 1,).
-        bounds: Of the pieces.
         machine: Limits of the axes and the path.
         share: Of an axis's jerk that each block may use at constant velocity, shape (m,).
 
@@ -157,9 +155,6 @@ def _straight_limits(
         bounds: Of abs(q'), abs(q''), abs(q'''), shape (3, k).
         curvature: Of the length of q'' of X Y Z together, by what the feed counts.
         wanted: Highest v that is asked for.
-        path_acceleration: Of the path parameter.
-        path_jerk: Of the path parameter.
-        machine: Limits of the axes.
         share: Of an axis's jerk that a curve may use at constant velocity.
 
     Returns:
@@ -201,10 +196,8 @@ def _leave_room_for_curves(
     """Leave room in a and j for following the curve at v, in place.
 
     Args:
-        derivatives: Of the pieces.
         curved: Whether any q'' is not 0, shape (n,).
         limits: Rows velocity, acceleration, deceleration, jerk, shape (4, n).
-        machine: Limits of the axes.
     """
     bounds, against = derivatives.axes, derivatives.against
     axis_acceleration, axis_jerk = machine.acceleration, machine.jerk

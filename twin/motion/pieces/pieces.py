@@ -90,9 +90,7 @@ def blocks_to_cut(
     """A program's blocks, as many at a time as are cut together.
 
     Args:
-        chunks: The program.
         start: Where the axes are before, part coordinates, shape (k,) [mm or deg].
-        batch: How many that are.
 
     Raises:
         ValueError: A move does not begin where the one before it ended.
@@ -106,9 +104,7 @@ def cut(
     """Cut blocks into pieces, dwells included, in order.
 
     Args:
-        surroundings: The blocks.
         borders: Before each of them and of their neighbours.
-        limits: Of the axes and the path.
         largest_override: Of the feed that the limits of a piece must leave room for.
     """
     blocks, shapes = surroundings.blocks, surroundings.blocks.geometry

@@ -39,9 +39,7 @@ def lower_to_reachable(
     velocity may then be used for changing it.
 
     Args:
-        derivatives: Of the pieces.
         curved: Whether any q'' is not 0, shape (n,).
-        along_path: Of the pieces.
         limits: Rows velocity, lowered along curved pieces, acceleration and deceleration without
             what a curve takes, jerk; shape (4, n).
         ceilings: Highest velocities at the pieces' borders, shape (n + 1,).
@@ -107,7 +105,6 @@ def _ramped(slow: float, gone: float, jerk: float, highest: float) -> float:
 
     Args:
         slow: Velocity at the ramp's begin, where a = 0; infinite: it begins nowhere.
-        gone: Distance from there.
         jerk: Highest j.
         highest: The bound of v²/2.
     """

@@ -121,7 +121,6 @@ def add_roundings(
     """Write the sums of the roundings along each piece.
 
     Args:
-        roundings: Of the borders.
         owner: Block of each piece, shape (m,).
         offset: Its begin, from the block's, shape (m,).
         extent: Its length, shape (m,).

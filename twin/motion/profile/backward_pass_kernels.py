@@ -130,12 +130,9 @@ def _faster_start(
     """The highest v up to ``highest`` from which a brake is possible.
 
     Args:
-        course: The path.
         i: Border of the start, where a = 0.
-        brake: The brake.
         distance: From border i to that of the brake.
         best: A velocity that is known to be safe.
-        highest: Ceiling of v.
 
     Returns:
         The velocity, or ``best`` where it is hardly higher; whether no limit on the way bounds it.

@@ -24,8 +24,6 @@ def brake_limits(limits: FloatArray, i: int, k: int) -> tuple[float, float, floa
 
     Args:
         limits: Of a ``Course``.
-        i: The segment.
-        k: The border.
     """
     deceleration, jerk, behind = limits[3, i], limits[4, i], 0.0
     for last in range(i + 1, k):

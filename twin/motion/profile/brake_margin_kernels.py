@@ -24,7 +24,6 @@ def brake_margin(course: Course, state: State, brake: Brake, wide: float) -> flo
     Args:
         course: The path; its controllable velocities are not looked at.
         state: Where the brake begins.
-        brake: The brake.
         wide: Factor by which velocities and accelerations may pass their limits.
 
     Returns:
@@ -106,7 +105,6 @@ def _damped(kept: float, replaced: float, new: float) -> float:
     """The value of the end of an interval that was kept twice running (Anderson and Björck 1973).
 
     Args:
-        kept: Value at that end.
         replaced: Value at the other end before.
         new: Value there now, of the same sign.
     """
@@ -121,13 +119,11 @@ def narrowed(
     """An interval of which the lower end has room, made smaller by one more value.
 
     Args:
-        low: Its lower end.
         high: Its upper end.
         at_low: Room at the lower end, as the last step has left it.
         at_high: Room at the upper end, as the last step has left it.
         side: Which end was replaced last: 1 the lower one, -1 the upper one, 0 none.
         new: A place within it.
-        room: Room there.
 
     Returns:
         The first five again.

@@ -49,7 +49,6 @@ class Drive(NamedTuple):
         state: Where it is.
         now: When it is there [s].
         border: To which the state can brake; up to its segment: to be found.
-        velocity: At that border.
         last_jerk: Of the phase that has led to a stop here; 0: none has.
         last_duration: Of that phase [s].
         rows: Rows of phases written so far.
@@ -81,8 +80,6 @@ def forward_pass(
         limits: Of a ``Course``.
         entry: Of a ``Course``.
         brakes: From ``backward_pass``.
-        times: Of the segments.
-        stop: Segment at which to end.
         until: Time at which to end [s].
         state: As ``STATE_AT_REST``; overwritten by the state at the end, shape (9,).
 
@@ -160,9 +157,7 @@ def _extend(course: Course, rows: PhaseRows, drive: Drive, away: float) -> Drive
     """Jerk up or hold for as long as there is a brake; nothing where there is none.
 
     Args:
-        course: The path.
         rows: To write into.
-        drive: How far the drive has come.
         away: How far from a stop here the moves may overlap.
     """
     j, duration, at_border, k = next_phase(course, drive.state, drive.border)

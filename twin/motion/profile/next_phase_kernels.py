@@ -53,9 +53,7 @@ def _brake_after(course: Course, state: State, j: float, t: float, to_border: bo
     """Border to which the state after t of jerk j can brake, -1: none.
 
     Args:
-        course: The path.
         state: Before.
-        j: Jerk.
         t: Time [s].
         to_border: Whether t ends at the segment's end.
     """
@@ -78,9 +76,7 @@ def _longest_phase(
     """How long jerk j may last, at most ``latest`` or to the segment's end.
 
     Args:
-        course: The path.
         state: Where the phase begins.
-        j: Jerk.
         latest: [s]
         border: To which the state can brake.
 
@@ -122,7 +118,6 @@ def next_phase(course: Course, state: State, border: int) -> tuple[float, float,
     """Jerk up, or else hold, for as long as there is a brake.
 
     Args:
-        course: The path.
         state: Where the phase begins.
         border: To which the state can brake.
 
@@ -188,10 +183,7 @@ def _latest_brake(course: Course, state: State, j: float, k: int, low: float, hi
     """How long jerk j may last, from ``low`` to ``high``, for the brake to border k to be possible.
 
     Args:
-        course: The path.
         state: Where the phase begins.
-        j: Jerk.
-        k: Border.
         low: The shortest time; it is the answer where the brake is not possible even then [s].
         high: The longest time [s].
     """

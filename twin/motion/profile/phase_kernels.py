@@ -28,13 +28,11 @@ def write_phase(
     """Write one row.
 
     Args:
-        rows: To write into.
         row: Number of the row.
         last: Segment in which the phase ends.
         now: When it begins [s].
         duration: [s]
         state: Where it begins.
-        j: Jerk.
     """
     rows.segments[row, 0], rows.segments[row, 1] = state.segment, last
     phase = rows.phases[row]
@@ -49,7 +47,6 @@ def write_brake(
     """Write a brake: up to three rows.
 
     Args:
-        rows: To write into.
         row: Number of the first row.
         lengths: Of the segments.
         now: When it begins [s].

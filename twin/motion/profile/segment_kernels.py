@@ -113,7 +113,6 @@ def place_phases(
             that within the piece; shape (m, 6).
         segments: First and last segment of each phase, shape (m, 2).
         begins: From ``find_segments``.
-        lengths: Of the pieces.
 
     Returns:
         First and last piece of each phase, shape (m, 2).

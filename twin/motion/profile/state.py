@@ -24,7 +24,6 @@ class State(NamedTuple):
     """A state on the path.
 
     Attributes:
-        segment: Number of the segment.
         x: Place within it [mm or deg].
         v: Velocity [mm/s or deg/s].
         a: Acceleration [mm/s² or deg/s²].
@@ -40,7 +39,6 @@ class Brake(NamedTuple):
     """A brake that ends at a border at the latest, with a = 0.
 
     Attributes:
-        border: Number of the border.
         velocity: At its end [mm/s or deg/s].
         deceleration: Highest -a [mm/s² or deg/s²].
         jerk: Highest abs(j) [mm/s³ or deg/s³].

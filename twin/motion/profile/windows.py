@@ -117,7 +117,6 @@ class Windows(Step[Pieces, Window]):
     """Windows of a program; each begins where the one before it had its ``due``.
 
     Args:
-        parts: The program's pieces.
         look_ahead: Blocks per batch.
     """
 

@@ -89,8 +89,6 @@ def draw_plan(chunks: Iterable[Setpoints], axes: Axes, samples: int, path: Path)
     """Draw the speeds of a plan.
 
     Args:
-        chunks: Consecutive setpoints.
-        axes: Their names and kinds.
         samples: How many setpoints there will be, about.
         path: Picture to write; its suffix says which form (.svg, .png).
     """

@@ -45,8 +45,6 @@ def reasons(pieces: Pieces, limits: MotionLimits, names: tuple[str, ...]) -> Rea
     """Name the strictest bound of each piece, by the rules of ``twin.motion.pieces.pieces``.
 
     Args:
-        pieces: Consecutive pieces.
-        limits: Of the axes and the path.
         names: Of the axes.
     """
     bounds, curvature, _ = bound_derivatives(

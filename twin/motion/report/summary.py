@@ -98,10 +98,7 @@ def summarize(
     """Plan a program without sampling it and add up its time.
 
     Args:
-        chunks: The program.
-        limits: Of the axes and the path.
         start: Where the axes are before, part coordinates, shape (k,) [mm or deg].
-        axes: Their names.
     """
     rows: dict[tuple[int, int], _Row] = defaultdict(_Row)
     ramps: dict[str, float] = defaultdict(float)

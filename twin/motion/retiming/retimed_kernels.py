@@ -26,8 +26,6 @@ def retimed_phases(
     """Two phases for each interval of a run, which meet its nodes with x, v and a.
 
     Args:
-        nodes: Of the run.
-        pieces: Of the plan.
         coefficients: Of the squared rate, shape (n + 2,).
         begin: Of the run [s].
 
@@ -87,7 +85,6 @@ def uses_of_limits(
     Args:
         phases: From ``retimed_phases``.
         phase_pieces: From ``retimed_phases``.
-        pieces: Of the plan.
         machine: Limits of the axes and the path.
         override: Factor of the programmed feed.
 
@@ -140,7 +137,6 @@ def _highest(v0: float, a0: float, v1: float, a1: float, step: float) -> float:
     Args:
         v0: Value at the begin, such as a velocity.
         a0: Its rate of change there, such as an acceleration.
-        v1: Value at the end.
         a1: Its rate of change there.
         step: Duration [s].
     """

@@ -83,7 +83,6 @@ class Retimed:
 
     Attributes:
         begin: When it begins [s].
-        phases: How it is driven.
         reference: How it would have been; it begins at the same time.
     """
 
@@ -117,7 +116,6 @@ def retime(
     """Drive the runs among phases faster; what comes after them begins earlier.
 
     Args:
-        phases: Of the plan.
         pieces: Under them, None where none is an arc; phases that go beyond these stay as they are.
         machine: Limits of the axes and the path.
         override: Factor of the programmed feed.
@@ -155,8 +153,6 @@ def drive_run(
     """The fastest phases of a run that are found; None if none keep the limits.
 
     Args:
-        ends: Of the run.
-        pieces: Of the plan.
         machine: Limits of the axes and the path.
         override: Factor of the programmed feed.
         begin: Of the run [s].

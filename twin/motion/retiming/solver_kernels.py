@@ -82,7 +82,6 @@ def fastest_rate(
     """Coefficients of the squared rate that takes least time.
 
     Args:
-        table: The run.
         jerk: Share of the jerk limits to use.
         start: Coefficients to begin with, shape (n + 2,).
         free: Whether the run begins and ends at rest, where the coefficients may change together;
@@ -304,12 +303,6 @@ def _change_side(
     """Change a multiplier with its slack, and say how far both may go.
 
     Args:
-        sides: Of the limits.
-        i: Interval.
-        end: Of it.
-        side: Which limit.
-        gain: Of the slack with a whole step.
-        target: Of the complementarity.
         steps: How far slacks and multipliers may go so far.
     """
     primal, dual = steps

@@ -16,7 +16,6 @@ def basis_at(step: FloatArray, i: int, end: int) -> Basis:
 
     Args:
         step: Lengths of the intervals, shape (n,) [s].
-        i: Interval.
         end: 0 for its begin, 1 for its end.
     """
     here = step[i]
@@ -47,7 +46,6 @@ def spline_at(
     Args:
         step: Lengths of the intervals, shape (n,) [s].
         coefficients: Shape (n + 2,).
-        i: Interval.
         end: 0 for its begin, 1 for its end.
     """
     here = step[i]

@@ -65,7 +65,6 @@ def _ramp_times(
     """How long the changes to and from a run's peak take, and the peak.
 
     Args:
-        ends: Of the run.
         turn: What the path turns by [rad/mm].
         jerk: Highest of the path.
         acceleration: Highest of the path.
@@ -92,8 +91,6 @@ def cut_run(ends: RunEnds, pieces: RunPieces, machine: MachineLimits) -> RunNode
     The velocity of a change is a cosine's, which begins at rest as a constant jerk does.
 
     Args:
-        ends: Of the run.
-        pieces: Of the plan.
         machine: Limits of the axes and the path.
     """
     piece, x, distance, (v0, _), (v1, _), peak = ends
@@ -206,8 +203,6 @@ def run_table(
     """What limits a change of a run's time law.
 
     Args:
-        nodes: Of the run.
-        pieces: Of the plan.
         machine: Limits of the axes and the path.
         override: Factor of the programmed feed.
     """
@@ -295,13 +290,7 @@ def _highest_coefficients(tops: FloatArray) -> FloatArray:
 
 @array_arithmetic_kernel
 def first_rate(table: RunTable, ends: RunEnds, nodes: RunNodes) -> FloatArray:
-    """Coefficients of a squared rate that is slow enough, with the states at the run's ends.
-
-    Args:
-        table: Of the run.
-        ends: Of the run.
-        nodes: Of the run.
-    """
+    """Coefficients of a squared rate that is slow enough, with the states at the run's ends."""
     step, forms, highest = table
     count, kinds = len(step), forms.shape[2]
     rate = 1.0
@@ -331,7 +320,6 @@ def tightened(table: RunTable, uses: FloatArray) -> RunTable:
     """A run under limits that are stricter where they have been passed.
 
     Args:
-        table: Of the run.
         uses: Of the limits of velocity, acceleration and jerk along each of n intervals, shape (n, 3).
     """
     step, forms, highest = table[0], table[1].copy(), table[2].copy()

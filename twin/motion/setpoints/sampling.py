@@ -25,7 +25,6 @@ def settle(
     """Pass setpoints on and add samples that stand still at the last one.
 
     Args:
-        chunks: The planned setpoints.
         period_s: Servo period [s].
         seconds: How long to hold [s].
     """
@@ -61,7 +60,6 @@ def sample(
     """The setpoints from a tick to the end of the phases, machine coordinates.
 
     Args:
-        phases: What was planned.
         tick: Number of the first tick that is wanted.
         period_s: Servo period [s].
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].

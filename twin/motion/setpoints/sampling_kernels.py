@@ -55,7 +55,6 @@ def _place(
         phases: As in ``sample_path``.
         phase_pieces: As in ``sample_path``.
         lengths: As in ``sample_path``.
-        row: Of the phase.
         t: Since its begin [s].
         i: A piece of the phase that is not too late.
         behind: x of its begin in the phase.
@@ -193,7 +192,6 @@ def sample_axes(
     """The axes where the path is.
 
     Args:
-        curves: Of the moves.
         pieces: Where they lie.
         origin: Machine coordinates of program zero, shape (k,).
         where: From ``sample_path``.
@@ -225,13 +223,9 @@ def _add_axes(
     """Add the axes at one place to a sample.
 
     Args:
-        curves: Of the moves.
         pieces: Where they lie.
-        i: Piece.
         at: x within it, v, a.
-        factor: Of what is added.
         samples: Results, in part coordinates.
-        row: Of the results.
 
     Returns:
         The fraction of the move.

@@ -7,6 +7,7 @@ from typing import Literal
 from twin.nc.control.control import Control
 from twin.nc.control.modal import ActiveCodes, Modal, ModalChanges, MotionMode
 from twin.nc.control.settings import MachineFunction
+from twin.nc.functions import acts
 from twin.nc.text.blocks import Statement, Word
 
 Action = Callable[[Control], None]
@@ -36,7 +37,6 @@ class GCode:
     Attributes:
         group: Modal group; codes of one group exclude each other in a block. Empty: not modal.
         action: Done before the block moves.
-        perform: Done in place of a move.
         consumes: Addresses that the code wants although they have a meaning of their own elsewhere.
         after_motion: Done when the block has moved.
         non_modal: What it sets holds for its block only.
@@ -124,14 +124,22 @@ class Codes:
 
         Args:
             number: Below 0 where it is no whole one.
-            declared: What the machine's builder has declared of the codes outside the table.
+            declared: What the machine's builder has declared, of codes that neither control nor machine act upon.
         """
         code, own = self.m.get(number), declared.get(number)
-        if code is None and own is not None:
-            return MCode(meaning=own.meaning, dwell=own.dwell)
+        if own is not None:
+            reported = MCode(meaning="") if code is None else code
+            return dataclasses.replace(reported, meaning=own.meaning, dwell=own.dwell)
         if code is None and self.any_m and number >= 0:
             return MCode(meaning="machine function")
         return code
+
+    def meaning_acted_upon(self, number: int) -> str:
+        """What control or machine do at an M code, so that no builder can give it another meaning; else empty."""
+        code = self.m.get(number)
+        if code is not None and (code.action or code.ends or code.silent or acts(number)):
+            return code.meaning
+        return acts(number) if self.any_m else ""
 
     def new_modal(self) -> Modal:
         """What is in force of them: nothing; groups that have one at the start come first."""

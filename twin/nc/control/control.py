@@ -99,7 +99,6 @@ class Control:
         axis_index: Columns of the axes by name.
         cycle_values: What the cycle in force remembers, by name.
         words: Its words that nothing has taken yet.
-        codes: Its G codes.
         series: Its words for switch points, in order.
         run: Runs one block, also one that is within a statement.
     """
@@ -311,7 +310,6 @@ class Control:
         Args:
             first: Where it begins.
             deepest: Parts that may call each other.
-            error_at: What asks for it.
             values: Of its own variables by name; None: it has the caller's.
             restores: Its end puts back into force what is in force now.
             times: How often it runs.

@@ -35,6 +35,7 @@ class Dialect:
         tables: Further tables of its page: what is named, and what it is, by title.
         library: Adds files that the program calls, looked for in the folder of the program and read as the
             dialect is.
+        job_keys: Keys of a job that its control has a setting for, and most others have not.
     """
 
     name: str
@@ -50,6 +51,7 @@ class Dialect:
     suffixes: tuple[str, ...] = ()
     tables: Mapping[str, Mapping[str, str]] = dataclasses.field(default_factory=dict)
     library: Library | None = None
+    job_keys: frozenset[str] = frozenset()
 
     @property
     def keywords(self) -> Collection[str]:

@@ -129,7 +129,6 @@ class Motion:
 
         Args:
             target: The position, shape (k,).
-            block: That asks for it.
             rapid: At the machine's own speed.
             arc: On which, as the part sees it; None: straight.
             add: What takes the move; None: the path, as it is.

@@ -1,12 +1,33 @@
 """What the interpreter must be given about the machine and the job, without knowing either."""
 
 import dataclasses
-from collections.abc import Mapping
-from typing import Literal
+from collections.abc import Iterator, Mapping
+from typing import Literal, TypeVar
 
 from twin.nc.canonical import Axes
 from twin.nc.path.tool_center import Setup
 from twin.nc.text.blocks import Block
+
+V = TypeVar("V")
+
+
+class Consulted(Mapping[str, V]):
+    """Values by name that know which of them nobody has asked for."""
+
+    def __init__(self, values: Mapping[str, V]) -> None:
+        self._values = dict(values)
+        self.unread = set(self._values)
+
+    def __getitem__(self, name: str) -> V:
+        value = self._values[name]
+        self.unread.discard(name)
+        return value
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._values)
+
+    def __len__(self) -> int:
+        return len(self._values)
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -80,7 +101,7 @@ class ControlSettings:
     """Values of variables that the program reads but does not set, by their name in it."""
 
     m_functions: Mapping[int, MachineFunction] = dataclasses.field(default_factory=dict)
-    """M codes by number that the dialect does not know and the machine's builder has made."""
+    """M codes by number that the machine's builder has made, or made to take time."""
 
     module_rotary: bool = False
     """``fagor8070``: the sign of an absolute rotary target is the direction of rotation."""
@@ -124,6 +145,16 @@ class ControlSettings:
 
     units: Literal["mm", "inch"] | None = None
     """In which units a program begins that names none; None: as the control does when it comes from its maker."""
+
+    @property
+    def never_read(self) -> dict[str, list[str]]:
+        """Variables and work offsets of the job that no program has asked for, by their table."""
+        tables = {"variables": self.variables, "offsets": self.offsets}
+        return {
+            name: sorted(table.unread)
+            for name, table in tables.items()
+            if isinstance(table, Consulted) and table.unread
+        }
 
     def skips(self, block: Block) -> bool:
         """Whether a block is left out."""

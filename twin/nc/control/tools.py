@@ -14,7 +14,6 @@ class Tools:
     Attributes:
         any: The tool that every other number means; None: there is none.
         names: Numbers of tools that the program has called by names which the job does not give.
-        spindle: Number of the tool in the spindle.
         selected: Number of the tool that the next change brings.
         length_call: Number of the tool whose length the block that runs calls, or ``LENGTH_ENDED``; None: it calls none.
         drills: The block that runs makes a hole by a drilling cycle, which neither bores, reams, taps nor counterbores.

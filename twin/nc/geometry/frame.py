@@ -14,6 +14,7 @@ from twin.nc.geometry.matrices import (
     applied,
     handedness,
     inverse,
+    product,
     rotated,
     stretched,
     turned_unit,
@@ -107,11 +108,17 @@ def composed(
     return matrix, shift
 
 
+def chained(outer: tuple[Matrix, Vector], inner: tuple[Matrix, Vector]) -> tuple[Matrix, Vector]:
+    """Two maps, each a matrix and the shift that comes after it, one after the other."""
+    matrix, shift = outer
+    x, y, z = applied(matrix, inner[1])
+    return product(matrix, inner[0]), (x + shift[0], y + shift[1], z + shift[2])
+
+
 def moved_shift(shift: float, part: float, there: float) -> float:
     """A shift of an axis that gives the place where it is other programmed coordinates.
 
     Args:
-        shift: As it was.
         part: Where the axis is in part coordinates.
         there: Where it would stand with its new coordinates and the shift as it was.
     """
@@ -127,7 +134,6 @@ class Frame:
     Attributes:
         total: Sum of all shifts, shape (k,) [mm or deg].
         matrix: Mirror, rotation and scale of X, Y, Z.
-        is_identity: The matrix is the identity.
         screen: The inverse of the matrix; None where it is the identity.
     """
 

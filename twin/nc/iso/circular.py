@@ -200,7 +200,6 @@ def tangent_arc_to(
     """Move to the target on the arc that leaves the last move along its direction.
 
     Args:
-        control: The control.
         target: Programmed position, shape (k,).
         name: Of the code, for messages.
         or_straight: On a line where the target lies straight ahead.

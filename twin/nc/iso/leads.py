@@ -36,13 +36,11 @@ class Lead:
     """A lead as it is programmed.
 
     Attributes:
-        kind: How it goes.
         size: Length, or radius of the centre's path [mm]; an arc of a radius below 0 lies on the contour's other side.
         angle: Of an arc [deg].
         side: Of the tool beside the contour: 1 left, -1 right, 0 on it.
         offset: How far beside it the tool's centre goes, part coordinates [mm].
         feed_before: Feed on the way to the auxiliary point, or from it.
-        feed: Feed of the lead.
         rapid: The way to the auxiliary point, or from it, is as fast as the machine can.
         above: How far the auxiliary point lies above the contour [mm].
         spatial: The lead itself falls or rises by that; else the tool does so over the auxiliary point.
@@ -72,7 +70,6 @@ class Touch:
     """Where the tool's centre begins or ends a contour, in the plane.
 
     Attributes:
-        point: Of the centre.
         along: Unit vector in which the contour goes there.
         aside: Unit vector to the side of the tool, left of the contour without compensation.
     """
@@ -103,11 +100,8 @@ def auxiliary_point(
     """Centre of a lead's arc, if it has one, and its auxiliary point.
 
     Args:
-        control: The control.
         touch: Where the contour begins or ends.
-        lead: What is programmed.
         other: Where a lead of line and arc comes from or goes to.
-        arrives: It leads to the contour.
 
     Raises:
         ProgramError: That place lies within the arc.
@@ -137,9 +131,6 @@ class Approach:
     """Waits for the first move of the contour; a control that is copied takes it along, as it could no closure.
 
     Attributes:
-        control: The control.
-        block: That asks for it.
-        lead: What is programmed.
         start: Where the tool comes from, programmed position, shape (k,).
         contour: Where the contour begins; None: where the next move goes, which is not made.
     """
@@ -211,8 +202,6 @@ def stand_at_height(control: Control, height: float, *, nowhere: bool = False) -
     """Let the next move, which tells where the contour begins, end at a height [mm].
 
     Args:
-        control: The control.
-        height: Of the contour.
         nowhere: The tool is nowhere in the plane, so that the move must tell both coordinates.
     """
     target, (first, second, across) = list(control.motion.programmed), control.modal.plane.axes
@@ -226,8 +215,6 @@ def depart(control: Control, lead: Lead, target: list[float] | None) -> None:
     """The contour ends where the tool is; it leaves, and compensation has ended.
 
     Args:
-        control: The control.
-        lead: What is programmed.
         target: Where it goes; a lead of line and arc in the plane too, others across it alone. None: no farther
             than the lead does.
 

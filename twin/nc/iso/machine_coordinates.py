@@ -21,7 +21,6 @@ class PartFrame(NamedTuple):
     Attributes:
         shifts: Of every kind, shape (s, k) [mm or deg].
         matrix: Mirror, scale and rotation.
-        tool_center: What leads the tip.
     """
 
     shifts: list[list[float]]

@@ -33,7 +33,6 @@ def grid(
         start: The first place.
         angles: Of the lines against the abscissa, of the columns against the ordinate [deg].
         spacing: Between columns and between lines [mm].
-        counts: Of columns and lines.
         frame: Only those at the edge.
     """
     (cosine, sine), (up, aside) = direction(angles[0]), direction(angles[1])

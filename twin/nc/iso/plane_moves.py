@@ -39,7 +39,6 @@ def turn(
     """Go on an arc, or on a helix to another height.
 
     Args:
-        control: The control.
         center: In the plane [mm].
         end: In the plane [mm].
         sweep: Signed angle with all turns [deg].

@@ -18,11 +18,9 @@ def aim_by_polar(
     """Aim a target at the place that a polar radius and a polar angle name; one that is missing stays as it was.
 
     Args:
-        control: The control.
         target: Programmed position, shape (k,); its place in the plane is put in.
         pole: In the plane [mm].
         last: Radius and angle as they were programmed last; NaN: they are measured [mm, deg].
-        words: Of the radius and of the angle.
         incremental: Both count from where the tool is; else each by its own word.
 
     Returns:

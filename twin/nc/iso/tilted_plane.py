@@ -81,7 +81,6 @@ def point_tool(
     """Turn the rotary axes until the tool stands across the plane of the frame, then count in it.
 
     Args:
-        control: The control.
         name: What the program calls it, for diagnostics.
         sense: Sign of the axis next to the tool that is preferred; 0: whatever is nearest.
         at: What asks for it; None: the block's code.
@@ -105,7 +104,6 @@ def turn_about(
     """Turn the rotary axes about a point below the tip, where the part is.
 
     Args:
-        control: The control.
         name: What the program calls it, for diagnostics.
         axes: Where the rotary axes go to, programmed, shape (k,); X, Y and Z are not looked at.
         below: How far the point lies below the tip [mm].
@@ -126,15 +124,16 @@ def rotary_axes_across(
     *,
     sense: float = 0.0,
     only: bool = False,
+    main: float = 0.0,
     at: Statement | None = None,
 ) -> list[float]:
     """Programmed position at which the tool stands across the plane of the frame, the tip not being led.
 
     Args:
-        control: The control.
         name: As for ``point_tool``.
         sense: Likewise.
         only: A solution with another sign is none.
+        main: As for ``rotary_axes_for``.
         at: As for ``point_tool``.
 
     Raises:
@@ -145,9 +144,8 @@ def rotary_axes_across(
         message = f"{name} needs rotary axes, and no axis of this machine turns"
         control.fail("tilted-plane", message, at, "run it on a machine with them")
     center = ToolCenter(setup, 0.0, control.frame.zero())
-    across = applied(control.frame.matrix, _Z)
     try:
-        there = center.pointing(across, control.motion.part, sense, only=only)
+        there = center.pointing(_normal(control), control.motion.part, sense, only=only, main=main)
     except ValueError as error:
         control.fail("tilted-plane", f"{name}: {error}", at)
     return [part - shift for part, shift in zip(there, control.frame.total, strict=True)]
@@ -180,14 +178,51 @@ def turned_with_plane(control: Control, axes: list[float]) -> list[float]:
     return axes
 
 
-def stands_across(control: Control) -> bool:
+def refuse_leaning(control: Control, hint: str) -> None:
+    """In a tilted plane X, Y and Z move when the tool stands across it, or its tip is led.
+
+    Raises:
+        ProgramError: The block moves one of them, and neither is so.
+    """
+    word = next((control.words[each] for each in "XYZ" if each in control.words), None)
+    if word is not None and control.path.tool_center is None:
+        message = "the tool does not stand across the tilted plane yet"
+        control.fail("tilted-plane", message, word, hint)
+
+
+def count_in_plane(control: Control, name: str, hint: str) -> None:
+    """From the first block on that moves X, Y or Z in a tilted plane the length of the tool acts along it.
+
+    Args:
+        control: The control.
+        name: As for ``point_tool``.
+        hint: What sets the tool across the plane.
+
+    Raises:
+        ProgramError: The tool does not stand across it, or a rotary axis would move.
+    """
+    if control.path.tool_center is not None or not any(each in control.words for each in "XYZ"):
+        return
+    if not _stands_across(control) or any(each in control.words for each in "ABC"):
+        refuse_leaning(control, hint)
+    elif control.settings.setup is not None:
+        begin_tool_center(control, name, tilted=True)
+
+
+def _stands_across(control: Control) -> bool:
     """Whether the tool, whose tip is not led, stands across the plane of the frame."""
-    setup = control.settings.setup
+    setup, across = control.settings.setup, _normal(control)
     if setup is None:
-        return control.frame.matrix[2] == _Z
+        return math.dist(across, _Z) < _ACROSS
     center = ToolCenter(setup, 0.0, control.frame.zero())
-    across = applied(control.frame.matrix, _Z)
     return math.dist(center.direction(control.motion.part), across) < _ACROSS
+
+
+def _normal(control: Control) -> Vector:
+    """Unit vector across the plane of the frame, whatever scales it."""
+    x, y, z = applied(control.frame.matrix, _Z)
+    length = math.hypot(x, y, z)
+    return (x / length, y / length, z / length)
 
 
 def machine_directions(control: Control) -> Matrix:

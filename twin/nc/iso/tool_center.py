@@ -24,7 +24,6 @@ def begin_tool_center(
     """Lead the tip of the tool from now on.
 
     Args:
-        control: The control.
         name: What the program calls it, for diagnostics.
         tilted: The tool stands across a tilted plane, and no rotary axis moves.
         in_plane: The tool turns in the plane of both directions; else the rotary axes go evenly.
@@ -51,7 +50,6 @@ def end_tool_center(control: Control, name: str, *, keeps_length: bool = False) 
     """Programmed positions are those of the axes again; nothing moves.
 
     Args:
-        control: The control.
         name: What the program calls it, for diagnostics.
         keeps_length: The length of the tool stays in force, along Z.
     """
@@ -71,15 +69,13 @@ def point_by_words(control: Control, direction: Vector, at: Word, *, in_frame: b
     """Let the block's words of rotary axes be those that point the tool, whose tip is led, in a direction.
 
     Args:
-        control: The control.
         direction: From the tip to the spindle, programmed coordinates, of any length above 0.
-        at: Which word says it.
         in_frame: The frame turns it; else it counts in the part as it is.
 
     Raises:
         ProgramError: The machine cannot, or the direction has no length.
     """
-    center, names = control.path.tool_center, control.settings.axes.names
+    center = control.path.tool_center
     assert center is not None
     turned = applied(control.frame.matrix, direction) if in_frame else direction
     length = math.hypot(*turned)
@@ -90,10 +86,20 @@ def point_by_words(control: Control, direction: Vector, at: Word, *, in_frame: b
         there = center.pointing((x / length, y / length, z / length), control.motion.part)
     except ValueError as error:
         control.fail("tool-center", str(error), at)
-    for column, name in enumerate(names):
-        if column > 2 and there[column] != control.motion.part[column]:
-            value = there[column] - control.frame.total[column]
-            control.words[name] = Word(name, value, at.column, at.width, mark="AC")
+    aim_words(control, [a - b for a, b in zip(there, control.frame.total, strict=True)], at)
+
+
+def aim_words(control: Control, axes: list[float], at: Word) -> None:
+    """Let the block's words of rotary axes lead to a programmed position, shape (k,), as absolute ones.
+
+    Args:
+        control: The control.
+        axes: The position; X, Y and Z are not looked at.
+        at: Which word says it.
+    """
+    for column, name in enumerate(control.settings.axes.names):
+        if column > 2 and axes[column] != control.motion.programmed[column]:
+            control.words[name] = Word(name, axes[column], at.column, at.width, mark="AC")
 
 
 def length_in_force(control: Control) -> float:

@@ -52,7 +52,6 @@ class LineFormat(NamedTuple):
 
     Attributes:
         roles: Of each letter, shape (26,).
-        comments: How comments are marked.
         longest: Bytes of a line that may be plain.
         keyword: Letter, from 0, that a line may begin with behind a bare block number; -1: none, and no such numbers.
         continued: Byte at the end of a line that goes on in the next one; 0: none does.

@@ -60,7 +60,6 @@ class Turning(NamedTuple):
     """How the rotary axes go in a part of a move.
 
     Attributes:
-        begin: Fraction of the move.
         end: Likewise; the same while the tip rests.
         angles: Of the axis next to the tool and the one next to the part, at both ends, shape (2, 2) [deg].
         circle: Of the direction; None: the axes go evenly.
@@ -81,7 +80,6 @@ class TwoAxes:
         """Look at a machine.
 
         Args:
-            chain: Of the machine.
             travel: Of each axis, as the chain counts them, shape (k, 2) [mm or deg]; of endless axes infinite.
 
         Raises:
@@ -131,7 +129,6 @@ class TwoAxes:
         """Angles of both axes at n fractions of a turning, with their derivatives, shape (n, 2) each [deg].
 
         Args:
-            turning: It.
             fraction: From 0 to 1, shape (n,).
         """
         circle = turning.circle
@@ -258,7 +255,6 @@ class TwoAxes:
         Args:
             pole: Along the axis next to the part, unit vector.
             tangent: Along which the direction goes there, unit vector.
-            side: The solution.
             ahead: 1: that before the pole; -1: behind it.
         """
         sideways = np.cross(self._inner, pole)

@@ -29,6 +29,7 @@ def rotary_axes_for(
     sense: float = 0.0,
     *,
     only: bool = False,
+    main: float = 0.0,
 ) -> FloatArray:
     """Where the rotary axes point the tool in a direction.
 
@@ -37,12 +38,13 @@ def rotary_axes_for(
     that changes nothing of the direction stays.
 
     Args:
-        chain: Of the machine.
         direction: From the tip to the spindle, seen from the part, unit vector, shape (3,).
         here: Where the axes are, as the chain counts them, shape (k,) [mm or deg].
         travel: Of each axis, as the chain counts them, shape (k, 2) [mm or deg]; of endless axes infinite.
         sense: Sign of the axis next to the tool that is preferred; 0: none is.
         only: A solution with another sign is none.
+        main: 1: the one whose main axis is nearest to zero by less than a turn, -1: farthest from it, 0: either. The main axis carries the
+            other one: of a head the one farthest from the tool, else the one farthest from the part.
 
     Returns:
         ``here`` with the rotary axes put in, shape (k,).
@@ -66,9 +68,13 @@ def rotary_axes_for(
             f"the machine's rotary axes do not point the tool along {x:.4g}, {y:.4g}, {z:.4g} of the part{signed}"
         )
 
-    def cost(row: FloatArray) -> tuple[bool, float, float]:
+    heads = [joint for joint in joints if chain.on_tool[joint]]
+    carrier = int(chain.column[heads[-1]]) if heads else first
+
+    def cost(row: FloatArray) -> tuple[bool, float, float, float]:
         way = round(float(np.abs(row - here).sum()) / _SAME_ANGLE)
-        return (float(row[first]) * sense < -_SAME_ANGLE, way, -float(row[first]))
+        off = round(main * abs(math.remainder(float(row[carrier]), 360.0)) / _SAME_ANGLE)
+        return (float(row[first]) * sense < -_SAME_ANGLE, off, way, -float(row[first]))
 
     return min(found, key=cost)
 

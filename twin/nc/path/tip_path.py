@@ -74,7 +74,6 @@ def hermite(motion: PathMotion, steps: FloatArray) -> FloatArray:
     """Polynomials of the fifth degree between n + 1 places, coefficients by powers 1 to 5, shape (n, m, 5).
 
     Args:
-        motion: There.
         steps: Of the path fraction between them, shape (n,).
     """
     value, first, second = motion

@@ -70,7 +70,6 @@ class Setup(NamedTuple):
     """A part on a machine.
 
     Attributes:
-        chain: The machine's joints.
         zero: Machine coordinates of program zero, shape (k,) [mm or deg].
         length: Of the first tool, with which it was measured [mm].
         travel: Of each axis, machine coordinates, shape (k, 2) [mm or deg]; of endless axes infinite.
@@ -100,7 +99,6 @@ class ToolCenter:
         """Control the tip of a tool.
 
         Args:
-            setup: The part on the machine.
             length_difference: How much longer than the first the tool is [mm].
             rotary_zero: Where the work offset puts the zeros of the axes, part coordinates, shape (k,); of the
                 linear ones it is not looked at.
@@ -155,22 +153,27 @@ class ToolCenter:
         return tool_direction(self._chain, np.array([axes]) + self._counted_zero)[0]
 
     def pointing(
-        self, direction: Vector, axes: list[float], sense: float = 0.0, *, only: bool = False
+        self,
+        direction: Vector,
+        axes: list[float],
+        sense: float = 0.0,
+        *,
+        only: bool = False,
+        main: float = 0.0,
     ) -> list[float]:
         """Where the rotary axes point the tool in a direction of the part, the others as they are, shape (k,).
 
         Args:
-            direction: The direction.
-            axes: Where the axes are.
             sense: Sign of the axis next to the tool that is preferred; 0: whatever is nearest.
             only: A solution with another sign is none.
+            main: As for ``rotary_axes_for``.
 
         Raises:
             ValueError: None do, within their travel (``orientation``).
         """
         offset = self._counted_zero
         here, goal = np.array(axes) + offset, np.array(direction)
-        found = rotary_axes_for(self._chain, goal, here, self._travel, sense, only=only)
+        found = rotary_axes_for(self._chain, goal, here, self._travel, sense, only=only, main=main)
         return (found - offset).tolist()
 
     def reached(self, start: list[float], end: list[float]) -> list[float]:
@@ -341,7 +344,6 @@ class ToolCenter:
         """The tip along a move, and all axes with X, Y and Z as they bring it there.
 
         Args:
-            move: The move of the tip.
             fraction: Shape (n,).
             axes: All axes there, shape (n, k) each; X, Y and Z are not looked at.
         """
@@ -362,9 +364,7 @@ class ToolCenter:
         """The curves of the axes between n + 1 fractions of a move.
 
         Args:
-            move: The move of the tip.
             cuts: The fractions, shape (n + 1,), and their steps, shape (n,).
-            tip: There.
             places: Of the axes, likewise, shape (n + 1, k).
             coefficients: Between them, shape (n, k, 5).
         """
@@ -417,7 +417,6 @@ class ToolCenter:
         """X, Y and Z that bring the tip along its path, with their derivatives by the path fraction.
 
         Args:
-            tip: The path.
             axes: Rotary axes and all further ones along it, shape (n, k) each; X, Y and Z are not looked at.
         """
         rest, steps = self._carried(axes)

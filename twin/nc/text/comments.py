@@ -92,9 +92,7 @@ def comment_end(line: Characters, begin: int, at: int, end: int, marks: CommentM
     Args:
         line: Holds the line, a byte for each character or as UTF-8: what marks comments is ASCII.
         begin: Where it begins.
-        at: The place.
         end: Behind its last character.
-        marks: How comments are marked.
 
     Returns:
         The place, ``NO_COMMENT`` or ``OPEN_COMMENT``.

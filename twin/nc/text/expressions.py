@@ -18,7 +18,6 @@ class ExpressionError(Exception):
     """An expression cannot be read or computed.
 
     Attributes:
-        code: Code of the diagnostic.
         column: Where in the text, from 0; None when computing.
         hint: What would have worked, or None.
     """
@@ -106,7 +105,6 @@ class ExpressionSyntax:
         functions: By name; a function's arguments are in ``brackets``.
         variable: Regular expression of a variable's name.
         indexed: Names that may be followed by an index in brackets, such as ``P``.
-        brackets: Opening and closing character.
         subscripts: Opening and closing character of the indices behind a variable, such as ``A[1,2]``; empty: it
             has none but those of ``indexed``.
         joined: Two such indices as one number.

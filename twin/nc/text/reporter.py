@@ -46,7 +46,6 @@ class Reporter:
 
         Args:
             code: Stable name of the finding.
-            message: What is wrong.
             column: First character in question, from 0.
             width: How many characters.
             hint: What would have worked.

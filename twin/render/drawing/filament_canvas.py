@@ -75,7 +75,6 @@ class FilamentCanvas(Canvas):
         """Send the model to Filament.
 
         Args:
-            model: What is drawn.
             size: Width and height of the pictures [px].
             quality: What they may cost.
             quiet: Whether to drop what Filament reports on standard output and error: its start,

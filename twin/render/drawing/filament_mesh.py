@@ -23,8 +23,6 @@ class FilamentMesh:
         Args:
             filament: MuJoCo's module of that name.
             context: Filament's context.
-            model: The model.
-            mesh: Number of the mesh in the model.
         """
         usage, form = filament.VertexAttributeUsage, filament.VertexAttributeType
         self._filament = filament

@@ -33,9 +33,6 @@ def add_live_mesh(
     screw line; ``LiveMesh.put`` gives it its real ones.
 
     Args:
-        spec: The machine.
-        name: Of the mesh and of the geom.
-        material: Name of its material.
         texels: Place of every vertex in the material's texture, shape (n, 2) [0 to 1].
         faces: Vertices of every face, counter-clockwise from outside, shape (m, 3).
         shadow: Whether it casts one.

@@ -67,8 +67,6 @@ def place(
     """Find the part's frame on the machine: by moving the tool point along its axes.
 
     Args:
-        machine: The machine file.
-        model: The compiled machine.
         tool_length: From the spindle nose to the tip [mm].
         part_frame: How the part turns under the tool.
     """

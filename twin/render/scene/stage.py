@@ -224,10 +224,8 @@ def stage(
     """Build the drawn machine and open the canvas.
 
     Args:
-        scene: What is to be seen.
         size: Width and height of the pictures [px].
         quality: What a picture may cost.
-        renderer: What draws.
         paint: Colours of the stock's cells, shape (ny, nx, 4), as metal looks where the fourth is 0; or, of one
             that is cut from several sides, what colours its surface; None: all looks like metal.
         trail: Whether the path of the tool is seen.

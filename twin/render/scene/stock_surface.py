@@ -38,7 +38,6 @@ class _Tile:
         columns: Columns of the net, borders included.
         corners: Vertices of the faces, numbered within the tile, shape (n, 3).
         whole: Whether every square of it belongs to the blank.
-        name: Of its fine mesh.
     """
 
     rows: slice
@@ -72,7 +71,6 @@ class StockSurface:
 
         Args:
             material: The stock before it is cut.
-            texture: What paints it.
             step: Cells from one vertex to the next.
         """
         self._material = material

@@ -52,7 +52,6 @@ class StockTexture:
         """Choose the texture's size.
 
         Args:
-            height_map: What is painted.
             mesh_step: Cells from one vertex of the drawn net to the next.
             marks: Path of the tool at the last cut, shape (ny, nx) [mm]; of no size: no marks.
             paint: Colours to use instead where the fourth channel is not 0, shape (ny, nx, 4).

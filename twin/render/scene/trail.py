@@ -125,7 +125,6 @@ class Trail:
         """Take the points.
 
         Args:
-            points: The whole trail.
             radius: Of the tube [mm]; it lies on the trail, so that a floor does not hide it.
             error_scale_um: Error that has the last colour [µm].
         """

@@ -20,7 +20,6 @@ def add_work_holding(
 
     Args:
         spec: The drawn model; it is changed.
-        stock: The blank.
         placement: Where the part's frame lies on the body that carries it.
         part_corner: Program zero in the part's frame, shape (3,) [mm].
     """

@@ -61,7 +61,6 @@ class ToolComment(NamedTuple):
         kind: As ``ToolTable`` has it; empty: it is not stated.
         diameter: [mm]; None: it is not stated.
         corner: Radius of a bull-nose's corner [mm].
-        text: The comment.
         wear: Its contours are the path of its centre, so that D holds its wear alone; None: that is not told.
     """
 
@@ -164,9 +163,7 @@ def tool_lines(
     Args:
         calls: Number, line and next move of every tool that comes.
         comments: Lines and texts.
-        moves: What the program makes.
         declared: Tools that the program itself gives their data.
-        inches: Comments count in inches.
         top: Of the stock [mm].
         least_length: So long is each tool at least [mm].
         worn: Tools of which the control's table holds the wear alone.

@@ -18,7 +18,6 @@ class DeclaredStock(NamedTuple):
     Attributes:
         lines: Of the job file.
         top: Centre of its top face, shape (3,) [mm].
-        told: It, for people.
     """
 
     lines: list[str]

@@ -53,7 +53,6 @@ class Choice:
     """A dialect, and why it was taken.
 
     Attributes:
-        dialect: The dialect.
         reason: Why, for people; empty: nothing was chosen.
     """
 
@@ -86,7 +85,6 @@ def chosen_dialect(path: Path, settings: ControlSettings, source: Source | None 
     """Tell the dialect of a raw program.
 
     Args:
-        path: The program.
         settings: What its control is told about machine and job.
         source: The program, where it was read already.
 

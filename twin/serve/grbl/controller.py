@@ -32,12 +32,7 @@ _ANYTIME = frozenset(("$", "$$", "$G", "$I", "$N", "$#", "$X"))
 
 
 class GrblController:
-    """One control; one sender talks to it.
-
-    Attributes:
-        serial: Its receive buffer.
-        settings: Its settings.
-    """
+    """One control; one sender talks to it."""
 
     def __init__(self, room: Room) -> None:
         """Switch it on."""

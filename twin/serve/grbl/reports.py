@@ -27,7 +27,6 @@ class ParserState(NamedTuple):
     """What is in force.
 
     Attributes:
-        modal: G codes.
         feed: As programmed; 0: none.
         speed: As programmed [1/min].
         memory: Coordinate systems.
@@ -88,7 +87,6 @@ class Reporter:
 
         Args:
             state: Of the machine, such as ``Run``.
-            room: The machine.
             memory: Coordinate systems of its control.
             free: Blocks and bytes that there is room for.
         """

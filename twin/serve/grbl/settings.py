@@ -22,11 +22,7 @@ def _thousandths(value: float) -> str:
 
 
 class GrblSettings:
-    """The settings by number.
-
-    Attributes:
-        values: What they are.
-    """
+    """The settings by number."""
 
     def __init__(self, machine: Machine) -> None:
         fastest = machine.file.spindle.max_speed or _FASTEST

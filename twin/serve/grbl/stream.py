@@ -45,7 +45,6 @@ class GrblStream:
 
     Attributes:
         serial: Where lines wait.
-        answers: What is to be sent.
         jogging: Whether it is jogs that are run, and no G code.
         executor: What ran the last block; None before the first.
         last_received: When the last byte came, by ``time.monotonic`` [s].

@@ -29,13 +29,7 @@ class Alarm:
         self._fields: dict[str, Node] = {}
 
     async def build(self, source: Node, kind: Node, namespace: int) -> None:
-        """Make the instance below its source.
-
-        Args:
-            source: Whose condition it is.
-            kind: Type of the condition.
-            namespace: Of the instance.
-        """
+        """Make the instance below its source."""
         server = self._server
         place, name = ua.NodeId(NamespaceIndex=namespace), ua.QualifiedName(NAME, namespace)
         self.node = await source.add_object(place, name, kind.nodeid, instantiate_optional=False)
@@ -73,7 +67,6 @@ class Alarm:
         """Tell of a change.
 
         Args:
-            value: What the machine's condition is now.
             when: Since when.
         """
         if value == self._last or value.level not in _SEVERITIES:

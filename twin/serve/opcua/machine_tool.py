@@ -85,7 +85,6 @@ class MachineTool:
         """Begin with nothing; ``build`` makes the nodes.
 
         Args:
-            server: With the node sets.
             machine: Whose axes and name are shown.
         """
         self._server, self._machine = server, machine

@@ -39,8 +39,6 @@ class Place(NamedTuple):
     """Where a server listens.
 
     Attributes:
-        host: Its address.
-        port: Its port.
         trusted: Folder of the certificates of clients that may come from elsewhere; None: only this
             computer's clients, without certificates.
     """
@@ -64,7 +62,6 @@ class Content(NamedTuple):
     """What a server reports.
 
     Attributes:
-        machine: The machine.
         program: Name of its NC program.
         tools: Names of its tools by their numbers.
     """
@@ -112,7 +109,6 @@ async def opcua_server(place: Place, content: Content) -> AsyncIterator[MachineT
 
     Args:
         place: Where it listens.
-        content: What it reports.
 
     Raises:
         UsageError: The node sets are missing.
@@ -165,9 +161,7 @@ async def mirror(
     """Tell what an agent observes, until this is cancelled.
 
     Args:
-        agent: What observes.
         place: Where clients come in.
-        content: What is reported.
         ready: Told the address once clients may come.
     """
     items = [item.id for part in agent.device.walk() for item in part.items]

@@ -77,8 +77,6 @@ class ClassApp:
         """Prepare it.
 
         Args:
-            rooms: The pupils' rooms.
-            file: What the class keeps.
             links: Address of each seat, with its token.
             language: Of the teacher's page, until he chooses another.
         """
@@ -247,7 +245,6 @@ def stuck(seat: Seat, now: float) -> str:
     """Why a pupil needs help: ``alarm``, ``idle``, or nothing.
 
     Args:
-        seat: The pupil's.
         now: By the monotonic clock [s].
     """
     status = seat.status

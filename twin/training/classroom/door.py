@@ -21,7 +21,6 @@ class Door(NamedTuple):
     Attributes:
         path: Of the Unix socket; empty: it is a port.
         host: Where the port is.
-        port: Its number.
         secret: What opens it; of a Unix socket the file's rights do.
     """
 

@@ -49,14 +49,11 @@ def open_class(
     Links stay as they are from one opening of the same folder to the next: tokens and port are kept in it.
 
     Args:
-        pupils: Who is in it.
         scene: What they begin with: a shipped scene's name, or a scene file.
         folder: Marks, logs and score sheets.
         language: Of all pages; None: of each scene.
         host: Where the server listens.
         port: Its port; 0: the one of the last time, else the first free one.
-        certificate: For https.
-        key: Of the certificate.
         cluster: Address of the Ray cluster over which rooms are spread; None: they run on this computer.
 
     Raises:

@@ -37,16 +37,11 @@ class Mark:
     """What came of one attempt at a scene.
 
     Attributes:
-        attempt: Its own, as a UUID.
-        pupil: Name of the pupil.
-        scene: Name of the scene.
         title: What it is called, in English where it is.
         began: When, in ISO 8601.
         changed: When this was written last, in ISO 8601.
-        points: Reached.
         points_of: What all tasks are worth.
         handed_in: Whether it was handed in: it is final then.
-        hints: Asked for.
         alarms: Codes of those that came, with spaces between.
         seconds: Machine time from the beginning [s].
         sheet: Folder of its log and score sheet.
@@ -187,7 +182,6 @@ def as_statements(marks: list[Mark], home: str) -> list[dict[str, Any]]:
     """Marks that were handed in as statements of the Experience API (IEEE 9274.1.1, xAPI 1.0.3).
 
     Args:
-        marks: The marks.
         home: Address of the class, beside which its pupils' names are accounts.
     """
     return [

@@ -18,7 +18,6 @@ class Recorder:
 
         Args:
             file: Where marks are kept.
-            pupil: Whose.
             sheet: Says where the score sheet of the present attempt is written.
         """
         self._file, self._pupil, self._sheet = file, pupil, sheet

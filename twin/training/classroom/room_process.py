@@ -37,10 +37,7 @@ class RoomOrder:
     """What a room's process is begun with.
 
     Attributes:
-        pupil: Who plays.
-        scene: What is played.
         language: Of the pages; None: the scene's.
-        folder: The class's.
         sheets: Folder of the pupil's logs and score sheets.
         socket: Unix socket at which the pages are served; empty: on a port.
         host: Where that port is.

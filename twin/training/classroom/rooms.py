@@ -29,7 +29,6 @@ class Seat:
 
     Attributes:
         key: First part of the pupil's address.
-        pupil: Who sits there.
         scene: What has been handed out last.
         held: The teacher holds it.
         streams: How many pages are open, the teacher's with them.
@@ -39,7 +38,6 @@ class Seat:
         alarmed_at: Since when an alarm is active, by the monotonic clock [s]; None: none does.
         failed: Why its room could not be begun, or ended by itself; empty: it did not.
         process: The room's; None: there is none.
-        pipe: To the room.
         door: Where it serves its pages.
         node: What a cluster calls the computer on which it runs.
     """
@@ -90,10 +88,8 @@ class Rooms:
         """Prepare the seats, with what each pupil was given before.
 
         Args:
-            pupils: Who is in the class.
             scene: What they begin with.
             language: Of all pages; None: of each scene.
-            file: What the class keeps.
             host: Where rooms run.
         """
         kept, numbers = file.scenes(), file.seats(pupil.name for pupil in pupils)

@@ -70,7 +70,6 @@ class BlockWalk(Forkable):
 
         Args:
             mark: How many moves of the part came before it.
-            state: What is in force.
         """
         self._marks.append(mark)
         self.blocks.append(state)

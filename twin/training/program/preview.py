@@ -69,16 +69,12 @@ class PathToCome:
     """All that the next start would begin with.
 
     Attributes:
-        source: The program.
-        dialect: Its language.
         settings: What the control knows of the machine as it stands.
-        machine: The machine.
         search: Source line that the next start begins at; 0: the first.
         stand: Where the setpoints stand, machine coordinates, shape (k,) [mm or deg].
         zero: Machine coordinates of program zero for the first tool, as the control has it, shape (k,).
         length_difference: How much longer than the first each tool is in the control's table, by number [mm].
         tool: Number of the tool in the spindle.
-        spindle: What it has been commanded.
         frame: How the part turns under the tool.
     """
 

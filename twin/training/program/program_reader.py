@@ -90,7 +90,6 @@ class ProgramReader:
 
     Attributes:
         walk: The blocks of the present part.
-        moves: Its moves.
         waiting: Groups of them that nobody has taken yet.
         start: Where the part begins, machine coordinates, shape (k,) [mm or deg].
         zero: Machine coordinates of program zero, shape (k,) [mm or deg].
@@ -113,11 +112,7 @@ class ProgramReader:
         """Read a program from its beginning.
 
         Args:
-            source: The program.
-            dialect: Its language.
             settings: What the control knows of the machine as it stands.
-            machine: The machine.
-            options: How it is run.
 
         Raises:
             ProgramError: The program cannot be begun.
@@ -192,7 +187,6 @@ class ProgramReader:
         """Interpret at most so many blocks, until there are enough moves or the part ends.
 
         Args:
-            most: How many blocks.
             driven: Moves of the part that the axes have begun.
         """
         columns, stream = self._control.path.columns, self._options.stream

@@ -61,7 +61,6 @@ class ProgramRun:
     """One run of a program.
 
     Attributes:
-        reader: Interprets it.
         dropped: An operator has given up the rest.
     """
 
@@ -318,11 +317,7 @@ class ProgramRun:
         return self.reader.walk.state(move)
 
     def line(self, line: int) -> int:
-        """Source line of the block that runs, or behind which single block has stopped.
-
-        Args:
-            line: Of the setpoints.
-        """
+        """Source line of the block that runs, or behind which single block has stopped."""
         return self.reader.walk.line if self.reader.walk.paused else line
 
 

@@ -15,7 +15,6 @@ class Inherited(NamedTuple):
     """What a block finds in force that those before it, typed in or streamed, left.
 
     Attributes:
-        modal: G codes.
         shifts: Of the part's zero, as the frame keeps them [mm or deg].
         feed: F as programmed, or None.
         spindle: S as programmed, or None [1/min].
@@ -51,7 +50,6 @@ class Inherited(NamedTuple):
 
         Args:
             name: Of the offset, such as ``G55``.
-            column: Of the axis.
             moved: By how much it has changed [mm or deg].
         """
         if name != f"G{self.modal.active.get('offset', 0.0):g}":
@@ -77,7 +75,6 @@ class BlockStream(Protocol):
         """The next block; None: none has come, or none is wanted.
 
         Args:
-            executor: Is to run it.
             moves_ahead: How many moves lie ahead of the axes.
         """
         ...

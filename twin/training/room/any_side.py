@@ -17,10 +17,8 @@ def touch_any_side(stock: TriDexel, tip: FloatArray, axis: FloatArray, tool: Too
     """Hold the end of a tool against a part, the one as it stands and the other as it was cut.
 
     Args:
-        stock: The part.
         tip: Where the tool's tip is, seen from the part, shape (3,) [mm].
         axis: Direction from there to the spindle, shape (3,).
-        tool: What is in the spindle.
 
     Returns:
         The gap, which is exact on faces along X, Y and Z; beyond what drags paper it is far.
@@ -54,7 +52,6 @@ def surface_off(stock: TriDexel, place: FloatArray) -> float:
     """How far the surface is from a place, along X, Y or Z where it is nearest [mm].
 
     Args:
-        stock: The part.
         place: Shape (3,) [mm].
 
     Returns:

@@ -12,7 +12,6 @@ class Auxiliaries:
     Attributes:
         spindle: Whether the spindle turns, and how fast.
         running_down: The spindle, stopped by a reset, still turns while the axes brake.
-        coolant: Coolant flows.
     """
 
     def __init__(self, spindle: SpindleState) -> None:

@@ -30,7 +30,6 @@ class EdgeFinder:
     """The edge finder of a room; other files read it and call its methods.
 
     Attributes:
-        number: Its tool number.
         broken: It has been pushed too far.
         deflection: How far its tip is pushed aside, seen from the part, X and Y [mm].
     """

@@ -24,10 +24,8 @@ class Moment:
     """An alarm with what there was to see.
 
     Attributes:
-        alarm: The alarm.
         text: The block that ran, as it is written; empty: none did.
         tip: Where the tool was in the part's frame, shape (3,) [mm].
-        tool: What was in the spindle.
         heights: Of the stock, every few cells, shape (ny, nx) [mm]; empty: there was none.
         origin: X and Y of the first cell [mm].
         cell: Side of a kept cell [mm].
@@ -126,7 +124,6 @@ class Inspection(NamedTuple):
 
     Attributes:
         moment: How it looks, with the tool as it stood then.
-        places: Those that the scene measures.
         removed: Material that was cut off [mm³]; None: there was no blank.
         wanted_removed: Least and most that the scene asks for [mm³]; None: it does not ask.
     """

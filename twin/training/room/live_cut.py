@@ -24,7 +24,6 @@ class Loads(NamedTuple):
         spindle_speed: As the drive turns, without its sense [1/min].
         spindle: Torque as a share of what the spindle gives for long.
         force: Level, on the tool [N].
-        force_share: Of what breaks it.
         bend: How far its tip gives way [mm].
         chip: Thickest chip [mm].
         chip_share: Of what breaks an edge.
@@ -52,7 +51,6 @@ class LiveCut:
         """Begin without a blank.
 
         Args:
-            machine: It is pushed.
             job: Says whether force is simulated, and with which tool the machine begins.
             part_frame: How the part turns under the tool.
             zero: Machine coordinates of program zero, shape (k,) [mm or deg].

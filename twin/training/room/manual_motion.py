@@ -18,7 +18,6 @@ class JogMove(NamedTuple):
     """A move of one axis by hand.
 
     Attributes:
-        axis: Its name.
         target: Machine coordinates, within the travel [mm or deg].
         feed: [mm/min or deg/min].
         wheel: The handwheel asked for it.
@@ -53,8 +52,6 @@ class ManualMotion:
         """Let the axis that follows the handwheel go on to another place, or back at once.
 
         Args:
-            move: To that place.
-            run: Drives the axis.
             position: Of the axis now, machine coordinates [mm or deg].
         """
         current = self.moves[0]
@@ -75,7 +72,6 @@ class ManualMotion:
         """The first move that leads anywhere, with its distance [mm or deg]; None: all are done.
 
         Args:
-            machine: Names the axes.
             stand: Where they are, machine coordinates, shape (k,) [mm or deg].
         """
         while self.moves:
@@ -90,8 +86,6 @@ def within_travel(machine: Machine, axis: str, position: float, target: float) -
     """How far an axis goes by hand: to the end of its travel; from beyond it only back.
 
     Args:
-        machine: Its travel.
-        axis: Name of the axis.
         position: Where it is, machine coordinates [mm or deg].
         target: Where it is to go.
     """

@@ -26,7 +26,6 @@ class Notice:
     Attributes:
         code: Stable, searchable name of its kind: those of ``twin.machine.watching.alarms``, and
             ``program`` (the interpreter refused a block), ``external`` (a safety circuit).
-        message: What happened, with numbers.
         axis: Name of the axis, or empty.
         line: Source line of the program, 0 where none.
         time_s: When, in machine time [s].
@@ -52,7 +51,6 @@ def block_number(language: Language, program: Source, line: int) -> str:
 
     Args:
         language: How the program is written.
-        program: The program.
         line: Counted from 1; 0: none.
     """
     lexer = Lexer(language, Reporter(program, strict=False))

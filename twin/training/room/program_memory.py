@@ -13,8 +13,6 @@ class ProgramMemory:
     """A program that can be edited, replaced and restored; other files read it and call its methods.
 
     Attributes:
-        source: The program.
-        lines: Its lines.
         edits: Its lines before each change, the newest last.
         searched: Line at which the next start begins; 0: the first.
     """

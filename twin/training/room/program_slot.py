@@ -22,7 +22,6 @@ class Suspended(NamedTuple):
     """A program that was held, while the axes are jogged.
 
     Attributes:
-        run: The program.
         place: Where it was held, machine coordinates, shape (k,) [mm or deg].
         line: Source line of the block that was held.
         waits: It waits at a program stop, behind that block.
@@ -40,7 +39,6 @@ class ProgramSlot:
     Attributes:
         run: The program, MDI block or jog that is being run.
         running: What is being run; empty: nothing.
-        waiting: A program waits at a program stop.
         suspended: A program that was held, while the axes are jogged.
         modal: What was in force last, where nothing runs.
         inherited: What the last MDI block left in force for the next one.
@@ -151,7 +149,6 @@ class ProgramSlot:
 
         Args:
             name: Of the offset, such as ``G55``.
-            column: Of the axis.
             moved: By how much it has changed [mm or deg].
         """
         if self.inherited is not None:

@@ -35,7 +35,6 @@ class Rest:
         """Look at a machine after a slice that was computed.
 
         Args:
-            room: The machine.
             seconds: Length of the slice [s].
 
         Returns:

@@ -44,16 +44,10 @@ class Room:
     """The machine of a scene while it runs; each of its parts changes by its own methods alone.
 
     Attributes:
-        scene: What is played.
-        machine: The machine with its drives.
         setup: Blank, tool and tables.
-        panel: What is set at the panel.
         program: The program in the control's memory.
-        slot: What runs.
         manual: Moves by hand.
-        auxiliaries: Spindle and coolant.
         alarms: Alarms and broken tools.
-        faults: What is broken.
         judge: Looks after the tasks.
         rest: Whether the machine rests, and need not be computed.
         tick: Servo periods since the beginning.

@@ -31,7 +31,6 @@ class Setup:
         tables: Part zero and tools, as the control has them and as they are.
         part_frame: How the part turns under the tool.
         work: The stock, if there is one.
-        cut: The force of the cut.
         finder: The edge finder in the magazine; None: there is nothing to be found with it.
     """
 
@@ -39,9 +38,7 @@ class Setup:
         """Clamp a scene's blank and mount its first tool.
 
         Args:
-            scene: What is played.
             machine: Where.
-            tables: Its control's tables.
 
         Raises:
             ConfigError: The stock is wrong.
@@ -130,7 +127,6 @@ class Setup:
         """Cut along the samples of a slice.
 
         Args:
-            samples: With the head's positions.
             run: What moves the axes; None: nothing.
             edges_stand: The spindle does not turn.
 
@@ -186,7 +182,6 @@ def scene_tables(scene: Scene, zero: FloatArray) -> Tables:
     """The control's tables as a scene begins with them, with the errors that it has put in.
 
     Args:
-        scene: What is played.
         zero: Machine coordinates of the part's true zero, shape (k,) [mm or deg].
     """
     start, machine = scene.file.start, scene.preparation.machine

@@ -25,7 +25,6 @@ class Tables:
         radii: Tool radii in the control's table, by number [mm].
         offsets: Work offsets by name, each by axis, from part zero [mm or deg].
         tools: The tools as they are, by number.
-        spindle: Number of the tool in the spindle.
         first: Number of the tool that the job begins with.
         finder: Number of the edge finder; None: the magazine has none.
     """

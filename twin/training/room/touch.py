@@ -37,7 +37,6 @@ def touch(stock: HeightMap, tip: FloatArray, diameter: float) -> Touch:
     """Hold an upright cylinder against a part: exact on the blank's own faces, to half a cell on what was cut.
 
     Args:
-        stock: The part.
         tip: Middle of the cylinder's lower end, seen from the part, shape (3,) [mm].
         diameter: Of the cylinder [mm].
     """

@@ -36,12 +36,7 @@ class FindingsFile(Table):
 
 
 def translated(message: str, language: Language) -> str:
-    """A sentence of the machine in a language, or as it is.
-
-    Args:
-        message: In English.
-        language: Wanted.
-    """
+    """A sentence of the machine in a language, or as it is."""
     if language == "en":
         return message
     for form, phrase in _forms():
@@ -53,12 +48,7 @@ def translated(message: str, language: Language) -> str:
 
 
 def finding_in(finding: Diagnostic, language: Language) -> str:
-    """What the interpreter found, in a language: the words in question, and what is wrong with them.
-
-    Args:
-        finding: What it found.
-        language: Wanted.
-    """
+    """What the interpreter found, in a language: the words in question, and what is wrong with them."""
     said = _findings().get(finding.code, {}).get(language)
     if said is None:
         return f"{finding.code}: {finding.message}"

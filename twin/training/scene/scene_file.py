@@ -171,9 +171,6 @@ class Scene:
     """A scene that was read.
 
     Attributes:
-        name: Its file's stem.
-        file: Its checked content.
-        preparation: Its job made concrete.
         cells_across: Cells of the live stock along its shorter side, at least; 0: as the job says.
     """
 
@@ -241,7 +238,6 @@ def scene_of_job(name: str, preparation: Preparation) -> Scene:
 
     Args:
         name: What the room is called.
-        preparation: The job made concrete.
     """
     file = SceneFile(
         schema=1,

@@ -39,12 +39,7 @@ class VocabularyFile(Table):
 
 
 class Words:
-    """The words of one control in one language.
-
-    Attributes:
-        language: Which.
-        control: Name of the dialect.
-    """
+    """The words of one control in one language."""
 
     def __init__(self, language: Language, control: str) -> None:
         file = vocabulary(language)

@@ -26,14 +26,9 @@ class CourseRow(NamedTuple):
 
     Attributes:
         name: Who was at the panel; empty: nobody said.
-        scene: Name of the scene.
         title: What its sheet calls it.
-        language: Of its sheet.
         date: When it began.
-        points: Reached.
         of: What all tasks are worth.
-        handed_in: Whether it was handed in.
-        hints: Asked for.
         alarms: Codes of the alarms that came, in their order.
         link: To the sheet, from the list's page.
     """

@@ -34,8 +34,6 @@ def score_sheet(session: Session, words: Words, date: str = "") -> dict[str, Any
     """The score sheet as plain data.
 
     Args:
-        session: The session.
-        words: Language and control.
         date: When it began.
     """
     scene, room = session.scene, session.room
@@ -145,7 +143,6 @@ def score_page(
 
     Args:
         sheet: As ``score_sheet`` gives it.
-        words: Language and control.
         pictures: Of what went wrong, as PNG, in the sheet's order.
         part: Picture of the part that was handed in, as PNG.
     """
@@ -163,8 +160,6 @@ class ScoreSheetWriter:
         """Choose a folder of its own for the session.
 
         Args:
-            session: The session.
-            words: Language and control.
             out: Where sessions are kept; None: nothing is written.
         """
         self._session = session

@@ -80,7 +80,6 @@ class RoomApp:
     """What the pages of a room are served.
 
     Attributes:
-        attempt: What is played.
         connections: Open pages, and which has the panel.
         bytes_sent: Through all streams so far.
         messages: Heard from all pages so far.
@@ -90,7 +89,6 @@ class RoomApp:
         """Prepare it.
 
         Args:
-            driver: Steps the session.
             attempts: Begins the next attempt.
             attempt: The first one.
         """

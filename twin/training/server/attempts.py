@@ -18,9 +18,7 @@ class Attempt(NamedTuple):
 
     Attributes:
         number: 1 for the first one in a room.
-        scene: The scene.
         session: Its machine, and what is done to it.
-        writer: Writes its score sheet.
     """
 
     number: int
@@ -41,7 +39,6 @@ class Attempts:
         """Prepare nothing yet.
 
         Args:
-            language: Of the sheets.
             out: Folder for logs and score sheets; None: none are written.
             scenes: Folder for scenes that a trainer makes; None: one within ``out``.
         """

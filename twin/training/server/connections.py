@@ -18,7 +18,6 @@ class Page:
     """An open page.
 
     Attributes:
-        number: Its own.
         role: ``operator``, ``trainer`` or ``watcher``.
     """
 

@@ -40,7 +40,6 @@ class Look:
     """The machine as the pages show it.
 
     Attributes:
-        now: The snapshot.
         lost_s: Time on the wall that the machine did not keep up with so far [s].
         trouble: What went wrong outside the machine, as with the results' folder.
     """
@@ -54,7 +53,6 @@ class Driver:
     """Steps a session and does what the pages ask for.
 
     Attributes:
-        session: What is played.
         speed: Machine time per time on the wall.
         lost_s: Time on the wall that the machine did not keep up with so far [s].
         trouble: Says what is wrong outside the machine.
@@ -66,7 +64,6 @@ class Driver:
         """Prepare a session.
 
         Args:
-            session: What is played.
             changed: Told after everything that was asked for.
         """
         self.session = session
@@ -99,7 +96,6 @@ class Driver:
 
         Args:
             command: As plain data.
-            who: Who gives it.
             page: Number of the page that it comes from.
         """
         self._beats[page] = time.perf_counter()
@@ -123,7 +119,6 @@ class Driver:
         """Play another session from the next slice on, from any thread.
 
         Args:
-            session: What is played.
             changed: Called after every command.
             trouble: What is wrong outside the machine.
         """

@@ -181,10 +181,6 @@ class StockFeed:
     def patch(self, epoch: int, version: int) -> tuple[bytes | None, int, int]:
         """What a page lacks.
 
-        Args:
-            epoch: Of what the page has.
-            version: Of what the page has.
-
         Returns:
             A message, or None where it lacks nothing; and what the page has with it.
         """

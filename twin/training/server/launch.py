@@ -56,8 +56,6 @@ class OpenRoom:
     """A room that is open.
 
     Attributes:
-        driver: Lets its time go on.
-        app: What its pages are served.
         addresses: By role; each has a token of its own.
     """
 
@@ -103,12 +101,9 @@ def open_room(
     """Open the training room for a scene.
 
     Args:
-        scene: The scene.
         language: Of the pages; the scene's by default.
         host: Where the server listens.
         port: Its port; 0: the first free one.
-        certificate: For https.
-        key: Of the certificate.
         out: Folder for log and score sheet; none: none are written.
         promptly: Whether to ask the system for precedence over what else runs on this computer.
 

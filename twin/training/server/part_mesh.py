@@ -27,7 +27,6 @@ def mesh_message(stock: TriDexel, crossings: int) -> bytes:
     """Kind, number of vertices and of triangles; then deflated the vertices, the triangles' corners, the tool that left each.
 
     Args:
-        stock: The part.
         crossings: How finely it is drawn; see ``surface``.
     """
     found = surface(stock, crossings)

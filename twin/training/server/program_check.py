@@ -40,7 +40,6 @@ class ProgramCheck:
         """Check what a page types, and tell it as JSON: ``{"checked": ...}``.
 
         Args:
-            page: Its number.
             text: What is there now.
             tell: Sends it.
         """

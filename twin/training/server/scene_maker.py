@@ -30,7 +30,6 @@ class SceneText(NamedTuple):
 
     Attributes:
         content: Of its file, but for the program's name.
-        program: The NC program.
     """
 
     content: dict[str, Any]
@@ -44,8 +43,6 @@ def scene_of(room: Room, language: Language, title: str, story: str) -> SceneTex
     be written into the file.
 
     Args:
-        room: As it stands.
-        language: Of title and story.
         title: What the scene is called.
         story: What the operator is told first.
 
@@ -81,9 +78,6 @@ def scene_of(room: Room, language: Language, title: str, story: str) -> SceneTex
 
 def write_scene(scene: SceneText, folder: Path) -> Path:
     """Write a scene and its program, under a name after its title that nothing has there.
-
-    Returns:
-        The scene's file.
 
     Raises:
         UsageError: It cannot be written, or is none that is on its own; nothing is left of it.

@@ -146,7 +146,6 @@ class Checkpoints:
         """Take a copy where the last one is old enough.
 
         Args:
-            room: As it is.
             done: How many commands have been given to it.
         """
         if room.tick - self._kept[-1].tick >= self._apart:
@@ -175,7 +174,6 @@ def checkpoint(room: Room, done: int, before: tuple[KeptMap, ...]) -> Checkpoint
     """A copy of a room.
 
     Args:
-        room: As it is.
         done: How many commands have been given to it.
         before: What the copy before kept of the stock.
     """

@@ -17,7 +17,6 @@ class Entry:
 
     Attributes:
         tick: Servo periods since the beginning.
-        who: Who did it.
         command: What, as plain data.
         refusal: Why it was not done; empty when it was.
     """
@@ -32,7 +31,6 @@ class Replay:
     """A session that is lived again, little by little.
 
     Attributes:
-        room: The machine as it was.
         over: It has come to where the session had come to.
     """
 
@@ -74,9 +72,6 @@ def relive(room: Room, entries: Sequence[Entry], tick: int) -> Room:
         room: The machine as it was at the beginning, or later.
         entries: What was done to the machine since then.
         tick: How far to go.
-
-    Returns:
-        The room as it was at that tick.
     """
     replay = Replay(room, entries, tick)
     while not replay.over:

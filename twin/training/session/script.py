@@ -21,7 +21,6 @@ def play(session: Session, steps: Iterable[StepTable], *, hand_in: bool = True) 
 
     Args:
         session: Where.
-        steps: What.
         hand_in: Whether the scene is handed in at the end.
 
     Raises:
@@ -45,7 +44,6 @@ class Rehearsal:
 
     Attributes:
         what: ``solution`` or ``mistake``.
-        score: Points reached.
         failed: Numbers of the tasks that failed.
         intended: Whether that is what the scene says it should be.
     """

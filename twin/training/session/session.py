@@ -40,8 +40,6 @@ class Session:
     """A scene that is being played.
 
     Attributes:
-        scene: The scene.
-        room: Its machine.
         log: Everything that was asked for, in order.
         frozen: Time stands still.
         replay: What is being shown again; None: the machine itself is seen.
@@ -72,7 +70,6 @@ class Session:
 
         Args:
             data: A mapping with ``do`` and what belongs to it, or a command.
-            who: Who gives it.
 
         Returns:
             Whether it was done.

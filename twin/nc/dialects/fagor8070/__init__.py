@@ -7,6 +7,7 @@ from twin.nc.control.settings import ControlSettings
 from twin.nc.dialects.fagor8070 import (
     arcs,
     frames,
+    inclined_planes,
     statements,
     subroutines,
     variables,
@@ -30,6 +31,16 @@ from twin.nc.text.syntax import Comment, Mark, Syntax
 def _prepare(control: Control) -> None:
     subroutines.begin(control)
     prepare_blends(control)
+
+
+def _before_motion(control: Control, rapid: bool) -> None:
+    frames.turn_in_commanded_direction(control, rapid)
+    inclined_planes.before_motion(control)
+
+
+def _after_motion(control: Control) -> None:
+    inclined_planes.after_motion(control)
+    subroutines.call_after_motion(control)
 
 
 def _feed_rule(settings: ControlSettings) -> FeedRule:
@@ -126,11 +137,11 @@ FAGOR8070 = Dialect(
     ),
     rules=Rules(
         memory=FagorMemory,
-        before_motion=frames.turn_in_commanded_direction,
+        before_motion=_before_motion,
         read_variable=variables.read_variable,
         is_local=variables.is_local,
         prepare=_prepare,
-        after_motion=subroutines.call_after_motion,
+        after_motion=_after_motion,
         finish=statements.warn_of_missing_end,
         acts_on_lines=acts_on_lines,
         feed_rule=_feed_rule,

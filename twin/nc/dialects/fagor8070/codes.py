@@ -7,7 +7,7 @@ from twin.nc.control.codes import Action, GCode
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070 import arcs, frames, polar, transformations
 from twin.nc.dialects.fagor8070.cycles.canned_cycles import CYCLES
-from twin.nc.dialects.fagor8070.machine_coordinates import refuse_change
+from twin.nc.dialects.fagor8070.machine_coordinates import refuse_offset_change
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.geometry.planes import XY, YZ, ZX
 from twin.nc.iso import base, fixed_cycles, offsets
@@ -73,7 +73,7 @@ def _forgetting_polar(action: Action) -> Action:
     """Work offsets and presets: the last R and Q no longer hold."""
 
     def both(control: Control) -> None:
-        refuse_change(control)
+        refuse_offset_change(control)
         action(control)
         polar.forget_polar(control)
 

@@ -172,6 +172,27 @@ DECISIONS = (
         example="corner_of_roundpar",
     ),
     Decision(
+        "Which modes of #CS and #ACS are followed?",
+        "1 (turns about X, the new Y and the new Z), 2 (about Z, the new Y and the new Z) and 6 (perpendicular to the tool "
+        "where it is, then about the new Z); 3 to 5 are refused.",
+        "Those take angles between the plane and axes, whose sense a figure alone shows.",
+        example="mode_by_figure",
+    ),
+    Decision(
+        "How does #TOOL ORI turn the tool?",
+        "During the next block, which goes straight: the tip goes to its end in the plane on a line, the rotary axes evenly "
+        "to the nearest solution, or to the one that FIRST (main axis nearest to zero) or SECOND names.",
+        "The manual turns it during the first block that moves, and shows no path.",
+        example="tool_orientation",
+    ),
+    Decision(
+        "What ends with #CS NEW, and what moves offsets under #CS?",
+        "#CS NEW alone ends all systems of its kind; work offsets and presets are refused until #CS OFF ALL and "
+        "#ACS OFF ALL.",
+        "The manual advises it at the start against planes that were left; of offsets its public pages do not speak.",
+        example="offset_in_a_plane",
+    ),
+    Decision(
         "How does G84 tap with B?",
         "In passes of B with the feed, back by H, or without it to the reference plane, with the "
         "spindle reversed.",

@@ -10,7 +10,7 @@ from twin.nc.control.compensation import (
     tool_numbered,
 )
 from twin.nc.control.control import Control
-from twin.nc.dialects.fagor8070.machine_coordinates import refuse_change
+from twin.nc.dialects.fagor8070.machine_coordinates import refuse_change, refuse_offset_change
 from twin.nc.dialects.fagor8070.memory import OFFSETS_BY_NUMBER, memory_of, offset_name
 from twin.nc.dialects.fagor8070.polar import forget_polar
 from twin.nc.geometry.planes import OWN_PLANE, Plane, Vector, cross
@@ -74,7 +74,7 @@ def numbered_offset(control: Control, word: Word) -> None:
     number = control.number(word)
     if number != int(number) or not 1 <= number <= OFFSETS_BY_NUMBER:
         control.fail("no-offset", f"there is no work offset {number:g}", word)
-    refuse_change(control)
+    refuse_offset_change(control)
     _select_offset(control, offset_name(int(number)), word)
     forget_polar(control)
 
@@ -89,7 +89,7 @@ def _select_offset(control: Control, name: str, word: Word | None) -> None:
 
 def incremental_offset(control: Control) -> None:
     """G158 X Y: added to the work offset; without axes it ends."""
-    refuse_change(control)
+    refuse_offset_change(control)
     programmed_shift(control, "increment")
     forget_polar(control)
 

@@ -37,7 +37,6 @@ ENDED_ONLY = _each(
         "#TLC": "the length of the tool is that of the job, and #RTCP counts it",
         "#CSROT": _BY_AXES,
         "#TCAM": "electronic cams are not simulated",
-        "#CS, #ACS": f"inclined planes are not; {_BY_AXES}",
         "#CAX, #FACE": "a spindle as an axis is not simulated",
         "#CYL": "wrapping around a cylinder is not simulated; write C itself",
         "#TANGCTRL": "the twin has no axis that turns the tool",
@@ -49,7 +48,7 @@ ENDED_ONLY = _each(
 
 REFUSED = _each(
     {
-        "#TOOL ORI, #DEFROT, #SELECT ORI": _BY_AXES,
+        "#DEFROT, #SELECT ORI": _BY_AXES,
         "#TOOL AX": "the tool lies along Z",
         "#KINORG": "the part's zero goes with the table where #RTCP ON leads the tip",
         "#ASPLINE, #POLY": _NO_SPLINES,

@@ -24,6 +24,18 @@ def refuse_change(control: Control) -> None:
         control.fail("machine-coordinates", message, hint="end it by #MCS OFF first")
 
 
+def refuse_offset_change(control: Control) -> None:
+    """A change of work offset or preset while machine coordinates, #CS or #ACS are in force.
+
+    Raises:
+        ProgramError: They are.
+    """
+    refuse_change(control)
+    if memory_of(control).is_tilted:
+        message = "offsets do not change while a coordinate system is in force"
+        control.fail("tilted-plane", message, hint="#CS OFF ALL and #ACS OFF ALL before")
+
+
 def machine_coordinates(control: Control, statement: Statement) -> None:
     """#MCS ON, #MCS OFF, or #MCS and the words of a move."""
     text = statement.text.strip().upper()

@@ -1,11 +1,16 @@
 """What only the Fagor CNC 8070 remembers from block to block."""
 
 import dataclasses
+import functools
 import math
+from typing import NamedTuple
 
 from twin.nc.control.constructs import Structure
 from twin.nc.control.control import Control
 from twin.nc.geometry.arcs import Point
+from twin.nc.geometry.frame import chained
+from twin.nc.geometry.matrices import IDENTITY, Matrix
+from twin.nc.geometry.planes import Vector
 from twin.nc.iso.machine_coordinates import PartFrame
 from twin.nc.text.blocks import Statement
 
@@ -13,6 +18,24 @@ OFFSETS_BY_NUMBER = 20
 """Work offsets that G159 and the table can name; the first six are G54 to G59."""
 
 ModalCall = tuple[str, dict[str, float], Statement]
+
+
+class SpatialSystem(NamedTuple):
+    """A coordinate system of #CS or #ACS.
+
+    Attributes:
+        directions: Of its axes, as columns.
+        origin: [mm].
+        solution: Of the rotary axes: 1 FIRST, -1 SECOND, 0 neither is asked for.
+    """
+
+    directions: Matrix
+    origin: Vector
+    solution: float = 0.0
+
+
+KINDS = ("#ACS", "#CS")
+"""Of coordinate systems, in the order in which they act."""
 
 
 @dataclasses.dataclass(slots=True)
@@ -28,7 +51,6 @@ class FagorMemory:
         headings: Lines of all headings, from 0, in order.
         main: Line of the program's heading, from 0, or None.
         structure: Which $ keywords belong together; None before it was asked for.
-        modal_call: #MCALL in force.
         part_frame: What #MCS has put aside while machine coordinates are in force, or None.
         offset_on: The tool in the spindle has its offset.
         polar_origin: In the working plane, from part zero [mm].
@@ -39,6 +61,10 @@ class FagorMemory:
         rotation: Its angle in the working plane [deg]; NaN: none.
         rotation_center: [mm].
         offsets: Work offsets that the program has written, by name and axis, as those of the job.
+        systems: Coordinate systems that are stored, by kind and number; the one stored last is at the end.
+        active: Those in force, by kind, in the order of their activation.
+        orients: #TOOL ORI: the next motion block sets the tool perpendicular to the plane.
+        led: The tip was led before that block.
     """
 
     temporary: bool = False
@@ -60,6 +86,24 @@ class FagorMemory:
     rotation: float = math.nan
     rotation_center: Point = (0.0, 0.0)
     offsets: dict[str, dict[str, float]] = dataclasses.field(default_factory=dict)
+    systems: dict[str, dict[int, SpatialSystem]] = dataclasses.field(
+        default_factory=lambda: {kind: {} for kind in KINDS}
+    )
+    active: dict[str, list[SpatialSystem]] = dataclasses.field(
+        default_factory=lambda: {kind: [] for kind in KINDS}
+    )
+    orients: bool = False
+    led: bool = False
+
+    def combined(self, *kinds: str) -> tuple[Matrix, Vector]:
+        """Directions of the axes, as columns, and origin of all systems of some kinds in force."""
+        systems = [system[:2] for kind in kinds for system in self.active[kind]]
+        return functools.reduce(chained, systems, (IDENTITY, (0.0, 0.0, 0.0)))
+
+    @property
+    def is_tilted(self) -> bool:
+        """Whether a coordinate system is in force."""
+        return any(self.active.values())
 
 
 def memory_of(control: Control) -> FagorMemory:
@@ -69,13 +113,15 @@ def memory_of(control: Control) -> FagorMemory:
 
 
 def acts_on_lines(control: Control) -> bool:
-    """A radius, a modal call, machine coordinates or module axes, polar values that Cartesian moves end."""
+    """A radius, a modal call, machine coordinates, systems in space or module axes, polar values that Cartesian moves end."""
     memory = memory_of(control)
     return (
         memory.temporary
         or memory.modal_call is not None
         or memory.circle_radius is not None
         or memory.part_frame is not None
+        or memory.is_tilted
+        or memory.orients
         or not math.isnan(memory.polar_radius)
         or control.settings.module_rotary
     )

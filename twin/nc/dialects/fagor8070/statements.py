@@ -6,7 +6,7 @@ from typing import NoReturn
 
 from twin.nc.control.codes import StatementAction
 from twin.nc.control.control import Control
-from twin.nc.dialects.fagor8070 import flow, subroutines
+from twin.nc.dialects.fagor8070 import flow, inclined_planes, subroutines
 from twin.nc.dialects.fagor8070.known_statements import ENDED_ONLY, PASSED_OVER, REFUSED
 from twin.nc.dialects.fagor8070.machine_coordinates import machine_coordinates
 from twin.nc.dialects.fagor8070.polar import forget_polar
@@ -145,6 +145,7 @@ _RTCP = re.compile(r"[ \t]*(ON|OFF)(?:[ \t]*\[[ \t]*[0-9]+[ \t]*\])?[ \t]*", re.
 STATEMENTS: dict[str, StatementAction] = {
     **flow.STATEMENTS,
     **subroutines.STATEMENTS,
+    **inclined_planes.STATEMENTS,
     "#TIME": _dwell,
     "#COMMENT BEGIN": skip_comment,
     "#COMMENT END": lambda control, statement: control.fail(

@@ -5,9 +5,9 @@ import math
 from twin.nc.control.codes import Action
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.machine_coordinates import refuse_change
-from twin.nc.dialects.fagor8070.memory import memory_of
+from twin.nc.dialects.fagor8070.memory import KINDS, memory_of
 from twin.nc.dialects.fagor8070.polar import forget_polar
-from twin.nc.geometry.frame import composed
+from twin.nc.geometry.frame import chained, composed
 from twin.nc.geometry.matrices import LARGEST_SCALE, SMALLEST_SCALE
 from twin.nc.text.blocks import Statement, Word
 
@@ -15,7 +15,7 @@ from twin.nc.text.blocks import Statement, Word
 def mirror_off(control: Control) -> None:
     """G10."""
     memory_of(control).signs[:] = (1.0, 1.0, 1.0)
-    _update(control)
+    update(control)
 
 
 def mirror(index: int) -> Action:
@@ -23,7 +23,7 @@ def mirror(index: int) -> Action:
 
     def action(control: Control) -> None:
         memory_of(control).signs[index] = -1.0
-        _update(control)
+        update(control)
 
     return action
 
@@ -40,7 +40,7 @@ def mirror_axes(control: Control) -> None:
         if abs(sign) != 1.0:
             control.fail("mirror", "a mirror takes -1 or 1 for X, Y and Z", word)
         memory_of(control).signs[index] = sign
-    _update(control)
+    update(control)
 
 
 def scale(control: Control) -> None:
@@ -58,7 +58,7 @@ def set_scale(control: Control, factor: float, error_at: Word | Statement | None
     if not SMALLEST_SCALE <= factor <= LARGEST_SCALE:
         control.fail("scale", "a scale lies between 0.001 and 1000", error_at)
     memory_of(control).scale = factor
-    _update(control, error_at if isinstance(error_at, Statement) else None)
+    update(control, error_at if isinstance(error_at, Statement) else None)
 
 
 def rotate(control: Control) -> None:
@@ -75,18 +75,19 @@ def rotate(control: Control) -> None:
             hint = "end it by G73 alone"
             control.fail("rotation-active", "a rotation is in force", word, hint)
         memory.rotation, memory.rotation_center = control.number(word), center
-    _update(control)
+    update(control)
 
 
-def _update(control: Control, error_at: Statement | None = None) -> None:
-    """Scale, then mirror, then rotation about its centre in the working plane hold from here on."""
+def update(control: Control, error_at: Statement | None = None) -> None:
+    """Scale, then mirror, then rotation about its centre in the working plane, then #CS, then #ACS hold from here on."""
     refuse_change(control)
     if control.path.compensation.in_force:
         message = "mirror, scale and rotation cannot change while compensation is in force"
         control.fail("compensation-change", message, error_at, "end it by G40 first")
     memory, axes = memory_of(control), control.modal.plane.directions
     x, y, z = memory.signs
-    matrix, shift = composed((x, y, z), memory.scale, axes, memory.rotation, memory.rotation_center)
+    within = composed((x, y, z), memory.scale, axes, memory.rotation, memory.rotation_center)
+    matrix, shift = chained(memory.combined(*KINDS), within)
     control.frame.set_matrix(matrix)
     others = [0.0] * (len(control.settings.axes) - 3)
     control.frame.set_shift("rotation", [*shift, *others])

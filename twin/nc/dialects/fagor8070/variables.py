@@ -97,7 +97,6 @@ class Assignment:
         name: The variable, or ``P`` where its number is computed.
         index: That number, or None.
         index_column: Where it is.
-        value: What it becomes.
         column: Where it is.
     """
 

@@ -158,6 +158,7 @@ FANUC = Dialect(
         length_by_code=True,
     ),
     units='mm, inches (G20), degrees; numbers without a point count 0.001 mm, 0.0001 inch or 0.001 degree, unless decimal_point = "calculator"; F in mm/min',
+    job_keys=frozenset({"decimal_point", "offset_rows"}),
     decisions=DECISIONS,
     marks=(
         *_FAMILY,

@@ -146,7 +146,6 @@ class ModalCall(NamedTuple):
     Attributes:
         line: First line of the program, from 0.
         values: Its arguments by their variables.
-        word: That names the program.
     """
 
     line: int
@@ -163,7 +162,6 @@ class ToolOffset:
         length: Geometry of the length; None: that of the job's tool.
         radius: Geometry of the radius; None: that of the job's tool.
         length_wear: Added to the length.
-        radius_wear: Added to the radius.
     """
 
     length: float | None = None

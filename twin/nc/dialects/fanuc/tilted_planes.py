@@ -84,9 +84,7 @@ def turned_in_order(control: Control, order: Word | None, angles: Vector, defaul
     """Turns about X, Y and Z, which rest, one after the other [deg].
 
     Args:
-        control: The control.
         order: Q: the axes, 1 to 3, in turn.
-        angles: About X, Y and Z.
         default: The order where the program says none; empty: that of several turns must be said.
 
     Raises:

@@ -9,7 +9,7 @@ from twin.nc.control.control import Control
 from twin.nc.dialects.fanuc.memory import memory_of
 from twin.nc.dialects.fanuc.tool_offsets import apply_length
 from twin.nc.dialects.fanuc.transformations import set_tilt
-from twin.nc.iso.tilted_plane import machine_directions, point_tool
+from twin.nc.iso.tilted_plane import machine_directions, point_tool, refuse_leaning
 from twin.nc.iso.tool_center import begin_tool_center, end_tool_center, point_by_words
 
 VECTORS = "G43.5"
@@ -65,8 +65,6 @@ def orient(name: str, plane: str, *, about_tip: bool = False) -> Action:
     """G53.1, G53.6, G253: rotary axes turn until the tool stands across the tilted plane, rapidly.
 
     Args:
-        name: The code.
-        plane: The code that tilts the plane.
         about_tip: They turn about the tip (G53.6); else X, Y and Z rest.
     """
 
@@ -94,12 +92,8 @@ def require_orientation(control: Control) -> None:
     Raises:
         ProgramError: It does not yet.
     """
-    tilted = memory_of(control).tilt is not None and control.path.tool_center is None
-    word = next((control.words[each] for each in "XYZ" if each in control.words), None)
-    if tilted and word is not None:
-        message = "the tool does not stand across the tilted plane yet"
-        hint = "G53.1 behind G68.2, or G253 behind G268, before X, Y and Z move"
-        control.fail("tilted-plane", message, word, hint)
+    if memory_of(control).tilt is not None:
+        refuse_leaning(control, "G53.1 behind G68.2, or G253 behind G268, before X, Y and Z move")
 
 
 def level(control: Control) -> None:

@@ -8,13 +8,13 @@ from twin.nc.control.codes import Action
 from twin.nc.control.control import Control
 from twin.nc.dialects.fanuc.memory import memory_of
 from twin.nc.geometry.arcs import Point
+from twin.nc.geometry.frame import chained
 from twin.nc.geometry.matrices import (
     IDENTITY,
     LARGEST_SCALE,
     SMALLEST_SCALE,
     Matrix,
     applied,
-    product,
     rotated,
     stretched,
 )
@@ -168,8 +168,7 @@ def _update(control: Control) -> None:
     matrix, shift = _transformation(control)
     tilt = memory_of(control).tilt
     if tilt is not None:
-        x, y, z = applied(tilt[0], shift)
-        matrix, shift = product(tilt[0], matrix), (x + tilt[1][0], y + tilt[1][1], z + tilt[1][2])
+        matrix, shift = chained(tilt, (matrix, shift))
     control.frame.set_matrix(matrix)
     others = [0.0] * (len(control.settings.axes) - 3)
     control.frame.set_shift("rotation", [*shift, *others])

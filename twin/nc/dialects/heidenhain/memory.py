@@ -40,11 +40,9 @@ class KlartextMemory:
         tool_feed: F of the last TOOL CALL, for F AUTO; None: it had none.
         per_revolution: M136: F counts millimetres per revolution.
         side: Of radius compensation: 1 left, -1 right, 0 none.
-        deltas: Of the tool in the spindle.
         defined: Tools that TOOL DEF has given values, by number.
         blank: First corner of BLK FORM, programmed coordinates; None before it.
         cycle: The machining cycle that the next call runs; None: none is defined.
-        parameters: What it was given.
         steps: What the steps of an old cycle have given so far, by parameter.
         step: The last of these steps.
         calls_always: M89: it runs behind every block that moves.

@@ -52,7 +52,6 @@ def path_function(interpolation: Interpolation, after: After) -> StatementAction
     """A keyword whose block moves.
 
     Args:
-        interpolation: What takes its words and moves.
         after: Done behind it.
     """
 

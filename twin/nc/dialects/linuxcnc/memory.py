@@ -30,7 +30,6 @@ class SavedState:
     """What M70 and M73 put aside.
 
     Attributes:
-        modal: Codes in force.
         feed: F as it was written, or None.
         spindle: S, or None [1/min].
     """
@@ -49,7 +48,6 @@ class LinuxcncMemory:
         system: Number of the one in force.
         preset: Of G92 and G52, shape (k,) [mm or deg].
         kept_preset: What G92.3 puts back, shape (k,).
-        preset_on: The preset counts.
         tool_offset: Of G43, shape (k,) [mm or deg]; None: G49.
         offset_unit: Unit in force when it came into force [mm].
         homes: Positions of G28 and G30 in machine coordinates, shape (2, k).
@@ -69,11 +67,9 @@ class LinuxcncMemory:
         spline_end: P and Q of the last G5 [mm]; None where another move came since.
         control_points: Of the NURBS that is being given.
         control_line: Line of its last point, from 1.
-        spline_order: Its order.
         prepared: T has prepared a tool: it stays so for the next M6.
         probe: Where the last probe ended, shape (k,) [unit of the program then, or deg].
         converted_feed: F as it was written, where the unit has changed since; else None.
-        percent: The program began with %.
         percent_ended: A second % has ended it.
     """
 

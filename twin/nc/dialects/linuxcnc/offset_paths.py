@@ -16,7 +16,6 @@ class OffsetArc(NamedTuple):
         center: Of both [mm].
         radius: Of the tool's path [mm].
         inside: The tool runs on the inner side of the arc.
-        counter_clockwise: The arc turns so.
     """
 
     center: Point

@@ -12,13 +12,13 @@ from twin.nc.control.codes import Action
 from twin.nc.control.control import Control
 from twin.nc.dialects.sinumerik.memory import memory_of
 from twin.nc.dialects.sinumerik.targets import forget_polar, frame_changed, frame_changes
+from twin.nc.geometry.frame import chained
 from twin.nc.geometry.matrices import (
     IDENTITY,
     LARGEST_SCALE,
     SMALLEST_SCALE,
     Matrix,
     applied,
-    product,
     rotated,
     transposed,
 )
@@ -156,14 +156,10 @@ def put_programmable(control: Control, matrix: Matrix, translation: Vector) -> N
     memory.matrix, memory.translation = matrix, translation
     lengths = [math.hypot(*row) for row in transposed(matrix)]
     memory.uneven = max(lengths) - min(lengths) > _SAME_SCALE * max(lengths)
-    shift = [a + b for a, b in zip(translation, memory.fine, strict=True)]
+    x, y, z = (a + b for a, b in zip(translation, memory.fine, strict=True))
+    shift: Vector = (x, y, z)
     if memory.swivel is not None:
-        directions, origin = memory.swivel
-        matrix, turned = (
-            product(directions, matrix),
-            applied(directions, (shift[0], shift[1], shift[2])),
-        )
-        shift = [a + b for a, b in zip(turned, origin, strict=True)]
+        matrix, shift = chained(memory.swivel, (matrix, shift))
     control.frame.set_matrix(matrix)
     others = [memory.other_shifts.get(axis, 0.0) for axis in range(3, len(control.settings.axes))]
     control.frame.set_shift("rotation", [*shift, *others])
@@ -194,9 +190,8 @@ def frame_code(change: Change, *, additive: bool) -> Action:
             return
         matrix, shift = change(control)
         if additive:
-            x, y, z = applied(memory.matrix, shift)
-            a, b, c = memory.translation
-            matrix, shift = product(memory.matrix, matrix), (a + x, b + y, c + z)
+            before = memory.matrix, memory.translation
+            matrix, shift = chained(before, (matrix, shift))
         put_programmable(control, matrix, shift)
 
     return action

@@ -46,8 +46,6 @@ class Formal:
     """A parameter of a subprogram.
 
     Attributes:
-        name: Its name.
-        type: Its type.
         is_reference: VAR: it writes the caller's variable.
         is_table: It is a table of the caller's, as large as that is.
         default: Its value where the call gives none.
@@ -67,7 +65,6 @@ class Subprogram:
     Attributes:
         lines: Those between its heading and the next.
         first: Where it begins to run.
-        formals: Its parameters.
         restores: SAVE: modal codes and frames are put back when it returns.
     """
 
@@ -83,11 +80,9 @@ class CallFrame:
 
     Attributes:
         types: Of the variables that it has defined.
-        sizes: Of its tables, by name.
         texts: Values of its variables that hold texts.
         references: Parameters (VAR) by the caller's variable that they write when the call ends.
         programmable: The programmable frame that its end puts back; None: it stays.
-        depth: Calls around it.
     """
 
     types: dict[str, VariableType] = dataclasses.field(default_factory=dict)

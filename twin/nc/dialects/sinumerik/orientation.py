@@ -12,10 +12,17 @@ from twin.nc.dialects.sinumerik.frames import put_programmable
 from twin.nc.dialects.sinumerik.memory import memory_of
 from twin.nc.dialects.sinumerik.values import bracketed, split_values
 from twin.nc.geometry.arcs import direction
-from twin.nc.geometry.matrices import IDENTITY, Matrix, applied, product
+from twin.nc.geometry.frame import chained
+from twin.nc.geometry.matrices import IDENTITY, Matrix, product
 from twin.nc.geometry.planes import Vector
 from twin.nc.iso.machine_coordinates import machine_frame
-from twin.nc.iso.tilted_plane import about, directions_of, plane_of_axes, point_tool
+from twin.nc.iso.tilted_plane import (
+    about,
+    directions_of,
+    plane_of_axes,
+    point_tool,
+    refuse_leaning,
+)
 from twin.nc.iso.tool_center import begin_tool_center, end_tool_center, point_by_words
 from twin.nc.text.blocks import Statement
 
@@ -107,11 +114,8 @@ def swivel(control: Control, statement: Statement) -> None:
     before: tuple[Matrix, Vector] = (IDENTITY, (0.0, 0.0, 0.0))
     if int(values[_STATUS]) % 10 == 1 and memory.swivel is not None:
         before = memory.swivel
-    turned = product(before[0], matrix)
-    x, y, z = applied(before[0], _vector(values[_ORIGIN]))
-    a, b, c = applied(turned, _vector(values[_SHIFT]))
-    o, p, q = before[1]
-    memory.swivel = turned, (o + x + a, p + y + b, q + z + c)
+    turned = chained(before, (matrix, _vector(values[_ORIGIN])))
+    memory.swivel = chained(turned, (IDENTITY, _vector(values[_SHIFT])))
     put_programmable(control, memory.matrix, memory.translation)
     if values[_DIRECTION] and control.settings.setup is not None:
         point_tool(control, "CYCLE800", sense=values[_DIRECTION], at=statement)
@@ -124,10 +128,8 @@ def require_orientation(control: Control) -> None:
         ProgramError: It does not.
     """
     swivelled = memory_of(control).swivel
-    word = next((control.words[each] for each in "XYZ" if each in control.words), None)
-    if swivelled and swivelled[0] != IDENTITY and word and control.path.tool_center is None:
-        message = "the tool does not stand across the swivelled plane"
-        control.fail("tilted-plane", message, word, "CYCLE800 with _DIR -1 or 1, or TRAORI")
+    if swivelled and swivelled[0] != IDENTITY:
+        refuse_leaning(control, "CYCLE800 with _DIR -1 or 1, or TRAORI")
 
 
 def _retract(control: Control) -> None:

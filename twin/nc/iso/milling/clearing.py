@@ -39,7 +39,6 @@ class Clearing:
         floor: What it leaves at the bottom [mm].
         roughs: Whether there is roughing.
         finishes: Whether what it leaves is taken away.
-        feed: Of milling.
         plunge: Feed of plunging; None: that of milling.
         finish_feed: Feed of the last ring; None: that of milling.
         helix: Radius of the helix on which the tool plunges, 0 for straight down [mm].

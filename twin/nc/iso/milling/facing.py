@@ -27,7 +27,6 @@ class Face:
         levels: Heights of the passes [mm].
         safe: Over which the tool moves rapidly [mm].
         back: Height to which it returns [mm].
-        feed: Of milling.
     """
 
     corner: Point

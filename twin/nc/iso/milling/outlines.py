@@ -41,7 +41,6 @@ class Corner:
     """The corners of a rectangle.
 
     Attributes:
-        kind: What they are.
         size: Radius, or distance of the chamfer's ends from the corner, at the wall [mm].
         radius: Of the tool; below 0 around a stud [mm].
     """
@@ -65,9 +64,7 @@ class Circle:
     """A circle about its entry.
 
     Attributes:
-        entry: Its centre.
         room: Radius of the tool's path along the wall [mm].
-        clockwise: Direction of machining.
         angle: At which a ring begins [deg].
     """
 
@@ -90,12 +87,9 @@ class Rectangle:
     """A rectangle about its entry.
 
     Attributes:
-        entry: Its middle.
         length: Half of it along its angle, less the tool's radius [mm].
         width: Half of it across [mm].
         angle: Of its length against the abscissa [deg].
-        clockwise: Direction of machining.
-        corner: What its corners are.
     """
 
     entry: Point
@@ -147,7 +141,6 @@ class CurvedSlot:
         begin: Where the centre of its first end lies [deg].
         opening: From there to that of its last one, with its sign [deg].
         room: Half its width less the tool's radius [mm].
-        clockwise: Direction of machining.
     """
 
     center: Point

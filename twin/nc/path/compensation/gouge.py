@@ -27,7 +27,6 @@ class Crossing(NamedTuple):
     """A path that crosses one that was passed.
 
     Attributes:
-        line: Of the element that was passed.
         back: How many elements of the contour lie before the new one, from that on.
     """
 

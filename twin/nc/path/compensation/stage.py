@@ -60,7 +60,6 @@ class Compensation:
     """Radius compensation of a path.
 
     Attributes:
-        stage: What it waits for.
         plane: In which it acts: abscissa, ordinate and normal in part coordinates.
     """
 

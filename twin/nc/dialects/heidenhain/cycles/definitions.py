@@ -31,7 +31,6 @@ class Definition(NamedTuple):
     """One cycle.
 
     Attributes:
-        meaning: For people.
         perform: What it does: where it is called, or where it is defined.
         needed: Parameters that must be there.
         others: Further ones.

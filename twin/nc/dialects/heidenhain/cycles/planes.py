@@ -23,8 +23,8 @@ from twin.nc.geometry.matrices import IDENTITY, Matrix
 from twin.nc.iso.machine_coordinates import machine_frame
 from twin.nc.iso.plane_moves import at_feed
 from twin.nc.iso.tilted_plane import (
+    count_in_plane,
     rotary_axes_across,
-    stands_across,
     turn_about,
     turned_with_plane,
 )
@@ -106,16 +106,9 @@ def enter_plane(control: Control) -> None:
     Raises:
         ProgramError: It does not.
     """
-    if memory_of(control).tilt is None or control.path.tool_center is not None:
-        return
-    word = next((control.words[each] for each in control.words if each in "XYZ"), None)
-    if word is None:
-        return
-    if not stands_across(control) or any(each in control.words for each in "ABC"):
-        message = "the tool does not stand across the tilted plane yet"
+    if memory_of(control).tilt is not None:
         hint = "L A+Q120 C+Q122 FMAX (the axes of the machine) in a block before, or TURN in PLANE"
-        control.fail("tilted-plane", message, word, hint)
-    begin_tool_center(control, "PLANE", tilted=True)
+        count_in_plane(control, "PLANE", hint)
 
 
 def _words(control: Control, statement: Statement, at: int) -> PlaneWords:

@@ -38,8 +38,6 @@ class Step(NamedTuple):
     """One block of a definition in steps, such as ``7.1 X+60``.
 
     Attributes:
-        cycle: Its number.
-        step: That of the block.
         text: What is behind both.
         column: Where that begins.
     """

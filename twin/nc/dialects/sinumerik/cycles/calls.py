@@ -16,8 +16,6 @@ class CycleCall(NamedTuple):
     """A cycle that is being called.
 
     Attributes:
-        control: The control.
-        statement: What calls it.
         values: What the call gives, by the name of the parameter.
         texts: What it gives as a text in quotes.
     """

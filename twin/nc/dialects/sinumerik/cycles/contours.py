@@ -37,8 +37,6 @@ class _Milling:
     """A contour that is being milled, pass by pass; called when its blocks have run.
 
     Attributes:
-        call: The cycle's call.
-        block: Which calls it.
         heights: Of the surface, the bottom and around them [mm].
         levels: Heights of the passes that are to come [mm].
         leads: The ways to the contour and away from it.

@@ -30,9 +30,7 @@ class Heights(NamedTuple):
 
     Attributes:
         back: Where the tool returns to.
-        surface: The reference plane.
         safe: As far above it as SDIS says: where the feed begins.
-        bottom: Of the hole.
     """
 
     back: float
