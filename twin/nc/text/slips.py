@@ -9,7 +9,10 @@ from pathlib import Path
 
 import pydantic
 
+_ABOUT = 200
+"""Characters before and behind a place that are looked at: a line may have any length."""
 _MOST_NEAR = 3
+_LONGEST_NAME = 40
 _NEARLY = 0.7
 """Likeness of two names, of 1, of which one may be a slip for the other."""
 
@@ -40,13 +43,16 @@ def slip_at(line: str, at: int, dialect: str) -> str | None:
     for slip in slips():
         if slip.dialects and dialect not in slip.dialects:
             continue
-        if any(found.start() <= at <= found.end() for found in slip.pattern.finditer(line)):
+        matches = slip.pattern.finditer(line, max(0, at - _ABOUT), at + _ABOUT)
+        if any(found.start() <= at <= found.end() for found in matches):
             return slip.hint
     return None
 
 
 def near(name: str, known: Iterable[str]) -> list[str]:
     """Known names for which a name may be a slip, the most alike first."""
+    if len(name) > _LONGEST_NAME:
+        return []
     return difflib.get_close_matches(name.upper(), list(known), _MOST_NEAR, _NEARLY)
 
 
