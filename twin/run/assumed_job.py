@@ -64,7 +64,6 @@ def with_assumptions(
 
     Args:
         machine: Overrides the job's machine.
-        strict: Warnings of the interpreter are errors.
 
     Raises:
         ProgramError: The program is wrong.

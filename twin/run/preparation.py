@@ -84,10 +84,8 @@ def prepare(
     """Read a job, or a program with its job beside it, and all that it names.
 
     Args:
-        path: NC program or job file.
         dialect: Overrides the job's dialect.
         machine: Overrides the job's machine; a path is relative to the working folder.
-        strict: Warnings of the interpreter are errors.
         changes: Values of the job (``job.``) and the machine file (``machine.``) to change.
         assuming: How a program without a job is read may be assumed; the caller reports what was.
 
@@ -215,8 +213,6 @@ def prepare_job(
         job: The job; other arguments and errors as for ``prepare``.
         dialect: As there.
         machine: As there.
-        strict: As there.
-        changes: As there.
         tools: What comments say of the tools of a job that names none.
     """
     twin_machine = load_machine(job, machine, changes)

@@ -336,7 +336,6 @@ class Machine:
     """A machine file that was read, with what other packages need of it.
 
     Attributes:
-        path: Where the machine file lies.
         axes: Names and kinds in the order of every column.
     """
 

@@ -183,11 +183,7 @@ def _dropped(good: Sequence[_Trial], quick: Sequence[_Trial], meant: Sequence[_T
 
 
 def _choice(name: str, meant: Sequence[_Trial], why: str) -> Choice:
-    """The dialect that is taken of those that may be meant.
-
-    Raises:
-        UsageError: They would not move alike.
-    """
+    """The dialect that is taken of those that may be meant."""
     slightly = ""
     for other in meant[1:]:
         difference = _difference(meant[0], other)

@@ -136,11 +136,7 @@ def take_shortest_way(control: Control) -> None:
 
 
 def place_switches(control: Control, length: float) -> None:
-    """H with O (share of the element) or L (distance from its start, or its end when negative).
-
-    Raises:
-        ProgramError: Too many, none of O and L, or a place outside the element.
-    """
+    """H with O (share of the element) or L (distance from its start, or its end when negative)."""
     words, control.series = control.series, []
     if not words:
         return

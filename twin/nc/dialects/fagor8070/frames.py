@@ -30,11 +30,7 @@ def choose_plane(control: Control) -> None:
 
 
 def change_plane(control: Control) -> None:
-    """The plane becomes another, with part zero as polar origin.
-
-    Raises:
-        ProgramError: Compensation or a rotation is in force.
-    """
+    """The plane becomes another, with part zero as polar origin."""
     refuse_compensated_plane(control)
     memory = memory_of(control)
     if not math.isnan(memory.rotation):
@@ -145,11 +141,7 @@ def compensation_by_tool(side: float) -> Action:
 
 
 def turn_in_commanded_direction(control: Control, _rapid: bool) -> None:
-    """With ``module_rotary``: G90 turns in the direction of the sign, by less than a turn.
-
-    Raises:
-        ProgramError: The target is a turn or more.
-    """
+    """With ``module_rotary``: G90 turns in the direction of the sign, by less than a turn."""
     if not control.settings.module_rotary or control.modal.incremental:
         return
     for index, name in enumerate(control.settings.axes.names):

@@ -266,11 +266,7 @@ def acts_on_lines(control: Control) -> bool:
 
 
 def refuse_transformed(control: Control, code: str) -> None:
-    """What changes the origin, or leaves it, under a scale, a mirror or a rotation (manual of G51, G51.1, G68).
-
-    Raises:
-        ProgramError: One is in force, on a control that forbids it.
-    """
+    """What changes the origin, or leaves it, under a scale, a mirror or a rotation (manual of G51, G51.1, G68)."""
     memory = memory_of(control)
     transformed = memory.scale is not None or memory.mirror or memory.rotation is not None
     if memory.variant.transformed_keeps_origin and transformed:
