@@ -1,4 +1,4 @@
-"""The machine beside the raw ``mujoco.rollout`` of the same model and the same controls."""
+"""The machine compared with the raw ``mujoco.rollout`` of the same model and the same controls."""
 
 import dataclasses
 from collections.abc import Iterator

@@ -31,7 +31,7 @@ class Course:
         logged_force: Force [N or N m] or what the control shows [A]; empty where none is logged.
         predicted_force: The model's force or current.
         force_time: When, which is not always when positions were [s].
-        speed: Commanded, beside ``logged`` [mm/s or deg/s].
+        speed: Commanded, at the samples of ``logged`` [mm/s or deg/s].
     """
 
     time: FloatArray

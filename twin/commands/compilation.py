@@ -173,7 +173,7 @@ def _can_be_written(folder: Path) -> bool:
 
 
 def start_compiling(path: Path, dialect: str | None, machine: str | None) -> None:
-    """Begin to compile beside this process, where a second core and a common folder for kernels are there.
+    """Begin to compile in another process, where a second core and a common folder for kernels are there.
 
     The process ends with this one.
 

@@ -133,7 +133,7 @@ def _shown(run: Run, motion: "LockstepMotion") -> Iterator[None]:
 
 
 def _explain_blending(program: Path) -> None:
-    """Say what a G64 without P does, beside a verdict that fails."""
+    """Say what a G64 without P does, along with a verdict that fails."""
     lines = program.read_text(encoding="utf-8", errors="replace").splitlines()
     for number, line in enumerate(lines, 1):
         if _BLENDING.match(line):

@@ -42,7 +42,7 @@ class Source:
         speed: Seconds of the twin for each second of the day.
         dialect: Overrides the job's dialect.
         machine: Overrides the job's machine.
-        opcua_port: Where OPC UA is told beside MTConnect; None: nowhere.
+        opcua_port: Port of OPC UA, which reports in addition to MTConnect; None: it does not.
         opcua_trust: Folder of the certificates of OPC UA's clients.
         grbl: Port at which a machine takes programs from Grbl's senders, or ``pty``; None: it takes none.
         view: Whether a page shows the machine, too.

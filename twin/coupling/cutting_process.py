@@ -74,7 +74,7 @@ class Operation(Protocol):
 
 
 class Rows(NamedTuple):
-    """What the machine is told in n periods, and what is set by them.
+    """What the machine is commanded in n periods, and what is set by them.
 
     Attributes:
         controls: What the drives are commanded on the way to each setpoint, shape (n, nu).

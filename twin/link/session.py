@@ -98,7 +98,7 @@ def run_on_twin(
     progress: Progress,
     wish: Wish,
     say: Callable[[str], None],
-    beside: Callable[[LockstepMotion], AbstractContextManager[None]] = lambda _motion: (
+    meanwhile: Callable[[LockstepMotion], AbstractContextManager[None]] = lambda _motion: (
         nullcontext()
     ),
 ) -> tuple[Outcome, dict[str, float]]:
@@ -107,7 +107,7 @@ def run_on_twin(
     Args:
         folder: For the results; LinuxCNC's own files go into a folder in it.
         say: Told what LinuxCNC says.
-        beside: Open while the control drives the machine, such as a page that shows it.
+        meanwhile: Open while the control drives the machine, such as a page that shows it.
 
     Returns:
         What the run came to, and how the two got on: ``answered`` and ``missed`` servo periods, and
@@ -140,7 +140,7 @@ def run_on_twin(
             )
             ini = write_configuration(own, preparation.machine, settings)
             with (
-                beside(motion),
+                meanwhile(motion),
                 running(start, ini, folder / LOG_NAME) as linuxcnc,
             ):
                 motion.goes_on = linuxcnc.goes_on

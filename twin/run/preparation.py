@@ -162,7 +162,7 @@ def _with_radii(
 
 
 def _require_that_radii_fit(made: Preparation) -> None:
-    """Raise the error of a compensated contour that leaves the tool no room; other errors are told later."""
+    """Raise the error of a compensated contour that leaves the tool no room; other errors are reported later."""
     try:
         for _ in made.interpretation().chunks():
             pass
@@ -264,9 +264,9 @@ def prepare_recorded(header: RecordingHeader, *, machine: str | None = None) -> 
         raise RecordingError(
             "the recording does not hold the job that it was made with: run the job again"
         ) from error
-    beside = header.machine_file if Path(header.machine_file).is_file() else header.machine
+    recorded_on = header.machine_file if Path(header.machine_file).is_file() else header.machine
     job = Job(Path(), file)
-    found = load_machine(job, machine or beside)
+    found = load_machine(job, machine or recorded_on)
     dialect = dialect_named(header.dialect)
     source = source_from_text(header.program_text, header.program)
     if not header.program_text:
@@ -311,6 +311,7 @@ def _control_settings(job: Job, machine: Machine, *, strict: bool) -> ControlSet
         },
         recalculate_on_rapid=control.recalculate_on_rapid,
         module_rotary=control.module_rotary,
+        rollover=job.file.rollover or control.rollover,
         helical_feed=control.helical_feed,
         rotary_diameter=control.rotary_diameter,
         feed_of_all_axes=control.feed_of_all_axes,
@@ -346,7 +347,7 @@ def _refuse_taken_functions(job: Job, machine: Machine, dialect: Dialect) -> Non
             )
 
 
-_KEYS_OF_SOME = ("decimal_point", "offset_rows")
+_KEYS_OF_SOME = ("decimal_point", "offset_rows", "rollover")
 """Keys of a job that some dialects read, and the others pass over."""
 
 

@@ -63,8 +63,8 @@ def view_app(
 
     async def run_json(_request: Request) -> Response:
         found = await anyio.to_thread.run_sync(description)
-        beside = {"has_report": report is not None, "is_live": now is not None}
-        return JSONResponse(found | beside)
+        extras = {"has_report": report is not None, "is_live": now is not None}
+        return JSONResponse(found | extras)
 
     async def report_page(_request: Request) -> Response:
         if report is None:

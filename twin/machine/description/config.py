@@ -198,7 +198,7 @@ class SpindleTable(Table):
 
 
 class GrowthTable(Table):
-    """One way in which a warm machine grows: a state of first order, cold where a run begins.
+    """One cause by which a warm machine grows: a state of first order, cold where a run begins.
 
     It tends to ``um`` times what drives it over ``at``.
     """
@@ -230,7 +230,11 @@ class ControlTable(Table):
     recalculate_on_rapid: bool = False
     """``gost``: G102 also relabels the start of G0 blocks."""
     module_rotary: bool = False
-    """``fagor8070``: the sign of an absolute rotary target is the direction of rotation."""
+    """``fagor8070``, ``linuxcnc`` (WRAPPED_ROTARY): the sign of an absolute rotary target is the direction of rotation,
+    by less than a turn."""
+    rollover: Literal["shorter", "sign"] | None = None
+    """``fanuc``, parameters 1006 and 1008 (ROT, ROA, RAB): absolute rotary targets are those of a turn, reached by the
+    shorter way (RAB 0), or in the direction of their sign (RAB 1); missing: as they are written (ROA 0)."""
     decimal_point: Literal["calculator", "increments"] | None = None
     """``fanuc``, ``haas``: ``X10`` is 10 mm ("calculator"), or 0.010 mm ("increments")."""
     units: Literal["mm", "inch"] | None = None
@@ -240,7 +244,7 @@ class ControlTable(Table):
     """``fanuc``, parameter 1403 #5 (HTG): F of a helix counts the arc in its plane (0, the control's default), or
     the path (1)."""
     rotary_diameter: Positive | None = None
-    """``haas``, setting 34: diameter at which F counts the way of rotary axes [mm]; without it a degree counts
+    """``haas``, setting 34: diameter at which F counts the path of rotary axes [mm]; without it a degree counts
     1 mm together with linear axes, and F of rotary axes alone is deg/min."""
     feed_of_all_axes: bool = False
     """``fagor8070``, FEEDND: F counts rotary axes together with X, Y and Z, a degree as 1 mm; the control's default is No."""

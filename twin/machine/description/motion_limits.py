@@ -1,4 +1,4 @@
-"""What the planner is told about a machine file."""
+"""What the planner gets from a machine file."""
 
 import math
 

@@ -39,7 +39,7 @@ _WEIGHTLESS = "must be larger than mjMINVAL"
 """What MuJoCo says of a moving body without mass."""
 
 _TUNED_FOR = "moved at tuning"
-"""Number field of a model: what the motors felt when their drives were tuned."""
+"""Number field of a model: what the motors moved when their drives were tuned."""
 
 _JOINT_TYPES = {"linear": mujoco.mjtJoint.mjJNT_SLIDE, "rotary": mujoco.mjtJoint.mjJNT_HINGE}
 

@@ -318,7 +318,7 @@ class Room:
             raise AlarmStandsError("the emergency stop button is pressed: turn it free first")
         axis = self.machine.on_limit_switch
         if self.alarm is not None and self.alarm.code == "hard-limit" and axis:
-            raise AlarmStandsError(f"{axis} stands on its limit switch: jog it back first")
+            raise AlarmStandsError(f"{axis} is on its limit switch: jog it back first")
         if self.machine.alarm is not None:
             self.machine.clear()
         elif self.machine.moving:

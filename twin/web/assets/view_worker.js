@@ -401,7 +401,7 @@ const heard = {
   moment(seen) { take(seen, false); cut_until(seen.time); },
   cuts: (given) => { cuts = given.map((one) => ({ ...one, before: null })); },
   patch(buffer) {
-    // Inflated beside each other, put in their order.
+    // Inflated in parallel, put in their order.
     const of_mesh = new Uint8Array(buffer, 0, 1)[0] === MESH, read = of_mesh ? readMesh(buffer) : readPatch(buffer);
     patches = patches.then(async () => {
       const given = await read, first = of_mesh && !machine?.part_mesh?.by.length;
