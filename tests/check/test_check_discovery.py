@@ -1,3 +1,4 @@
+import re
 from pathlib import Path
 
 import pytest
@@ -33,6 +34,13 @@ def test_a_broken_job_beside_its_program_is_left_to_the_run(shop: Path):
     (shop / "broken.nc").touch()
     assert "broken.toml" in names(shop, find_programs([shop]))
     assert "broken.nc" not in names(shop, find_programs([shop]))
+
+
+@pytest.mark.parametrize("empty", ["nope*.toml", "void", "void*"])
+def test_each_path_holds_something_to_run(empty: str, shop: Path) -> None:
+    (shop / "void").mkdir()
+    with pytest.raises(UsageError, match=f"no programs in {re.escape(str(shop / empty))}:"):
+        find_programs([shop / "ring.toml", str(shop / empty)])
 
 
 def test_files_and_globs_are_taken_once_in_the_order_given(shop: Path):

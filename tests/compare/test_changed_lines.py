@@ -43,10 +43,8 @@ def test_what_a_word_of_a_cycle_changes_is_told_once_at_its_line():
         Reason("baseline-path", f"ends at Z{z}", line, 0.0) for line in (3, 4, 5) for z in (1, 2)
     ]
     found += [Reason("baseline-feed", "feed 2", 5, 0.0)]
-    assert list(differences_by_line(found, [3])) == [
-        Reason("baseline-path", "ends at Z1 (and 5 more of this change)", 3, 0.0),
-        Reason("baseline-feed", "line 5 feed 2", 3, 0.0),
-    ]
+    (only,) = differences_by_line(found, [3])
+    assert only == Reason("baseline-path", "ends at Z1 (and 6 more of this change)", 3, 0.0)
 
 
 def test_a_round_of_a_loop_before_its_changed_line_is_told_there():
@@ -58,3 +56,15 @@ def test_a_round_of_a_loop_before_its_changed_line_is_told_there():
 def test_without_a_changed_line_all_are_told():
     found = [Reason("baseline-path", "ends at X1", 2, 0.0), Reason("baseline-path", "lost", 3, 0.0)]
     assert list(differences_by_line(found, [])) == found
+
+
+def test_what_follows_from_a_path_is_one_finding_with_it() -> None:
+    reasons = [
+        Reason("baseline-path", "ends at X1", 2, 0.0),
+        Reason("baseline-feed", "feed 300, baseline 800", 4, 0.0),
+        Reason("baseline-feed", "feed 100, baseline 200", 7, 0.0),
+    ]
+    assert list(differences_by_line(reasons, [2, 7])) == [
+        Reason("baseline-path", "ends at X1 (and 1 more of this change)", 2, 0.0),
+        reasons[2],
+    ]

@@ -4,6 +4,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from twin.compare.figures import (
     ArcFigures,
@@ -14,9 +16,10 @@ from twin.compare.figures import (
     Figures,
 )
 from twin.compare.result import RunSummary, result, write_result
-from twin.compare.verdict import judge
+from twin.compare.verdict import PRINTED_DIGITS, Check, judge
 from twin.errors import ExitCode
 from twin.job.job_file import BlocksToleranceTable, ToleranceTable
+from twin.run.outcome import LOAD_FIGURES
 
 
 @dataclasses.dataclass(frozen=True)
@@ -60,6 +63,7 @@ def test_within_tolerance_passes_and_the_limit_itself_is_within():
         assert verdict.exit_code is ExitCode.OK
 
 
+POSITIVE = st.floats(1e-3, 1e6).map(lambda value: float(f"{value:.9g}"))
 EVERY_LIMIT = {
     "contour_um": 12.0, "rapid_contour_um": 10.8, "corner_um": 6.0, "following_um": 150.0,
     "following_mdeg": 30.0, "direction_mdeg": 45.0, "circular_deviation_um": 3.0, "cycle_time_s": 2.5,
@@ -77,6 +81,26 @@ def test_a_value_that_is_printed_as_its_limit_holds(key: str, more: float, outco
     verdict = judge(figures(), ToleranceTable.model_validate(wide), cycle_time_s=2.5)
     assert key in {check.what for check in verdict.checks}
     assert verdict.outcome == outcome
+
+
+def test_no_tolerance_is_without_its_limit_above():
+    assert {*EVERY_LIMIT, *LOAD_FIGURES, "blocks"} == set(ToleranceTable.model_fields)
+
+
+@given(limit=POSITIVE, steps=st.integers(-30, 30), scale=st.sampled_from([1e-7, 1e-6, 1e-3, 0.04]))
+def test_the_message_shows_on_which_side_of_its_limit_a_value_is(
+    limit: float, steps: int, scale: float
+) -> None:
+    check = Check("force_n", "cutting force", limit + steps * scale, limit, "N", 0, 0.0)
+    printed, _, shown = check.message.removeprefix("cutting force ").partition(" N ")
+    relation, _, allowed = shown.partition(" force_n = ")
+    assert float(allowed) == limit
+    # Both are rounded to what is printed: a difference below that is none.
+    assert (relation == "is within") == check.holds
+    if check.holds:
+        assert float(printed) <= max(limit, round(limit, PRINTED_DIGITS))
+    else:
+        assert float(printed) > limit
 
 
 def test_a_contour_error_fails_with_value_limit_line_and_time():

@@ -102,6 +102,26 @@ def test_offsets_that_are_no_tools_number_are_those_of_the_tool_in_the_spindle(
     assert prepare(kept).settings.offset_rows == {31: 1, 32: 2}
 
 
+WRAPPED = "G21 G17 G40 G49 G80\nG54\nT01 M06\nS1500 M03\nG00 G90 X0. Y0. A350.\nG43 Z82. H01\nG01 Z20. F1000.\nZ20.1 A355.\nZ20.2 A0.5\nZ20.3 A5.\nG00 Z82.\nM30\n"
+
+
+def test_a_cut_from_one_end_of_a_turn_to_the_other_tells_that_axes_roll_over(
+    tmp_path: Path,
+) -> None:
+    made, job = raw(tmp_path, WRAPPED)
+    assert made.dialect.name == "fanuc"
+    assert "roll over" in made.dialect_reason
+    assert "rotary axes roll over: line 9 goes on cutting from A355 to A0.5" in job.assumptions
+    chunks = list(made.interpretation().chunks())
+    turned = concatenate([chunk.moves for chunk in chunks], made.machine.axes).end[:, 3]
+    assert abs(turned[1:] - turned[:-1]).max() <= 10.0
+    kept = tmp_path / "kept.toml"
+    kept.write_text(text_beside(kept, job, tmp_path / "part.nc"))
+    assert prepare(kept).settings.rollover == "shorter"
+    _, job = raw(tmp_path, WRAPPED.replace("A0.5", "A358.").replace("A5.", "A359."))
+    assert not any("roll over" in each for each in job.assumptions)
+
+
 def test_one_feed_that_crawls_tells_which_control_was_not_meant(tmp_path: Path) -> None:
     text = "O7\nG21\nT1 M6\nG43 H1\nG0 X1.5 Z5.\nG1 Z-1. F25.\nX9. F250\nG0 Z9.\nM30\n"
     preparation, _ = raw(tmp_path, text)

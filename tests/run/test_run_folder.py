@@ -1,10 +1,12 @@
 """A run that ends without a verdict leaves none of an earlier run in its folder."""
 
+import sys
 from pathlib import Path
 
 import pytest
 
 from tests.command_line import Twin
+from twin.commands.run import run_and_print
 from twin.errors import ExitCode
 from twin.run.run_folder import VERDICT_FILES
 
@@ -43,3 +45,20 @@ def test_a_folder_of_another_run_keeps_what_is_in_it(tmp_path: Path, twin: Twin)
     (tmp_path / "note.txt").write_text("mine")
     assert twin("run", str(tmp_path / "none.toml"), "--out", str(tmp_path)).code == ExitCode.USAGE
     assert (tmp_path / "note.txt").read_text() == "mine"
+
+
+def test_a_defect_while_results_are_written_leaves_no_report_that_passes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def defective(*_: object) -> None:
+        raise RuntimeError
+
+    (tmp_path / "p.nc").write_text(GOOD)
+    (tmp_path / "p.toml").write_text(JOB)
+    monkeypatch.setattr(sys.modules["twin.run.results"], "write_result", defective)
+    out = tmp_path / "out"
+    with pytest.raises(RuntimeError):
+        run_and_print(
+            tmp_path / "p.toml", out, dialect=None, machine=None, video=False, strict=False
+        )
+    assert [each for each in VERDICT_FILES if (out / each).exists()] == []

@@ -124,7 +124,6 @@ def straight_law(axis: AxisLog, period_s: float) -> tuple[float, float, float]:
     well, and the one whose ratio is nearer to 1 counts.
 
     Args:
-        axis: Its columns.
         period_s: Between samples [s].
 
     Returns:

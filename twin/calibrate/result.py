@@ -169,7 +169,6 @@ class Calibration:
     """The whole.
 
     Attributes:
-        base: Name of the base machine.
         axes: By name.
         logs: In the order of the command line.
         findings: About the logs, by file.

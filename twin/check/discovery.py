@@ -34,33 +34,37 @@ def find_programs(paths: Iterable[str | Path]) -> list[Path]:
         Job files and programs, each once, in the order given and sorted within a folder.
 
     Raises:
-        UsageError: A path does not exist, or nothing at all was found.
+        UsageError: A path does not exist, or there is nothing to run in one of them.
     """
     found: dict[Path, None] = {}
-    paths = list(paths)
-    for path in _expanded(paths):
-        if path.is_dir():
-            found.update(dict.fromkeys(programs_in(path)))
-        else:
-            found[path] = None
-    if not found:
-        given = ", ".join(str(path) for path in paths) or "nothing"
+    empty: list[str] = []
+    for given in map(str, paths):
+        programs = _programs_of(given)
+        found.update(dict.fromkeys(programs))
+        empty += [] if programs else [given]
+    if empty or not found:
         raise UsageError(
-            f"no programs in {given}: looked for job files (.toml with a key 'program') and files "
+            f"no programs in {', '.join(empty) or 'nothing'}: looked for job files (.toml with a key 'program') and files "
             f"ending in {', '.join(sorted(NC_SUFFIXES))}"
         )
     return list(found)
 
 
-def _expanded(paths: Iterable[str | Path]) -> Iterable[Path]:
-    for path in map(str, paths):
-        if Path(path).exists():
-            yield Path(path)
-        elif glob.has_magic(path):
-            # glob, not Path.glob: the pattern may be absolute.
-            yield from map(Path, sorted(glob.glob(path, recursive=True)))  # noqa: PTH207
-        else:
-            raise UsageError(f"{path}: no such file or folder")
+def _programs_of(given: str) -> list[Path]:
+    """What a path, a folder or a glob stands for."""
+    found: list[Path] = []
+    for path in _expanded(given):
+        found += programs_in(path) if path.is_dir() else [path]
+    return found
+
+
+def _expanded(given: str) -> list[Path]:
+    if Path(given).exists():
+        return [Path(given)]
+    if not glob.has_magic(given):
+        raise UsageError(f"{given}: no such file or folder")
+    # glob, not Path.glob: the pattern may be absolute.
+    return [Path(match) for match in sorted(glob.glob(given, recursive=True))]  # noqa: PTH207
 
 
 def programs_in(folder: Path) -> list[Path]:

@@ -172,7 +172,6 @@ def gitlab_code_quality(outcomes: Sequence[CheckOutcome], root: Path) -> str:
     """GitLab's code quality report, which it shows at the lines of a merge request.
 
     Args:
-        outcomes: How the programs came out.
         root: Folder of the repository, which GitLab's paths are relative to.
     """
     major = [("major", finding) for outcome in outcomes for finding in outcome.findings]

@@ -18,7 +18,6 @@ def variants(path: Path, vary: Sequence[str]) -> list[Variant]:
     """Every combination of the values that are to be varied.
 
     Args:
-        path: The job or program.
         vary: ``KEY=VALUES`` each: values separated by commas, or ``FROM:TO:COUNT`` evenly spaced.
 
     Raises:

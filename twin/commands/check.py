@@ -104,7 +104,6 @@ def write_forms(
 
     Args:
         outcomes: How the programs came out; none where nothing was checked.
-        junit: Where JUnit XML goes.
         json_file: Where every outcome goes as JSON.
 
     Returns:

@@ -24,7 +24,7 @@ from twin.run.preparation import Preparation, prepare, prepare_job
 from twin.run.progress import shown_progress
 from twin.run.results import RESULT_FILES, write_results
 from twin.run.run import Run
-from twin.run.run_folder import run_folder
+from twin.run.run_folder import run_folder, without_verdict
 
 if TYPE_CHECKING:
     from twin.link.lockstep import LockstepMotion
@@ -77,8 +77,9 @@ def link_linuxcnc(
 
     announce_compilation()
     changes: list[Change] = [("machine.servo_period_s", period_us * SECONDS_PER_US)]
-    own = None if dialect or program is None else _linuxcnc_program(program, changes)
-    with run_folder(out, RESULT_FILES):
+    with without_verdict(out):
+        own = None if dialect or program is None else _linuxcnc_program(program, changes)
+    with without_verdict(out), run_folder(out, RESULT_FILES):
         if headless is None:
             _require_screen(display)
         if program is None:
@@ -121,11 +122,7 @@ def _say(text: str) -> None:
 
 @contextmanager
 def _shown(run: Run, motion: "LockstepMotion") -> Iterator[None]:
-    """Show a machine that a control drives on the page of ``twin view``.
-
-    Raises:
-        UsageError: The view's library is missing.
-    """
+    """Show a machine that a control drives on the page of ``twin view``."""
     from twin.view.app import open_view
     from twin.view.live_run import LiveRun, Moment
 

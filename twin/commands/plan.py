@@ -35,12 +35,10 @@ def plan_and_print(
     """Plan a program or a job, print where its time goes and draw its speeds.
 
     Args:
-        path: NC program or job file.
         out: Folder for ``plan.png``; ``out/<program>`` by default.
         dialect: Overrides the job's dialect.
         machine: Overrides the job's machine.
         form: ``text`` or ``json``.
-        strict: Warnings of the interpreter are errors.
 
     Raises:
         UsageError: The format is unknown, or the program cannot be prepared.

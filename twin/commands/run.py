@@ -34,12 +34,10 @@ def run_and_print(
     """Run a program or a job, write its results and print the verdict.
 
     Args:
-        path: NC program or job file.
         out: Folder for the results; ``out/<program>`` by default.
         dialect: Overrides the job's dialect.
         machine: Overrides the job's machine.
         video: Film the run too.
-        strict: Warnings of the interpreter are errors.
         save_job: Where the job is kept that is assumed for a raw program.
 
     Raises:
@@ -55,7 +53,7 @@ def run_and_print(
             raise UsageError(f"--save-job: {preparation.job.path} is the program's job already")
         run = Run(preparation)
         dry_run = run.dry_run()
-    with run_folder(folder, RESULT_FILES), without_verdict(folder):
+    with without_verdict(folder), run_folder(folder, RESULT_FILES):
         with shown_progress() as progress:
             outcome = run.execute(dry_run, folder, progress)
             if video and outcome.samples:

@@ -85,7 +85,6 @@ def compare_baseline(
     Args:
         figures: What the run came to; None when it did not come to its end.
         chunks: The program; where it no longer interprets, the baseline tells what was there.
-        limits: How far they may differ.
         settings: Keys of the job and their values, as text.
         source: Lines of the program, of which the changed ones are named.
 

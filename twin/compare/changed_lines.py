@@ -13,6 +13,9 @@ _OFFSET = re.compile(r"(?<![A-Z#&%@_])[DH] ?\d+", re.IGNORECASE)
 """The number of an offset of a tool's radius or length."""
 
 
+_PATH = "baseline-path"
+
+
 def without_comments(lines: Iterable[str]) -> list[str]:
     """The lines of a program as they are compared: without comments, blanks once; empty ones stay."""
     return [" ".join(_COMMENT.sub(" ", line).split()) for line in lines]
@@ -62,7 +65,8 @@ def differences_by_line(reasons: Iterable[Reason], changed: Sequence[int]) -> It
 
     A word of a cycle changes all its holes, a word in a loop all its rounds: each code is reported once a
     changed line, with the first difference and how many there are. A difference belongs to its own line
-    if that has changed, or else to the last changed line before it, or to the first behind it.
+    if that has changed, or else to the last changed line before it, or to the first behind it; what follows in
+    unchanged lines from a path that differs is one finding with it, whatever it is.
 
     Args:
         reasons: One for each block that differs.
@@ -75,7 +79,8 @@ def differences_by_line(reasons: Iterable[Reason], changed: Sequence[int]) -> It
     count: dict[tuple[int, str], int] = {}
     for reason in reasons:
         line = max((each for each in changed if each <= reason.line), default=changed[0])
-        key = line, reason.what
+        follows = reason.line != line and (line, _PATH) in first
+        key = line, _PATH if follows else reason.what
         first.setdefault(key, reason)
         count[key] = count.get(key, 0) + 1
     for (line, what), reason in first.items():

@@ -45,7 +45,6 @@ class Check:
     Attributes:
         figure: Name of the figure, such as ``contour error``.
         limit: What is allowed; a value equal to it is within it.
-        unit: Of both.
         line: Program line of the worst value; 0 where none applies.
         time_s: When [s].
         note: What the value is made of, where that is known.
@@ -69,20 +68,21 @@ class Check:
 
     @property
     def digits(self) -> int:
-        """Decimals to print value and limit with, so that one beyond the other shows."""
-        digits = 3 if self.unit == "s" else 1
-        while not self.holds and round(self.value, digits) <= self.limit:
-            if digits == PRINTED_DIGITS:
-                break
-            digits += 1
-        return digits
+        """Decimals to print the value with, so that it shows on which side of its limit it is."""
+        fewest = 3 if self.unit == "s" else 1
+        enough = (
+            digits
+            for digits in range(fewest, PRINTED_DIGITS)
+            if (round(self.value, digits) <= self.limit) == self.holds
+        )
+        return next(enough, PRINTED_DIGITS)
 
     @property
     def message(self) -> str:
         """One sentence with value, limit and unit."""
         relation = "is within" if self.holds else "exceeds"
         value = f"{self.value:.{self.digits}f} {self.unit}"
-        return f"{self.figure} {value} {relation} {self.what} = {self.limit:g}{self.note}"
+        return f"{self.figure} {value} {relation} {self.what} = {self.limit:.15g}{self.note}"
 
 
 PRINTED_DIGITS = 6

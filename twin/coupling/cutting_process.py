@@ -31,9 +31,7 @@ class ToolBreak:
     """A tool that lost its edge.
 
     Attributes:
-        line: Source line of the program.
         time_s: When [s].
-        reason: Why, with value and limit.
     """
 
     tool: int
@@ -102,11 +100,7 @@ class CuttingProcess(abc.ABC):
     """
 
     def __init__(self, resists: Kienzle, operation: Operation, spindle: SpindleTable) -> None:
-        """Begin with the spindle as it turns.
-
-        Args:
-            operation: What is in the spindle when.
-        """
+        """Begin with the spindle as it turns."""
         self.breaks: list[ToolBreak] = []
         self.alarm: Alarm | None = None
         self._resists = resists

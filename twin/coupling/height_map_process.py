@@ -33,8 +33,6 @@ class HeightMapProcess(CuttingProcess):
         Args:
             material: It is cut; nobody else may.
             resists: As for ``CuttingProcess``; so on.
-            operation: What is in the spindle when.
-            part_frame: How the part turns under the tool.
         """
         super().__init__(resists, operation, spindle)
         self.material = material

@@ -34,7 +34,6 @@ class LeaningProcess(CuttingProcess):
         Args:
             material: It is cut; nobody else may.
             resists: As for ``CuttingProcess``; so on.
-            operation: What is in the spindle when.
             part_frame: How the axes carry tool and part; it has a chain.
         """
         super().__init__(resists, operation, spindle)

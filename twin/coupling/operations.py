@@ -101,8 +101,6 @@ def program_process(
 
     Args:
         job: Its blank, and whether the force of the cut is simulated.
-        summary: What is in the spindle when.
-        part_frame: How the part turns under the tool.
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
         laid: The blank, if it is on the table already; it is copied.
 
@@ -138,8 +136,6 @@ def cutting_process(
 
     Args:
         cell: Of its height map, or between the lines of its tri-dexel [mm].
-        operation: What is in the spindle when.
-        part_frame: How the part turns under the tool.
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
         laid: As for ``program_process``.
 

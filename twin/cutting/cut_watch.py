@@ -24,7 +24,6 @@ class CutSlip:
 
     Attributes:
         what: ``sideways``, a drill; or ``plunge``, another tool straight down into the full material.
-        line: Source line.
     """
 
     what: str

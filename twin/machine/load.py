@@ -69,7 +69,6 @@ def _on_base(data: Data, path: Path, depth: int = 0) -> Data:
     Tables are merged key by key; every other value, arrays included, replaces that of the base.
 
     Args:
-        data: The machine file as read.
         path: Where it lies; ``base`` is a shipped machine's name or a path beside it.
         depth: How many files are based on this one.
 

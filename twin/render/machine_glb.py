@@ -180,7 +180,6 @@ def drawn_machine(
     """Build the machine as a page draws it.
 
     Args:
-        part_frame: How the part turns under the tool.
         stock: The blank, for the parallels below it.
         true_zero: Machine coordinates of the part's zero, shape (k,) [mm or deg].
         part: The part, in its frame [mm].

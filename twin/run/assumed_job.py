@@ -64,7 +64,6 @@ def with_assumptions(
 
     Args:
         machine: Overrides the job's machine.
-        strict: Warnings of the interpreter are errors.
 
     Raises:
         ProgramError: The program is wrong.
@@ -213,10 +212,17 @@ def _tool_calls(chunks: list[Chunk]) -> list[tuple[int, int, int]]:
 
 
 def _unit_lines(reading: AssumedReading) -> list[str]:
-    """The units, and what a number without a point counts, where that was assumed."""
-    point, units = reading.keys.get("decimal_point"), reading.keys.get("units")
-    lines = [] if point is None else [f'decimal_point = "{point}"  # increments: X10 is 0.010 mm']
-    return lines if units is None else [*lines, f'units = "{units}"']
+    """The units, and what numbers without a point and angles count, where that was assumed."""
+    comments = {
+        "decimal_point": "  # increments: X10 is 0.010 mm",
+        "units": "",
+        "rollover": "  # sign: in the direction of their sign",
+    }
+    return [
+        f'{key} = "{reading.keys[key]}"{comment}'
+        for key, comment in comments.items()
+        if key in reading.keys
+    ]
 
 
 def _reading_lines(reading: AssumedReading) -> list[str]:

@@ -53,7 +53,6 @@ class Machining(Observer):
             model: What is above the tool is its.
             job: Its blank, without which nothing is cut, and its nominal part, if it names one.
             summary: What is in the spindle when, and which moves are rapids.
-            part_frame: How the part turns under the tool.
             part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
             stops: Where the program stops spindle or tool, in order.
 

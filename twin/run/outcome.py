@@ -171,7 +171,7 @@ def refuse_unjudged_loads(tolerance: ToleranceTable) -> None:
     Raises:
         ConfigError: There is one.
     """
-    for key, (figure, _) in _LOADS.items():
+    for key, (figure, _) in LOAD_FIGURES.items():
         if getattr(tolerance, key) is not None:
             raise ConfigError(
                 f"tolerance.{key}: the {figure} is not simulated in this job, or not everywhere; it needs a "
@@ -241,7 +241,7 @@ def _nominal_checks(
         yield Check("standing_um", figure, left, nominal.standing_um, "µm", 0, 0.0, bound)
 
 
-_LOADS = {
+LOAD_FIGURES = {
     "force_n": ("cutting force", "N"),
     "power_w": ("power of the cut", "W"),
     "deflection_um": ("deflection of the tool", "µm"),
@@ -251,7 +251,7 @@ _LOADS = {
 
 
 def _load_checks(tolerance: ToleranceTable, loads: LoadLog) -> Iterator[Check]:
-    for key, (figure, unit) in _LOADS.items():
+    for key, (figure, unit) in LOAD_FIGURES.items():
         limit, most = getattr(tolerance, key), loads.greatest.get(key)
         if limit is not None and most is not None:
             yield Check(key, figure, most.value, limit, unit, most.line, most.time_s)

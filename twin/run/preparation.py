@@ -84,10 +84,8 @@ def prepare(
     """Read a job, or a program with its job beside it, and all that it names.
 
     Args:
-        path: NC program or job file.
         dialect: Overrides the job's dialect.
         machine: Overrides the job's machine; a path is relative to the working folder.
-        strict: Warnings of the interpreter are errors.
         changes: Values of the job (``job.``) and the machine file (``machine.``) to change.
         assuming: How a program without a job is read may be assumed; the caller reports what was.
 
@@ -215,8 +213,6 @@ def prepare_job(
         job: The job; other arguments and errors as for ``prepare``.
         dialect: As there.
         machine: As there.
-        strict: As there.
-        changes: As there.
         tools: What comments say of the tools of a job that names none.
     """
     twin_machine = load_machine(job, machine, changes)
@@ -315,6 +311,7 @@ def _control_settings(job: Job, machine: Machine, *, strict: bool) -> ControlSet
         },
         recalculate_on_rapid=control.recalculate_on_rapid,
         module_rotary=control.module_rotary,
+        rollover=job.file.rollover or control.rollover,
         helical_feed=control.helical_feed,
         rotary_diameter=control.rotary_diameter,
         feed_of_all_axes=control.feed_of_all_axes,
@@ -350,7 +347,7 @@ def _refuse_taken_functions(job: Job, machine: Machine, dialect: Dialect) -> Non
             )
 
 
-_KEYS_OF_SOME = ("decimal_point", "offset_rows")
+_KEYS_OF_SOME = ("decimal_point", "offset_rows", "rollover")
 """Keys of a job that some dialects read, and the others pass over."""
 
 

@@ -26,7 +26,14 @@ from twin.run.observers import (
     observed,
 )
 from twin.run.outcome import Followers, Outcome, outcome_of, refuse_unjudged_loads
-from twin.run.pipeline import MachineMotion, ProgramMotion, cutting_forces, grown, planned
+from twin.run.pipeline import (
+    MachineMotion,
+    PlannedMoves,
+    ProgramMotion,
+    cutting_forces,
+    grown,
+    planned,
+)
 from twin.run.preparation import Preparation
 from twin.run.progress import Progress, StageClock
 from twin.version import __version__
@@ -151,11 +158,12 @@ class Run:
         job, program, summary = self.preparation.job.file, dry_run.program, dry_run.summary
         expect = followers.compared.comparison.expect
         if given is None:
-            setpoints = planned(program, self.machine, self.part_zero, expect)
+            moves = PlannedMoves(expect)
+            setpoints = planned(program, self.machine, self.part_zero, moves.note)
             laid = followers.machining.laid
             forces = cutting_forces(job, self.machine, dry_run, self.layout, laid)
             watched = self.clock.watch("plan", setpoints)
-            motion = ProgramMotion(watched, self.model, summary, forces)
+            motion = ProgramMotion(watched, self.model, summary, forces, moves)
         else:
             motion = given
             for chunk in program.chunks():

@@ -26,9 +26,10 @@ def program_stem(path: Path) -> str:
 
 @contextlib.contextmanager
 def without_verdict(folder: Path) -> Iterator[None]:
-    """Leave no verdict of an earlier run where this one fails before it has its own.
+    """Leave no verdict where a run fails: neither an earlier one nor a part of its own.
 
-    A folder that another run holds is left as it is, and so it is where the user interrupts.
+    A folder that another run holds is left as it is, and so it is where the user interrupts. Within ``run_folder`` the
+    run itself would be that other one: this is the outer of the two.
 
     Args:
         folder: Of the results; it need not exist.

@@ -44,7 +44,6 @@ class LiveRun:
         """Take a prepared job.
 
         Args:
-            part_frame: How the part turns under the tool.
             part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
             moment: Where the machine is, asked from another thread.
         """

@@ -20,6 +20,8 @@ def test_what_carries_a_swivel_head_is_held_against_the_stock_too() -> None:
     solids = solids_of("mill5h")
     assert set(solids) == {"holder's flange", "spindle nose", "spindle housing", "swivel", "head"}
     head = solids["head"]
+    # The swivel B is between it and the spindle; the housing goes with the spindle.
+    assert (head.beyond, solids["spindle housing"].beyond) == ((3,), ())
     # 55 mm above the nose, which is 100 mm above the tip; 140 mm to 500 mm behind the spindle's axis.
     assert head.above == pytest.approx(155.0)
     assert head.half == pytest.approx((180.0, 180.0))
@@ -36,4 +38,8 @@ def test_only_what_turns_with_the_spindle_is_round() -> None:
 def test_a_head_that_stands_ends_at_its_slide(name: str) -> None:
     solids = solids_of(name)
     assert "head" in solids
-    assert not any(solid.startswith(("gantry", "carriage")) for solid in solids)
+    assert not any(solid.startswith("gantry") for solid in solids)
+    # What carries the head on its slide does not go up and down with it.
+    assert {solid.beyond for solid in solids.values()} == (
+        {(), (2,)} if name == "mill4_light" else {()}
+    )

@@ -103,9 +103,6 @@ def promising(problem: Problem, best: Solution, core: Core) -> list[Promise]:
 
     Sets with at most one extra more than the optimum has are judged; of those that promise alike, the
     smallest is kept.
-
-    Args:
-        core: What every structure has.
     """
     own = core.extras_of(best)
     linear = _linear(problem, best, core)

@@ -61,7 +61,6 @@ class Solution:
     """An optimum.
 
     Attributes:
-        parameters: All of them.
         free: Names of those that were fitted.
         cost: Root mean square of the weighted residuals.
         squares: Their sum over each of the stretches of time, shape (batches,).

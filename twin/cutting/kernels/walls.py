@@ -49,8 +49,6 @@ class Material(NamedTuple):
 
     Attributes:
         heights: The height map, cut up to where the tool is, shape (ny, nx) [mm].
-        grid: Where its cells lie.
-        walls: Those that tools have left.
     """
 
     heights: FloatArray

@@ -230,7 +230,11 @@ class ControlTable(Table):
     recalculate_on_rapid: bool = False
     """``gost``: G102 also relabels the start of G0 blocks."""
     module_rotary: bool = False
-    """``fagor8070``: the sign of an absolute rotary target is the direction of rotation."""
+    """``fagor8070``, ``linuxcnc`` (WRAPPED_ROTARY): the sign of an absolute rotary target is the direction of rotation,
+    by less than a turn."""
+    rollover: Literal["shorter", "sign"] | None = None
+    """``fanuc``, parameters 1006 and 1008 (ROT, ROA, RAB): absolute rotary targets are those of a turn, reached by the
+    shorter way (RAB 0), or in the direction of their sign (RAB 1); missing: as they are written (ROA 0)."""
     decimal_point: Literal["calculator", "increments"] | None = None
     """``fanuc``, ``haas``: ``X10`` is 10 mm ("calculator"), or 0.010 mm ("increments")."""
     units: Literal["mm", "inch"] | None = None
@@ -336,7 +340,6 @@ class Machine:
     """A machine file that was read, with what other packages need of it.
 
     Attributes:
-        path: Where the machine file lies.
         axes: Names and kinds in the order of every column.
     """
 

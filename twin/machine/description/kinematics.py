@@ -41,9 +41,6 @@ def part_carrier(model: mujoco.MjModel) -> int:
 def read_kinematics(model_path: Path, axes: Axes, joints: Sequence[Joint]) -> Kinematics:
     """Read which joints carry the tool and which the part, their order, directions and centres.
 
-    Args:
-        joints: Of each axis.
-
     Raises:
         ConfigError: The model is no mill; the message says why.
     """

@@ -14,6 +14,7 @@ from twin.machine.description.measured_mass import set_measured_masses
 from twin.machine.model.drive_actuators import add_drives
 from twin.machine.model.drives import Drive, tune
 from twin.machine.model.fixture_shape import add_fixture
+from twin.machine.model.supplied import supply
 from twin.machine.model.tool_shape import (
     CLAMPED_SIDE,
     COLLISION_GROUP,
@@ -33,6 +34,9 @@ from twin.units import MM
 
 BLANK = "stock"
 """Geom of the stock, as an alarm calls it."""
+
+_WEIGHTLESS = "must be larger than mjMINVAL"
+"""What MuJoCo says of a moving body without mass."""
 
 _TUNED_FOR = "moved at tuning"
 """Number field of a model: what the motors felt when their drives were tuned."""
@@ -134,10 +138,10 @@ def _incomplete(machine: Machine, error: ValueError) -> ConfigError:
 
 
 def _complete(spec: mujoco.MjSpec, machine: Machine, blank: Blank | None) -> None:
+    supply(spec, machine)
     add_materials(spec)
     _set_clock(spec, machine)
     _set_inertia(spec, machine)
-    _require_actuators(spec, machine)
     # Gains follow from what MuJoCo's inertia matrix says of the empty machine, which is why it is compiled here.
     empty = drives(machine, compiled(_without(spec, VISUAL_GROUP), machine))
     add_drives(spec, machine, empty)
@@ -184,12 +188,6 @@ def _set_inertia(spec: mujoco.MjSpec, machine: Machine) -> None:
             )
         add_inertia(spec, axis)
     set_measured_masses(spec, machine)
-
-
-def _require_actuators(spec: mujoco.MjSpec, machine: Machine) -> None:
-    known = [actuator.name for actuator in spec.actuators]
-    for name in machine.axes.names:
-        _require(machine, "actuator", name, known)
 
 
 def _add_fixtures(spec: mujoco.MjSpec, machine: Machine) -> None:
@@ -280,7 +278,11 @@ def compiled(spec: mujoco.MjSpec, machine: Machine) -> mujoco.MjModel:
     try:
         return spec.compile()
     except ValueError as error:
-        raise ConfigError(f"{machine.model_path}: does not compile: {error}") from error
+        needed = (
+            '; give it <inertial pos="0 0 0" mass="..." diaginertia="... ... ..."/> or a shape with a mass'
+            * (_WEIGHTLESS in str(error))
+        )
+        raise ConfigError(f"{machine.model_path}: does not compile: {error}{needed}") from error
     except RuntimeError as error:
         # MuJoCo tells what is wrong with a model by ValueError.
         raise ConfigError(
@@ -344,7 +346,8 @@ def clearance_model(machine: Machine, spec: mujoco.MjSpec) -> mujoco.MjModel:
         ConfigError: The specification does not compile.
     """
     lean = _without(spec, VISUAL_GROUP)
-    lean.compiler.fusestatic = True
+    # Pairs that the model excludes are pairs of its own bodies.
+    lean.compiler.fusestatic = not spec.excludes
     lean.option.ccd_tolerance = _DISTANCE_TOLERANCE
     lean.option.ccd_iterations = _DISTANCE_ITERATIONS
     return compiled(lean, machine)

@@ -13,6 +13,7 @@ from twin.nc.text.blocks import Statement, Word
 Action = Callable[[Control], None]
 WordAction = Callable[[Control, Word], None]
 StatementAction = Callable[[Control, Statement], None]
+"""What a code does. What the control would refuse, an action or a cycle raises as ``ProgramError`` at its word."""
 
 Basis = Literal["control page", "manual", "decision"]
 """On what a code's meaning rests: the control's own page, its manuals, or this project."""

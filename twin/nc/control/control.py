@@ -308,7 +308,6 @@ class Control:
         """Run the part that begins at a location and ends by a word, or behind a location.
 
         Args:
-            first: Where it begins.
             deepest: Parts that may call each other.
             values: Of its own variables by name; None: it has the caller's.
             restores: Its end puts back into force what is in force now.

@@ -31,8 +31,6 @@ class Call:
     """A part of the program that is being run for a caller.
 
     Attributes:
-        back: Where the caller goes on.
-        first: Where the part begins.
         again: How often it still runs again before that.
         last: Its last block, where it ends by its location; None: a word ends it.
         owns_variables: It has variables of its own, which its end forgets.

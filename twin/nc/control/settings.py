@@ -104,7 +104,10 @@ class ControlSettings:
     """M codes by number that the machine's builder has made, or made to take time."""
 
     module_rotary: bool = False
-    """``fagor8070``: the sign of an absolute rotary target is the direction of rotation."""
+    """``fagor8070``, ``linuxcnc``: the sign of an absolute rotary target is the direction of rotation."""
+
+    rollover: Literal["shorter", "sign"] | None = None
+    """``fanuc``: absolute rotary targets are those of a turn, by the shorter way or that of their sign; None: as written."""
 
     axis_words: Mapping[str, str | None] = dataclasses.field(default_factory=dict)
     """Words of axes that the machine lacks: the axis that each is for, or None where it is left out while it

@@ -46,11 +46,7 @@ def store_leads(control: Control) -> None:
 
 
 def switch_on(control: Control) -> None:
-    """G09: circles drag.
-
-    Raises:
-        ProgramError: No lead is stored.
-    """
+    """G09: circles drag."""
     if not any(_dragging(control).leads.values()):
         message = "G09 finds no lead"
         hint = "store it in a block before: Z1.05 G10"

@@ -157,11 +157,7 @@ def take_words(control: Control, cycle: Cycle, *, calls: bool = False) -> None:
 
 
 def _take_options(control: Control, cycle: Cycle) -> None:
-    """Take words of the call that change nothing of the path.
-
-    Raises:
-        ProgramError: One has another value than those that are known to do so.
-    """
+    """Take words of the call that change nothing of the path."""
     for letter, known in cycle.options.items():
         word = control.take(letter)
         if word is not None and control.number(word) not in known:
@@ -237,11 +233,7 @@ def _require_peck_words(control: Control, cycle: Cycle) -> None:
 
 
 def hole_of(control: Control, cycle: Cycle, values: Mapping[str, float] | None = None) -> Hole:
-    """What a cycle does at a hole, by what it remembers; nothing but its pecks is checked.
-
-    Raises:
-        ProgramError: The pecks are too many, or none.
-    """
+    """What a cycle does at a hole, by what it remembers; nothing but its pecks is checked."""
     values = control.cycle_values if values is None else values
     reference, get = values["reference"], values.get
     dwell = get("dwell", 0.0) if cycle.dwells else 0.0

@@ -31,11 +31,7 @@ class PartFrame(NamedTuple):
 def enter_machine_frame(
     control: Control, code: str, zero: Mapping[str, float] | None = None
 ) -> PartFrame:
-    """Let programmed coordinates count from machine zero, or from another zero of the builder's; ``code`` asks for it.
-
-    Raises:
-        ProgramError: The job does not say where machine zero is.
-    """
+    """Let programmed coordinates count from machine zero, or from another zero of the builder's; ``code`` asks for it."""
     zero, frame = machine_zero(control, code) if zero is None else zero, control.frame
     center, names = control.path.tool_center, control.settings.axes.names
     kept = PartFrame(frame.shifts, frame.matrix, center)
@@ -75,11 +71,7 @@ def leave_machine_frame(control: Control, kept: PartFrame) -> None:
 def machine_frame(
     control: Control, code: str, zero: Mapping[str, float] | None = None
 ) -> Iterator[None]:
-    """As ``enter_machine_frame``, within.
-
-    Raises:
-        ProgramError: The job does not say where machine zero is, or compensation is in force.
-    """
+    """As ``enter_machine_frame``, within."""
     if control.path.compensation.in_force:
         message = "machine coordinates know no radius compensation"
         control.fail("compensation-change", message, hint=f"end it by G40 before {code}")

@@ -109,11 +109,7 @@ def _columns(
 
 
 def _check(path: Path, line: int, pupil: Pupil) -> None:
-    """Refuse a pupil who cannot be shown or distinguished.
-
-    Raises:
-        ConfigError: The name or the scene cannot be used.
-    """
+    """Refuse a pupil who cannot be shown or distinguished."""
     where = f"{path}, line {line}"
     if not pupil.name:
         raise ConfigError(f"{where}: no name")

@@ -33,7 +33,6 @@ def approach(control: Control, stand: FloatArray, line: int, clearance: float) -
     Args:
         control: After the blocks that were only computed.
         stand: Where the axes stand, part coordinates, shape (k,) [mm or deg].
-        line: Source line of the block.
         clearance: Height at which the tool travels, at least, part coordinates [mm].
     """
     motion = control.motion
@@ -116,7 +115,6 @@ class BlockSearch:
         Args:
             control: After the blocks that were only computed.
             stand: Where the axes are, part coordinates, shape (k,) [mm or deg].
-            line: Source line of the block.
         """
         events = tuple(
             dataclasses.replace(event, before=0, at=0.0, line=line)

@@ -74,8 +74,6 @@ class PathToCome:
         stand: Where the setpoints stand, machine coordinates, shape (k,) [mm or deg].
         zero: Machine coordinates of program zero for the first tool, as the control has it, shape (k,).
         length_difference: How much longer than the first each tool is in the control's table, by number [mm].
-        tool: Number of the tool in the spindle.
-        frame: How the part turns under the tool.
     """
 
     source: Source

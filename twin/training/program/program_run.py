@@ -122,7 +122,6 @@ class ProgramRun:
         """The next setpoints; None while the first moves are being interpreted.
 
         Args:
-            count: How many servo periods.
             feed: Factor of the feed override.
             rapid: Factor of the rapid override.
             single: Whether to stop at the end of every block.
@@ -274,11 +273,7 @@ class ProgramRun:
         self._last_move = self._stopped_behind = -1
 
     def _next_chunk(self) -> Chunk | None:
-        """What the planner pulls; where it is quicker than the interpreter, the part ends there.
-
-        Raises:
-            _TooFewMovesError: The planner is to begin, and there are no more moves yet.
-        """
+        """What the planner pulls; where it is quicker than the interpreter, the part ends there."""
         reader = self.reader
         if not reader.waiting and reader.ending is None and not self._takes_any:
             raise _TooFewMovesError

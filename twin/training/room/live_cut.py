@@ -52,7 +52,6 @@ class LiveCut:
 
         Args:
             job: Says whether force is simulated, and with which tool the machine begins.
-            part_frame: How the part turns under the tool.
             zero: Machine coordinates of program zero, shape (k,) [mm or deg].
         """
         self.process: HeightMapProcess | None = None

@@ -234,11 +234,7 @@ _WITHOUT_END_S = 1e9
 
 
 def scene_of_job(name: str, preparation: Preparation) -> Scene:
-    """A room without a lesson: the machine of a job, for programs that come from elsewhere.
-
-    Args:
-        name: What the room is called.
-    """
+    """A room without a lesson: the machine of a job, for programs that come from elsewhere."""
     file = SceneFile(
         schema=1,
         title={"en": name},

@@ -119,7 +119,6 @@ class Driver:
         """Play another session from the next slice on, from any thread.
 
         Args:
-            changed: Called after every command.
             trouble: What is wrong outside the machine.
         """
 

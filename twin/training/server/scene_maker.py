@@ -43,7 +43,6 @@ def scene_of(room: Room, language: Language, title: str, story: str) -> SceneTex
     be written into the file.
 
     Args:
-        title: What the scene is called.
         story: What the operator is told first.
 
     Raises:

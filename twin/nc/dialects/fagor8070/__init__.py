@@ -24,6 +24,7 @@ from twin.nc.dialects.fagor8070.memory import FagorMemory, acts_on_lines
 from twin.nc.dialects.fagor8070.subroutines import LIBRARY
 from twin.nc.iso import base, shared_marks
 from twin.nc.iso.declared import flow_function
+from twin.nc.iso.rotary_targets import turn_by_sign
 from twin.nc.path.feed_rates import PATH_COUNTS, FeedRule
 from twin.nc.text.syntax import Comment, Mark, Syntax
 
@@ -33,8 +34,8 @@ def _prepare(control: Control) -> None:
     prepare_blends(control)
 
 
-def _before_motion(control: Control, rapid: bool) -> None:
-    frames.turn_in_commanded_direction(control, rapid)
+def _before_motion(control: Control, _rapid: bool) -> None:
+    turn_by_sign(control)
     inclined_planes.before_motion(control)
 
 

@@ -117,11 +117,7 @@ def tangent_arc(control: Control) -> None:
 
 
 def three_point_arc(control: Control) -> None:
-    """G09 X Y I J: the arc through the point I J, given as coordinates by G90 or G91.
-
-    Raises:
-        ProgramError: The point is missing, or the three lie on a line.
-    """
+    """G09 X Y I J: the arc through the point I J, given as coordinates by G90 or G91."""
     letters = _center_letters(control)
     words = [control.take(letter) for letter in letters[:2]]
     if None in words:

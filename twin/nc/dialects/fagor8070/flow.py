@@ -46,11 +46,7 @@ def _structure(control: Control) -> Structure:
 
 
 def construct_of(control: Control, statement: Statement) -> Construct:
-    """The construct that a statement of the block belongs to.
-
-    Raises:
-        ProgramError: It has no counterpart.
-    """
+    """The construct that a statement of the block belongs to."""
     construct = _structure(control).by_line.get(control.block.line - 1)
     if construct is None or construct.end is None:
         message = f"{statement.keyword} has no counterpart"
@@ -82,11 +78,7 @@ def _enclosing(control: Control, statement: Statement, without: tuple[str, ...])
 
 
 def destination(control: Control, statement: Statement) -> Location:
-    """Where a jump leads.
-
-    Raises:
-        ProgramError: Nowhere, or into a construct.
-    """
+    """Where a jump leads."""
     match = _PLACE.fullmatch(statement.text)
     if match is None:
         control.fail("jump-target", "$GOTO needs N10 or [NAME]", statement)

@@ -79,11 +79,7 @@ def warning(control: Control, statement: Statement) -> None:
 
 
 def error(control: Control, statement: Statement) -> None:
-    """#ERROR["..."]: the program stops itself.
-
-    Raises:
-        ProgramError: Always.
-    """
+    """#ERROR["..."]: the program stops itself."""
     message = f"the program stops itself: {_quoted(statement)}"
     control.fail("program-error", message, statement, "the program's own checks have failed")
 

@@ -52,11 +52,7 @@ def addresses_without_point(settings: ControlSettings) -> frozenset[str]:
 
 
 def count(control: Control, block: Block) -> Block:
-    """Give the words of a block the value that their numbers without a point count.
-
-    Raises:
-        ProgramError: An assignment does not stand alone in its block.
-    """
+    """Give the words of a block the value that their numbers without a point count."""
     *others, second = block.assignments or (None,)
     if second is not None and (others or block.words):
         message = "an assignment stands alone in its block"

@@ -37,6 +37,13 @@ DECISIONS: tuple[Decision, ...] = (
         example="motion_behind_a_cycle",
     ),
     Decision(
+        "Which way does a rotary axis turn to an absolute angle?",
+        'As the angle is written, over any number of turns. rollover = "shorter" or "sign" of the job or the machine file '
+        "brings it there within a turn, the shorter way or in the direction of its sign; half a turn goes forwards.",
+        "Parameter 1008 (ROA, RAB) is the builder's; 0 is how it comes from its maker.",
+        example="rotary_targets",
+    ),
+    Decision(
         "Does F hold when G93, G94 or G95 changes?",
         "No: the first cutting move behind it is refused until F is written anew.",
         "F200 in mm/min would become 200 mm with each turn.",

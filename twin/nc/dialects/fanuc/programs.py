@@ -149,11 +149,7 @@ def _follows(control: Control, before: int | None, line: int, key: Key) -> bool:
 
 
 def heading(control: Control, word: Word) -> None:
-    """O: the heading of the program that runs first.
-
-    Raises:
-        ProgramError: The program before has not ended, or it has no possible name.
-    """
+    """O: the heading of the program that runs first."""
     if word.mark:
         named(control, word)
     memory, line = memory_of(control), control.block.line - 1
@@ -191,11 +187,7 @@ def called(control: Control, number: int, repeats: int | None) -> tuple[int, int
 
 
 def named(control: Control, word: Word) -> Key:
-    """The program that a word <NAME> or O<NAME> names.
-
-    Raises:
-        ProgramError: No program can have the name.
-    """
+    """The program that a word <NAME> or O<NAME> names."""
     name = word.mark[word.mark.index("<") + 1 : -1]
     if _NAME.fullmatch(name.upper()) is None:
         message = f"{word.text} names no program"
@@ -210,11 +202,7 @@ def program_word(
     words: tuple[Word | None, Word | None],
     error_at: Statement | None,
 ) -> Word:
-    """The one of P and a name that says which program a code calls.
-
-    Raises:
-        ProgramError: There is none or both.
-    """
+    """The one of P and a name that says which program a code calls."""
     number, name = words
     word = name or number
     if word is None:
@@ -228,11 +216,7 @@ def program_word(
 
 
 def line_of(control: Control, key: Key, word: Word | None) -> int:
-    """The line behind the heading of a program, from 0.
-
-    Raises:
-        ProgramError: There is none of this number or name.
-    """
+    """The line behind the heading of a program, from 0."""
     programs = memory_of(control).programs
     line = programs.get(key)
     if line is None:
@@ -311,11 +295,7 @@ def return_(control: Control) -> None:
 
 
 def finish(control: Control) -> None:
-    """The last line has been passed without an end.
-
-    Raises:
-        ProgramError: A subprogram has not returned.
-    """
+    """The last line has been passed without an end."""
     if control.program_counter.is_calling:
         message = "the file ends within a subprogram, which has no M99"
         control.report.fail("program-end", message, hint="end it by M99")

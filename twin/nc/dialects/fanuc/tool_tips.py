@@ -40,11 +40,7 @@ def begin(name: str) -> Action:
 
 
 def point_by_vector(control: Control) -> None:
-    """I, J and K of a block in G43.5: the direction of the tool at its end, from its tip to the spindle.
-
-    Raises:
-        ProgramError: A rotary axis is named too.
-    """
+    """I, J and K of a block in G43.5: the direction of the tool at its end, from its tip to the spindle."""
     if control.modal.active.get("length") != _BY_VECTORS or control.path.tool_center is None:
         return
     names = control.settings.axes.names
@@ -87,11 +83,7 @@ def _refuse_distance(control: Control) -> None:
 
 
 def require_orientation(control: Control) -> None:
-    """In a tilted plane X, Y and Z move when the tool stands across it.
-
-    Raises:
-        ProgramError: It does not yet.
-    """
+    """In a tilted plane X, Y and Z move when the tool stands across it."""
     if memory_of(control).tilt is not None:
         refuse_leaning(control, "G53.1 behind G68.2, or G253 behind G268, before X, Y and Z move")
 

@@ -31,9 +31,9 @@ def _prepare(control: Control) -> None:
     control.modal.interpolation = paths.LINE
 
 
-def _before_motion(control: Control, rapid: bool) -> None:
+def _before_motion(control: Control, _rapid: bool) -> None:
     take_spatial_angles(control)
-    take_shortest_way(control, rapid)
+    take_shortest_way(control)
     enter_plane(control)
 
 

@@ -40,11 +40,7 @@ def cut_corner(control: Control, statement: Statement) -> None:
 
 
 def refuse_chamfered_arc(control: Control, statement: Statement | None = None) -> None:
-    """A chamfer cuts off the corner between two lines (TNC 426 user's manual, 6.4).
-
-    Raises:
-        ProgramError: Always.
-    """
+    """A chamfer cuts off the corner between two lines (TNC 426 user's manual, 6.4)."""
     message = "CHF stands between two straight lines, and one of its moves is an arc"
     control.fail("blend", message, statement, "RND rounds the corner beside an arc")
 

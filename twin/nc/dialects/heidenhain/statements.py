@@ -53,11 +53,7 @@ def pass_over(_control: Control, _statement: Statement) -> None:
 
 
 def go_on(control: Control, statement: Statement) -> None:
-    """``~``: a comment goes on; what else does has taken its lines before.
-
-    Raises:
-        ProgramError: It is no comment that goes on.
-    """
+    """``~``: a comment goes on; what else does has taken its lines before."""
     lines, line = control.program_counter.lines, control.block.line - 2
     while line > 0 and lines[line - 1].rstrip().endswith("~"):
         line -= 1

@@ -39,11 +39,7 @@ def end_tcpm(control: Control) -> None:
 
 
 def function(control: Control, statement: Statement) -> None:
-    """FUNCTION TCPM, RESET TCPM; MODE MILL changes nothing here.
-
-    Raises:
-        ProgramError: It is another one.
-    """
+    """FUNCTION TCPM, RESET TCPM; MODE MILL changes nothing here."""
     text = " ".join(statement.text.upper().split())
     if text.startswith("RESET TCPM"):
         end_tcpm(control)

@@ -59,11 +59,7 @@ def call_tool(control: Control, statement: Statement) -> None:
 
 
 def _number_of(control: Control, statement: Statement, match: re.Match[str]) -> Word | None:
-    """The number of the tool that TOOL CALL brings; None: it brings none.
-
-    Raises:
-        ProgramError: The job has no tool of that name.
-    """
+    """The number of the tool that TOOL CALL brings; None: it brings none."""
     if match["name"]:
         word = named_word(statement, 0.0, match.span("name"))
         number = tool_named(control, text_of(control, match["name"]), word)
@@ -74,11 +70,7 @@ def _number_of(control: Control, statement: Statement, match: re.Match[str]) -> 
 
 
 def _change(control: Control, number: Word) -> None:
-    """The tool goes into the spindle, which is stopped.
-
-    Raises:
-        ProgramError: The job has no such tool.
-    """
+    """The tool goes into the spindle, which is stopped."""
     index = integer_of(control.number(number))
     defined = memory_of(control).defined.get(index)
     if index != 0 and (control.tools.any is None or defined is None):
@@ -127,9 +119,6 @@ def compensation_radius(control: Control) -> float:
     """Radius of the tool in the spindle with DR [mm].
 
     Decision: where the job lists no tools that of TOOL DEF counts.
-
-    Raises:
-        ProgramError: There is no tool.
     """
     memory, number = memory_of(control), control.tools.spindle
     tool = control.tools.data(number)

@@ -11,6 +11,7 @@ from twin.nc.dialects.linuxcnc.memory import LinuxcncMemory, memory_of
 from twin.nc.dialects.linuxcnc.parameters import EXPRESSIONS
 from twin.nc.dialects.linuxcnc.structure import COMMENTS, LIBRARY
 from twin.nc.iso import base, shared_marks
+from twin.nc.iso.rotary_targets import turn_by_sign
 from twin.nc.text.syntax import Mark, Syntax
 
 _LONGEST_LINE = 252
@@ -20,6 +21,7 @@ _WITH_PITCH = (33, 33.1)
 
 
 def _before_motion(control: Control, rapid: bool) -> None:
+    turn_by_sign(control)
     memory, number = memory_of(control), control.modal.active.get("motion")
     if number not in _WITH_PITCH:
         motion.check_feed(control, rapid)
@@ -34,7 +36,8 @@ def _acts_on_lines(control: Control) -> bool:
     """Compensation, absolute centres, a spline, or a feed of another unit, until the program writes one."""
     memory, modal = memory_of(control), control.modal
     return (
-        memory.compensation is not None
+        control.settings.module_rotary
+        or memory.compensation is not None
         or memory.leading_out
         or modal.center_absolute
         or bool(memory.control_points)

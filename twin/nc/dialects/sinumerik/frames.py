@@ -49,11 +49,7 @@ def work_offset(number: int) -> Action:
 
 
 def numbered_offset(control: Control, word: Word) -> None:
-    """G505 to G599, read as a word so that the table of codes needs no line for each.
-
-    Raises:
-        ProgramError: The block has another work offset.
-    """
+    """G505 to G599, read as a word so that the table of codes needs no line for each."""
     number = 500 + int(control.number(word))
     other = next((each for each, code in control.codes if code.group == "offset"), None)
     if other is not None:
@@ -93,11 +89,7 @@ def cancel_offsets(control: Control) -> None:
 
 
 def require_machine_zero(control: Control) -> None:
-    """A block moves: G500 must know where machine zero is.
-
-    Raises:
-        ProgramError: The job does not say.
-    """
+    """A block moves: G500 must know where machine zero is."""
     if memory_of(control).machine_pending:
         machine_zero(control, "G500")
 
@@ -286,11 +278,7 @@ def translate_axes(*, fine: bool) -> Action:
 
 
 def refuse_uneven_arc(control: Control) -> None:
-    """An arc under a scale that is not the same along both axes of its plane is no arc.
-
-    Raises:
-        ProgramError: The block would draw one.
-    """
+    """An arc under a scale that is not the same along both axes of its plane is no arc."""
     matrix, plane = control.frame.matrix, control.modal.plane
     lengths = [math.hypot(*applied(matrix, each)) for each in (plane.abscissa, plane.ordinate)]
     if abs(lengths[0] - lengths[1]) > _SAME_SCALE * max(lengths):

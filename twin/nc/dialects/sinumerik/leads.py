@@ -86,11 +86,7 @@ def _in_plane(control: Control) -> bool:
 def _take_lead(
     control: Control, kind: LeadKind, angle: float, side: float, offset: float, height: float
 ) -> Lead:
-    """Take DISR, DISCL and FAD.
-
-    Raises:
-        ProgramError: DISR is missing.
-    """
+    """Take DISR, DISCL and FAD."""
     size, above, down = control.take("DISR"), control.take("DISCL"), control.take("FAD")
     length = control.length(size)
     if length <= 0.0:

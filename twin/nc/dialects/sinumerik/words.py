@@ -191,11 +191,7 @@ def position_spindle(control: Control, word: Word) -> None:
 
 
 def circumvention(control: Control, word: Word) -> None:
-    """DISC=: how outside corners are passed with G450: 0 on an arc, 100 by the intersection (manual).
-
-    Raises:
-        ProgramError: It asks for a curve between both, which the manual does not give.
-    """
+    """DISC=: how outside corners are passed with G450: 0 on an arc, 100 by the intersection (manual)."""
     number = control.number(word)
     if number not in (0.0, 100.0):
         message = (

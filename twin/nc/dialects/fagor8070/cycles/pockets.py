@@ -45,11 +45,7 @@ def call_pocket(control: Control, words: str, lengths: str) -> None:
 
 
 def _corner(control: Control, name: str, radius: float) -> Corner:
-    """Corners by M and Q.
-
-    Raises:
-        ProgramError: M is none of them, or Q does not fit into the pocket.
-    """
+    """Corners by M and Q."""
     values = control.cycle_values
     kind, size = values.get("M", 0.0), values.get("Q", 0.0)
     if kind not in tuple(CornerKind):

@@ -40,11 +40,7 @@ def continued(control: Control, *, while_: re.Pattern[str] | None) -> Iterator[t
 def take_parameters(
     control: Control, statement: Statement, name: str, known: Mapping[int, str]
 ) -> Parameters:
-    """Take the parameters of a definition and give Q their values.
-
-    Raises:
-        ProgramError: One is none of the cycle's, has no value, or occurs twice.
-    """
+    """Take the parameters of a definition and give Q their values."""
     line, values = control.block.line, {}
     begin = statement.text_column
     given = [

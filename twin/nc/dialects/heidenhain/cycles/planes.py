@@ -43,11 +43,7 @@ _HEIGHT = 2
 
 
 def plane(control: Control, statement: Statement) -> None:
-    """PLANE: tilts the working plane, and turns the rotary axes as TURN, MOVE or STAY says.
-
-    Raises:
-        ProgramError: It is of a kind that is not simulated, or the machine cannot.
-    """
+    """PLANE: tilts the working plane, and turns the rotary axes as TURN, MOVE or STAY says."""
     kind = _KIND.match(statement.text)
     name = "" if kind is None else kind[1].upper()
     if kind is None or (name != "RESET" and name not in MATRICES):
@@ -95,11 +91,7 @@ def retract(control: Control, way: float | None, *, rapid: bool = True) -> None:
 
 
 def enter_plane(control: Control) -> None:
-    """Before a block moves X, Y or Z in a tilted plane the tool must stand across it; then it counts in it.
-
-    Raises:
-        ProgramError: It does not.
-    """
+    """Before a block moves X, Y or Z in a tilted plane the tool must stand across it; then it counts in it."""
     if memory_of(control).tilt is not None:
         hint = "L A+Q120 C+Q122 FMAX (the axes of the machine) in a block before, or TURN in PLANE"
         count_in_plane(control, "PLANE", hint)

@@ -32,11 +32,7 @@ def _clear(call: CycleCall, *outlines: Outline) -> None:
 
 
 def _clearing(call: CycleCall, heights: Heights) -> Clearing:
-    """What the parameters say of the passes.
-
-    Raises:
-        ProgramError: They do not mill, or in a way that is not followed.
-    """
+    """What the parameters say of the passes."""
     radius, total = radius_in_spindle(call.control), heights.surface - heights.bottom
     kind, plunge = call.get("VARI") % 10.0, int(call.get("VARI") // 10.0 % 10.0)
     if kind not in (0.0, 1.0, 2.0) or call.get("CDIR") not in (0.0, 1.0, 2.0, 3.0):

@@ -34,11 +34,7 @@ _PART = re.compile(rf"[ \t]*BLOCK[ \t]+({NAME})[ \t]+TO[ \t]+({NAME})[ \t]*", re
 
 
 def call_named(control: Control, statement: Statement, name: str, text: str, column: int) -> None:
-    """Call a subprogram; the text behind its name holds values in brackets and P, how often.
-
-    Raises:
-        ProgramError: There is none of that name, or the values do not fit.
-    """
+    """Call a subprogram; the text behind its name holds values in brackets and P, how often."""
     subprogram = _subprogram(control, statement, name)
     inner, begin, end = bracketed(control, text, column)
     rest, times = text[end:].rstrip(), 1.0
@@ -67,11 +63,7 @@ def _subprogram(control: Control, statement: Statement, name: str) -> Subprogram
 
 
 def call_subprogram(control: Control, statement: Statement, name: str) -> None:
-    """Call a subprogram without values.
-
-    Raises:
-        ProgramError: There is none of that name, or it needs values.
-    """
+    """Call a subprogram without values."""
     _enter(control, statement, _subprogram(control, statement, name), [], 1.0)
 
 

@@ -47,11 +47,7 @@ def _structure(control: Control) -> Structure:
 
 
 def _construct_of(control: Control, statement: Statement) -> Construct:
-    """The construct that a statement belongs to.
-
-    Raises:
-        ProgramError: It has no counterpart, or lies too deep.
-    """
+    """The construct that a statement belongs to."""
     construct = _structure(control).by_line.get(control.block.line - 1)
     if construct is None or construct.end is None:
         message = f"{statement.keyword} has no counterpart"
@@ -206,11 +202,7 @@ def go_to(control: Control, statement: Statement) -> None:
 
 
 def find_label(control: Control, statement: Statement, label: int | str) -> Location | None:
-    """Where a jump leads: the nearest block with the label in its direction; None: GOTOC finds none.
-
-    Raises:
-        ProgramError: There is none.
-    """
+    """Where a jump leads: the nearest block with the label in its direction; None: GOTOC finds none."""
     lines, here, keyword = lines_around(control), control.block.line - 1, statement.keyword
     places = [
         each for each in control.program_counter.labels().get(label, []) if each.line in lines
