@@ -567,7 +567,9 @@ def test_stock_keeps_clear_of_rapids_in_the_plane_beside_the_part(tmp_path: Path
     beside = "G21 G90 G17\nT1 M6\nS2000 M3\nG0 X-20. Y-20. Z5.\nG1 Z-3. F300.\nX-6.\nY70.\nX100.\nY-6.\nX-20.\n{}\nG0 Z50.\nM30\n"
     made, job = raw(tmp_path, "%\nO1\n" + beside.format("G0 Y-20."))
     assert "less where the rapids of line 13 go below its top" in " ".join(job.assumptions)
-    assert made.job.file.stock is not None
-    assert made.job.file.stock.position[0] - made.job.file.stock.size[0] / 2.0 > -15.0
+    stock = made.job.file.stock
+    assert stock is not None
+    assert stock.size is not None
+    assert stock.position[0] - stock.size[0] / 2.0 > -15.0
     made, job = raw(tmp_path, "%\nO1\n" + beside.format("G0 X90. Y60."))
     assert "less where" not in " ".join(job.assumptions)
