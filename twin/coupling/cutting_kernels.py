@@ -89,7 +89,7 @@ def follow_cutting(
 ) -> None:
     """Step the machine from setpoint to setpoint while its tool cuts.
 
-    In every period the axes are pushed by the force that the teeth felt at its beginning, in the
+    In every period the axes are pushed by the force of the teeth at its beginning, in the
     mean over the angle that they turn in a period.
 
     Args:

@@ -231,7 +231,7 @@ def nothing_judged(
         first, last = part.lines
         key = f"blocks[{number}].contour_um"
         if key not in judged and figures.samples:
-            message = f"{key} has judged nothing: no move stands in lines {first} to {last}"
+            message = f"{key} has judged nothing: no move is in lines {first} to {last}"
             yield Reason(key, message, 0, 0.0)
 
 

@@ -51,7 +51,7 @@ from twin.units import MM
 TOUCH = 0.01
 """Overlap that is no collision yet [mm]: what the axes tremble by where two faces lie on each other."""
 SHORTEST_WAY = 0.02
-"""A way between two samples that is shorter is not halved any more [mm]."""
+"""A path between two samples that is shorter is not halved any more [mm]."""
 WORSE = 0.1
 """What has met, and was acknowledged, may overlap by so much more before it is an alarm again [mm]."""
 NEAR_STEP = 0.01

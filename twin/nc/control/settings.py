@@ -118,10 +118,10 @@ class ControlSettings:
     control does when it comes from its maker."""
 
     rotary_diameter: float | None = None
-    """``haas``: diameter at which F counts the way of rotary axes (setting 34) [mm]."""
+    """``haas``: diameter at which F counts the path of rotary axes (setting 34) [mm]."""
 
     feed_of_all_axes: bool = False
-    """``fagor8070``: F counts rotary axes beside the main axes (FEEDND)."""
+    """``fagor8070``: F counts rotary axes together with the main axes (FEEDND)."""
 
     length_returns: Literal["by code", "next block"] = "by code"
     """``fanuc``: when a tool length counts again that G28, G30 or G53 has cancelled (parameter 5001 #6)."""

@@ -73,7 +73,7 @@ class WordSorter:
             elif address in words:
                 control.fail(
                     "duplicate-word",
-                    f"'{address}' stands twice in the block",
+                    f"'{address}' occurs twice in the block",
                     word,
                     "leave one out, or write two blocks",
                 )
@@ -94,7 +94,7 @@ class WordSorter:
             word = words.pop(address)
             axis = self._indexed(self._control, word)
             if axis in words:
-                message = f"'{axis}' stands twice in the block"
+                message = f"'{axis}' occurs twice in the block"
                 self._control.fail("duplicate-word", message, word, "write two blocks")
             words[axis] = word._replace(address=axis)
 

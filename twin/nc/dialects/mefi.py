@@ -141,7 +141,7 @@ DECISIONS = (
     Decision(
         "In which order do motion and jump of a G73 block happen, and how often?",
         "The block's own motion first, then the jump, Q times; the counter belongs to the block "
-        "and starts anew when the loop is entered again; a missing Q is 1.",
+        "and starts again when the loop is entered again; a missing Q is 1.",
         "The page's Q20 gives 21 circles.",
         example="counter_starts_anew",
     ),

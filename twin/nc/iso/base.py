@@ -319,7 +319,7 @@ DECISIONS = (
     Decision(
         "What do drilling cycles do?",
         "Z R P Q stay in force until G80 or a motion code; R counts from the tool and Z from R with "
-        "G91; a cycle block without a hole drills where the tool stands.",
+        "G91; a cycle block without a hole drills where the tool is.",
         "ISO 6983-1 names the cycles and leaves their words to the control.",
         example="drilling_words_stay",
     ),

@@ -36,7 +36,7 @@ SLIPS: tuple[Slip, ...] = (
     ),
     _slip(
         r"\b(?:IF|WHILE|UNTIL)[ \t]*(?!\[)",
-        "a condition stands in brackets: IF [#1 EQ 2] GOTO 5",
+        "a condition is written in brackets: IF [#1 EQ 2] GOTO 5",
         "IF",
     ),
     _slip(

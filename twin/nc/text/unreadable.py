@@ -120,7 +120,7 @@ class Unreadable:
         if slip is not None:
             return slip
         if character.isdigit():
-            return "a number stands behind the letter or name that it is for"
+            return "a number follows the letter or name that it is for"
         return self._comments() if character in ";$\"('/" else None
 
     def _comments(self) -> str:

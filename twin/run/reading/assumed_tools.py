@@ -88,7 +88,7 @@ class ToolComment(NamedTuple):
 
     @property
     def table_radius(self) -> float | None:
-        """What it has as its radius in the control's table [mm]; None: it is not told."""
+        """What it has as its radius in the control's table [mm]; None: it is not known."""
         whole = None if self.diameter is None else self.diameter / 2.0
         return 0.0 if self.wear else whole
 
@@ -247,7 +247,7 @@ def _near_comment(
     *,
     inches: bool,
 ) -> ToolComment | None:
-    """What a comment beside a tool's call says about it; without a list, and one tool alone, any comment of the head."""
+    """What a comment next to a tool's call says about it; without a list, and one tool alone, any comment of the head."""
     lines = [line for each, line, _ in calls if each == number]
     near = [
         (abs(line - call), text)
@@ -259,8 +259,8 @@ def _near_comment(
         near = [(line, text) for line, text in comments if line <= HEAD_LINES]
     for distance, text in sorted(near):
         tool = tool_of_comment(text, inches=inches)
-        beside = not distance and lines
-        if (tool.diameter is not None and (tool.kind or beside)) or (tool.kind and beside):
+        on_line = not distance and lines
+        if (tool.diameter is not None and (tool.kind or on_line)) or (tool.kind and on_line):
             return tool
     return None
 

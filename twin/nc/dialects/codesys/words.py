@@ -57,7 +57,7 @@ def before_motion(control: Control, _rapid: bool) -> None:
 
 
 def _refuse_slopes(control: Control) -> None:
-    """U, V, W beside A, B, C are the slopes of these at the end of the element (manual)."""
+    """U, V, W with A, B, C are the slopes of these at the end of the element (manual)."""
     for slope, axis in zip("UVW", "ABC", strict=True):
         if slope in control.words and slope not in control.axis_index and axis in control.words:
             message = f"{slope} is the slope of {axis}, and the twin moves {axis} linearly"

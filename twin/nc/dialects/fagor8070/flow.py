@@ -73,7 +73,7 @@ def _enclosing(control: Control, statement: Statement, without: tuple[str, ...])
         if construct.keyword not in without
     ]
     if not around:
-        control.fail("structure", f"{statement.keyword} stands outside a loop", statement)
+        control.fail("structure", f"{statement.keyword} is outside a loop", statement)
     return around[-1]
 
 

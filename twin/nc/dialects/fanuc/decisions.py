@@ -45,7 +45,7 @@ DECISIONS: tuple[Decision, ...] = (
     ),
     Decision(
         "Does F hold when G93, G94 or G95 changes?",
-        "No: the first cutting move behind it is refused until F is written anew.",
+        "No: the first cutting move behind it is refused until F is written again.",
         "F200 in mm/min would become 200 mm with each turn.",
         example="feed_of_another_mode",
     ),
@@ -186,13 +186,13 @@ DECISIONS: tuple[Decision, ...] = (
         "Which program has a name?",
         "Upper and lower case are the same in M98 <NAME>, G65 <NAME>, G66 <NAME> and O<NAME>; <O2000> and <2000> "
         "are program O2000.",
-        "Names are files of the control's memory, and those beside a program stand on disks that differ in this.",
+        "Names are files of the control's memory; those next to a program are on disks that differ in this.",
         example="called_by_name",
     ),
     Decision(
         "What does M99 do in the main program?",
         "It ends the run with a warning; with P it jumps.",
-        "A control would begin the program anew, for ever.",
+        "A control would start the program again, for ever.",
         example="main_ends_by_m99",
     ),
     Decision(
@@ -212,7 +212,7 @@ DECISIONS: tuple[Decision, ...] = (
         "What do #3000 and #3006 do?",
         "#3000 refuses the program with its message; #3006 is a program stop as M0. #3003 to #3005 "
         "change nothing of the path.",
-        "An alarm ends a run, and nobody stands at the twin to answer a message.",
+        "An alarm ends a run, and there is no operator to answer a message.",
         example="stops_by_variable",
     ),
     Decision(

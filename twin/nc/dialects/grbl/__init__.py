@@ -62,7 +62,7 @@ def _note_tool(control: Control, word: Word) -> None:
 
 
 def _with_axes(meaning: str, action: Action, group: str = "not modal") -> GCode:
-    """A code that takes the axis words of its block, so that no motion code can stand beside it."""
+    """A code that takes the axis words of its block, so that its block can have no motion code."""
 
     def perform(control: Control) -> None:
         if any(code.group == "motion" for _, code in control.codes):
@@ -79,7 +79,7 @@ POSITIONING, LINEAR = base.straight(
 
 
 def _arc(control: Control, rule: ArcRule) -> None:
-    """G2, G3: a centre beside the plane is passed over, as Grbl does (gcode.c, "Arc Center Format"); posts write K0."""
+    """G2, G3: a centre coordinate outside the plane is passed over, as Grbl does (gcode.c, "Arc Center Format"); posts write K0."""
     by_radius = "R" in control.words
     iso_arc(control, rule)
     if not by_radius:

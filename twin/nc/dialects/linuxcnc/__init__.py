@@ -107,7 +107,7 @@ LINUXCNC = Dialect(
             "^": "polar angle",
             "I": "centre along X, or to a control point; beside the hole (G87)",
             "J": "centre along Y, or to a control point; beside the hole (G87)",
-            "K": "centre along Z; way of each turn (G33); top of the counterbore (G87)",
+            "K": "centre along Z; distance of each turn (G33); top of the counterbore (G87)",
             "R": "radius of the arc; R plane of a cycle; rotation (G10 L2); tool radius (G10 L1)",
             "P": "seconds; turns of an arc; number of a system, tool or program; corner tolerance",
             "Q": "depth of a peck; tool of M61; seconds of M66; tolerance of straight lines (G64)",

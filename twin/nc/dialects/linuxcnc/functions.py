@@ -185,5 +185,5 @@ M_CODES = {
     428: MCode(meaning="the tip is led while rotary axes turn", group="kinematics", action=lead_tip, silent=True),
     429: MCode(meaning="positions are those of the axes", group="kinematics", action=lead_axes, silent=True),
     98: flow_function("the program O P is run, L times", call_program, "call"),
-    99: flow_function("end of that program; the main program begins anew", return_from_program, "call"),
+    99: flow_function("end of that program; the main program starts again", return_from_program, "call"),
 }  # fmt: skip

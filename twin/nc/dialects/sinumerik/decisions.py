@@ -26,7 +26,7 @@ DECISIONS = (
     Decision(
         "Does the tool's length count with G53, G153 and SUPA?",
         "No: they move the axes. A D of the block counts from the next block on.",
-        "Programs write D0 beside them, and part zero was taken with the first tool.",
+        "Programs write D0 with them, and part zero was taken with the first tool.",
         example="machine_position",
     ),
     Decision(

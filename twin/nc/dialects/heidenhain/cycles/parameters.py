@@ -52,7 +52,7 @@ def take_parameters(
         for match in _PARAMETER.finditer(text):
             parameter, at = int(match[1]), column + match.start()
             if parameter not in known or parameter in values:
-                said = "stands twice" if parameter in values else f"is no parameter of {name}"
+                said = "occurs twice" if parameter in values else f"is no parameter of {name}"
                 hint = ", ".join(f"Q{each}" for each in sorted(known))
                 control.report.fail(
                     "cycle-word", f"Q{parameter} {said}", at, 4, f"{name} has {hint}"

@@ -227,7 +227,7 @@ def _refuse_label(
     if elsewhere:
         way = "behind this block" if keyword == "GOTOF" else "before this block"
         other = "GOTOB" if keyword == "GOTOF" else "GOTOF"
-        hint = f"it stands not {way}; {other} or GOTO leads there"
+        hint = f"it is not {way}; {other} or GOTO leads there"
     control.fail(
         "unknown-label", f"{keyword} names {shown}, and no block has it there", statement, hint
     )
