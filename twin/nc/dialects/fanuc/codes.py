@@ -17,7 +17,7 @@ from twin.nc.dialects.fanuc import (
     tool_tips,
     transformations,
 )
-from twin.nc.dialects.fanuc.cycles.canned_cycles import cycles
+from twin.nc.dialects.fanuc.cycles.canned_cycles import begin_rigid_tapping, cycles
 from twin.nc.dialects.fanuc.memory import Variant, memory_of
 from twin.nc.dialects.fanuc.tool_offsets import compensation_code, end_length, length_code
 from twin.nc.iso import base, fixed_cycles
@@ -219,7 +219,7 @@ REPLACEMENTS: Mapping[float, str] = {
 M_CODES: Mapping[int, MCode] = {
     **base.M_CODES,
     19: MCode(meaning="spindle orientation", basis="manual"),
-    29: MCode(meaning="rigid tapping", basis="manual"),
+    29: MCode(meaning="rigid tapping", action=begin_rigid_tapping, basis="manual"),
     98: flow_function("run a subprogram: P L", programs.call),
     99: flow_function("end of a subprogram, or jump: P", programs.return_),
 }
