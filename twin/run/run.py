@@ -118,10 +118,10 @@ class Run:
     def _followers(self) -> Followers:
         job, machine, summary = self.preparation.job.file, self.machine, self.dry_run.summary
         apart = [part.lines for part in job.tolerance.blocks]
+        trace = Trace(machine.axes, self.part_frame, self.part_zero)
         comparison = Comparison(
             machine.axes, self.part_frame, self.part_zero, apart, lower=summary.tools.lower
         )
-        trace = Trace(machine.axes, self.part_frame, self.part_zero)
         return Followers(
             machining=Machining(
                 self.model,
