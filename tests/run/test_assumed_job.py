@@ -12,7 +12,9 @@ from twin.nc.canonical import concatenate
 from twin.nc.text.diagnostics import ProgramError
 from twin.run.assumed_job import AssumedJob, text_beside, with_assumptions
 from twin.run.preparation import Preparation, prepare
+from twin.run.progress import no_progress
 from twin.run.reading.assumed_tools import SPEED_BY_HAND, numbered_tool, tool_of_comment
+from twin.run.run import Run
 
 CONTOUR = """%
 O01001 (PLATE)
@@ -585,3 +587,23 @@ def test_tools_that_a_program_writes_into_the_table_are_its_own(tmp_path: Path) 
     assert list(made.interpretation().chunks())
     with pytest.raises(ProgramError, match="no tool 2"):
         raw(tmp_path, text.format("G43 H1\n"))
+
+
+@pytest.mark.seconds("a program is run")
+def test_what_goes_through_a_stock_of_the_program_meets_no_parallels(tmp_path: Path) -> None:
+    """Nobody says where they are; a job that does not give them room has its alarm."""
+    text = "BEGIN PGM A MM\nBLK FORM 0.1 Z X-45 Y-45 Z-10\nBLK FORM 0.2 X+45 Y+45 Z+0\nTOOL CALL 1 Z S3000 ; DRILL D5\nM3\nL X+30 Y+30 Z+5 R0 FMAX\nL Z-11.5 F900\nL Z+5 FMAX\nM30\nEND PGM A MM\n"
+    (tmp_path / "part.h").write_text(text)
+    made, job = with_assumptions(prepare(tmp_path / "part.h"), machine=None, strict=False)
+    assert made.job.file.stock is not None
+    assert made.job.file.stock.relief == 3.0
+    assert "3 mm below it are free, since the path goes through" in " ".join(job.assumptions)
+    assert not alarms_of(made)
+    kept = tmp_path / "kept.toml"
+    kept.write_text("".join(line for line in job.text.splitlines(True) if "relief" not in line))
+    assert alarms_of(prepare(kept)) == ["collision"]
+
+
+def alarms_of(preparation: Preparation) -> list[str]:
+    outcome = Run(preparation).execute(None, no_progress)
+    return [alarm.code for alarm in outcome.alarms]

@@ -38,6 +38,9 @@ class StockTable(Table):
     """STL: its file [mm], relative to the job file."""
     position: tuple[float, float, float] = (0.0, 0.0, 0.0)
     """Centre of the top face in program coordinates [mm]; of the box around an STL, or a cylinder that lies."""
+    relief: Positive | None = None
+    """How deep parallels or a post below it leave room for drills and cutters that go through its lower face
+    [mm]; none: they reach up to it."""
     cell: Positive | None = None
     """Grid of the height map [mm]; none: a tenth of the smallest tool's radius, or a fortieth of the
     stock's shorter side where that is less, 0.1 at the finest."""

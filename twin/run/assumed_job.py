@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from twin.files.shipped import machine_file, machine_names, variant_names
-from twin.job.job_file import JobFile
+from twin.job.job_file import JobFile, StockTable
 from twin.job.load import ASSUMED, Job, Layer
 from twin.machine.description.config import Machine
 from twin.nc.canonical import Chunk, FloatArray, Function, Motion, Moves, concatenate
@@ -34,6 +34,8 @@ from twin.run.reading.declared import declared_stock, declared_tools, table_tool
 
 _MACHINE_ZERO_UNKNOWN = "no-machine-zero"
 """The finding of a program that counts from machine zero, where no job says where that lies."""
+_RELIEF = 1.0
+"""So much deeper than the path it is free below a stock that the path goes through [mm]."""
 _RAPID_TOLERANCE_UM = 200.0
 """How exactly rapids are to keep their path: no one measures it, and 0.2 mm hits nothing that is watched."""
 
@@ -113,6 +115,7 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
         by_hand=by_hand,
     )
     stock, position, said = blank or assumed_stock(moves, comments, diameter / 2.0, inches=inches)
+    stock, said = _with_relief(stock, said, moves, position)
     lines = [
         f'program = "{preparation.job.program.name}"',
         f'dialect = "{preparation.dialect.name}"',
@@ -157,6 +160,26 @@ def _least_length(machine: Machine, moves: Moves) -> float:
     if frame.chain is None or frame.table_about(2) is not None or travel is None or not len(moves):
         return 0.0
     return travel[0] + MARGIN - float(frame.chain.table[2]) - float(moves.end[:, 2].min())
+
+
+def _with_relief(
+    stock: list[str], said: str, moves: Moves, top: FloatArray | None
+) -> tuple[list[str], str]:
+    """Room below the stock for what goes through it: who writes the program knows where its parallels are."""
+    feeds = moves.motion == Motion.FEED
+    if top is None or turns_about_x(moves) or not feeds.any():
+        return stock, said
+    table = StockTable.model_validate(tomllib.loads("\n".join(stock))["stock"])
+    deeper = float(top[2]) - table.extent[2] - float(moves.end[feeds, 2].min())
+    if deeper <= BELOW or table.lies:
+        return stock, said
+    relief = float(np.ceil(deeper)) + _RELIEF
+    line = f"relief = {relief:.1f}  # mm, a guess: free below it, since the path goes through by {deeper:.3g}"
+    return [
+        *stock[:-1],
+        line,
+        "",
+    ], f"{said}; {relief:g} mm below it are free, since the path goes through"
 
 
 def _start_lines(moves: Moves, top: FloatArray | None) -> list[str]:

@@ -135,6 +135,7 @@ def _blank(job: JobFile, frame: PartFrame, zero: FloatArray, over_table: float) 
         weight=None if weight is None else weight.moved(place),
         on_post=stock.on_post,
         direction=order.index(stock.direction),
+        relief=stock.relief or 0.0,
     )
 
 

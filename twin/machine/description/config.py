@@ -34,6 +34,7 @@ class Blank(NamedTuple):
         weight: What it weighs, seen from the middle of the table; None: not known.
         on_post: A post carries it where it does not lie on the table; else two parallels.
         direction: Of the cylinder's axis: 0, 1, 2 for X, Y, Z.
+        relief: So deep below it that leaves room for tools [mm].
     """
 
     size: tuple[float, float, float]
@@ -42,6 +43,7 @@ class Blank(NamedTuple):
     weight: Weight | None = None
     on_post: bool = False
     direction: int = 2
+    relief: float = 0.0
 
 
 class Machine:

@@ -247,7 +247,7 @@ def _add_work_holding(spec: mujoco.MjSpec, blank: Blank) -> None:
     """What is drawn under the stock is as solid as a fixture."""
     top = spec.site(TABLE_TOP)
     x, y, z = blank.center
-    gap = z - blank.size[2] / 2.0
+    gap = z - blank.size[2] / 2.0 - blank.relief
     for support in supports(blank.size, gap, box=not blank.on_post):
         half = [size * MM for size in support.half]
         top.parent.add_geom(
