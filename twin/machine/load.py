@@ -11,7 +11,8 @@ from twin.files.shipped import machine_file
 from twin.files.toml import Change, Data, changed, load_toml, merged, read_toml
 from twin.job.fixture import FixtureTable
 from twin.job.load import Job
-from twin.machine.description.config import Machine, MachineFile
+from twin.machine.description.config import Machine
+from twin.machine.description.machine_file import MachineFile
 
 
 def load_machine(job: Job, name: str | None = None, changes: Sequence[Change] = ()) -> Machine:

@@ -94,7 +94,8 @@ def view_app(
             content = await anyio.to_thread.run_sync(found.glb)
             return Response(content, media_type="model/gltf-binary")
         stock = await anyio.to_thread.run_sync(grid)
-        return JSONResponse(found.description() | ({} if stock is None else {"stock": stock}))
+        part = {"part_mesh": run.has_part_mesh} if stock is None else {"stock": stock}
+        return JSONResponse(found.description() | part)
 
     routes = [
         Route("/", page),
