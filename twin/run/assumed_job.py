@@ -31,7 +31,7 @@ from twin.run.reading.assumed_stock import (
     turns_about_x,
 )
 from twin.run.reading.assumed_tools import BELOW, SPEED_BY_HAND, named_tools, tool_lines
-from twin.run.reading.declared import declared_stock, declared_tools
+from twin.run.reading.declared import declared_stock, declared_tools, table_tools
 
 _MACHINE_ZERO_UNKNOWN = "no-machine-zero"
 """The finding of a program that counts from machine zero, where no job says where that lies."""
@@ -95,7 +95,8 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
     comments = list(_comments(preparation))
     functions = [each for chunk in chunks for each in chunk.events if isinstance(each, Function)]
     named = named_tools(interpretation.tool_names, inches=inches)
-    declared = {**named, **declared_tools(functions)}
+    blocks = list(map(without_comments, preparation.source.lines))
+    declared = {**named, **table_tools(blocks, inches=inches), **declared_tools(functions)}
     length = _least_length(preparation.machine, moves)
     blank = declared_stock(functions)
     top = top_of_stock(moves) if blank is None else float(blank.top[2])
