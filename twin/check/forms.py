@@ -48,8 +48,8 @@ def summary_line(outcomes: Sequence[CheckOutcome]) -> str:
     told += f" ({expected} of them fail as their jobs expect)" if expected else ""
     warnings = sum(len(outcome.warnings) for outcome in outcomes)
     noun = "program" if len(outcomes) == 1 else "programs"
-    beside = f"; {warnings} {'warning' if warnings == 1 else 'warnings'}" if warnings else ""
-    return f"{len(outcomes)} {noun}: {told or 'none'}{beside}"
+    counted = f"; {warnings} {'warning' if warnings == 1 else 'warnings'}" if warnings else ""
+    return f"{len(outcomes)} {noun}: {told or 'none'}{counted}"
 
 
 def junit_xml(outcomes: Sequence[CheckOutcome]) -> str:

@@ -40,7 +40,7 @@ def combinations(path: Path, vary: Sequence[tuple[str, Sequence[Any]]]) -> list[
     axes = [[(key, value) for value in values] for key, values in vary]
     keys = [key for key, _ in vary]
     if len(set(keys)) < len(keys):
-        raise UsageError(f"--vary: a key stands twice: {', '.join(keys)}")
+        raise UsageError(f"--vary: a key occurs twice: {', '.join(keys)}")
     count = functools.reduce(lambda product, axis: product * len(axis), axes, 1)
     if count > MOST_VARIANTS:
         raise UsageError(f"--vary: {count} combinations are more than {MOST_VARIANTS}")

@@ -42,7 +42,7 @@ class Source:
         speed: Seconds of the twin for each second of the day.
         dialect: Overrides the job's dialect.
         machine: Overrides the job's machine.
-        opcua_port: Where OPC UA is told beside MTConnect; None: nowhere.
+        opcua_port: Port of OPC UA, which reports in addition to MTConnect; None: it does not.
         opcua_trust: Folder of the certificates of OPC UA's clients.
         grbl: Port at which a machine takes programs from Grbl's senders, or ``pty``; None: it takes none.
         view: Whether a page shows the machine, too.
@@ -289,18 +289,17 @@ def _produce(run: Run, folder: Path) -> "Production":
     """Run a job once and keep its recording in a folder."""
     from twin.serve.playback import Production, coolant_of
 
-    dry_run = run.dry_run()
     with shown_progress() as progress:
-        outcome = run.execute(dry_run, folder, progress)
+        outcome = run.execute(folder, progress)
     recording = folder / "recording.h5"
     return Production(
         machine=run.preparation.machine,
         program=run.preparation.source.name,
         source=run.preparation.source.lines,
-        summary=dry_run.summary,
+        summary=run.dry_run.summary,
         recording=recording if recording.is_file() else None,
         alarms=outcome.alarms,
-        coolant=coolant_of(dry_run.program.chunks()),
+        coolant=coolant_of(run.dry_run.program.chunks()),
     )
 
 

@@ -37,7 +37,7 @@ from twin.nc.canonical import Axes, Chunk
 from twin.nc.text.diagnostics import ProgramError
 
 MOST_LISTED = 50
-"""Blocks that are named one by one; how many more differ is told behind them."""
+"""Blocks that are named one by one; how many more differ is reported behind them."""
 _LOOK_AHEAD = 24
 """Blocks that may be inserted or lost in one place and the rest be recognised again."""
 _SMALLEST_TIME = 1e-6

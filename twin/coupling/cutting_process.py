@@ -14,7 +14,7 @@ from twin.cutting.forces.cutter_form import cutter_form, force_law
 from twin.cutting.forces.materials import Kienzle
 from twin.cutting.forces.tool_strength import ToolStrength, tool_strength
 from twin.job.job_file import ToolTable
-from twin.machine.description.config import SpindleTable
+from twin.machine.description.machine_file import SpindleTable
 from twin.machine.simulation.process import Physics
 from twin.machine.watching.alarms import Alarm
 from twin.motion.setpoints.setpoints import Setpoints
@@ -74,7 +74,7 @@ class Operation(Protocol):
 
 
 class Rows(NamedTuple):
-    """What the machine is told in n periods, and what is set by them.
+    """What the machine is commanded in n periods, and what is set by them.
 
     Attributes:
         controls: What the drives are commanded on the way to each setpoint, shape (n, nu).

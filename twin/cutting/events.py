@@ -9,7 +9,7 @@ from twin.cutting.height_map import BoolArray
 from twin.nc.canonical import FloatArray, IntArray
 
 TAIL_MM = 0.2
-"""A rapid's removal on its first way counts as the end of the feed before it [mm]: the axes lag
+"""A rapid's removal on its first millimetres counts as the end of the feed before it [mm]: the axes lag
 behind the setpoints, so that the last of a feed is cut when the rapid has already begun. As long
 as the lag at its beginning, and so much more. The same holds for a feed after the spindle stopped."""
 

@@ -28,7 +28,7 @@ class _Cylinder:
     height: float = math.inf
     offset: tuple[float, float] = (0.0, 0.0)
     round: bool = True
-    swivels: bool = True
+    beyond: tuple[int, ...] = ()
 
     @property
     def half(self) -> tuple[float, float]:
@@ -73,15 +73,15 @@ class StockContact:
         """What reaches into the material as it is, along each stretch; see ``Contact``."""
         material = self._material
         count = len(suspect)
-        lowest = points.tip[:, 2].min()
         stood = Stood(material.heights, material.behind, material.grid, doubtful)
         found = {}
         for solid in self._uprights:
-            if lowest + solid.above < material.top:
+            places = points.carrying(solid)
+            if places.tip[:, 2].min() + solid.above < material.top:
                 overlap = Overlap(*np.zeros((2, count)))
-                self._hold(solid, stood, points, overlap)
+                self._hold(solid, stood, places, overlap)
                 found[solid.name] = overlap
-        if suspect.any() and lowest < material.top:
+        if suspect.any() and points.tip[:, 2].min() < material.top:
             overlap = Overlap(*np.zeros((2, count)))
             for run in runs_of(suspect):
                 way = points.tip[run.start : run.stop + 1]

@@ -1,4 +1,4 @@
-"""Walls that the side of a tool has left, told closer than by whole cells.
+"""Walls that the side of a tool has left, known closer than by whole cells.
 
 A height map knows a wall to half a cell, which is most of a narrow cut. Of the cells beside a wall it
 is therefore kept how far their middles are from it and in which direction: a vector that points into
@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from twin.compilation.kernel import kernel
-from twin.cutting.kernels.sweep import Grid
+from twin.cutting.kernels.covered_cells import Grid
 from twin.nc.canonical import FloatArray
 
 WallArray = npt.NDArray[np.float32]

@@ -1,4 +1,4 @@
-"""Whether there is material before a cutter's edge in a tri-dexel stock, told closer than by whole cells."""
+"""Whether there is material before a cutter's edge in a tri-dexel stock, known closer than by whole cells."""
 
 import math
 from typing import NamedTuple

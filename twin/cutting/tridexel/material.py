@@ -126,8 +126,7 @@ class TriDexelMaterial:
 class TriDexelContact:
     """Measures one tool against the material; see ``Contact``.
 
-    Each solid is held against it without the outer layer that may brush a wall. What carries a swivel head does not turn with
-    the tool, and is not looked at.
+    Each solid is held against it without the outer layer that may brush a wall.
     """
 
     def __init__(self, stock: TriDexel, tool: ToolTable, edge: Profile, head: Head | None) -> None:
@@ -135,14 +134,14 @@ class TriDexelContact:
         self._stock = stock
         self._edge = cutting_edge(edge, tool.flute)
         self._solids: dict[str, tuple[Solid, float]] = {}
-        self._boxes: dict[str, Box] = {}
+        self._boxes: list[Upright] = []
         for each in above_edge(tool, head):
-            if each.round and not any(each.offset):
+            if each.round and not any(each.offset) and not each.beyond:
                 high = tool.below_holder if each.name in ("shank", "flute") else ABOVE_MM
                 solid = cylinder(each.half[0], each.above, max(high, each.above))
                 self._solids[each.name] = (solid, BRUSH_MM if each.name == "flute" else SCRAPE_MM)
-            elif each.swivels:
-                self._boxes[each.name] = _box_around(each)
+            else:
+                self._boxes.append(each)
 
     def measure(
         self, points: Points, suspect: BoolArray, *, doubtful: bool = False
@@ -152,9 +151,10 @@ class TriDexelContact:
         poses, found = _poses(points), {}
         for name, (solid, layer) in self._solids.items():
             found[name] = self._depth(poses, solid, layer)
-        for name, box in self._boxes.items():
-            depth = boxes_met(self._stock, poses, points.turn, box)
-            found[name] = np.where(depth > SCRAPE_MM, depth, 0.0)
+        for solid in self._boxes:
+            places = points.carrying(solid)
+            depth = boxes_met(self._stock, _poses(places), places.turn, _box_around(solid))
+            found[solid.name] = np.where(depth > SCRAPE_MM, depth, 0.0)
         if suspect.any():
             found[EDGE] = np.zeros(len(suspect))
         for run in runs_of(suspect):

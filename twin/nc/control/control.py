@@ -368,7 +368,7 @@ def refuse_axis(control: Control, word: Word) -> NoReturn:
     rotary = next(
         (name for name, line in zip(axes.names, control.motion.linear, strict=True) if not line), ""
     )
-    stands = f'; {word.address} = "{rotary}" where it stands for {rotary}' if rotary else ""
+    stands = f'; {word.address} = "{rotary}" where it means {rotary}' if rotary else ""
     listed, ignored = ", ".join(axes.names), f'{word.address} = "ignored at 0"'
     hint = f"axes: {listed}; in the job: [axes] {ignored}{stands}; machines with others: twin machine list"
     control.fail("no-such-axis", f"this machine has no axis {word.address}", word, hint)

@@ -209,7 +209,7 @@ class ProgramCounter:
         word: str,
         within: Container[int] | None = None,
     ) -> Location:
-        """Where the block with an N number or a name stands, among these lines, from 0, or all; a word at ``fail_at`` asks for it.
+        """Where the block with an N number or a name is, among these lines, from 0, or all; a word at ``fail_at`` asks for it.
 
         Raises:
             ProgramError: No block or more than one has it.

@@ -110,7 +110,7 @@ class BlockSearch:
         return ""
 
     def arrival(self, control: Control, stand: FloatArray, line: int) -> Chunk:
-        """The way to where the block begins, with spindle and coolant as they are needed there.
+        """The path to where the block begins, with spindle and coolant as they are needed there.
 
         Args:
             control: After the blocks that were only computed.

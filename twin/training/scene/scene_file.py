@@ -127,7 +127,7 @@ class SceneFile(Table):
     title: Text
     """What the list of scenes and the page call it."""
     story: Text
-    """What the operator is told first."""
+    """What the operator reads first."""
     language: Language = "en"
     """What labels, messages and texts are in, unless ``--language`` says otherwise."""
     job: JobFile

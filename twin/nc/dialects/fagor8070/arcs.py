@@ -94,7 +94,7 @@ def _end_on_circle(control: Control, goal: Goal, center: Point) -> None:
 
 
 def _circle_radius(control: Control, *, cartesian: bool) -> Word | None:
-    """R beside a coordinate of the plane, or R1, which stays in force as G263 does."""
+    """R with a coordinate of the plane, or R1, which stays in force as G263 does."""
     modal = control.take("R1")
     if modal is not None:
         if not cartesian:

@@ -104,7 +104,7 @@ def begin(control: Control) -> None:
 
 
 def _pass_text_before_tape(control: Control) -> int:
-    """Begin behind the first % where text that is no program stands before it, as the control does; the line, from 0."""
+    """Begin behind the first % where text that is no program comes before it, as the control does; the line, from 0."""
     lines = control.program_counter.lines
     first = next((at for at, _ in lines.holding("%") if lines[at].lstrip().startswith("%")), 0)
     text = [lines[at] for at in range(min(first, _LONGEST_TEXT + 1))]
@@ -113,7 +113,7 @@ def _pass_text_before_tape(control: Control) -> int:
         return 0
     control.program_counter.go(Location(first + 1, 0))
     control.report.line = 1
-    message = f"the control reads a file from its first % on, in line {first + 1}: what stands before it is passed over"
+    message = f"the control reads a file from its first % on, in line {first + 1}: what is before it is passed over"
     control.report.warn_once("before-tape-start", message)
     return first + 1
 
@@ -282,7 +282,7 @@ def return_(control: Control) -> None:
         control.go_back()
         around = lines_around(control, counter.location.line)
     elif target is None:
-        message = "M99 in the main program begins it anew, for ever: here it ends"
+        message = "M99 in the main program starts it again, for ever: here it ends"
         control.report.warn_once("endless-main", message, hint="end the main program by M30")
         control.ended = True
         return

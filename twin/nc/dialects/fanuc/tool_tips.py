@@ -17,7 +17,7 @@ _BY_VECTORS = 43.5
 
 
 def begin(name: str) -> Action:
-    """G43.4 H1, G43.5 H1, G234 H1: the tip of the tool is led while rotary axes turn; F counts its way.
+    """G43.4 H1, G43.5 H1, G234 H1: the tip of the tool is led while rotary axes turn; F counts its path.
 
     G43.4 P1 and G43.5 P1 turn the tool in the plane of both directions (tool posture control); P0, or no P, does not.
     """

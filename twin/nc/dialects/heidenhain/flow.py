@@ -155,7 +155,7 @@ def _line_of(control: Control, name: str, column: int) -> int:
         hint = f"labels here: {known or 'none'}"
         control.report.fail("unknown-label", message, column, len(name), hint)
     if line < 0:
-        control.report.fail("ambiguous-label", f"LBL {name} stands twice", column, len(name))
+        control.report.fail("ambiguous-label", f"LBL {name} occurs twice", column, len(name))
     return line
 
 

@@ -38,7 +38,7 @@ REFUSED: Mapping[str, tuple[str, str]] = {
     "SEL PGM": ("the program is selected where it runs", "write CALL PGM and its name"),
     "SEL CONTOUR": ("contours of subprograms are not followed", "write the moves themselves"),
     "GLOBAL DEF": ("values of all cycles are not kept", "write them into each CYCL DEF"),
-    "ERROR": ("the control's editor has marked this block as wrong", "write the block anew"),
+    "ERROR": ("the control's editor has marked this block as wrong", "write the block again"),
     "POLARKIN": ("polar kinematics are not followed", "write X and Y"),
     **dict.fromkeys(
         ("TABDATA", "OPEN", "CLOSE"),

@@ -15,7 +15,7 @@ def computed_words(control: Control, statement: Statement, at: int) -> dict[str,
     for block in control.statements.blocks(statement.text[at:], column, control.block.line):
         for word in block.words:
             if word.address in found:
-                control.fail("duplicate-word", f"'{word.address}' stands twice here", word)
+                control.fail("duplicate-word", f"'{word.address}' occurs twice here", word)
             found[word.address] = _computed(control, word)
         if block.statement is not None:
             refuse_rest(control, block.statement.column, block.statement.keyword)

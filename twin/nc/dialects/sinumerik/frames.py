@@ -221,9 +221,7 @@ def rotation(control: Control) -> tuple[Matrix, Vector]:
     plane_angle = control.take("RPL")
     if plane_angle is not None:
         if control.words:
-            control.fail(
-                "frame", "RPL= stands without axes", plane_angle, "write ROT RPL=45 or ROT Z45"
-            )
+            control.fail("frame", "RPL= has no axes", plane_angle, "write ROT RPL=45 or ROT Z45")
         directions = control.modal.plane.directions
         return rotated(IDENTITY, directions, control.number(plane_angle), (0.0, 0.0))[0], _NO_SHIFT
     words = _axis_words(control, "ROT Z45, or ROT RPL=45")

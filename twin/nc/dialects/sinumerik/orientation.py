@@ -64,7 +64,7 @@ INTERPOLATIONS = {
 
 
 def begin_transformation(control: Control, statement: Statement) -> None:
-    """TRAORI, TRAORI(1): the tip is led; F counts its way."""
+    """TRAORI, TRAORI(1): the tip is led; F counts its path."""
     inner = statement.text.strip().strip("()").strip()
     if inner not in ("", "1"):
         message = f"the machine has one transformation of orientation, TRAORI, not TRAORI({inner})"

@@ -54,7 +54,7 @@ _ASSIGNED = re.compile(r"[ \t]*(?:\[[^\]]*\])?[ \t]*=(?!=)")
 
 
 def _pass_over(control: Control, statement: Statement) -> None:
-    """A statement that changes nothing of the path: told once; words behind it are a block."""
+    """A statement that changes nothing of the path: reported once; words behind it are a block."""
     keyword, text, column = statement.keyword, statement.text, statement.text_column
     message = f"{keyword} does not change the path here: {PASSED_STATEMENTS[keyword]}"
     control.report.notice(keyword, message, statement.column, len(keyword))

@@ -72,7 +72,7 @@ def _by_way(control: Control, index: int, word: Word) -> float:
     """Target of a rotary axis that is reached within a turn."""
     value = control.number(word)
     if control.motion.linear[index]:
-        message = f"{word.mark} finds the way of a rotary axis, and {word.address} is none"
+        message = f"{word.mark} chooses the direction of a rotary axis, and {word.address} is none"
         control.fail("rotary-direction", message, word, f"write {word.address}=AC(...) or IC(...)")
     if not 0.0 <= value < TURN:
         message = f"{word.mark} goes to an angle from 0 to below 360, not to {value:g}"

@@ -160,7 +160,7 @@ def _face(call: CycleCall) -> None:
     length, width, step = call.length("LENG"), call.length("WID"), abs(call.length("MIDA"))
     way, kind = int(call.get("VARI") // 10.0 % 10.0), call.get("VARI") % 10.0
     if way not in (1, 2, 3, 4) or kind not in (1.0, 2.0):
-        ways = "1 rough or 2 finish, in tens 1 to 4 the way of the strips"
+        ways = "1 rough or 2 finish, in tens 1 to 4 the direction of the strips"
         call.refuse("cycle-word", f"takes VARI 11 to 42: {ways}")
     if not 0.0 < step <= 2.0 * radius or not (length and width):
         widest = f"the tool's diameter, {2.0 * radius:g}"

@@ -45,7 +45,7 @@ def call_part(
     begin = _place(control, statement, first, lines)
     end = _place(control, statement, last, lines)
     if end < begin:
-        message = f"{statement.keyword} names {last}, which stands before {first}"
+        message = f"{statement.keyword} names {last}, which is before {first}"
         control.fail("repeat-range", message, statement)
     control.call(begin, DEEPEST_CALL, statement, last=end)
 

@@ -190,7 +190,8 @@ def go_to(control: Control, statement: Statement) -> None:
     label = _LABEL.fullmatch(statement.text)
     if label is None:
         message = f"{keyword} needs a label or a block number"
-        control.fail("jump-target", message, statement, f"write {keyword} LABEL or {keyword} N100")
+        hint = f"write {keyword} LABEL, whose name begins with two letters, or {keyword} N100"
+        control.fail("jump-target", message, statement, hint)
     place = find_label(control, statement, int(label[1]) if label[1] else label[2].upper())
     if place is None:
         return
@@ -227,7 +228,7 @@ def _refuse_label(
     if elsewhere:
         way = "behind this block" if keyword == "GOTOF" else "before this block"
         other = "GOTOB" if keyword == "GOTOF" else "GOTOF"
-        hint = f"it stands not {way}; {other} or GOTO leads there"
+        hint = f"it is not {way}; {other} or GOTO leads there"
     control.fail(
         "unknown-label", f"{keyword} names {shown}, and no block has it there", statement, hint
     )
