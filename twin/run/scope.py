@@ -132,7 +132,10 @@ def scope_of(
         *_unknown_functions(file),
         *_never_read(preparation.settings),
         *_expected(file),
-        *(Unwatched(reason.what, reason.message) for reason in unjudged),
+        *(
+            Unwatched(each.what, each.message.removeprefix(f"{each.what} has judged nothing: "))
+            for each in unjudged
+        ),
         *(
             Unwatched(f"all behind line {each.line}", "the alarm ended the run")
             for each in alarms[:1]
