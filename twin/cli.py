@@ -85,7 +85,7 @@ def main() -> None:
         traceback.print_exc()
         _leave(
             f"twin {__version__} has met a defect of its own, which says nothing about the program: "
-            "please report what stands above",
+            "please report the lines above",
             ExitCode.CRASH,
         )
     except SystemExit as leaving:

@@ -53,11 +53,7 @@ def connected(address: str) -> Any:
 
 
 def _require_answer(address: str) -> None:
-    """Refuse an address at which nobody, or something else than Ray, listens; what is no host and port is left to Ray.
-
-    Raises:
-        UsageError: It is so.
-    """
+    """Refuse an address at which nobody, or something else than Ray, listens; what is no host and port is left to Ray."""
     host, _, port = address.removeprefix("ray://").rpartition(":")
     if not host or not port.isdecimal():
         return

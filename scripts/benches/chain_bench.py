@@ -1,4 +1,4 @@
-"""Whole runs from the command line: machine time beside processor time, start-up, memory.
+"""Whole runs from the command line: machine time and processor time, start-up, memory.
 
 Times are the processor's, of one core, the start of Python and the loading of kernels in them.
 """

@@ -42,7 +42,7 @@ _SAME_LANGUAGE = ("gost", "fanuc", "linuxcnc", "sinumerik")
 
 
 def rows() -> Iterator[Row]:
-    """Lines and arcs with helices in several dialects beside each peer; programs that compute beside ``rs274``."""
+    """Lines and arcs with helices in several dialects against each peer; programs that compute against ``rs274``."""
     with tempfile.TemporaryDirectory() as folder:
         for task, path in _programs(Path(folder)):
             peers = [measure(path) for measure in (_nc_gcode_interpreter, _rs274)]

@@ -11,7 +11,7 @@ REPEATS = 5
 
 @dataclass(frozen=True)
 class Row:
-    """A figure of this project beside that of a peer, taken in the same run.
+    """A figure of this project and that of a peer, taken in the same run.
 
     Attributes:
         unit: Its unit; a rate is better when higher, a time or a share when lower.

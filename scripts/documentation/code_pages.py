@@ -61,7 +61,7 @@ def _exit_codes() -> str:
 
 
 def exit_codes() -> Iterator[tuple[int, str]]:
-    """Every exit code with the words beside its declaration."""
+    """Every exit code with the words at its declaration."""
     said = {
         ExitCode.OK: "Done; where a tolerance was asked for, it holds.",
         ExitCode.INTERRUPTED: "Interrupted; what was complete is kept, nothing is torn.",

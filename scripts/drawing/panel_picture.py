@@ -29,8 +29,6 @@ def take_panel(
     """Open a scene, run its program to a line, and take a picture of the page.
 
     Args:
-        out: PNG to write.
-        scene: Name of a shipped scene.
         line: Of the program, where it is held; 0: it is not started.
         size: Of the page [px].
     """

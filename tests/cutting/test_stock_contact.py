@@ -30,7 +30,7 @@ class Solid:
     offset: tuple[float, float]
     above: float
     height: float = 50.0
-    swivels: bool = False
+    beyond: tuple[int, ...] = ()
 
 
 HEAD = (

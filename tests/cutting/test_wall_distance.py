@@ -28,7 +28,7 @@ class Box:
     """A head that is as wide as the wide tool, 6 mm above the tip."""
 
     name, round, half, offset, above = "head", False, (2.0, 5.0), (0.0, 0.0), 6.0
-    height, swivels = 50.0, False
+    height, beyond = 50.0, ()
 
 
 BODIES = {"edge": SLIM, "shank": SHANK, "holder": HOLDER, "head": HOLDER}

@@ -8,15 +8,10 @@ import pytest
 import trimesh
 from trimesh.transformations import rotation_matrix
 
-from twin.cutting.tridexel.blanks import box
-from twin.cutting.tridexel.engagement import cut, volume
-from twin.cutting.tridexel.mesh import surface
-from twin.cutting.tridexel.moving_solid import Poses
-from twin.cutting.tridexel.solids import cylinder
 from twin.files.shipped import machine_file
 from twin.job.job_file import StockTable, ToolTable
 from twin.machine.load import read_machine
-from twin.render.machine_glb import COLLISION_PREFIX, PART_PREFIX, drawn_machine
+from twin.render.machine_glb import COLLISION_PREFIX, drawn_machine
 from twin.render.scene.placement import Joints, tip_position
 
 POSITION = np.array([83.0, -41.0, -120.0, 37.0])
@@ -77,37 +72,3 @@ def test_the_file_is_small_and_tells_what_only_collides(drawn):
     names = list(scene.geometry)
     assert any(name.startswith(COLLISION_PREFIX) for name in names)
     assert any(name.startswith("cutter_1") for name in names)
-
-
-def test_a_part_that_is_drawn_as_a_mesh_is_closed_and_where_the_part_s_frame_is():
-    machine = read_machine(machine_file("mill5"))
-    middle = np.array([5.0, -3.0, -470.0])
-    half = np.array([15.0, 10.0, 5.0])
-    stock = box(middle - half, middle + half, 0.5)
-    bore = Poses(np.tile(middle, (2, 1)), np.tile([1.0, 0.0, 0.0], (2, 1)))
-    cut(stock, bore, [cylinder(3.0, -20.0, 20.0)], 1)
-    drawn = drawn_machine(
-        machine, ToolTable(number=1), machine.part_frame, part=surface(stock, 15_000)
-    )
-    scene = trimesh.load_scene(io.BytesIO(drawn.glb()), file_type="glb")
-    described = drawn.description()
-    frame = (
-        scene.graph.get(described["part"]["body"])[0]
-        @ np.reshape(described["part"]["matrix"], (4, 4)).T
-    )
-    skins: list[trimesh.Trimesh] = []
-    for name in (f"{described['part_as_cut']}raw", f"{PART_PREFIX}machined"):
-        placed, geometry = scene.graph.get(name)
-        texture = scene.geometry[geometry]
-        there = trimesh.transform_points(texture.vertices, np.linalg.inv(frame) @ placed)
-        skins.append(trimesh.Trimesh(there, texture.faces))
-    assert skins[1].area == pytest.approx(2.0 * np.pi * 3.0 * 30.0, rel=0.03)
-    raw, machined = skins
-    whole = trimesh.Trimesh(
-        np.concatenate([raw.vertices, machined.vertices]),
-        np.concatenate([raw.faces, machined.faces + len(raw.vertices)]),
-    )
-    whole.merge_vertices(digits_vertex=4)
-    assert whole.is_watertight
-    assert whole.volume == pytest.approx(volume(stock), rel=2e-3)
-    assert np.allclose(whole.bounds.mean(axis=0), middle, atol=1e-2)

@@ -102,6 +102,26 @@ def test_offsets_that_are_no_tools_number_are_those_of_the_tool_in_the_spindle(
     assert prepare(kept).settings.offset_rows == {31: 1, 32: 2}
 
 
+WRAPPED = "G21 G17 G40 G49 G80\nG54\nT01 M06\nS1500 M03\nG00 G90 X0. Y0. A350.\nG43 Z82. H01\nG01 Z20. F1000.\nZ20.1 A355.\nZ20.2 A0.5\nZ20.3 A5.\nG00 Z82.\nM30\n"
+
+
+def test_a_cut_from_one_end_of_a_turn_to_the_other_tells_that_axes_roll_over(
+    tmp_path: Path,
+) -> None:
+    made, job = raw(tmp_path, WRAPPED)
+    assert made.dialect.name == "fanuc"
+    assert "roll over" in made.dialect_reason
+    assert "rotary axes roll over: line 9 goes on cutting from A355 to A0.5" in job.assumptions
+    chunks = list(made.interpretation().chunks())
+    turned = concatenate([chunk.moves for chunk in chunks], made.machine.axes).end[:, 3]
+    assert abs(turned[1:] - turned[:-1]).max() <= 10.0
+    kept = tmp_path / "kept.toml"
+    kept.write_text(text_beside(kept, job, tmp_path / "part.nc"))
+    assert prepare(kept).settings.rollover == "shorter"
+    _, job = raw(tmp_path, WRAPPED.replace("A0.5", "A358.").replace("A5.", "A359."))
+    assert not any("roll over" in each for each in job.assumptions)
+
+
 def test_one_feed_that_crawls_tells_which_control_was_not_meant(tmp_path: Path) -> None:
     text = "O7\nG21\nT1 M6\nG43 H1\nG0 X1.5 Z5.\nG1 Z-1. F25.\nX9. F250\nG0 Z9.\nM30\n"
     preparation, _ = raw(tmp_path, text)
@@ -406,6 +426,9 @@ def test_the_job_that_is_kept_names_the_machine_that_was_asked_for(
         ("FREZA D5", (None, "", 5.0, None)),
         ("T02 ID=002  DIA-0.5000  TOOL END MILL", (2, "flat", 0.5, None)),
         ("FACE MILL H1 D2", (None, "flat", None, None)),
+        ("#2 D=10 - ZMIN=-20.5 - ZMAX=+15 - flat end mill", (2, "flat", 10.0, None)),
+        ("T1 : 16MM SLOT DRILL", (1, "flat", 16.0, None)),
+        ("T5 | #7 DRILL | H5", (5, "drill", 5.1054, None)),
     ],
 )
 def test_comments_tell_tools(comment: str, tool: tuple[object, ...]) -> None:
@@ -526,3 +549,27 @@ def test_tolerances_are_assumed_for_moves_that_there_are(tmp_path: Path) -> None
     _, fed = raw(tmp_path, "%\nO1\nG21 G90 G17 G54\nG1 X10. F300.\nX20.\nM30\n%\n")
     assert "\ncontour_um" in fed.text
     assert "rapid_contour_um" not in fed.text
+
+
+def test_the_names_of_tools_tell_what_they_are(tmp_path: Path) -> None:
+    text = 'G17 G71 G90\nT="MILL_D16"\nM6\nT="BORE 1"\nM6 ; BOHRER D8.5\nG0 X0 Y0 Z5\nG1 Z-3 F200\nM30\n'
+    (tmp_path / "part.mpf").write_text(text)
+    preparation = prepare(tmp_path / "part.mpf")
+    made, _ = with_assumptions(preparation, machine=None, strict=False)
+    tools = [(each.name, each.kind, each.diameter) for each in made.job.file.tools]
+    assert tools == [("MILL_D16", "flat", 16.0), ("BORE 1", "drill", 8.5)]
+    assert list(made.interpretation().chunks())
+    assert not made.interpretation().diagnostics
+
+
+def test_stock_keeps_clear_of_rapids_in_the_plane_beside_the_part(tmp_path: Path) -> None:
+    """A lead from outside goes back with rapid at depth; one across the part is no reason to take it away."""
+    beside = "G21 G90 G17\nT1 M6\nS2000 M3\nG0 X-20. Y-20. Z5.\nG1 Z-3. F300.\nX-6.\nY70.\nX100.\nY-6.\nX-20.\n{}\nG0 Z50.\nM30\n"
+    made, job = raw(tmp_path, "%\nO1\n" + beside.format("G0 Y-20."))
+    assert "less where the rapids of line 13 go below its top" in " ".join(job.assumptions)
+    stock = made.job.file.stock
+    assert stock is not None
+    assert stock.size is not None
+    assert stock.position[0] - stock.size[0] / 2.0 > -15.0
+    made, job = raw(tmp_path, "%\nO1\n" + beside.format("G0 X90. Y60."))
+    assert "less where" not in " ".join(job.assumptions)

@@ -123,7 +123,7 @@ def test_the_cuts_end_with_the_part_as_it_was_cut(recorded):
 
 
 @pytest.mark.seconds("a run on a machine with a rotary table")
-def test_a_part_that_is_cut_from_several_sides_is_there_when_it_is_finished(tmp_path):
+def test_a_part_that_is_cut_from_several_sides_is_seen_as_it_is_cut(tmp_path):
     shipped = (Path(__file__).parents[2] / "programs/fanuc/four_sides.toml").read_text("utf-8")
     job, out = tmp_path / "turned.toml", tmp_path / "out"
     job.write_text(shipped.replace("four_sides.nc", "turned.nc"), encoding="utf-8")
@@ -135,15 +135,26 @@ def test_a_part_that_is_cut_from_several_sides_is_there_when_it_is_finished(tmp_
     run_and_print(job, out, dialect=None, machine=None, video=False, strict=False)
     with open_scene(out / "recording.h5") as (scene, preparation):
         run = RecordedRun(scene, preparation.machine)
-        assert run.description()["shows_finished_part"]
-        assert run.stock_grid() is None
-        drawn = run.drawn(1)
-        assert drawn is not None
-        assert drawn.part is not None
-        part = trimesh.Trimesh(drawn.part.points, drawn.part.faces)
+        assert (run.has_part_mesh, run.stock_grid()) == (True, None)
+        content = b"".join(run.cuts())
+    times, volumes = [], []
+    while content:
+        length, time = struct.unpack_from("<If", content)
+        message, content = content[8 : 8 + length], content[8 + length :]
+        _, vertices, faces = struct.unpack_from("<BxxxII", message)
+        inflated = zlib.decompress(message[12:])
+        points = np.frombuffer(inflated, "<f4", 3 * vertices).reshape(-1, 3)
+        part = trimesh.Trimesh(
+            points, np.frombuffer(inflated, "<u4", 3 * faces, 12 * vertices).reshape(-1, 3)
+        )
+        assert part.is_watertight
+        times.append(time)
+        volumes.append(float(part.volume))
     taken = np.pi * 8.0**2 * 3.0
-    assert part.is_watertight
-    assert 345.0 * 50.0 * 50.0 - part.volume == pytest.approx(taken, rel=0.15)
+    assert (times[0], times) == (0.0, sorted(times))
+    assert len(times) > 3
+    assert pytest.approx(volumes[0], rel=1e-5) == 345.0 * 50.0 * 50.0
+    assert volumes[0] - volumes[-1] == pytest.approx(taken, rel=0.15)
 
 
 def test_what_cannot_be_viewed_is_refused(tmp_path):

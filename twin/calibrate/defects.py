@@ -57,7 +57,6 @@ def find_defects(
     """Look through the samples of an axis.
 
     Args:
-        axis: Its columns.
         time: Of the rows [s].
         rows: First and last row, exclusive, of each stretch without a gap.
     """

@@ -38,7 +38,6 @@ class PreparedLog:
     """A log, and what is known of it before anything is fitted.
 
     Attributes:
-        log: Averaged, where it is fast.
         role: ``fit`` or ``hold-out``.
         cycle_s: Over which a slow log's control forms velocities; 0 where nothing tells [s].
         defects: Of its axes; none of a slow log.
@@ -139,7 +138,6 @@ def prepared(log: MachineLog, role: str) -> PreparedLog:
     """Look through a log, and average it where it is faster than a fit needs it.
 
     Args:
-        log: As it was read.
         role: ``fit`` or ``hold-out``.
 
     Raises:

@@ -90,8 +90,6 @@ def write_programs(machine: Machine, folder: Path, named: str = "") -> list[Path
     """Write the test programs of a machine, one in each dialect, each with its job file.
 
     Args:
-        machine: Within whose travel they stay.
-        folder: Where they go.
         named: What jobs there call the machine: a shipped one's name, its own by default, or the path of
             its file from there.
     """

@@ -4,7 +4,7 @@ import numpy as np
 
 from twin.errors import UsageError
 from twin.logs.machine_log import AxisLog
-from twin.machine.description.config import AxisTable
+from twin.machine.description.machine_file import AxisTable
 from twin.nc.canonical import FloatArray
 
 _FOLLOWS = 0.3
@@ -112,7 +112,7 @@ def _refuse_jumps(place: str, axis: AxisLog, period_s: float, ratio: float, unit
         raise UsageError(
             f"{place}: actual jumps by {float(steps[worst]):.4g} {unit} between samples {worst + 1} "
             f"and {worst + 2}, where the command moves by no more than {commanded:.4g} {unit} in "
-            f"{apart * period_s * 1e3:.3g} ms: samples were dropped, or the encoder was set anew; "
+            f"{apart * period_s * 1e3:.3g} ms: samples were dropped, or the encoder was set again; "
             "leave them out of the log"
         )
 
@@ -124,7 +124,6 @@ def straight_law(axis: AxisLog, period_s: float) -> tuple[float, float, float]:
     well, and the one whose ratio is nearer to 1 counts.
 
     Args:
-        axis: Its columns.
         period_s: Between samples [s].
 
     Returns:

@@ -10,7 +10,7 @@ from twin.calibrate.fit.ball_bar import ONE_DIRECTION, BallBarFit
 from twin.calibrate.fit.solve import Interval
 from twin.calibrate.fit.stages import NOT_ASKED, AxisFit
 from twin.calibrate.limits import Limits
-from twin.machine.description.config import AxisTable
+from twin.machine.description.machine_file import AxisTable
 from twin.nc.canonical import FloatArray
 from twin.units import AxisKind
 
@@ -31,7 +31,7 @@ class Course:
         logged_force: Force [N or N m] or what the control shows [A]; empty where none is logged.
         predicted_force: The model's force or current.
         force_time: When, which is not always when positions were [s].
-        speed: Commanded, beside ``logged`` [mm/s or deg/s].
+        speed: Commanded, at the samples of ``logged`` [mm/s or deg/s].
     """
 
     time: FloatArray
@@ -169,7 +169,6 @@ class Calibration:
     """The whole.
 
     Attributes:
-        base: Name of the base machine.
         axes: By name.
         logs: In the order of the command line.
         findings: About the logs, by file.

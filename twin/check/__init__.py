@@ -1,1 +1,1 @@
-"""Many programs at once, as a build server wants them: found, run in parallel, told in its forms."""
+"""Many programs at once, as a build server wants them: found, run in parallel, reported in its forms."""

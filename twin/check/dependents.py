@@ -88,7 +88,7 @@ def _texts(folder: Path) -> Iterator[tuple[Path, bytes]]:
             try:
                 yield path, path.read_bytes().upper()
             except OSError:
-                continue  # it is told of where it is checked itself
+                continue  # it is reported where it is checked itself
 
 
 def _mention(stem: str) -> Callable[[bytes], bool]:

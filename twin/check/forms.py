@@ -48,8 +48,8 @@ def summary_line(outcomes: Sequence[CheckOutcome]) -> str:
     told += f" ({expected} of them fail as their jobs expect)" if expected else ""
     warnings = sum(len(outcome.warnings) for outcome in outcomes)
     noun = "program" if len(outcomes) == 1 else "programs"
-    beside = f"; {warnings} {'warning' if warnings == 1 else 'warnings'}" if warnings else ""
-    return f"{len(outcomes)} {noun}: {told or 'none'}{beside}"
+    counted = f"; {warnings} {'warning' if warnings == 1 else 'warnings'}" if warnings else ""
+    return f"{len(outcomes)} {noun}: {told or 'none'}{counted}"
 
 
 def junit_xml(outcomes: Sequence[CheckOutcome]) -> str:
@@ -172,7 +172,6 @@ def gitlab_code_quality(outcomes: Sequence[CheckOutcome], root: Path) -> str:
     """GitLab's code quality report, which it shows at the lines of a merge request.
 
     Args:
-        outcomes: How the programs came out.
         root: Folder of the repository, which GitLab's paths are relative to.
     """
     major = [("major", finding) for outcome in outcomes for finding in outcome.findings]

@@ -49,7 +49,7 @@ class CheckOutcome:
         cycle_time_s: Machine time of the program [s]; None when it was not run.
         wall_s: How long the check took [s].
         findings: Why it does not pass; empty when it does.
-        warnings: What the interpreter had to say beside that.
+        warnings: What the interpreter had to say in addition.
         changes: What a sweep changed for it, keys of job or machine and their values.
         expected: The code that its job expects and that it ended with, so that it passes.
         scope: What the verdict looked at, one sentence each.

@@ -8,11 +8,7 @@ from twin.files.toml import Change
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Variant:
-    """One run of a sweep.
-
-    Attributes:
-        path: The job or program.
-    """
+    """One run of a sweep."""
 
     path: Path
     changes: tuple[Change, ...]
@@ -29,7 +25,6 @@ class CheckSettings:
     Attributes:
         machine: Overrides the jobs' machines.
         dialect: Overrides the jobs' dialects.
-        strict: Warnings of the interpreter are errors.
         baseline: Folder of the baselines that runs are held to, or None.
         update_baseline: Store baselines there instead of holding runs to them.
         reports: Folder for a report on every program that was run, or None.

@@ -18,7 +18,6 @@ def variants(path: Path, vary: Sequence[str]) -> list[Variant]:
     """Every combination of the values that are to be varied.
 
     Args:
-        path: The job or program.
         vary: ``KEY=VALUES`` each: values separated by commas, or ``FROM:TO:COUNT`` evenly spaced.
 
     Raises:
@@ -41,7 +40,7 @@ def combinations(path: Path, vary: Sequence[tuple[str, Sequence[Any]]]) -> list[
     axes = [[(key, value) for value in values] for key, values in vary]
     keys = [key for key, _ in vary]
     if len(set(keys)) < len(keys):
-        raise UsageError(f"--vary: a key stands twice: {', '.join(keys)}")
+        raise UsageError(f"--vary: a key occurs twice: {', '.join(keys)}")
     count = functools.reduce(lambda product, axis: product * len(axis), axes, 1)
     if count > MOST_VARIANTS:
         raise UsageError(f"--vary: {count} combinations are more than {MOST_VARIANTS}")

@@ -40,9 +40,6 @@ class Request:
         columns: Map of their columns; by default what their headings say.
         hold_out: Logs to judge the fit by.
         axes: Names, separated by commas; all that the logs have by default.
-        out: Where the machine file goes.
-        json_file: Where the figures go.
-        report: Where the page goes.
         require: Largest share of the following error that may be left on held-out logs.
         programs: Folder for test programs to run on the real machine.
     """

@@ -56,8 +56,8 @@ def check_and_print(
 
     Raises:
         UsageError: No program was found, or ``--update-baseline`` names no folder.
-        OSError: What is to be written cannot be; told before anything runs.
-        KeyboardInterrupt: It was interrupted; what is complete has been told.
+        OSError: What is to be written cannot be; raised before anything runs.
+        KeyboardInterrupt: It was interrupted; what is complete has been reported.
     """
     if settings.update_baseline and settings.baseline is None:
         raise UsageError("--update-baseline needs --baseline DIR")
@@ -104,7 +104,6 @@ def write_forms(
 
     Args:
         outcomes: How the programs came out; none where nothing was checked.
-        junit: Where JUnit XML goes.
         json_file: Where every outcome goes as JSON.
 
     Returns:

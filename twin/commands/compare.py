@@ -26,7 +26,6 @@ def compare_and_print(
     """Compare two runs and print how they differ.
 
     Args:
-        first: Recording or log.
         second: Recording or log that is compared with the first.
         form: ``text`` or ``json``.
         period_s: Time between the samples of logs without a time column [s].

@@ -32,9 +32,6 @@ def csv_header(axes: Axes) -> list[str]:
 def export_csv(recording: Recording, path: Path, *, every: int = 1) -> int:
     """Write a recording as CSV, complete or not at all.
 
-    Args:
-        every: Write one of so many samples.
-
     Returns:
         How many rows were written.
     """
@@ -63,7 +60,6 @@ def export_and_print(recording: Path, out: Path | None, *, every: int = 1) -> Ex
     Args:
         recording: ``recording.h5``.
         out: The file to be; by default beside the recording, with the suffix ``.csv``.
-        every: Write one of so many samples.
 
     Raises:
         RecordingError: The recording cannot be read.

@@ -204,11 +204,7 @@ class _Maker:
 
 
 def _changed(video: VideoTable, changes: dict[str, Any]) -> VideoTable:
-    """The job's video table with what the command line says.
-
-    Raises:
-        UsageError: A value cannot be used.
-    """
+    """The job's video table with what the command line says."""
     given = {name: value for name, value in changes.items() if value is not None}
     if "seconds" in given:
         given.setdefault("speed", None)

@@ -40,10 +40,9 @@ class Source:
     Attributes:
         port: 0: the first free one of ``PORTS``.
         speed: Seconds of the twin for each second of the day.
-        buffer: How many observations are remembered.
         dialect: Overrides the job's dialect.
         machine: Overrides the job's machine.
-        opcua_port: Where OPC UA is told beside MTConnect; None: nowhere.
+        opcua_port: Port of OPC UA, which reports in addition to MTConnect; None: it does not.
         opcua_trust: Folder of the certificates of OPC UA's clients.
         grbl: Port at which a machine takes programs from Grbl's senders, or ``pty``; None: it takes none.
         view: Whether a page shows the machine, too.
@@ -63,10 +62,6 @@ class Source:
 
 def serve_job(path: Path, source: Source) -> ExitCode:
     """Simulate a job once, then report it as if the machine made part after part.
-
-    Args:
-        path: NC program or job file.
-        source: Where, and how fast.
 
     Raises:
         UsageError: The web server is not installed, or nobody can listen there.
@@ -113,7 +108,6 @@ def serve_scene(name: str, source: Source) -> ExitCode:
 
     Args:
         name: A shipped scene's name, or a scene file.
-        source: Where.
 
     Raises:
         UsageError: The web server is not installed, nobody can listen there, or a room was to run
@@ -139,7 +133,6 @@ def serve_grbl(job: Path | None, source: Source) -> ExitCode:
 
     Args:
         job: NC program or job file: machine, blank, tool; none: of the shipped one.
-        source: Where, and how fast.
 
     Raises:
         UsageError: The web server is not installed, or nobody can or may listen there.
@@ -165,11 +158,7 @@ def serve_grbl(job: Path | None, source: Source) -> ExitCode:
 
 @contextlib.contextmanager
 def _grbl_line(source: Source) -> "Iterator[socket.socket | int]":
-    """Where senders come in: a socket, or the twin's end of a pseudo-terminal.
-
-    Raises:
-        UsageError: Nobody can or may listen there.
-    """
+    """Where senders come in: a socket, or the twin's end of a pseudo-terminal."""
     from twin.serve.grbl.server import PSEUDO_TERMINAL, pseudo_terminal
     from twin.web.origin_check import LOCAL_NAMES
 
@@ -235,11 +224,7 @@ def _serve_room(
 
 @contextlib.contextmanager
 def _viewed(production: "Production", playhead: "Playhead", *, wanted: bool) -> Iterator[None]:
-    """Show the machine on a page as well, where that is asked for.
-
-    Raises:
-        UsageError: Nothing moved, or the view's library is missing.
-    """
+    """Show the machine on a page as well, where that is asked for."""
     if not wanted:
         yield
         return
@@ -269,11 +254,7 @@ def _tools(job: "JobFile") -> dict[int, str]:
 
 
 def _check_opcua(source: Source) -> None:
-    """Refuse an OPC UA server that cannot be, before anything is simulated.
-
-    Raises:
-        UsageError: It is not installed, would be open to anybody, or its port is taken.
-    """
+    """Refuse an OPC UA server that cannot be, before anything is simulated."""
     if source.opcua_port is None:
         if source.opcua_trust is not None:
             raise UsageError("--opcua-trust is for --opcua PORT")
@@ -308,18 +289,17 @@ def _produce(run: Run, folder: Path) -> "Production":
     """Run a job once and keep its recording in a folder."""
     from twin.serve.playback import Production, coolant_of
 
-    dry_run = run.dry_run()
     with shown_progress() as progress:
-        outcome = run.execute(dry_run, folder, progress)
+        outcome = run.execute(folder, progress)
     recording = folder / "recording.h5"
     return Production(
         machine=run.preparation.machine,
         program=run.preparation.source.name,
         source=run.preparation.source.lines,
-        summary=dry_run.summary,
+        summary=run.dry_run.summary,
         recording=recording if recording.is_file() else None,
         alarms=outcome.alarms,
-        coolant=coolant_of(dry_run.program.chunks()),
+        coolant=coolant_of(run.dry_run.program.chunks()),
     )
 
 
@@ -338,9 +318,6 @@ def _served(
         listener: Where clients come in.
         stop: Set when the observation has come to an end by itself.
         failed: Called then, too.
-
-    Raises:
-        Exception: Whatever ended the observation.
     """
     import uvicorn
 

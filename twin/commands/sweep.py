@@ -31,9 +31,7 @@ def sweep_and_print(
     """Run a job for every combination of the values and print how each came out.
 
     Args:
-        path: The job or program.
         vary: ``KEY=VALUES`` each, as ``variants`` reads them.
-        json_file: Write every outcome as JSON there.
         jobs: How many at a time; one for each core by default.
         cluster: Address of the Ray cluster to run on instead; ``local`` starts one here.
 

@@ -28,7 +28,6 @@ def print_course(folder: Path, language: str | None) -> None:
     """List the score sheets of a course, and write the list beside them.
 
     Args:
-        folder: Where the sheets are.
         language: Of the list; None: that of most of the sheets.
 
     Raises:
@@ -102,11 +101,7 @@ class Place:
 
 
 def _require_folder(out: Path) -> None:
-    """Refuse a place for results that is a file, or lies in one.
-
-    Raises:
-        UsageError: It does.
-    """
+    """Refuse a place for results that is a file, or lies in one."""
     for place in (out, *out.parents):
         if place.exists():
             if not place.is_dir():
@@ -172,10 +167,8 @@ def teach(
     """Open a class and keep it open until Ctrl+C.
 
     Args:
-        scene: What pupils begin with.
         roster: Who they are; None: they are only counted.
         seats: How many they are.
-        place: Where.
         out: The class's folder; None: one that is called as the roster.
         cluster: Address of the Ray cluster over which rooms are spread; None: they run on this computer.
 

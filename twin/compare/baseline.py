@@ -37,7 +37,7 @@ from twin.nc.canonical import Axes, Chunk
 from twin.nc.text.diagnostics import ProgramError
 
 MOST_LISTED = 50
-"""Blocks that are named one by one; how many more differ is told behind them."""
+"""Blocks that are named one by one; how many more differ is reported behind them."""
 _LOOK_AHEAD = 24
 """Blocks that may be inserted or lost in one place and the rest be recognised again."""
 _SMALLEST_TIME = 1e-6
@@ -85,7 +85,6 @@ def compare_baseline(
     Args:
         figures: What the run came to; None when it did not come to its end.
         chunks: The program; where it no longer interprets, the baseline tells what was there.
-        limits: How far they may differ.
         settings: Keys of the job and their values, as text.
         source: Lines of the program, of which the changed ones are named.
 

@@ -193,7 +193,6 @@ def write(file: TextIO, head: Head, program: Iterable[Entry]) -> None:
     """Write a baseline.
 
     Args:
-        file: Where to.
         head: What is before the entries.
     """
     figures = head.figures

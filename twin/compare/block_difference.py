@@ -43,7 +43,6 @@ def block_differences(
 
     Args:
         names: Of the axes.
-        limits: How far they may differ.
         begins_apart: The block before ends elsewhere, so that this one begins elsewhere.
     """
     tolerance = limits.path_um / 1e3

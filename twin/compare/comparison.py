@@ -44,7 +44,6 @@ class Comparison:
     a path that crosses itself is not mistaken. Being late on the path is following error alone.
 
     Args:
-        part_frame: How the part turns under the tool.
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
         apart: First and last line of ranges that have a tolerance of their own.
         lower: How much longer than the first tool that of each move is, from move numbers of shape (n,) to

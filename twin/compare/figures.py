@@ -56,7 +56,6 @@ class WorstPlace:
     """The greatest contour error on one program line.
 
     Attributes:
-        line: Source line of the block.
         time_s: When [s].
         error_um: Contour error [µm].
         position: Commanded, shape (k,) [mm or deg]: the part's coordinates, those of the control's screen once
@@ -75,7 +74,6 @@ class ArcFigures:
     """Circular figures of one arc block of at least 90 degrees, with the table at rest.
 
     Attributes:
-        line: Source line.
         time_s: When the tool reached the arc [s].
         radius_mm: Commanded radius [mm].
         sweep_deg: Commanded opening angle, signed, all turns [deg].
@@ -106,8 +104,6 @@ class BidirectionalFigures:
     """Figures of a full circle that was run both ways, after ISO 230-4.
 
     Attributes:
-        counter_clockwise_line: Source line of the one.
-        clockwise_line: Source line of the other.
         radius_mm: Commanded radius [mm].
         circular_deviation_um: G(b), about the least-squares circle of both [µm].
         mean_radial_deviation_um: D: radius of that circle minus the commanded one [µm].
@@ -172,7 +168,6 @@ class CornerFigures:
     """The corners of a program: how far they are rounded.
 
     Attributes:
-        count: How many were passed.
         rounding_um: Greatest rounding: shortest distance from a corner to the tool's path [µm].
         line: Source line that ends at that corner; 0 without corners.
         time_s: When the tool was nearest to it [s].
@@ -196,14 +191,12 @@ class Figures:
     """Everything the comparison found.
 
     Attributes:
-        samples: How many samples were compared.
         duration_s: Time of the last sample [s].
         tracking: By axis name.
         arcs: In program order.
         worst: The lines with the greatest contour errors, greatest first.
         blocks: By source line, feeds and rapids apart.
         features: Contour error of ``line`` and ``arc`` blocks; those that the program has.
-        corners: Where the path turns sharply.
         bidirectional: Full circles that were run both ways, by line.
         shares: What drives and every error of the geometry have of the greatest contour error, along
             it [µm]; empty where the machine has no such errors.

@@ -21,7 +21,6 @@ class Trace:
     thinning never hides a peak. When the groups become too many they are merged by twos.
 
     Args:
-        part_frame: How the part turns under the tool.
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
     """
 

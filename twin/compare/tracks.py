@@ -17,7 +17,6 @@ class Track:
     """What the axes were commanded and what they did.
 
     Attributes:
-        name: Where it comes from.
         axes: Names of the k axes.
         time: Rising, shape (n,) [s].
         commanded: Shape (n, k) [mm or deg].

@@ -45,7 +45,6 @@ class Check:
     Attributes:
         figure: Name of the figure, such as ``contour error``.
         limit: What is allowed; a value equal to it is within it.
-        unit: Of both.
         line: Program line of the worst value; 0 where none applies.
         time_s: When [s].
         note: What the value is made of, where that is known.

@@ -41,8 +41,8 @@ def announce_compilation(
     """From now on, say so on stderr at the first compilation of this process.
 
     Args:
-        is_first: Whether no process beside this one has said so; asked once.
-        meanwhile: Called then too, to begin what can go on beside the compiler.
+        is_first: Whether no other process has said so; asked once.
+        meanwhile: Called then too, to begin what can go on in parallel with the compiler.
     """
     if not _announcer.listens:
         _announcer.listens, _announcer.is_first = True, is_first

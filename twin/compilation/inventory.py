@@ -40,7 +40,7 @@ class Inventory(NamedTuple):
             return f"compiled, in {self.folder}"
         if not self.lasts:
             return (
-                "compiled anew by each process, for there is no folder to keep them in: set "
+                "compiled again by each process, for there is no folder to keep them in: set "
                 "NUMBA_CACHE_DIR to a folder that is yours alone"
             )
         return (

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twin.compilation.kernel import array_kernel, kernel
+from twin.compilation.kernel import array_kernel, kernel, threaded_kernel
 from twin.coupling.turning_tool import (
     LOOK_CELLS,
     CutNumber,
@@ -62,7 +62,6 @@ class Swept(NamedTuple):
         tips: Where it was cut up to, shape (2, 3); the second row is the later [mm].
         trace: Where it has left walls up to, of ``leave_walls``.
         sums: What ``sweep`` adds to, shape (1, 2, 4).
-        marks: Nothing is marked.
     """
 
     tips: FloatArray
@@ -77,7 +76,7 @@ def nothing_swept() -> Swept:
     return Swept(np.zeros((2, 3)), no_trace(), np.zeros((1, 2, 4)), marks)
 
 
-@array_kernel
+@threaded_kernel
 def follow_cutting(
     physics: Physics,
     controls: FloatArray,
@@ -90,7 +89,7 @@ def follow_cutting(
 ) -> None:
     """Step the machine from setpoint to setpoint while its tool cuts.
 
-    In every period the axes are pushed by the force that the teeth felt at its beginning, in the
+    In every period the axes are pushed by the force of the teeth at its beginning, in the
     mean over the angle that they turn in a period.
 
     Args:

@@ -14,7 +14,7 @@ from twin.cutting.forces.cutter_form import cutter_form, force_law
 from twin.cutting.forces.materials import Kienzle
 from twin.cutting.forces.tool_strength import ToolStrength, tool_strength
 from twin.job.job_file import ToolTable
-from twin.machine.description.config import SpindleTable
+from twin.machine.description.machine_file import SpindleTable
 from twin.machine.simulation.process import Physics
 from twin.machine.watching.alarms import Alarm
 from twin.motion.setpoints.setpoints import Setpoints
@@ -31,9 +31,7 @@ class ToolBreak:
     """A tool that lost its edge.
 
     Attributes:
-        line: Source line of the program.
         time_s: When [s].
-        reason: Why, with value and limit.
     """
 
     tool: int
@@ -76,7 +74,7 @@ class Operation(Protocol):
 
 
 class Rows(NamedTuple):
-    """What the machine is told in n periods, and what is set by them.
+    """What the machine is commanded in n periods, and what is set by them.
 
     Attributes:
         controls: What the drives are commanded on the way to each setpoint, shape (n, nu).
@@ -102,11 +100,7 @@ class CuttingProcess(abc.ABC):
     """
 
     def __init__(self, resists: Kienzle, operation: Operation, spindle: SpindleTable) -> None:
-        """Begin with the spindle as it turns.
-
-        Args:
-            operation: What is in the spindle when.
-        """
+        """Begin with the spindle as it turns."""
         self.breaks: list[ToolBreak] = []
         self.alarm: Alarm | None = None
         self._resists = resists

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twin.compilation.kernel import array_kernel, kernel
+from twin.compilation.kernel import array_kernel, kernel, threaded_kernel
 from twin.coupling.turning_tool import (
     LOOK_CELLS,
     CutNumber,
@@ -55,7 +55,6 @@ class LeaningCut(NamedTuple):
     """A tool in a part that is cut from any side.
 
     Attributes:
-        lattice: Where it lies.
         solids: The bodies of the edge, shape (m, 5).
         number: That the cut surface remembers.
         longest: Step that is swept at once at most [mm].
@@ -105,7 +104,7 @@ def nowhere(axes: int) -> Pose:
     )  # fmt: skip
 
 
-@array_kernel
+@threaded_kernel
 def follow_leaning(
     physics: Physics,
     controls: FloatArray,

@@ -11,7 +11,7 @@ from twin.cutting.tridexel.dexels import TriDexel
 from twin.cutting.tridexel.engagement import longest_step
 from twin.cutting.tridexel.normals import MOST_TOOLS
 from twin.cutting.tridexel.solids import cutting_edge
-from twin.machine.description.config import SpindleTable
+from twin.machine.description.machine_file import SpindleTable
 from twin.machine.simulation.process import Physics
 from twin.nc.canonical import FloatArray
 from twin.toolpath.part_frame import PartFrame
@@ -34,7 +34,6 @@ class LeaningProcess(CuttingProcess):
         Args:
             material: It is cut; nobody else may.
             resists: As for ``CuttingProcess``; so on.
-            operation: What is in the spindle when.
             part_frame: How the axes carry tool and part; it has a chain.
         """
         super().__init__(resists, operation, spindle)

@@ -23,7 +23,7 @@ class ProgramOperation:
     """What a program brings into the spindle."""
 
     def __init__(self, summary: ProgramSummary) -> None:
-        """Go by what a whole program says beside its moves."""
+        """Go by what a whole program says in addition to its moves."""
         self._tools = summary.tools
         self._first_move = np.array(summary.spindle.first_move)
         self._speed = np.array([_known(speed) for speed in summary.spindle.values])
@@ -41,7 +41,7 @@ class ProgramOperation:
 
     def turnings(self, setpoints: Setpoints) -> Iterator[Turning]:
         """Split setpoints where the tool changes; see ``Operation``."""
-        # At the end of a move's path the spindle has heard what comes before the next one.
+        # At the end of a move's path the spindle has received what comes before the next one.
         place = np.maximum(setpoints.move + np.clip(setpoints.fraction, 0.0, 1.0), 0.0)
         speed = self._speed[np.searchsorted(self._first_move, place, side="right") - 1]
         for rows, tool in self._tools.runs(setpoints.move):
@@ -101,8 +101,6 @@ def program_process(
 
     Args:
         job: Its blank, and whether the force of the cut is simulated.
-        summary: What is in the spindle when.
-        part_frame: How the part turns under the tool.
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
         laid: The blank, if it is on the table already; it is copied.
 
@@ -138,8 +136,6 @@ def cutting_process(
 
     Args:
         cell: Of its height map, or between the lines of its tri-dexel [mm].
-        operation: What is in the spindle when.
-        part_frame: How the part turns under the tool.
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
         laid: As for ``program_process``.
 

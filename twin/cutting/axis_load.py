@@ -37,7 +37,6 @@ class AxisLoad:
         Args:
             stock: The blank; its material must be named.
             summary: What is in the spindle when, at which speed, and which moves are rapids.
-            part_frame: How the part turns under the tool.
             part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
 
         Raises:

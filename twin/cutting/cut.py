@@ -16,6 +16,7 @@ from twin.cutting.height_map import BoolArray, HeightMap, blank
 from twin.cutting.height_map_material import HeightMapMaterial
 from twin.cutting.kernels.sweep import Removal
 from twin.cutting.material import AIR_MM, EDGE, Head, Material, Points
+from twin.cutting.stock_contact import above_edge
 from twin.cutting.sweeping import Rectangle
 from twin.cutting.tool_motion import ToolMotion, by_edge, tool_motion
 from twin.cutting.tools import Profile, default_cell, profile
@@ -60,7 +61,6 @@ class Cutter:
 
         Args:
             tool: What is in the spindle, or what is in it when.
-            part_frame: How the part turns under the tool.
             part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
             along: Whether the simulated motion cuts or the commanded one.
             keep_marks: Whether to note the cutter's marks, for pictures.
@@ -101,6 +101,7 @@ class Cutter:
         self._rapids = StockWatch("rapid")
         self._standing = StockWatch("standing")
         self._halts, self._head = halts, head
+        self._carriers = {each.beyond for each in above_edge(self.tool, head) if each.beyond}
         self.halted: CutEvent | None = None
         self._cut_log = CutLog()
         self.watch = CutWatch(AIR_MM * self.material.cell**2)
@@ -126,7 +127,7 @@ class Cutter:
         joints = samples.real(frame) if self._along == "joints" else setpoint.position
         off = np.zeros(len(samples), np.bool_) if standing is None else standing
         reach = self.tool.flute if self.tilts else None
-        motion = tool_motion(samples, joints, frame, reach, rapid, off)
+        motion = tool_motion(samples, joints, frame, reach, rapid, off, self._carriers)
         if self._stand is None:
             self.start_depth = self._depth_at(
                 motion[:1].lowered(self.plan.length_difference(self.tool))
@@ -235,8 +236,10 @@ class Cutter:
         if not depth:
             return
         removal = Removal(*np.zeros((3, 1)))
-        tip = np.repeat(stand.points, 2, axis=0)
-        stretches = Stretches(tip, stand.time, np.array([line]), stand.rapid, *removal, stand.axis)
+        tip = np.repeat(stand.ends.tip, 2, axis=0)
+        stretches = Stretches(
+            tip, stand.time, np.array([line]), stand.rapid, *removal, stand.ends.axis
+        )
         self._gouges.note(("arrival", line), "arrival", stretches, 0, depth)
         if self._halts:
             self.halted = self._gouges.event(("arrival", line))

@@ -9,7 +9,7 @@ from twin.job.job_file import ToolTable
 from twin.nc.canonical import FloatArray
 
 ENGAGED_MM = 0.2
-"""A tool that took material off within so much of its last way is still in the cut [mm]."""
+"""A tool that took material off within so much of its last path is still in the cut [mm]."""
 SIDEWAYS_MM = 0.05
 """How far a drill may wander in the material while it feeds [mm]."""
 STEEP = 1.7
@@ -24,7 +24,6 @@ class CutSlip:
 
     Attributes:
         what: ``sideways``, a drill; or ``plunge``, another tool straight down into the full material.
-        line: Source line.
     """
 
     what: str

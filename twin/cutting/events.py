@@ -9,7 +9,7 @@ from twin.cutting.height_map import BoolArray
 from twin.nc.canonical import FloatArray, IntArray
 
 TAIL_MM = 0.2
-"""A rapid's removal on its first way counts as the end of the feed before it [mm]: the axes lag
+"""A rapid's removal on its first millimetres counts as the end of the feed before it [mm]: the axes lag
 behind the setpoints, so that the last of a feed is cut when the rapid has already begun. As long
 as the lag at its beginning, and so much more. The same holds for a feed after the spindle stopped."""
 
@@ -22,7 +22,6 @@ class CutEvent:
     """Something that a cut must not do.
 
     Attributes:
-        line: Source line of the program.
         time_s: When it began [s].
         depth_mm: Its greatest depth below the material that was first met [mm].
         position: Tool tip in the part's frame at its beginning [mm].
@@ -152,11 +151,7 @@ class StockWatch:
     """Finds moves that take material although they must not; one event per move."""
 
     def __init__(self, what: str) -> None:
-        """Watch for one kind of misuse.
-
-        Args:
-            what: What its events are called.
-        """
+        """Watch for one kind of misuse."""
         self._what = what
         self._log = EventLog()
         self._runs = 0

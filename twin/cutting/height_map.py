@@ -37,7 +37,6 @@ class HeightMap:
         heights: Z of the material over each cell, shape (ny, nx) [mm]; ``bottom`` where there is
             none. This is what cutting changes.
         top: Z of the blank's top face [mm].
-        outline: Where the blank ends sideways.
         uncut: Z of the blank's own surface over each cell, shape (ny, nx) [mm].
         behind: How far the middles of cells are behind walls.
     """

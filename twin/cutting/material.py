@@ -7,6 +7,7 @@ from typing import Protocol
 
 import numpy as np
 
+from twin.columns import Columns, Rows
 from twin.cutting.kernels.overlap import Overlap
 from twin.cutting.kernels.sweep import Removal
 from twin.cutting.tools import Profile
@@ -66,8 +67,8 @@ class Upright(Protocol):
         ...
 
     @property
-    def swivels(self) -> bool:
-        """Whether it turns with the tool where a head does."""
+    def beyond(self) -> tuple[int, ...]:
+        """Columns of the axes between it and the spindle: they move the tool, and not it."""
         ...
 
 
@@ -76,22 +77,30 @@ Head = Callable[[ToolTable], Iterable[Upright]]
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Points:
+class Points(Columns):
     """The ends of n stretches.
 
     Attributes:
         tip: Places of the tool's tip in the part's frame, shape (n + 1, 3) [mm].
         turn: Direction of machine X there, shape (n + 1, 2); with axes that of the tool's, which turns with it, shape (n + 1, 3).
         axis: Direction from the tip to the spindle there, shape (n + 1, 3); None: +Z.
+        carriers: Where the bodies are that carry the tool, by the axes between it and them; see ``Upright.beyond``. Each
+            place is that which the tip would have with these axes at zero.
     """
 
     tip: FloatArray
     turn: FloatArray
     axis: FloatArray | None = None
+    carriers: Mapping[tuple[int, ...], "Points"] = dataclasses.field(default_factory=dict)
 
-    def __getitem__(self, rows: slice | IntArray) -> "Points":
+    def __getitem__(self, rows: Rows) -> "Points":
         axis = None if self.axis is None else self.axis[rows]
-        return Points(self.tip[rows], self.turn[rows], axis)
+        carriers = {axes: points[rows] for axes, points in self.carriers.items()}
+        return Points(self.tip[rows], self.turn[rows], axis, carriers)
+
+    def carrying(self, solid: Upright) -> "Points":
+        """The places that a solid goes with: those of the tool, or of what carries it."""
+        return self.carriers[solid.beyond] if solid.beyond else self
 
     def followed_by(self, others: "Points") -> "Points":
         """Both, one after the other."""
@@ -99,12 +108,27 @@ class Points:
         if self.axis is not None and others.axis is not None:
             axis = np.concatenate([self.axis, others.axis])
         turn = np.concatenate([self.turn, others.turn])
-        return Points(np.concatenate([self.tip, others.tip]), turn, axis)
+        carriers = {
+            axes: points.followed_by(others.carriers[axes])
+            for axes, points in self.carriers.items()
+        }
+        return Points(np.concatenate([self.tip, others.tip]), turn, axis, carriers)
+
+    def lowered(self, by: float) -> "Points":
+        """The places of a tool that is longer by so much [mm]."""
+        down = np.array([0.0, 0.0, by]) if self.axis is None else by * self.axis
+        carriers = {axes: points.lowered(by) for axes, points in self.carriers.items()}
+        return Points(self.tip - down, self.turn, self.axis, carriers)
 
     def copy(self) -> "Points":
         """Points that keep no longer columns in memory."""
-        axis = None if self.axis is None else self.axis.copy()
-        return Points(self.tip.copy(), self.turn.copy(), axis)
+        return self[np.arange(len(self))]
+
+
+def runs_of(chosen: BoolArray) -> list[slice]:
+    """Where those that are chosen follow each other."""
+    edges = np.flatnonzero(np.diff(chosen, prepend=False, append=False))
+    return [slice(first, end) for first, end in edges.reshape(-1, 2).tolist()]
 
 
 class Contact(Protocol):
@@ -163,7 +187,6 @@ class Material(Protocol):
         """Cut what a tool meets on n stretches.
 
         Args:
-            points: Their ends.
             travelled: Way of all tools up to the end of each, shape (n,) [mm].
             stood: Whether the tool has been at the first point, and has cut what it meets there.
         """

@@ -8,7 +8,7 @@ import numpy as np
 from twin.cutting.events import SCRAPE_MM
 from twin.cutting.height_map import HeightMap
 from twin.cutting.kernels.overlap import Overlap, Stood, box_overlap, round_overlap
-from twin.cutting.material import EDGE, Head, Points, Upright
+from twin.cutting.material import EDGE, Head, Points, Upright, runs_of
 from twin.cutting.tools import Profile
 from twin.job.job_file import ToolTable
 from twin.nc.canonical import BoolArray
@@ -28,7 +28,7 @@ class _Cylinder:
     height: float = math.inf
     offset: tuple[float, float] = (0.0, 0.0)
     round: bool = True
-    swivels: bool = True
+    beyond: tuple[int, ...] = ()
 
     @property
     def half(self) -> tuple[float, float]:
@@ -73,18 +73,19 @@ class StockContact:
         """What reaches into the material as it is, along each stretch; see ``Contact``."""
         material = self._material
         count = len(suspect)
-        lowest = points.tip[:, 2].min()
         stood = Stood(material.heights, material.behind, material.grid, doubtful)
         found = {}
         for solid in self._uprights:
-            if lowest + solid.above < material.top:
+            places = points.carrying(solid)
+            if places.tip[:, 2].min() + solid.above < material.top:
                 overlap = Overlap(*np.zeros((2, count)))
-                self._hold(solid, stood, points, overlap)
+                self._hold(solid, stood, places, overlap)
                 found[solid.name] = overlap
-        if suspect.any() and lowest < material.top:
+        if suspect.any() and points.tip[:, 2].min() < material.top:
             overlap = Overlap(*np.zeros((2, count)))
-            round_overlap(stood, points.tip, self._edge, 0.0, overlap)
-            overlap.reach[~suspect] = 0.0
+            for run in runs_of(suspect):
+                way = points.tip[run.start : run.stop + 1]
+                round_overlap(stood, way, self._edge, 0.0, overlap.part(run))
             found[EDGE] = overlap
         for name, overlap in found.items():
             overlap.depth[overlap.reach <= self._most[name]] = 0.0

@@ -77,7 +77,6 @@ def surface_mesh(height_map: HeightMap, step: int = 1) -> SurfaceMesh:
     """The net of a height map.
 
     Args:
-        height_map: Cut or uncut.
         step: Take every ``step``-th cell.
     """
     spacing = step * height_map.cell
@@ -121,7 +120,6 @@ def _cut_rim(height_map: HeightMap, band: IntArray) -> tuple[IntArray, FloatArra
     """Cells that stand at the blank's edge behind a wall that was cut between it and their middles.
 
     Args:
-        height_map: Cut or uncut.
         band: The cells near the edge, counted through the map's heights.
 
     Returns:

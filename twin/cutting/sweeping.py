@@ -30,7 +30,6 @@ class Swept(NamedTuple):
     """What a sweep did.
 
     Attributes:
-        removal: What each line took off.
         changed: Cells that changed.
     """
 

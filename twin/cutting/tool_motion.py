@@ -1,7 +1,7 @@
 """How a tool moves against the part during a chunk of samples."""
 
 import dataclasses
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
@@ -18,9 +18,7 @@ class ToolMotion(Columns):
     """Where a tool went: n samples.
 
     Attributes:
-        points: Of its tip in the part's frame, shape (n, 3) [mm].
-        turn: As of ``Points``, at each sample.
-        axis: Direction from the tip to the spindle there, shape (n, 3); None: +Z.
+        ends: Where it was at each.
         lag: How far it trails its setpoint, shape (n,) [mm].
         time: Shape (n,) [s].
         line: Source line, shape (n,).
@@ -28,24 +26,16 @@ class ToolMotion(Columns):
         standing: Whether the spindle is off, shape (n,).
     """
 
-    points: FloatArray
-    turn: FloatArray
-    axis: FloatArray | None
+    ends: Points
     lag: FloatArray
     time: FloatArray
     line: IntArray
     rapid: BoolArray
     standing: BoolArray
 
-    @property
-    def ends(self) -> Points:
-        """Where the tool was at each sample."""
-        return Points(self.points, self.turn, self.axis)
-
     def lowered(self, by: float) -> "ToolMotion":
         """The motion of a tool that is longer by so much [mm]."""
-        down = np.array([0.0, 0.0, by]) if self.axis is None else by * self.axis
-        return dataclasses.replace(self, points=self.points - down)
+        return dataclasses.replace(self, ends=self.ends.lowered(by))
 
     @property
     def group(self) -> IntArray:
@@ -60,26 +50,41 @@ def tool_motion(
     reach: float | None,
     rapid: BoolArray,
     standing: BoolArray,
+    carriers: Iterable[tuple[int, ...]] = (),
 ) -> ToolMotion:
     """The motion that samples are of.
 
     Args:
         samples: n samples.
         joints: Where the axes were then, shape (n, k) [mm or deg].
-        frame: How the part turns under the tool.
         reach: How far above the tip the edge ends, which a tool that lags in its direction is off by [mm]; None: the tool
             keeps to the part's Z.
         rapid: Which samples belong to rapids, shape (n,).
         standing: During which of them the spindle is off, shape (n,).
+        carriers: Axes between the tool and each of the bodies that carry it; see ``Upright.beyond``.
     """
     setpoint = samples.setpoint
-    meant, points = frame.position(setpoint.position), frame.position(joints)
-    lag = np.abs(meant - points).sum(axis=1)
-    turn, axis = frame.direction(joints), None
-    if reach is not None:
-        turn, axis = frame.tool_x(joints), frame.tool_direction(joints)
-        lag += reach * np.linalg.norm(axis - frame.tool_direction(setpoint.position), axis=1)
-    return ToolMotion(points, turn, axis, lag, setpoint.time, setpoint.line, rapid, standing)
+    tilts = reach is not None
+    carried = {axes: _places(_at_zero(joints, axes), frame, tilts=tilts) for axes in carriers}
+    ends = dataclasses.replace(_places(joints, frame, tilts=tilts), carriers=carried)
+    lag = np.abs(frame.position(setpoint.position) - ends.tip).sum(axis=1)
+    if reach is not None and ends.axis is not None:
+        lag += reach * np.linalg.norm(ends.axis - frame.tool_direction(setpoint.position), axis=1)
+    return ToolMotion(ends, lag, setpoint.time, setpoint.line, rapid, standing)
+
+
+def _at_zero(joints: FloatArray, axes: tuple[int, ...]) -> FloatArray:
+    """Joints with some axes at zero, shape (n, k)."""
+    changed = joints.copy()
+    changed[:, axes] = 0.0
+    return changed
+
+
+def _places(joints: FloatArray, frame: PartFrame, *, tilts: bool) -> Points:
+    if tilts:
+        axis = frame.tool_direction(joints)
+        return Points(frame.position(joints), frame.tool_x(joints), axis)
+    return Points(frame.position(joints), frame.direction(joints))
 
 
 def by_edge(samples: Samples, run: slice) -> Iterator[tuple[slice, bool]]:

@@ -70,11 +70,7 @@ def build_unit(machine: str, out: Path) -> None:
 
 
 def _copied(folder: Path, where: Path) -> Path:
-    """A copy of a machine's folder.
-
-    Raises:
-        UsageError: It holds more than a machine.
-    """
+    """A copy of a machine's folder."""
     size = sum(file.stat().st_size for file in folder.rglob("*") if file.is_file())
     if size > _MOST_BYTES:
         raise UsageError(f"{folder}: holds {size >> 20} MiB; give the machine a folder of its own")

@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Annotated, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 import pydantic
 from pydantic import Field
 
@@ -33,6 +34,14 @@ class Weight(NamedTuple):
         """The same body elsewhere [mm]."""
         x, y, z = (here + way for here, way in zip(self.center, by, strict=True))
         return self._replace(center=(x, y, z))
+
+    def turned(self, rotation: npt.NDArray[np.float64]) -> "Weight":
+        """The same body seen in other axes: a rotation into these, shape (3, 3)."""
+        xx, yy, zz, xy, xz, yz = self.inertia
+        tensor = rotation @ [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]] @ rotation.T
+        x, y, z = (rotation @ self.center).tolist()
+        (xx, xy, xz), (_, yy, yz), (_, _, zz) = tensor.tolist()
+        return Weight(self.mass, (x, y, z), (xx, yy, zz, xy, xz, yz))
 
 
 def upright_weight(

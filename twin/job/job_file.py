@@ -380,6 +380,9 @@ class JobFile(Table):
     decimal_point: Literal["calculator", "increments"] | None = None
     """``fanuc``, ``haas``: ``X10`` is 10 mm ("calculator"), or 0.010 mm ("increments"); missing: as
     the machine file says, else as the control does when it comes from its maker."""
+    rollover: Literal["shorter", "sign"] | None = None
+    """``fanuc``: absolute targets of rotary axes are those of a turn, reached by the shorter way, or in the direction of
+    their sign; missing: as the machine file says, else as they are written."""
     units: Literal["mm", "inch"] | None = None
     """In which units the program begins where it names none; missing: as the machine file says, else mm."""
     step_limit: Annotated[int, Field(gt=0)] = 20_000

@@ -190,11 +190,7 @@ def _shared(folder: Path) -> list[Layer]:
 
 
 def _extended(path: Path, data: Data) -> list[Layer]:
-    """A file and those that it extends, the file itself first.
-
-    Raises:
-        ConfigError: A file is missing or wrong, or they extend each other in a circle.
-    """
+    """A file and those that it extends, the file itself first."""
     layers: list[Layer] = []
     while True:
         base = data.get(EXTENDS)

@@ -45,7 +45,6 @@ def write_configuration(folder: Path, machine: Machine, settings: Settings) -> P
     """Write all that LinuxCNC reads.
 
     Args:
-        folder: Where.
         machine: What it drives; the servo period is the machine's.
 
     Raises:

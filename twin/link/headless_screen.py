@@ -104,11 +104,7 @@ class Operator:
         raise FailedError(f"LinuxCNC does not {what}")
 
     def _look(self) -> bool:
-        """Log what LinuxCNC says; returns whether it reported an error.
-
-        Raises:
-            FailedError: The twin has gone, and nobody will answer LinuxCNC any more.
-        """
+        """Log what LinuxCNC says; returns whether it reported an error."""
         failed = False
         while (told := self._errors.poll()) is not None:
             kind, text = told

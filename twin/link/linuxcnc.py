@@ -150,9 +150,7 @@ def running(start: Path, ini: Path, log: Path) -> Iterator[LinuxCnc]:
     """Start LinuxCNC; it is ended with the block.
 
     Args:
-        start: Its start script.
         ini: The configuration, in a folder of its own.
-        log: Where what it prints goes.
 
     Raises:
         UsageError: It refuses to run as root and the unprivileged user cannot read the folder.

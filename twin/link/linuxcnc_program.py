@@ -25,7 +25,6 @@ class LinuxcncProgram(NamedTuple):
     """A program for LinuxCNC.
 
     Attributes:
-        text: What it reads.
         line_of_move: Line that each of the n moves is in, shape (n,).
     """
 

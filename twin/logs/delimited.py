@@ -101,7 +101,7 @@ def _rows(lines: Sequence[str], separator: str | None) -> list[list[str]]:
 
 
 def _line_of_row(lines: Sequence[str], row: int, separator: str | None) -> int:
-    """The line in which a row stands: empty lines and rows count for lines alone."""
+    """The line in which a row is: empty lines and rows count for lines alone."""
     filled = (number for number, line in enumerate(lines) if _rows([line], separator))
     return next(itertools.islice(filled, row, None), len(lines))
 

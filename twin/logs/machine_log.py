@@ -183,7 +183,6 @@ def channel_of(raw: RawLog, where: str, role: str, column: ColumnTable) -> Chann
 
     Args:
         role: What the map takes the column for.
-        column: Its name or number.
 
     Raises:
         UsageError: The log has no such column.

@@ -55,8 +55,6 @@ def factor(quantity: str, kind: AxisKind, unit: str, where: str) -> float:
 
     Args:
         quantity: ``position``, ``velocity``, ``acceleration``, ``force`` or ``current``.
-        unit: Of the column.
-        where: What a message begins with.
 
     Raises:
         UsageError: No such unit of that quantity for that kind of axis.

@@ -11,7 +11,8 @@ from twin.files.shipped import machine_file
 from twin.files.toml import Change, Data, changed, load_toml, merged, read_toml
 from twin.job.fixture import FixtureTable
 from twin.job.load import Job
-from twin.machine.description.config import Machine, MachineFile
+from twin.machine.description.config import Machine
+from twin.machine.description.machine_file import MachineFile
 
 
 def load_machine(job: Job, name: str | None = None, changes: Sequence[Change] = ()) -> Machine:
@@ -69,7 +70,6 @@ def _on_base(data: Data, path: Path, depth: int = 0) -> Data:
     Tables are merged key by key; every other value, arrays included, replaces that of the base.
 
     Args:
-        data: The machine file as read.
         path: Where it lies; ``base`` is a shipped machine's name or a path beside it.
         depth: How many files are based on this one.
 

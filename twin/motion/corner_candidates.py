@@ -29,7 +29,7 @@ from twin.motion.steps import Step
 from twin.nc.canonical import Chunk, Corner, FloatArray, IntArray
 
 MOST_BLOCKS = 512
-"""Between two stops, for stopping everywhere to be tried: of more, a plan takes too long beside what it may gain."""
+"""Between two stops, for stopping everywhere to be tried: of more, a plan takes too long for what it may gain."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)

@@ -14,7 +14,7 @@ from twin.toolpath.part_frame import PartFrame
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class ToolLoad(Columns):
-    """What the tool of n samples felt, machine axes.
+    """What loaded the tool at n samples, machine axes.
 
     Attributes:
         force: On the tool, in the mean of the period, shape (n, 3) [N].

@@ -152,7 +152,7 @@ class Recording:
             )
 
     def _tool(self, first: int, last: int) -> ToolLoad | None:
-        """What the tool felt; None where that was not simulated."""
+        """What loaded the tool; None where that was not simulated."""
         if not self._has_tool:
             return None
         return ToolLoad(

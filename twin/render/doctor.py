@@ -17,7 +17,6 @@ class RenderFacts:
 
     Attributes:
         backend: OpenGL backend that drew a test frame; empty when none did.
-        renderer: What OpenGL calls itself.
         filament: What Filament draws through; empty where it does not work.
         encoder: Name of the H.264 encoder; empty when there is none.
         memory_mb: Memory that is free for a run; None where the system does not tell [MB].

@@ -25,7 +25,6 @@ class Format:
     """How a kind of file is encoded.
 
     Attributes:
-        encoder: FFmpeg's name of the encoder.
         palette: Whether it shows 256 colours at a time.
     """
 
@@ -133,7 +132,6 @@ def video_writer(path: Path, size: tuple[int, int], fps: int) -> Iterator[VideoW
     Args:
         path: The file; its suffix is one of ``FORMATS``.
         size: Width and height, both even [px].
-        fps: Frames per second.
 
     Raises:
         RenderError: There is no encoder or no such format, or the file cannot be written.

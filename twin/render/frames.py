@@ -9,11 +9,7 @@ from twin.recording.reader import Recording, Samples
 
 
 def frame_ends(count: int, frames: int) -> IntArray:
-    """How many samples lie behind each of evenly spread frames; the last one shows the end.
-
-    Args:
-        frames: Pictures to be spread over it.
-    """
+    """How many samples lie behind each of evenly spread frames; the last one shows the end."""
     shares = (np.arange(frames, dtype=np.int64) + 1) * count / frames
     return np.maximum(min(1, count), np.round(shares)).astype(np.int64)
 

@@ -43,7 +43,6 @@ class LoadBar(NamedTuple):
     """How much of what it bears a tool or the spindle is given.
 
     Attributes:
-        text: Its value, with its unit.
         share: Of what breaks or stalls it; above 1 the bar is full.
     """
 
@@ -103,11 +102,9 @@ class Display:
         """Lay the panels out.
 
         Args:
-            title: Names of program and machine.
             source: Lines of the program.
             size: Width and height of the frames [px].
             speed: How much faster than in reality the film runs; None for a still.
-            error_name: What the error is called.
             error_scale_um: Error that has the trail's last colour [µm]; None: no error colours it.
         """
         self._source = [_printable(line) for line in source]

@@ -9,15 +9,12 @@ import trimesh
 from trimesh.visual import TextureVisuals
 from trimesh.visual.material import PBRMaterial
 
-from twin.cutting.colours import MACHINED_RGB, RAW_RGB
-from twin.cutting.tridexel.mesh import Surface
 from twin.job.job_file import StockTable, ToolTable
 from twin.machine.description.config import Machine
 from twin.machine.description.kinematics import SPINDLE_NOSE, part_carrier
 from twin.machine.model.model import build_spec
 from twin.machine.model.tool_shape import COLLISION_GROUP, VISUAL_GROUP
 from twin.nc.canonical import FloatArray
-from twin.render.scene.dexel_surface import corner_normals, machined
 from twin.render.scene.placement import Placement, place
 from twin.render.scene.tool_body import PREFIX, ToolBodies
 from twin.render.scene.work_holding import add_work_holding
@@ -25,8 +22,6 @@ from twin.toolpath.part_frame import PartFrame
 from twin.toolpath.tool_plan import ToolPlan
 from twin.units import MM
 
-PART_PREFIX = "part as cut "
-"""What the names of nodes of the part begin with."""
 COLLISION_PREFIX = "collision "
 """What the names of nodes of collision bodies begin with, so that a page can hide them."""
 
@@ -46,14 +41,12 @@ class DrawnMachine:
 
     Attributes:
         placement: Where the part's frame lies on the turning table.
-        part: The part, in its frame [mm]; None: it is not in the file.
     """
 
     model: mujoco.MjModel
     machine: Machine
     placement: Placement
     tool: ToolTable
-    part: Surface | None = None
 
     def glb(self) -> bytes:
         """The file: nodes are named as the bodies, lengths in m, Z up."""
@@ -81,40 +74,9 @@ class DrawnMachine:
                 parent_node_name="world" if body == 0 else model.body(body).name or f"body {body}",
                 transform=_matrix(model.geom_pos[geom], model.geom_quat[geom]),
             )
-        if self.part is not None:
-            self._add_part(scene, self.part)
         content = scene.export(file_type="glb", include_normals=True)
         assert isinstance(content, bytes)
         return content
-
-    def _add_part(self, scene: trimesh.Scene, part: Surface) -> None:
-        """Add the part to what carries it, raw and machined skin as a node each."""
-        by_tool, normals = machined(part), corner_normals(part)
-        for name, rgb, faces in (("raw", RAW_RGB, ~by_tool), ("machined", MACHINED_RGB, by_tool)):
-            corners = MM * part.points[part.faces[faces]].reshape(-1, 3)
-            if not len(corners):
-                continue
-            mesh = trimesh.Trimesh(
-                corners,
-                np.arange(len(corners)).reshape(-1, 3),
-                vertex_normals=normals[faces].reshape(-1, 3),
-                process=False,
-            )
-            mesh.merge_vertices(merge_norm=False)
-            mesh.visual = TextureVisuals(
-                material=PBRMaterial(
-                    baseColorFactor=np.array([*rgb, 255]) / 255.0,
-                    metallicFactor=0.3,
-                    roughnessFactor=0.45,
-                )
-            )
-            scene.add_geometry(
-                mesh,
-                node_name=f"{PART_PREFIX}{name}",
-                geom_name=f"{PART_PREFIX}{name}",
-                parent_node_name=self.model.body(part_carrier(self.model)).name,
-                transform=_matrix(self.placement.origin, self.placement.quaternion),
-            )
 
     def description(self) -> dict[str, Any]:
         """What a page needs to move the nodes, as plain data.
@@ -123,8 +85,8 @@ class DrawnMachine:
             ``joints``: for each axis, in order, its body, kind, direction in the parent's frame
             and what it moves per mm or degree [m or rad]. ``part``: the body that carries the part
             and the part frame's matrix in it, column by column, from mm. ``tip`` likewise for the
-            tool's tip in its body. ``cutter``: the node that spins. ``collision`` and ``part_as_cut``: what
-            the names of nodes begin with that are collision bodies, or the part.
+            tool's tip in its body. ``cutter``: the node that spins. ``collision``: what the
+            names of nodes begin with that are collision bodies.
         """
         model, joints = self.model, []
         for axis, scale in zip(self.machine.axes.names, self.machine.joint_scale, strict=True):
@@ -165,7 +127,6 @@ class DrawnMachine:
                 "length": self.tool.length,
             },
             "collision": COLLISION_PREFIX,
-            "part_as_cut": PART_PREFIX,
         }
 
 
@@ -175,15 +136,12 @@ def drawn_machine(
     part_frame: PartFrame,
     stock: StockTable | None = None,
     true_zero: FloatArray | None = None,
-    part: Surface | None = None,
 ) -> DrawnMachine:
     """Build the machine as a page draws it.
 
     Args:
-        part_frame: How the part turns under the tool.
         stock: The blank, for the parallels below it.
         true_zero: Machine coordinates of the part's zero, shape (k,) [mm or deg].
-        part: The part, in its frame [mm].
 
     Raises:
         ConfigError: The model cannot be completed.
@@ -194,7 +152,7 @@ def drawn_machine(
         corner = part_frame.program_zero(true_zero)
         add_work_holding(spec, stock, placement, corner)
     ToolBodies(ToolPlan((tool,)), machine.file.spindle.flange_diameter).add_to(spec)
-    return DrawnMachine(spec.compile(), machine, placement, tool, part)
+    return DrawnMachine(spec.compile(), machine, placement, tool)
 
 
 def _mesh(model: mujoco.MjModel, geom: int) -> trimesh.Trimesh | None:

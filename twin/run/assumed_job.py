@@ -29,7 +29,7 @@ from twin.run.reading.assumed_stock import (
     top_of_stock,
     turns_about_x,
 )
-from twin.run.reading.assumed_tools import BELOW, SPEED_BY_HAND, tool_lines
+from twin.run.reading.assumed_tools import BELOW, SPEED_BY_HAND, named_tools, tool_lines
 from twin.run.reading.declared import declared_stock, declared_tools
 
 _MACHINE_ZERO_UNKNOWN = "no-machine-zero"
@@ -64,7 +64,6 @@ def with_assumptions(
 
     Args:
         machine: Overrides the job's machine.
-        strict: Warnings of the interpreter are errors.
 
     Raises:
         ProgramError: The program is wrong.
@@ -94,7 +93,8 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
     inches, lacking = interpretation.programs_in_inches, _lacking_axes(preparation)
     comments = list(_comments(preparation))
     functions = [each for chunk in chunks for each in chunk.events if isinstance(each, Function)]
-    declared = declared_tools(functions)
+    named = named_tools(interpretation.tool_names, inches=inches)
+    declared = {**named, **declared_tools(functions)}
     length = _least_length(preparation.machine, moves)
     blank = declared_stock(functions)
     top = top_of_stock(moves) if blank is None else float(blank.top[2])
@@ -212,10 +212,17 @@ def _tool_calls(chunks: list[Chunk]) -> list[tuple[int, int, int]]:
 
 
 def _unit_lines(reading: AssumedReading) -> list[str]:
-    """The units, and what a number without a point counts, where that was assumed."""
-    point, units = reading.keys.get("decimal_point"), reading.keys.get("units")
-    lines = [] if point is None else [f'decimal_point = "{point}"  # increments: X10 is 0.010 mm']
-    return lines if units is None else [*lines, f'units = "{units}"']
+    """The units, and what numbers without a point and angles count, where that was assumed."""
+    comments = {
+        "decimal_point": "  # increments: X10 is 0.010 mm",
+        "units": "",
+        "rollover": "  # sign: in the direction of their sign",
+    }
+    return [
+        f'{key} = "{reading.keys[key]}"{comment}'
+        for key, comment in comments.items()
+        if key in reading.keys
+    ]
 
 
 def _reading_lines(reading: AssumedReading) -> list[str]:

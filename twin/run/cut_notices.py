@@ -34,7 +34,7 @@ def cut_notices(
         yield Notice(
             "starts-in-stock",
             watch.first_line,
-            f"the tool stands {cutter.start_depth:.2f} mm deep in the stock before it moves",
+            f"the tool is {cutter.start_depth:.2f} mm deep in the stock before it moves",
         )
     if machining.misfit is not None:
         yield Notice("nominal-misfit", 0, machining.misfit)

@@ -13,7 +13,6 @@ from twin.files.stl import read_stl
 from twin.job.fixture import Weight, upright_weight
 from twin.job.job_file import JobFile, StockTable
 from twin.machine.description.config import Blank, Machine
-from twin.machine.model.model import spindle_over_table_mm
 from twin.nc.canonical import FloatArray
 from twin.toolpath.part_frame import PartFrame
 from twin.units import MM
@@ -74,13 +73,14 @@ class Layout(NamedTuple):
 
     Attributes:
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
-        part_frame: How the part turns under the tool.
         blank: The uncut stock on the table; None without one.
+        start: Where the axes are when the program starts, program coordinates, shape (k,) [mm or deg].
     """
 
     part_zero: FloatArray
     part_frame: PartFrame
     blank: Blank | None
+    start: FloatArray
 
 
 def lay_out(job: JobFile, machine: Machine) -> Layout:
@@ -95,7 +95,9 @@ def lay_out(job: JobFile, machine: Machine) -> Layout:
         ConfigError: An axis does not exist, the stock would lie below the table, or its material is not
             known.
     """
-    over_table, length = spindle_over_table_mm(machine), job.tools[0].length
+    start = np.zeros(len(machine.axes))
+    _write_axes(start, job.start, machine, "start")
+    over_table, length = machine.at_zero.spindle_over_table, job.tools[0].length
     frame = machine.part_frame
     zero = frame.rotary_zero(len(machine.axes))
     lies = frame.table_about(_Z) is not None or frame.chain is None
@@ -107,26 +109,49 @@ def lay_out(job: JobFile, machine: Machine) -> Layout:
     if lies:
         _require_stock_above_table(job, float(zero[2]), over_table)
     frame = frame.at(zero, length)
-    return Layout(zero, frame, _blank(job, frame, zero, over_table))
+    return Layout(zero, frame, _blank(job, frame, zero, over_table), start)
 
 
 def _blank(job: JobFile, frame: PartFrame, zero: FloatArray, over_table: float) -> Blank | None:
     if job.stock is None:
         return None
-    size = job.stock.extent
-    x, y, z = np.array(job.stock.position) + frame.program_zero(zero)
+    stock, size, weight = job.stock, job.stock.extent, blank_weight(job.stock)
+    x, y, z = np.array(stock.position) + frame.program_zero(zero)
     top = z + over_table - job.tools[0].length
+    order, down = (0, 1, 2), np.array([0.0, 0.0, size[2] / 2.0])
     if frame.chain is not None:
-        x, y, top = frame.chain.table_axes.T @ (np.array([x, y, z]) - frame.chain.table)
-    weight = blank_weight(job.stock)
+        to_table = frame.chain.table_axes.T
+        x, y, top = to_table @ (np.array([x, y, z]) - frame.chain.table)
+        order = _along_table(to_table)
+        if order[_Z] != _Z:
+            down = to_table @ down
+            weight = None if weight is None else weight.turned(to_table)
+    place = (float(x), float(y), float(top))
+    middle = np.array(place) - down
     return Blank(
-        size,
-        (float(x), float(y), float(top) - size[2] / 2.0),
-        round=job.stock.diameter is not None,
-        weight=None if weight is None else weight.moved((float(x), float(y), float(top))),
-        on_post=job.stock.on_post,
-        direction=job.stock.direction,
+        (size[order[0]], size[order[1]], size[order[2]]),
+        (float(middle[0]), float(middle[1]), float(middle[2])),
+        round=stock.diameter is not None,
+        weight=None if weight is None else weight.moved(place),
+        on_post=stock.on_post,
+        direction=order.index(stock.direction),
     )
+
+
+def _along_table(to_table: FloatArray) -> tuple[int, int, int]:
+    """Which of X, Y and Z of the machine lies along x, y and z of the table.
+
+    Where a table lies level, X and Y are taken for x and y, however it is turned.
+
+    Args:
+        to_table: Turns directions of the machine into those of the table, shape (3, 3).
+    """
+    along_z = int(np.argmax(np.abs(to_table[_Z])))
+    if along_z == _Z:
+        return 0, 1, 2
+    others = [axis for axis in range(3) if axis != along_z]
+    along_x = max(others, key=lambda axis: abs(to_table[0, axis]))
+    return along_x, 3 - along_z - along_x, along_z
 
 
 def bore_of(job: JobFile) -> float | None:
@@ -137,17 +162,6 @@ def bore_of(job: JobFile) -> float | None:
     if job.stock is None:
         return None
     return math.inf if job.stock.shape == "stl" else job.stock.bore
-
-
-def start_position(job: JobFile, machine: Machine) -> FloatArray:
-    """Where the axes are when the program starts, program coordinates, shape (k,) [mm or deg].
-
-    Raises:
-        ConfigError: An axis does not exist.
-    """
-    start = np.zeros(len(machine.axes))
-    _write_axes(start, job.start, machine, "start")
-    return start
 
 
 def require_axes(names: Iterable[str], machine: Machine, key: str) -> None:

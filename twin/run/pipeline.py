@@ -10,9 +10,7 @@ from twin.cutting.axis_load import AxisLoad
 from twin.cutting.height_map import HeightMap
 from twin.cutting.program_summary import ProgramSummary
 from twin.errors import ConfigError
-from twin.job.job_file import JobFile
 from twin.machine.description.config import Machine
-from twin.machine.description.motion_limits import motion_limits
 from twin.machine.model.model import MachineModel
 from twin.machine.simulation.growth import Growth
 from twin.machine.simulation.simulate import Load, simulate
@@ -20,10 +18,11 @@ from twin.machine.watching.alarms import Alarm, NearMiss
 from twin.motion.planner import plan
 from twin.motion.setpoints.sampling import settle
 from twin.motion.setpoints.setpoints import Setpoints
-from twin.nc.canonical import Chunk, FloatArray, Moves
+from twin.nc.canonical import Chunk, Moves
+from twin.processor import made_ahead
 from twin.recording.reader import Samples
-from twin.run.dry_run import DryRun, InterpretedProgram
-from twin.run.layout import Layout
+from twin.run.dry_run import InterpretedProgram
+from twin.run.preparation import Preparation
 
 
 class MachineMotion(abc.ABC):
@@ -61,8 +60,43 @@ class Forces(NamedTuple):
     load: Load | None = None
 
 
+class PlannedMoves:
+    """Moves on their way from the planner, which is ahead, to who compares what the machine makes of them."""
+
+    def __init__(self, expect: Callable[[Moves], None]) -> None:
+        """Remember none.
+
+        Args:
+            expect: Called with the moves, in order, before the first samples of theirs.
+        """
+        self.expect = expect
+        self._planned: list[Moves] = []
+
+    def note(self, moves: Moves) -> None:
+        """Remember moves that are planned now."""
+        self._planned.append(moves)
+
+    def take(self) -> list[Moves]:
+        """Those that were noted since the last time."""
+        taken, self._planned = self._planned, []
+        return taken
+
+
+class _Stepped(NamedTuple):
+    """A chunk of samples with what was known when it was stepped."""
+
+    samples: Samples
+    moves: list[Moves]
+    planned_s: float | None
+    near_miss: NearMiss | None
+
+
 class ProgramMotion(MachineMotion):
-    """Setpoints of a program, held at their end and followed by the simulated drives."""
+    """Setpoints of a program, held at their end and followed by the simulated drives.
+
+    The machine is stepped one chunk ahead of those who look at it, on another core where there is one. What it has come to
+    is told with the chunk that it belongs to, so that an alarm finds all as it was then.
+    """
 
     def __init__(
         self,
@@ -70,18 +104,23 @@ class ProgramMotion(MachineMotion):
         model: MachineModel,
         summary: ProgramSummary,
         forces: Forces,
+        moves: PlannedMoves | None = None,
     ) -> None:
         """Prepare the simulation.
 
         Args:
             setpoints: As planned, machine coordinates, in chunks.
             summary: Which tool is in the spindle during which move.
+            moves: Those that are planned; None: nobody asks for them.
 
         Raises:
             ConfigError: The model does not compile.
         """
         self.process = forces.process
         self._setpoints = setpoints
+        self._moves = moves
+        self._planned_until_s: float | None = None
+        self._near_miss: NearMiss | None = None
         period_s = model.machine.file.servo_period_s
         self._simulation = simulate(
             model.machine,
@@ -95,7 +134,7 @@ class ProgramMotion(MachineMotion):
     @property
     def near_miss(self) -> NearMiss | None:
         """The closest that the tool's side and the part's came without touching."""
-        return self._simulation.near_miss
+        return self._near_miss
 
     def __iter__(self) -> Iterator[Samples]:
         """Yield chunks of samples, the last one that of an alarm if there is one.
@@ -103,25 +142,34 @@ class ProgramMotion(MachineMotion):
         Raises:
             SimulationError: The simulation failed.
         """
-        yield from self._simulation
-        self.alarm = self._simulation.alarm
+        for stepped in made_ahead(self._stepped()):
+            self.planned_s, self._near_miss = stepped.planned_s, stepped.near_miss
+            if self._moves is not None:
+                for moves in stepped.moves:
+                    self._moves.expect(moves)
+            yield stepped.samples
+        self.alarm, self._near_miss = self._simulation.alarm, self._simulation.near_miss
+
+    def _stepped(self) -> Iterator[_Stepped]:
+        simulation = self._simulation
+        for samples in simulation:
+            moves = [] if self._moves is None else self._moves.take()
+            yield _Stepped(samples, moves, self._planned_until_s, simulation.near_miss)
 
     def _noted(self) -> Iterator[Setpoints]:
         for chunk in self._setpoints:
-            self.planned_s = float(chunk.time[-1])
+            self._planned_until_s = float(chunk.time[-1])
             yield chunk
 
 
 def planned(
     program: InterpretedProgram,
-    machine: Machine,
-    part_zero: FloatArray,
+    preparation: Preparation,
     expect: Callable[[Moves], None] | None = None,
 ) -> Iterator[Setpoints]:
     """The setpoints of a program, in chunks.
 
     Args:
-        part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
         expect: Called with the moves before setpoints of theirs are made.
     """
 
@@ -131,9 +179,10 @@ def planned(
                 expect(chunk.moves)
             yield chunk
 
+    machine, part_zero = preparation.machine, preparation.layout.part_zero
     return plan(
         moves(),
-        motion_limits(machine),
+        machine.motion_limits,
         period_s=machine.file.servo_period_s,
         part_zero=part_zero,
         start=program.start + part_zero,
@@ -141,25 +190,25 @@ def planned(
 
 
 def cutting_forces(
-    job: JobFile, machine: Machine, dry_run: DryRun, layout: Layout, laid: HeightMap | None = None
+    preparation: Preparation, summary: ProgramSummary, laid: HeightMap | None = None
 ) -> Forces:
     """What the cut of a job pushes the axes with.
 
     Args:
-        dry_run: What the program brings into the spindle when.
-        layout: Where the part is.
+        preparation: Its job says which force is simulated.
+        summary: What the program brings into the spindle when.
         laid: The blank, if it is on the table already.
 
     Raises:
         ConfigError: The job wants a force that cannot be computed.
     """
-    summary, frame = dry_run.summary, layout.part_frame
-    process = program_process(job, machine, summary, frame, layout.part_zero, laid)
+    job, zero, frame = preparation.job.file, *preparation.layout[:2]
+    process = program_process(job, preparation.machine, summary, frame, zero, laid)
     if process is not None or not job.cutting_load:
         return Forces(process)
     if job.stock is None:
         raise ConfigError("cutting_load needs a [stock]")
-    return Forces(load=AxisLoad(job.stock, summary, frame, layout.part_zero))
+    return Forces(load=AxisLoad(job.stock, summary, frame, zero))
 
 
 def grown(

@@ -29,7 +29,6 @@ class Stop:
 
     Attributes:
         place: Number of the next move, and how much of it lies behind.
-        line: Source line.
     """
 
     place: float

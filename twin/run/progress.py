@@ -2,6 +2,7 @@
 
 import contextlib
 import sys
+import threading
 import time
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator
@@ -62,8 +63,18 @@ def _log_lines() -> Progress:
 ItemT = TypeVar("ItemT")
 
 
+class _Running(threading.local):
+    """The stages that a thread is in, the innermost last, and since when."""
+
+    def __init__(self) -> None:
+        self.stages: list[str] = []
+        self.since = 0.0
+
+
 class StageClock:
     """Exclusive wall time by stage: while an inner stage runs, the outer one's clock is stopped.
+
+    Stages of different threads are counted side by side; what one waits for another is its own time.
 
     Attributes:
         seconds: Time spent by stage name [s].
@@ -71,8 +82,7 @@ class StageClock:
 
     def __init__(self) -> None:
         self.seconds: dict[str, float] = defaultdict(float)
-        self._running: list[str] = []
-        self._since = 0.0
+        self._running = _Running()
         self._began = time.perf_counter()
 
     @property
@@ -84,12 +94,12 @@ class StageClock:
     def stage(self, name: str) -> Iterator[None]:
         """Count the time of the block for ``name``."""
         self._switch()
-        self._running.append(name)
+        self._running.stages.append(name)
         try:
             yield
         finally:
             self._switch()
-            self._running.pop()
+            self._running.stages.pop()
 
     def watch(self, name: str, items: Iterable[ItemT]) -> Iterator[ItemT]:
         """Pass items on, counting the time that producing them takes."""
@@ -103,7 +113,7 @@ class StageClock:
             yield item
 
     def _switch(self) -> None:
-        now = time.perf_counter()
-        if self._running:
-            self.seconds[self._running[-1]] += now - self._since
-        self._since = now
+        now, running = time.perf_counter(), self._running
+        if running.stages:
+            self.seconds[running.stages[-1]] += now - running.since
+        running.since = now

@@ -8,7 +8,6 @@ from twin.compare.figures import Figures
 from twin.compare.verdict import Check, Reason
 from twin.cutting.cut_log import TRI_DEXEL, CutResult
 from twin.cutting.measuring.inspection import Inspection
-from twin.cutting.program_summary import ProgramSummary
 from twin.job.job_file import JobFile
 from twin.job.load import DEFAULT
 from twin.machine.description.config import Machine
@@ -24,7 +23,6 @@ COLLISIONS = "tool, holder, spindle and head against fixtures and machine; the t
 STOCK = "rapids, standing spindle, shank, holder and head in the stock"
 FORCES = "force, chip, deflection and breakage of tools, load of the spindle"
 WALLS = "cuts into the nominal part"
-HEAD = "what carries the swivel head in the stock"
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -127,7 +125,7 @@ def scope_of(
     watched += sorted({check.what for check in checks})
     blind = (
         *_without_limits(preparation.machine, forces=forces),
-        *_blind(file, forces=forces, swivels=_swivels(dry_run.summary)),
+        *_blind(file, forces=forces),
         *(_silent_spindle(file, watch)),
         *_unknown_functions(file),
         *_never_read(preparation.settings),
@@ -162,12 +160,6 @@ def scope_of(
     )
 
 
-def _swivels(summary: ProgramSummary) -> bool:
-    """Whether the part is cut from several sides, and a head turns the tool."""
-    chain = None if summary.part is None else summary.part.frame.chain
-    return summary.tilts and chain is not None and bool((chain.rotary & chain.on_tool).any())
-
-
 def _without_limits(machine: Machine, *, forces: bool) -> Iterator[Unwatched]:
     """Limits that the machine file does not give, so that nothing is held to them."""
     axes = {name: machine.axis(name) for name in machine.axes.names}
@@ -200,12 +192,10 @@ def _expected(job: JobFile) -> Iterator[Unwatched]:
         yield Unwatched(f"expect = {job.expect!r}", "twin check holds the end of a job to it")
 
 
-def _blind(job: JobFile, *, forces: bool, swivels: bool) -> Iterator[Unwatched]:
+def _blind(job: JobFile, *, forces: bool) -> Iterator[Unwatched]:
     if job.stock is None:
         yield Unwatched("stock, forces and walls", "the job has no [stock]")
         return
-    if swivels:
-        yield Unwatched(HEAD, _SWIVELS)
     if not forces:
         yield Unwatched(FORCES, _why_no_forces(job))
     if job.nominal is None:
@@ -250,11 +240,10 @@ def nothing_judged(
         first, last = part.lines
         key = f"blocks[{number}].contour_um"
         if key not in judged and figures.samples:
-            message = f"{key} has judged nothing: no move stands in lines {first} to {last}"
+            message = f"{key} has judged nothing: no move is in lines {first} to {last}"
             yield Reason(key, message, 0, 0.0)
 
 
-_SWIVELS = "it does not turn with the tool, and of a part that is cut from several sides what does is judged"
 _NO_FIGURE = "the run holds nothing that it could be held against"
 _WHY = {
     "circular_deviation_um": "the program has no arc of 90 degrees or more with the table at rest",

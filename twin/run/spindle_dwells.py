@@ -4,7 +4,7 @@ import dataclasses
 from collections.abc import Iterable, Iterator, Mapping
 
 from twin.job.job_file import JobFile
-from twin.machine.description.config import SpindleTable
+from twin.machine.description.machine_file import SpindleTable
 from twin.nc.canonical import Chunk, Dwell, Event, Function
 from twin.nc.functions import PROGRAM_ENDS, TOOL_CHANGE, SpindleState
 
@@ -22,7 +22,6 @@ def with_spindle_dwells(
 
     Args:
         job: Says the first tool, and the speeds of tools for programs that say none.
-        state: The spindle before the program.
     """
     if not spindle.tool_change_s and not spindle.acceleration:
         yield from chunks
@@ -47,9 +46,7 @@ class SpindleDwells:
         """Begin with what is in the spindle.
 
         Args:
-            spindle: How long the machine takes.
             speeds: Of the tools, for programs that say none [1/min].
-            state: The spindle before the program.
             selected: Number of the tool that the next change brings; None: the one in the spindle.
         """
         self._spindle = spindle

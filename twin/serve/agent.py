@@ -112,11 +112,7 @@ class Agent:
         size: int = BUFFER_SIZE,
         tools: Iterable[ToolTable] = (),
     ) -> None:
-        """Start with nothing observed.
-
-        Args:
-            size: How many observations are remembered.
-        """
+        """Start with nothing observed."""
         self.device = device
         self.clock = clock
         self.observed_s = 0.0

@@ -51,11 +51,7 @@ class OutOfRangeError(Exception):
 
 
 class ObservationBuffer:
-    """Remembers observations in the order in which they are made.
-
-    Attributes:
-        size: How many are remembered.
-    """
+    """Remembers observations in the order in which they are made."""
 
     def __init__(self, items: Iterable[str], time: str, size: int = BUFFER_SIZE) -> None:
         """Begin with nothing known of any data item, as the standard asks.
@@ -63,7 +59,6 @@ class ObservationBuffer:
         Args:
             items: Identifiers of all data items.
             time: When the agent started, ISO 8601.
-            size: How many observations are remembered.
         """
         self.size = size
         self._kept: list[Observation] = []

@@ -23,7 +23,6 @@ class Header:
         time: When the document was made, by the twin's clock, ISO 8601.
         instance: Number of this start of the agent; sequence numbers of another mean nothing here.
         device_changed: When the description of the device last changed, ISO 8601.
-        buffer_size: How many observations are remembered.
     """
 
     time: str

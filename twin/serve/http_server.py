@@ -101,11 +101,7 @@ def without_broken_requests(record: logging.LogRecord) -> bool:
 
 
 def _admit(agent: Agent, request: Request, *, local: bool) -> None:
-    """Refuse who comes by another name than this computer's, or asks for another device.
-
-    Raises:
-        RequestError: He is refused.
-    """
+    """Refuse who comes by another name than this computer's, or asks for another device."""
     host = request.headers.get("host", "")
     if local and host and _name(host) not in LOCAL_NAMES:
         names = ", ".join(LOCAL_NAMES)

@@ -28,11 +28,7 @@ class RoomObserver:
     """Turns looks at the room into values of data items, and counts the parts."""
 
     def __init__(self, program: str) -> None:
-        """Begin with no part made.
-
-        Args:
-            program: Name of the scene's program.
-        """
+        """Begin with no part made."""
         self._program = program
         self._parts = 0
         self._was_running = False

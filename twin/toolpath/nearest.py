@@ -73,7 +73,6 @@ def path_columns(
 
     Args:
         moves: Moves in part coordinates (program zero).
-        frame: How the part turns under the tool.
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
         length_difference: How much longer than the first the tool of each move is, shape (n,) [mm]; looked at where a
             chain tilts it.

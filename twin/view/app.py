@@ -63,8 +63,8 @@ def view_app(
 
     async def run_json(_request: Request) -> Response:
         found = await anyio.to_thread.run_sync(description)
-        beside = {"has_report": report is not None, "is_live": now is not None}
-        return JSONResponse(found | beside)
+        extras = {"has_report": report is not None, "is_live": now is not None}
+        return JSONResponse(found | extras)
 
     async def report_page(_request: Request) -> Response:
         if report is None:
@@ -94,7 +94,8 @@ def view_app(
             content = await anyio.to_thread.run_sync(found.glb)
             return Response(content, media_type="model/gltf-binary")
         stock = await anyio.to_thread.run_sync(grid)
-        return JSONResponse(found.description() | ({} if stock is None else {"stock": stock}))
+        part = {"part_mesh": run.has_part_mesh} if stock is None else {"stock": stock}
+        return JSONResponse(found.description() | part)
 
     routes = [
         Route("/", page),

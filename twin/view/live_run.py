@@ -13,7 +13,6 @@ from twin.machine.description.config import Machine
 from twin.nc.canonical import FloatArray
 from twin.render.machine_glb import DrawnMachine, drawn_machine
 from twin.run.preparation import Preparation
-from twin.toolpath.part_frame import PartFrame
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -34,22 +33,14 @@ class Moment:
 class LiveRun:
     """A run that goes on; its stock is shown as the blank, with the job's first tool in the spindle."""
 
-    def __init__(
-        self,
-        preparation: Preparation,
-        part_frame: PartFrame,
-        part_zero: FloatArray,
-        moment: Callable[[], Moment],
-    ) -> None:
+    def __init__(self, preparation: Preparation, moment: Callable[[], Moment]) -> None:
         """Take a prepared job.
 
         Args:
-            part_frame: How the part turns under the tool.
-            part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
             moment: Where the machine is, asked from another thread.
         """
         self._preparation = preparation
-        self._frame, self._zero = part_frame, part_zero
+        self._frame, self._zero = preparation.layout.part_frame, preparation.layout.part_zero
         self._moment = moment
 
     @property
@@ -91,6 +82,9 @@ class LiveRun:
         tool = self._preparation.job.file.tools[0].number
         row = [found.time_s, found.line, tool, 0.0, 0.0, 0.0, *tip, *found.position]
         return struct.pack("<II", 1, len(found.position)) + np.array(row, "<f4").tobytes()
+
+    has_part_mesh = False
+    """No cut is shown of a run that is made now: the blank is drawn as a height map."""
 
     def stock_grid(self) -> dict[str, object] | None:
         """The grid of the stock; None where there is none."""

@@ -1,6 +1,5 @@
 """What a page shows of a recording: its samples, thinned where they are many, and the stock's cuts."""
 
-import functools
 import itertools
 import struct
 from collections.abc import Iterator
@@ -10,9 +9,8 @@ import numpy as np
 
 from twin.cutting.cut import Cutter
 from twin.cutting.patches import grid_of, patch_message
-from twin.cutting.recut import recut
 from twin.cutting.tridexel.material import TriDexelMaterial
-from twin.cutting.tridexel.mesh import Surface, surface
+from twin.cutting.tridexel.mesh import mesh_message
 from twin.machine.description.config import Machine
 from twin.nc.canonical import FloatArray, IntArray
 from twin.recording.reader import Samples
@@ -24,8 +22,10 @@ MOST_SAMPLES = 100_000
 """Samples that a page gets; of more every n-th, and the greatest contour error of each group."""
 CUTS = 200
 """Moments between which the stock is cut: so finely it is seen when it is scrubbed."""
-PART_CROSSINGS = 15_000
-"""Crossings of the lattice by the mesh of a part that is cut from several sides: 60,000 triangles, 2 MB."""
+MESHES = 40
+"""Moments at which a part that is cut from several sides is seen."""
+CROSSINGS, LAST_CROSSINGS = 5_000, 15_000
+"""Crossings of the lattice by the mesh of such a part while it is cut, and of the finished one; see ``mesh_message``."""
 
 
 class RecordedRun:
@@ -58,7 +58,6 @@ class RecordedRun:
             "error_scale_um": scene.error_scale,
             "has_error": recording.contour_um(0, 0) is not None,
             "tools": [tool.number for tool in scene.summary.tools.tools],
-            "shows_finished_part": scene.stock is not None and scene.summary.tilts,
         }
 
     def samples(self) -> bytes:
@@ -114,7 +113,10 @@ class RecordedRun:
         return None if cutter is None else grid_of(cutter.map)
 
     def cuts(self) -> Iterator[bytes]:
-        """The stock's cells as they were cut: length, time [s], patch; the first is the blank."""
+        """The stock as it was cut: length, time [s], patch or mesh; the first is the blank."""
+        if self.has_part_mesh:
+            yield from self._meshes()
+            return
         cutter, recording = self._cutter(), self._scene.recording
         if cutter is None:
             return
@@ -138,15 +140,28 @@ class RecordedRun:
             return None
         return Cutter(stock, self._scene.summary.tools, header.part_frame, header.part_zero)
 
-    @functools.cached_property
-    def _part(self) -> Surface | None:
-        """The part at the end of the run, where it was cut from several sides; else its cuts are shown."""
-        scene = self._scene
-        if scene.stock is None or not scene.summary.tilts:
-            return None
-        material = recut(scene.recording, scene.summary, scene.stock).material
+    @property
+    def has_part_mesh(self) -> bool:
+        """Whether the part is cut from several sides: it is drawn as a mesh, that has no grid."""
+        return self._scene.stock is not None and self._scene.summary.tilts
+
+    def _meshes(self) -> Iterator[bytes]:
+        """The part at some moments of the run, and when it is finished."""
+        scene, header = self._scene, self._scene.recording.header
+        assert scene.stock is not None
+        cutter = Cutter(
+            scene.stock, scene.summary.tools, header.part_frame, header.part_zero, tilts=True
+        )
+        material = cutter.material
         assert isinstance(material, TriDexelMaterial)
-        return surface(material.stock, PART_CROSSINGS)
+        yield _timed(0.0, mesh_message(material.stock, CROSSINGS))
+        finished = 0.0
+        for chunk in scene.recording.chunks(max(1, -(-len(scene.recording) // MESHES))):
+            cutter.add(chunk, scene.summary.is_rapid(chunk.setpoint.move))
+            if material.changed:
+                finished = float(chunk.setpoint.time[-1])
+                yield _timed(finished, mesh_message(material.stock, CROSSINGS))
+        yield _timed(finished, mesh_message(material.stock, LAST_CROSSINGS))
 
     def drawn(self, number: int) -> DrawnMachine | None:
         """The machine with one of the run's tools; None where there is no such tool."""
@@ -159,7 +174,6 @@ class RecordedRun:
                     header.part_frame,
                     self._scene.stock,
                     header.part_zero,
-                    self._part,
                 )
         return None
 

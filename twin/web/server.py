@@ -144,11 +144,7 @@ class SocketServer:
 
 
 class WebServer(SocketServer):
-    """Serves an application at a port while it is open.
-
-    Attributes:
-        host: Where it listens.
-    """
+    """Serves an application at a port while it is open."""
 
     def __init__(
         self,
@@ -210,7 +206,6 @@ def listening(
     """A socket that listens on a port of a host.
 
     Args:
-        host: Name or address.
         port: 0: the first that is free.
         free: Where that is looked for.
 

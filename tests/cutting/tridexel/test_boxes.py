@@ -57,16 +57,23 @@ def test_a_leaning_box_meets_what_points_within_it_do(angle: float, off: float) 
     assert (found[0] > 0.0) == bool(inside.any())
 
 
-def test_the_head_of_a_machine_is_told_by_its_name_and_what_carries_a_swivel_is_not() -> None:
+def test_the_head_and_what_carries_it_are_told_by_their_names() -> None:
+    """Each where it is: the ram does not swivel, and is told from 0.05 mm on and not at 0.05 mm clearance."""
     head = [
         HeadSolid("housing", False, (30.0, 30.0), (0.0, 10.0), 50.0, 70.0),
-        HeadSolid("ram", False, (30.0, 30.0), (0.0, 10.0), 20.0, 70.0, swivels=False),
+        HeadSolid("ram", False, (30.0, 30.0), (0.0, 10.0), 90.0, 70.0, beyond=(3,)),
     ]
     tool = ToolTable(number=1, diameter=6.0, length=40.0, flute=20.0, holder=8.0)
     contact = TriDexelMaterial(BLOCK).contact(tool, profile(tool), lambda _tool: head)
     axis, along_x = turned(90.0)
     tip = np.array([[-28.0, 0.0, -10.0], [-34.0, 0.0, -10.0]])
-    points = Points(tip, np.tile(along_x, (2, 1)), np.tile(axis, (2, 1)))
-    found = contact.measure(points, np.zeros(1, np.bool_))
-    assert found["housing"].depth[0] > 1.0
-    assert "ram" not in found
+    upright, x = turned(0.0)
+    for depth in (-0.05, 0.05):
+        # The ram's lower face, over the block's upper one.
+        ram = np.array([[60.0, 0.0, -90.0 - depth], [10.0, 0.0, -90.0 - depth]])
+        carriers = {(3,): Points(ram, np.tile(x, (2, 1)), np.tile(upright, (2, 1)))}
+        points = Points(tip, np.tile(along_x, (2, 1)), np.tile(axis, (2, 1)), carriers)
+        found = contact.measure(points, np.zeros(1, np.bool_))
+        assert found["housing"].depth[0] > 1.0
+        assert ("ram" in found) == (depth > 0.0)
+    assert found["ram"].depth[0] == pytest.approx(0.05)

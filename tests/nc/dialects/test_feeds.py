@@ -85,7 +85,7 @@ def test_feednd_lets_a_fagor_count_all_axes() -> None:
 
 
 def test_the_keys_of_a_machine_file_are_those_of_the_control() -> None:
-    from twin.machine.description.config import ControlTable
+    from twin.machine.description.machine_file import ControlTable
 
     known = {field.name for field in dataclasses.fields(SETTINGS)}
     keys = {"helical_feed", "rotary_diameter", "feed_of_all_axes", "length_returns"}

@@ -2,10 +2,13 @@
 
 import math
 import re
+import subprocess
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from tests.nc.linuxcnc.oracle import RS274
 from tests.nc.running import ControlSettings, bad, good
 from twin.nc.canonical import Axes, FeedUnit
 
@@ -67,6 +70,42 @@ def test_an_axis_that_the_machine_lacks_is_refused_with_those_it_has(dialect: st
 def test_the_way_of_an_a_axis_is_chosen_as_that_of_c(dialect: str, text: str) -> None:
     moves = good(text, dialect, axes=FIVE, periodic=frozenset({"A", "C"})).moves
     assert moves.end[-1, 3] - moves.start[-1, 3] == pytest.approx(-10.0)
+
+
+@pytest.mark.parametrize(
+    ("way", "ends"),
+    [
+        (None, [350.0, 10.0, -350.0, 180.0]),
+        ("shorter", [-10.0, 10.0, 10.0, 180.0]),
+        ("sign", [350.0, 370.0, 350.0, 540.0]),
+    ],
+)
+def test_rotary_axes_of_a_fanuc_roll_over_as_parameter_1008_says(
+    way: str | None, ends: list[float]
+) -> None:
+    text = "G21 G90 G94\nG0 A350.\nA10.\nA-350.\nG91 X1.\nG90 A180.\nM30\n"
+    moves = good(text, "fanuc", axes=FIVE, periodic=frozenset({"A"}), rollover=way).moves
+    reached = dict(zip(moves.line.tolist(), moves.end[:, 3].tolist(), strict=True))
+    assert [reached.get(line, reached.get(line - 1)) for line in (2, 3, 4, 6)] == ends
+
+
+WRAPPED = "G21 G90 G94 F500\nG1 X1 A90\nX2 A10\nX3 A-350\nX4 A350\nX5 A-0\nX6 A0\nX7 A-90\nX8 A270\nG91 X1 A400\nG90 X10 A5\nM2\n"
+
+
+@pytest.mark.oracle
+@pytest.mark.skipif(RS274 is None, reason="LinuxCNC's rs274 is not installed (linuxcnc-uspace)")
+def test_wrapped_axes_of_linuxcnc_are_those_of_linuxcnc_itself(tmp_path: Path) -> None:
+    (tmp_path / "a.ini").write_text("[RS274NGC]\n[AXIS_A]\nTYPE=ANGULAR\nWRAPPED_ROTARY=1\n")
+    (tmp_path / "a.ngc").write_text(WRAPPED)
+    done = subprocess.run(
+        [str(RS274), "-i", tmp_path / "a.ini", "-g", tmp_path / "a.ngc"],
+        capture_output=True, text=True, check=False, timeout=30,
+    )  # fmt: skip
+    expected = [
+        float(each) for each in re.findall(r"FEED\((?:[-0-9.]+, ){3}([-0-9.]+)", done.stdout)
+    ]
+    moves = good(WRAPPED, "linuxcnc", axes=FIVE, module_rotary=True).moves
+    assert moves.end[:, 3].tolist() == pytest.approx(expected)
 
 
 def test_grbl_moves_three_axes() -> None:

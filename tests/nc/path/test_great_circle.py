@@ -14,7 +14,8 @@ from twin.nc.canonical import FloatArray, Motion
 from twin.nc.geometry.planes import Vector
 from twin.nc.path.great_circle import POLE
 from twin.nc.path.move_columns import Segment
-from twin.nc.path.tool_center import DIRECTION_ERROR, ToolCenter
+from twin.nc.path.tip_curves import DIRECTION_ERROR
+from twin.nc.path.tool_center import ToolCenter
 
 NOWHERE = 1e-9
 """[mm]."""

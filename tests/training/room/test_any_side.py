@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from twin.cutting.tridexel.blanks import box
+from twin.cutting.tridexel.mesh import MESH, mesh_message
 from twin.job.job_file import ToolTable
 from twin.training.room.any_side import seen_from_above, surface_off, touch_any_side
 from twin.training.scene.scene_file import read_scene, scene_path
-from twin.training.server.part_mesh import MESH, mesh_message
 from twin.training.session.session import Session
 
 BLOCK = box(np.array([-20.0, -15.0, -20.0]), np.array([20.0, 15.0, 0.0]), 0.5)

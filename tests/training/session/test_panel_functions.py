@@ -491,7 +491,7 @@ def test_coolant_closes_with_an_alarm_and_stays_closed(session):
 def test_the_limit_alarm_stands_until_the_axis_has_left_its_switch():
     session = Session(read_scene(scene_path("fagor_overtravel")))
     refusal = refused(session, "reset")
-    assert refusal == "X stands on its limit switch: jog it back first"
+    assert refusal == "X is on its limit switch: jog it back first"
     do(session, "mode", mode="jog")
     assert "end of its travel" in refused(session, "jog", axis="X", direction=1, step=1.0)
     assert "limit switch" in refused(session, "jog", axis="Y", direction=1, step=1.0)

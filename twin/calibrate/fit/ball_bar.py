@@ -31,7 +31,6 @@ class BallBarFit(NamedTuple):
     """What one ball-bar's log came to, with 95 % intervals.
 
     Attributes:
-        plane: Its two axes.
         lost: Of each axis, what it loses where it turns round [mm].
         squareness: As in ``[geometry.squareness]`` [µm/m]; None where one direction is logged.
         lag: Of the first axis less that of the second [s]; None likewise.

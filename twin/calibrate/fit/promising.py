@@ -52,7 +52,7 @@ class Core:
         unset: Parameters, whose extras are those of a structure without them.
         forced: Whether a force is logged: without one, an integrator hides a constant force.
 
-    Positions alone do not tell viscous friction from the loop gain. Beside an integrator they do: the
+    Positions alone do not tell viscous friction from the loop gain. With an integrator they do: the
     command has the product of the velocity loop's gain d and the loop gain, the position the integrator's
     rate times d besides, and the integral the product of all three; what the speed has over d is friction.
     """
@@ -103,9 +103,6 @@ def promising(problem: Problem, best: Solution, core: Core) -> list[Promise]:
 
     Sets with at most one extra more than the optimum has are judged; of those that promise alike, the
     smallest is kept.
-
-    Args:
-        core: What every structure has.
     """
     own = core.extras_of(best)
     linear = _linear(problem, best, core)

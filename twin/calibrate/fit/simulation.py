@@ -123,7 +123,6 @@ def drawn_otherwise(command: Command, asked: FloatArray, knots: BoolArray) -> Co
     """A copy of the command, drawn between its samples by another rule (monotone cubics).
 
     Args:
-        command: As drawn by a spline.
         asked: Its samples, shape (n,) [mm or deg].
         knots: Which of them are its own, shape (n,).
     """

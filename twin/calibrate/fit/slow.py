@@ -35,7 +35,6 @@ class SlowLog:
     """One axis of a slow log.
 
     Attributes:
-        axis: Its columns.
         rows: First and last row, exclusive, of each stretch.
         ramps: Its samples that fell into ramps.
         speed: Commanded, of every row, 0 where it is not told [mm/s or deg/s].

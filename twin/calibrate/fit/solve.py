@@ -29,7 +29,7 @@ _MOST_EVALUATIONS = 40
 _FIRST = 0.05
 """Share of a way by which its tangent is taken."""
 _CURVED = 2.0
-"""A way is followed until what is left has changed by so many times what its tangent says of the whole."""
+"""A path is followed until what is left has changed by so many times what its tangent says of the whole."""
 EXACT, ROUGH = 1e-8, 1e-5
 """Changes of the cost, as a share, below which a search ends: for an answer, and to compare structures."""
 
@@ -61,7 +61,6 @@ class Solution:
     """An optimum.
 
     Attributes:
-        parameters: All of them.
         free: Names of those that were fitted.
         cost: Root mean square of the weighted residuals.
         squares: Their sum over each of the stretches of time, shape (batches,).
@@ -248,7 +247,7 @@ def _as_far_as_straight(
     of the whole distance: a short filter is not distinguished from a delay, a long one is.
 
     Args:
-        shift: The way of all coordinates, shape (p,).
+        shift: The displacement of all coordinates, shape (p,).
         name: Of the one that leads.
     """
     point = _inside(problem, solution.parameters, solution.free)

@@ -83,7 +83,6 @@ def stretches_of(
     """Cut an axis's log.
 
     Args:
-        axis: Its columns.
         time: Of the rows, as logged [s].
         rows: First and last row, exclusive, of each stretch.
         sound: Which samples are to be looked at; all by default.

@@ -116,11 +116,11 @@ def bode_plot(found: Parameters, kind: AxisKind) -> str:
     axes.axvline(crossover, color=INK, linewidth=0.5, linestyle=":")
     axes.set_xlabel("frequency [Hz]")
     axes.set_ylabel("magnitude [dB]")
-    beside = axes.twinx()
+    phase_axes = axes.twinx()
     phase = np.degrees(np.unwrap(np.angle(loop)))
-    beside.semilogx(frequency, phase - 360.0 * round((phase[0] + 180.0) / 360.0), color=LIMIT)
-    beside.set_ylabel("phase [deg]", color=LIMIT)
-    beside.grid(visible=False)
+    phase_axes.semilogx(frequency, phase - 360.0 * round((phase[0] + 180.0) / 360.0), color=LIMIT)
+    phase_axes.set_ylabel("phase [deg]", color=LIMIT)
+    phase_axes.grid(visible=False)
     return drawn(figure)
 
 

@@ -88,7 +88,7 @@ def _unexplained(logs: tuple[LogFigures, ...]) -> list[str]:
     if lags := [one for one in logs if one.lag_is_unexplained]:
         told.append(
             f"More than half of the logged lag is left unexplained ({places(lags)}): what was fitted is "
-            "not to be relied upon. What the log lacks stands below."
+            "not to be relied upon. What the log lacks is listed below."
         )
     if forces := [one for one in logs if one.force_is_unexplained]:
         told.append(

@@ -47,10 +47,8 @@ class _OpenArc:
     """An arc that the tool may still be on.
 
     Attributes:
-        number: Of its move in the program.
         time_s: When the tool reached it [s].
         sweep_deg: Commanded opening angle [deg].
-        directed: Where the tool was.
     """
 
     number: int

@@ -19,10 +19,8 @@ class DirectedCircle:
     """The actual path of one arc, with what tells its circle from others.
 
     Attributes:
-        line: Source line.
         circle: Centre, plane and radius, to a micrometre: equal for both directions.
         counter_clockwise: Seen from the positive side of the plane.
-        path: Where the tool was.
     """
 
     line: int

@@ -75,7 +75,6 @@ class Report:
     Attributes:
         header: Header of the recording: machine, versions.
         source: Lines of the program, of which the page shows a few.
-        verdict: How the run came out.
         trace: The run, thinned; empty for a run in which nothing moved.
         result: The content of ``result.json``.
         stills: Pictures of the run, PNG or JPEG, with a caption each.

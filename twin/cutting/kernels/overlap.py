@@ -22,13 +22,16 @@ class Overlap(NamedTuple):
     reach: FloatArray
     depth: FloatArray
 
+    def part(self, rows: slice) -> "Overlap":
+        """Views of what was found along some of them."""
+        return Overlap(self.reach[rows], self.depth[rows])
+
 
 class Stood(NamedTuple):
     """What is on the table.
 
     Attributes:
         heights: The height map, shape (ny, nx) [mm].
-        grid: Where its cells lie.
         doubtful: Whether walls may be cut before the last of the stretches that are looked at: every
             one is then taken to be as near as it can be.
     """
@@ -51,7 +54,6 @@ def round_overlap(
 
     Args:
         points: Tool tip positions, shape (n + 1, 3) [mm].
-        profile: Of its lower end.
         above: Height of its lower end above the tip [mm].
         overlap: Set to what was found.
     """

@@ -84,7 +84,6 @@ class _Scratch(NamedTuple):
 
     Attributes:
         heights: The height map, shape (ny, nx) [mm].
-        grid: Where its cells lie.
         marks: As ``sweep`` has them.
         rows: Of the map, which are cut: the first, and how far it is to the next.
         low: Row at which the disc that the tool covers begins, at either end of a line, shape (2,).
@@ -124,7 +123,6 @@ def sweep(
 
     Args:
         heights: The height map, shape (ny, nx) [mm]; changed in place.
-        grid: Where its cells lie.
         points: Tool tip positions, shape (n, 3) [mm].
         sums: What each line took off of rows of even and of odd number is added to it, shape
             (n - 1, 2, 4): height [mm], that times the number of the column and of the row, and the
@@ -153,7 +151,6 @@ def removal_of_sums(sums: FloatArray, points: FloatArray, grid: Grid, removal: R
     Args:
         sums: Of ``sweep``, shape (n - 1, 2, 4).
         points: Tool tip positions, shape (n, 3) [mm].
-        grid: Where the cells lie.
         removal: Set to it.
     """
     for i in range(len(sums)):

@@ -25,7 +25,6 @@ class CutterForm(NamedTuple):
     """A cutter as forces see it.
 
     Attributes:
-        profile: Of its lower end.
         side_from: Height above the tip at which its side begins [mm].
         flute: Height above the tip at which its edges end [mm].
         teeth: Number of edges, evenly spaced.

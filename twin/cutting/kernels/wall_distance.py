@@ -56,7 +56,6 @@ def note_walls(
     Args:
         heights: The height map, cut along the way, shape (ny, nx) [mm].
         behind: What is known of its walls; written.
-        grid: Where its cells lie.
         points: Tool tip positions, shape (n, 3) [mm].
         radius: Of the tool [mm].
         flat: Radius of the level part of its lower end [mm].

@@ -1,4 +1,4 @@
-"""Walls that the side of a tool has left, told closer than by whole cells.
+"""Walls that the side of a tool has left, known closer than by whole cells.
 
 A height map knows a wall to half a cell, which is most of a narrow cut. Of the cells beside a wall it
 is therefore kept how far their middles are from it and in which direction: a vector that points into
@@ -49,8 +49,6 @@ class Material(NamedTuple):
 
     Attributes:
         heights: The height map, cut up to where the tool is, shape (ny, nx) [mm].
-        grid: Where its cells lie.
-        walls: Those that tools have left.
     """
 
     heights: FloatArray

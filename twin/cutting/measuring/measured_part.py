@@ -61,7 +61,6 @@ def nominal_of(cutter: Cutter, file: Path, part_frame: PartFrame, part_zero: Flo
 
     Args:
         file: STL of the nominal part in program coordinates [mm].
-        part_frame: How the part turns under the tool.
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
 
     Raises:

@@ -106,7 +106,6 @@ class NominalWatch(abc.ABC, Generic[NominalT]):
         """Lay the nominal part into the blank.
 
         Args:
-            part_frame: How the part turns under the tool.
             part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
 
         Raises:

@@ -40,7 +40,6 @@ def boxes_met(stock: TriDexel, poses: Poses, along_x: FloatArray, box: Box) -> F
     It is looked at in places on its way that lie no farther from each other than ``STEP_CELLS``.
 
     Args:
-        poses: Ends of the steps.
         along_x: Direction of machine X on the tool, seen from the part, shape (n + 1, 3).
     """
     depth = np.zeros(len(poses.tip) - 1)
@@ -73,7 +72,6 @@ def hold_box(
     """Hold a box on its way against the lines of a stock.
 
     Args:
-        lattice: Where it lies.
         poses: Ends of n steps.
         along_x: Direction of machine X on the tool at these ends, shape (n + 1, 3).
         box: Its lowest and highest corner in the tool's frame, shape (2, 3) [mm].
@@ -163,16 +161,20 @@ def _span(
 def _apart(
     lattice: Lattice, tip: Place, sides: tuple[Place, Place, Place], box: FloatArray
 ) -> bool:
-    """Whether a plane along a face of the box, or of the blank's own, lies between them."""
+    """Whether a plane along a face of the box, or of the blank's own, lies between them.
+
+    The blank reaches less than a cell beyond the outermost lines.
+    """
     for d in range(3):
-        first, last = _span(lattice, tip, sides, box, d)
-        if first > last:
+        least, most, _ = _reach(tip, sides, box, d)
+        begin = lattice.origin[d] - lattice.cell
+        if most < begin or least > begin + lattice.cell * (lattice.shape[d] + 1):
             return True
     for number, side in enumerate(sides):
         low, high = 0.0, 0.0
         for d in range(3):
-            begin = (lattice.origin[d] - tip[d]) * side[d]
-            end = begin + lattice.cell * (lattice.shape[d] - 1) * side[d]
+            begin = (lattice.origin[d] - lattice.cell - tip[d]) * side[d]
+            end = begin + lattice.cell * (lattice.shape[d] + 1) * side[d]
             low, high = low + min(begin, end), high + max(begin, end)
         if high < box[0, number] or low > box[1, number]:
             return True

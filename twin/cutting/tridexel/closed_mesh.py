@@ -13,7 +13,6 @@ def mesh_dexels(lattice: Lattice, triangles: FloatArray, normals: FloatArray) ->
     """Intervals of the lines within a closed mesh, or within any of several that overlap.
 
     Args:
-        lattice: Where the lines lie.
         triangles: Shape (m, 3, 3) [mm].
         normals: Unit vectors out of the solid, shape (m, 3).
     """

@@ -113,7 +113,6 @@ class TriDexel:
     """Material as intervals along three directions, in the part's frame.
 
     Attributes:
-        lattice: Where the lines lie.
         dexels: Their intervals. This is what cutting changes.
         corners: Two opposite corners of the box around the blank, shape (2, 3) [mm].
     """
@@ -175,7 +174,6 @@ def no_material(lattice: Lattice, count: npt.NDArray[np.int16]) -> Dexels:
     """Dexels with memory for some intervals on every line, all of them empty.
 
     Args:
-        lattice: Where the lines lie.
         count: Intervals that each line has memory for, shape (n,).
     """
     counted = count.astype(np.int64)

@@ -133,7 +133,6 @@ def edge_forces(
 
     Args:
         dexels: What is cut, up to where the cutter is.
-        lattice: Where it lies.
         leaning: Where the cutter is, and how it goes on.
         found: Set to what is in the material.
         scratch: Set to the forces, in the tool's frame.

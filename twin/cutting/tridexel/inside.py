@@ -1,4 +1,4 @@
-"""Whether there is material before a cutter's edge in a tri-dexel stock, told closer than by whole cells."""
+"""Whether there is material before a cutter's edge in a tri-dexel stock, known closer than by whole cells."""
 
 import math
 from typing import NamedTuple
@@ -25,7 +25,6 @@ class Standing(NamedTuple):
     Attributes:
         tip: Its tip in the part's frame, shape (3,) [mm].
         axis: Direction from there to the spindle, shape (3,).
-        profile: Of its lower end.
         side_from: Height above the tip at which its side begins [mm].
     """
 
@@ -60,7 +59,6 @@ def inside(dexels: Dexels, lattice: Lattice, cutter: Standing, edge: EdgePoint) 
     bends within two cells, at the point of a drill, what it has just left itself says nothing if it looks another way.
 
     Args:
-        lattice: Where it lies.
         edge: The point, and the normal of the edge there.
     """
     cell, point = lattice.cell, edge.point
@@ -87,7 +85,6 @@ def _nearest(
     """The crossing that is nearest to a point, and whether any line has material beside it.
 
     Args:
-        lattice: Where it lies.
         edge: The point, and the normal of the edge there.
         than: One whose face is left out; only those count that put the point on the other side of the
             surface. At an infinite distance: there is none.

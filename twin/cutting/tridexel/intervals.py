@@ -118,7 +118,6 @@ def subtract(
     Args:
         cut: Lower and upper end [mm].
         facet: Surface that is left below the lower end, and above the upper.
-        node: Where the line's nodes are.
     """
     low, high = cut
     length, volume, moment, longest = 0.0, 0.0, 0.0, 0.0

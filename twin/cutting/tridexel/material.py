@@ -20,6 +20,7 @@ from twin.cutting.material import (
     Head,
     Points,
     Upright,
+    runs_of,
 )
 from twin.cutting.part import export_glb
 from twin.cutting.stock_contact import BRUSH_MM, above_edge
@@ -125,8 +126,7 @@ class TriDexelMaterial:
 class TriDexelContact:
     """Measures one tool against the material; see ``Contact``.
 
-    Each solid is held against it without the outer layer that may brush a wall. What carries a swivel head does not turn with
-    the tool, and is not looked at.
+    Each solid is held against it without the outer layer that may brush a wall.
     """
 
     def __init__(self, stock: TriDexel, tool: ToolTable, edge: Profile, head: Head | None) -> None:
@@ -134,14 +134,14 @@ class TriDexelContact:
         self._stock = stock
         self._edge = cutting_edge(edge, tool.flute)
         self._solids: dict[str, tuple[Solid, float]] = {}
-        self._boxes: dict[str, Box] = {}
+        self._boxes: list[Upright] = []
         for each in above_edge(tool, head):
-            if each.round and not any(each.offset):
+            if each.round and not any(each.offset) and not each.beyond:
                 high = tool.below_holder if each.name in ("shank", "flute") else ABOVE_MM
                 solid = cylinder(each.half[0], each.above, max(high, each.above))
                 self._solids[each.name] = (solid, BRUSH_MM if each.name == "flute" else SCRAPE_MM)
-            elif each.swivels:
-                self._boxes[each.name] = _box_around(each)
+            else:
+                self._boxes.append(each)
 
     def measure(
         self, points: Points, suspect: BoolArray, *, doubtful: bool = False
@@ -151,12 +151,18 @@ class TriDexelContact:
         poses, found = _poses(points), {}
         for name, (solid, layer) in self._solids.items():
             found[name] = self._depth(poses, solid, layer)
-        for name, box in self._boxes.items():
-            depth = boxes_met(self._stock, poses, points.turn, box)
-            found[name] = np.where(depth > SCRAPE_MM, depth, 0.0)
+        for solid in self._boxes:
+            places = points.carrying(solid)
+            depth = boxes_met(self._stock, _poses(places), places.turn, _box_around(solid))
+            found[solid.name] = np.where(depth > SCRAPE_MM, depth, 0.0)
         if suspect.any():
-            depths = [self._depth(poses, solid, BRUSH_MM) for solid in self._edge]
-            found[EDGE] = np.where(suspect, np.max(depths, axis=0), 0.0)
+            found[EDGE] = np.zeros(len(suspect))
+        for run in runs_of(suspect):
+            here = slice(run.start, run.stop + 1)
+            part = Poses(poses.tip[here], poses.axis[here])
+            found[EDGE][run] = np.max(
+                [self._depth(part, solid, BRUSH_MM) for solid in self._edge], axis=0
+            )
         return {name: Overlap(depth, depth) for name, depth in found.items() if depth.any()}
 
     def _depth(self, poses: Poses, solid: Solid, layer: float) -> FloatArray:

@@ -1,5 +1,7 @@
 """The material of a tri-dexel stock as a closed mesh."""
 
+import struct
+import zlib
 from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -125,3 +127,23 @@ def part_colours(found: Surface) -> Colours:
     """Raw where the blank's own surface is untouched, machined elsewhere, shape (n, 3)."""
     machined = (tools(found.facet) != OWN)[:, None]
     return np.where(machined, MACHINED_RGB, RAW_RGB).astype(np.uint8)
+
+
+MESH = 3
+"""First byte of the message of a mesh, beside ``patches.PATCH``."""
+_MOST_TOOL = 255
+
+
+def mesh_message(stock: TriDexel, crossings: int) -> bytes:
+    """Kind, number of vertices and of triangles; then deflated the vertices, the triangles' corners, the tool that left each.
+
+    Args:
+        crossings: How finely it is drawn; see ``surface``.
+    """
+    found = surface(stock, crossings)
+    by = np.minimum(tools(found.facet[found.faces[:, 0]]), _MOST_TOOL).astype(np.uint8)
+    head = struct.pack("<BxxxII", MESH, len(found.points), len(found.faces))
+    content = (
+        found.points.astype("<f4").tobytes() + found.faces.astype("<u4").tobytes() + by.tobytes()
+    )
+    return head + zlib.compress(content, 1)

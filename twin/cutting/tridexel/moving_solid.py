@@ -38,9 +38,13 @@ def point_on_axis(
     return tip[u] + height * axis[u], tip[v] + height * axis[v], tip[d] + height * axis[d]
 
 
+Pose = tuple[float, float, float, float, float, float]
+"""Tip [mm] and direction."""
+
+
 @arithmetic_kernel
-def _pose(poses: Poses, a: int, share: float) -> tuple[float, float, float, float, float, float]:
-    """Tip and direction at a share of a step."""
+def pose_at(poses: Poses, a: int, share: float) -> Pose:
+    """Where the tool is at a share of a step."""
     tip, axis = poses.tip, poses.axis
     b, rest = a + 1, 1.0 - share
     x = rest * axis[a, 0] + share * axis[b, 0]
@@ -62,7 +66,12 @@ def within(
     poses: Poses, solid: Solid, a: int, share: float, d: int, x: float, y: float
 ) -> tuple[float, float]:
     """Where a line is within the solid at a share of a step."""
-    pose = _pose(poses, a, share)
+    return within_at(pose_at(poses, a, share), solid, d, x, y)
+
+
+@arithmetic_kernel
+def within_at(pose: Pose, solid: Solid, d: int, x: float, y: float) -> tuple[float, float]:
+    """Where a line is within the solid at a pose."""
     u, v = (d + 1) % 3, (d + 2) % 3
     px, py, pz = x - pose[u], y - pose[v], -pose[d]
     height = px * pose[3 + u] + py * pose[3 + v] + pz * pose[3 + d]
@@ -90,7 +99,6 @@ def surface(
     """Normal at a point of a solid's surface and the tool, as ``normals.packed`` has them.
 
     Args:
-        poses: Ends of steps.
         point: Direction of the line it is on, place along it, and across it in both directions.
         side: 1.0: the normal out of the solid; -1.0: into it.
     """
@@ -102,7 +110,7 @@ def surface(
         scale, rest = side / solid.rounding, 1.0 - share
         nu, nv = (x - rest * ax - share * bx) * scale, (y - rest * ay - share * by) * scale
         return _turned(nu, nv, (t - rest * az - share * bz) * scale, d, tool)
-    pose = _pose(poses, number, share)
+    pose = pose_at(poses, number, share)
     px, py, pz = x - pose[u], y - pose[v], t - pose[d]
     au, av, ad = pose[3 + u], pose[3 + v], pose[3 + d]
     height = px * au + py * av + pz * ad

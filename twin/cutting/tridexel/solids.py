@@ -27,7 +27,6 @@ def cutting_edge(profile: Profile, flute: float) -> tuple[Solid, ...]:
     """The convex bodies that a turning cutter is made of.
 
     Args:
-        profile: Its lower end.
         flute: Length of its cutting part [mm].
     """
     radius, flat, corner = profile.radius, profile.flat, profile.corner

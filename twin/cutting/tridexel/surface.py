@@ -81,11 +81,9 @@ def find_surface(
     """Find crossings, patches and the segments of their rims, one layer of cubes along X after the other.
 
     Args:
-        lattice: Where it lies.
         inside: Which of them are in the material.
         loops: How the surface goes through a cube.
         found: Set to it.
-        crossings: How many there are.
 
     Returns:
         How many patches there are.

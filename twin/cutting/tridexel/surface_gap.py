@@ -47,7 +47,6 @@ def find_gaps(
     """How far points are from the surface of a stock.
 
     Args:
-        lattice: Where it lies.
         points: Shape (n, 3) [mm].
         farthest: Cells around a point beyond which nothing is looked for.
         found: Set to it.

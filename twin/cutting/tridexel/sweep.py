@@ -5,7 +5,7 @@ import math
 from typing import NamedTuple
 
 from twin.compilation.compilable import inlined
-from twin.compilation.kernel import arithmetic_kernel
+from twin.compilation.kernel import arithmetic_kernel, threaded_kernel
 from twin.cutting.kernels.sweep import chord
 from twin.cutting.tridexel.dexels import Dexels, Lattice
 from twin.cutting.tridexel.intervals import (
@@ -16,7 +16,14 @@ from twin.cutting.tridexel.intervals import (
     overlap,
     subtract,
 )
-from twin.cutting.tridexel.moving_solid import Poses, is_ball, point_on_axis, surface
+from twin.cutting.tridexel.moving_solid import (
+    Pose,
+    Poses,
+    is_ball,
+    point_on_axis,
+    pose_at,
+    surface,
+)
 from twin.cutting.tridexel.rays import greatest_radius
 from twin.cutting.tridexel.solids import Solid
 from twin.cutting.tridexel.swept import within_swept, within_swept_ball
@@ -59,9 +66,11 @@ class Step(NamedTuple):
     """Whether the solid has cut already what it meets at the beginning."""
     bend: float
     """How far the envelope bends between its poses at most [mm]."""
+    ends: tuple[Pose, Pose]
+    """Where the tool is at both."""
 
 
-@arithmetic_kernel
+@threaded_kernel
 def sweep(
     dexels: Dexels,
     lattice: Lattice,
@@ -74,7 +83,6 @@ def sweep(
     """Bring solids along steps through the material.
 
     Args:
-        lattice: Where it lies.
         poses: Ends of n steps.
         solids: What moves: the fields of each ``Solid``, shape (m, 5).
         sums: What each step did is added to it, shape (n, COLUMNS).
@@ -86,9 +94,11 @@ def sweep(
     """
     for number in range(first, len(poses.tip) - 1):
         cuts = tool != MEASURE
+        ends = pose_at(poses, number, 0.0), pose_at(poses, number, 1.0)
         for each in solids:
             solid = Solid(each[0], each[1], each[2], each[3], each[4])
-            step = Step(number, tool, cuts, cuts and number > first, _bend(poses, solid, number))
+            goes_on, bend = cuts and number > first, _bend(poses, solid, number)
+            step = Step(number, tool, cuts, goes_on, bend, ends)
             span = _within_box(lattice, poses, solid, number)
             if span[0] > span[1]:
                 continue
@@ -248,7 +258,7 @@ def _meet(
         low, high, low_share, high_share = within_swept_ball(poses, solid, step.number, d, x, y)
     else:
         low, high, low_share, high_share = within_swept(
-            poses, solid, step.number, step.bend, d, x, y
+            poses, solid, step.number, step.ends, step.bend, d, x, y
         )
     meets = meeting(dexels, line, low, high) if low < high else 0
     if not meets:

@@ -4,7 +4,7 @@ import math
 
 from twin.compilation.compilable import inlined
 from twin.compilation.kernel import arithmetic_kernel
-from twin.cutting.tridexel.moving_solid import Poses, point_on_axis, within
+from twin.cutting.tridexel.moving_solid import Pose, Poses, point_on_axis, within, within_at
 from twin.cutting.tridexel.solids import Solid
 
 FLAT_MM = 2e-4
@@ -58,7 +58,14 @@ def within_swept_ball(
 
 @arithmetic_kernel
 def within_swept(
-    poses: Poses, solid: Solid, number: int, bend: float, d: int, x: float, y: float
+    poses: Poses,
+    solid: Solid,
+    number: int,
+    ends: tuple[Pose, Pose],
+    bend: float,
+    d: int,
+    x: float,
+    y: float,
 ) -> tuple[float, float, float, float]:
     """Where a line is within a solid at any time of a step, and at which shares of it.
 
@@ -67,8 +74,8 @@ def within_swept(
     line there taken as it is. A line that a rim comes to within the step, or leaves, is within the solid for a part of it.
     """
     begin, end = 0.0, 1.0
-    a = within(poses, solid, number, begin, d, x, y)
-    b = within(poses, solid, number, end, d, x, y)
+    a = within_at(ends[0], solid, d, x, y)
+    b = within_at(ends[1], solid, d, x, y)
     if a[0] >= a[1] or b[0] >= b[1]:
         m = within(poses, solid, number, 0.5, d, x, y)
         if solid.rounding > 0.0:

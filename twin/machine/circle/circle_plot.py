@@ -98,7 +98,7 @@ def _show_direction(
 
 
 def _name_peaks(axes: "Axes", result: CircularTest) -> None:
-    """Name each quadrant peak after the axis that turns round there, beside where it is."""
+    """Name each quadrant peak after the axis that turns round there, next to its place."""
     named = zip(result.quadrant_names, result.quadrant_peaks_um, (0, 90, 180, 270), strict=True)
     for name, peak, angle in named:
         turned = np.deg2rad(angle + 11.0)

@@ -31,7 +31,7 @@ stiffer proportional part, and a ``<pid>`` actuator that has nothing but an inte
 the setpoint less the trail that is meant to be.
 
 On a line that integrator holds the load less kv/Tn (1 - s) V/Kv, which the stiffer proportional part
-pushes too much. It stops where it gives the drive's whole force beside that of a rapid: what a drive at
+pushes too much. It stops where it gives the drive's whole force in addition to that of a rapid: what a drive at
 its force limit cannot do does not pile up.
 
 A real drive filters the speed that it measures and gives its force late. A filter of time constant T is a
@@ -56,7 +56,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twin.machine.description.config import AxisTable
+from twin.machine.description.machine_file import AxisTable
 from twin.nc.canonical import FloatArray
 from twin.units import kv_per_second, to_si
 

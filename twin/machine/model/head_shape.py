@@ -1,12 +1,14 @@
-"""What goes up and down with the tool above its holder, as upright solids: nose, housing, head."""
+"""What carries the tool, as solids that are upright with all axes at zero: nose, housing, head, carriage."""
 
 import dataclasses
+from typing import NamedTuple
 
 import mujoco
 import numpy as np
 
 from twin.job.job_file import ToolTable
-from twin.machine.model.model import MachineModel
+from twin.machine.description.config import Machine
+from twin.machine.description.kinematics import SPINDLE_NOSE, TABLE_TOP
 from twin.machine.model.tool_shape import (
     COLLISION_GROUP,
     TOOL_NAMES,
@@ -21,7 +23,7 @@ _UPRIGHT = 1.0 - 1e-9
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class HeadSolid:
-    """An upright cylinder or box that is fixed to the spindle's housing.
+    """A cylinder or box along the spindle's axis, with all axes at zero.
 
     Attributes:
         round: A cylinder; else a box.
@@ -30,7 +32,7 @@ class HeadSolid:
         above: Height of its lower end above the spindle nose, or, of what ``above_tip`` gives,
             above the tip [mm].
         height: From there to its upper end [mm].
-        swivels: It turns with the tool where a head does.
+        beyond: Columns of the axes between it and the spindle: they move the tool, and not it.
     """
 
     name: str
@@ -39,30 +41,30 @@ class HeadSolid:
     offset: tuple[float, float]
     above: float
     height: float
-    swivels: bool = True
+    beyond: tuple[int, ...] = ()
 
 
 class HeadShape:
     """The solids around the spindle, as the model's collision geoms say.
 
-    A geom that is neither an upright cylinder nor an upright box counts as the box around it. So does what
-    carries a swivel head: it is so above the spindle only while the head is upright, and is held
-    against the stock only then.
+    A geom that is neither a cylinder along the spindle nor a box along machine X, Y and Z counts as the box around it. So does
+    a cylinder that does not go with the spindle.
     """
 
-    def __init__(self, whole: MachineModel) -> None:
-        """Measure a machine with all axes at zero; the tool in its spindle is passed over."""
-        self._flange, model = whole.machine.file.spindle.flange_diameter, whole.solids
+    def __init__(self, machine: Machine, model: mujoco.MjModel) -> None:
+        """Measure the solids of a machine with all axes at zero; the tool in its spindle is passed over."""
+        self._flange = machine.file.spindle.flange_diameter
         data = mujoco.MjData(model)
         mujoco.mj_forward(model, data)
-        nose = data.site("spindle_nose")
-        inner, *outer = _above_nose(model, data)
+        beyond = _axes_beyond(machine, model)
+        table = data.site(TABLE_TOP).xmat.reshape(3, 3)
+        view = _View(model, data, machine.kinematics.table_axes @ table.T)
         self._solids = tuple(
-            _solid(model, data, geom, nose.xpos, swivels=body == inner)
+            view.solid(geom, beyond[body])
             for geom in range(model.ngeom)
             if model.geom_group[geom] == COLLISION_GROUP
             and model.geom_contype[geom] & TOOL_SIDE
-            and (body := int(model.body_weldid[model.geom_bodyid[geom]])) in (inner, *outer)
+            and (body := int(model.body_weldid[model.geom_bodyid[geom]])) in beyond
             and model.geom(geom).name not in TOOL_NAMES
         )
 
@@ -87,41 +89,51 @@ class HeadShape:
         return (*flange, *raised)
 
 
-def _above_nose(model: mujoco.MjModel, data: mujoco.MjData) -> list[int]:
-    """Bodies that move with the spindle while its swivels stand at zero, from the spindle outwards."""
-    nose = model.site("spindle_nose")
-    along = data.site("spindle_nose").xmat.reshape(3, 3)[:, 2]
-    found = [int(model.body_weldid[int(nose.bodyid[0])])]
-    while found[-1] and all(
-        model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_HINGE
-        and abs(data.xaxis[joint] @ along) < _UPRIGHT
-        for joint in _joints_of(model, found[-1])
-    ):
-        found.append(int(model.body_weldid[model.body_parentid[found[-1]]]))
+def _axes_beyond(machine: Machine, model: mujoco.MjModel) -> dict[int, tuple[int, ...]]:
+    """Bodies that carry the spindle, itself among them: columns of the axes between it and each."""
+    columns = {machine.axis(name).joint: at for at, name in enumerate(machine.axes.names)}
+    body = int(model.body_weldid[int(model.site(SPINDLE_NOSE).bodyid[0])])
+    found, passed = {}, []
+    while body:
+        found[body] = tuple(sorted(passed))
+        first = int(model.body_jntadr[body])
+        joints = range(first, first + int(model.body_jntnum[body]))
+        # A spring between motor and axis is a joint of its own.
+        names = [model.joint(joint).name for joint in joints]
+        passed += [columns[name] for name in names if name in columns]
+        body = int(model.body_weldid[model.body_parentid[body]])
     return found
 
 
-def _joints_of(model: mujoco.MjModel, body: int) -> range:
-    first = int(model.body_jntadr[body])
-    return range(first, first + int(model.body_jntnum[body]))
+class _View(NamedTuple):
+    """A compiled model with all axes at zero, seen along the machine's axes.
 
+    Attributes:
+        model: The model.
+        data: Where all of it is.
+        frame: Directions of machine X, Y and Z in the world as rows, shape (3, 3).
+    """
 
-def _solid(
-    model: mujoco.MjModel, data: mujoco.MjData, geom: int, nose: FloatArray, *, swivels: bool
-) -> HeadSolid:
-    turn = data.geom_xmat[geom].reshape(3, 3)
-    upright = bool(abs(turn[2, 2]) > _UPRIGHT)
-    form = mujoco.mjtGeom(model.geom_type[geom])
-    aabb = model.geom_aabb[geom]
-    middle = data.geom_xpos[geom] + turn @ aabb[:3] - nose
-    half = np.abs(turn) @ aabb[3:]
-    x, y, lower = (float(value) / MM for value in (middle[0], middle[1], middle[2] - half[2]))
-    return HeadSolid(
-        model.geom(geom).name,
-        swivels and upright and form == mujoco.mjtGeom.mjGEOM_CYLINDER,
-        (float(half[0]) / MM, float(half[1]) / MM),
-        (x, y),
-        lower,
-        2.0 * float(half[2]) / MM,
-        swivels,
-    )
+    model: mujoco.MjModel
+    data: mujoco.MjData
+    frame: FloatArray
+
+    def solid(self, geom: int, beyond: tuple[int, ...]) -> HeadSolid:
+        """A geom, or the box around it."""
+        model, data = self.model, self.data
+        turn = self.frame @ data.geom_xmat[geom].reshape(3, 3)
+        upright = bool(abs(turn[2, 2]) > _UPRIGHT)
+        aabb = model.geom_aabb[geom]
+        nose = data.site(SPINDLE_NOSE).xpos
+        middle = self.frame @ (data.geom_xpos[geom] - nose) + turn @ aabb[:3]
+        half = np.abs(turn) @ aabb[3:]
+        x, y, lower = (float(value) / MM for value in (middle[0], middle[1], middle[2] - half[2]))
+        return HeadSolid(
+            model.geom(geom).name,
+            upright and not beyond and model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_CYLINDER,
+            (float(half[0]) / MM, float(half[1]) / MM),
+            (x, y),
+            lower,
+            2.0 * float(half[2]) / MM,
+            beyond,
+        )

@@ -14,6 +14,8 @@ from twin.machine.description.measured_mass import set_measured_masses
 from twin.machine.model.drive_actuators import add_drives
 from twin.machine.model.drives import Drive, tune
 from twin.machine.model.fixture_shape import add_fixture
+from twin.machine.model.head_shape import HeadShape
+from twin.machine.model.supplied import supply
 from twin.machine.model.tool_shape import (
     CLAMPED_SIDE,
     COLLISION_GROUP,
@@ -34,8 +36,11 @@ from twin.units import MM
 BLANK = "stock"
 """Geom of the stock, as an alarm calls it."""
 
+_WEIGHTLESS = "must be larger than mjMINVAL"
+"""What MuJoCo says of a moving body without mass."""
+
 _TUNED_FOR = "moved at tuning"
-"""Number field of a model: what the motors felt when their drives were tuned."""
+"""Number field of a model: what the motors moved when their drives were tuned."""
 
 _JOINT_TYPES = {"linear": mujoco.mjtJoint.mjJNT_SLIDE, "rotary": mujoco.mjtJoint.mjJNT_HINGE}
 
@@ -84,6 +89,11 @@ class MachineModel:
     def solids(self) -> mujoco.MjModel:
         """Only those geoms that may not meet."""
         return clearance_model(self.machine, self.spec)
+
+    @cached_property
+    def head(self) -> HeadShape:
+        """What is around and above the spindle."""
+        return HeadShape(self.machine, self.solids)
 
     def _with_tool(self) -> mujoco.MjSpec:
         spec = self._without_tool.copy()
@@ -134,10 +144,10 @@ def _incomplete(machine: Machine, error: ValueError) -> ConfigError:
 
 
 def _complete(spec: mujoco.MjSpec, machine: Machine, blank: Blank | None) -> None:
+    supply(spec, machine)
     add_materials(spec)
     _set_clock(spec, machine)
     _set_inertia(spec, machine)
-    _require_actuators(spec, machine)
     # Gains follow from what MuJoCo's inertia matrix says of the empty machine, which is why it is compiled here.
     empty = drives(machine, compiled(_without(spec, VISUAL_GROUP), machine))
     add_drives(spec, machine, empty)
@@ -184,12 +194,6 @@ def _set_inertia(spec: mujoco.MjSpec, machine: Machine) -> None:
             )
         add_inertia(spec, axis)
     set_measured_masses(spec, machine)
-
-
-def _require_actuators(spec: mujoco.MjSpec, machine: Machine) -> None:
-    known = [actuator.name for actuator in spec.actuators]
-    for name in machine.axes.names:
-        _require(machine, "actuator", name, known)
 
 
 def _add_fixtures(spec: mujoco.MjSpec, machine: Machine) -> None:
@@ -280,7 +284,11 @@ def compiled(spec: mujoco.MjSpec, machine: Machine) -> mujoco.MjModel:
     try:
         return spec.compile()
     except ValueError as error:
-        raise ConfigError(f"{machine.model_path}: does not compile: {error}") from error
+        needed = (
+            '; give it <inertial pos="0 0 0" mass="..." diaginertia="... ... ..."/> or a shape with a mass'
+            * (_WEIGHTLESS in str(error))
+        )
+        raise ConfigError(f"{machine.model_path}: does not compile: {error}{needed}") from error
     except RuntimeError as error:
         # MuJoCo tells what is wrong with a model by ValueError.
         raise ConfigError(
@@ -344,7 +352,8 @@ def clearance_model(machine: Machine, spec: mujoco.MjSpec) -> mujoco.MjModel:
         ConfigError: The specification does not compile.
     """
     lean = _without(spec, VISUAL_GROUP)
-    lean.compiler.fusestatic = True
+    # Pairs that the model excludes are pairs of its own bodies.
+    lean.compiler.fusestatic = not spec.excludes
     lean.option.ccd_tolerance = _DISTANCE_TOLERANCE
     lean.option.ccd_iterations = _DISTANCE_ITERATIONS
     return compiled(lean, machine)
@@ -369,49 +378,3 @@ def _without(spec: mujoco.MjSpec, *groups: int) -> mujoco.MjSpec:
     lean.compiler.discardvisual = True
     lean.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT
     return lean
-
-
-def spindle_over_table_mm(machine: Machine) -> float:
-    """Height of the spindle nose over the work-holding surface with all axes at zero [mm].
-
-    Forward kinematics of the MJCF file, without compiling it.
-
-    Raises:
-        ConfigError: The model cannot be read, or lacks one of both.
-    """
-    return height_between(_read(machine), TABLE_TOP, SPINDLE_NOSE) / MM
-
-
-def height_between(spec: mujoco.MjSpec, low: str, high: str) -> float:
-    """How much higher one site lies than another with all joints at rest [m]."""
-    return float(_place(spec, spec.site(high))[2] - _place(spec, spec.site(low))[2])
-
-
-def _place(spec: mujoco.MjSpec, site: mujoco.MjsSite) -> FloatArray:
-    """Where a site is in the world with all joints at rest, shape (3,) [m]."""
-    origin, turn = _pose_of_parent(spec, site)
-    return origin + _turned(turn, site.pos)
-
-
-def _pose_of_parent(
-    spec: mujoco.MjSpec, element: "mujoco.MjsSite | mujoco.MjsBody | mujoco.MjsFrame"
-) -> tuple[FloatArray, FloatArray]:
-    """Position [m] and quaternion of the frame or body that an element is placed in."""
-    around = element.frame or element.parent
-    if around is None or around == spec.worldbody:
-        return np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0])
-    origin, turn = _pose_of_parent(spec, around)
-    own = np.array(around.quat)
-    if around.alt.type != mujoco.mjtOrientation.mjORIENTATION_QUAT:
-        compiler = spec.compiler
-        own = np.array(spec.resolve_orientation(compiler.degree, compiler.eulerseq, around.alt))
-    mujoco.mju_normalize4(own)
-    both = np.zeros(4)
-    mujoco.mju_mulQuat(both, turn, own)
-    return origin + _turned(turn, around.pos), both
-
-
-def _turned(turn: FloatArray, vector: FloatArray) -> FloatArray:
-    found = np.zeros(3)
-    mujoco.mju_rotVecQuat(found, vector, turn)
-    return found

@@ -16,7 +16,6 @@ class Support(NamedTuple):
     """A parallel or a post.
 
     Attributes:
-        name: As an alarm calls it.
         half: Half its size along X, Y, Z [mm]; of a post radius, radius and half its height.
         aside: Its middle off that of the blank along Y [mm].
     """

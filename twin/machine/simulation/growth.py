@@ -1,6 +1,6 @@
 """How the machine grows as spindle and drives warm it (ISO 230-3 is how that is measured).
 
-Each way of growing is a state of first order. With what drives it as a share q of ``at``, and the
+Each cause of growth is a state of first order. With what drives it as a share q of ``at``, and the
 time constant T, it follows
 
     T s' = q - s,

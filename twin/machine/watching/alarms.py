@@ -69,7 +69,6 @@ class NearMiss:
 
     Attributes:
         clearance_mm: Between the two [mm].
-        line: Source line of the program.
         time_s: When, from the start of the program [s].
         between: Names of the two.
     """

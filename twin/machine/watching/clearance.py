@@ -51,7 +51,7 @@ from twin.units import MM
 TOUCH = 0.01
 """Overlap that is no collision yet [mm]: what the axes tremble by where two faces lie on each other."""
 SHORTEST_WAY = 0.02
-"""A way between two samples that is shorter is not halved any more [mm]."""
+"""A path between two samples that is shorter is not halved any more [mm]."""
 WORSE = 0.1
 """What has met, and was acknowledged, may overlap by so much more before it is an alarm again [mm]."""
 NEAR_STEP = 0.01
@@ -62,6 +62,8 @@ _BLOCK = 256
 """Samples that are judged at once by the box around them."""
 _ORDER = (TOOL_SIDE, STOCK_SIDE, PART_SIDE)
 """In which order an alarm names two that meet."""
+_BODY_NUMBERS = 1 << 16
+"""By which MuJoCo multiplies the first body's number in the signature of an excluded pair."""
 _NO_PLANE = 1e-6
 """Distance below which two witness points give no direction [mm]."""
 
@@ -363,18 +365,29 @@ def _share_above(ends: FloatArray) -> float:
 
 
 def _pairs(model: mujoco.MjModel) -> list[tuple[int, int]]:
-    """Geoms of different bodies that may not meet, by their bits; the tool's side first, frame last."""
+    """Geoms of different bodies that may not meet, by their bits; the tool's side first, frame last.
+
+    Pairs of bodies that the model excludes (``<exclude>``) may.
+    """
+    excluded = {tuple(sorted(divmod(int(pair), _BODY_NUMBERS))) for pair in model.exclude_signature}
     geoms = [index for index in range(model.ngeom) if model.geom_group[index] == COLLISION_GROUP]
     geoms.sort(key=lambda index: _place_in_alarm(int(model.geom_contype[index])))
     return [
         (one, two)
         for one, two in itertools.combinations(geoms, 2)
-        if model.geom_bodyid[one] != model.geom_bodyid[two]
+        if _are_apart(model, one, two, excluded)
         and (
             model.geom_contype[one] & model.geom_conaffinity[two]
             or model.geom_contype[two] & model.geom_conaffinity[one]
         )
     ]
+
+
+def _are_apart(model: mujoco.MjModel, one: int, two: int, excluded: set[tuple[int, ...]]) -> bool:
+    """Whether two geoms move against each other, and the model does not exclude their bodies."""
+    bodies = tuple(sorted((int(model.geom_bodyid[one]), int(model.geom_bodyid[two]))))
+    first, second = model.body_weldid[list(bodies)]
+    return bool(first != second) and bodies not in excluded
 
 
 def _place_in_alarm(contype: int) -> int:

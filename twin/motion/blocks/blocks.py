@@ -247,7 +247,6 @@ class Surroundings:
     """Blocks to work on now, with their neighbours on both sides.
 
     Attributes:
-        blocks: All of them.
         first: Row of the first block to work on.
         last: Row after the last block to work on.
         to_the_end: Whether the program ends with the last of ``blocks``.

@@ -55,7 +55,6 @@ def find_brake(course: Course, state: State, slack: float) -> int:
 
     Args:
         course: The path; controllable velocities up to the state's segment are not looked at.
-        state: Its acceleration is not negative.
         slack: Relative slack of all comparisons.
     """
     limits, entry, controllable = course

@@ -23,7 +23,6 @@ def brake_margin(course: Course, state: State, brake: Brake, wide: float) -> flo
 
     Args:
         course: The path; its controllable velocities are not looked at.
-        state: Where the brake begins.
         wide: Factor by which velocities and accelerations may pass their limits.
 
     Returns:

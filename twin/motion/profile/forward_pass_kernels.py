@@ -46,7 +46,6 @@ class Drive(NamedTuple):
     """How far the forward pass has come.
 
     Attributes:
-        state: Where it is.
         now: When it is there [s].
         border: To which the state can brake; up to its segment: to be found.
         last_jerk: Of the phase that has led to a stop here; 0: none has.
@@ -157,7 +156,6 @@ def _extend(course: Course, rows: PhaseRows, drive: Drive, away: float) -> Drive
     """Jerk up or hold for as long as there is a brake; nothing where there is none.
 
     Args:
-        rows: To write into.
         away: How far from a stop here the moves may overlap.
     """
     j, duration, at_border, k = next_phase(course, drive.state, drive.border)

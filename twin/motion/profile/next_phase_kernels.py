@@ -76,7 +76,6 @@ def _longest_phase(
     """How long jerk j may last, at most ``latest`` or to the segment's end.
 
     Args:
-        state: Where the phase begins.
         latest: [s]
         border: To which the state can brake.
 
@@ -118,7 +117,6 @@ def next_phase(course: Course, state: State, border: int) -> tuple[float, float,
     """Jerk up, or else hold, for as long as there is a brake.
 
     Args:
-        state: Where the phase begins.
         border: To which the state can brake.
 
     Returns:
@@ -183,7 +181,6 @@ def _latest_brake(course: Course, state: State, j: float, k: int, low: float, hi
     """How long jerk j may last, from ``low`` to ``high``, for the brake to border k to be possible.
 
     Args:
-        state: Where the phase begins.
         low: The shortest time; it is the answer where the brake is not possible even then [s].
         high: The longest time [s].
     """

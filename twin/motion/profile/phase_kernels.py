@@ -32,7 +32,6 @@ def write_phase(
         last: Segment in which the phase ends.
         now: When it begins [s].
         duration: [s]
-        state: Where it begins.
     """
     rows.segments[row, 0], rows.segments[row, 1] = state.segment, last
     phase = rows.phases[row]
@@ -50,7 +49,6 @@ def write_brake(
         row: Number of the first row.
         lengths: Of the segments.
         now: When it begins [s].
-        state: Where it begins.
         brake: Its rows end in the segment before its border.
 
     Returns:

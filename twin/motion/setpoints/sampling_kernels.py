@@ -192,7 +192,6 @@ def sample_axes(
     """The axes where the path is.
 
     Args:
-        pieces: Where they lie.
         origin: Machine coordinates of program zero, shape (k,).
         where: From ``sample_path``.
         samples: Results, zero before.
@@ -223,7 +222,6 @@ def _add_axes(
     """Add the axes at one place to a sample.
 
     Args:
-        pieces: Where they lie.
         at: x within it, v, a.
         samples: Results, in part coordinates.
 

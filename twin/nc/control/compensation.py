@@ -95,7 +95,7 @@ def compensate(control: Control, side: float, radius: float, *, led: bool = Fals
         control.fail("compensation-radius", f"a tool cannot have the radius {radius:g}")
     if stage is LEADING_OUT:
         message = "compensation has ended, and no line has led out of it yet"
-        hint = "write a straight move in the plane before it starts anew"
+        hint = "write a straight move in the plane before it starts again"
         control.fail("compensation-end", message, hint=hint)
     if stage is not OFF:
         hint = "end it by G40 before it starts on another side or with another radius"

@@ -308,7 +308,6 @@ class Control:
         """Run the part that begins at a location and ends by a word, or behind a location.
 
         Args:
-            first: Where it begins.
             deepest: Parts that may call each other.
             values: Of its own variables by name; None: it has the caller's.
             restores: Its end puts back into force what is in force now.
@@ -369,7 +368,7 @@ def refuse_axis(control: Control, word: Word) -> NoReturn:
     rotary = next(
         (name for name, line in zip(axes.names, control.motion.linear, strict=True) if not line), ""
     )
-    stands = f'; {word.address} = "{rotary}" where it stands for {rotary}' if rotary else ""
+    stands = f'; {word.address} = "{rotary}" where it means {rotary}' if rotary else ""
     listed, ignored = ", ".join(axes.names), f'{word.address} = "ignored at 0"'
     hint = f"axes: {listed}; in the job: [axes] {ignored}{stands}; machines with others: twin machine list"
     control.fail("no-such-axis", f"this machine has no axis {word.address}", word, hint)

@@ -31,8 +31,6 @@ class Call:
     """A part of the program that is being run for a caller.
 
     Attributes:
-        back: Where the caller goes on.
-        first: Where the part begins.
         again: How often it still runs again before that.
         last: Its last block, where it ends by its location; None: a word ends it.
         owns_variables: It has variables of its own, which its end forgets.
@@ -211,7 +209,7 @@ class ProgramCounter:
         word: str,
         within: Container[int] | None = None,
     ) -> Location:
-        """Where the block with an N number or a name stands, among these lines, from 0, or all; a word at ``fail_at`` asks for it.
+        """Where the block with an N number or a name is, among these lines, from 0, or all; a word at ``fail_at`` asks for it.
 
         Raises:
             ProgramError: No block or more than one has it.

@@ -104,7 +104,10 @@ class ControlSettings:
     """M codes by number that the machine's builder has made, or made to take time."""
 
     module_rotary: bool = False
-    """``fagor8070``: the sign of an absolute rotary target is the direction of rotation."""
+    """``fagor8070``, ``linuxcnc``: the sign of an absolute rotary target is the direction of rotation."""
+
+    rollover: Literal["shorter", "sign"] | None = None
+    """``fanuc``: absolute rotary targets are those of a turn, by the shorter way or that of their sign; None: as written."""
 
     axis_words: Mapping[str, str | None] = dataclasses.field(default_factory=dict)
     """Words of axes that the machine lacks: the axis that each is for, or None where it is left out while it
@@ -115,10 +118,10 @@ class ControlSettings:
     control does when it comes from its maker."""
 
     rotary_diameter: float | None = None
-    """``haas``: diameter at which F counts the way of rotary axes (setting 34) [mm]."""
+    """``haas``: diameter at which F counts the path of rotary axes (setting 34) [mm]."""
 
     feed_of_all_axes: bool = False
-    """``fagor8070``: F counts rotary axes beside the main axes (FEEDND)."""
+    """``fagor8070``: F counts rotary axes together with the main axes (FEEDND)."""
 
     length_returns: Literal["by code", "next block"] = "by code"
     """``fanuc``: when a tool length counts again that G28, G30 or G53 has cancelled (parameter 5001 #6)."""

@@ -102,7 +102,7 @@ _TABLES: Mapping[str, tuple[FeedRow, ...]] = {
     "gost": _path_counts("", "decision: ISO practice"),
     "mefi": _path_counts("", "decision: ISO practice; the page shows no feed"),
     "heidenhain": _path_counts(
-        "", "user's manual, feed of rotary axes (M116); beside a path: decision"
+        "", "user's manual, feed of rotary axes (M116); together with a path: decision"
     ),
 }
 

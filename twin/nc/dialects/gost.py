@@ -49,11 +49,7 @@ def warn_of_foreign_commands(control: Control) -> None:
 
 
 def switch_recalculation(control: Control) -> None:
-    """G102: ``C360`` switches the recalculation of C on with period 360, ``C0`` off.
-
-    Raises:
-        ProgramError: No axis, one that is not periodic, or a negative period.
-    """
+    """G102: ``C360`` switches the recalculation of C on with period 360, ``C0`` off."""
     words = control.take_axis_words()
     if not words:
         control.fail("g102-axis", "G102 needs a periodic axis", hint="write G102 C360 or G102 C0")

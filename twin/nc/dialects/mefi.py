@@ -46,11 +46,7 @@ def store_leads(control: Control) -> None:
 
 
 def switch_on(control: Control) -> None:
-    """G09: circles drag.
-
-    Raises:
-        ProgramError: No lead is stored.
-    """
+    """G09: circles drag."""
     if not any(_dragging(control).leads.values()):
         message = "G09 finds no lead"
         hint = "store it in a block before: Z1.05 G10"
@@ -67,10 +63,9 @@ def jump_with_repeat(control: Control) -> None:
     """G73: after the block's own motion go on at block L, Q times; the counter begins again behind that."""
     target, count = control.take("L"), control.take("Q")
     if target is None:
-        numbers = ", ".join(f"N{label}" for label in list(control.program_counter.labels())[:12])
-        code = control.code_word(73)
         message = "G73 needs L: the block to jump to"
-        control.fail("jump-target", message, code, hint=f"blocks here: {numbers}")
+        hint = "G73 L50 Q2 goes back to N50 twice"
+        control.fail("jump-target", message, control.code_word(73), hint=hint)
     wanted = 1.0 if count is None else control.number(count)
     if not (wanted >= 0.0 and wanted == int(wanted)):
         control.fail("repeat-count", "Q must count jumps", count)
@@ -145,7 +140,7 @@ DECISIONS = (
     Decision(
         "In which order do motion and jump of a G73 block happen, and how often?",
         "The block's own motion first, then the jump, Q times; the counter belongs to the block "
-        "and starts anew when the loop is entered again; a missing Q is 1.",
+        "and starts again when the loop is entered again; a missing Q is 1.",
         "The page's Q20 gives 21 circles.",
         example="counter_starts_anew",
     ),

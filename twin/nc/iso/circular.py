@@ -64,11 +64,7 @@ def _letters_across(normal: Vector) -> str:
 def fitted_center(
     control: Control, ends: tuple[Point, Point], center: Point, bounds: Bounds, word: Word | None
 ) -> Point:
-    """The centre moved so that both ends of an arc lie on one circle.
-
-    Raises:
-        ProgramError: They are farther from one circle than the bounds allow.
-    """
+    """The centre moved so that both ends of an arc lie on one circle."""
     finding, fitted = arcs.fitted_center(*ends, center, bounds)
     if finding != arcs.FITS:
         refuse_arc(control, finding, word, *(distance(end, center) for end in ends))
@@ -153,11 +149,7 @@ def start_and_end(control: Control, target: list[float]) -> tuple[Point, Point]:
 
 
 def arc_center(control: Control, target: list[float], rule: ArcRule) -> Point:
-    """Take R or I, J, K and find the centre by ISO 6983-1.
-
-    Raises:
-        ProgramError: There is no centre, or it does not fit.
-    """
+    """Take R or I, J, K and find the centre by ISO 6983-1."""
     start, end = start_and_end(control, target)
     radius, centre = control.take("R"), take_center(control, plane_center_letters(control))
     words = ArcWords(math.nan, math.nan, math.nan)
@@ -201,11 +193,7 @@ def tangent_arc_to(
 
     Args:
         target: Programmed position, shape (k,).
-        name: Of the code, for messages.
         or_straight: On a line where the target lies straight ahead.
-
-    Raises:
-        ProgramError: Nothing has moved before, or the arc would be a straight line.
     """
     direction = control.motion.direction
     if direction is None:

@@ -49,11 +49,7 @@ def plane_code(
 
 
 def keep_compensated_plane(control: Control) -> None:
-    """The plane has changed.
-
-    Raises:
-        ProgramError: Compensation is in force in another one.
-    """
+    """The plane has changed."""
     if not control.path.compensation.acts_in(
         control.motion.part_plane
     ):  # else it is in force already

@@ -157,11 +157,7 @@ def take_words(control: Control, cycle: Cycle, *, calls: bool = False) -> None:
 
 
 def _take_options(control: Control, cycle: Cycle) -> None:
-    """Take words of the call that change nothing of the path.
-
-    Raises:
-        ProgramError: One has another value than those that are known to do so.
-    """
+    """Take words of the call that change nothing of the path."""
     for letter, known in cycle.options.items():
         word = control.take(letter)
         if word is not None and control.number(word) not in known:
@@ -179,7 +175,7 @@ def require_words(control: Control, cycle: Cycle) -> None:
     if values.get("axis") != control.modal.plane.axes[2]:
         refuse_other_plane(control, cycle.name)
     letters = {value: letter for letter, value in cycle.addresses(control).items()}
-    missing = [letters[value] for value in cycle.needed if value not in values]
+    missing = {letters[value]: value for value in cycle.needed if value not in values}
     if missing:
         refuse_missing(control, cycle.name, missing)
 
@@ -190,17 +186,23 @@ def refuse_other_plane(control: Control, name: str) -> NoReturn:
     control.fail("cycle-plane", message, hint="end it by G80 before the plane changes")
 
 
-_NEEDED_WORDS = {
-    "R": "the height where the feed begins, such as R2.",
-    "Z": "the depth of the hole, such as Z-10.",
-    "Q": "the depth of a peck, such as Q2.",
-    "F": "the feed, such as F100.",
+_NEEDED = {
+    "reference": "the height where the feed begins, such as {}2.",
+    "bottom": "the depth of the hole, such as {}-10.",
+    "peck": "the depth of a peck, such as {}2.",
+    "count": "the number of pecks, such as {}3",
+    "feed": "the feed, such as {}100.",
 }
+"""What a value of a cycle is, and how its word is written behind its address."""
 
 
-def refuse_missing(control: Control, name: str, missing: list[str]) -> NoReturn:
-    """Refuse a hole of a cycle that lacks words, by their addresses."""
-    hints = [f"{each}: {_NEEDED_WORDS[each]}" for each in missing if each in _NEEDED_WORDS]
+def refuse_missing(control: Control, name: str, missing: Mapping[str, str]) -> NoReturn:
+    """Refuse a hole of a cycle that lacks words: the value of each, by its address."""
+    hints = [
+        f"{each}: {_NEEDED[value].format(each)}"
+        for each, value in missing.items()
+        if value in _NEEDED
+    ]
     message = f"{name} needs {' and '.join(missing)}"
     control.fail("cycle-word", message, hint="; ".join(hints) or None)
 
@@ -237,11 +239,7 @@ def _require_peck_words(control: Control, cycle: Cycle) -> None:
 
 
 def hole_of(control: Control, cycle: Cycle, values: Mapping[str, float] | None = None) -> Hole:
-    """What a cycle does at a hole, by what it remembers; nothing but its pecks is checked.
-
-    Raises:
-        ProgramError: The pecks are too many, or none.
-    """
+    """What a cycle does at a hole, by what it remembers; nothing but its pecks is checked."""
     values = control.cycle_values if values is None else values
     reference, get = values["reference"], values.get
     dwell = get("dwell", 0.0) if cycle.dwells else 0.0

@@ -102,9 +102,6 @@ def auxiliary_point(
     Args:
         touch: Where the contour begins or ends.
         other: Where a lead of line and arc comes from or goes to.
-
-    Raises:
-        ProgramError: That place lies within the arc.
     """
     outwards = -1.0 if arrives else 1.0
     if lead.kind is LeadKind.TANGENT:
@@ -184,11 +181,7 @@ class Approach:
 
 
 def approach(control: Control, lead: Lead, contour: list[float] | None) -> None:
-    """Let the next move of the contour be led to; arguments as for ``Approach``.
-
-    Raises:
-        ProgramError: A contour has begun already.
-    """
+    """Let the next move of the contour be led to; arguments as for ``Approach``."""
     if control.path.compensation.in_force or control.path.leads is not None:
         message = "a lead begins a contour, and one has begun already"
         control.fail("contour-lead", message, hint="end it before")
@@ -217,9 +210,6 @@ def depart(control: Control, lead: Lead, target: list[float] | None) -> None:
     Args:
         target: Where it goes; a lead of line and arc in the plane too, others across it alone. None: no farther
             than the lead does.
-
-    Raises:
-        ProgramError: No move in the plane has ended the contour.
     """
     plane, motion = control.modal.plane, control.motion
     behind = motion.direction

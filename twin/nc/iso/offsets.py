@@ -30,20 +30,12 @@ def offset_of_job(control: Control, name: str, word: Word | None) -> Mapping[str
 
 
 def cancel_offset(control: Control) -> None:
-    """G53: coordinates count from machine zero.
-
-    Raises:
-        ProgramError: The job does not say where machine zero is.
-    """
+    """G53: coordinates count from machine zero."""
     shift_by(control, machine_zero(control, "G53"))
 
 
 def machine_zero(control: Control, code: str) -> Mapping[str, float]:
-    """Part coordinates of machine zero by axis [mm or deg], for a code that counts from there.
-
-    Raises:
-        ProgramError: The job does not say where it is.
-    """
+    """Part coordinates of machine zero by axis [mm or deg], for a code that counts from there."""
     zero = control.settings.machine_zero
     if zero is None:
         message = f"{code} counts from machine zero, and the job does not say where that lies"

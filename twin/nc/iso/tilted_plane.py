@@ -81,13 +81,9 @@ def point_tool(
     """Turn the rotary axes until the tool stands across the plane of the frame, then count in it.
 
     Args:
-        name: What the program calls it, for diagnostics.
         sense: Sign of the axis next to the tool that is preferred; 0: whatever is nearest.
         at: What asks for it; None: the block's code.
         about_tip: They turn about the tip; else X, Y and Z rest.
-
-    Raises:
-        ProgramError: The machine cannot, or radius compensation is in force.
     """
     end_tool_center(control, name, keeps_length=True)
     axes = rotary_axes_across(control, name, sense=sense, at=at)
@@ -104,7 +100,6 @@ def turn_about(
     """Turn the rotary axes about a point below the tip, where the part is.
 
     Args:
-        name: What the program calls it, for diagnostics.
         axes: Where the rotary axes go to, programmed, shape (k,); X, Y and Z are not looked at.
         below: How far the point lies below the tip [mm].
         rapid: At the machine's own speed.
@@ -135,9 +130,6 @@ def rotary_axes_across(
         only: A solution with another sign is none.
         main: As for ``rotary_axes_for``.
         at: As for ``point_tool``.
-
-    Raises:
-        ProgramError: The machine cannot.
     """
     setup = control.settings.setup
     if setup is None:

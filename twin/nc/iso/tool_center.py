@@ -24,12 +24,8 @@ def begin_tool_center(
     """Lead the tip of the tool from now on.
 
     Args:
-        name: What the program calls it, for diagnostics.
         tilted: The tool stands across a tilted plane, and no rotary axis moves.
         in_plane: The tool turns in the plane of both directions; else the rotary axes go evenly.
-
-    Raises:
-        ProgramError: No axis of the machine turns, or radius compensation is in force.
     """
     setup = control.settings.setup
     if setup is None:
@@ -50,7 +46,6 @@ def end_tool_center(control: Control, name: str, *, keeps_length: bool = False) 
     """Programmed positions are those of the axes again; nothing moves.
 
     Args:
-        name: What the program calls it, for diagnostics.
         keeps_length: The length of the tool stays in force, along Z.
     """
     center = control.path.tool_center
@@ -71,9 +66,6 @@ def point_by_words(control: Control, direction: Vector, at: Word, *, in_frame: b
     Args:
         direction: From the tip to the spindle, programmed coordinates, of any length above 0.
         in_frame: The frame turns it; else it counts in the part as it is.
-
-    Raises:
-        ProgramError: The machine cannot, or the direction has no length.
     """
     center = control.path.tool_center
     assert center is not None

@@ -53,7 +53,7 @@ class Speed(enum.Enum):
     COLD = "cold"
     """It never asks for one."""
     WHEN_READY = "when ready"
-    """It begins without, has it compiled beside, and changes over when it is there."""
+    """It begins without, has it compiled in the background, and changes over when it is there."""
     HOT = "hot"
     """It waits for it."""
 

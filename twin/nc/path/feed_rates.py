@@ -88,7 +88,7 @@ class FeedRule(NamedTuple):
     """Which part of a move F counts, by the control and its parameters.
 
     Attributes:
-        degree: What a degree of a rotary axis counts beside linear axes [programmed unit of length, or mm];
+        degree: What a degree of a rotary axis counts together with linear axes [programmed unit of length, or mm];
             0: nothing, rotary axes arrive with the others.
         surface: ``degree`` is the length on a surface that turns [mm]: F counts it also where only a rotary
             axis moves. Otherwise F then counts degrees.

@@ -170,11 +170,7 @@ class TwoAxes:
         return min((1.0, -1.0), key=far)
 
     def _followed(self, circle: GreatCircle, here: FloatArray, side: float) -> Turning:
-        """The axes along a circle that does not meet the pole.
-
-        Raises:
-            ValueError: It ends outside their travel.
-        """
+        """The axes along a circle that does not meet the pole."""
         ends = self._solved(circle.at(np.array([0.0, 1.0])), side)
         ends += _TURN * np.round((here - ends[0]) / _TURN)
         angles = np.unwrap(ends, period=_TURN, axis=0)

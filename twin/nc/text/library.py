@@ -14,7 +14,7 @@ MOST_FILES = 100
 """Files that one program may call: more is no library but a slip."""
 
 Opening = Callable[[Path, Source, int], None]
-"""Is told of a file before it is read, with the program that calls it and the line, from 1; may refuse it."""
+"""Called with a file before it is read, with the program that calls it and the line, from 1; may refuse it."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)

@@ -150,7 +150,7 @@ class Lines(Sequence[str]):
         return any(pattern.search(self._utf_8(number)) is not None for number in pages)
 
     def holding(self, mark: str) -> Iterator[tuple[int, str]]:
-        """The lines in which a text stands, with their numbers from 0."""
+        """The lines in which a text occurs, with their numbers from 0."""
         wanted = mark.encode(_UTF_8, SURROGATES)
         for number, first in enumerate(self._firsts):
             if wanted in self._utf_8(number):

@@ -45,7 +45,6 @@ class Reporter:
         """Refuse the program.
 
         Args:
-            code: Stable name of the finding.
             column: First character in question, from 0.
             width: How many characters.
             hint: What would have worked.

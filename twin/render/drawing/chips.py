@@ -18,7 +18,7 @@ FLIGHT_S = 0.05
 SPEED = (0.2, 0.9)
 """Slowest and fastest chip [m/s]."""
 RISE = (0.15, 0.8)
-"""Least and greatest rise of their ways over the level ones."""
+"""Least and greatest rise of their paths over the level ones."""
 GRAVITY = 9.81
 """[m/s²]."""
 RGBA = (0.86, 0.84, 0.80, 1.0)

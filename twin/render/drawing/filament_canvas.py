@@ -76,7 +76,6 @@ class FilamentCanvas(Canvas):
 
         Args:
             size: Width and height of the pictures [px].
-            quality: What they may cost.
             quiet: Whether to drop what Filament reports on standard output and error: its start,
                 and at a thousand meshes where its memory lies.
 

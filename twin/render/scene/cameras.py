@@ -13,8 +13,10 @@ RIDING = "riding"
 """Camera that turns with the part: the machine seems to turn around it."""
 PART_CAMERAS = (PART, RIDING)
 
-_DIRECTION = np.array([-0.45, -1.0, 0.62])
-"""From the part to the camera, in the part's frame: low enough to look in below the head."""
+_BESIDE, _BEFORE, _ABOVE = -0.45, -1.0, 0.62
+"""From the part to the camera: low enough to look in below the head."""
+_UPRIGHT = 0.5
+"""Of the direction upwards along the spindle, from which on a spindle is a vertical one."""
 _FIELD_DEG = 30.0
 _MARGIN = 1.12
 """Room around the part's bounding ball."""
@@ -34,11 +36,11 @@ def add_part_cameras(
         radius: Of the ball around it [mm].
     """
     known = [camera.name for camera in spec.cameras]
-    away = _DIRECTION / np.linalg.norm(_DIRECTION)
+    away = _direction(placement.up)
     half = np.deg2rad(0.5 * _FIELD_DEG)
     distance = _MARGIN * max(radius, SMALLEST_MM) / np.sin(half)
     eye = center + distance * away
-    right = np.cross([0.0, 0.0, 1.0], away)
+    right = np.cross(placement.up, away)
     right /= np.linalg.norm(right)
     up = np.cross(away, right)
     table = spec.site(TABLE_TOP).parent
@@ -54,6 +56,16 @@ def add_part_cameras(
             xyaxes=[*(frame.rotation @ right), *(frame.rotation @ up)],
             fovy=_FIELD_DEG,
         )
+
+
+def _direction(up: FloatArray) -> FloatArray:
+    """Unit vector from the part to the camera; at a horizontal spindle it looks from the side at what the tool does."""
+    across, before = np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0])
+    if abs(up[2]) < _UPRIGHT:
+        before = np.cross(up, [0.0, 0.0, -1.0])
+        across = np.cross(before, up)
+    away = _BESIDE * across + _BEFORE * before + _ABOVE * up
+    return away / np.linalg.norm(away)
 
 
 def framed(points: FloatArray) -> tuple[FloatArray, float]:

@@ -11,6 +11,9 @@ from twin.nc.canonical import FloatArray
 from twin.toolpath.part_frame import PartFrame
 from twin.units import MM
 
+_ROUNDED = 9
+"""Digits of a direction that the rounding of quaternions leaves."""
+
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Frame:
@@ -43,9 +46,11 @@ class Placement(Frame):
     Attributes:
         at_rest: Where it lies, seen from the body that carries the turning one, while the part's frame
             is parallel to the machine's.
+        up: Direction upwards in the room, seen from the part's frame there, shape (3,).
     """
 
     at_rest: Frame
+    up: FloatArray
 
 
 class Joints:
@@ -68,7 +73,6 @@ def place(
 
     Args:
         tool_length: From the spindle nose to the tip [mm].
-        part_frame: How the part turns under the tool.
     """
     data = mujoco.MjData(model)
     joints = Joints(machine, model)
@@ -88,7 +92,10 @@ def place(
         return origin, np.stack(ways, axis=1)
 
     table = part_carrier(model)
-    return Placement(*frame(table), Frame(*frame(int(model.body_parentid[table]))))
+    carrier = int(model.body_parentid[table])
+    at_rest = Frame(*frame(carrier))
+    up = data.xmat[carrier].reshape(3, 3) @ at_rest.rotation
+    return Placement(*frame(table), at_rest, np.round(up[2], _ROUNDED))
 
 
 def tip_position(model: mujoco.MjModel, data: mujoco.MjData, tool_length: float) -> FloatArray:

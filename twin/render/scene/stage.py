@@ -225,7 +225,6 @@ def stage(
 
     Args:
         size: Width and height of the pictures [px].
-        quality: What a picture may cost.
         paint: Colours of the stock's cells, shape (ny, nx, 4), as metal looks where the fourth is 0; or, of one
             that is cut from several sides, what colours its surface; None: all looks like metal.
         trail: Whether the path of the tool is seen.

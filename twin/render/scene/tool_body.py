@@ -42,7 +42,6 @@ class ToolBodies:
         """Take the tools.
 
         Args:
-            plan: What is in the spindle when.
             flange_diameter: Of the holders [mm].
         """
         self._tools = {tool.number: tool for tool in plan.tools}

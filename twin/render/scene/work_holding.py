@@ -10,6 +10,11 @@ from twin.nc.canonical import FloatArray
 from twin.render.scene.placement import Placement
 from twin.units import MM
 
+_UP = np.array([0.0, 0.0, 1.0])
+_UPRIGHT = 0.5
+"""Of a table's normal along the part's Z, from which on the part stands on it."""
+_ROUNDED = 9
+"""Digits of a direction that the rounding of quaternions leaves."""
 _COLOUR = (0.33, 0.36, 0.4, 1.0)
 
 
@@ -23,35 +28,28 @@ def add_work_holding(
         placement: Where the part's frame lies on the body that carries it.
         part_corner: Program zero in the part's frame, shape (3,) [mm].
     """
-    top = part_corner + np.array(stock.position)
-    foot = placement.points((top - [0.0, 0.0, stock.extent[2]])[None])[0]
+    upright = abs(float(placement.rotation[2, 2])) > _UPRIGHT
+    # On a table that does not lie across the tool its own axes are those of what is put on it.
+    axes = placement.rotation if upright else np.eye(3)
+    size = np.abs(np.round(axes.T @ placement.rotation, _ROUNDED)) @ stock.extent
+    middle = part_corner + np.array(stock.position) - [0.0, 0.0, 0.5 * stock.extent[2]]
+    foot = placement.points(middle[None])[0] - MM * 0.5 * size[2] * _UP
     height = foot[2] - spec.site(TABLE_TOP).pos[2]
-    middle = foot - [0.0, 0.0, height / 2]
-    for support in supports(stock.extent, height / MM, box=not stock.on_post):
+    for support in supports(tuple(size.tolist()), height / MM, box=not stock.on_post):
         half = [each * MM for each in support.half]
         kind = mujoco.mjtGeom.mjGEOM_CYLINDER if support.round else mujoco.mjtGeom.mjGEOM_BOX
-        size = [half[0], half[2], 0.0] if support.round else half
-        aside = placement.rotation @ [0.0, support.aside * MM, 0.0]
-        _add(spec, f"{support.name} seen", kind, size, middle + aside, placement)
-
-
-def _add(
-    spec: mujoco.MjSpec,
-    name: str,
-    kind: mujoco.mjtGeom,
-    size: list[float],
-    position: FloatArray,
-    placement: Placement,
-) -> None:
-    spec.site(TABLE_TOP).parent.add_geom(
-        name=name,
-        type=kind,
-        size=size,
-        pos=list(position),
-        quat=list(placement.quaternion),
-        rgba=_COLOUR,
-        contype=0,
-        conaffinity=0,
-        mass=0.0,
-        group=2,
-    )
+        aside = axes @ [0.0, support.aside * MM, 0.0]
+        turn = np.zeros(4)
+        mujoco.mju_mat2Quat(turn, axes.ravel())
+        spec.site(TABLE_TOP).parent.add_geom(
+            name=f"{support.name} seen",
+            type=kind,
+            size=[half[0], half[2], 0.0] if support.round else half,
+            pos=list(foot - 0.5 * height * _UP + aside),
+            quat=list(turn),
+            rgba=_COLOUR,
+            contype=0,
+            conaffinity=0,
+            mass=0.0,
+            group=2,
+        )

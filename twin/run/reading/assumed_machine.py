@@ -10,7 +10,7 @@ from twin.nc.dialects.recognition import without_comments
 from twin.nc.text.source import Source
 
 _ROTARY = re.compile(
-    r"(?<![A-Z#\[,<_.0-9])([ABC])[ \t]*(=?[ \t]*[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)|=?[ \t]*[-+]?(?:[#\[(]|[QR][0-9])|=[ \t]*[A-Z])",
+    r"(?<![A-Z#\[,<_])([ABC])[ \t]*(=?[ \t]*[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)|=?[ \t]*[-+]?(?:[#\[(]|[QR][0-9])|=[ \t]*[A-Z])",
     re.IGNORECASE,
 )
 _ANYWHERE = re.compile(rb"[ABCabc][ \t]*[-+=#\[(QRqr.0-9]")

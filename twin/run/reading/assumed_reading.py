@@ -10,6 +10,7 @@ from typing import NamedTuple
 from twin.nc.control.dialect import Dialect
 from twin.nc.control.settings import ControlSettings, ToolData
 from twin.nc.dialects.recognition import comments_of, without_comments
+from twin.nc.geometry.arcs import TURN
 from twin.nc.text.source import Source
 from twin.run.reading.assumed_tools import USUAL_LENGTH, listed_tools
 
@@ -37,7 +38,13 @@ _CHANGE = re.compile(r"(?<![A-Z])M[ \t]*0?6(?![0-9])", re.IGNORECASE)
 _CALLS_OFFSET = re.compile(r"(?<![A-Z0-9.])G[ \t]*4[1-4](?![0-9.])", re.IGNORECASE)
 _ROW = re.compile(r"(?<![A-Z#\[])[HD][ \t]*0*([1-9][0-9]{0,3})(?![0-9.])", re.IGNORECASE)
 """H and D name rows of the offset memory on controls where it is numbered."""
-_WITH_ROWS, _ROWS_TOLD = ("fanuc", "haas"), "offsets H and D: "
+_ROWS_TOLD, _ROLLOVER_TOLD = "offsets H and D: ", "rotary axes roll over: "
+_OF_SOME = {"offset_rows": _ROWS_TOLD, "rollover": _ROLLOVER_TOLD}
+"""Keys that some dialects alone have a setting for, and how their notes begin."""
+_ANGLE = re.compile(r"(?<![A-Z#\[])([ABC])[ \t]*([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))", re.IGNORECASE)
+_MOTION = re.compile(r"(?<![A-Z0-9.])G[ \t]*0?([0-3])(?![0-9.])", re.IGNORECASE)
+_NEARLY_A_TURN = 350.0
+"""What no axis turns back by in a cut, whose neighbours are some degrees apart [deg]."""
 _USUAL_OFFSET = "G54"
 UNKNOWN_FUNCTION = "not known here: taken to do nothing"
 
@@ -58,10 +65,11 @@ class AssumedReading(NamedTuple):
 
     def as_read_by(self, dialect: Dialect, settings: ControlSettings) -> "AssumedReading":
         """What of it matters to a dialect, in which numbers without a point may always count whole units."""
-        if "offset_rows" in self.keys and dialect.name not in _WITH_ROWS:
-            keys = {key: value for key, value in self.keys.items() if key != "offset_rows"}
-            notes = tuple(each for each in self.notes if not each.startswith(_ROWS_TOLD))
-            return self._replace(keys=keys, notes=notes).as_read_by(dialect, settings)
+        for name, begin in _OF_SOME.items():
+            if name in self.keys and name not in dialect.job_keys:
+                keys = {key: value for key, value in self.keys.items() if key != name}
+                notes = tuple(each for each in self.notes if not each.startswith(begin))
+                return self._replace(keys=keys, notes=notes).as_read_by(dialect, settings)
         counting = dataclasses.replace(settings, decimal_point="increments")
         if "decimal_point" not in self.keys or dialect.rules.without_point(counting):
             return self
@@ -96,7 +104,28 @@ def assumed_reading(source: Source) -> AssumedReading:
         keys["offset_rows"] = rows
         told = ", ".join(f"{row} that of tool {tool}" for row, tool in rows.items())
         notes.append(f"{_ROWS_TOLD}{told}, which was in the spindle then")
+    turn = _turn_within_a_cut(source)
+    if turn:
+        keys["rollover"] = "shorter"
+        notes.append(f"{_ROLLOVER_TOLD}{turn}")
     return AssumedReading(keys, tuple(notes), _commented_tools(source, inches=bool(tool)))
+
+
+def _turn_within_a_cut(source: Source) -> str:
+    """Where a cut goes on from one end of a turn to the other, as for a control whose axes count 0 to 360; empty: nowhere."""
+    angles: dict[str, float] = {}
+    motion, found = "", ""
+    for line, text in enumerate(_blocks(source), 1):
+        motion = next((each[1] for each in _MOTION.finditer(text)), motion)
+        for word in _ANGLE.finditer(text):
+            letter, angle = word[1].upper(), float(word[2])
+            if abs(angle) > TURN:
+                return ""
+            before = angles.get(letter, angle)
+            if motion == "1" and abs(angle - before) > _NEARLY_A_TURN and not found:
+                found = f"line {line} goes on cutting from {letter}{before:g} to {letter}{angle:g}"
+            angles[letter] = angle
+    return found
 
 
 def _offset_rows(source: Source) -> dict[int, int]:

@@ -108,6 +108,9 @@ def chosen_dialect(path: Path, settings: ControlSettings, source: Source | None 
         settings.tool_change_height is None
     ):  # nor on where a control goes by itself for another tool
         settings = dataclasses.replace(settings, tool_change_height=-math.inf)
+    rolling = [name for name in candidates if "rollover" in DIALECTS[name].job_keys]
+    rolls = settings.rollover is not None and bool(rolling) and rolling != candidates
+    candidates = rolling if rolls else candidates
     common = [name for name in candidates if name in _PREFERENCE]
     rare = [name for name in candidates if name not in _PREFERENCE]
     trials = [_tried(path, DIALECTS[name], settings) for name in (common or rare)]
@@ -137,7 +140,10 @@ def chosen_dialect(path: Path, settings: ControlSettings, source: Source | None 
     own = [trial for trial in meant if trial.name == _OF_POSTS]
     if post is not None and own:
         meant, why = own, f"its head names {post[0]}, which writes {_OF_POSTS}'s language"
-    return _choice(source.name, meant, why)
+    return _choice(source.name, meant, why or (_ROLLS if rolls else ""))
+
+
+_ROLLS = "it alone of those that may be meant has rotary axes that roll over"
 
 
 def _crawls(one: _Trial, other: _Trial) -> bool:
@@ -183,11 +189,7 @@ def _dropped(good: Sequence[_Trial], quick: Sequence[_Trial], meant: Sequence[_T
 
 
 def _choice(name: str, meant: Sequence[_Trial], why: str) -> Choice:
-    """The dialect that is taken of those that may be meant.
-
-    Raises:
-        UsageError: They would not move alike.
-    """
+    """The dialect that is taken of those that may be meant."""
     slightly = ""
     for other in meant[1:]:
         difference = _difference(meant[0], other)

@@ -48,11 +48,7 @@ def parser_state(state: ParserState, spindle: SpindleState, *, coolant: bool) ->
 
 
 class Reporter:
-    """Writes reports of one control.
-
-    Attributes:
-        settings: Unit and content of reports.
-    """
+    """Writes reports of one control."""
 
     def __init__(self, settings: GrblSettings) -> None:
         self.settings = settings

@@ -39,7 +39,7 @@ class GrblLine:
         return await asyncio.wrap_future(question)
 
     async def greeting(self) -> bytes:
-        """What a sender that comes is told."""
+        """What a sender receives when it connects."""
         return await asyncio.wrap_future(
             self._driver.inquire(lambda _room: self._control.welcome())
         )

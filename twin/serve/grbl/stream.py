@@ -44,7 +44,6 @@ class GrblStream:
     """The lines that wait, as the program run asks for them.
 
     Attributes:
-        serial: Where lines wait.
         jogging: Whether it is jogs that are run, and no G code.
         executor: What ran the last block; None before the first.
         last_received: When the last byte came, by ``time.monotonic`` [s].

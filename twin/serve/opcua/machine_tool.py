@@ -99,7 +99,6 @@ class MachineTool:
         """Make the nodes.
 
         Args:
-            program: Name of the NC program.
             tools: Names of the tools by their numbers.
         """
         server = self._server

@@ -62,7 +62,6 @@ class Content(NamedTuple):
     """What a server reports.
 
     Attributes:
-        program: Name of its NC program.
         tools: Names of its tools by their numbers.
     """
 
@@ -106,9 +105,6 @@ def check_place(place: Place) -> None:
 @asynccontextmanager
 async def opcua_server(place: Place, content: Content) -> AsyncIterator[MachineTool]:
     """A server, until the block ends.
-
-    Args:
-        place: Where it listens.
 
     Raises:
         UsageError: The node sets are missing.
@@ -161,7 +157,6 @@ async def mirror(
     """Tell what an agent observes, until this is cancelled.
 
     Args:
-        place: Where clients come in.
         ready: Told the address once clients may come.
     """
     items = [item.id for part in agent.device.walk() for item in part.items]

@@ -20,7 +20,6 @@ class Door(NamedTuple):
 
     Attributes:
         path: Of the Unix socket; empty: it is a port.
-        host: Where the port is.
         secret: What opens it; of a Unix socket the file's rights do.
     """
 

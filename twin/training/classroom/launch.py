@@ -23,7 +23,6 @@ class OpenClass(NamedTuple):
     """A class that is open.
 
     Attributes:
-        teacher: Address of the teacher's page.
         pupils: Name and address of each pupil.
     """
 
@@ -50,9 +49,7 @@ def open_class(
 
     Args:
         scene: What they begin with: a shipped scene's name, or a scene file.
-        folder: Marks, logs and score sheets.
         language: Of all pages; None: of each scene.
-        host: Where the server listens.
         port: Its port; 0: the one of the last time, else the first free one.
         cluster: Address of the Ray cluster over which rooms are spread; None: they run on this computer.
 
@@ -82,11 +79,7 @@ def open_class(
 
 @contextlib.contextmanager
 def _alone(folder: Path) -> Iterator[None]:
-    """Keep a class's folder from a second server.
-
-    Raises:
-        UsageError: Another one has it.
-    """
+    """Keep a class's folder from a second server."""
     with (folder / "class.lock").open("w") as lock:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)

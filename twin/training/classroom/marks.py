@@ -40,7 +40,6 @@ class Mark:
         title: What it is called, in English where it is.
         began: When, in ISO 8601.
         changed: When this was written last, in ISO 8601.
-        points_of: What all tasks are worth.
         handed_in: Whether it was handed in: it is final then.
         alarms: Codes of those that came, with spaces between.
         seconds: Machine time from the beginning [s].

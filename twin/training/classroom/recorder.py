@@ -17,7 +17,6 @@ class Recorder:
         """Prepare it.
 
         Args:
-            file: Where marks are kept.
             sheet: Says where the score sheet of the present attempt is written.
         """
         self._file, self._pupil, self._sheet = file, pupil, sheet

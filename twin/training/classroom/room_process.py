@@ -40,7 +40,6 @@ class RoomOrder:
         language: Of the pages; None: the scene's.
         sheets: Folder of the pupil's logs and score sheets.
         socket: Unix socket at which the pages are served; empty: on a port.
-        host: Where that port is.
         node: What a cluster calls the computer; empty: there is none.
     """
 

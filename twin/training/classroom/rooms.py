@@ -38,7 +38,6 @@ class Seat:
         alarmed_at: Since when an alarm is active, by the monotonic clock [s]; None: none does.
         failed: Why its room could not be begun, or ended by itself; empty: it did not.
         process: The room's; None: there is none.
-        door: Where it serves its pages.
         node: What a cluster calls the computer on which it runs.
     """
 
@@ -88,9 +87,7 @@ class Rooms:
         """Prepare the seats, with what each pupil was given before.
 
         Args:
-            scene: What they begin with.
             language: Of all pages; None: of each scene.
-            host: Where rooms run.
         """
         kept, numbers = file.scenes(), file.seats(pupil.name for pupil in pupils)
         self._file = file

@@ -76,7 +76,7 @@ def read_roster(path: Path) -> tuple[Pupil, ...]:
         same = unicodedata.normalize("NFKC", pupil.name).casefold()
         if same in pupils:
             raise ConfigError(
-                f"{path}, line {line}: '{pupil.name}' stands in line {pupils[same]} already: "
+                f"{path}, line {line}: '{pupil.name}' is in line {pupils[same]} already: "
                 "give each pupil a name of his own"
             )
         pupils[same] = line
@@ -94,7 +94,7 @@ def _columns(
     if "name" in head:
         unknown = [name for name in head if name not in _COLUMNS]
         if unknown or len(set(head)) < len(head):
-            told = f"no column '{unknown[0]}'" if unknown else "a column stands there twice"
+            told = f"no column '{unknown[0]}'" if unknown else "a column occurs twice"
             raise ConfigError(
                 f"{path}, line {rows[0][0]}: {told}: a roster has {' and '.join(_COLUMNS)}"
             )
@@ -109,11 +109,7 @@ def _columns(
 
 
 def _check(path: Path, line: int, pupil: Pupil) -> None:
-    """Refuse a pupil who cannot be shown or distinguished.
-
-    Raises:
-        ConfigError: The name or the scene cannot be used.
-    """
+    """Refuse a pupil who cannot be shown or distinguished."""
     where = f"{path}, line {line}"
     if not pupil.name:
         raise ConfigError(f"{where}: no name")

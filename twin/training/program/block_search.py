@@ -33,7 +33,6 @@ def approach(control: Control, stand: FloatArray, line: int, clearance: float) -
     Args:
         control: After the blocks that were only computed.
         stand: Where the axes stand, part coordinates, shape (k,) [mm or deg].
-        line: Source line of the block.
         clearance: Height at which the tool travels, at least, part coordinates [mm].
     """
     motion = control.motion
@@ -111,12 +110,11 @@ class BlockSearch:
         return ""
 
     def arrival(self, control: Control, stand: FloatArray, line: int) -> Chunk:
-        """The way to where the block begins, with spindle and coolant as they are needed there.
+        """The path to where the block begins, with spindle and coolant as they are needed there.
 
         Args:
             control: After the blocks that were only computed.
             stand: Where the axes are, part coordinates, shape (k,) [mm or deg].
-            line: Source line of the block.
         """
         events = tuple(
             dataclasses.replace(event, before=0, at=0.0, line=line)

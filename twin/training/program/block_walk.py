@@ -24,7 +24,6 @@ class ModalState:
     """What is in force while a block runs.
 
     Attributes:
-        line: Source line.
         codes: G codes in force, such as ``G90``.
         feed: As programmed, or None.
         tool: Number of the tool in the spindle, or None.
@@ -143,7 +142,6 @@ class BlockWalk(Forkable):
 
         Args:
             move: The last move that was run, or part of it.
-            line: Its source line.
         """
         if self._stepping and self.line == line:
             self.singly.add(line)

@@ -44,7 +44,7 @@ class Preview:
     """A path to draw.
 
     Attributes:
-        points: The tip's way in the part's frame, shape (n, 3) [mm].
+        points: The tip's path in the part's frame, shape (n, 3) [mm].
         origin: Where program zero lies there, as the control has it, shape (3,) [mm].
         rapid: Whether the line that leads to each point is a rapid, shape (n,).
         moves: How many moves it has.
@@ -69,13 +69,11 @@ class PathToCome:
     """All that the next start would begin with.
 
     Attributes:
-        settings: What the control knows of the machine as it stands.
+        settings: What the control knows of the machine as it is.
         search: Source line that the next start begins at; 0: the first.
         stand: Where the setpoints stand, machine coordinates, shape (k,) [mm or deg].
         zero: Machine coordinates of program zero for the first tool, as the control has it, shape (k,).
         length_difference: How much longer than the first each tool is in the control's table, by number [mm].
-        tool: Number of the tool in the spindle.
-        frame: How the part turns under the tool.
     """
 
     source: Source
@@ -92,7 +90,7 @@ class PathToCome:
 
     @property
     def key(self) -> tuple[Any, ...]:
-        """What two ways that are the same have in common."""
+        """What two paths that are the same have in common."""
         numbers = (
             self.stand.round(3).tobytes(),
             self.zero.tobytes(),

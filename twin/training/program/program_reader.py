@@ -112,7 +112,7 @@ class ProgramReader:
         """Read a program from its beginning.
 
         Args:
-            settings: What the control knows of the machine as it stands.
+            settings: What the control knows of the machine as it is.
 
         Raises:
             ProgramError: The program cannot be begun.

@@ -10,7 +10,6 @@ import math
 import numpy as np
 
 from twin.machine.description.config import Machine
-from twin.machine.description.motion_limits import motion_limits
 from twin.motion.blocks.corners import CONTEXT
 from twin.motion.live.live_motion import LiveMotion
 from twin.motion.profile.windows import LOOK_AHEAD
@@ -74,7 +73,7 @@ class ProgramRun:
     ) -> None:
         """Read a program from its beginning; see ``ProgramReader`` for arguments and errors."""
         self._machine = machine
-        self._limits = motion_limits(machine)
+        self._limits = machine.motion_limits
         self._stream = options.stream
         self.reader = ProgramReader(source, dialect, settings, machine, options)
         self.dropped = False
@@ -122,7 +121,6 @@ class ProgramRun:
         """The next setpoints; None while the first moves are being interpreted.
 
         Args:
-            count: How many servo periods.
             feed: Factor of the feed override.
             rapid: Factor of the rapid override.
             single: Whether to stop at the end of every block.
@@ -274,11 +272,7 @@ class ProgramRun:
         self._last_move = self._stopped_behind = -1
 
     def _next_chunk(self) -> Chunk | None:
-        """What the planner pulls; where it is quicker than the interpreter, the part ends there.
-
-        Raises:
-            _TooFewMovesError: The planner is to begin, and there are no more moves yet.
-        """
+        """What the planner pulls; where it is quicker than the interpreter, the part ends there."""
         reader = self.reader
         if not reader.waiting and reader.ending is None and not self._takes_any:
             raise _TooFewMovesError

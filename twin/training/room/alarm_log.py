@@ -33,7 +33,7 @@ class AlarmLog:
     def begin_with(self, code: str) -> Notice:
         """The last shift has left the machine with an alarm."""
         on_switch = code == "hard-limit"
-        message = "an axis stands on its limit switch" if on_switch else LEFT_IN_ALARM
+        message = "an axis is on its limit switch" if on_switch else LEFT_IN_ALARM
         self.active = Notice(code, message)
         self.history.append(self.active)
         return self.active

@@ -11,7 +11,7 @@ from twin.training.scene.scene_file import Scene
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Verdict:
-    """How a task stands.
+    """The state of a task.
 
     Attributes:
         state: ``open`` until it is done or has failed.
@@ -172,7 +172,7 @@ class Judge:
         )
 
     def look(self, room: Observed) -> None:
-        """Check every open task against the machine as it stands after a slice."""
+        """Check every open task against the machine as it is after a slice."""
         if self.over:
             return
         self.evidence.since_touch_s = self.time_s(room)

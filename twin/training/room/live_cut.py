@@ -52,12 +52,11 @@ class LiveCut:
 
         Args:
             job: Says whether force is simulated, and with which tool the machine begins.
-            part_frame: How the part turns under the tool.
             zero: Machine coordinates of program zero, shape (k,) [mm or deg].
         """
         self.process: HeightMapProcess | None = None
         self._machine = machine
-        # Teeth are felt in a height map alone.
+        # Only a height map gives forces of single teeth.
         self._simulated = job.cutting_force == "teeth" and part_frame.chain is None
         self._operation = OperatorOperation(job.tools[0])
         self._frame, self._zero = part_frame, zero
@@ -110,7 +109,7 @@ class LiveCut:
         return np.full(len(setpoints), np.nan if speed is None else speed)
 
     def loads(self, loads: ToolLoad | None) -> Loads:
-        """What there is to show of what the tool felt."""
+        """What there is to show of the tool's loads."""
         if loads is None or not len(loads):
             return Loads()
         strength = tool_strength(self._operation.tool)

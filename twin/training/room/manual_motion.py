@@ -1,4 +1,4 @@
-"""Axes driven by hand: jog keys, the handwheel, and the ways to the reference point and back to the path."""
+"""Axes driven by hand: jog keys, the handwheel, and moves to the reference point and back to the path."""
 
 from collections import deque
 from collections.abc import Iterable

@@ -24,7 +24,6 @@ class Panel:
         block_skip: Blocks that begin with a slash are left out.
         dry_run: All feeds are replaced by that of the dry run.
         stop_pressed: The emergency stop button is pressed.
-        entered: Text of the MDI line.
     """
 
     mode: Mode

@@ -68,11 +68,7 @@ class ProgramSlot:
         return self.run is None and self.suspended is None
 
     def line(self, setpoint: Setpoints) -> int:
-        """Source line of the program that runs, or behind which it waits; 0: none.
-
-        Args:
-            setpoint: Where the machine is, one row.
-        """
+        """Source line of the program that runs, or behind which it waits; 0: none."""
         if self.suspended is not None:
             return self.suspended.line
         if self.running != "program" or self.run is None:
@@ -92,11 +88,7 @@ class ProgramSlot:
         self.waiting = waiting
 
     def drop(self, setpoint: Setpoints) -> None:
-        """Forget what runs; the axes slow down where they are.
-
-        Args:
-            setpoint: Where the machine is, one row.
-        """
+        """Forget what runs; the axes slow down where they are."""
         if self.run is not None and self.running != "jog":
             self.modal = self.run.modal(int(setpoint.move[0]))
         self._empty()
@@ -110,9 +102,6 @@ class ProgramSlot:
 
         At M0 a part is measured and chips are cleared (Fagor 8070: tool inspection; SINUMERIK Operate:
         JOG in an interruption, REPOS).
-
-        Args:
-            setpoint: Where the machine is, one row.
         """
         assert self.run is not None
         place = setpoint.position[0].copy()
@@ -122,9 +111,6 @@ class ProgramSlot:
 
     def resume(self, setpoint: Setpoints) -> None:
         """Take the held program up again.
-
-        Args:
-            setpoint: Where the machine is, one row.
 
         Raises:
             UsageError: That is elsewhere.
@@ -158,7 +144,6 @@ class ProgramSlot:
         """The next setpoints of what runs; None: nothing moves the axes.
 
         Args:
-            count: How many servo periods.
             panel: Its overrides, and whether it stops behind every block.
         """
         if self.run is None or self.waiting:

@@ -1,4 +1,4 @@
-"""What the interpreter is told about the machine as it stands, for a start and for the path before one."""
+"""What the interpreter knows about the machine as it is, for a start and for the path before one."""
 
 import dataclasses
 
@@ -8,7 +8,7 @@ from twin.training.room.observed import Observed
 
 
 def run_settings(room: Observed) -> ControlSettings:
-    """What the interpreter must know of the machine as it stands."""
+    """What the interpreter must know of the machine as it is."""
     tables = room.setup.tables
     names = room.machine.machine.axes.names
     zero = tables.program_zero

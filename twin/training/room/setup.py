@@ -37,9 +37,6 @@ class Setup:
     def __init__(self, scene: Scene, machine: LiveMachine, tables: Tables) -> None:
         """Clamp a scene's blank and mount its first tool.
 
-        Args:
-            machine: Where.
-
         Raises:
             ConfigError: The stock is wrong.
         """

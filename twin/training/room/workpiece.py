@@ -42,7 +42,6 @@ class Workpiece:
         """Clamp the blank.
 
         Args:
-            part_frame: How the part turns under the tool.
             zero: Machine coordinates of program zero, shape (k,) [mm or deg].
             head: What is above a tool's holder; None: nothing.
 

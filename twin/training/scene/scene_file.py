@@ -127,7 +127,7 @@ class SceneFile(Table):
     title: Text
     """What the list of scenes and the page call it."""
     story: Text
-    """What the operator is told first."""
+    """What the operator reads first."""
     language: Language = "en"
     """What labels, messages and texts are in, unless ``--language`` says otherwise."""
     job: JobFile
@@ -234,11 +234,7 @@ _WITHOUT_END_S = 1e9
 
 
 def scene_of_job(name: str, preparation: Preparation) -> Scene:
-    """A room without a lesson: the machine of a job, for programs that come from elsewhere.
-
-    Args:
-        name: What the room is called.
-    """
+    """A room without a lesson: the machine of a job, for programs that come from elsewhere."""
     file = SceneFile(
         schema=1,
         title={"en": name},

@@ -26,9 +26,6 @@ class CourseRow(NamedTuple):
 
     Attributes:
         name: Who was at the panel; empty: nobody said.
-        title: What its sheet calls it.
-        date: When it began.
-        of: What all tasks are worth.
         alarms: Codes of the alarms that came, in their order.
         link: To the sheet, from the list's page.
     """
@@ -51,7 +48,6 @@ class Trainee(NamedTuple):
 
     Attributes:
         name: As signed; empty: nobody said.
-        sessions: How many there are.
         full: Scenes that were handed in with all points at least once.
         points: Sum of the best of each scene that was handed in.
         of: What these scenes are worth.

@@ -31,11 +31,7 @@ _TEMPLATE = Path(__file__).with_name("score.html.j2")
 
 
 def score_sheet(session: Session, words: Words, date: str = "") -> dict[str, Any]:
-    """The score sheet as plain data.
-
-    Args:
-        date: When it began.
-    """
+    """The score sheet as plain data."""
     scene, room = session.scene, session.room
     period = room.machine.machine.file.servo_period_s
     language = words.language

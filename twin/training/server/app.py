@@ -89,7 +89,6 @@ class RoomApp:
         """Prepare it.
 
         Args:
-            attempts: Begins the next attempt.
             attempt: The first one.
         """
         self._driver = driver

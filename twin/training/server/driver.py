@@ -119,7 +119,6 @@ class Driver:
         """Play another session from the next slice on, from any thread.
 
         Args:
-            changed: Called after every command.
             trouble: What is wrong outside the machine.
         """
 
@@ -214,7 +213,7 @@ class Driver:
             self._changed()
 
     def _answer(self) -> None:
-        """Answer what was inquired of the machine; what goes wrong in it is told to who asked."""
+        """Answer what was inquired of the machine; errors go to who asked."""
         with contextlib.suppress(queue.Empty):
             while True:
                 question, answer = self._questions.get_nowait()

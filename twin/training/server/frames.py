@@ -60,7 +60,7 @@ def state_message(look: Look, cutting: bool) -> bytes:
 
 
 def path_message(preview: Preview, message: dict[str, str] | None) -> bytes:
-    """A program's way: the length of a head in JSON, that head, then the points.
+    """A program's path: the length of a head in JSON, that head, then the points.
 
     The head, filled up to a multiple of four, has ``moves``, ``points``, ``origin``, ``complete``,
     ``line`` and ``message``. X, Y, Z

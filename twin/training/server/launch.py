@@ -102,7 +102,6 @@ def open_room(
 
     Args:
         language: Of the pages; the scene's by default.
-        host: Where the server listens.
         port: Its port; 0: the first free one.
         out: Folder for log and score sheet; none: none are written.
         promptly: Whether to ask the system for precedence over what else runs on this computer.

@@ -1,41 +1,19 @@
 """The part that is cut from any side as pages draw it: a mesh, made again in parallel with the machine while it is cut."""
 
 import asyncio
-import struct
 import time
-import zlib
 
 import anyio.to_thread
-import numpy as np
 
 from twin.cutting.tridexel.dexels import TriDexel
-from twin.cutting.tridexel.mesh import surface
-from twin.cutting.tridexel.normals import tools
+from twin.cutting.tridexel.mesh import mesh_message
 from twin.training.room.room import Room
 from twin.training.server.driver import Driver
 
-MESH = 3
-"""First byte of the message."""
 EVERY_S, STILL_S = 0.7, 1.5
 """Between two meshes while the part is cut, and after how long one that is no longer cut is drawn finely [s]."""
 COARSE, FINE = 8_000, 40_000
 """Crossings of the mesh of a part that is cut, and of one that is not."""
-_MOST_TOOL = 255
-
-
-def mesh_message(stock: TriDexel, crossings: int) -> bytes:
-    """Kind, number of vertices and of triangles; then deflated the vertices, the triangles' corners, the tool that left each.
-
-    Args:
-        crossings: How finely it is drawn; see ``surface``.
-    """
-    found = surface(stock, crossings)
-    by = np.minimum(tools(found.facet[found.faces[:, 0]]), _MOST_TOOL).astype(np.uint8)
-    head = struct.pack("<BxxxII", MESH, len(found.points), len(found.faces))
-    content = (
-        found.points.astype("<f4").tobytes() + found.faces.astype("<u4").tobytes() + by.tobytes()
-    )
-    return head + zlib.compress(content, 1)
 
 
 class PartMesh:

@@ -43,8 +43,7 @@ def scene_of(room: Room, language: Language, title: str, story: str) -> SceneTex
     be written into the file.
 
     Args:
-        title: What the scene is called.
-        story: What the operator is told first.
+        story: What the operator reads first.
 
     Raises:
         UsageError: The room cannot be written down as a scene.
@@ -95,7 +94,7 @@ def write_scene(scene: SceneText, folder: Path) -> Path:
         for written in (path, program):
             with contextlib.suppress(OSError):
                 written.unlink()
-        raise UsageError(f"this room is no scene that stands alone: {error}") from error
+        raise UsageError(f"this room is not a complete scene by itself: {error}") from error
     return path
 
 

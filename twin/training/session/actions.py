@@ -139,7 +139,7 @@ def _jog(room: Room, command: c.Jog) -> None:
     distance = command.direction * (command.step if command.step is not None else ENDLESS)
     move = _jog_move(room, command.axis, place + distance, command.feed)
     if abs(move.target - place) < SHORTEST_MOVE:
-        raise UsageError(f"{command.axis} stands at the end of its travel")
+        raise UsageError(f"{command.axis} is at the end of its travel")
     room.drive_by_hand([move])
 
 
@@ -337,7 +337,7 @@ def _repair(room: Room, _command: c.Repair) -> None:
 
 def _require_no_alarm(room: Room) -> None:
     if room.alarm is not None:
-        raise UsageError(f"an alarm stands ({room.alarm.code}): reset first")
+        raise UsageError(f"an alarm is active ({room.alarm.code}): reset first")
 
 
 def _require_no_run(
@@ -356,7 +356,7 @@ def _require_jog(room: Room, axis: str) -> None:
         _require_no_alarm(room)
     elif room.machine.on_limit_switch not in ("", axis):
         raise UsageError(
-            f"{room.machine.on_limit_switch} stands on its limit switch: jog it back first"
+            f"{room.machine.on_limit_switch} is on its limit switch: jog it back first"
         )
 
 

@@ -120,7 +120,7 @@ class Checkpoint:
         tick: Servo periods since the beginning.
         done: How many commands had been given by then.
         room: The copy; its stock is laid out when it is used.
-        maps: Heights of its stock, and heights and walls that the force of the cut is felt from, where
+        maps: Heights of its stock, and heights and walls that the force of the cut is computed from, where
             there are such.
     """
 
@@ -189,7 +189,7 @@ def checkpoint(room: Room, done: int, before: tuple[KeptMap, ...]) -> Checkpoint
 
 
 def _stocks(room: Room) -> Iterator[HeightMap]:
-    """What is cut: the part, and what the force of the cut is felt from."""
+    """What is cut: the part, and what the force of the cut is computed from."""
     if room.setup.work is not None and room.setup.work.map is not None:
         yield room.setup.work.map
     if room.setup.cut.process is not None:

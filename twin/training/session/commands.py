@@ -40,11 +40,7 @@ _NO_TEXT = re.compile(r"[^\S\t\n ]|[\x00-\x08\x0e-\x1f\x7f]")
 
 
 def _plain(text: str) -> str:
-    """A text with one kind of line ends, and nothing in it that cannot be seen.
-
-    Raises:
-        ValueError: It holds a control character.
-    """
+    """A text with one kind of line ends, and nothing in it that cannot be seen."""
     text = text.replace("\r\n", "\n").replace("\xa0", " ")
     found = _NO_TEXT.search(text)
     if found:

@@ -20,7 +20,6 @@ def play(session: Session, steps: Iterable[StepTable], *, hand_in: bool = True) 
     """Play steps to their end.
 
     Args:
-        session: Where.
         hand_in: Whether the scene is handed in at the end.
 
     Raises:

@@ -1,7 +1,7 @@
 // Plays a recorded run: what stands at a moment is looked up in its samples, the view draws it.
 
 import { View } from "../view/view.js";
-import { readPatch } from "../view/wire.js";
+import { MESH, readMesh, readPatch } from "../view/wire.js";
 import { Chart, worst_blocks } from "./chart.js";
 
 const VIEWS = { front: "Front", top: "Top", tool: "Tool", part: "Part", fit: "Fit" };
@@ -22,7 +22,6 @@ const button = (text, act, pressed = null) => {
 const banner = (text) => { at("banner").textContent = text; at("banner").hidden = !text; };
 
 const run = await (await fetch("run.json")).json();
-if (run.shows_finished_part) SHOWN.stock = "Finished part";
 const base = new URL("./", location.href).pathname;
 const view = new View(at("canvas"), base, (what, detail) => {
   document.body.dataset.view = what;
@@ -164,7 +163,8 @@ async function read_cuts() {
   const head = new DataView(cuts_of), found = [];
   for (let place = 0; place < cuts_of.byteLength;) {
     const length = head.getUint32(place, true);
-    found.push({ time: head.getFloat32(place + 4, true), patch: await readPatch(cuts_of.slice(place + 8, place + 8 + length)) });
+    const message = cuts_of.slice(place + 8, place + 8 + length), of_mesh = head.getUint8(place + 8) === MESH;
+    found.push({ time: head.getFloat32(place + 4, true), ...(of_mesh ? { mesh: await readMesh(message) } : { patch: await readPatch(message) }) });
     place += 8 + length;
   }
   view.say("cuts", found);

@@ -9,7 +9,7 @@ export function edge_of({ origin, cell, outline }) {
 }
 
 /**
- * A vertex every few cells. Attributes beside "position" (where it is drawn; z is 0): "at", where its colour is
+ * A vertex every few cells. Attributes in addition to "position" (where it is drawn; z is 0): "at", where its colour is
  * looked up; "source", the cell that gives its height (negative: the underside) and 1 on the rim, whose height
  * is the least around; "outward", which way the side looks (0: it is no side).
  */

@@ -130,7 +130,6 @@ function assemble(described, root) {
         node.material = new THREE.MeshBasicMaterial({ color: 0xff5544, wireframe: true });
         bodies.push(node);
       }
-      if (belongs(node, described.part_as_cut)) faces_of_part.push(node);
     }
   });
   const joints = described.joints.map((joint) => {
@@ -351,6 +350,7 @@ function wait_for_picture() {
 /** The cuts of a run, in order of time; those that were done can be taken back. */
 let cuts = [], done = 0;
 function cut_until(time) {
+  if (machine?.part_mesh) return mesh_until(time);
   if (!machine?.stock) return;
   while (done < cuts.length && cuts[done].time <= time) {
     cuts[done].before = machine.stock.put(cuts[done].patch);
@@ -363,6 +363,19 @@ function cut_until(time) {
     dirty = true;
   }
 }
+
+/** Lay the last mesh of a part that is not later than a time. */
+function mesh_until(time) {
+  let last = 0;
+  while (last + 1 < cuts.length && cuts[last + 1].time <= time) last += 1;
+  const laid = cuts[last]?.mesh;
+  if (!laid || laid === mesh_laid) return;
+  const first = !mesh_laid;
+  machine.part_mesh.put(mesh_laid = laid);
+  if (first) look("start");
+  cut_open();
+}
+let mesh_laid = null;
 
 /** The whole path of a run: places [mm] and colours of the stretches that end there. */
 function drawPath({ places, colours }) {
@@ -401,7 +414,7 @@ const heard = {
   moment(seen) { take(seen, false); cut_until(seen.time); },
   cuts: (given) => { cuts = given.map((one) => ({ ...one, before: null })); },
   patch(buffer) {
-    // Inflated beside each other, put in their order.
+    // Inflated in parallel, put in their order.
     const of_mesh = new Uint8Array(buffer, 0, 1)[0] === MESH, read = of_mesh ? readMesh(buffer) : readPatch(buffer);
     patches = patches.then(async () => {
       const given = await read, first = of_mesh && !machine?.part_mesh?.by.length;

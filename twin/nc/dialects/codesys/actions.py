@@ -34,11 +34,7 @@ def free_plane(control: Control) -> None:
 
 
 def plane_changed(control: Control) -> None:
-    """G15 to G19: compensation that has not moved yet acts in the new plane (ToolRadiusCorr, example 2).
-
-    Raises:
-        ProgramError: It has moved in another one.
-    """
+    """G15 to G19: compensation that has not moved yet acts in the new plane (ToolRadiusCorr, example 2)."""
     if control.path.compensation.has_moved:
         refuse_compensated_plane(control)
     if control.path.compensation.in_force:
@@ -172,11 +168,7 @@ def length_vector(control: Control) -> None:
 
 
 def lead_into_length(control: Control) -> None:
-    """A move goes to its end with the tool's vector, which has changed before it.
-
-    Raises:
-        ProgramError: It is an arc, whose radius the vector would change on the way.
-    """
+    """A move goes to its end with the tool's vector, which has changed before it."""
     memory = memory_of(control)
     across = memory.length_ramp
     memory.length_ramp = (0.0, 0.0, 0.0)

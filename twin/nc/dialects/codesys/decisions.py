@@ -36,7 +36,7 @@ DECISIONS = (
         example="opening_above_three_turns",
     ),
     Decision(
-        "What if T stands together with a target in the plane?",
+        "What if T is programmed together with a target in the plane?",
         "T wins, with a warning.",
         "The page computes the target from T.",
         example="opening_wins",
@@ -73,7 +73,7 @@ DECISIONS = (
     ),
     Decision(
         "How does an axis go from G71 to G70?",
-        "With one slope over the length of the path, from where it stands at G71 to where the program "
+        "With one slope over the length of the path, from where it is at G71 to where the program "
         "has it at G70, or at its end.",
         "The library's page promises one slope and does not say what targets between them do.",
         example="evenly_over_several_moves",
@@ -124,7 +124,7 @@ DECISIONS = (
     ),
     Decision(
         "What does G56 do?",
-        "The place where the machine stands gets the given coordinates.",
+        "The place where the machine is gets the given coordinates.",
         "The manual calls it set reference.",
         example="reference_here",
     ),

@@ -6,6 +6,7 @@ from twin.nc.control.codes import WordAction
 from twin.nc.control.control import Control
 from twin.nc.dialects.codesys.actions import axis_named, lead_into_length
 from twin.nc.dialects.codesys.program import memory_of
+from twin.nc.iso.rotary_targets import go_shorter
 from twin.nc.text.blocks import Word
 
 LARGEST_SWITCH = 32_767
@@ -56,7 +57,7 @@ def before_motion(control: Control, _rapid: bool) -> None:
 
 
 def _refuse_slopes(control: Control) -> None:
-    """U, V, W beside A, B, C are the slopes of these at the end of the element (manual)."""
+    """U, V, W with A, B, C are the slopes of these at the end of the element (manual)."""
     for slope, axis in zip("UVW", "ABC", strict=True):
         if slope in control.words and slope not in control.axis_index and axis in control.words:
             message = f"{slope} is the slope of {axis}, and the twin moves {axis} linearly"
@@ -127,20 +128,11 @@ def take_shortest_way(control: Control) -> None:
         word = control.words.get(control.settings.axes.names[index])
         if word is None or period == 0.0:
             continue
-        target, here = control.axis_value(index, word), control.motion.programmed[index]
-        turns = round((target - here) / period)
-        if turns:
-            programmed = list(control.motion.programmed)
-            programmed[index] += turns * period
-            control.motion.set_position(programmed, "turns")
+        go_shorter(control, index, control.axis_value(index, word), period)
 
 
 def place_switches(control: Control, length: float) -> None:
-    """H with O (share of the element) or L (distance from its start, or its end when negative).
-
-    Raises:
-        ProgramError: Too many, none of O and L, or a place outside the element.
-    """
+    """H with O (share of the element) or L (distance from its start, or its end when negative)."""
     words, control.series = control.series, []
     if not words:
         return

@@ -24,6 +24,7 @@ from twin.nc.dialects.fagor8070.memory import FagorMemory, acts_on_lines
 from twin.nc.dialects.fagor8070.subroutines import LIBRARY
 from twin.nc.iso import base, shared_marks
 from twin.nc.iso.declared import flow_function
+from twin.nc.iso.rotary_targets import turn_by_sign
 from twin.nc.path.feed_rates import PATH_COUNTS, FeedRule
 from twin.nc.text.syntax import Comment, Mark, Syntax
 
@@ -33,8 +34,8 @@ def _prepare(control: Control) -> None:
     prepare_blends(control)
 
 
-def _before_motion(control: Control, rapid: bool) -> None:
-    frames.turn_in_commanded_direction(control, rapid)
+def _before_motion(control: Control, _rapid: bool) -> None:
+    turn_by_sign(control)
     inclined_planes.before_motion(control)
 
 
@@ -118,13 +119,13 @@ FAGOR8070 = Dialect(
             "I": "centre along X; abscissa of G30; depth of a cycle; size of G36 and G39",
             "J": "centre along Y; ordinate of G30; number of pecks",
             "K": "centre along Z; pitch of a helix; seconds of G04 and of a cycle",
-            "R": "polar radius; radius of the arc where a coordinate of the plane stands beside it",
+            "R": "polar radius; radius of the arc in a block with a coordinate of the plane",
             "R1": "radius of the arc, in force as G263=",
             "Q": "polar angle; direction of a chord; angle of G73",
             "F": "feed",
             "S": "spindle speed; scale of G72",
             "T": "tool",
-            "D": "tool offset: 1, or 0 for none; way to the surface of a cycle",
+            "D": "tool offset: 1, or 0 for none; distance to the surface of a cycle",
             "B": "B axis; depth of a pass or of the first peck of a cycle",
             "L": "subroutine; finishing stock of a cycle",
             "H": "auxiliary function",

@@ -94,7 +94,7 @@ def _end_on_circle(control: Control, goal: Goal, center: Point) -> None:
 
 
 def _circle_radius(control: Control, *, cartesian: bool) -> Word | None:
-    """R beside a coordinate of the plane, or R1, which stays in force as G263 does."""
+    """R with a coordinate of the plane, or R1, which stays in force as G263 does."""
     modal = control.take("R1")
     if modal is not None:
         if not cartesian:
@@ -117,11 +117,7 @@ def tangent_arc(control: Control) -> None:
 
 
 def three_point_arc(control: Control) -> None:
-    """G09 X Y I J: the arc through the point I J, given as coordinates by G90 or G91.
-
-    Raises:
-        ProgramError: The point is missing, or the three lie on a line.
-    """
+    """G09 X Y I J: the arc through the point I J, given as coordinates by G90 or G91."""
     letters = _center_letters(control)
     words = [control.take(letter) for letter in letters[:2]]
     if None in words:

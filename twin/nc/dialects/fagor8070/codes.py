@@ -41,7 +41,7 @@ def blend_code(kind: BlendKind, number: int) -> Action:
             message = f"G{number} needs I above 0, the size of the blend"
             control.fail("blend", message, word, hint=f"write G{number} I5 between two moves")
         if control.words:
-            message = f"G{number} stands in a block of its own between two moves"
+            message = f"G{number} is in a block of its own between two moves"
             control.fail(
                 "blend", message, hint=f"write G{number} I{memory.blend:g} in its own block"
             )
@@ -145,7 +145,7 @@ CODES: dict[float, GCode] = {
     18: plane_code("plane Z X", ZX, frames.choose_plane, "control page"),
     19: plane_code("plane Y Z", YZ, frames.choose_plane, "control page"),
     20: modal("any plane: X1 Z2", "plane", frames.any_plane),
-    30: modal("polar origin: I J, or where the tool stands", action=polar.set_polar_origin),
+    30: modal("polar origin: I J, or where the tool is", action=polar.set_polar_origin),
     31: modal("temporary polar origin at the arc's centre", action=polar.temporary_polar_origin),
     **refused("threading", "the twin's spindle has no angle", 33),
     36: replacement(
@@ -220,7 +220,7 @@ CODES: dict[float, GCode] = {
     **refused("constant feed of the cutting point", _UNKNOWN, 196),
     197: modal("constant feed of the tool's centre", "feed point"),
     **refused("axis limits", _LIMITS, *range(198, 200)),
-    **refused("manual intervention", "nobody stands at the twin", *range(200, 203)),
+    **refused("manual intervention", "there is no operator", *range(200, 203)),
     **refused("circular probing", _PROBE, *range(210, 213)),
     261: modal("centre in absolute coordinates", "centre", center_absolute=True),
     262: modal("centre relative to the start", "centre", center_absolute=False),

@@ -30,7 +30,7 @@ DECISIONS = (
     ),
     Decision(
         "What is R in an arc block?",
-        "Beside a coordinate of the plane the circle's radius, without one the polar radius.",
+        "With a coordinate of the plane the circle's radius, without one the polar radius.",
         "The forms of the manual differ in nothing else.",
         example="radius_of_arc_or_pole",
     ),

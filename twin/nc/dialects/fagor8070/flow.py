@@ -46,11 +46,7 @@ def _structure(control: Control) -> Structure:
 
 
 def construct_of(control: Control, statement: Statement) -> Construct:
-    """The construct that a statement of the block belongs to.
-
-    Raises:
-        ProgramError: It has no counterpart.
-    """
+    """The construct that a statement of the block belongs to."""
     construct = _structure(control).by_line.get(control.block.line - 1)
     if construct is None or construct.end is None:
         message = f"{statement.keyword} has no counterpart"
@@ -77,19 +73,16 @@ def _enclosing(control: Control, statement: Statement, without: tuple[str, ...])
         if construct.keyword not in without
     ]
     if not around:
-        control.fail("structure", f"{statement.keyword} stands outside a loop", statement)
+        control.fail("structure", f"{statement.keyword} is outside a loop", statement)
     return around[-1]
 
 
 def destination(control: Control, statement: Statement) -> Location:
-    """Where a jump leads.
-
-    Raises:
-        ProgramError: Nowhere, or into a construct.
-    """
+    """Where a jump leads."""
     match = _PLACE.fullmatch(statement.text)
     if match is None:
-        control.fail("jump-target", "$GOTO needs N10 or [NAME]", statement)
+        hint = "write $GOTO N50 or $GOTO [END]"
+        control.fail("jump-target", "$GOTO needs N10 or [NAME]", statement, hint)
     label = int(match[1]) if match[1] else match[2].upper()
     span = statement.text_column, len(statement.text)
     place = control.program_counter.find_label(label, span, "$GOTO", lines_around(control))
@@ -187,7 +180,8 @@ def _for_values(
         control.fail("structure", "$FOR needs its parameter", statement, "$FOR P1=0,10,1")
     column = statement.text_column + len(name) + 1
     first, last, step = (
-        control.compute(each, column) for each in control.statements.expressions(values, column, 3)
+        control.compute(each, column)
+        for each in control.statements.expressions(values, column, 3, "$FOR P1=0,10,1")
     )
     if step == 0.0:
         control.fail("structure", "a step of 0 never ends", error_at)

@@ -30,11 +30,7 @@ def choose_plane(control: Control) -> None:
 
 
 def change_plane(control: Control) -> None:
-    """The plane becomes another, with part zero as polar origin.
-
-    Raises:
-        ProgramError: Compensation or a rotation is in force.
-    """
+    """The plane becomes another, with part zero as polar origin."""
     refuse_compensated_plane(control)
     memory = memory_of(control)
     if not math.isnan(memory.rotation):
@@ -142,31 +138,3 @@ def compensation_by_tool(side: float) -> Action:
             compensate(control, side, radius if memory_of(control).offset_on else 0.0)
 
     return action
-
-
-def turn_in_commanded_direction(control: Control, _rapid: bool) -> None:
-    """With ``module_rotary``: G90 turns in the direction of the sign, by less than a turn.
-
-    Raises:
-        ProgramError: The target is a turn or more.
-    """
-    if not control.settings.module_rotary or control.modal.incremental:
-        return
-    for index, name in enumerate(control.settings.axes.names):
-        word = control.words.get(name)
-        if word is None or control.motion.linear[index] or word.incremental:
-            continue
-        value = control.number(word)
-        if abs(value) >= 360.0:
-            control.fail("module-range", "the target of a module axis is below one turn", word)
-        target, here = abs(value), control.motion.programmed[index] % 360.0
-        backwards = value < 0.0 or str(value).startswith("-")
-        start = here
-        if backwards and here < target:
-            start = here + 360.0
-        elif not backwards and here > target:
-            start = here - 360.0
-        programmed = list(control.motion.programmed)
-        programmed[index] = start
-        control.motion.set_position(programmed, "turns")
-        control.words[name] = word._replace(value=target)

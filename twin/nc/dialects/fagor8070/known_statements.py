@@ -68,7 +68,7 @@ REFUSED = _each(
         ),
         "#DEF, #INIT MACROS": "macros are not simulated; write their text",
         "#MEET, #WAIT, #SIGNAL": "the machine has one channel",
-        "#CONTJOG, #INCJOG, #MPG": "nobody stands at the twin",
+        "#CONTJOG, #INCJOG, #MPG": "there is no operator",
         "#MEAS": _NO_PROBE,
         "#ABORT": "an interrupted program does not go on elsewhere here",
         "#CYCLE": "cycles of the editor are not simulated; write the G code",

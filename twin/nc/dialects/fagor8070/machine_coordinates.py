@@ -14,11 +14,7 @@ from twin.nc.text.blocks import Statement
 
 
 def refuse_change(control: Control) -> None:
-    """A change of the frame while machine coordinates are in force.
-
-    Raises:
-        ProgramError: They are.
-    """
+    """A change of the frame while machine coordinates are in force."""
     if memory_of(control).part_frame is not None:
         message = "offsets, tool and transformations cannot change while #MCS is in force"
         control.fail("machine-coordinates", message, hint="end it by #MCS OFF first")

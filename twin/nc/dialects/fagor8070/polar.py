@@ -30,11 +30,7 @@ def forget_polar(control: Control) -> None:
 
 
 def set_polar_origin(control: Control) -> None:
-    """G30: I abscissa and J ordinate of the polar origin; neither: where the tool is.
-
-    Raises:
-        ProgramError: Only one of both is given.
-    """
+    """G30: I abscissa and J ordinate of the polar origin; neither: where the tool is."""
     abscissa, ordinate = control.take("I"), control.take("J")
     if (abscissa is None) != (ordinate is None):
         control.fail("polar-origin", "G30 needs both I and J, or neither", abscissa or ordinate)
@@ -46,11 +42,7 @@ def set_polar_origin(control: Control) -> None:
 
 
 def refuse_origin_by_g93(control: Control) -> None:
-    """G93 I J is the polar origin of the CNC 8055; here G93 is a feed.
-
-    Raises:
-        ProgramError: The block has I or J and no motion that would use them.
-    """
+    """G93 I J is the polar origin of the CNC 8055; here G93 is a feed."""
     word = control.words.get("I") or control.words.get("J")
     if word is not None and not any(code.group == "motion" for _, code in control.codes):
         message = "G93 is the feed in seconds; the polar origin by G93 is the CNC 8055's"

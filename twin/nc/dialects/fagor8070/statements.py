@@ -79,11 +79,7 @@ def warning(control: Control, statement: Statement) -> None:
 
 
 def error(control: Control, statement: Statement) -> None:
-    """#ERROR["..."]: the program stops itself.
-
-    Raises:
-        ProgramError: Always.
-    """
+    """#ERROR["..."]: the program stops itself."""
     message = f"the program stops itself: {_quoted(statement)}"
     control.fail("program-error", message, statement, "the program's own checks have failed")
 
@@ -94,7 +90,7 @@ def _quoted(statement: Statement) -> str:
 
 
 def pass_over(control: Control, statement: Statement) -> None:
-    """A statement that changes nothing of the path: told once."""
+    """A statement that changes nothing of the path: reported once."""
     keyword = _words(statement)
     if statement.text.strip().upper() != "OFF":
         message = f"{keyword} does not change the path here: {PASSED_OVER[keyword]}"
@@ -128,7 +124,7 @@ def warn_of_missing_end(control: Control) -> None:
 
 
 def _lead_tip(control: Control, statement: Statement) -> None:
-    """#RTCP ON, #RTCP ON[n], #RTCP OFF: the tip is led while rotary axes turn; F counts its way."""
+    """#RTCP ON, #RTCP ON[n], #RTCP OFF: the tip is led while rotary axes turn; F counts its path."""
     match = _RTCP.fullmatch(statement.text)
     if match is None:
         message = "#RTCP is written as #RTCP ON or #RTCP OFF"

@@ -50,11 +50,7 @@ def scale(control: Control) -> None:
 
 
 def set_scale(control: Control, factor: float, error_at: Word | Statement | None) -> None:
-    """Multiply lengths.
-
-    Raises:
-        ProgramError: By too much or too little; or the frame cannot change now.
-    """
+    """Multiply lengths."""
     if not SMALLEST_SCALE <= factor <= LARGEST_SCALE:
         control.fail("scale", "a scale lies between 0.001 and 1000", error_at)
     memory_of(control).scale = factor

@@ -96,8 +96,6 @@ class Assignment:
     Attributes:
         name: The variable, or ``P`` where its number is computed.
         index: That number, or None.
-        index_column: Where it is.
-        column: Where it is.
     """
 
     name: str
@@ -112,9 +110,6 @@ def assignments(control: Control, statement: Statement) -> tuple[list[Assignment
 
     Returns:
         The assignments, and the words of a block that follow them on the line, if any.
-
-    Raises:
-        ProgramError: They cannot be read.
     """
     found: list[Assignment] = []
     name, text, at = statement.keyword.strip(), statement.text, 0

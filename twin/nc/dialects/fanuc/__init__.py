@@ -1,6 +1,7 @@
 """Fanuc 0i-MF and 30i, milling, and the Haas mills, whose language is much the same."""
 
 import dataclasses
+import math
 
 from twin.nc.control.codes import Codes, Words
 from twin.nc.control.control import Control, Rules
@@ -25,7 +26,8 @@ from twin.nc.dialects.fanuc.decisions import DECISIONS
 from twin.nc.dialects.fanuc.memory import FANUC as FANUC_VARIANT
 from twin.nc.dialects.fanuc.memory import HAAS as HAAS_VARIANT
 from twin.nc.dialects.fanuc.memory import FanucMemory, acts_on_lines, holds_any, memory_of
-from twin.nc.iso import base, shared_marks
+from twin.nc.geometry.arcs import TURN
+from twin.nc.iso import base, rotary_targets, shared_marks
 from twin.nc.text.syntax import HEADING, Comment, Mark, Syntax
 
 
@@ -52,6 +54,23 @@ def before_motion(control: Control, rapid: bool) -> None:
         if memory_of(control).feed_lost and control.motion.feed is None:
             message = "F was written for another feed mode, and its number would mean another unit"
             control.fail("no-feed", message, hint="write F behind G93, G94 or G95")
+
+
+def _roll_over(control: Control) -> None:
+    """With ``rollover`` (parameter 1008 #0, ROA) absolute rotary targets are those of a turn, as RAB (#1) says."""
+    if control.settings.rollover is None:
+        return
+    for index, word, value in rotary_targets.absolute_targets(control):
+        if control.settings.rollover == "shorter":
+            rotary_targets.go_shorter(control, index, value)
+        else:
+            within = math.copysign(abs(value) % TURN, value)
+            rotary_targets.go_by_sign(control, index, word, within)
+
+
+def _before_motion(control: Control, rapid: bool) -> None:
+    _roll_over(control)
+    before_motion(control, rapid)
 
 
 def after_motion(control: Control) -> None:
@@ -147,7 +166,7 @@ FANUC = Dialect(
         read_variable=variables.read_variable,
         write_variable=variables.write_variable,
         is_local=variables.is_local,
-        before_motion=before_motion,
+        before_motion=_before_motion,
         after_motion=after_motion,
         finish=programs.finish,
         acts_on_lines=acts_on_lines,
@@ -158,7 +177,7 @@ FANUC = Dialect(
         length_by_code=True,
     ),
     units='mm, inches (G20), degrees; numbers without a point count 0.001 mm, 0.0001 inch or 0.001 degree, unless decimal_point = "calculator"; F in mm/min',
-    job_keys=frozenset({"decimal_point", "offset_rows"}),
+    job_keys=frozenset({"decimal_point", "offset_rows", "rollover"}),
     decisions=DECISIONS,
     marks=(
         *_FAMILY,
@@ -210,9 +229,11 @@ HAAS = dataclasses.replace(
     rules=dataclasses.replace(
         FANUC.rules,
         memory=lambda: FanucMemory(HAAS_VARIANT),
+        before_motion=before_motion,
         feed_rule=feeds.haas_rule,
     ),
     units=FANUC.units.replace("F in mm/min", "F in mm/min, without a point 0.001 mm/min"),
+    job_keys=frozenset({"decimal_point", "offset_rows"}),
     decisions=haas.DECISIONS,
     marks=(
         *_FAMILY,

@@ -17,11 +17,7 @@ def prepare(control: Control) -> None:
 
 
 def blend_after_motion(control: Control) -> None:
-    """The corner between the block's move and the next.
-
-    Raises:
-        ProgramError: The block has no such move, or the size is none.
-    """
+    """The corner between the block's move and the next."""
     words = [control.words.pop(address) for address in _KINDS if address in control.words]
     if not words:
         return

@@ -69,7 +69,7 @@ def arc_to(control: Control, goal: list[float], *, clockwise: bool) -> bool:
     abscissa, ordinate, _ = plane.axes
     named = [each for each in (abscissa, ordinate) if goal[each] != control.motion.programmed[each]]
     if len(named) > 1:
-        message = "an arc on a cylinder has one linear axis beside the rotary one"
+        message = "an arc on a cylinder has one linear axis and the rotary one"
         control.fail("cylinder", message, word)
     along = named[0] if named else abscissa
     per_degree = math.radians(radius)

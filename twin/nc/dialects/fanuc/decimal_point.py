@@ -52,14 +52,10 @@ def addresses_without_point(settings: ControlSettings) -> frozenset[str]:
 
 
 def count(control: Control, block: Block) -> Block:
-    """Give the words of a block the value that their numbers without a point count.
-
-    Raises:
-        ProgramError: An assignment does not stand alone in its block.
-    """
+    """Give the words of a block the value that their numbers without a point count."""
     *others, second = block.assignments or (None,)
     if second is not None and (others or block.words):
-        message = "an assignment stands alone in its block"
+        message = "an assignment must be alone in its block"
         control.report.line = block.line
         control.report.fail("assignment", message, second.column, second.width, "write two blocks")
     if any(isinstance(word.value, Expression) and rounds(word.value) for word in block.words):

@@ -37,8 +37,15 @@ DECISIONS: tuple[Decision, ...] = (
         example="motion_behind_a_cycle",
     ),
     Decision(
+        "Which way does a rotary axis turn to an absolute angle?",
+        'As the angle is written, over any number of turns. rollover = "shorter" or "sign" of the job or the machine file '
+        "brings it there within a turn, the shorter way or in the direction of its sign; half a turn goes forwards.",
+        "Parameter 1008 (ROA, RAB) is the builder's; 0 is how it comes from its maker.",
+        example="rotary_targets",
+    ),
+    Decision(
         "Does F hold when G93, G94 or G95 changes?",
-        "No: the first cutting move behind it is refused until F is written anew.",
+        "No: the first cutting move behind it is refused until F is written again.",
         "F200 in mm/min would become 200 mm with each turn.",
         example="feed_of_another_mode",
     ),
@@ -79,7 +86,8 @@ DECISIONS: tuple[Decision, ...] = (
     Decision(
         "What happens where a compensated contour is narrower than the tool?",
         "Paths that cross among three elements are refused, as the control's interference check does; a crossing that lies farther apart is driven, with a warning.",
-        "Parameter 19625 is how many blocks the control reads ahead, three when it comes from its maker; it gouges beyond them.",
+        "Parameter 19625 is how many blocks the control reads ahead, three when it comes from its maker; it gouges beyond them. "
+        "A Haas is taken to look as far: its manual names no number, and G103 limits it.",
         example="narrow_contour",
     ),
     Decision(
@@ -155,8 +163,8 @@ DECISIONS: tuple[Decision, ...] = (
     ),
     Decision(
         "How does tapping follow the spindle?",
-        "By its feed: G74 and G84 reverse the spindle at the bottom and feed back, with M29 or without; with Q they "
-        "tap in passes, and come back by 0.5 mm behind each.",
+        "By its feed: G74 and G84 reverse the spindle at the bottom and feed back, with M29 or without; behind M29 "
+        "they start a spindle that stands, and stop it behind the hole; with Q they tap in passes, and come back by 0.5 mm behind each.",
         "The twin's spindle has no angle; with a feed of pitch times speed the path is the same. Parameters 5200 #5 "
         "and 5213 decide how far a tap comes back.",
         example="tapping",
@@ -178,13 +186,13 @@ DECISIONS: tuple[Decision, ...] = (
         "Which program has a name?",
         "Upper and lower case are the same in M98 <NAME>, G65 <NAME>, G66 <NAME> and O<NAME>; <O2000> and <2000> "
         "are program O2000.",
-        "Names are files of the control's memory, and those beside a program stand on disks that differ in this.",
+        "Names are files of the control's memory; those next to a program are on disks that differ in this.",
         example="called_by_name",
     ),
     Decision(
         "What does M99 do in the main program?",
         "It ends the run with a warning; with P it jumps.",
-        "A control would begin the program anew, for ever.",
+        "A control would start the program again, for ever.",
         example="main_ends_by_m99",
     ),
     Decision(
@@ -204,7 +212,7 @@ DECISIONS: tuple[Decision, ...] = (
         "What do #3000 and #3006 do?",
         "#3000 refuses the program with its message; #3006 is a program stop as M0. #3003 to #3005 "
         "change nothing of the path.",
-        "An alarm ends a run, and nobody stands at the twin to answer a message.",
+        "An alarm ends a run, and there is no operator to answer a message.",
         example="stops_by_variable",
     ),
     Decision(

@@ -44,7 +44,7 @@ def _arguments(control: Control, words: tuple[Word, ...]) -> Iterator[tuple[str,
                 group += 1
             last = place
             if group >= _MOST_GROUPS:
-                message = f"{word.address} stands more than {_MOST_GROUPS} times"
+                message = f"{word.address} occurs more than {_MOST_GROUPS} times"
                 control.fail("call-values", message, word)
             yield f"#{4 + 3 * group + place}", word
         elif word.address in VARIABLES:
@@ -58,7 +58,7 @@ def _arguments(control: Control, words: tuple[Word, ...]) -> Iterator[tuple[str,
 def _one(control: Control, words: tuple[Word, ...], address: str) -> Word | None:
     found = [word for word in words if word.address == address]
     if len(found) > 1:
-        control.fail("duplicate-word", f"'{address}' stands twice in the block", found[1])
+        control.fail("duplicate-word", f"'{address}' occurs twice in the block", found[1])
     return found[0] if found else None
 
 

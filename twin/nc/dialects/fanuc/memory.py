@@ -257,7 +257,7 @@ def memory_of(control: Control) -> FanucMemory:
 def acts_on_lines(control: Control) -> bool:
     """Polar coordinates, a scale, a modal call or a cylinder in force, F lost: plain blocks heed them."""
     memory = memory_of(control)
-    if memory.length_cancelled or memory.overrules_cycles:
+    if memory.length_cancelled or memory.overrules_cycles or control.settings.rollover is not None:
         return True
     if memory.feed_lost and control.motion.feed is None:
         return True
@@ -266,11 +266,7 @@ def acts_on_lines(control: Control) -> bool:
 
 
 def refuse_transformed(control: Control, code: str) -> None:
-    """What changes the origin, or leaves it, under a scale, a mirror or a rotation (manual of G51, G51.1, G68).
-
-    Raises:
-        ProgramError: One is in force, on a control that forbids it.
-    """
+    """What changes the origin, or leaves it, under a scale, a mirror or a rotation (manual of G51, G51.1, G68)."""
     memory = memory_of(control)
     transformed = memory.scale is not None or memory.mirror or memory.rotation is not None
     if memory.variant.transformed_keeps_origin and transformed:

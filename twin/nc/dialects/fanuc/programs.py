@@ -104,7 +104,7 @@ def begin(control: Control) -> None:
 
 
 def _pass_text_before_tape(control: Control) -> int:
-    """Begin behind the first % where text that is no program stands before it, as the control does; the line, from 0."""
+    """Begin behind the first % where text that is no program comes before it, as the control does; the line, from 0."""
     lines = control.program_counter.lines
     first = next((at for at, _ in lines.holding("%") if lines[at].lstrip().startswith("%")), 0)
     text = [lines[at] for at in range(min(first, _LONGEST_TEXT + 1))]
@@ -113,7 +113,7 @@ def _pass_text_before_tape(control: Control) -> int:
         return 0
     control.program_counter.go(Location(first + 1, 0))
     control.report.line = 1
-    message = f"the control reads a file from its first % on, in line {first + 1}: what stands before it is passed over"
+    message = f"the control reads a file from its first % on, in line {first + 1}: what is before it is passed over"
     control.report.warn_once("before-tape-start", message)
     return first + 1
 
@@ -149,11 +149,7 @@ def _follows(control: Control, before: int | None, line: int, key: Key) -> bool:
 
 
 def heading(control: Control, word: Word) -> None:
-    """O: the heading of the program that runs first.
-
-    Raises:
-        ProgramError: The program before has not ended, or it has no possible name.
-    """
+    """O: the heading of the program that runs first."""
     if word.mark:
         named(control, word)
     memory, line = memory_of(control), control.block.line - 1
@@ -191,11 +187,7 @@ def called(control: Control, number: int, repeats: int | None) -> tuple[int, int
 
 
 def named(control: Control, word: Word) -> Key:
-    """The program that a word <NAME> or O<NAME> names.
-
-    Raises:
-        ProgramError: No program can have the name.
-    """
+    """The program that a word <NAME> or O<NAME> names."""
     name = word.mark[word.mark.index("<") + 1 : -1]
     if _NAME.fullmatch(name.upper()) is None:
         message = f"{word.text} names no program"
@@ -210,11 +202,7 @@ def program_word(
     words: tuple[Word | None, Word | None],
     error_at: Statement | None,
 ) -> Word:
-    """The one of P and a name that says which program a code calls.
-
-    Raises:
-        ProgramError: There is none or both.
-    """
+    """The one of P and a name that says which program a code calls."""
     number, name = words
     word = name or number
     if word is None:
@@ -228,11 +216,7 @@ def program_word(
 
 
 def line_of(control: Control, key: Key, word: Word | None) -> int:
-    """The line behind the heading of a program, from 0.
-
-    Raises:
-        ProgramError: There is none of this number or name.
-    """
+    """The line behind the heading of a program, from 0."""
     programs = memory_of(control).programs
     line = programs.get(key)
     if line is None:
@@ -298,7 +282,7 @@ def return_(control: Control) -> None:
         control.go_back()
         around = lines_around(control, counter.location.line)
     elif target is None:
-        message = "M99 in the main program begins it anew, for ever: here it ends"
+        message = "M99 in the main program starts it again, for ever: here it ends"
         control.report.warn_once("endless-main", message, hint="end the main program by M30")
         control.ended = True
         return
@@ -311,11 +295,7 @@ def return_(control: Control) -> None:
 
 
 def finish(control: Control) -> None:
-    """The last line has been passed without an end.
-
-    Raises:
-        ProgramError: A subprogram has not returned.
-    """
+    """The last line has been passed without an end."""
     if control.program_counter.is_calling:
         message = "the file ends within a subprogram, which has no M99"
         control.report.fail("program-end", message, hint="end it by M99")

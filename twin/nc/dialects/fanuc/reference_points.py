@@ -34,7 +34,7 @@ def go_home(control: Control, code: str = "G28") -> None:
     if not axes and memory_of(control).variant.home_without_axes:
         axes = list(range(len(control.settings.axes)))
     if not axes:
-        message = f"{code} needs the axes that shall go there, with the point on their way"
+        message = f"{code} needs the axes that shall go there, with the point that they pass"
         control.fail("reference-point", message, hint=f"G91 {code} Z0")
     refuse_transformed(control, code)
     with machine_frame(control, code):
@@ -102,7 +102,7 @@ def check_reference(control: Control) -> None:
     for index, distance in away.items():
         if abs(distance) > _SAME_PLACE:
             name = control.settings.axes.names[index]
-            message = f"{name} stands {distance:g} from its reference point"
+            message = f"{name} is {distance:g} from its reference point"
             control.fail("reference-point", message, control.code_word(27))
 
 

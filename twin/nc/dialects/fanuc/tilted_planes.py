@@ -35,11 +35,7 @@ _SQUARE = 1e-3
 
 
 def tilt(control: Control) -> None:
-    """G68.2: the origin of the tilted plane, and its angles (P0, P1), three points (P2) or two vectors (P3).
-
-    Raises:
-        ProgramError: It has another form, or a plane is in force.
-    """
+    """G68.2: the origin of the tilted plane, and its angles (P0, P1), three points (P2) or two vectors (P3)."""
     memory = memory_of(control)
     form_word, order = control.take("P"), control.take("Q")
     form = 0 if form_word is None else int(control.number(form_word))
@@ -86,9 +82,6 @@ def turned_in_order(control: Control, order: Word | None, angles: Vector, defaul
     Args:
         order: Q: the axes, 1 to 3, in turn.
         default: The order where the program says none; empty: that of several turns must be said.
-
-    Raises:
-        ProgramError: The order is none.
     """
     axes = default if order is None else f"{control.number(order):g}"
     if not axes and sum(angle != 0.0 for angle in angles) <= 1:

@@ -17,7 +17,7 @@ _BY_VECTORS = 43.5
 
 
 def begin(name: str) -> Action:
-    """G43.4 H1, G43.5 H1, G234 H1: the tip of the tool is led while rotary axes turn; F counts its way.
+    """G43.4 H1, G43.5 H1, G234 H1: the tip of the tool is led while rotary axes turn; F counts its path.
 
     G43.4 P1 and G43.5 P1 turn the tool in the plane of both directions (tool posture control); P0, or no P, does not.
     """
@@ -40,11 +40,7 @@ def begin(name: str) -> Action:
 
 
 def point_by_vector(control: Control) -> None:
-    """I, J and K of a block in G43.5: the direction of the tool at its end, from its tip to the spindle.
-
-    Raises:
-        ProgramError: A rotary axis is named too.
-    """
+    """I, J and K of a block in G43.5: the direction of the tool at its end, from its tip to the spindle."""
     if control.modal.active.get("length") != _BY_VECTORS or control.path.tool_center is None:
         return
     names = control.settings.axes.names
@@ -87,11 +83,7 @@ def _refuse_distance(control: Control) -> None:
 
 
 def require_orientation(control: Control) -> None:
-    """In a tilted plane X, Y and Z move when the tool stands across it.
-
-    Raises:
-        ProgramError: It does not yet.
-    """
+    """In a tilted plane X, Y and Z move when the tool stands across it."""
     if memory_of(control).tilt is not None:
         refuse_leaning(control, "G53.1 behind G68.2, or G253 behind G268, before X, Y and Z move")
 

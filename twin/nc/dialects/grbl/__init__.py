@@ -62,7 +62,7 @@ def _note_tool(control: Control, word: Word) -> None:
 
 
 def _with_axes(meaning: str, action: Action, group: str = "not modal") -> GCode:
-    """A code that takes the axis words of its block, so that no motion code can stand beside it."""
+    """A code that takes the axis words of its block, so that its block can have no motion code."""
 
     def perform(control: Control) -> None:
         if any(code.group == "motion" for _, code in control.codes):
@@ -79,7 +79,7 @@ POSITIONING, LINEAR = base.straight(
 
 
 def _arc(control: Control, rule: ArcRule) -> None:
-    """G2, G3: a centre beside the plane is passed over, as Grbl does (gcode.c, "Arc Center Format"); posts write K0."""
+    """G2, G3: a centre coordinate outside the plane is passed over, as Grbl does (gcode.c, "Arc Center Format"); posts write K0."""
     by_radius = "R" in control.words
     iso_arc(control, rule)
     if not by_radius:
@@ -200,6 +200,14 @@ GRBL = Dialect(
                 "Grbl has no canned cycles: let the post write the moves (FreeCAD: --translate_drill)",
             ),
             95: "F is a feed per minute (G94) or an inverse time (G93)",
+            90.1: "I, J and K count from the start of the arc, G91.1",
+        },
+        function_replacements={
+            6: "Grbl has no tool changer: M0 stops for a change by hand",
+            98: "Grbl has no subprograms: let the post write them out",
+            99: "Grbl has no subprograms: let the post write them out",
+            106: "a laser or a fan of Marlin: M3 S turns a laser on",
+            107: "a laser or a fan of Marlin: M5 turns a laser off",
         },
         start=START,
         m=M_CODES,

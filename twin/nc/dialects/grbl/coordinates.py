@@ -133,11 +133,7 @@ def in_machine_coordinates(control: Control) -> None:
 
 
 def check_feed(control: Control, rapid: bool) -> None:
-    """A move with a feed needs one; with G93 in its own block.
-
-    Raises:
-        ProgramError: There is none.
-    """
+    """A move with a feed needs one; with G93 in its own block."""
     if rapid:
         return
     require_feed_of_block(control)
@@ -183,11 +179,7 @@ def store_home(place: int) -> Action:
 
 
 def run_command(control: Control, statement: Statement) -> None:
-    """A line that begins with $: ``$H`` drives the axes to machine zero, Z first; ``$X`` unlocks what is not locked.
-
-    Raises:
-        ProgramError: It is another one.
-    """
+    """A line that begins with $: ``$H`` drives the axes to machine zero, Z first; ``$X`` unlocks what is not locked."""
     command = statement.text.strip().upper()
     if command == "X":
         return
@@ -206,10 +198,6 @@ def run_command(control: Control, statement: Statement) -> None:
 
 
 def refuse_axis(control: Control, word: Word) -> None:
-    """A, B, C, U, V, W: Grbl moves three axes.
-
-    Raises:
-        ProgramError: Always.
-    """
+    """A, B, C, U, V, W: Grbl moves three axes."""
     message = f"'{word.text}': Grbl 1.1 moves X, Y and Z alone"
     control.fail("no-such-axis", message, word, "another control's dialect moves further axes")

@@ -37,7 +37,7 @@ DECISIONS = (
     ),
     Decision(
         "What ends a program?",
-        "M2, M30 or its last line; what stands behind M2 or M30 is not run, and lines of % alone are left out.",
+        "M2, M30 or its last line; what follows M2 or M30 is not run, and lines of % alone are left out.",
         "Grbl knows no programs and would run on; senders stop there, and strip %.",
         example="end_of_program",
     ),

@@ -31,9 +31,9 @@ def _prepare(control: Control) -> None:
     control.modal.interpolation = paths.LINE
 
 
-def _before_motion(control: Control, rapid: bool) -> None:
+def _before_motion(control: Control, _rapid: bool) -> None:
     take_spatial_angles(control)
-    take_shortest_way(control, rapid)
+    take_shortest_way(control)
     enter_plane(control)
 
 
@@ -73,7 +73,7 @@ HEIDENHAIN = Dialect(
             "R-": refuse_paraxial,
         },
         meanings={
-            **dict.fromkeys(_AXES, "axis; incremental as IX; as LIN_Z beside an arc"),
+            **dict.fromkeys(_AXES, "axis; incremental as IX; as LIN_Z with an arc"),
             "PR": "polar radius; incremental as IPR",
             "PA": "polar angle; incremental as IPA",
             "R": "radius of CR, RND and a lead",
@@ -101,7 +101,7 @@ HEIDENHAIN = Dialect(
             "S": "spindle speed",
             "M": "machine function",
             "M128F": "M128 with the feed of its own moves",
-            "MB": "way of M140; as MB MAX",
+            "MB": "distance of M140; as MB MAX",
             "MBMAX": "M140 to the end of the travel",
             **{f"M94{axis}": f"M94 of the axis {axis} alone" for axis in "ABC"},
             "LA": "blocks that M120 looks ahead",

@@ -40,12 +40,8 @@ def cut_corner(control: Control, statement: Statement) -> None:
 
 
 def refuse_chamfered_arc(control: Control, statement: Statement | None = None) -> None:
-    """A chamfer cuts off the corner between two lines (TNC 426 user's manual, 6.4).
-
-    Raises:
-        ProgramError: Always.
-    """
-    message = "CHF stands between two straight lines, and one of its moves is an arc"
+    """A chamfer cuts off the corner between two lines (TNC 426 user's manual, 6.4)."""
+    message = "CHF belongs between two straight lines, and one of its moves is an arc"
     control.fail("blend", message, statement, "RND rounds the corner beside an arc")
 
 
@@ -64,5 +60,5 @@ def _blend(
     if not control.path.hold_for_blends().blend_next(
         Blend(kind, size, control.motion.part_plane, feed=rate)
     ):
-        message = f"{statement.keyword} stands between two moves, and none is before it"
+        message = f"{statement.keyword} belongs between two moves, and none is before it"
         control.fail("blend", message, statement)

@@ -14,7 +14,6 @@ class Parameters:
     """What a cycle was given, in the program's units.
 
     Attributes:
-        name: As messages call the cycle.
         values: By number of the Q parameter; a feed that is FMAX is ``RAPID``.
         unit: Of lengths [mm].
         line: Of the definition, from 1.

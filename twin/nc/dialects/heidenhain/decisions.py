@@ -23,7 +23,7 @@ DECISIONS = (
     ),
     Decision(
         "Where does M140 MB MAX go?",
-        "To machine zero of the tool axis; where the tool stands above it, nowhere.",
+        "To machine zero of the tool axis; where the tool is above it, nowhere.",
         "Nobody tells the control where the travel ends; mills have zero at its upper end.",
         example="retract_to_machine_zero",
     ),
@@ -83,7 +83,7 @@ DECISIONS = (
     ),
     Decision(
         "What is between the places of cycle 220 with Q365=1?",
-        "A straight line, which is told.",
+        "A straight line, which is reported.",
         "With the tool above the part only the time differs.",
         example="straight_between_places",
     ),

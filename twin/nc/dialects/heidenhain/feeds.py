@@ -25,11 +25,7 @@ def set_feed_per_turn(control: Control, word: Word) -> None:
 
 
 def feed_of_tool(control: Control, word: Word) -> None:
-    """F AUTO: the feed of the last TOOL CALL.
-
-    Raises:
-        ProgramError: It had none.
-    """
+    """F AUTO: the feed of the last TOOL CALL."""
     feed = memory_of(control).tool_feed
     if feed is None:
         hint = "write TOOL CALL 1 Z S3000 F500"

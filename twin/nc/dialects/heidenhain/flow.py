@@ -99,11 +99,7 @@ def warn_of_missing_end(control: Control) -> None:
 
 
 def refuse_end_of_called(control: Control) -> None:
-    """M2 or M30.
-
-    Raises:
-        ProgramError: It is in a program that another one calls, which the manual forbids.
-    """
+    """M2 or M30."""
     if _first_line(control, control.block.line) > 1:
         message = "a program that another one calls holds neither M2 nor M30"
         control.fail("program-end", message, hint="END PGM ends it")
@@ -141,11 +137,7 @@ def label(control: Control, statement: Statement) -> None:
 
 
 def _line_of(control: Control, name: str, column: int) -> int:
-    """Line of a label, from 0, in the file that runs.
-
-    Raises:
-        ProgramError: There is none, or more than one.
-    """
+    """Line of a label, from 0, in the file that runs."""
     memory, lines = memory_of(control), control.program_counter.lines
     if memory.labels is None:
         memory.labels = found = FoundInText[tuple[int, str], int]()
@@ -163,7 +155,7 @@ def _line_of(control: Control, name: str, column: int) -> int:
         hint = f"labels here: {known or 'none'}"
         control.report.fail("unknown-label", message, column, len(name), hint)
     if line < 0:
-        control.report.fail("ambiguous-label", f"LBL {name} stands twice", column, len(name))
+        control.report.fail("ambiguous-label", f"LBL {name} occurs twice", column, len(name))
     return line
 
 

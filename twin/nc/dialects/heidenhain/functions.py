@@ -12,6 +12,7 @@ from twin.nc.dialects.heidenhain.memory import memory_of
 from twin.nc.dialects.heidenhain.tool_tip import begin_tcpm, end_tcpm
 from twin.nc.iso import base
 from twin.nc.iso.hole import turn_spindle
+from twin.nc.iso.rotary_targets import absolute_targets, go_shorter
 from twin.nc.text.blocks import Word
 
 
@@ -81,18 +82,12 @@ def _go_shortest(shortest: bool) -> Action:
     return action
 
 
-def take_shortest_way(control: Control, _rapid: bool) -> None:
+def take_shortest_way(control: Control) -> None:
     """With M126 the start of each rotary axis is relabelled by whole turns, so that its way is the shorter one."""
     if not memory_of(control).shortest:
         return
-    programmed = list(control.motion.programmed)
-    for index, linear in enumerate(control.motion.linear):
-        word = control.words.get(control.settings.axes.names[index])
-        if word is not None and not linear and not word.incremental:
-            turns = round((control.number(word) - programmed[index]) / 360.0)
-            programmed[index] += 360.0 * turns
-    if programmed != control.motion.programmed:
-        control.motion.set_position(programmed, "turns")
+    for index, _, target in absolute_targets(control):
+        go_shorter(control, index, target)
 
 
 def _feed_per_turn(turning: bool) -> Action:

@@ -45,11 +45,7 @@ def compensation_word(side: float) -> WordAction:
 
 
 def refuse_paraxial(control: Control, word: Word) -> None:
-    """R+ and R-: compensation of a block that moves one axis.
-
-    Raises:
-        ProgramError: Always.
-    """
+    """R+ and R-: compensation of a block that moves one axis."""
     message = (
         f"{word.address} lengthens a move of one axis by the radius, which the twin does not follow"
     )
@@ -100,11 +96,7 @@ def _keyword(name: str) -> StatementAction:
 def _take_lead(
     control: Control, statement: Statement, kind: LeadKind, before: float | None
 ) -> Lead:
-    """Take LEN, R and CCA.
-
-    Raises:
-        ProgramError: One is missing or wrong.
-    """
+    """Take LEN, R and CCA."""
     control.take("DR+")
     memory, is_arc = memory_of(control), kind in (LeadKind.ARC, LeadKind.LINE_AND_ARC)
     address = "R" if is_arc else "LEN"

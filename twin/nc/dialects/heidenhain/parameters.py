@@ -67,11 +67,7 @@ def assign(control: Control, statement: Statement) -> None:
 
 
 def assign_text(control: Control, statement: Statement) -> None:
-    """``QS1 = "part" || QS2``.
-
-    Raises:
-        ProgramError: It is another function of texts.
-    """
+    """``QS1 = "part" || QS2``."""
     match = _TEXT.fullmatch(statement.text)
     if match is None:
         hint = 'QS1 = "text" || QS2'
@@ -108,11 +104,7 @@ def function(control: Control, statement: Statement) -> None:
 
 
 def _read_system(control: Control, statement: Statement) -> None:
-    """FN 18: the tool in the spindle, its radius and length, and where the axes are.
-
-    Raises:
-        ProgramError: It asks for something else.
-    """
+    """FN 18: the tool in the spindle, its radius and length, and where the axes are."""
     match = _READ.fullmatch(statement.text)
     index, tool = 0.0, control.tools.spindle or 0
     if match is not None and match["index"]:
@@ -136,11 +128,7 @@ def _read_system(control: Control, statement: Statement) -> None:
 
 
 def _write_system(control: Control, statement: Statement) -> None:
-    """FN 17: the length and the radius of a tool, from its next call on.
-
-    Raises:
-        ProgramError: It writes something else.
-    """
+    """FN 17: the length and the radius of a tool, from its next call on."""
     match = _WRITE.match(statement.text)
     number = 0 if match is None or match["id"] != "50" else int(match["number"])
     if match is None or number not in (1, 2) or match["index"] is None:

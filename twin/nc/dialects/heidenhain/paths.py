@@ -9,7 +9,6 @@ from twin.nc.control.control import Control
 from twin.nc.control.modal import LineRule
 from twin.nc.dialects.heidenhain.corners import refuse_chamfered_arc
 from twin.nc.dialects.heidenhain.memory import memory_of
-from twin.nc.dialects.heidenhain.vectors import take_vector
 from twin.nc.geometry.arcs import (
     SAME_POINT,
     Bounds,
@@ -29,7 +28,30 @@ from twin.nc.iso.circular import (
 from twin.nc.iso.machine_coordinates import machine_frame
 from twin.nc.iso.offsets import offset_of_job
 from twin.nc.iso.polar_words import aim_by_polar
+from twin.nc.iso.tool_center import point_by_words
 from twin.nc.text.blocks import Statement
+
+
+def take_vector(control: Control) -> None:
+    """TX, TY and TZ of LN point the tool; NX, NY and NZ are normals of the surface, which move nothing by themselves.
+
+    Raises:
+        ProgramError: The tool has another size than the program's, by which the normal would move it, or no tip is led.
+    """
+    normal, vector = ([control.take(f"{kind}{axis}") for axis in "XYZ"] for kind in "NT")
+    deltas = memory_of(control).deltas
+    if any(word is not None for word in normal) and (deltas.radius or deltas.length):
+        message = "compensation along a surface normal (DR, DL of TOOL CALL) is not followed in LN"
+        control.fail("tool-center", message, next(word for word in normal if word is not None))
+    first = next((word for word in vector if word is not None), None)
+    if first is None:
+        return
+    if control.path.tool_center is None:
+        message = "a vector of the tool needs its tip led"
+        control.fail("tool-center", message, first, "M128 or FUNCTION TCPM before")
+    x, y, z = (control.number(word) for word in vector)
+    point_by_words(control, (x, y, z), first)
+
 
 MOTION_WORDS = frozenset("XYZABCUVW") | {"PR", "PA", "DR+", "DR-", "R"}
 """Addresses that make a block move."""
@@ -49,11 +71,7 @@ After = Callable[[Control, list[float]], None]
 
 
 def path_function(interpolation: Interpolation, after: After) -> StatementAction:
-    """A keyword whose block moves.
-
-    Args:
-        after: Done behind it.
-    """
+    """A keyword whose block moves."""
 
     def action(control: Control, statement: Statement) -> None:
         memory, modal = memory_of(control), control.modal
@@ -108,11 +126,7 @@ POLAR_LINE = Interpolation(_polar_line)
 
 
 def polar_target(control: Control, pole: Point) -> list[float]:
-    """Take PR, PA and the other axes; missing ones of both stay as they are.
-
-    Raises:
-        ProgramError: The radius is negative.
-    """
+    """Take PR, PA and the other axes; missing ones of both stay as they are."""
     words = (control.take("PR"), control.take("PA"))
     target = control.target()
     aim_by_polar(control, target, pole, _MEASURED, words)
@@ -160,11 +174,7 @@ POLE = Interpolation(set_pole)
 
 @contextmanager
 def circle_plane(control: Control) -> Iterator[Point]:
-    """Let the plane of CC be the working plane; the pole in it.
-
-    Raises:
-        ProgramError: No pole is set.
-    """
+    """Let the plane of CC be the working plane; the pole in it."""
     memory, kept = memory_of(control), control.modal.plane
     plane = memory.circle_plane or kept
     first, second, _ = plane.axes
@@ -181,11 +191,7 @@ def circle_plane(control: Control) -> Iterator[Point]:
 
 
 def take_sense(control: Control) -> bool:
-    """Take DR; whether the arc is clockwise.
-
-    Raises:
-        ProgramError: There is none.
-    """
+    """Take DR; whether the arc is clockwise."""
     left, right = control.take("DR+"), control.take("DR-")
     if (left is None) == (right is None):
         hint = "DR+ turns counter-clockwise, DR- clockwise"

@@ -38,7 +38,7 @@ REFUSED: Mapping[str, tuple[str, str]] = {
     "SEL PGM": ("the program is selected where it runs", "write CALL PGM and its name"),
     "SEL CONTOUR": ("contours of subprograms are not followed", "write the moves themselves"),
     "GLOBAL DEF": ("values of all cycles are not kept", "write them into each CYCL DEF"),
-    "ERROR": ("the control's editor has marked this block as wrong", "write the block anew"),
+    "ERROR": ("the control's editor has marked this block as wrong", "write the block again"),
     "POLARKIN": ("polar kinematics are not followed", "write X and Y"),
     **dict.fromkeys(
         ("TABDATA", "OPEN", "CLOSE"),
@@ -53,11 +53,7 @@ def pass_over(_control: Control, _statement: Statement) -> None:
 
 
 def go_on(control: Control, statement: Statement) -> None:
-    """``~``: a comment goes on; what else does has taken its lines before.
-
-    Raises:
-        ProgramError: It is no comment that goes on.
-    """
+    """``~``: a comment goes on; what else does has taken its lines before."""
     lines, line = control.program_counter.lines, control.block.line - 2
     while line > 0 and lines[line - 1].rstrip().endswith("~"):
         line -= 1

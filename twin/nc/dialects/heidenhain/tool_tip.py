@@ -39,11 +39,7 @@ def end_tcpm(control: Control) -> None:
 
 
 def function(control: Control, statement: Statement) -> None:
-    """FUNCTION TCPM, RESET TCPM; MODE MILL changes nothing here.
-
-    Raises:
-        ProgramError: It is another one.
-    """
+    """FUNCTION TCPM, RESET TCPM; MODE MILL changes nothing here."""
     text = " ".join(statement.text.upper().split())
     if text.startswith("RESET TCPM"):
         end_tcpm(control)
@@ -51,7 +47,7 @@ def function(control: Control, statement: Statement) -> None:
         match = _TCPM.fullmatch(text.removeprefix("TCPM"))
         if match is None:
             message = "FUNCTION TCPM is simulated as F TCP AXIS POS or SPAT PATHCTRL AXIS or VECTOR"
-            hint = "F counts the tip's way, and the tip's own path is led (REFPNT TIP-TIP)"
+            hint = "F counts the tip's path, and the tip's own path is led (REFPNT TIP-TIP)"
             control.fail("tool-center", message, statement, hint)
         in_plane = match["path"].upper() == "VECTOR"
         begin_tool_center(control, "FUNCTION TCPM", in_plane=in_plane)

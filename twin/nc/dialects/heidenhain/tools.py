@@ -9,7 +9,7 @@ from twin.nc.dialects.heidenhain.feeds import set_feed
 from twin.nc.dialects.heidenhain.memory import Deltas, memory_of
 from twin.nc.dialects.heidenhain.values import computed_words, named_word, text_of, word_of
 from twin.nc.functions import BLANK
-from twin.nc.iso.base import next_tool
+from twin.nc.iso.base import next_tool, set_spindle_speed
 from twin.nc.iso.tool_change import change_tool_at
 from twin.nc.iso.tool_compensation import set_length
 from twin.nc.text.blocks import Statement, Word
@@ -36,6 +36,9 @@ def call_tool(control: Control, statement: Statement) -> None:
         control.fail("unsupported-word", message, statement, "TOOL CALL 1 Z S3000")
     words = computed_words(control, statement, match.end())
     number = _number_of(control, statement, match)
+    if number is None and not words and not match["axis"]:
+        message = "TOOL CALL names no tool, no speed and no feed"
+        control.fail("tool-number", message, statement, "TOOL CALL 1 Z S3000")
     speed, feed = words.pop("S", None), words.pop("F", None)
     lengths = {name: control.length(words.pop(name, None)) for name in ("DL", "DR", "DR2")}
     if words:
@@ -50,8 +53,7 @@ def call_tool(control: Control, statement: Statement) -> None:
         memory_of(control).deltas = Deltas(lengths["DR"], lengths["DL"])
         _put_length(control)
     if speed is not None:
-        control.motion.spindle = control.number(speed)
-        control.function("S", {"S": control.motion.spindle})
+        control.function("S", {"S": set_spindle_speed(control, speed)})
     memory_of(control).tool_feed = None
     if feed is not None:
         set_feed(control, feed)
@@ -59,11 +61,7 @@ def call_tool(control: Control, statement: Statement) -> None:
 
 
 def _number_of(control: Control, statement: Statement, match: re.Match[str]) -> Word | None:
-    """The number of the tool that TOOL CALL brings; None: it brings none.
-
-    Raises:
-        ProgramError: The job has no tool of that name.
-    """
+    """The number of the tool that TOOL CALL brings; None: it brings none."""
     if match["name"]:
         word = named_word(statement, 0.0, match.span("name"))
         number = tool_named(control, text_of(control, match["name"]), word)
@@ -74,11 +72,7 @@ def _number_of(control: Control, statement: Statement, match: re.Match[str]) -> 
 
 
 def _change(control: Control, number: Word) -> None:
-    """The tool goes into the spindle, which is stopped.
-
-    Raises:
-        ProgramError: The job has no such tool.
-    """
+    """The tool goes into the spindle, which is stopped."""
     index = integer_of(control.number(number))
     defined = memory_of(control).defined.get(index)
     if index != 0 and (control.tools.any is None or defined is None):
@@ -127,9 +121,6 @@ def compensation_radius(control: Control) -> float:
     """Radius of the tool in the spindle with DR [mm].
 
     Decision: where the job lists no tools that of TOOL DEF counts.
-
-    Raises:
-        ProgramError: There is no tool.
     """
     memory, number = memory_of(control), control.tools.spindle
     tool = control.tools.data(number)

@@ -9,17 +9,13 @@ from twin.nc.text.expressions import Expression
 
 
 def computed_words(control: Control, statement: Statement, at: int) -> dict[str, Word]:
-    """The words of a statement's text from a place on, computed, by address.
-
-    Raises:
-        ProgramError: One cannot be read, or occurs twice.
-    """
+    """The words of a statement's text from a place on, computed, by address."""
     found: dict[str, Word] = {}
     column = statement.text_column + at
     for block in control.statements.blocks(statement.text[at:], column, control.block.line):
         for word in block.words:
             if word.address in found:
-                control.fail("duplicate-word", f"'{word.address}' stands twice here", word)
+                control.fail("duplicate-word", f"'{word.address}' occurs twice here", word)
             found[word.address] = _computed(control, word)
         if block.statement is not None:
             refuse_rest(control, block.statement.column, block.statement.keyword)
@@ -34,11 +30,7 @@ def _computed(control: Control, word: Word) -> Word:
 
 
 def refuse_rest(control: Control, column: int, text: str) -> NoReturn:
-    """Something is where a statement has ended.
-
-    Raises:
-        ProgramError: Always.
-    """
+    """Something is where a statement has ended."""
     control.report.fail("unreadable-statement", f"'{text}' cannot stand here", column, len(text))
 
 

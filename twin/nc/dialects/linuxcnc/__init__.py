@@ -11,6 +11,7 @@ from twin.nc.dialects.linuxcnc.memory import LinuxcncMemory, memory_of
 from twin.nc.dialects.linuxcnc.parameters import EXPRESSIONS
 from twin.nc.dialects.linuxcnc.structure import COMMENTS, LIBRARY
 from twin.nc.iso import base, shared_marks
+from twin.nc.iso.rotary_targets import turn_by_sign
 from twin.nc.text.syntax import Mark, Syntax
 
 _LONGEST_LINE = 252
@@ -20,6 +21,7 @@ _WITH_PITCH = (33, 33.1)
 
 
 def _before_motion(control: Control, rapid: bool) -> None:
+    turn_by_sign(control)
     memory, number = memory_of(control), control.modal.active.get("motion")
     if number not in _WITH_PITCH:
         motion.check_feed(control, rapid)
@@ -34,7 +36,8 @@ def _acts_on_lines(control: Control) -> bool:
     """Compensation, absolute centres, a spline, or a feed of another unit, until the program writes one."""
     memory, modal = memory_of(control), control.modal
     return (
-        memory.compensation is not None
+        control.settings.module_rotary
+        or memory.compensation is not None
         or memory.leading_out
         or modal.center_absolute
         or bool(memory.control_points)
@@ -104,7 +107,7 @@ LINUXCNC = Dialect(
             "^": "polar angle",
             "I": "centre along X, or to a control point; beside the hole (G87)",
             "J": "centre along Y, or to a control point; beside the hole (G87)",
-            "K": "centre along Z; way of each turn (G33); top of the counterbore (G87)",
+            "K": "centre along Z; distance of each turn (G33); top of the counterbore (G87)",
             "R": "radius of the arc; R plane of a cycle; rotation (G10 L2); tool radius (G10 L1)",
             "P": "seconds; turns of an arc; number of a system, tool or program; corner tolerance",
             "Q": "depth of a peck; tool of M61; seconds of M66; tolerance of straight lines (G64)",

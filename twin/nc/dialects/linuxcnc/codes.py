@@ -76,7 +76,7 @@ def corner_tolerance(control: Control) -> None:
 
 
 def _with_axes(meaning: str, action: Action, group: str = "not modal") -> GCode:
-    """A code that takes the axis words of its block, so that no motion code can stand beside it."""
+    """A code that takes the axis words of its block, so that its block can have no motion code."""
 
     def perform(control: Control) -> None:
         if any(code.group == "motion" and not code.weak for _, code in control.codes):

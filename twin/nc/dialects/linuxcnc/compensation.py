@@ -264,11 +264,7 @@ class Compensation:
         self._here = end
 
     def _move_ends(self, end: Point) -> None:
-        """All moves that wait end there; they are let go.
-
-        Raises:
-            ProgramError: One of them would go back, or further around than it was programmed.
-        """
+        """All moves that wait end there; they are let go."""
         for held in self._queue:
             if isinstance(held, Held):
                 if not self._may_end(held, end):

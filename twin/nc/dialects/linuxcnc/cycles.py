@@ -1,7 +1,7 @@
 """Canned cycles of LinuxCNC: G73, G74, G81 to G89.
 
 The words of a cycle stay while the same cycle is in force; another one needs its own R and Z. With
-G91, R counts from the height of the call and Z from R, and L repeats the hole along the way.
+G91, R counts from the height of the call and Z from R, and L repeats the hole along the displacement.
 """
 
 from collections.abc import Callable, Mapping
@@ -155,8 +155,12 @@ def _take_words(control: Control, kind: Kind) -> None:
     elif values["axis"] != axis:
         refuse_other_plane(control, f"G{kind.number}")
     if memory.cycle != kind.number:
-        needed = ("R", control.settings.axes.names[axis], *kind.needed)
-        missing = [letter for letter in needed if letter not in control.words]
+        deep = control.settings.axes.names[axis]
+        values_of = {"R": "reference", deep: "bottom", "Q": "peck"}
+        needed = ("R", deep, *kind.needed)
+        missing = {
+            letter: values_of.get(letter, "") for letter in needed if letter not in control.words
+        }
         if missing:
             refuse_missing(control, f"G{kind.number}", missing)
         memory.back_boring = (0.0, 0.0, 0.0)
@@ -178,9 +182,7 @@ def _perform(kind: Kind) -> Callable[[Control], None]:
         refuse_in_compensation(control)
         check_feed(control, False)
         if not _NAME_PLACES & control.words.keys():
-            message = (
-                f"G{kind.number} drills where its block says, and no word of an axis stands in it"
-            )
+            message = f"G{kind.number} drills where its block says, and no word of an axis is in it"
             control.fail("code-words", message, hint="write X or Y, or end the cycle by G80")
         if control.modal.feed_mode is FeedMode.BLOCKS_PER_MINUTE:
             control.fail("code-words", "canned cycles need a feed per minute", hint="write G94 F")

@@ -93,9 +93,9 @@ DECISIONS = (
         "What does the twin refuse that rs274 passes over?",
         "Words behind the condition of an elseif that is false, a structure without its end, a NURBS that "
         "another motion ends, Z in G5.2, its first point without P or with a P that is not above 0, G5 without I and J that follows no G5, M6 before the first T, a "
-        "motion code beside G43.1 or G43.2, X and Y of a tool in G10 L1, L10 and L11, Q in G10 L2 and L20, names of parameters with "
-        "brackets in them, codes of lathes, words of axes beside M72, a radius compensation that M72 or the end "
-        "of a subroutine would switch, words beside M98 and M99 but for P and L, two of G92 to "
+        "motion code with G43.1 or G43.2, X and Y of a tool in G10 L1, L10 and L11, Q in G10 L2 and L20, names of parameters with "
+        "brackets in them, codes of lathes, axis words with M72, a radius compensation that M72 or the end "
+        "of a subroutine would switch, words with M98 and M99 but for P and L, two of G92 to "
         "G92.3 in a block, lines that begin with O and are no O-words.",
         "The manual calls each an error or says nothing of it; what was meant is not done.",
         example="refused_for_clarity",
@@ -156,7 +156,7 @@ DECISIONS = (
     ),
     Decision(
         "What does M99 in the main program do?",
-        "The program begins anew, until the job's step_limit ends it as endless.",
+        "The program starts again, until the job's step_limit ends it as endless.",
         "The control repeats it until somebody stops it.",
         example="main_program_repeats",
     ),

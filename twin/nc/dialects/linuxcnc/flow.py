@@ -51,7 +51,9 @@ def _read_values(
             at += 1
             continue
         if text[at] != "[":
-            refuse(control, statement, "o-word", "values stand in square brackets here")
+            rest = text[at:].strip()
+            hint = "leave then out" if rest.lower() == "then" else f"write {word.shown} [{rest}]"
+            refuse(control, statement, "o-word", "values stand in square brackets here", hint)
         value, end = control.statements.operand(text, at, word.column)
         found.append((value, word.column + at))
         at = end
@@ -243,9 +245,7 @@ def _called_line(control: Control, statement: Statement, word: OWord) -> int:
     if line is None:
         known = ", ".join(f"o{each}" for each in memory_of(control).subroutines) or "none"
         message = f"there is no subroutine {name}"
-        hint = (
-            f"it stands in the program as o<{name}> sub, or beside it in {name}.ngc; here: {known}"
-        )
+        hint = f"it is in the program as o<{name}> sub, or next to it in {name}.ngc; here: {known}"
         refuse(control, statement, "unknown-subprogram", message, hint)
     if line not in structure(control).by_line:
         message = f"O{name} is a program for M98, and no subroutine"
@@ -378,11 +378,11 @@ def return_from_program(control: Control) -> None:
 
 
 def _refuse_companions(control: Control, letters: str, alone: str) -> None:
-    """Only P and L stand beside M98, nothing beside M99: the control passes over other words, or refuses them."""
+    """A block has only P and L with M98, and nothing with M99: the control passes over other words, or refuses them."""
     words = control.block.words
     call = next(word for word in words if word.address == "M" and word.value in (98.0, 99.0))
     others = (word for word in words if word is not call and word.address not in letters)
     other = next(others, None)
     if other is not None:
-        message = f"{other.text} cannot stand beside {call.text}"
+        message = f"{other.text} cannot be in a block with {call.text}"
         control.fail("code-words", message, other, f"write {alone} in a line of its own")

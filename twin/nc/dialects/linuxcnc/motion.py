@@ -37,7 +37,7 @@ def check_feed(control: Control, rapid: bool) -> None:
 
 def need_axes(control: Control) -> NoReturn:
     """A motion code that wants words of axes has none."""
-    message = "the code moves where its block says, and no word of an axis stands in it"
+    message = "the code moves where its block says, and no word of an axis is in it"
     control.fail("code-words", message, hint="write its axes in its block")
 
 
@@ -59,7 +59,7 @@ def target(control: Control) -> list[float]:
     length, direction = math.hypot(x, y), math.atan2(y, x)
     incremental = control.modal.incremental
     if at_origin and (incremental or angle is None):
-        message = "polar coordinates have no direction where the tool stands at their origin"
+        message = "polar coordinates have no direction where the tool is at their origin"
         control.fail("code-words", message, radius or angle, "write both @ and ^, with G90")
     if radius is not None:
         length = control.length(radius) + (length if incremental else 0.0)
@@ -163,7 +163,7 @@ def _pitch_feed(control: Control, code: str) -> float:
     """Feed of a move that goes K further with each turn [mm/min]."""
     pitch = control.take("K")
     if pitch is None:
-        control.fail("code-words", f"{code} needs K, the way of each turn")
+        control.fail("code-words", f"{code} needs K, the distance of each turn")
     if not control.motion.spindle_turns:
         message = f"{code} follows a spindle that turns"
         control.fail("spindle-needed", message, hint="write S and M3 before")

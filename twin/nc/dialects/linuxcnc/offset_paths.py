@@ -55,7 +55,6 @@ def line_meets_arc(
     Args:
         before: Direction of the line [rad].
         turn: How far the contour turns at their corner [rad].
-        arc: That comes behind.
         tool: Its radius [mm].
         contour_radius: Of the contour's arc [mm].
 

@@ -135,11 +135,7 @@ def _check_number(number: int) -> None:
 def write_variable(
     control: Control, name: str, index: float | None, value: float, assignment: Assignment
 ) -> None:
-    """Give a parameter a value.
-
-    Raises:
-        ProgramError: There is none, or it is the control's own.
-    """
+    """Give a parameter a value."""
     span = assignment.column, assignment.width
     try:
         if index is not None:

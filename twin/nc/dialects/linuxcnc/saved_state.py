@@ -35,7 +35,9 @@ def restore(control: Control) -> None:
     axis = next((word for letter, word in control.words.items() if letter in _AXES), None)
     if axis is not None:
         hint = "write them in the next block"
-        control.fail("code-words", "words of axes beside M72 are lost in the control", axis, hint)
+        control.fail(
+            "code-words", "axis words in a block with M72 are lost in the control", axis, hint
+        )
     _put_back(control, saved[0])
 
 

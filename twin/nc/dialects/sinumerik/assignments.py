@@ -70,11 +70,7 @@ def _assignments(control: Control, statement: Statement) -> list[Assignment]:
 def _work_offset(
     control: Control, line: str, frame: re.Match[str], column: int, target: Expression
 ) -> tuple[list[Assignment], int]:
-    """``$P_UIFR[1]=CTRANS(X,10,Y,5)``: the shifts of all axes, 0 where it names none.
-
-    Raises:
-        ProgramError: It is another frame, or turns, scales or mirrors.
-    """
+    """``$P_UIFR[1]=CTRANS(X,10,Y,5)``: the shifts of all axes, 0 where it names none."""
     begin, shown = frame.end() - 1, column + frame.start()
     inner, at, length = bracketed(control, line[begin:], column + begin)
     assert isinstance(target.tree, Variable | NumberedVariable)

@@ -49,11 +49,7 @@ def work_offset(number: int) -> Action:
 
 
 def numbered_offset(control: Control, word: Word) -> None:
-    """G505 to G599, read as a word so that the table of codes needs no line for each.
-
-    Raises:
-        ProgramError: The block has another work offset.
-    """
+    """G505 to G599, read as a word so that the table of codes needs no line for each."""
     number = 500 + int(control.number(word))
     other = next((each for each, code in control.codes if code.group == "offset"), None)
     if other is not None:
@@ -93,11 +89,7 @@ def cancel_offsets(control: Control) -> None:
 
 
 def require_machine_zero(control: Control) -> None:
-    """A block moves: G500 must know where machine zero is.
-
-    Raises:
-        ProgramError: The job does not say.
-    """
+    """A block moves: G500 must know where machine zero is."""
     if memory_of(control).machine_pending:
         machine_zero(control, "G500")
 
@@ -229,9 +221,7 @@ def rotation(control: Control) -> tuple[Matrix, Vector]:
     plane_angle = control.take("RPL")
     if plane_angle is not None:
         if control.words:
-            control.fail(
-                "frame", "RPL= stands without axes", plane_angle, "write ROT RPL=45 or ROT Z45"
-            )
+            control.fail("frame", "RPL= has no axes", plane_angle, "write ROT RPL=45 or ROT Z45")
         directions = control.modal.plane.directions
         return rotated(IDENTITY, directions, control.number(plane_angle), (0.0, 0.0))[0], _NO_SHIFT
     words = _axis_words(control, "ROT Z45, or ROT RPL=45")
@@ -286,11 +276,7 @@ def translate_axes(*, fine: bool) -> Action:
 
 
 def refuse_uneven_arc(control: Control) -> None:
-    """An arc under a scale that is not the same along both axes of its plane is no arc.
-
-    Raises:
-        ProgramError: The block would draw one.
-    """
+    """An arc under a scale that is not the same along both axes of its plane is no arc."""
     matrix, plane = control.frame.matrix, control.modal.plane
     lengths = [math.hypot(*applied(matrix, each)) for each in (plane.abscissa, plane.ordinate)]
     if abs(lengths[0] - lengths[1]) > _SAME_SCALE * max(lengths):

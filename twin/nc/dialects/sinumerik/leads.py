@@ -1,7 +1,7 @@
 """Smooth leads of the SINUMERIK (SAR): G147, G247, G347 to a contour, G148, G248, G348 away from it.
 
 They go straight, on a quarter or on half a circle: DISR is the distance from the tool's edge to the contour, or the radius of
-the centre's path. DISCL is the height above the contour at which the rapid way down ends: with G340 the lead itself
+the centre's path. DISCL is the height above the contour at which the rapid move down ends: with G340 the lead itself
 goes down from there, with G341 the tool does so before it, at the feed FAD (programming manual fundamentals, 2.10.4).
 """
 
@@ -86,11 +86,7 @@ def _in_plane(control: Control) -> bool:
 def _take_lead(
     control: Control, kind: LeadKind, angle: float, side: float, offset: float, height: float
 ) -> Lead:
-    """Take DISR, DISCL and FAD.
-
-    Raises:
-        ProgramError: DISR is missing.
-    """
+    """Take DISR, DISCL and FAD."""
     size, above, down = control.take("DISR"), control.take("DISCL"), control.take("FAD")
     length = control.length(size)
     if length <= 0.0:

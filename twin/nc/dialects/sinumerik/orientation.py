@@ -64,11 +64,7 @@ INTERPOLATIONS = {
 
 
 def begin_transformation(control: Control, statement: Statement) -> None:
-    """TRAORI, TRAORI(1): the tip is led; F counts its way.
-
-    Raises:
-        ProgramError: It asks for another transformation, or no axis turns.
-    """
+    """TRAORI, TRAORI(1): the tip is led; F counts its path."""
     inner = statement.text.strip().strip("()").strip()
     if inner not in ("", "1"):
         message = f"the machine has one transformation of orientation, TRAORI, not TRAORI({inner})"
@@ -86,9 +82,6 @@ def swivel(control: Control, statement: Statement) -> None:
 
     Decisions: _FR retracts Z to machine zero before; _DIR is the sign of the axis next to the tool, and where it
     is 0 only the frame turns, so that nothing moves until the tool stands across it.
-
-    Raises:
-        ProgramError: Its mode is not simulated, or the machine cannot.
     """
     inner, column, _ = bracketed(control, statement.text, statement.text_column)
     values = [
@@ -122,11 +115,7 @@ def swivel(control: Control, statement: Statement) -> None:
 
 
 def require_orientation(control: Control) -> None:
-    """In a swivelled plane X, Y and Z move when the tool stands across it.
-
-    Raises:
-        ProgramError: It does not.
-    """
+    """In a swivelled plane X, Y and Z move when the tool stands across it."""
     swivelled = memory_of(control).swivel
     if swivelled and swivelled[0] != IDENTITY:
         refuse_leaning(control, "CYCLE800 with _DIR -1 or 1, or TRAORI")
@@ -204,9 +193,6 @@ def point_by_vector(control: Control) -> None:
 
     It turns in the plane of both directions, or the rotary axes go evenly; these do, too, to their own words (manual: rotary
     axis interpolation). With ORIMKS no frame turns the vector.
-
-    Raises:
-        ProgramError: TRAORI is not in force.
     """
     words = [control.take(name) for name in _VECTOR]
     first = next((word for word in words if word is not None), None)

@@ -54,7 +54,7 @@ _ASSIGNED = re.compile(r"[ \t]*(?:\[[^\]]*\])?[ \t]*=(?!=)")
 
 
 def _pass_over(control: Control, statement: Statement) -> None:
-    """A statement that changes nothing of the path: told once; words behind it are a block."""
+    """A statement that changes nothing of the path: reported once; words behind it are a block."""
     keyword, text, column = statement.keyword, statement.text, statement.text_column
     message = f"{keyword} does not change the path here: {PASSED_STATEMENTS[keyword]}"
     control.report.notice(keyword, message, statement.column, len(keyword))
@@ -75,11 +75,7 @@ def _end_transformation(control: Control, statement: Statement) -> None:
 
 
 def _refuse(control: Control, statement: Statement) -> None:
-    """A statement of the control that the twin does not follow.
-
-    Raises:
-        ProgramError: Always.
-    """
+    """A statement of the control that the twin does not follow."""
     keyword = statement.keyword
     message = f"{keyword} is known to the control and not simulated: {REFUSED_STATEMENTS[keyword]}"
     control.fail("unsupported-statement", message, statement)
@@ -94,11 +90,7 @@ def _repeat(control: Control, statement: Statement) -> None:
 
 
 def _alarm(control: Control, statement: Statement) -> None:
-    """SETAL(65000): the program stops itself.
-
-    Raises:
-        ProgramError: Always.
-    """
+    """SETAL(65000): the program stops itself."""
     message = f"the program stops itself: SETAL{statement.text.strip()}"
     control.fail("program-error", message, statement, "the program's own checks have failed")
 

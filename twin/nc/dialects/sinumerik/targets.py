@@ -10,8 +10,7 @@ import math
 from twin.nc.control.control import Control
 from twin.nc.dialects.sinumerik.memory import memory_of
 from twin.nc.geometry.arcs import TURN
-from twin.nc.geometry.polar import point_at
-from twin.nc.iso.polar_words import aim_by_polar
+from twin.nc.iso.polar_words import aim_by_polar, point_at
 from twin.nc.text.blocks import Word
 
 _WAYS = ("DC", "ACP", "ACN")
@@ -70,14 +69,10 @@ def take_target(control: Control) -> list[float]:
 
 
 def _by_way(control: Control, index: int, word: Word) -> float:
-    """Target of a rotary axis that is reached within a turn.
-
-    Raises:
-        ProgramError: The axis does not turn, or the target is no angle of a turn.
-    """
+    """Target of a rotary axis that is reached within a turn."""
     value = control.number(word)
     if control.motion.linear[index]:
-        message = f"{word.mark} finds the way of a rotary axis, and {word.address} is none"
+        message = f"{word.mark} chooses the direction of a rotary axis, and {word.address} is none"
         control.fail("rotary-direction", message, word, f"write {word.address}=AC(...) or IC(...)")
     if not 0.0 <= value < TURN:
         message = f"{word.mark} goes to an angle from 0 to below 360, not to {value:g}"

@@ -22,11 +22,7 @@ def split_values(text: str) -> list[tuple[str, int]]:
 
 
 def bracketed(control: Control, text: str, column: int) -> tuple[str, int, int]:
-    """The text within the brackets that begin a text, its column, and the place behind them.
-
-    Raises:
-        ProgramError: They are not closed.
-    """
+    """The text within the brackets that begin a text, its column, and the place behind them."""
     at = len(text) - len(text.lstrip())
     if text[at : at + 1] != "(":
         return "", column + at, at

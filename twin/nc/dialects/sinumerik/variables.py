@@ -46,11 +46,7 @@ def _whole_index(name: str, index: float) -> int:
 
 
 def _element_name(control: Control, name: str, index: float | None) -> str:
-    """How an element of a table, or a variable that is none, is called among the control's variables.
-
-    Raises:
-        ExpressionError: It is a table without an index, or the table has no such element.
-    """
+    """How an element of a table, or a variable that is none, is called among the control's variables."""
     call = memory_of(control).calls[-1]
     if name in call.texts:
         raise ExpressionError("text-value", f"{name} holds a text, and a number is wanted here")
@@ -96,11 +92,7 @@ _AXIS = re.compile(r"\(?[ \t]*(\w+)[ \t]*\)?")
 
 
 def axis_at(control: Control, line: str, at: int, column: int) -> tuple[str, int]:
-    """The axis that is in a line, also in brackets, and the place behind it.
-
-    Raises:
-        ProgramError: None does.
-    """
+    """The axis that is in a line, also in brackets, and the place behind it."""
     match = _AXIS.match(line, at)
     axis = None if match is None else system_variables.axis_named(control, match[1].upper())
     if match is None or axis is None:
@@ -117,11 +109,7 @@ def axis_of_value(control: Control, text: str, column: int) -> str:
 
 
 def text_named(control: Control, text: str, column: int) -> str:
-    """The text that a call gives: in quotes, or of a variable that holds one.
-
-    Raises:
-        ProgramError: It is none.
-    """
+    """The text that a call gives: in quotes, or of a variable that holds one."""
     bare = text.strip()
     held = memory_of(control).calls[-1].texts.get(bare.upper())
     if not (len(bare) > 1 and bare[0] == bare[-1] == '"') and held is None:
@@ -131,11 +119,7 @@ def text_named(control: Control, text: str, column: int) -> str:
 
 
 def with_texts_compared(control: Control, text: str, column: int) -> str:
-    """A condition with 1 or 0 for every comparison of a variable with a text in quotes, and as long as before.
-
-    Raises:
-        ProgramError: A variable holds no text.
-    """
+    """A condition with 1 or 0 for every comparison of a variable with a text in quotes, and as long as before."""
 
     def compared(match: re.Match[str]) -> str:
         held = text_named(control, match[1], column + match.start(1))
@@ -146,11 +130,7 @@ def with_texts_compared(control: Control, text: str, column: int) -> str:
 
 
 def indexed_axis(control: Control, word: Word) -> str:
-    """The axis of ``AX[NAME]=10``.
-
-    Raises:
-        ProgramError: There is none.
-    """
+    """The axis of ``AX[NAME]=10``."""
     name = word.address.partition("[")[2].rstrip("] \t").strip()
     axis = system_variables.axis_named(control, name)
     if axis is None:

@@ -27,7 +27,6 @@ class Clearing:
     """How a pocket or a stud is milled; heights are programmed coordinates.
 
     Attributes:
-        name: As messages call the cycle.
         radius: Of the tool [mm].
         reference: Height of the reference plane, where plunging begins [mm].
         surface: Height at which the first pass begins [mm].
@@ -89,11 +88,7 @@ def levels_between(surface: float, bottom: float, depth: float) -> tuple[float, 
 
 
 def clear_pocket(control: Control, outline: Outline, clearing: Clearing) -> None:
-    """Mill a pocket or a slot.
-
-    Raises:
-        ProgramError: The tool does not fit into it, or it would need too many passes.
-    """
+    """Mill a pocket or a slot."""
     stock = clearing.stock if clearing.roughs else 0.0
     room, step = outline.room - stock, min(clearing.step, DIAGONAL * clearing.radius)
     if room < 0.0:

@@ -85,9 +85,9 @@ def _pocket(
 
 _DWELL = {"K": "dwell"}
 _SPINDLE = {"A": (0.0,)}
-"""A: what the spindle does on the way back; 0 as without it."""
+"""A: what the spindle does on the return; 0 as without it."""
 _RIGID = {"R": (0.0, 1.0), "J": (1.0,)}
-"""R: 0 with a tapping chuck, 1 rigid: one path. J: how much faster the way back is."""
+"""R: 0 with a tapping chuck, 1 rigid: one path. J: how much faster the return is."""
 
 CYCLES = {
     80: GCode(meaning="cycles off", group="cycle", sets={"cycle": None}, basis="manual"),

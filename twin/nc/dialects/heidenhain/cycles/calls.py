@@ -14,11 +14,7 @@ SURFACE, SECOND_CLEARANCE, CLEARANCE, DEPTH = 203, 204, 200, 201
 
 
 def call_cycle(control: Control) -> None:
-    """M99, or CYCL CALL: the cycle runs where the tool is.
-
-    Raises:
-        ProgramError: None is defined, or compensation is in force.
-    """
+    """M99, or CYCL CALL: the cycle runs where the tool is."""
     parameters = defined(control)
     if control.path.compensation.in_force or control.path.leads is not None:
         message = "a cycle is not called while radius compensation is in force"
@@ -100,11 +96,7 @@ def call_pattern(control: Control, statement: Statement) -> None:
 
 
 def defined(control: Control) -> Parameters:
-    """The parameters of the cycle that was defined last, as Q parameters have them now.
-
-    Raises:
-        ProgramError: None was.
-    """
+    """The parameters of the cycle that was defined last, as Q parameters have them now."""
     parameters = memory_of(control).parameters
     if parameters is None:
         hint = "write CYCL DEF 200 before; cycles such as 7, 10, 220 act where they are defined"

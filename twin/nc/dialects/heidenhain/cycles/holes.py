@@ -16,11 +16,7 @@ _ASIDE = {0: (0.0, 0.0), 1: (-1.0, 0.0), 2: (0.0, -1.0), 3: (1.0, 0.0), 4: (0.0,
 
 
 def heights(control: Control, given: Parameters) -> tuple[float, float, float, float]:
-    """Surface, reference plane, bottom, and where the tool goes back to [mm].
-
-    Raises:
-        ProgramError: The cycle does not go down.
-    """
+    """Surface, reference plane, bottom, and where the tool goes back to [mm]."""
     surface = given.length(203)
     reference, bottom = surface + given.length(200), surface + given.length(201)
     if not bottom < surface or given.length(200) < 0.0:
@@ -68,11 +64,7 @@ def _drill(control: Control, hole: Hole, feed: float | None) -> None:
 
 
 def _drilling_feed(control: Control, feed: float | None) -> float:
-    """A feed that a hole is drilled with.
-
-    Raises:
-        ProgramError: It is none.
-    """
+    """A feed that a hole is drilled with."""
     if feed is None or feed <= 0.0:
         message = "a hole is drilled with a feed above 0"
         control.fail("feed-range", message, hint="Q206=+150")
@@ -225,11 +217,7 @@ def tapping_with_breaks(control: Control, given: Parameters) -> None:
 
 
 def _tap(control: Control, given: Parameters, hole: Hole) -> None:
-    """Tap with the spindle's speed.
-
-    Raises:
-        ProgramError: There is no speed, or no pitch.
-    """
+    """Tap with the spindle's speed."""
     pitch, speed = given.length(239), control.motion.spindle
     if pitch == 0.0:
         control.fail("cycle-word", f"{given.name} needs the pitch Q239", hint="Q239=+1.5")
@@ -243,11 +231,7 @@ def _tap(control: Control, given: Parameters, hole: Hole) -> None:
 
 
 def centring(control: Control, given: Parameters) -> None:
-    """240: to the depth Q201.
-
-    Raises:
-        ProgramError: It is told the diameter.
-    """
+    """240: to the depth Q201."""
     if given.number(343) != 0.0:
         message = (
             "Q343=1 computes the depth of the diameter by the tool's point, which the twin does not"

@@ -9,7 +9,7 @@ from twin.nc.dialects.heidenhain.memory import memory_of
 from twin.nc.text.blocks import Location, Statement
 
 _PARAMETER = re.compile(
-    r"Q([0-9]{3})[ \t]*=[ \t]*(FMAX|FAUTO|PREDEF|[-+]?[ \t]*(?:[.0-9]+|Q[LR]?[0-9]+))?",
+    r"Q([0-9]{3})[ \t]*=[ \t]*(F?MAX|F?AUTO|PREDEF|[-+]?[ \t]*(?:[.0-9]+|Q[LR]?[0-9]+))?",
     re.IGNORECASE,
 )
 _LINE = re.compile(r"[ \t]*Q[0-9]{3}[ \t]*=", re.IGNORECASE)
@@ -40,11 +40,7 @@ def continued(control: Control, *, while_: re.Pattern[str] | None) -> Iterator[t
 def take_parameters(
     control: Control, statement: Statement, name: str, known: Mapping[int, str]
 ) -> Parameters:
-    """Take the parameters of a definition and give Q their values.
-
-    Raises:
-        ProgramError: One is none of the cycle's, has no value, or occurs twice.
-    """
+    """Take the parameters of a definition and give Q their values."""
     line, values = control.block.line, {}
     begin = statement.text_column
     given = [
@@ -56,7 +52,7 @@ def take_parameters(
         for match in _PARAMETER.finditer(text):
             parameter, at = int(match[1]), column + match.start()
             if parameter not in known or parameter in values:
-                said = "stands twice" if parameter in values else f"is no parameter of {name}"
+                said = "occurs twice" if parameter in values else f"is no parameter of {name}"
                 hint = ", ".join(f"Q{each}" for each in sorted(known))
                 control.report.fail(
                     "cycle-word", f"Q{parameter} {said}", at, 4, f"{name} has {hint}"
@@ -70,9 +66,9 @@ def take_parameters(
 def _value(control: Control, match: re.Match[str], text: str, column: int) -> float:
     written = (match[2] or "").upper()
     at = column + match.start()
-    if written == "FMAX":
+    if written in ("FMAX", "MAX"):
         return RAPID
-    if written == "FAUTO":
+    if written in ("FAUTO", "AUTO"):
         feed = memory_of(control).tool_feed
         if feed is None:
             message = "FAUTO needs the F of TOOL CALL, and it had none"

@@ -85,11 +85,7 @@ def _by_points(control: Control, statement: Statement, words: PlaneWords) -> Mat
 def _directions(
     control: Control, statement: Statement, abscissa: Vector, ordinate: Vector
 ) -> Matrix:
-    """As ``directions_of``.
-
-    Raises:
-        ProgramError: They name no plane.
-    """
+    """As ``directions_of``."""
     try:
         return directions_of(abscissa, ordinate)
     except ValueError as error:

@@ -49,11 +49,7 @@ def _here(control: Control) -> Point:
 
 
 def _clearing(control: Control, given: Parameters, floor: float) -> Clearing:
-    """What the parameters say of the passes; the floor of a stud has no stock.
-
-    Raises:
-        ProgramError: They do not mill.
-    """
+    """What the parameters say of the passes; the floor of a stud has no stock."""
     surface, reference, bottom, back = heights(control, given)
     kind, radius = int(given.number(215)), compensation_radius(control)
     if kind not in (0, 1, 2):

@@ -29,11 +29,7 @@ _DIAMETER, _CLIMB, _SURFACE, _CLEARANCE = 223, 351, 203, 200
 
 
 def take(control: Control, step: Step) -> None:
-    """A step of an old cycle; its last one defines it.
-
-    Raises:
-        ProgramError: It lacks its values, or stands out of order.
-    """
+    """A step of an old cycle; its last one defines it."""
     memory, steps = memory_of(control), _STEPS[step.cycle]
     if step.step == 0:
         memory.steps, memory.step = {}, 0

@@ -73,11 +73,7 @@ def helical_thread_drilling(control: Control, given: Parameters) -> None:
 
 
 def outside_thread_milling(control: Control, given: Parameters) -> None:
-    """267: an outside thread.
-
-    Raises:
-        ProgramError: It is to be countersunk.
-    """
+    """267: an outside thread."""
     if given.length(358) != 0.0:
         message = "267 with a countersink (Q358) is not followed"
         control.fail("cycle-word", message, hint="write Q358=+0")

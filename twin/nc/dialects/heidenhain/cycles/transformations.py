@@ -38,7 +38,6 @@ class Step(NamedTuple):
     """One block of a definition in steps, such as ``7.1 X+60``.
 
     Attributes:
-        text: What is behind both.
         column: Where that begins.
     """
 
@@ -48,11 +47,7 @@ class Step(NamedTuple):
     column: int
 
     def fail(self, control: Control, code: str, message: str, hint: str | None = None) -> None:
-        """Refuse what it says.
-
-        Raises:
-            ProgramError: Always.
-        """
+        """Refuse what it says."""
         width = len(self.text.strip()) or 1
         begin = self.column + len(self.text) - len(self.text.lstrip())
         control.report.fail(code, message, begin, width, hint)
@@ -127,11 +122,7 @@ def scale(control: Control, step: Step) -> None:
 
 
 def _enter(control: Control, kind: str, active: bool) -> None:
-    """A transformation has changed.
-
-    Raises:
-        ProgramError: Compensation is in force.
-    """
+    """A transformation has changed."""
     if control.path.compensation.in_force or control.path.leads is not None:
         message = "coordinates do not change while radius compensation is in force"
         control.fail("compensation-change", message, hint="end it by R0 before")

@@ -45,11 +45,7 @@ class CycleCall(NamedTuple):
         return int(value)
 
     def need(self, *names: str) -> None:
-        """The values of these parameters must be there.
-
-        Raises:
-            ProgramError: One is missing.
-        """
+        """The values of these parameters must be there."""
         missing = [name for name in names if name not in self.values]
         if missing:
             self.refuse("cycle-word", f"needs {' and '.join(missing)}")
@@ -85,11 +81,7 @@ class CycleForm(NamedTuple):
 
 
 def read_call(control: Control, statement: Statement, form: CycleForm) -> CycleCall:
-    """The values of a call.
-
-    Raises:
-        ProgramError: They cannot be read, or are too many.
-    """
+    """The values of a call."""
     inner, column, end = bracketed(control, statement.text, statement.text_column)
     if statement.text[end:].strip():
         at = statement.text_column + end
@@ -110,11 +102,7 @@ def read_call(control: Control, statement: Statement, form: CycleForm) -> CycleC
 
 
 def require_no_compensation(call: CycleCall) -> None:
-    """A cycle moves the tool's centre by itself.
-
-    Raises:
-        ProgramError: Compensation is in force.
-    """
+    """A cycle moves the tool's centre by itself."""
     if call.control.path.compensation.in_force:
         message = "cannot run while radius compensation is in force"
         call.refuse("compensation-change", message, "end it by G40 first")

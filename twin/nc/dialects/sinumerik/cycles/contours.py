@@ -110,11 +110,7 @@ def _mill_contour(call: CycleCall) -> None:
 
 
 def _lead(call: CycleCall, shape: str, size: str, kind: float) -> Lead:
-    """The way to the contour or away from it.
-
-    Raises:
-        ProgramError: It is none that is followed.
-    """
+    """The way to the contour or away from it."""
     control, side = call.control, _SIDES.get(call.get("RL"))
     chosen = _SHAPES.get(call.get(shape))
     if side is None or chosen is None or (side == 0.0 and chosen[0] is not LeadKind.TANGENT):

@@ -40,11 +40,7 @@ class Heights(NamedTuple):
 
 
 def heights_of(call: CycleCall) -> Heights:
-    """The heights that a call gives.
-
-    Raises:
-        ProgramError: They do not lie one below the other.
-    """
+    """The heights that a call gives."""
     require_no_compensation(call)
     if call.get("AXN") not in (0.0, call.control.modal.plane.axes[2] + 1.0):
         call.refuse("unsupported-word", "drills along the axis across the plane alone (AXN)")
@@ -170,11 +166,7 @@ def _deep(call: CycleCall) -> None:
 
 
 def _pitch(call: CycleCall) -> float:
-    """Pitch of a thread, below 0 for a left one [mm].
-
-    Raises:
-        ProgramError: The call gives none, or two.
-    """
+    """Pitch of a thread, below 0 for a left one [mm]."""
     size, pitch = call.get("MPIT"), call.length("PIT")
     if call.get("PITA") not in (0.0, 1.0):
         call.refuse("unsupported-word", "takes pitches in millimetres alone (PITA 0 or 1)")

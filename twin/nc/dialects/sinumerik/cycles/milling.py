@@ -32,11 +32,7 @@ def _clear(call: CycleCall, *outlines: Outline) -> None:
 
 
 def _clearing(call: CycleCall, heights: Heights) -> Clearing:
-    """What the parameters say of the passes.
-
-    Raises:
-        ProgramError: They do not mill, or in a way that is not followed.
-    """
+    """What the parameters say of the passes."""
     radius, total = radius_in_spindle(call.control), heights.surface - heights.bottom
     kind, plunge = call.get("VARI") % 10.0, int(call.get("VARI") // 10.0 % 10.0)
     if kind not in (0.0, 1.0, 2.0) or call.get("CDIR") not in (0.0, 1.0, 2.0, 3.0):
@@ -164,7 +160,7 @@ def _face(call: CycleCall) -> None:
     length, width, step = call.length("LENG"), call.length("WID"), abs(call.length("MIDA"))
     way, kind = int(call.get("VARI") // 10.0 % 10.0), call.get("VARI") % 10.0
     if way not in (1, 2, 3, 4) or kind not in (1.0, 2.0):
-        ways = "1 rough or 2 finish, in tens 1 to 4 the way of the strips"
+        ways = "1 rough or 2 finish, in tens 1 to 4 the direction of the strips"
         call.refuse("cycle-word", f"takes VARI 11 to 42: {ways}")
     if not 0.0 < step <= 2.0 * radius or not (length and width):
         widest = f"the tool's diameter, {2.0 * radius:g}"

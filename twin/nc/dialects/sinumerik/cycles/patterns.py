@@ -11,11 +11,7 @@ from twin.nc.iso.plane_moves import go
 
 
 def _visit(call: CycleCall, places: list[Point]) -> None:
-    """Go rapidly to one place after the other; the modal call acts at each.
-
-    Raises:
-        ProgramError: No call is in force, or it is a subprogram.
-    """
+    """Go rapidly to one place after the other; the modal call acts at each."""
     control, memory = call.control, memory_of(call.control)
     if memory.modal_call is None:
         call.refuse("cycle-word", "needs a modal call before it", "write MCALL CYCLE81(...) before")

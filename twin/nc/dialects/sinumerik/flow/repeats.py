@@ -40,16 +40,12 @@ def repeat_blocks(control: Control, statement: Statement) -> None:
 def call_part(
     control: Control, statement: Statement, first: str, last: str, lines: range | None = None
 ) -> None:
-    """Call the blocks between two labels, of the program that runs or of other lines.
-
-    Raises:
-        ProgramError: There are none.
-    """
+    """Call the blocks between two labels, of the program that runs or of other lines."""
     lines = lines_around(control) if lines is None else lines
     begin = _place(control, statement, first, lines)
     end = _place(control, statement, last, lines)
     if end < begin:
-        message = f"{statement.keyword} names {last}, which stands before {first}"
+        message = f"{statement.keyword} names {last}, which is before {first}"
         control.fail("repeat-range", message, statement)
     control.call(begin, DEEPEST_CALL, statement, last=end)
 

@@ -47,11 +47,7 @@ def _structure(control: Control) -> Structure:
 
 
 def _construct_of(control: Control, statement: Statement) -> Construct:
-    """The construct that a statement belongs to.
-
-    Raises:
-        ProgramError: It has no counterpart, or lies too deep.
-    """
+    """The construct that a statement belongs to."""
     construct = _structure(control).by_line.get(control.block.line - 1)
     if construct is None or construct.end is None:
         message = f"{statement.keyword} has no counterpart"
@@ -194,7 +190,8 @@ def go_to(control: Control, statement: Statement) -> None:
     label = _LABEL.fullmatch(statement.text)
     if label is None:
         message = f"{keyword} needs a label or a block number"
-        control.fail("jump-target", message, statement, f"write {keyword} LABEL or {keyword} N100")
+        hint = f"write {keyword} LABEL, whose name begins with two letters, or {keyword} N100"
+        control.fail("jump-target", message, statement, hint)
     place = find_label(control, statement, int(label[1]) if label[1] else label[2].upper())
     if place is None:
         return
@@ -206,11 +203,7 @@ def go_to(control: Control, statement: Statement) -> None:
 
 
 def find_label(control: Control, statement: Statement, label: int | str) -> Location | None:
-    """Where a jump leads: the nearest block with the label in its direction; None: GOTOC finds none.
-
-    Raises:
-        ProgramError: There is none.
-    """
+    """Where a jump leads: the nearest block with the label in its direction; None: GOTOC finds none."""
     lines, here, keyword = lines_around(control), control.block.line - 1, statement.keyword
     places = [
         each for each in control.program_counter.labels().get(label, []) if each.line in lines
@@ -235,7 +228,7 @@ def _refuse_label(
     if elsewhere:
         way = "behind this block" if keyword == "GOTOF" else "before this block"
         other = "GOTOB" if keyword == "GOTOF" else "GOTOF"
-        hint = f"it stands not {way}; {other} or GOTO leads there"
+        hint = f"it is not {way}; {other} or GOTO leads there"
     control.fail(
         "unknown-label", f"{keyword} names {shown}, and no block has it there", statement, hint
     )

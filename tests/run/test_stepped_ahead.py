@@ -1,0 +1,72 @@
+"""The machine is stepped one chunk ahead of who looks at it; an alarm finds all as if it were not."""
+
+import dataclasses
+from pathlib import Path
+
+import pytest
+
+from twin import processor
+from twin.files.shipped import resource_root
+from twin.run.outcome import Outcome
+from twin.run.preparation import prepare
+from twin.run.progress import no_progress
+from twin.run.run import Run
+
+PROGRAM = """%AHEAD
+N10 G90 G17 T1 S3000 M03
+N20 G00 X-130 Y-15 Z50
+N30 G00 Z-12
+{}
+N50 G01 X-150 F100
+N60 G01 X-130 F100
+N70 G00 Z50
+N80 G00 X0 Y0
+N90 G01 Z-45 F2000
+N100 G01 Y12
+N110 G00 Z50
+N120 M30
+"""
+"""Goes past the vise in its second chunk of 16.384 s, and may go through the blank in its first."""
+
+JOB = """program = "ahead.nc"
+dialect = "fagor8070"
+machine = "{}"
+[part_zero]
+Z = -460.0
+[start]
+Z = 50.0
+[stock]
+shape = "box"
+size = [20.0, 10.0, 8.0]
+position = [-100.0, -15.0, -7.0]
+[[tools]]
+number = 1
+diameter = 10.0
+length = 60.0
+flute = 15.0
+"""
+
+
+def outcome(folder: Path, through: str, cores: int, monkeypatch: pytest.MonkeyPatch) -> Outcome:
+    monkeypatch.setattr(processor, "available_cores", lambda: cores)
+    (folder / "ahead.nc").write_text(PROGRAM.format(through))
+    machine = resource_root("programs") / "alarms/machines/vise.toml"
+    (folder / "ahead.toml").write_text(JOB.format(machine))
+    run = Run(prepare(folder / "ahead.toml"))
+    return run.execute(None, no_progress)
+
+
+@pytest.mark.seconds("runs a job of two chunks on one core and on two")
+def test_an_alarm_finds_nothing_of_what_was_stepped_beyond_it(tmp_path, monkeypatch):
+    alone, beside = (
+        outcome(tmp_path, "N40 G00 X-80\nN45 G00 X-130", cores, monkeypatch) for cores in (1, 2)
+    )
+    assert [alarm.code for alarm in beside.alarms] == ["rapid-into-stock"]
+    assert beside.near_miss is None
+    for name in (field.name for field in dataclasses.fields(Outcome) if field.name != "loads"):
+        assert repr(getattr(alone, name)) == repr(getattr(beside, name)), name
+
+
+@pytest.mark.seconds("runs a job of two chunks")
+def test_what_comes_later_is_seen_when_its_time_comes(tmp_path, monkeypatch):
+    assert outcome(tmp_path, "N40 G01 X-130 F100", 2, monkeypatch).near_miss is not None
