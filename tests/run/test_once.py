@@ -46,7 +46,8 @@ def counts(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
     count(HeightMapMaterial, "__init__", "cuts")
     count(CuttingProcess, "__init__", "processes")
     count(twin.job.load, "load_toml", "job files")
-    count(twin.machine.load, "read_toml", "machine files")
+    count(twin.machine.load, "load_toml", "machine files")
+    count(mujoco.MjSpec, "from_file", "model files")
     return counted
 
 
@@ -57,6 +58,8 @@ def test_a_run_does_each_once(counts: Counter[str], job: str) -> None:
     assert outcome.samples
     assert counts["interpretations"] == counts["models"] == 1
     assert counts["job files"] == counts["machine files"] == 1
+    # The joints, for the chain of axes; and what is completed for the simulation.
+    assert counts["model files"] == 2
     assert counts["stocks"] == counts["cuts"] == 1
     assert counts["processes"] == (job == WITH_FORCES)
     # The joints, for the chain of axes; the empty machine, for whose masses the drives are tuned; what moves;
