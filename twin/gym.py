@@ -71,7 +71,7 @@ class FeedEnv(gymnasium.Env[Observation, Action]):
             TwinError: The program or its job is wrong, or nothing moves.
         """
         self._session = Session(program, dialect=dialect, machine=machine)
-        run, dry_run = self._session.prepared
+        run, dry_run = self._session.run, self._session.run.dry_run
         servo = run.machine.file.servo_period_s
         self._periods = max(1, round(period_s / servo))
         self._warm_up = int(warm_up_s / servo)
@@ -96,7 +96,7 @@ class FeedEnv(gymnasium.Env[Observation, Action]):
     ) -> tuple[Observation, dict[str, Any]]:
         """Begin the program again."""
         super().reset(seed=seed, options=options)
-        self._session = Session(self._session.prepared)
+        self._session = Session(self._session.run)
         later = int(self.np_random.integers(0, self._warm_up + 1))
         step = self._session.step(max(1, later))
         return self._seen(step), self._info(step)

@@ -19,7 +19,6 @@ from twin.machine.model.model import (
     build_spec,
     clearance_model,
     physics_model,
-    spindle_over_table_mm,
 )
 from twin.machine.simulation.live import LiveMachine
 from twin.machine.simulation.sampling import (
@@ -89,7 +88,7 @@ def _watching() -> Iterator[Row]:
     spec = build_spec(machine)
     model = physics_model(machine, spec)
     clearance = Clearance(machine, clearance_model(machine, spec))
-    table = -spindle_over_table_mm(machine) + ToolTable(number=1).length
+    table = -machine.at_zero.spindle_over_table + ToolTable(number=1).length
     for task, turns, z in (("between jaws", 0.0, 30.0), ("over jaws, C turning", 90.0, 61.0)):
         points = _circle("mill4")
         place = points.position.copy()

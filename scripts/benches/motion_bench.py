@@ -10,7 +10,6 @@ from pathlib import Path
 import numpy as np
 from benches.row import Row, median_cpu_seconds
 
-from twin.machine.description.motion_limits import motion_limits
 from twin.motion.limits import MotionLimits
 from twin.motion.planner import plan_phases
 from twin.nc.canonical import Chunk
@@ -49,7 +48,7 @@ def _rates(folder: Path) -> Iterator[Row]:
     ):
         preparation = prepared(folder, text)
         chunks = list(preparation.interpretation().chunks())
-        limits = motion_limits(preparation.machine)
+        limits = preparation.machine.motion_limits
         blocks = sum(len(chunk.moves) for chunk in chunks)
         seconds = median_cpu_seconds(lambda c=chunks, m=limits: cycle_s(c, m), repeats=3)
         yield Row("motion", task, blocks / seconds, "blocks/s", "CAMotics, stated", peer)

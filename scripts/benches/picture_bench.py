@@ -60,10 +60,9 @@ def rows() -> Iterator[Row]:
         )
     with tempfile.TemporaryDirectory() as folder:
         run = Run(prepare(resource_root("programs") / DEMO))
-        dry_run = run.dry_run()
-        run.execute(dry_run, Path(folder), no_progress)
+        run.execute(Path(folder), no_progress)
         with open_recording(Path(folder) / "recording.h5") as recording:
-            scene = scene_of(recording, run.preparation, dry_run.summary)
+            scene = scene_of(recording, run.preparation, run.dry_run.summary)
             yield from _film(scene, run.preparation.job.file.video, Path(folder) / "film.mp4")
 
 

@@ -17,7 +17,6 @@ from benches.row import REPEATS, Row, processor_seconds
 from twin.files.shipped import resource_root
 from twin.machine.simulation.simulate import simulate
 from twin.motion.setpoints.sampling import settle
-from twin.run.dry_run import DryRun
 from twin.run.pipeline import cutting_forces, planned
 from twin.run.preparation import prepare
 from twin.run.progress import no_progress
@@ -30,7 +29,7 @@ JOBS = (
 """Lines, arcs, cycles, a turning table, tilted planes and five axes together."""
 
 
-Task = Callable[[Run, DryRun], object]
+Task = Callable[[Run], object]
 
 
 def rows() -> Iterator[Row]:
@@ -51,19 +50,18 @@ def rows() -> Iterator[Row]:
 def _seconds(task: Task, job: str) -> tuple[float, float]:
     """Processor and elapsed time of a task with a job that is prepared for it [s]."""
     run = Run(prepare(resource_root("programs") / f"{job}.toml"))
-    dry_run = run.dry_run()
     used, began = processor_seconds(), time.perf_counter()
-    task(run, dry_run)
+    task(run)
     return processor_seconds() - used, time.perf_counter() - began
 
 
-def _watched(run: Run, dry_run: DryRun) -> None:
-    run.execute(dry_run, None, no_progress)
+def _watched(run: Run) -> None:
+    run.execute(None, no_progress)
 
 
-def _bare(run: Run, dry_run: DryRun) -> None:
-    setpoints = planned(dry_run.program, run.machine, run.part_zero)
-    forces = cutting_forces(run.preparation.job.file, run.machine, dry_run, run.layout)
+def _bare(run: Run) -> None:
+    setpoints = planned(run.dry_run.program, run.preparation)
+    forces = cutting_forces(run.preparation, run.dry_run.summary)
     settled = settle(setpoints, run.machine.file.servo_period_s)
     for _ in simulate(run.machine, run.model.physics, settled, None, forces.load, forces.process):
         pass

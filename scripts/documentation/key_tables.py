@@ -15,7 +15,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import PydanticUndefined
 
 from twin.job.job_file import JobFile
-from twin.machine.description.config import MachineFile
+from twin.machine.description.machine_file import MachineFile
 from twin.training.scene.scene_file import SceneFile
 
 

@@ -81,11 +81,10 @@ def draw(picture: Picture, out: Path) -> None:
     """Run the picture's program and draw its moment, or film it where ``FILMS`` says so."""
     job_file = resource_root("programs") / f"{picture.program}.toml"
     run = Run(prepare(job_file, machine=picture.machine))
-    dry_run = run.dry_run()
     with tempfile.TemporaryDirectory() as folder:
-        run.execute(dry_run, Path(folder), no_progress)
+        run.execute(Path(folder), no_progress)
         with open_recording(Path(folder) / "recording.h5") as recording:
-            scene = scene_of(recording, run.preparation, dry_run.summary)
+            scene = scene_of(recording, run.preparation, run.dry_run.summary)
             if out.stem in FILMS:
                 film(scene, video=FILMS[out.stem], out=out)
                 return

@@ -28,7 +28,7 @@ from twin.calibrate.fit.stretch import stretches_of
 from twin.files.shipped import machine_file
 from twin.logs.column_map import AxisColumns, ColumnTable
 from twin.logs.machine_log import AxisLog
-from twin.machine.description.config import AxisTable
+from twin.machine.description.machine_file import AxisTable
 from twin.machine.load import read_machine
 from twin.machine.model.drives import is_unstable, tune
 from twin.nc.canonical import FloatArray

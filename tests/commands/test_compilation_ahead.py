@@ -24,8 +24,7 @@ JOBS = (pytest.param("gallery/fagor8070/medallion", marks=pytest.mark.thorough),
 def gone_through(job: Path) -> Outcome:
     """What comes of a run whose motion needs no planner."""
     run = Run(prepare(job))
-    dry_run = run.dry_run()
-    return run.execute(dry_run, None, no_progress, compilation.later_motion(run, dry_run))
+    return run.execute(None, no_progress, compilation.later_motion(run))
 
 
 def left_for_the_run(job: Path) -> set[str]:
@@ -36,7 +35,7 @@ def left_for_the_run(job: Path) -> set[str]:
     assert outcome.cut.removed_mm3 > 0.0
     before = loaded()
     run = Run(prepare(job))
-    run.execute(run.dry_run(), None, no_progress)
+    run.execute(None, no_progress)
     return {name for name, _ in loaded() - before if name.startswith(LATER)}
 
 

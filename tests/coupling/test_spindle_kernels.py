@@ -7,7 +7,7 @@ import pytest
 
 from twin.coupling.cutting_process import spindle_drive
 from twin.coupling.spindle_kernels import lasting_torque, next_speed
-from twin.machine.description.config import SpindleTable
+from twin.machine.description.machine_file import SpindleTable
 
 TABLE = SpindleTable(
     power=((1500.0, 11000.0), (6000.0, 11000.0), (12000.0, 7500.0)),

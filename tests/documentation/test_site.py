@@ -85,7 +85,7 @@ def test_every_key_of_every_file_has_a_meaning_in_the_reference():
 
 def test_every_column_and_attribute_of_a_recording_is_in_the_reference(tmp_path: Path):
     run = Run(prepare(Path("mefi/helix")))
-    run.execute(run.dry_run(), tmp_path, no_progress)
+    run.execute(tmp_path, no_progress)
     page = recording_page()
     import h5py
 

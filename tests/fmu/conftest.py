@@ -6,7 +6,6 @@ import pytest
 from tests.fmu.recorded import START, Recorded
 from twin.columns import join
 from twin.files.shipped import machine_file
-from twin.machine.description.motion_limits import motion_limits
 from twin.machine.load import read_machine
 from twin.machine.simulation.live import LiveMachine
 from twin.motion.planner import plan
@@ -25,7 +24,7 @@ def recorded() -> Recorded:
     program = Interpretation(
         source_from_text(PROGRAM), dialect_named("linuxcnc"), ControlSettings(axes=machine.axes)
     )
-    limits, period = motion_limits(machine), machine.file.servo_period_s
+    limits, period = machine.motion_limits, machine.file.servo_period_s
     points = join(list(plan(program.chunks(), limits, period_s=period, part_zero=zero, start=zero)))
     samples = LiveMachine(machine, position=zero).follow(points[1:])
     assert len(samples) == len(points) - 1

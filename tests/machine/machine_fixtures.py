@@ -9,7 +9,8 @@ import numpy as np
 
 from twin.files.shipped import machine_file, resource_root
 from twin.job.fixture import FixtureTable
-from twin.machine.description.config import Machine, MachineFile
+from twin.machine.description.config import Machine
+from twin.machine.description.machine_file import MachineFile
 from twin.machine.load import read_machine
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray

@@ -120,7 +120,7 @@ def test_a_tool_that_leaves_the_part_without_a_move_has_stood_in_it(tmp_path: Pa
 def test_the_alarm_is_raised_at_its_line(name: str):
     code, line, message = EXPECTED[name]
     run = Run(prepare(FOLDER / f"{name}.toml"))
-    outcome = run.execute(run.dry_run(), None, no_progress)
+    outcome = run.execute(None, no_progress)
     assert outcome.verdict.outcome == "alarm"
     assert [reason.what for reason in outcome.verdict.reasons] == [code], "nothing else is wrong"
     (alarm,) = outcome.alarms

@@ -9,7 +9,6 @@ from motion_programs import Program, mill
 from random_programs import KINDS, UNEVEN_KINDS, random_machine, random_program
 
 from twin.files.shipped import machine_file, resource_root
-from twin.machine.description.motion_limits import motion_limits
 from twin.machine.load import read_machine
 from twin.motion.limits import MotionLimits
 from twin.motion.planner import plan_phases
@@ -59,7 +58,7 @@ def test_a_shipped_program_is_never_slower_for_it(job) -> None:
     preparation = prepare(job)
     chunks = list(preparation.interpretation().chunks())
     first = next(chunk.moves.start[0] for chunk in chunks if len(chunk.moves))
-    limits = motion_limits(preparation.machine)
+    limits = preparation.machine.motion_limits
     continuous, stops = (
         seconds(with_corner(chunks, corner), limits, first)
         for corner in (Corner.CONTINUOUS, Corner.EXACT_STOP)
@@ -98,7 +97,7 @@ def chord_program(rng: np.random.Generator, corner: Corner) -> Program:
 def knee_machine(rng: np.random.Generator) -> MotionLimits:
     """The shipped mill's limits, or a machine of any temper, that passes knees."""
     if rng.random() < 0.5:
-        return motion_limits(read_machine(machine_file("mill4")))
+        return read_machine(machine_file("mill4")).motion_limits
     return dataclasses.replace(
         random_machine(rng),
         junction_velocity_step=np.exp(rng.uniform(-3.0, 2.0, 4)),

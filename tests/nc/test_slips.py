@@ -14,6 +14,7 @@ from tests.nc.test_bad import WITH_TOOL
 from twin.nc.dialects import dialect_named
 from twin.nc.interpreter import Interpretation
 from twin.nc.text.diagnostics import ProgramError
+from twin.nc.text.slips import slips
 from twin.nc.text.source import source_from_text
 
 FILES = sorted((ROOT / "tests" / "bad" / "slips").glob("*.txt"))
@@ -60,6 +61,11 @@ def test_every_control_has_its_twenty(path: Path) -> None:
 
 def test_no_hint_is_a_list() -> None:
     assert not [slip for slip in SLIPS if slip.diagnostic.count(",") > 12]
+
+
+def test_every_hint_of_the_list_is_shown_by_a_slip() -> None:
+    shown = "".join(path.read_text(encoding="utf-8") for path in FILES)
+    assert not [slip.hint for slip in slips() if slip.hint not in shown]
 
 
 def write_all() -> None:

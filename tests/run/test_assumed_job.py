@@ -426,6 +426,9 @@ def test_the_job_that_is_kept_names_the_machine_that_was_asked_for(
         ("FREZA D5", (None, "", 5.0, None)),
         ("T02 ID=002  DIA-0.5000  TOOL END MILL", (2, "flat", 0.5, None)),
         ("FACE MILL H1 D2", (None, "flat", None, None)),
+        ("#2 D=10 - ZMIN=-20.5 - ZMAX=+15 - flat end mill", (2, "flat", 10.0, None)),
+        ("T1 : 16MM SLOT DRILL", (1, "flat", 16.0, None)),
+        ("T5 | #7 DRILL | H5", (5, "drill", 5.1054, None)),
     ],
 )
 def test_comments_tell_tools(comment: str, tool: tuple[object, ...]) -> None:
@@ -454,7 +457,7 @@ def test_words_of_an_axis_that_stays_at_zero_are_passed_over(tmp_path: Path) -> 
     with pytest.raises(ProgramError, match="no axis A") as raised:
         prepare(path)
     assert '[axes] A = "ignored at 0"' in str(raised.value)
-    assert 'A = "C" where it stands for C' in str(raised.value)
+    assert 'A = "C" where it means C' in str(raised.value)
 
 
 def test_a_word_stands_for_an_axis_of_the_machine(tmp_path: Path) -> None:
@@ -546,3 +549,39 @@ def test_tolerances_are_assumed_for_moves_that_there_are(tmp_path: Path) -> None
     _, fed = raw(tmp_path, "%\nO1\nG21 G90 G17 G54\nG1 X10. F300.\nX20.\nM30\n%\n")
     assert "\ncontour_um" in fed.text
     assert "rapid_contour_um" not in fed.text
+
+
+def test_the_names_of_tools_tell_what_they_are(tmp_path: Path) -> None:
+    text = 'G17 G71 G90\nT="MILL_D16"\nM6\nT="BORE 1"\nM6 ; BOHRER D8.5\nG0 X0 Y0 Z5\nG1 Z-3 F200\nM30\n'
+    (tmp_path / "part.mpf").write_text(text)
+    preparation = prepare(tmp_path / "part.mpf")
+    made, _ = with_assumptions(preparation, machine=None, strict=False)
+    tools = [(each.name, each.kind, each.diameter) for each in made.job.file.tools]
+    assert tools == [("MILL_D16", "flat", 16.0), ("BORE 1", "drill", 8.5)]
+    assert list(made.interpretation().chunks())
+    assert not made.interpretation().diagnostics
+
+
+def test_stock_keeps_clear_of_rapids_in_the_plane_beside_the_part(tmp_path: Path) -> None:
+    """A lead from outside goes back with rapid at depth; one across the part is no reason to take it away."""
+    beside = "G21 G90 G17\nT1 M6\nS2000 M3\nG0 X-20. Y-20. Z5.\nG1 Z-3. F300.\nX-6.\nY70.\nX100.\nY-6.\nX-20.\n{}\nG0 Z50.\nM30\n"
+    made, job = raw(tmp_path, "%\nO1\n" + beside.format("G0 Y-20."))
+    assert "less where the rapids of line 13 go below its top" in " ".join(job.assumptions)
+    stock = made.job.file.stock
+    assert stock is not None
+    assert stock.size is not None
+    assert stock.position[0] - stock.size[0] / 2.0 > -15.0
+    made, job = raw(tmp_path, "%\nO1\n" + beside.format("G0 X90. Y60."))
+    assert "less where" not in " ".join(job.assumptions)
+
+
+def test_tools_that_a_program_writes_into_the_table_are_its_own(tmp_path: Path) -> None:
+    """HeeksCNC and Fabex write G10 L1 for each; where lengths are called they count from those, and nobody knows them."""
+    text = "G21 G90\nG10 L1 P1 R4.000 Z20.000\nG10 L1 P2 R1.5 Z20\nT1 M6\nS900 M3\n{}G0 X1 Z5\nG1 Z-1 F90\nX9\nG0 Z5\nT2 M6\nG1 Z-2 F90\nG0 Z5\nM2\n"
+    made, _ = raw(tmp_path, text.format(""))
+    assert made.dialect.name == "linuxcnc"
+    tools = [(each.number, each.kind, each.diameter) for each in made.job.file.tools]
+    assert tools == [(1, "flat", 8.0), (2, "drill", 3.0)]
+    assert list(made.interpretation().chunks())
+    with pytest.raises(ProgramError, match="no tool 2"):
+        raw(tmp_path, text.format("G43 H1\n"))

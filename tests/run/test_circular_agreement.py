@@ -39,7 +39,7 @@ def test_the_run_and_the_circular_test_agree(tmp_path: Path):
     program = tmp_path / "both_ways.nc"
     program.write_text(both_ways(), encoding="utf-8")
     run = Run(prepare(program, dialect="mefi", machine="mill4_light"))
-    (pair,) = run.execute(run.dry_run(), None, no_progress).figures.bidirectional
+    (pair,) = run.execute(None, no_progress).figures.bidirectional
     found = circular_test(read_machine(machine_file("mill4_light")), RADIUS, FEED)
     assert found.hysteresis_um > 1.0
     assert pair.circular_deviation_um == pytest.approx(found.circular_deviation_um, rel=0.01)

@@ -13,7 +13,7 @@ JOB = 'program = "part.nc"\ndialect = "{}"\nmachine = "mill4"\n[[tools]]\nnumber
 def dry_run(folder: Path, text: str, dialect: str = "fagor8070", more: str = ""):
     (folder / "part.nc").write_text(text)
     (folder / "part.toml").write_text(JOB.format(dialect) + more)
-    return Run(prepare(folder / "part.toml")).dry_run()
+    return Run(prepare(folder / "part.toml")).dry_run
 
 
 def test_more_speed_than_the_spindle_gives_is_a_warning_at_its_s_and_is_limited(tmp_path: Path):

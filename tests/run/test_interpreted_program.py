@@ -32,7 +32,7 @@ def test_a_run_interprets_its_program_once(tmp_path: Path, monkeypatch: pytest.M
 
     monkeypatch.setattr(Interpretation, "chunks", counted)
     run = Run(prepared(tmp_path, "N10 G1 X1 F600\nN20 G1 X0\n"))
-    outcome = run.execute(run.dry_run(), None, no_progress)
+    outcome = run.execute(None, no_progress)
     assert outcome.samples
     assert len(passes) == 1
 

@@ -6,8 +6,7 @@ from twin.files.shipped import machine_file
 from twin.job.job_file import JobFile, StockTable, ToolTable
 from twin.machine.description.config import Machine
 from twin.machine.load import read_machine
-from twin.machine.model.model import spindle_over_table_mm
-from twin.run.layout import WORK_HOLDING_HEIGHT, lay_out, start_position
+from twin.run.layout import WORK_HOLDING_HEIGHT, lay_out
 
 
 @pytest.fixture(scope="module")
@@ -17,7 +16,7 @@ def machine() -> Machine:
 
 @pytest.fixture(scope="module")
 def clearance(machine: Machine) -> float:
-    return spindle_over_table_mm(machine)
+    return machine.at_zero.spindle_over_table
 
 
 def stock(height: float, top: float = 0.0) -> StockTable:
@@ -51,7 +50,7 @@ def test_axes_that_the_machine_lacks_are_refused(machine: Machine):
     with pytest.raises(ConfigError, match=r"part_zero\.A.*X, Y, Z, C"):
         lay_out(JobFile(program="a", part_zero={"A": 1.0}), machine)
     with pytest.raises(ConfigError, match=r"start\.W"):
-        start_position(JobFile(program="a", start={"W": 1.0}), machine)
+        lay_out(JobFile(program="a", start={"W": 1.0}), machine)
 
 
 def test_a_stock_below_the_table_is_refused_with_the_height_that_fits(

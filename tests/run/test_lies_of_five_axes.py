@@ -174,7 +174,7 @@ def run(folder: Path, program: str, parts: dict[str, str]) -> Outcome:
     (folder / "p.nc").write_text(program)
     (folder / "p.toml").write_text(JOB.format(**keys))
     chain = Run(prepare(folder / "p.toml"))
-    return chain.execute(chain.dry_run(), None, no_progress)
+    return chain.execute(None, no_progress)
 
 
 @pytest.mark.seconds("programs are run whole")

@@ -46,28 +46,23 @@ def counts(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
     count(HeightMapMaterial, "__init__", "cuts")
     count(CuttingProcess, "__init__", "processes")
     count(twin.job.load, "load_toml", "job files")
-    count(twin.machine.load, "read_toml", "machine files")
+    count(twin.machine.load, "load_toml", "machine files")
+    count(mujoco.MjSpec, "from_file", "model files")
     return counted
 
 
 @pytest.mark.parametrize("job", [ONE_TOOL, TWO_TOOLS, WITH_FORCES])
 def test_a_run_does_each_once(counts: Counter[str], job: str) -> None:
     run = Run(prepare(Path(resource_root("programs") / job)))
-    dry_run = run.dry_run()
-    outcome = run.execute(dry_run, None, no_progress)
+    outcome = run.execute(None, no_progress)
     assert outcome.samples
     assert counts["interpretations"] == counts["models"] == 1
     assert counts["job files"] == counts["machine files"] == 1
+    # The joints, for the chain of axes; and what is completed for the simulation.
+    assert counts["model files"] == 2
     assert counts["stocks"] == counts["cuts"] == 1
     assert counts["processes"] == (job == WITH_FORCES)
     # The joints, for the chain of axes; the empty machine, for whose masses the drives are tuned; what moves;
     # and the solids around each tool.
-    tools = len({tool.number for tool in dry_run.summary.tools.tools})
+    tools = len({tool.number for tool in run.dry_run.summary.tools.tools})
     assert counts["compiled"] == 3 + tools
-
-
-def test_the_height_over_the_table_needs_no_model(counts: Counter[str]) -> None:
-    made = prepare(Path(resource_root("programs") / ONE_TOOL))
-    counts.clear()
-    twin.machine.model.model.spindle_over_table_mm(made.machine)
-    assert not counts["compiled"]

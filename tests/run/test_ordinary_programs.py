@@ -24,7 +24,7 @@ def drawn(folder: Path, seed: int) -> dict[str, int]:
     (folder / "p.nc").write_text(program)
     (folder / "p.toml").write_text(job)
     chain = Run(prepare(folder / "p.toml"))
-    return codes(chain.execute(chain.dry_run(), None, no_progress))
+    return codes(chain.execute(None, no_progress))
 
 
 @pytest.mark.seconds("programs are run whole")

@@ -25,9 +25,9 @@ def test_the_height_of_a_longer_tool_is_that_of_the_program(tmp_path: Path) -> N
     (tmp_path / "part.nc").write_text(PROGRAM)
     (tmp_path / "part.toml").write_text(JOB)
     run = Run(prepare(tmp_path / "part.toml"))
-    outcome = run.execute(run.dry_run(), None, no_progress)
+    outcome = run.execute(None, no_progress)
     flat = [place for place in outcome.figures.worst if place.line in (7, 8)]
     assert flat
     assert [place.position[2] for place in flat] == pytest.approx([2.0] * len(flat), abs=0.2)
-    under = run.trace.tool[run.trace.line == 8]
+    under = outcome.trace.tool[outcome.trace.line == 8]
     assert under[:, 2].min() == pytest.approx(2.0, abs=0.2)

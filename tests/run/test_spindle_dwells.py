@@ -8,7 +8,7 @@ import pytest
 
 import twin
 from twin.job.job_file import JobFile, ToolTable
-from twin.machine.description.config import SpindleTable
+from twin.machine.description.machine_file import SpindleTable
 from twin.nc.canonical import Axes, Chunk, Dwell, Event, Function, Moves
 from twin.nc.functions import SpindleState
 from twin.run.spindle_dwells import with_spindle_dwells

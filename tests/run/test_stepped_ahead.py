@@ -53,7 +53,7 @@ def outcome(folder: Path, through: str, cores: int, monkeypatch: pytest.MonkeyPa
     machine = resource_root("programs") / "alarms/machines/vise.toml"
     (folder / "ahead.toml").write_text(JOB.format(machine))
     run = Run(prepare(folder / "ahead.toml"))
-    return run.execute(run.dry_run(), None, no_progress)
+    return run.execute(None, no_progress)
 
 
 @pytest.mark.seconds("runs a job of two chunks on one core and on two")

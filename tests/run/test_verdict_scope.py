@@ -62,7 +62,7 @@ def run(
     (folder / "p.nc").write_text(dedent(program))
     (folder / "p.toml").write_text(JOB.format(**keys))
     chain = Run(prepare(folder / "p.toml", strict=strict))
-    return chain.execute(chain.dry_run(), None, no_progress)
+    return chain.execute(None, no_progress)
 
 
 def codes(outcome: Outcome) -> dict[str, int]:

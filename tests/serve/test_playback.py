@@ -38,13 +38,12 @@ def production(tmp_path_factory: pytest.TempPathFactory) -> Production:
     program = folder / "part.nc"
     program.write_text(PROGRAM, encoding="utf-8")
     run = Run(prepare(program, dialect="mefi"))
-    dry_run = run.dry_run()
-    outcome = run.execute(dry_run, folder, no_progress)
+    outcome = run.execute(folder, no_progress)
     return Production(
         machine=run.preparation.machine,
         program="part.nc",
         source=run.preparation.source.lines,
-        summary=dry_run.summary,
+        summary=run.dry_run.summary,
         recording=folder / "recording.h5",
         alarms=outcome.alarms,
     )
@@ -91,7 +90,7 @@ def test_coolant_flows_from_its_word_to_the_end(tmp_path: Path):
     program = tmp_path / "wet.nc"
     program.write_text("N1 G01 X1 F600\nN2 M8\nN3 X2\nN4 X3\nN5 M9\nN6 X4\nN7 M7\nN8 X5\nN9 M30\n")
     run = Run(prepare(program, dialect="gost"))
-    coolant = coolant_of(run.dry_run().program.chunks())
+    coolant = coolant_of(run.dry_run.program.chunks())
     assert [coolant.at(move) for move in range(-1, 6)] == [
         False,
         False,

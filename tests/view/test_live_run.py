@@ -18,7 +18,7 @@ def test_a_machine_that_moves_is_shown_where_it_is(tmp_path):
     run = Run(prepare(tmp_path / "square.toml"))
     place = run.part_zero + np.array([3.0, 0.0, 5.0, 0.0])
     moments = [Moment(0.5, 3, place)]
-    live = LiveRun(run.preparation, run.part_frame, run.part_zero, lambda: moments[-1])
+    live = LiveRun(run.preparation, lambda: moments[-1])
     wrong: list[str] = []
     with open_view(live, now=live.now) as address, browser() as opened:
         page = opened.new_page(viewport={"width": 1100, "height": 800})

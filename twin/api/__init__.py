@@ -12,7 +12,7 @@ A program is a path, the name of a shipped one, the text of one, or a ``twin.Job
 ``twin.errors.TwinError`` where the command would end with a message.
 """
 
-from twin.api.functions import interpret, plan, run, setpoints
+from twin.api.functions import interpret, plan, run
 from twin.api.machine import Machine
 from twin.api.program import Program
 from twin.api.result import Result
@@ -37,6 +37,5 @@ __all__ = [
     "interpret",
     "plan",
     "run",
-    "setpoints",
     "sweep",
 ]

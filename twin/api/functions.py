@@ -1,7 +1,6 @@
 """Interpret, plan and run: what the commands of these names do, without printing."""
 
 import contextlib
-from collections.abc import Iterator
 from pathlib import Path
 
 from twin.api.program import Program, prepared, scratch_folder
@@ -10,7 +9,7 @@ from twin.columns import join
 from twin.errors import UsageError
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Moves, concatenate
-from twin.run.dry_run import InterpretedProgram, interpreted
+from twin.run.dry_run import interpreted
 from twin.run.pipeline import planned
 from twin.run.progress import no_progress
 from twin.run.results import RESULT_FILES, write_results
@@ -75,7 +74,7 @@ def plan(program: Program, *, dialect: str | None = None, machine: str | None = 
         preparation, _ = prepared(program, folder, dialect=dialect, machine=machine)
         chunks: list[Setpoints] = []
         count = 0
-        for chunk in setpoints(Run(preparation), interpreted(preparation)):
+        for chunk in planned(interpreted(preparation), preparation):
             count += len(chunk)
             if count > MOST_SAMPLES:
                 hours = MOST_SAMPLES * preparation.machine.file.servo_period_s / 3600.0
@@ -85,11 +84,6 @@ def plan(program: Program, *, dialect: str | None = None, machine: str | None = 
                 )
             chunks.append(chunk)
         return join(chunks)
-
-
-def setpoints(run: Run, program: InterpretedProgram) -> Iterator[Setpoints]:
-    """The setpoints of a run's program, in chunks."""
-    return planned(program, run.machine, run.part_zero)
 
 
 def run(
@@ -129,8 +123,7 @@ def run(
             program, folder, dialect=dialect, machine=machine, assuming=True
         )
         chain = Run(preparation)
-        dry_run = chain.dry_run()
         with run_folder(folder, RESULT_FILES):
-            outcome = chain.execute(dry_run, folder, no_progress)
+            outcome = chain.execute(folder, no_progress)
             write_results(chain, outcome, folder)
         return Result(chain, outcome, folder, assumptions, unless_finished.pop_all())

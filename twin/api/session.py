@@ -9,21 +9,12 @@ from twin.api.program import Program, prepared, scratch_folder
 from twin.compare.comparison import Comparison
 from twin.compare.figures import Figures
 from twin.coupling.operations import program_process
-from twin.machine.description.motion_limits import motion_limits
 from twin.machine.simulation.live import LiveMachine
 from twin.machine.watching.alarms import Alarm
 from twin.motion.live.live_motion import LARGEST_OVERRIDE, LiveMotion
 from twin.nc.canonical import Chunk, FloatArray
 from twin.recording.form import Samples
-from twin.run.dry_run import DryRun
 from twin.run.run import Run
-
-
-class PreparedRun(NamedTuple):
-    """A program that was laid out on its machine and interpreted."""
-
-    run: Run
-    dry_run: DryRun
 
 
 class Step(NamedTuple):
@@ -67,8 +58,7 @@ class Session:
         4.1
 
     Attributes:
-        prepared: What other sessions of the same program begin with.
-        run: The job on its machine.
+        run: The job on its machine, with which other sessions of the same program may begin.
         ticks: Servo periods that have passed.
         alarm: What stopped the machine; of a program that would leave the travel before it moves.
         commands: What was turned or pressed, in order.
@@ -76,7 +66,7 @@ class Session:
 
     def __init__(
         self,
-        program: Program | PreparedRun,
+        program: Program | Run,
         *,
         dialect: str | None = None,
         machine: str | None = None,
@@ -95,14 +85,13 @@ class Session:
             ProgramError: The program is wrong.
             UsageError: A file is missing or wrong.
         """
-        if isinstance(program, PreparedRun):
-            self.prepared = program
+        if isinstance(program, Run):
+            self.run = program
         else:
             with scratch_folder() as folder:
                 made, _ = prepared(program, folder, dialect=dialect, machine=machine, assuming=True)
-                run = Run(made)
-                self.prepared = PreparedRun(run, run.dry_run())
-        self.run, dry_run = self.prepared
+                self.run = Run(made)
+        dry_run = self.run.dry_run
         self.ticks = 0
         self.alarm: Alarm | None = dry_run.alarm
         self.commands: list[Command] = []
@@ -115,7 +104,7 @@ class Session:
         self._comparison = Comparison(described.axes, self.run.part_frame, zero)
         self._motion = LiveMotion(
             self._chunks(),
-            motion_limits(described),
+            described.motion_limits,
             period_s=described.file.servo_period_s,
             part_zero=zero,
             start=start,
@@ -210,7 +199,7 @@ class Session:
         It repeats what has happened, commands at their instants: the same to the bit, in the time that the
         simulation takes.
         """
-        other = Session(self.prepared, largest_override=self._motion.largest_override)
+        other = Session(self.run, largest_override=self._motion.largest_override)
         for command in self.commands:
             other._go_to(command.tick)
             other._command(command)
@@ -232,6 +221,6 @@ class Session:
 
     def _chunks(self) -> Iterator[Chunk]:
         """The program; what compares hears of its moves first."""
-        for chunk in self.prepared.dry_run.program.timed_chunks():
+        for chunk in self.run.dry_run.program.timed_chunks():
             self._comparison.expect(chunk.moves)
             yield chunk

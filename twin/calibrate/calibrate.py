@@ -21,7 +21,8 @@ from twin.calibrate.transmission import as_built, units_of, with_ball_bars, with
 from twin.errors import UsageError
 from twin.logs.ball_bar import BallBarLog
 from twin.logs.machine_log import MachineLog
-from twin.machine.description.config import AxisTable, Machine
+from twin.machine.description.config import Machine
+from twin.machine.description.machine_file import AxisTable
 from twin.machine.model.model import build_spec, compiled, drives
 from twin.units import AxisKind
 

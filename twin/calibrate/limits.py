@@ -8,7 +8,7 @@ from scipy.signal import savgol_coeffs, savgol_filter
 
 from twin.calibrate.health import resolution
 from twin.logs.machine_log import AxisLog
-from twin.machine.description.config import AxisTable
+from twin.machine.description.machine_file import AxisTable
 from twin.nc.canonical import FloatArray
 
 _ORDERS = {"velocity": 1, "acceleration": 2, "jerk": 3}

@@ -8,7 +8,7 @@ from twin.calibrate.fit.parameters import Parameters
 from twin.calibrate.fit.solve import Interval
 from twin.calibrate.fit.stages import OF_THE_LOG
 from twin.calibrate.result import AxisResult, Calibration
-from twin.machine.description.config import AxisTable
+from twin.machine.description.machine_file import AxisTable
 from twin.machine.model.drive_actuators import stiffest
 from twin.machine.model.drives import reflected_inertia
 from twin.units import to_si

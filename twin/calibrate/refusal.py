@@ -4,7 +4,7 @@ import numpy as np
 
 from twin.errors import UsageError
 from twin.logs.machine_log import AxisLog
-from twin.machine.description.config import AxisTable
+from twin.machine.description.machine_file import AxisTable
 from twin.nc.canonical import FloatArray
 
 _FOLLOWS = 0.3

@@ -10,7 +10,7 @@ from twin.calibrate.fit.ball_bar import ONE_DIRECTION, BallBarFit
 from twin.calibrate.fit.solve import Interval
 from twin.calibrate.fit.stages import NOT_ASKED, AxisFit
 from twin.calibrate.limits import Limits
-from twin.machine.description.config import AxisTable
+from twin.machine.description.machine_file import AxisTable
 from twin.nc.canonical import FloatArray
 from twin.units import AxisKind
 

@@ -9,7 +9,8 @@ from twin.calibrate.fit.parameters import coordinates
 from twin.calibrate.fit.solve import Interval
 from twin.calibrate.fit.stages import AxisFit
 from twin.calibrate.prepared import PreparedLog
-from twin.machine.description.config import AxisTable, Machine
+from twin.machine.description.config import Machine
+from twin.machine.description.machine_file import AxisTable
 from twin.machine.model.drives import reflected_inertia
 from twin.units import AxisKind
 

@@ -104,10 +104,9 @@ def _run(variant: Variant, settings: CheckSettings) -> CheckOutcome:
         strict=settings.strict,
         changes=variant.changes,
     )
-    run = Run(preparation)
     try:
-        dry_run = run.dry_run()
-        outcome = run.execute(dry_run, None, no_progress)
+        run = Run(preparation)
+        outcome = run.execute(None, no_progress)
     except (ProgramError, ConfigError) as error:
         if preparation.job.file.expect is not None:
             return _not_run(path, error)  # without moves there is nothing to store or to hold
@@ -124,8 +123,8 @@ def _run(variant: Variant, settings: CheckSettings) -> CheckOutcome:
     alarmed = outcome.verdict.outcome == "alarm"
     ended = not alarmed or preparation.job.file.expect is not None
     figures = _figures(outcome) if ended else None
-    differing = _baseline_reasons(preparation, dry_run.program.chunks(), figures, settings)
-    if any(found.code == "empty-program" for found in dry_run.warnings):
+    differing = _baseline_reasons(preparation, run.dry_run.program.chunks(), figures, settings)
+    if any(found.code == "empty-program" for found in run.dry_run.warnings):
         raise EmptyProgramError(f"{path}: the program is empty: no line holds a block")
     failed = bool(differing) and not alarmed
     return CheckOutcome(

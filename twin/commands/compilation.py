@@ -29,7 +29,7 @@ from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray, Motion
 from twin.processor import available_cores
 from twin.run.assumed_job import with_assumptions
-from twin.run.dry_run import DryRun, InterpretedProgram, interpreted
+from twin.run.dry_run import InterpretedProgram, interpreted
 from twin.run.pipeline import ProgramMotion, cutting_forces
 from twin.run.preparation import prepare
 from twin.run.progress import no_progress
@@ -137,13 +137,12 @@ def _run(job: Path) -> None:
 
 
 def _plan(job: Path) -> None:
-    from twin.machine.description.motion_limits import motion_limits
     from twin.motion.report.summary import summarize
 
     made = prepare(job)
     program = interpreted(made)
     summarize(
-        program.chunks(), motion_limits(made.machine), start=program.start, axes=made.machine.axes
+        program.chunks(), made.machine.motion_limits, start=program.start, axes=made.machine.axes
     )
 
 
@@ -200,8 +199,7 @@ def _compile_later_stages(path: Path, dialect: str | None, machine: str | None) 
         if preparation.job.path is None:
             preparation, _ = with_assumptions(preparation, machine=machine, strict=False)
         run = Run(preparation)
-        dry_run = run.dry_run()
-        run.execute(dry_run, None, no_progress, later_motion(run, dry_run))
+        run.execute(None, no_progress, later_motion(run))
 
 
 def _end_with_parent() -> None:
@@ -211,10 +209,11 @@ def _end_with_parent() -> None:
         os._exit(0)
 
 
-def later_motion(run: Run, dry_run: DryRun) -> ProgramMotion:
+def later_motion(run: Run) -> ProgramMotion:
     """A motion that goes aslant into the middle of the blank and needs no planner."""
-    forces = cutting_forces(run.preparation.job.file, run.machine, dry_run, run.layout)
-    return ProgramMotion(_aslant(run, dry_run.program), run.model, dry_run.summary, forces)
+    summary = run.dry_run.summary
+    forces = cutting_forces(run.preparation, summary)
+    return ProgramMotion(_aslant(run, run.dry_run.program), run.model, summary, forces)
 
 
 def _aslant(run: Run, program: InterpretedProgram) -> Iterator[Setpoints]:

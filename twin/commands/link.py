@@ -19,7 +19,7 @@ from twin.job.load import Job, load_job
 from twin.machine.load import load_machine
 from twin.nc.dialects import recognise
 from twin.nc.text.source import read_source
-from twin.run.layout import lay_out, start_position
+from twin.run.layout import lay_out
 from twin.run.preparation import Preparation, prepare, prepare_job
 from twin.run.progress import shown_progress
 from twin.run.results import RESULT_FILES, write_results
@@ -90,7 +90,6 @@ def link_linuxcnc(
         else:
             preparation = _prepare_as_read(own, machine, out, changes)
         run = Run(preparation)
-        dry_run = run.dry_run()
         wish = Wish(
             own_program=None if own is None else own.program,
             display=display if headless is None else None,
@@ -100,7 +99,6 @@ def link_linuxcnc(
         with shown_progress() as progress:
             outcome, figures = run_on_twin(
                 run,
-                dry_run,
                 out,
                 progress,
                 wish,
@@ -126,7 +124,7 @@ def _shown(run: Run, motion: "LockstepMotion") -> Iterator[None]:
     from twin.view.app import open_view
     from twin.view.live_run import LiveRun, Moment
 
-    live = LiveRun(run.preparation, run.part_frame, run.part_zero, lambda: Moment(*motion.moment))
+    live = LiveRun(run.preparation, lambda: Moment(*motion.moment))
     with open_view(live, now=live.now) as address:
         _say(f"open {address} in a browser")
         yield
@@ -180,8 +178,8 @@ def _prepare_as_read(
     from twin.link.program_reading import DIALECT, read_program
 
     read = load_machine(job, machine, changes)
-    zero = lay_out(job.file, read).part_zero
-    start = start_position(job.file, read) + zero
+    layout = lay_out(job.file, read)
+    zero, start = layout.part_zero, layout.start + layout.part_zero
     path = (out / READ_PROGRAM).resolve()
     write_text(path, read_program(job.program, read.axes, start, zero, job.file))
     file = job.file.model_copy(update={"program": str(path), "dialect": DIALECT})

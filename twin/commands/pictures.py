@@ -3,7 +3,6 @@
 from pathlib import Path
 
 from twin.recording.reader import open_recording
-from twin.run.dry_run import DryRun
 from twin.run.progress import Progress
 from twin.run.results import ALARM_STILL_NAME, STILL_NAME
 from twin.run.run import Run
@@ -18,11 +17,10 @@ ALARMS_OF_CONTACT = ("collision", "rapid-into-stock", "spindle-off", "gouge")
 """Alarms of two things that meet, which a picture shows."""
 
 
-def film_run(run: Run, dry_run: DryRun, folder: Path, progress: Progress) -> None:
+def film_run(run: Run, folder: Path, progress: Progress) -> None:
     """Film a run that was recorded, and draw its end as a still.
 
     Args:
-        dry_run: What the first pass over its program found.
         folder: Where ``recording.h5`` lies and the pictures go.
 
     Raises:
@@ -34,7 +32,7 @@ def film_run(run: Run, dry_run: DryRun, folder: Path, progress: Progress) -> Non
 
     video = run.preparation.job.file.video
     with open_recording(folder / "recording.h5") as recording:
-        scene = scene_of(recording, run.preparation, dry_run.summary)
+        scene = scene_of(recording, run.preparation, run.dry_run.summary)
         film(
             scene,
             video=video,
@@ -51,11 +49,10 @@ def film_run(run: Run, dry_run: DryRun, folder: Path, progress: Progress) -> Non
         )
 
 
-def draw_contact(run: Run, dry_run: DryRun, folder: Path) -> None:
+def draw_contact(run: Run, folder: Path) -> None:
     """Draw the moment at which two things met, which is the last of its recording, near and from afar.
 
     Args:
-        dry_run: What the first pass over its program found.
         folder: Where ``recording.h5`` lies and the picture goes.
 
     Raises:
@@ -65,7 +62,7 @@ def draw_contact(run: Run, dry_run: DryRun, folder: Path) -> None:
     from twin.run.replay import scene_of
 
     with open_recording(folder / "recording.h5") as recording:
-        scene = scene_of(recording, run.preparation, dry_run.summary)
+        scene = scene_of(recording, run.preparation, run.dry_run.summary)
         cameras = [name for name in ALARM_CAMERAS if name in scene.camera_names()]
         shot = Shot(folder / ALARM_STILL_NAME, len(recording))
         stills(scene, [shot], cameras=cameras, size=_ALARM_SIZE, quality="draft")

@@ -9,15 +9,13 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
-from twin.api import setpoints
 from twin.commands.console import table_console
 from twin.compilation.announcement import announce_compilation
 from twin.errors import UsageError
-from twin.machine.description.motion_limits import motion_limits
 from twin.motion.report.summary import Summary, summarize
 from twin.run.dry_run import interpreted
+from twin.run.pipeline import planned
 from twin.run.preparation import prepare
-from twin.run.run import Run
 
 MOST_ROWS = 20
 """Blocks in the table for people: those that lose most."""
@@ -51,7 +49,7 @@ def plan_and_print(
     twin_machine, program = preparation.machine, interpreted(preparation)
     summary = summarize(
         program.timed_chunks(),
-        motion_limits(twin_machine),
+        twin_machine.motion_limits,
         start=program.start,
         axes=twin_machine.axes,
     )
@@ -61,7 +59,7 @@ def plan_and_print(
 
     picture = folder / "plan.png"
     samples = math.ceil(summary.total / twin_machine.file.servo_period_s)
-    draw_plan(setpoints(Run(preparation), program), twin_machine.axes, samples, picture)
+    draw_plan(planned(program, preparation), twin_machine.axes, samples, picture)
     if form == "json":
         typer.echo(json.dumps(_as_json(summary, picture), indent=2))
     else:

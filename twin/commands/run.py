@@ -11,7 +11,6 @@ from twin.errors import ExitCode, RenderError, UsageError
 from twin.files.atomic import write_text
 from twin.nc.text.diagnostics import ProgramError
 from twin.run.assumed_job import read_as, reading_notes, text_beside, with_assumptions
-from twin.run.dry_run import DryRun
 from twin.run.messages import alarm_diagnostic, near_miss_diagnostic, reason_text
 from twin.run.outcome import Outcome
 from twin.run.preparation import Preparation, prepare
@@ -52,16 +51,15 @@ def run_and_print(
         elif save_job is not None:
             raise UsageError(f"--save-job: {preparation.job.path} is the program's job already")
         run = Run(preparation)
-        dry_run = run.dry_run()
     with without_verdict(folder), run_folder(folder, RESULT_FILES):
         with shown_progress() as progress:
-            outcome = run.execute(dry_run, folder, progress)
+            outcome = run.execute(folder, progress)
             if video and outcome.samples:
                 with run.clock.stage("render"):
-                    film_run(run, dry_run, folder, progress)
+                    film_run(run, folder, progress)
             if any(alarm.code in ALARMS_OF_CONTACT for alarm in outcome.alarms):
                 with run.clock.stage("render"):
-                    _draw_contact(run, dry_run, folder)
+                    _draw_contact(run, folder)
         write_results(run, outcome, folder)
     print_findings(run, outcome)
     for line in outcome.scope.lines():
@@ -90,10 +88,10 @@ def _assumed(
     return made
 
 
-def _draw_contact(run: Run, dry_run: DryRun, folder: Path) -> None:
+def _draw_contact(run: Run, folder: Path) -> None:
     """Draw the moment for the report; the alarm is printed even where no picture can be made."""
     try:
-        draw_contact(run, dry_run, folder)
+        draw_contact(run, folder)
     except RenderError as error:
         typer.echo(f"no picture of the alarm: {error}", err=True)
 

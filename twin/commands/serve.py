@@ -289,18 +289,17 @@ def _produce(run: Run, folder: Path) -> "Production":
     """Run a job once and keep its recording in a folder."""
     from twin.serve.playback import Production, coolant_of
 
-    dry_run = run.dry_run()
     with shown_progress() as progress:
-        outcome = run.execute(dry_run, folder, progress)
+        outcome = run.execute(folder, progress)
     recording = folder / "recording.h5"
     return Production(
         machine=run.preparation.machine,
         program=run.preparation.source.name,
         source=run.preparation.source.lines,
-        summary=dry_run.summary,
+        summary=run.dry_run.summary,
         recording=recording if recording.is_file() else None,
         alarms=outcome.alarms,
-        coolant=coolant_of(dry_run.program.chunks()),
+        coolant=coolant_of(run.dry_run.program.chunks()),
     )
 
 

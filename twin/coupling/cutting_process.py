@@ -14,7 +14,7 @@ from twin.cutting.forces.cutter_form import cutter_form, force_law
 from twin.cutting.forces.materials import Kienzle
 from twin.cutting.forces.tool_strength import ToolStrength, tool_strength
 from twin.job.job_file import ToolTable
-from twin.machine.description.config import SpindleTable
+from twin.machine.description.machine_file import SpindleTable
 from twin.machine.simulation.process import Physics
 from twin.machine.watching.alarms import Alarm
 from twin.motion.setpoints.setpoints import Setpoints

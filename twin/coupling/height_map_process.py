@@ -6,7 +6,7 @@ from twin.coupling.turning_tool import TurningTool
 from twin.cutting.forces.materials import Kienzle
 from twin.cutting.height_map import HeightMap, raw_walls
 from twin.cutting.kernels.walls import Material
-from twin.machine.description.config import SpindleTable
+from twin.machine.description.machine_file import SpindleTable
 from twin.machine.simulation.process import Physics
 from twin.nc.canonical import FloatArray
 from twin.toolpath.part_frame import PartFrame

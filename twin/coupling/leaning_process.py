@@ -11,7 +11,7 @@ from twin.cutting.tridexel.dexels import TriDexel
 from twin.cutting.tridexel.engagement import longest_step
 from twin.cutting.tridexel.normals import MOST_TOOLS
 from twin.cutting.tridexel.solids import cutting_edge
-from twin.machine.description.config import SpindleTable
+from twin.machine.description.machine_file import SpindleTable
 from twin.machine.simulation.process import Physics
 from twin.nc.canonical import FloatArray
 from twin.toolpath.part_frame import PartFrame

@@ -28,22 +28,16 @@ DEEPEST = 20
 """Tables and lists within each other; our own files have half a dozen."""
 
 
-def read_toml(
-    path: Path, table: type[TableT], *, prepare: Callable[[Data], Data] | None = None
-) -> TableT:
+def read_toml(path: Path, table: type[TableT]) -> TableT:
     """Read a TOML file into a table model.
 
     Args:
         table: The model that names its keys.
-        prepare: Changes the file's content before the model checks it.
 
     Raises:
         ConfigError: The file is missing, is not TOML, or has a wrong key or value.
     """
-    data = load_toml(path)
-    if prepare is not None:
-        data = prepare(data)
-    return checked(data, table, str(path))
+    return checked(load_toml(path), table, str(path))
 
 
 def checked(data: Data, table: type[TableT], where: str | Callable[[str], str | Path]) -> TableT:

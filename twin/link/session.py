@@ -28,7 +28,7 @@ from twin.link.place import Places
 from twin.machine.simulation.live import LiveMachine
 from twin.machine.watching.alarms import Alarm, AlarmCode
 from twin.nc.canonical import FloatArray, concatenate
-from twin.run.dry_run import DryRun, InterpretedProgram
+from twin.run.dry_run import InterpretedProgram
 from twin.run.outcome import Outcome
 from twin.run.preparation import Preparation
 from twin.run.progress import Progress
@@ -39,7 +39,7 @@ class _EnoughError(Exception):
     """Every step has been called."""
 
 
-def rehearse(run: Run, dry_run: DryRun, tool: ToolTable, position: FloatArray) -> None:
+def rehearse(run: Run, tool: ToolTable, position: FloatArray) -> None:
     """Call what a linked run will call, unless all of it is compiled already; nothing of it is kept.
 
     Kernels compile when they are first called, which takes a minute in a new installation, and LinuxCNC's
@@ -55,7 +55,7 @@ def rehearse(run: Run, dry_run: DryRun, tool: ToolTable, position: FloatArray) -
     if inventory().complete:
         return
     with contextlib.suppress(_EnoughError):
-        Run(run.preparation).execute(dry_run, None, _enough)
+        Run(run.preparation).execute(None, _enough)
     live = LiveMachine(run.machine, tool, position, run.model.blank)
     live.stand_at(position)
     live.follow(live.setpoint)
@@ -93,7 +93,6 @@ class Wish(NamedTuple):
 
 def run_on_twin(
     run: Run,
-    dry_run: DryRun,
     folder: Path,
     progress: Progress,
     wish: Wish,
@@ -117,16 +116,16 @@ def run_on_twin(
         UsageError: LinuxCNC or its component is not installed, or cannot drive this machine.
     """
     with claimed_linuxcnc() as start:
-        preparation = run.preparation
+        preparation, program = run.preparation, run.dry_run.program
         axes = preparation.machine.axes
         own = folder.resolve() / FOLDER_NAME
         require_plain(own)
         own.mkdir(exist_ok=True)
         install(own, module_folder(start))
-        tool, position = preparation.job.file.tools[0], dry_run.program.start + run.part_zero
-        rehearse(run, dry_run, tool, position)
+        tool, position = preparation.job.file.tools[0], program.start + run.part_zero
+        rehearse(run, tool, position)
         live = LiveMachine(run.machine, tool, position, run.model.blank)
-        places = _write_program(dry_run.program, preparation, own / PROGRAM_NAME, wish.own_program)
+        places = _write_program(program, preparation, own / PROGRAM_NAME, wish.own_program)
         session = wish.display is not None
         with LockstepMotion(live, places, run.part_zero, session=session) as motion:
             settings = Settings(
@@ -146,7 +145,7 @@ def run_on_twin(
                 motion.goes_on = linuxcnc.goes_on
                 if not session:
                     motion.last_word = _last_word(linuxcnc, axes.names)
-                outcome = run.execute(dry_run, folder, progress, motion)
+                outcome = run.execute(folder, progress, motion)
                 if motion.left:
                     linuxcnc.end_soon()
                 else:

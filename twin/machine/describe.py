@@ -7,7 +7,7 @@ from twin.files.shipped import machine_file, machine_names, variant_names
 from twin.machine.description.config import Machine
 from twin.machine.load import read_machine
 from twin.machine.model.drives import reflected_inertia
-from twin.machine.model.model import build_spec, drives, physics_model, spindle_over_table_mm
+from twin.machine.model.model import build_spec, drives, physics_model
 from twin.units import SECONDS_PER_MINUTE, AxisKind, kv_per_second
 
 
@@ -87,7 +87,7 @@ def describe(machine: Machine, feed: float = 1000.0) -> MachineFacts:
         name=machine.file.name,
         axes=tuple(facts),
         feed=feed,
-        spindle_over_table_mm=spindle_over_table_mm(machine),
+        spindle_over_table_mm=machine.at_zero.spindle_over_table,
         servo_period_s=machine.file.servo_period_s,
     )
 

@@ -8,10 +8,11 @@ from pathlib import Path
 
 from twin.errors import ConfigError
 from twin.files.shipped import machine_file
-from twin.files.toml import Change, Data, changed, load_toml, merged, read_toml
+from twin.files.toml import Change, Data, changed, checked, load_toml, merged
 from twin.job.fixture import FixtureTable
 from twin.job.load import Job
-from twin.machine.description.config import Machine, MachineFile
+from twin.machine.description.config import Machine
+from twin.machine.description.machine_file import MachineFile
 
 
 def load_machine(job: Job, name: str | None = None, changes: Sequence[Change] = ()) -> Machine:
@@ -42,11 +43,8 @@ def read_machine(
         ConfigError: The file or the model that it names is missing or wrong, or a fixture has the name of
             another.
     """
-
-    def prepare(data: Data) -> Data:
-        return changed(_on_base(data, path), "machine", changes)
-
-    file = read_toml(path, MachineFile, prepare=prepare)
+    data = changed(_on_base(load_toml(path), path), "machine", changes)
+    file = checked(data, MachineFile, str(path))
     if fixtures:
         file = file.model_copy(update={"fixtures": (*file.fixtures, *fixtures)})
         names = [fixture.name for fixture in file.fixtures]

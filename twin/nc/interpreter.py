@@ -56,6 +56,11 @@ class Interpretation:
         return self._control.modal.unit != 1.0
 
     @property
+    def tool_names(self) -> dict[int, str]:
+        """Tools that the program called by names which the job does not give, by number."""
+        return {number: name for name, number in self._control.tools.names.items()}
+
+    @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
         """The warnings so far."""
         return tuple(self._control.report.warnings)

@@ -29,8 +29,8 @@ from twin.run.reading.assumed_stock import (
     top_of_stock,
     turns_about_x,
 )
-from twin.run.reading.assumed_tools import BELOW, SPEED_BY_HAND, tool_lines
-from twin.run.reading.declared import declared_stock, declared_tools
+from twin.run.reading.assumed_tools import BELOW, SPEED_BY_HAND, named_tools, tool_lines
+from twin.run.reading.declared import declared_stock, declared_tools, table_tools
 
 _MACHINE_ZERO_UNKNOWN = "no-machine-zero"
 """The finding of a program that counts from machine zero, where no job says where that lies."""
@@ -93,7 +93,9 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
     inches, lacking = interpretation.programs_in_inches, _lacking_axes(preparation)
     comments = list(_comments(preparation))
     functions = [each for chunk in chunks for each in chunk.events if isinstance(each, Function)]
-    declared = declared_tools(functions)
+    named = named_tools(interpretation.tool_names, inches=inches)
+    blocks = list(map(without_comments, preparation.source.lines))
+    declared = {**named, **table_tools(blocks, inches=inches), **declared_tools(functions)}
     length = _least_length(preparation.machine, moves)
     blank = declared_stock(functions)
     top = top_of_stock(moves) if blank is None else float(blank.top[2])

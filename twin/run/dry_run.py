@@ -14,7 +14,6 @@ from twin.machine.watching.alarms import Alarm
 from twin.machine.watching.travel import soft_limit_alarm
 from twin.nc.canonical import Chunk, FloatArray, Function
 from twin.nc.text.diagnostics import Diagnostic
-from twin.run.layout import start_position
 from twin.run.messages import Notice, shown, speed_notice
 from twin.run.preparation import Preparation, says_itself
 from twin.run.program_watch import ProgramWatch
@@ -52,7 +51,7 @@ class InterpretedProgram:
         self._file: IO[bytes] | None = None
         self._places: list[int] = []
         self.moves = 0
-        self.start: FloatArray = start_position(preparation.job.file, preparation.machine)
+        self.start: FloatArray = preparation.layout.start
         for chunk in chunks:
             self.add(chunk)
 
@@ -125,11 +124,8 @@ class DryRun:
         return self.program.moves
 
 
-def interpret_all(preparation: Preparation, part_zero: FloatArray, clock: StageClock) -> DryRun:
+def interpret_all(preparation: Preparation, clock: StageClock) -> DryRun:
     """Interpret a whole program, so that no error is met with the machine half-way.
-
-    Args:
-        part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
 
     Raises:
         ProgramError: The program is wrong.
@@ -137,9 +133,9 @@ def interpret_all(preparation: Preparation, part_zero: FloatArray, clock: StageC
     """
     interpretation = preparation.interpretation()
     program, alarm = InterpretedProgram(preparation), None
-    job = preparation.job.file
-    frame = preparation.machine.part_frame.at(part_zero, job.tools[0].length)
-    builder = SummaryBuilder(job, preparation.spindle, PlacedPart(frame, part_zero))
+    job, part_zero = preparation.job.file, preparation.layout.part_zero
+    placed = PlacedPart(preparation.layout.part_frame, part_zero)
+    builder = SummaryBuilder(job, preparation.spindle, placed)
     watch = ProgramWatch(job, preparation.spindle)
     limited: dict[int, str] = {}
     chunks: Iterable[Chunk] = clock.watch("interpret", interpretation.chunks())

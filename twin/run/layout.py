@@ -13,7 +13,6 @@ from twin.files.stl import read_stl
 from twin.job.fixture import Weight, upright_weight
 from twin.job.job_file import JobFile, StockTable
 from twin.machine.description.config import Blank, Machine
-from twin.machine.model.model import spindle_over_table_mm
 from twin.nc.canonical import FloatArray
 from twin.toolpath.part_frame import PartFrame
 from twin.units import MM
@@ -75,11 +74,13 @@ class Layout(NamedTuple):
     Attributes:
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
         blank: The uncut stock on the table; None without one.
+        start: Where the axes are when the program starts, program coordinates, shape (k,) [mm or deg].
     """
 
     part_zero: FloatArray
     part_frame: PartFrame
     blank: Blank | None
+    start: FloatArray
 
 
 def lay_out(job: JobFile, machine: Machine) -> Layout:
@@ -94,7 +95,9 @@ def lay_out(job: JobFile, machine: Machine) -> Layout:
         ConfigError: An axis does not exist, the stock would lie below the table, or its material is not
             known.
     """
-    over_table, length = spindle_over_table_mm(machine), job.tools[0].length
+    start = np.zeros(len(machine.axes))
+    _write_axes(start, job.start, machine, "start")
+    over_table, length = machine.at_zero.spindle_over_table, job.tools[0].length
     frame = machine.part_frame
     zero = frame.rotary_zero(len(machine.axes))
     lies = frame.table_about(_Z) is not None or frame.chain is None
@@ -106,7 +109,7 @@ def lay_out(job: JobFile, machine: Machine) -> Layout:
     if lies:
         _require_stock_above_table(job, float(zero[2]), over_table)
     frame = frame.at(zero, length)
-    return Layout(zero, frame, _blank(job, frame, zero, over_table))
+    return Layout(zero, frame, _blank(job, frame, zero, over_table), start)
 
 
 def _blank(job: JobFile, frame: PartFrame, zero: FloatArray, over_table: float) -> Blank | None:
@@ -159,17 +162,6 @@ def bore_of(job: JobFile) -> float | None:
     if job.stock is None:
         return None
     return math.inf if job.stock.shape == "stl" else job.stock.bore
-
-
-def start_position(job: JobFile, machine: Machine) -> FloatArray:
-    """Where the axes are when the program starts, program coordinates, shape (k,) [mm or deg].
-
-    Raises:
-        ConfigError: An axis does not exist.
-    """
-    start = np.zeros(len(machine.axes))
-    _write_axes(start, job.start, machine, "start")
-    return start
 
 
 def require_axes(names: Iterable[str], machine: Machine, key: str) -> None:

@@ -17,7 +17,6 @@ from twin.cutting.measuring.nominal_from_any_side import TriDexelNominalWatch
 from twin.cutting.program_summary import ProgramSummary
 from twin.cutting.tridexel.dexels import TriDexel
 from twin.job.job_file import JobFile, ToolTable
-from twin.machine.model.head_shape import HeadShape
 from twin.machine.model.model import MachineModel
 from twin.machine.simulation.tool_changes import REMEDY
 from twin.machine.watching.alarms import Alarm
@@ -69,7 +68,7 @@ class Machining(Observer):
         self._gouge_um = None if job.nominal is None else job.nominal.gouge_um
         self._gouge_stops = job.nominal is not None and job.nominal.gouge == "alarm"
         if job.stock is not None:
-            head = HeadShape(model).above_tip
+            head = model.head.above_tip
             self._cutter = Cutter(
                 job.stock,
                 summary.tools,

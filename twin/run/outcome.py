@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from twin.compare.figures import Figures
+from twin.compare.trace import Trace
 from twin.compare.verdict import Check, Reason, Verdict, judge
 from twin.cutting.cut_log import CutResult
 from twin.cutting.forces.load_log import LoadLog
@@ -57,6 +58,7 @@ class Outcome:
         alarms: Alarms of the machine, in order.
         near_miss: The closest that the tool's side and the part's came, below the machine's limit.
         warnings: Those of the interpreter, of the program and of the cut.
+        trace: The run thinned for plots.
         tools: Those that were in the spindle, with their times and what they took off.
         part: A picture of the part as it was cut, PNG; empty without a stock.
         samples: How many samples were recorded, settling included.
@@ -76,6 +78,7 @@ class Outcome:
     near_miss: NearMiss | None
     warnings: tuple[Diagnostic, ...]
     scope: Scope
+    trace: Trace
     tools: tuple[ToolUse, ...] = ()
     part: bytes = b""
     samples: int
@@ -157,6 +160,7 @@ def outcome_of(
             alarms=alarms,
             inspection=inspection,
         ),
+        trace=followers.traced.result(),
         tools=followers.tools.result(cut),
         samples=reached.samples,
         duration_s=duration_s,

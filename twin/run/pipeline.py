@@ -10,9 +10,7 @@ from twin.cutting.axis_load import AxisLoad
 from twin.cutting.height_map import HeightMap
 from twin.cutting.program_summary import ProgramSummary
 from twin.errors import ConfigError
-from twin.job.job_file import JobFile
 from twin.machine.description.config import Machine
-from twin.machine.description.motion_limits import motion_limits
 from twin.machine.model.model import MachineModel
 from twin.machine.simulation.growth import Growth
 from twin.machine.simulation.simulate import Load, simulate
@@ -20,11 +18,11 @@ from twin.machine.watching.alarms import Alarm, NearMiss
 from twin.motion.planner import plan
 from twin.motion.setpoints.sampling import settle
 from twin.motion.setpoints.setpoints import Setpoints
-from twin.nc.canonical import Chunk, FloatArray, Moves
+from twin.nc.canonical import Chunk, Moves
 from twin.processor import made_ahead
 from twin.recording.reader import Samples
-from twin.run.dry_run import DryRun, InterpretedProgram
-from twin.run.layout import Layout
+from twin.run.dry_run import InterpretedProgram
+from twin.run.preparation import Preparation
 
 
 class MachineMotion(abc.ABC):
@@ -166,14 +164,12 @@ class ProgramMotion(MachineMotion):
 
 def planned(
     program: InterpretedProgram,
-    machine: Machine,
-    part_zero: FloatArray,
+    preparation: Preparation,
     expect: Callable[[Moves], None] | None = None,
 ) -> Iterator[Setpoints]:
     """The setpoints of a program, in chunks.
 
     Args:
-        part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
         expect: Called with the moves before setpoints of theirs are made.
     """
 
@@ -183,9 +179,10 @@ def planned(
                 expect(chunk.moves)
             yield chunk
 
+    machine, part_zero = preparation.machine, preparation.layout.part_zero
     return plan(
         moves(),
-        motion_limits(machine),
+        machine.motion_limits,
         period_s=machine.file.servo_period_s,
         part_zero=part_zero,
         start=program.start + part_zero,
@@ -193,24 +190,25 @@ def planned(
 
 
 def cutting_forces(
-    job: JobFile, machine: Machine, dry_run: DryRun, layout: Layout, laid: HeightMap | None = None
+    preparation: Preparation, summary: ProgramSummary, laid: HeightMap | None = None
 ) -> Forces:
     """What the cut of a job pushes the axes with.
 
     Args:
-        dry_run: What the program brings into the spindle when.
+        preparation: Its job says which force is simulated.
+        summary: What the program brings into the spindle when.
         laid: The blank, if it is on the table already.
 
     Raises:
         ConfigError: The job wants a force that cannot be computed.
     """
-    summary, frame = dry_run.summary, layout.part_frame
-    process = program_process(job, machine, summary, frame, layout.part_zero, laid)
+    job, zero, frame = preparation.job.file, *preparation.layout[:2]
+    process = program_process(job, preparation.machine, summary, frame, zero, laid)
     if process is not None or not job.cutting_load:
         return Forces(process)
     if job.stock is None:
         raise ConfigError("cutting_load needs a [stock]")
-    return Forces(load=AxisLoad(job.stock, summary, frame, layout.part_zero))
+    return Forces(load=AxisLoad(job.stock, summary, frame, zero))
 
 
 def grown(

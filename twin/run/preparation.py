@@ -24,7 +24,7 @@ from twin.nc.path.tool_center import Setup
 from twin.nc.text.diagnostics import ProgramError
 from twin.nc.text.source import Source, read_source, source_from_text
 from twin.recording.reader import RecordingHeader
-from twin.run.layout import lay_out, require_axes, start_position
+from twin.run.layout import Layout, lay_out, require_axes
 from twin.run.reading.assumed_machine import assumed_machine
 from twin.run.reading.assumed_reading import (
     NOTHING_ASSUMED,
@@ -42,6 +42,7 @@ class Preparation:
 
     Attributes:
         job: The job file and where it lies.
+        layout: Where the job lies on its machine.
         dialect: The language that the program is written in.
         settings: What the interpreter has to know of machine and job.
         dialect_reason: What showed the dialect of a program whose job names none; empty: the job does.
@@ -51,6 +52,7 @@ class Preparation:
 
     job: Job
     machine: Machine
+    layout: Layout
     source: Source
     dialect: Dialect
     settings: ControlSettings
@@ -216,9 +218,10 @@ def prepare_job(
         tools: What comments say of the tools of a job that names none.
     """
     twin_machine = load_machine(job, machine, changes)
+    layout = lay_out(job.file, twin_machine)
     name = dialect or job.file.dialect
     named = None if name is None else dialect_named(name)
-    settings = _control_settings(job, twin_machine, strict=strict)
+    settings = _control_settings(job, twin_machine, layout, strict=strict)
     if settings.any_tool and tools:
         settings = dataclasses.replace(settings, tools=tools)
     source, reason = read_source(job.program, named), ""
@@ -233,6 +236,7 @@ def prepare_job(
     return Preparation(
         job=job,
         machine=twin_machine,
+        layout=layout,
         source=source,
         dialect=language,
         settings=settings,
@@ -267,6 +271,7 @@ def prepare_recorded(header: RecordingHeader, *, machine: str | None = None) -> 
     recorded_on = header.machine_file if Path(header.machine_file).is_file() else header.machine
     job = Job(Path(), file)
     found = load_machine(job, machine or recorded_on)
+    layout = lay_out(file, found)
     dialect = dialect_named(header.dialect)
     source = source_from_text(header.program_text, header.program)
     if not header.program_text:
@@ -276,15 +281,17 @@ def prepare_recorded(header: RecordingHeader, *, machine: str | None = None) -> 
     return Preparation(
         job=job,
         machine=found,
+        layout=layout,
         source=source,
         dialect=dialect,
-        settings=_control_settings(job, found, strict=False),
+        settings=_control_settings(job, found, layout, strict=False),
     )
 
 
-def _control_settings(job: Job, machine: Machine, *, strict: bool) -> ControlSettings:
+def _control_settings(
+    job: Job, machine: Machine, layout: Layout, *, strict: bool
+) -> ControlSettings:
     control = machine.file.control
-    start = start_position(job.file, machine)
     for name, values in job.file.offsets.items():
         require_axes(values, machine, f"offsets.{name}")
     return ControlSettings(
@@ -293,7 +300,7 @@ def _control_settings(job: Job, machine: Machine, *, strict: bool) -> ControlSet
         axis_words=_axis_words(job, machine),
         default_feed=job.file.default_feed or control.default_feed,
         default_rotary_feed=job.file.default_rotary_feed or control.default_rotary_feed,
-        start=machine.axes.named(start),
+        start=machine.axes.named(layout.start),
         tools={
             tool.number: ToolData(tool.table_radius, tool.length, tool.name)
             for tool in job.file.tools
@@ -301,7 +308,7 @@ def _control_settings(job: Job, machine: Machine, *, strict: bool) -> ControlSet
         any_tool="tools" not in job.file.model_fields_set,
         offsets=Consulted(job.file.offsets),
         offset_rows=job.file.offset_rows,
-        setup=_setup(job, machine),
+        setup=_setup(job, machine, layout),
         machine_zero=_machine_zero(job, machine),
         variables=Consulted(job.file.variables),
         m_functions={
@@ -373,13 +380,12 @@ def says_itself(job: Job, key: str) -> bool:
     return not job.layers or layer_of(job.layers, key) in (VARIED, job.path)
 
 
-def _setup(job: Job, machine: Machine) -> Setup | None:
+def _setup(job: Job, machine: Machine, layout: Layout) -> Setup | None:
     """The part on the machine; None where no axis turns."""
     if "rotary" not in machine.axes.kinds:
         return None
-    zero = lay_out(job.file, machine).part_zero
     travels = [machine.axis(name).travel or (-np.inf, np.inf) for name in machine.axes.names]
-    return Setup(machine.kinematics, zero, job.file.tools[0].length, np.array(travels))
+    return Setup(machine.kinematics, layout.part_zero, job.file.tools[0].length, np.array(travels))
 
 
 def _block_skip_levels(file: JobFile) -> frozenset[int]:

@@ -85,7 +85,7 @@ def report_of(
         figures=outcome.figures,
         verdict=outcome.verdict,
         tolerance=run.preparation.job.file.tolerance,
-        trace=run.trace,
+        trace=outcome.trace,
         result=content,
         scope=tuple(outcome.scope.lines()),
         warnings=tuple((found.line, found.code, found.message) for found in outcome.warnings),

@@ -14,8 +14,8 @@ from twin.machine.model.model import MachineModel
 from twin.machine.watching.alarms import Alarm
 from twin.nc.text.source import Source
 from twin.recording.reader import LONGEST_TEXT, RecordingHeader, RecordingWriter, record
-from twin.run.dry_run import DryRun, interpret_all
-from twin.run.layout import bore_of, lay_out
+from twin.run.dry_run import interpret_all
+from twin.run.layout import bore_of
 from twin.run.machining import Machining
 from twin.run.observers import (
     Compared,
@@ -40,48 +40,34 @@ from twin.version import __version__
 
 
 class Run:
-    """One run of a prepared job.
+    """A prepared job laid out on its machine, its program interpreted; ``execute`` runs it.
 
     Attributes:
-        layout: Where the job lies on it.
+        dry_run: What its program does.
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
         part_frame: How the part turns under the tool.
         model: The machine's, with the blank on its table and the job's first tool in the spindle.
         clock: How long each stage took; a film's goes on it too.
-        trace: The run thinned for plots.
     """
 
     def __init__(self, preparation: Preparation) -> None:
-        """Lay the job out on its machine.
+        """Build the machine, and interpret the whole program, so that no error is met half-way.
 
         Raises:
-            ConfigError: The model is wrong, or the stock does not fit on the table.
+            ConfigError: The model is wrong, or the program brings a tool that the job does not list.
+            ProgramError: The program is wrong.
         """
         machine, job = preparation.machine, preparation.job.file
         self.preparation = preparation
         self.machine = machine
-        self.layout = lay_out(job, machine)
-        self.part_zero, self.part_frame, blank = self.layout
+        self.part_zero, self.part_frame, blank, _ = preparation.layout
         self.model = MachineModel(machine, job.tools[0], blank)
         refuse_overlaps(self.model, bore_of(job))
         self.clock = StageClock()
-        self.trace = Trace(machine.axes, self.part_frame, self.part_zero)
-
-    def dry_run(self) -> DryRun:
-        """Interpret the whole program once.
-
-        Raises:
-            ProgramError: The program is wrong.
-            ConfigError: It brings a tool that the job does not list.
-        """
-        return interpret_all(self.preparation, self.part_zero, self.clock)
+        self.dry_run = interpret_all(preparation, self.clock)
 
     def execute(
-        self,
-        dry_run: DryRun,
-        out: Path | None,
-        progress: Progress,
-        motion: MachineMotion | None = None,
+        self, out: Path | None, progress: Progress, motion: MachineMotion | None = None
     ) -> Outcome:
         """Run the chain and write ``recording.h5`` and ``part.stl`` into a folder.
 
@@ -96,19 +82,19 @@ class Run:
             ConfigError: A tolerance limits the force of the cut, and nothing simulates that.
             SimulationError: The simulation failed; the recording is not kept.
         """
-        followers = self._followers(dry_run)
-        alarm = dry_run.alarm or self._overspeed(dry_run)
+        followers = self._followers()
+        alarm = self.dry_run.alarm or self._overspeed()
         if alarm is not None:
-            return self._outcome(dry_run, followers, None, (alarm,), out)
+            return self._outcome(followers, None, (alarm,), out)
         with self._recording(out) as writer:
-            motion = self._motion(dry_run, followers, motion)
-            samples = grown(motion, self.machine, dry_run.summary)
+            motion = self._motion(followers, motion)
+            samples = grown(motion, self.machine, self.dry_run.summary)
             for _ in observed(samples, followers.in_order(writer), self.clock):
-                progress("simulate", followers.reached.share_of(dry_run.moves))
+                progress("simulate", followers.reached.share_of(self.dry_run.moves))
             alarms = _alarms(motion, followers)
             if alarms and writer is not None:
                 writer.note_alarms([(each.time_s, each.message) for each in alarms])
-        return self._outcome(dry_run, followers, motion, alarms, out)
+        return self._outcome(followers, motion, alarms, out)
 
     def header(self) -> RecordingHeader:
         """The attributes of the recording."""
@@ -129,9 +115,10 @@ class Run:
             machine_file=str(preparation.machine.path.resolve()),
         )
 
-    def _followers(self, dry_run: DryRun) -> Followers:
-        job, machine, summary = self.preparation.job.file, self.machine, dry_run.summary
+    def _followers(self) -> Followers:
+        job, machine, summary = self.preparation.job.file, self.machine, self.dry_run.summary
         apart = [part.lines for part in job.tolerance.blocks]
+        trace = Trace(machine.axes, self.part_frame, self.part_zero)
         comparison = Comparison(
             machine.axes, self.part_frame, self.part_zero, apart, lower=summary.tools.lower
         )
@@ -142,26 +129,25 @@ class Run:
                 summary,
                 self.part_frame,
                 self.part_zero,
-                dry_run.watch.stops,
+                self.dry_run.watch.stops,
             ),
-            reached=Reached(self.part_zero, dry_run.program.start),
+            reached=Reached(self.part_zero, self.dry_run.program.start),
             loads=Loads(),
             compared=Compared(comparison),
-            traced=Traced(self.trace, summary.tools),
+            traced=Traced(trace, summary.tools),
             tools=ToolTimes(summary.tools, machine.file.servo_period_s),
         )
 
-    def _motion(
-        self, dry_run: DryRun, followers: Followers, given: MachineMotion | None
-    ) -> MachineMotion:
+    def _motion(self, followers: Followers, given: MachineMotion | None) -> MachineMotion:
         """What moves the machine; those who judge it know of every move before it is simulated."""
-        job, program, summary = self.preparation.job.file, dry_run.program, dry_run.summary
+        job, dry_run = self.preparation.job.file, self.dry_run
+        program, summary = dry_run.program, dry_run.summary
         expect = followers.compared.comparison.expect
         if given is None:
             moves = PlannedMoves(expect)
-            setpoints = planned(program, self.machine, self.part_zero, moves.note)
+            setpoints = planned(program, self.preparation, moves.note)
             laid = followers.machining.laid
-            forces = cutting_forces(job, self.machine, dry_run, self.layout, laid)
+            forces = cutting_forces(self.preparation, summary, laid)
             watched = self.clock.watch("plan", setpoints)
             motion = ProgramMotion(watched, self.model, summary, forces, moves)
         else:
@@ -174,7 +160,6 @@ class Run:
 
     def _outcome(
         self,
-        dry_run: DryRun,
         followers: Followers,
         motion: MachineMotion | None,
         alarms: tuple[Alarm, ...],
@@ -183,17 +168,17 @@ class Run:
         """Judge what was run; a part that was cut is written."""
         floats = None if alarms else what_carries(self.model)
         with self.clock.stage("cut"):
-            outcome = outcome_of(self.preparation, dry_run, followers, motion, alarms, floats)
+            outcome = outcome_of(self.preparation, self.dry_run, followers, motion, alarms, floats)
             if out is None or not outcome.samples:
                 return outcome
             followers.machining.write_part(out)
             return dataclasses.replace(outcome, part=followers.machining.picture())
 
-    def _overspeed(self, dry_run: DryRun) -> Alarm | None:
+    def _overspeed(self) -> Alarm | None:
         """A tool that is turned faster than it bears, where no force is simulated that would show it."""
         job = self.preparation.job.file
         simulated = job.stock is not None and job.stock.material is not None
-        return None if simulated and job.cutting_force == "teeth" else dry_run.watch.overspeed
+        return None if simulated and job.cutting_force == "teeth" else self.dry_run.watch.overspeed
 
     def _recording(self, out: Path | None) -> AbstractContextManager[RecordingWriter | None]:
         return nullcontext() if out is None else record(out / "recording.h5", self.header())

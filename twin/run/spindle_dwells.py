@@ -4,7 +4,7 @@ import dataclasses
 from collections.abc import Iterable, Iterator, Mapping
 
 from twin.job.job_file import JobFile
-from twin.machine.description.config import SpindleTable
+from twin.machine.description.machine_file import SpindleTable
 from twin.nc.canonical import Chunk, Dwell, Event, Function
 from twin.nc.functions import PROGRAM_ENDS, TOOL_CHANGE, SpindleState
 

@@ -13,7 +13,6 @@ from twin.machine.description.config import Machine
 from twin.nc.canonical import FloatArray
 from twin.render.machine_glb import DrawnMachine, drawn_machine
 from twin.run.preparation import Preparation
-from twin.toolpath.part_frame import PartFrame
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -34,21 +33,14 @@ class Moment:
 class LiveRun:
     """A run that goes on; its stock is shown as the blank, with the job's first tool in the spindle."""
 
-    def __init__(
-        self,
-        preparation: Preparation,
-        part_frame: PartFrame,
-        part_zero: FloatArray,
-        moment: Callable[[], Moment],
-    ) -> None:
+    def __init__(self, preparation: Preparation, moment: Callable[[], Moment]) -> None:
         """Take a prepared job.
 
         Args:
-            part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
             moment: Where the machine is, asked from another thread.
         """
         self._preparation = preparation
-        self._frame, self._zero = part_frame, part_zero
+        self._frame, self._zero = preparation.layout.part_frame, preparation.layout.part_zero
         self._moment = moment
 
     @property

@@ -11,7 +11,8 @@ from twin.files.shipped import machine_file
 from twin.machine.circle.circle_path import PLANES
 from twin.machine.circle.circle_plot import write_circle_plot
 from twin.machine.circle.circular_test import CircularTest, circular_test
-from twin.machine.description.config import Machine, MachineFile
+from twin.machine.description.config import Machine
+from twin.machine.description.machine_file import MachineFile
 from twin.machine.load import read_machine
 from twin.machine.model.model import build_spec, drives
 from twin.machine.model.transmission import give_stiffness

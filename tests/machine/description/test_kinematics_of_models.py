@@ -9,8 +9,9 @@ import pytest
 from twin.errors import ConfigError
 from twin.files.shipped import machine_file, machine_names
 from twin.kinematics import tool_direction, tool_point
-from twin.machine.description.config import Machine, MachineFile
+from twin.machine.description.config import Machine
 from twin.machine.description.kinematics import in_words
+from twin.machine.description.machine_file import MachineFile
 from twin.machine.load import read_machine
 from twin.nc.canonical import FloatArray
 from twin.units import MM

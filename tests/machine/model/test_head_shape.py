@@ -10,7 +10,7 @@ from twin.files.shipped import machine_file
 from twin.job.job_file import ToolTable
 from twin.machine.description.kinematics import part_carrier
 from twin.machine.load import read_machine
-from twin.machine.model.head_shape import HeadShape, HeadSolid
+from twin.machine.model.head_shape import HeadSolid
 from twin.machine.model.model import MachineModel
 from twin.units import MM
 
@@ -18,7 +18,7 @@ TOOL = ToolTable(number=1, diameter=12.0, length=100.0)
 
 
 def solids_of(name: str) -> dict[str, HeadSolid]:
-    head = HeadShape(MachineModel(read_machine(machine_file(name)), TOOL))
+    head = MachineModel(read_machine(machine_file(name)), TOOL).head
     return {solid.name: solid for solid in head.above_tip(TOOL)}
 
 
@@ -60,7 +60,7 @@ def test_what_carries_the_tool_is_where_the_model_has_it(name: str) -> None:
     frame = machine.part_frame.at(np.zeros(axes), TOOL.length)
     data, generator = mujoco.MjData(model), np.random.default_rng(4)
     joints = np.vstack([np.zeros(axes), generator.uniform(-80.0, 80.0, (8, axes))])
-    solids = HeadShape(whole).above_tip(TOOL)
+    solids = whole.head.above_tip(TOOL)
     none = np.zeros(len(joints), np.bool_)
     beyond = {solid.beyond for solid in solids if solid.beyond}
     motion = tool_motion(standing(joints), joints, frame, 20.0, none, none, beyond)

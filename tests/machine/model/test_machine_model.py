@@ -15,7 +15,6 @@ from twin.machine.model.model import (
     compiled,
     drives,
     physics_model,
-    spindle_over_table_mm,
 )
 from twin.toolpath.part_frame import PartFrame
 from twin.units import DEGREE, MM
@@ -45,7 +44,7 @@ def tip_seen_from_table(data: mujoco.MjData) -> np.ndarray:
 def test_the_tool_stands_where_machine_coordinates_and_part_frame_say(name, at):
     machine = read_machine(machine_file(name))
     _, data = pose(machine, **dict(zip("XYZC", at, strict=True)))
-    over = spindle_over_table_mm(machine) - ToolTable(number=1).length
+    over = machine.at_zero.spindle_over_table - ToolTable(number=1).length
     expected = machine.part_frame.position(np.array([at], float))[0] + [0.0, 0.0, over]
     assert tip_seen_from_table(data) == pytest.approx(expected, abs=1e-9)
     assert machine.part_frame == PartFrame(rotary=3, center=(0.0, 0.0))

@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 
 from tests.machine.machine_fixtures import PERIOD, circle, line, shipped_machine
 from twin.errors import ConfigError
-from twin.machine.description.config import AxisTable, Machine
+from twin.machine.description.config import Machine
+from twin.machine.description.machine_file import AxisTable
 from twin.machine.model.model import build_spec, drives, physics_model
 from twin.machine.simulation.drive_kernels import Points
 from twin.machine.simulation.live import LiveMachine

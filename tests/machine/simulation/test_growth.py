@@ -12,7 +12,8 @@ from tests.machine.machine_fixtures import PERIOD, setpoints
 from twin.errors import ConfigError
 from twin.files.shipped import machine_file
 from twin.machine.circle.circular_test import circular_test
-from twin.machine.description.config import Machine, MachineFile
+from twin.machine.description.config import Machine
+from twin.machine.description.machine_file import MachineFile
 from twin.machine.load import read_machine
 from twin.machine.simulation.growth import Growth
 from twin.nc.canonical import FloatArray
@@ -87,7 +88,7 @@ def test_the_verdict_says_what_of_the_error_is_growth(tmp_path: Path) -> None:
         "um = [0.0, 9.0, 0.0]\ntime_constant_s = 2.0\n"
     )
     run = Run(prepare(program, dialect="haas", machine=str(machine)))
-    outcome = run.execute(run.dry_run(), tmp_path, no_progress)
+    outcome = run.execute(tmp_path, no_progress)
     figures = outcome.figures
     time = figures.contour.worst_time_s + PERIOD
     meant = 9.0 * (1.0 - np.exp(-time / 2.0))

@@ -11,8 +11,9 @@ import twin.machine.simulation.live
 from tests.machine.machine_fixtures import PERIOD, circle, line, setpoints, shipped_machine
 from twin.errors import ConfigError
 from twin.files.shipped import machine_file
+from twin.job.fixture import FixtureTable
 from twin.job.job_file import ToolTable
-from twin.machine.description.config import FixtureTable, Machine
+from twin.machine.description.config import Machine
 from twin.machine.load import read_machine
 from twin.machine.model.model import MachineModel, build_spec, drives
 from twin.machine.simulation.live import LiveMachine

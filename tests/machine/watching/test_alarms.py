@@ -5,8 +5,10 @@ import pytest
 
 from tests.machine.machine_fixtures import PERIOD, line, ramp_up, setpoints, shipped_machine
 from twin.columns import join
+from twin.job.fixture import FixtureTable
 from twin.job.job_file import ToolTable
-from twin.machine.description.config import FixtureTable, Machine, MachineFile
+from twin.machine.description.config import Machine
+from twin.machine.description.machine_file import MachineFile
 from twin.machine.model.model import MachineModel, build_spec, clearance_model
 from twin.machine.simulation.simulate import simulate
 from twin.machine.watching.alarms import Alarm

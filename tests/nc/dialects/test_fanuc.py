@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tests.nc.running import WITH_TABLES, bad, good
-from twin.nc.canonical import Dwell, Function, Shape
+from twin.nc.canonical import Dwell, Event, Function, Shape
 from twin.nc.control.settings import ToolData
 from twin.nc.dialects import dialect_named
 from twin.nc.text.source import read_source
@@ -497,3 +497,26 @@ def test_a_motion_behind_a_cycle_counts_however_the_cycle_is_written(cycle: str)
     outcome = good(f"G90 F100.\nG0 X0. Y0. Z5.\n{cycle} X10. R1. G1 Z-1.\nM30\n", "fanuc")
     assert "cycle-overruled" in outcome.codes
     assert outcome.position == {"X": 10.0, "Y": 0.0, "Z": -1.0, "C": 0.0}
+
+
+def _turns(events: list[Event]) -> list[str]:
+    words = [each.word for each in events if isinstance(each, Function)]
+    return [word for word in words if word in ("M3", "M4", "M5")]
+
+
+@pytest.mark.parametrize(
+    ("dialect", "before"), [("fanuc", "M29 S300\n"), ("haas", "S300\n"), ("haas", "M3 S300\n")]
+)
+def test_rigid_tapping_turns_the_spindle_itself(dialect: str, before: str) -> None:
+    """M29 of a Fanuc, and G84 of a Haas without any word (its manual); a spindle that turns goes on."""
+    made = good(f"O1\nG21 G90 G17\n{before}G84 X1. Y0. Z-6. R3. F300.\nX9.\nG80\nM30\n", dialect)
+    turns = _turns(made.events)
+    own = ["M3", "M4", "M3"] if "M3" in before else ["M4", "M3"]
+    assert turns == (own + own[1:] if "M3" in before else ["M3", *own, "M5"] * 2)
+
+
+def test_tapping_without_m29_starts_no_spindle() -> None:
+    text = "O1\nG21 G90 G17\nM29 S300\nG84 X1. Y0. Z-6. R3. F300.\nG80\nG84 X9. Z-6. R3. F300.\nG80\nM30\n"
+    made = good(text, "fanuc")
+    turns = _turns(made.events)
+    assert turns == ["M3", "M4", "M3", "M5", "M4", "M3"]

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from tests.nc.running import WITH_TABLES, bad, good
 from twin.nc.canonical import Corner, Function
+from twin.nc.control.settings import ToolData
 from twin.nc.dialects.sinumerik.cycles.drilling import pecks
 
 LEADS: dict[str, tuple[str, dict[str, float]]] = {
@@ -301,3 +302,13 @@ def test_rndm_0_still_rounds_the_corner_before_its_block() -> None:
     text = "G1 X0 Y0 F100\nX20 RNDM=3\nY20\nX0 RNDM=0\nY0"
     moves = good(f"G54 G90\n{text}\nM30", "sinumerik").moves
     assert moves.sweep.tolist() == [0.0, 90.0, 0.0, 90.0, 0.0, 0.0]
+
+
+def test_another_edge_is_that_of_the_tool_as_long_as_it_alone_is_called() -> None:
+    """Posts write the tool's number as D; the job gives every tool one edge."""
+    tools = {1: ToolData(4.0, 60.0), 2: ToolData(3.0, 72.5)}
+    made = good("T2 D2\nM6\nG0 Z5\nT1 D1\nM6\nG0 Z9\nM30\n", "sinumerik", tools=tools)
+    assert made.codes == ["tool-edge"]
+    assert [made.end(row)["Z"] for row in range(len(made.moves))] == [17.5, 9.0]
+    refused = bad("T2 D1\nM6\nD2\nM30\n", "sinumerik", tools=tools)
+    assert (refused.code, refused.hint) == ("tool-offset", "write D1")

@@ -58,3 +58,25 @@ def test_the_alarm_says_how_long_the_tools_are_and_what_to_write() -> None:
     assert "tool 2, 95 mm long, comes into the spindle 12.00 mm deep in the part" in message
     assert "where tool 1 of 60 mm was" in message
     assert "[tool_change] height = 0" in message
+
+
+@pytest.mark.parametrize(
+    ("dialect", "block"),
+    [
+        ("fanuc", "G53 Z-10."),
+        ("haas", "G53 Z-10."),
+        ("linuxcnc", "G53 G0 Z-10."),
+        ("sinumerik", "SUPA Z-10"),
+        ("fagor8070", "#MCS ON\nG0 Z-10\n#MCS OFF"),
+        ("heidenhain", "L Z-10 FMAX M91"),
+    ],
+)
+def test_moves_from_machine_zero_are_shown_in_the_programs_coordinates(
+    dialect: str, block: str
+) -> None:
+    """As the screen's absolute position goes on doing: machine zero lies at Z300 of the part."""
+    first = "L X+10 Y+5 FMAX" if dialect == "heidenhain" else "G0 X10. Y5."
+    made = run(f"{first}\n{block}\nM30\n", dialect, JOB)
+    assert made.error is None, made.error
+    shown = dict(zip(made.moves.axes.names, made.moves.display[-1].tolist(), strict=True))
+    assert (shown["X"], shown["Y"], shown["Z"]) == (10.0, 5.0, 290.0)

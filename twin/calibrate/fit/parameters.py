@@ -3,7 +3,7 @@
 import dataclasses
 import math
 
-from twin.machine.description.config import AxisTable
+from twin.machine.description.machine_file import AxisTable
 
 
 @dataclasses.dataclass(frozen=True, slots=True)

@@ -38,8 +38,20 @@ def part_carrier(model: mujoco.MjModel) -> int:
     return int(model.site_bodyid[model.site(TABLE_TOP).id])
 
 
-def read_kinematics(model_path: Path, axes: Axes, joints: Sequence[Joint]) -> Kinematics:
-    """Read which joints carry the tool and which the part, their order, directions and centres.
+class ModelAtZero(NamedTuple):
+    """What a machine's model says of it with all axes at zero.
+
+    Attributes:
+        kinematics: Which joints carry the tool and which the part, their order, directions and centres.
+        spindle_over_table: Height of the spindle nose over the work-holding surface [mm].
+    """
+
+    kinematics: Kinematics
+    spindle_over_table: float
+
+
+def read_model(model_path: Path, axes: Axes, joints: Sequence[Joint]) -> ModelAtZero:
+    """Read a machine's model, without its solids.
 
     Raises:
         ConfigError: The model is no mill; the message says why.
@@ -53,15 +65,19 @@ def read_kinematics(model_path: Path, axes: Axes, joints: Sequence[Joint]) -> Ki
     except ValueError as error:
         raise ConfigError(f"{model_path}: is not an MJCF model: {error}") from error
     try:
-        return _chain(model, axes, joints)
+        data = mujoco.MjData(model)
+        data.qpos[:] = 0.0
+        mujoco.mj_kinematics(model, data)
+        chain = _chain(model, data, axes, joints)
     except ValueError as error:
         raise ConfigError(f"{model_path}: is no mill: {error}") from error
+    over_table = data.site(SPINDLE_NOSE).xpos[2] - data.site(TABLE_TOP).xpos[2]
+    return ModelAtZero(chain, float(over_table) / MM)
 
 
-def _chain(model: mujoco.MjModel, axes: Axes, joints: Sequence[Joint]) -> Kinematics:
-    data = mujoco.MjData(model)
-    data.qpos[:] = 0.0
-    mujoco.mj_kinematics(model, data)
+def _chain(
+    model: mujoco.MjModel, data: mujoco.MjData, axes: Axes, joints: Sequence[Joint]
+) -> Kinematics:
     tool, part = _joints_to(model, SPINDLE_NOSE), _joints_to(model, TABLE_TOP)
     columns = _columns(model, joints)
     _require_mill(model, axes, columns, tool, part)

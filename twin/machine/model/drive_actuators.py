@@ -8,7 +8,8 @@ import mujoco
 import numpy as np
 
 from twin.errors import ConfigError
-from twin.machine.description.config import AxisTable, Machine
+from twin.machine.description.config import Machine
+from twin.machine.description.machine_file import AxisTable
 from twin.machine.model.drives import (
     Drive,
     Lag,

@@ -56,7 +56,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twin.machine.description.config import AxisTable
+from twin.machine.description.machine_file import AxisTable
 from twin.nc.canonical import FloatArray
 from twin.units import kv_per_second, to_si
 

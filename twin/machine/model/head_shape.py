@@ -9,7 +9,6 @@ import numpy as np
 from twin.job.job_file import ToolTable
 from twin.machine.description.config import Machine
 from twin.machine.description.kinematics import SPINDLE_NOSE, TABLE_TOP
-from twin.machine.model.model import MachineModel
 from twin.machine.model.tool_shape import (
     COLLISION_GROUP,
     TOOL_NAMES,
@@ -52,9 +51,8 @@ class HeadShape:
     a cylinder that does not go with the spindle.
     """
 
-    def __init__(self, whole: MachineModel) -> None:
-        """Measure a machine with all axes at zero; the tool in its spindle is passed over."""
-        machine, model = whole.machine, whole.solids
+    def __init__(self, machine: Machine, model: mujoco.MjModel) -> None:
+        """Measure the solids of a machine with all axes at zero; the tool in its spindle is passed over."""
         self._flange = machine.file.spindle.flange_diameter
         data = mujoco.MjData(model)
         mujoco.mj_forward(model, data)

@@ -14,6 +14,7 @@ from twin.machine.description.measured_mass import set_measured_masses
 from twin.machine.model.drive_actuators import add_drives
 from twin.machine.model.drives import Drive, tune
 from twin.machine.model.fixture_shape import add_fixture
+from twin.machine.model.head_shape import HeadShape
 from twin.machine.model.supplied import supply
 from twin.machine.model.tool_shape import (
     CLAMPED_SIDE,
@@ -88,6 +89,11 @@ class MachineModel:
     def solids(self) -> mujoco.MjModel:
         """Only those geoms that may not meet."""
         return clearance_model(self.machine, self.spec)
+
+    @cached_property
+    def head(self) -> HeadShape:
+        """What is around and above the spindle."""
+        return HeadShape(self.machine, self.solids)
 
     def _with_tool(self) -> mujoco.MjSpec:
         spec = self._without_tool.copy()
@@ -372,49 +378,3 @@ def _without(spec: mujoco.MjSpec, *groups: int) -> mujoco.MjSpec:
     lean.compiler.discardvisual = True
     lean.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT
     return lean
-
-
-def spindle_over_table_mm(machine: Machine) -> float:
-    """Height of the spindle nose over the work-holding surface with all axes at zero [mm].
-
-    Forward kinematics of the MJCF file, without compiling it.
-
-    Raises:
-        ConfigError: The model cannot be read, or lacks one of both.
-    """
-    return height_between(_read(machine), TABLE_TOP, SPINDLE_NOSE) / MM
-
-
-def height_between(spec: mujoco.MjSpec, low: str, high: str) -> float:
-    """How much higher one site lies than another with all joints at rest [m]."""
-    return float(_place(spec, spec.site(high))[2] - _place(spec, spec.site(low))[2])
-
-
-def _place(spec: mujoco.MjSpec, site: mujoco.MjsSite) -> FloatArray:
-    """Where a site is in the world with all joints at rest, shape (3,) [m]."""
-    origin, turn = _pose_of_parent(spec, site)
-    return origin + _turned(turn, site.pos)
-
-
-def _pose_of_parent(
-    spec: mujoco.MjSpec, element: "mujoco.MjsSite | mujoco.MjsBody | mujoco.MjsFrame"
-) -> tuple[FloatArray, FloatArray]:
-    """Position [m] and quaternion of the frame or body that an element is placed in."""
-    around = element.frame or element.parent
-    if around is None or around == spec.worldbody:
-        return np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0])
-    origin, turn = _pose_of_parent(spec, around)
-    own = np.array(around.quat)
-    if around.alt.type != mujoco.mjtOrientation.mjORIENTATION_QUAT:
-        compiler = spec.compiler
-        own = np.array(spec.resolve_orientation(compiler.degree, compiler.eulerseq, around.alt))
-    mujoco.mju_normalize4(own)
-    both = np.zeros(4)
-    mujoco.mju_mulQuat(both, turn, own)
-    return origin + _turned(turn, around.pos), both
-
-
-def _turned(turn: FloatArray, vector: FloatArray) -> FloatArray:
-    found = np.zeros(3)
-    mujoco.mju_rotVecQuat(found, vector, turn)
-    return found

@@ -22,7 +22,7 @@ import math
 import mujoco
 import numpy as np
 
-from twin.machine.description.config import AxisTable
+from twin.machine.description.machine_file import AxisTable
 from twin.machine.model.drives import reflected_inertia
 from twin.units import to_si
 

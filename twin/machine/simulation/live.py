@@ -7,7 +7,6 @@ import numpy as np
 from twin.errors import ConfigError
 from twin.job.job_file import ToolTable
 from twin.machine.description.config import Blank, Machine
-from twin.machine.model.head_shape import HeadShape
 from twin.machine.model.model import MachineModel
 from twin.machine.simulation.process import Process
 from twin.machine.simulation.servo import Servo
@@ -76,7 +75,7 @@ class LiveMachine:
         self._blank = blank
         model = MachineModel(machine, tool, blank)
         self._clearance = Clearance(machine, model.solids)
-        self.head = HeadShape(model)
+        self.head = model.head
         self._servo = Servo(machine, model.physics)
         self._watch = Watch(machine)
         stand = np.zeros(len(machine.axes)) if position is None else np.asarray(position, float)

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from twin.machine.description.config import AxisTable, Machine
+from twin.machine.description.config import Machine
+from twin.machine.description.machine_file import AxisTable
 from twin.machine.watching.alarms import Alarm, AlarmCode
 from twin.machine.watching.watch_kernels import Raised, Watched, find_raised
 from twin.nc.canonical import FloatArray

@@ -100,6 +100,7 @@ class Codes:
         g: G codes by number, such as 54 or 54.1.
         start_state: Fields of ``Modal`` that no G code sets.
         replacements: What to write in place of G codes that other controls have, by number.
+        function_replacements: The same of M codes.
         any_m: M codes outside the table are functions too.
         last_of_group_counts: Of several G codes of a modal group in a block the last one counts; else they
             are refused.
@@ -113,6 +114,7 @@ class Codes:
     start: tuple[float, ...]
     start_state: ModalChanges = dataclasses.field(default_factory=ModalChanges)
     replacements: Mapping[float, str] = dataclasses.field(default_factory=dict)
+    function_replacements: Mapping[int, str] = dataclasses.field(default_factory=dict)
     any_m: bool = False
     last_of_group_counts: bool = False
     statements: Mapping[str, StatementAction] = dataclasses.field(default_factory=dict)

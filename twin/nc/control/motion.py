@@ -62,6 +62,8 @@ class Motion:
         axis_decelerations: Their largest deceleration [mm/s² or deg/s²].
         in_plane: As ``Segment.in_plane`` of the moves that follow.
         before_move: Given the length of each move of the block before it goes to the path.
+        on_screen: What the screen shows of part coordinates while the words count otherwise: from machine zero; None:
+            what the words count.
     """
 
     def __init__(
@@ -93,6 +95,7 @@ class Motion:
         self.axis_decelerations: dict[int, float] = {}
         self.in_plane = False
         self.before_move: Callable[[float], None] | None = None
+        self.on_screen: Callable[[list[float]], list[float]] | None = None
 
     # --- moves
 
@@ -155,7 +158,7 @@ class Motion:
             block.number,
             self.part,
             end,
-            target,
+            target if self.on_screen is None else self.on_screen(end),
             feed,
             RAPIDS_END if rapid else self.modal.corner,
             self.modal.corner_tolerance,

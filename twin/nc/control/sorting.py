@@ -8,7 +8,6 @@ from twin.nc.control.control import Control, integer_of, number_of
 from twin.nc.control.dialect import Dialect
 from twin.nc.text.blocks import Word
 from twin.nc.text.expressions import Expression
-from twin.nc.text.slips import near
 
 Codes = Sequence[tuple[Word, GCode]]
 Functions = Sequence[tuple[Word, MCode]]
@@ -111,14 +110,9 @@ class WordSorter:
         number, codes = number_of(word), self._dialect.codes
         code = codes.g.get(number)
         if code is None:
-            known = [self._dialect.code_name(each) for each in sorted(codes.g)]
-            self._control.fail(
-                "unknown-g",
-                f"{word.text} is unknown to {self._dialect.name}",
-                word,
-                hint=codes.replacements.get(number)
-                or near(f"G{number:g}", known, self._dialect.name),
-            )
+            message = f"{word.text} is unknown to {self._dialect.name}"
+            hint = codes.replacements.get(number) or self._codes_near(number)
+            self._control.fail("unknown-g", message, word, hint=hint)
         if code.refused:
             self._control.fail("unsupported-g", f"{word.text} {code.refusal}", word)
         return code
@@ -129,11 +123,23 @@ class WordSorter:
         if code is None:
             if number < 0:
                 self._control.fail("unknown-m", f"{word.text}: an M code is a whole number", word)
-            listed = near(f"M{number}", map("M{}".format, codes.m), self._dialect.name)
             message = f"{word.text} is unknown to {self._dialect.name}"
             own = f'one of the machine\'s builder: [m_functions] M{number} = "what it does" in the job'
-            self._control.fail("unknown-m", message, word, hint=f"{own}; {listed}")
+            usual = f"{own}; all of them: twin dialects {self._dialect.name}"
+            replacement = codes.function_replacements.get(number)
+            hint = f"{replacement}; {own}" if replacement else usual
+            self._control.fail("unknown-m", message, word, hint=hint)
         return code
+
+    def _codes_near(self, number: float) -> str:
+        """The codes whose whole part is that of an unknown one, and where all of them are listed."""
+        alike = [
+            self._dialect.code_name(each)
+            for each, code in sorted(self._dialect.codes.g.items())
+            if int(each) == int(number) and not code.refused
+        ]
+        listed = f"all of them: twin dialects {self._dialect.name}"
+        return f"near it: {', '.join(alike[:4])}; {listed}" if alike else listed
 
     def _refuse_conflict(self, conflict: "Conflict | None") -> None:
         """Say which codes cannot share a block."""

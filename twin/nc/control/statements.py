@@ -26,16 +26,21 @@ class StatementReader:
         (only,) = self.expressions(text, column, 1)
         return only
 
-    def expressions(self, text: str, column: int, count: int | None = None) -> list[Expression]:
-        """Read a text that must be expressions separated by commas."""
+    def expressions(
+        self, text: str, column: int, count: int | None = None, hint: str | None = None
+    ) -> list[Expression]:
+        """Read a text that must be expressions separated by commas; a hint says how they are written."""
         if not text.strip() and not count:
             return []
         found, end = self._read(self._lexer.expressions.read_list, text, 0, column)
-        if text[end:].strip() or (count is not None and len(found) != count):
-            wanted = "values" if count is None else f"{count} value" + "s" * (count > 1)
-            hint = "equal is written ==" if text[end:].lstrip().startswith("=") else None
-            message = f"{wanted} must stand here and no more"
+        rest = text[end:].strip()
+        if count is not None and len(found) != count:
+            message = f"{count} value{'s' * (count > 1)} must stand here, not {len(found)}"
             self._report.fail("expression", message, column + end, 1, hint)
+        if rest:
+            begin, message = text.index(rest, end), f"'{rest.split()[0]}' does not belong here"
+            hint = self._lexer.expressions.comparison_at(rest, 0) or hint or "leave it out"
+            self._report.fail("expression", message, column + begin, len(rest.split()[0]), hint)
         return found
 
     def operand(self, text: str, at: int, column: int) -> tuple[Expression, int]:

@@ -16,6 +16,7 @@ class Tools:
         names: Numbers of tools that the program has called by names which the job does not give.
         selected: Number of the tool that the next change brings.
         length_call: Number of the tool whose length the block that runs calls, or ``LENGTH_ENDED``; None: it calls none.
+        rigid: Tapping cycles start the spindle themselves, where it stands, and stop it behind each hole.
         drills: The block that runs makes a hole by a drilling cycle, which neither bores, reams, taps nor counterbores.
     """
 
@@ -28,6 +29,7 @@ class Tools:
         self._reference = 0.0 if first is None else table[first].length
         self.spindle = self.selected = first
         self.length_call: int | None = None
+        self.rigid = False
         self.drills = False
 
     def change(self) -> None:

@@ -63,10 +63,9 @@ def jump_with_repeat(control: Control) -> None:
     """G73: after the block's own motion go on at block L, Q times; the counter begins again behind that."""
     target, count = control.take("L"), control.take("Q")
     if target is None:
-        numbers = ", ".join(f"N{label}" for label in list(control.program_counter.labels())[:12])
-        code = control.code_word(73)
         message = "G73 needs L: the block to jump to"
-        control.fail("jump-target", message, code, hint=f"blocks here: {numbers}")
+        hint = "G73 L50 Q2 goes back to N50 twice"
+        control.fail("jump-target", message, control.code_word(73), hint=hint)
     wanted = 1.0 if count is None else control.number(count)
     if not (wanted >= 0.0 and wanted == int(wanted)):
         control.fail("repeat-count", "Q must count jumps", count)

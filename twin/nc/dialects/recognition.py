@@ -26,6 +26,9 @@ _NAMES: Mapping[str, str] = {
 }
 """What comments call the controls, and posts for them."""
 
+_SHARED_CODES = ("linuxcnc",)
+"""A dialect among whose marks are codes that controls like Fanuc's have too, such as G61.1."""
+
 _COMMENT = re.compile(r"\(([^()]*)\)|;(.*)|^%(.*)")
 
 
@@ -59,13 +62,14 @@ def reading_of(source: Source) -> Reading:
     marks = {name: shown for name, shown in marks_found(source).items() if shown}
     everything = {mark for shown in marks.values() for mark in shown}
     complete = tuple(name for name, shown in marks.items() if everything <= set(shown))
-    if len(complete) == 1:
-        return Reading(complete, f"by {', '.join(marks[complete[0]])}")
     head = head_of(source).replace("_", " ")  # as in linuxcnc_post
     named = [name for name, pattern in _NAMES.items() if re.search(pattern, head, re.IGNORECASE)]
+    foreign = None if named else control_of_head(head)
+    shared = foreign is not None and complete == _SHARED_CODES and "fanuc" in foreign.advice
+    if len(complete) == 1 and not shared:
+        return Reading(complete, f"by {', '.join(marks[complete[0]])}")
     if len(named) == 1 and (not marks or named[0] in marks):
         return Reading((named[0],), f"its head names {named[0]}")
-    foreign = None if named else control_of_head(head)
     if foreign is not None:
         raise UsageError(f"{source.name}: its head says that it is {foreign[0]}: {foreign[1]}")
     if complete:

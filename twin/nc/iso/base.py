@@ -85,13 +85,23 @@ def set_feed(control: Control, word: Word) -> None:
     control.motion.feed = feed
 
 
-def spindle_speed(control: Control, word: Word) -> None:
-    """S: the spindle's speed [1/min]; reported where no spindle start carries it."""
+def set_spindle_speed(control: Control, word: Word) -> float:
+    """The speed of a word S, which counts from now on [1/min].
+
+    Raises:
+        ProgramError: It is negative.
+    """
     speed = control.number(word)
     if not speed >= 0.0:
         message = f"the speed {word.text} is negative"
         control.fail("spindle-range", message, word, "M4 turns it the other way")
     control.motion.spindle = speed
+    return speed
+
+
+def spindle_speed(control: Control, word: Word) -> None:
+    """S: the spindle's speed [1/min]; reported where no spindle start carries it."""
+    speed = set_spindle_speed(control, word)
     others = control.block.words
     functions = (other.value for other in others if other.address == "M")
     if not any(isinstance(number, float) and starts_spindle(number) for number in functions):

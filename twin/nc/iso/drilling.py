@@ -175,7 +175,7 @@ def require_words(control: Control, cycle: Cycle) -> None:
     if values.get("axis") != control.modal.plane.axes[2]:
         refuse_other_plane(control, cycle.name)
     letters = {value: letter for letter, value in cycle.addresses(control).items()}
-    missing = [letters[value] for value in cycle.needed if value not in values]
+    missing = {letters[value]: value for value in cycle.needed if value not in values}
     if missing:
         refuse_missing(control, cycle.name, missing)
 
@@ -186,17 +186,23 @@ def refuse_other_plane(control: Control, name: str) -> NoReturn:
     control.fail("cycle-plane", message, hint="end it by G80 before the plane changes")
 
 
-_NEEDED_WORDS = {
-    "R": "the height where the feed begins, such as R2.",
-    "Z": "the depth of the hole, such as Z-10.",
-    "Q": "the depth of a peck, such as Q2.",
-    "F": "the feed, such as F100.",
+_NEEDED = {
+    "reference": "the height where the feed begins, such as {}2.",
+    "bottom": "the depth of the hole, such as {}-10.",
+    "peck": "the depth of a peck, such as {}2.",
+    "count": "the number of pecks, such as {}3",
+    "feed": "the feed, such as {}100.",
 }
+"""What a value of a cycle is, and how its word is written behind its address."""
 
 
-def refuse_missing(control: Control, name: str, missing: list[str]) -> NoReturn:
-    """Refuse a hole of a cycle that lacks words, by their addresses."""
-    hints = [f"{each}: {_NEEDED_WORDS[each]}" for each in missing if each in _NEEDED_WORDS]
+def refuse_missing(control: Control, name: str, missing: Mapping[str, str]) -> NoReturn:
+    """Refuse a hole of a cycle that lacks words: the value of each, by its address."""
+    hints = [
+        f"{each}: {_NEEDED[value].format(each)}"
+        for each, value in missing.items()
+        if value in _NEEDED
+    ]
     message = f"{name} needs {' and '.join(missing)}"
     control.fail("cycle-word", message, hint="; ".join(hints) or None)
 

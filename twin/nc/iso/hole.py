@@ -78,6 +78,11 @@ class Hole(NamedTuple):
         """
         return self.retract is Retract.RAPID and (self.stops > 0 or not self.dwell)
 
+    @property
+    def is_tapped(self) -> bool:
+        """Whether the spindle turns back at its bottom."""
+        return self.retract in (Retract.REVERSED, Retract.REVERSED_LEFT)
+
     def next_peck(self, peck: float) -> float:
         """Depth of the peck behind one [mm]."""
         return max(peck * self.factor - self.reduction, self.least)
@@ -113,6 +118,10 @@ def drill(control: Control, hole: Hole, target: list[float] | None = None) -> No
     if target is not None:
         control.line_to([*target[:axis], over, *target[axis + 1 :]], rapid=True)
     go_to_height(control, hole.reference)
+    starts = hole.is_tapped and control.tools.rigid and not control.motion.spindle_turns
+    if starts:
+        turn_spindle(control, "M4" if hole.retract is Retract.REVERSED_LEFT else "M3")
+        control.motion.spindle_turns = True
     depth, peck = hole.surface, hole.peck
     for number in range(1, hole.stops + 1):
         depth = hole.surface - number * peck if hole.passes else depth - peck
@@ -131,11 +140,14 @@ def drill(control: Control, hole: Hole, target: list[float] | None = None) -> No
     if hole.dwell > 0.0:
         control.dwell(hole.dwell)
     _leave(control, hole)
+    if starts:
+        control.function("M5", {})
+        control.motion.spindle_turns = False
 
 
 def _leave(control: Control, hole: Hole) -> None:
     """From the bottom to where the tool returns."""
-    if hole.retract in (Retract.REVERSED, Retract.REVERSED_LEFT):
+    if hole.is_tapped:
         _come_back_reversed(control, hole, hole.reference)
     elif hole.retract is Retract.STOPPED:
         control.function("M5", {})

@@ -4,12 +4,12 @@ The coordinates are those of the axes: no work offset, preset, tool length, mirr
 acts on them, and no tip is led meanwhile.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import NamedTuple
 
 from twin.nc.control.control import Control
-from twin.nc.geometry.frame import SHIFTS
+from twin.nc.geometry.frame import SHIFTS, Frame
 from twin.nc.geometry.matrices import IDENTITY, Matrix
 from twin.nc.iso.offsets import machine_zero
 from twin.nc.path.tool_center import ToolCenter
@@ -35,6 +35,7 @@ def enter_machine_frame(
     zero, frame = machine_zero(control, code) if zero is None else zero, control.frame
     center, names = control.path.tool_center, control.settings.axes.names
     kept = PartFrame(frame.shifts, frame.matrix, center)
+    control.motion.on_screen = _screen_of(kept)
     if center is not None:
         control.motion.lead_tip(None)
     frame.set_shifts([[0.0] * len(names) for _ in SHIFTS])
@@ -44,8 +45,21 @@ def enter_machine_frame(
     return kept
 
 
+def _screen_of(kept: PartFrame) -> Callable[[list[float]], list[float]]:
+    """Programmed coordinates of a place of the axes: the screen goes on showing them."""
+    frame, center = Frame(len(kept.shifts[0])), kept.tool_center
+    frame.set_shifts(kept.shifts)
+    frame.set_matrix(kept.matrix)
+
+    def shown(part: list[float]) -> list[float]:
+        return frame.to_programmed(part if center is None else center.tip(part))
+
+    return shown
+
+
 def leave_machine_frame(control: Control, kept: PartFrame) -> None:
     """Let programmed coordinates be what they were."""
+    control.motion.on_screen = None
     control.frame.set_shifts(kept.shifts)
     control.frame.set_matrix(kept.matrix)
     if kept.tool_center is not None:

@@ -44,7 +44,7 @@ class Word(NamedTuple):
         if self.value != self.value:
             return self.address
         value = f"{self.value:.10g}" if isinstance(self.value, float) else "..."
-        return f"{self.address}{value}"
+        return f"{self.address}{'=' * self.address[-1:].isdigit()}{value}"
 
 
 class Statement(NamedTuple):

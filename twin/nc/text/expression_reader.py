@@ -28,15 +28,14 @@ _LONGEST = 200
 _MOST_KEPT = 4096
 """Expressions that are kept once they were read: loops compute the same ones again and again."""
 _COMPARISONS = (
-    ("<>", "unequal", ("NE", "<>")),
-    ("!=", "unequal", ("NE", "<>")),
-    ("<=", "less or equal", ("LE",)),
-    (">=", "greater or equal", ("GE",)),
-    ("<", "less", ("LT",)),
-    (">", "greater", ("GT",)),
-    ("=", "equal", ("EQ", "==")),
+    ("unequal", ("<>", "!=", "NE")),
+    ("less or equal", ("<=", "LE")),
+    ("greater or equal", (">=", "GE")),
+    ("less", ("<", "LT")),
+    ("greater", (">", "GT")),
+    ("equal", ("==", "=", "EQ")),
 )
-"""Signs of comparison, the longer before the shorter: what each means, and how languages that lack it write that."""
+"""Comparisons, the longer signs before the shorter, and how languages write them."""
 
 
 class ExpressionReader:
@@ -91,6 +90,16 @@ class ExpressionReader:
                 return expressions, end
             start = len(text) - len(rest) + 1
 
+    def comparison_at(self, text: str, at: int) -> str | None:
+        """How the comparison is written that another language's sign or name asks for at a place; None: there is none."""
+        operators = {name.upper() for name in self._syntax.operators}
+        behind = text[at:].lstrip().upper()
+        for meaning, spellings in _COMPARISONS:
+            own = next((each for each in spellings if each in operators), None)
+            if own is not None and any(map(behind.startswith, spellings)):
+                return f"{meaning} is written {own}"
+        return None
+
 
 def operator_pattern(symbol: str) -> str:
     """Regular expression of an operator; two slashes begin a comment."""
@@ -123,7 +132,8 @@ class _Reading:
             self._count()
             symbol = match[1].upper()
             if exclusive and symbol in self._syntax.exclusive:
-                self._fail("expression", f"{symbol} needs brackets around what it compares")
+                hint = "each comparison in brackets of its own"
+                self._fail("expression", f"{symbol} needs brackets around what it compares", hint)
             exclusive = symbol in self._syntax.exclusive
             self.at = match.end()
             right = self.operation(operator.precedence + 1, depth + 1)
@@ -239,7 +249,7 @@ class _Reading:
         self.at = at
         opening, closing = brackets or self._syntax.brackets
         self._skip_blanks()
-        self._expect(opening)
+        self._expect(opening, f"write {name}{opening}...{closing}")
         arguments = [self._or_zero(self.operation(0, depth + 1))]
         self._skip_blanks()
         while self._text[self.at : self.at + 1] == ",":
@@ -251,21 +261,12 @@ class _Reading:
         self._expect(closing)
         return arguments
 
-    def _expect(self, character: str) -> None:
+    def _expect(self, character: str, hint: str | None = None) -> None:
         self._skip_blanks()
         if self._text[self.at : self.at + 1] != character:
-            self._fail("expression", f"'{character}' is missing here", self._hint_of_comparison())
+            hint = self._reader.comparison_at(self._text, self.at) or hint
+            self._fail("expression", f"'{character}' is missing here", hint)
         self.at += 1
-
-    def _hint_of_comparison(self) -> str | None:
-        """How two values are compared, where the sign of another language replaces an operator."""
-        operators = {name.upper() for name in self._syntax.operators}
-        behind = self._text[self.at : self.at + 2]
-        for sign, meaning, spellings in _COMPARISONS:
-            spelling = next((each for each in spellings if each in operators), None)
-            if spelling is not None and behind.startswith(sign):
-                return f"{meaning} is written {spelling}"
-        return None
 
     def _skip_blanks(self) -> None:
         while self._text[self.at : self.at + 1] in (" ", "\t") and self.at < len(self._text):

@@ -1,7 +1,7 @@
 """From a line of text to blocks of words, by a dialect's syntax."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 
 from twin.nc.text.blocks import Block, Statement
 from twin.nc.text.comments import is_control
@@ -31,6 +31,11 @@ class Lexer:
         self._reader = KeywordLine if grammar.syntax.worded else LineReader
         self._longest = grammar.syntax.longest_line
         self._report = report
+
+    @property
+    def keywords(self) -> Collection[str]:
+        """What this dialect's statements begin with."""
+        return self._grammar.language.keywords
 
     @property
     def expressions(self) -> ExpressionReader:

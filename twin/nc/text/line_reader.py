@@ -17,7 +17,7 @@ from twin.nc.text.expressions import (
 from twin.nc.text.grammar import Grammar
 from twin.nc.text.plain_word import BLANKS
 from twin.nc.text.reporter import Reporter
-from twin.nc.text.slips import NESTED_COMMENT
+from twin.nc.text.slips import slip_at
 from twin.nc.text.unreadable import Unreadable
 
 LARGEST_LABEL = 4_294_967_295
@@ -151,7 +151,8 @@ class LineReader:
         again = text.find(begun.opening, len(begun.opening))
         if not begun.holds_opening and 0 <= again < text.find(begun.closing):
             message = f"a comment that '{begun.opening}' began holds no further '{begun.opening}'"
-            self._fail("open-comment", message, at + again, hint=NESTED_COMMENT)
+            hint = slip_at(self._line, at + again, self._grammar.language.name)
+            self._fail("open-comment", message, at + again, hint=hint)
         message = f"the comment is not closed by '{begun.closing}'"
         self._fail("open-comment", message, at, hint="close it on its own line")
 
@@ -284,8 +285,7 @@ class LineReader:
         if name == "N":
             self._fail("label", "a block number must be a plain number", begin)
         if not match[1].endswith(sign := self._syntax.computed_behind):
-            message = f"a value that is computed follows {sign} here"
-            self._fail("expression", message, at, hint=f"write {name}{sign}...")
+            self._unreadable.refuse_without_sign(match, sign)
         suffix = self._grammar.suffix.match(self._line, end)
         assert suffix is not None
         self._at = suffix.end()

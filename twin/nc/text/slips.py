@@ -1,79 +1,62 @@
-"""What was meant by a line that cannot be read: the slips that are made most."""
+"""What was meant by a line that cannot be read, by ``slips.toml``, and which names are like one that is unknown."""
 
 import difflib
 import re
-from collections.abc import Iterable
-from typing import NamedTuple
+import tomllib
+from collections.abc import Collection, Iterable
+from functools import cache
+from pathlib import Path
 
-_MOST_NEAR = 4
-NESTED_COMMENT = "close the first comment before, or leave the inner ( ) out"
+import pydantic
+
+_ABOUT = 200
+"""Characters before and behind a place that are looked at: a line may have any length."""
+_MOST_NEAR = 3
+_LONGEST_NAME = 40
+_NEARLY = 0.7
+"""Likeness of two names, of 1, of which one may be a slip for the other."""
 
 
-class Slip(NamedTuple):
-    """One slip.
+class Slip(pydantic.BaseModel):
+    """One slip."""
 
-    Attributes:
-        pattern: What a line holds at the place that cannot be read.
-        statement: Of a dialect that it is looked for in; empty: of any.
-        foreign: It is looked for where the dialect lacks that statement.
-    """
+    model_config = pydantic.ConfigDict(extra="forbid", frozen=True)
 
     pattern: re.Pattern[str]
     hint: str
-    statement: str = ""
-    foreign: bool = False
+    dialects: frozenset[str] = frozenset()
 
 
-def _slip(pattern: str, hint: str, statement: str = "", *, foreign: bool = False) -> Slip:
-    return Slip(re.compile(pattern, re.IGNORECASE), hint, statement, foreign)
+@cache
+def slips() -> tuple[Slip, ...]:
+    """All of them, in the order in which they are looked for."""
+    file = Path(__file__).with_name("slips.toml")
+    entries = tomllib.loads(file.read_text(encoding="utf-8"))["slip"]
+    return tuple(
+        Slip.model_validate({**each, "pattern": re.compile(each["pattern"], re.IGNORECASE)})
+        for each in entries
+    )
 
 
-SLIPS: tuple[Slip, ...] = (
-    _slip(r"\([^()]*\([^()]*\)[^()]*\)", NESTED_COMMENT),
-    _slip(
-        r"(?<![A-Z])[A-Z][ \t]*[-+]?[0-9.]*O[O0-9.]*(?![A-Z<\[#])",
-        "the letter O is no 0",
-    ),
-    _slip(
-        r"\b(?:IF|WHILE|UNTIL)[ \t]*(?!\[)",
-        "a condition is written in brackets: IF [#1 EQ 2] GOTO 5",
-        "IF",
-    ),
-    _slip(
-        r"\b(?:IF|WHILE|GOTO|THEN|END[123])\b",
-        "macros of Fanuc and Haas write so: --dialect fanuc",
-        "IF",
-        foreign=True,
-    ),
-    _slip(
-        r"\bG[ \t]*[0-9]+",
-        "Klartext has no G codes: a line is L X+10 F500; DIN/ISO of the same controls is not read",
-        "BEGIN PGM",
-    ),
-    _slip(r"\$[A-Z$#]", "a command of Grbl: --dialect grbl reads it"),
-    _slip(
-        r"[A-Z][ \t]*=[ \t]*[-+.0-9]", "a word is its letter and its number, such as X10, without ="
-    ),
-    _slip(r"[0-9]*\.[0-9]*\.", "a number has one point"),
-    _slip(r";[ \t]*[A-Z][ \t]*[-+.0-9]", "every block on a line of its own"),
-    _slip(r"[-+][ \t]*[-+]", "a number has one sign"),
-)
-"""The first that lies over the place counts."""
-
-
-def slip_at(line: str, at: int, statements: Iterable[str] = ()) -> str | None:
-    """What to write in place of what is at a place of a line, from 0, in a dialect with these statements; None: no known slip."""
-    known = set(statements)
-    for slip in SLIPS:
-        if slip.statement and (slip.statement in known) == slip.foreign:
+def slip_at(line: str, at: int, dialect: str) -> str | None:
+    """What to write in place of what is at a place of a line, from 0; None: no known slip."""
+    for slip in slips():
+        if slip.dialects and dialect not in slip.dialects:
             continue
-        if any(found.start() <= at <= found.end() for found in slip.pattern.finditer(line)):
+        matches = slip.pattern.finditer(line, max(0, at - _ABOUT), at + _ABOUT)
+        if any(found.start() <= at <= found.end() for found in matches):
             return slip.hint
     return None
 
 
-def near(name: str, known: Iterable[str], dialect: str) -> str:
+def near(name: str, known: Iterable[str]) -> list[str]:
+    """Known names for which a name may be a slip, the most alike first."""
+    if len(name) > _LONGEST_NAME:
+        return []
+    return difflib.get_close_matches(name.upper(), list(known), _MOST_NEAR, _NEARLY)
+
+
+def near_or_listed(name: str, known: Collection[str], dialect: str) -> str:
     """Names that are like one that is unknown, and where all of them are listed."""
-    alike = difflib.get_close_matches(name, list(known), _MOST_NEAR, 0.5)
-    listed = f"all of them: twin dialects {dialect}"
+    alike, listed = near(name, known), f"all of them: twin dialects {dialect}"
     return f"near it: {', '.join(alike)}; {listed}" if alike else listed

@@ -9,7 +9,7 @@ from twin.nc.text.blocks import Word
 from twin.nc.text.expressions import ExpressionError
 from twin.nc.text.grammar import Grammar
 from twin.nc.text.reporter import Reporter
-from twin.nc.text.slips import near, slip_at
+from twin.nc.text.slips import near, near_or_listed, slip_at
 
 _STATEMENT = re.compile(r"[#$][A-Z]\w*", re.IGNORECASE)
 _GARBLED = re.compile(r"[-+.0-9]{1,20}")
@@ -17,6 +17,10 @@ _GARBLED = re.compile(r"[-+.0-9]{1,20}")
 _LATE_SKIP = re.compile(r"(N[ \t]*[0-9]+)[ \t]*/", re.IGNORECASE)
 _NAME = re.compile(r"[^\W\d_]\w+(?![\w(\[])")
 """Letters and digits without a bracket behind, as neither a value nor a function is written."""
+_LETTERS = re.compile(r"[A-Z]{2,}(?![0-9.=\[(<#])|[A-Z]{3,}", re.IGNORECASE)
+"""A name, and no letter that has lost its number."""
+_TWO_NAMES = re.compile(r"\w+[ \t]+[A-Z]\w*", re.IGNORECASE)
+_NAME_AND_VALUE = re.compile(r"([A-Z_]+)[ \t]*([-+.0-9]*)", re.IGNORECASE)
 _LOOKALIKES = str.maketrans("АВСЕНІКМОРТХУЗΑΒΕΖΗΙΚΜΝΟΡΤΥΧ", "ABCEHIKMOPTXY3ABEZHIKMNOPTYX")
 """Cyrillic and Greek letters that look like Latin ones: a keyboard left in the wrong layout."""
 _LONE_LETTER = re.compile(r"(?<![A-Za-z#\[])[A-Za-z]$")
@@ -43,10 +47,7 @@ class Unreadable:
         """The value of a word or an assignment that begins at a column cannot be read."""
         name = _NAME.match(self._line, begin)
         if name is not None and error.code == "unknown-function":
-            message = f"'{name[0]}' is no word of {self._grammar.language.name}"
-            usual = f"a value is a number, a variable or a function; {self._comments()}"
-            hint = self._slip_at(begin) or usual
-            self.fail("unknown-word", message, begin, width=len(name[0]), hint=hint)
+            self._refuse_name(name)
         column = begin if error.column is None else min(error.column, len(self._line) - 1)
         lone = _LONE_LETTER.search(self._line[: error.column].rstrip(" \t="))
         if error.column is not None and lone is not None:
@@ -88,10 +89,15 @@ class Unreadable:
         if statement is not None and self._grammar.statement is not None:
             language = self._grammar.language
             message = f"'{statement[0]}' is no statement of {language.name}"
-            hint = self._slip_at(at) or near(statement[0], language.keywords, language.name)
+            listed = near_or_listed(statement[0], language.keywords, language.name)
+            hint = self._slip_at(at) or listed
             self.fail("unknown-statement", message, at, width=len(statement[0]), hint=hint)
         if address is not None:
             self.refuse_code(words)
+        name = _LETTERS.match(self._line, at if address is None else address.start(1))
+        if name is not None:
+            self._refuse_name(name)
+        if address is not None:
             self._refuse_missing_value(address)
         if not character.isascii():
             name = unicodedata.name(character, "no character").lower()
@@ -108,9 +114,30 @@ class Unreadable:
             message = f"'{garbled[0]}' is no number"
             hint = self._slip_at(end)
             self.fail("missing-value", message, end, width=len(garbled[0]), hint=hint)
-        slip = "O" in (name.upper(), self._line[end : end + 1].upper())
-        hint = "the letter O is no 0" if slip else "write a number after it"
+        hint = self._slip_at(address.start(1)) or "write a number after it"
         self.fail("missing-value", f"'{name}' has no value", address.start(1), hint=hint)
+
+    def _refuse_name(self, name: re.Match[str]) -> NoReturn:
+        """A name that is no word and no statement."""
+        language = self._grammar.language
+        both = _TWO_NAMES.match(self._line, name.start())
+        alike = [each for text in (name, both) if text for each in near(text[0], language.keywords)]
+        hint = self._slip_at(name.start()) or (f"near it: {', '.join(alike)}" if alike else None)
+        message = f"'{name[0]}' is no word of {language.name}"
+        usual = self._comments()
+        if self._grammar.reader is not None:
+            usual = f"a value is a number, a variable or a function; {usual}"
+        self.fail("unknown-word", message, name.start(), width=len(name[0]), hint=hint or usual)
+
+    def refuse_without_sign(self, address: re.Match[str], sign: str) -> NoReturn:
+        """A word whose value must follow a sign lacks it."""
+        written = _NAME_AND_VALUE.match(self._line, address.start(1))
+        assert written is not None
+        message = f"'{written[0].rstrip()}' cannot be read"
+        usual = f"write {written[1].upper()}{sign}{written[2] or '...'}"
+        hint = self._slip_at(address.end()) or usual
+        begin, width = address.start(1), len(written[0].rstrip())
+        self.fail("expression", message, begin, width=width, hint=hint)
 
     def _hint_for(self, at: int) -> str | None:
         character = self._line[at]
@@ -129,4 +156,4 @@ class Unreadable:
         return f"comments are written {shown}"
 
     def _slip_at(self, column: int) -> str | None:
-        return slip_at(self._line, column, self._grammar.language.keywords)
+        return slip_at(self._line, column, self._grammar.language.name)

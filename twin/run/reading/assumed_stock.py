@@ -181,7 +181,7 @@ def _levels(moves: Moves) -> tuple[FloatArray, FloatArray]:
 def _clipped(
     moves: Moves, corner: FloatArray, far: FloatArray, top: float, radius: float
 ) -> tuple[FloatArray, FloatArray, list[int]]:
-    """The box without what rapids would plunge into, and their lines; where the tool fed before is none of that."""
+    """The box without what rapids would plunge into or meet at its edge, and their lines; where the tool fed before is none of that."""
     lines: list[int] = []
     fed: dict[tuple[float, float], float] = {}
     rapid, drop = moves.motion == Motion.RAPID, moves.start[:, 2] - moves.end[:, 2]
@@ -190,42 +190,65 @@ def _clipped(
         if not rapid[row]:
             fed[x, y] = min(z, fed.get((x, y), z))
             continue
-        if drop[row] <= BELOW or fed.get((x, y), top) <= z + _CLEARED:
+        plunges = drop[row] > BELOW
+        if plunges and fed.get((x, y), top) <= z + _CLEARED:
             continue
-        inside = (corner < (x + radius, y + radius)).all() and (
-            far > (x - radius, y - radius)
-        ).all()
-        if not inside or _fed_before(moves, int(row), z + _CLEARED, radius):
+        ways = moves.end[row : row + 1, :2] if plunges else _along(moves, int(row))
+        ways = np.array(
+            [each for each in ways if not _fed_before(moves, int(row), each, z, radius)]
+        )
+        if not len(ways):
             continue
-        lines.append(int(moves.line[row]))
-        width, depth = (far - corner).tolist()
-        losses = {
-            (0, "low"): (x + radius - corner[0]) * depth,
-            (0, "high"): (far[0] - x + radius) * depth,
-            (1, "low"): (y + radius - corner[1]) * width,
-            (1, "high"): (far[1] - y + radius) * width,
-        }
-        (axis, side), _ = min(losses.items(), key=lambda pair: pair[1])
-        place = (x, y)[axis]
-        corner, far = corner.copy(), far.copy()
-        if side == "low":
-            corner[axis] = place + radius + _CLEAR
-        else:
-            far[axis] = place - radius - _CLEAR
+        low, high = ways.min(axis=0) - radius, ways.max(axis=0) + radius
+        if not ((corner < high).all() and (far > low).all()):
+            continue
+        clipped, share = _cut_away(corner, far, low, high)
+        if plunges or share <= _MOST_AT_EDGE:
+            (corner, far), _ = clipped, lines.append(int(moves.line[row]))
     return corner, far, list(dict.fromkeys(lines))
 
 
-def _fed_before(moves: Moves, row: int, height: float, radius: float) -> bool:
-    """Whether the tool's centre was fed past where a move ends, as near as the radius and no higher than a height."""
+def _along(moves: Moves, row: int) -> FloatArray:
+    """Places along a move in the plane, shape (n, 2) [mm]."""
+    shares = np.linspace(0.0, 1.0, _PLACES)[:, None]
+    start, end = moves.start[row, :2], moves.end[row, :2]
+    return (start + shares * (end - start)).astype(np.float64)
+
+
+def _cut_away(
+    corner: FloatArray, far: FloatArray, low: FloatArray, high: FloatArray
+) -> tuple[tuple[FloatArray, FloatArray], float]:
+    """The box without a strip along the side where that costs least, so that it is clear of a place, and the share lost."""
+    size = far - corner
+    losses = {
+        **{(axis, "low"): (high[axis] - corner[axis]) / size[axis] for axis in (0, 1)},
+        **{(axis, "high"): (far[axis] - low[axis]) / size[axis] for axis in (0, 1)},
+    }
+    (axis, side), share = min(losses.items(), key=lambda pair: pair[1])
+    corner, far = corner.copy(), far.copy()
+    if side == "low":
+        corner[axis] = high[axis] + _CLEAR
+    else:
+        far[axis] = low[axis] - _CLEAR
+    return (corner, far), float(share)
+
+
+def _fed_before(moves: Moves, row: int, place: FloatArray, height: float, radius: float) -> bool:
+    """Whether the tool's centre was fed past a place before a move, as near as the radius and hardly higher than a height."""
+    height += _CLEARED
     feeds = moves.motion[:row] == Motion.FEED
     feeds &= (moves.start[:row, 2] <= height) & (moves.end[:row, 2] <= height)
     begin, way = moves.start[:row][feeds, :2], (moves.end - moves.start)[:row][feeds, :2]
-    to = moves.end[row, :2] - begin
+    to = place - begin
     length = np.maximum((way * way).sum(axis=1), BELOW)
     share = np.clip((to * way).sum(axis=1) / length, 0.0, 1.0)
     return bool((np.hypot(*(to - share[:, None] * way).T) <= radius).any())
 
 
+_MOST_AT_EDGE = 0.2
+"""Share of the stock that may be taken from it so that a rapid in the plane passes beside it; more is for the run to judge."""
+_PLACES = 9
+"""At so many places of a rapid in the plane it is looked whether the tool was fed there before."""
 _CLEARED = 1.0
 """So much deeper than it was fed a rapid may go: the rest is for the run to judge [mm]."""
 _CLEAR = 0.5

@@ -3,6 +3,7 @@
 Posts write ``(T1 D=10. CR=0. - ZMIN=-5. - flat end mill)`` and its relatives.
 """
 
+import json
 import re
 from collections.abc import Collection, Iterable, Mapping
 from typing import NamedTuple
@@ -20,6 +21,7 @@ _LISTED = (
     re.compile(
         r"\bTOOL\s*(?:NO\.?|NUMBER|#|-|=|:)?\s*([0-9]{1,6})\b\s*[-:=,|]*\s*(.*)", re.IGNORECASE
     ),
+    re.compile(r"^\s*#\s*([0-9]{1,6})\s+(D\s*=.*\S)", re.IGNORECASE),
     re.compile(r"^\s*([0-9]{1,6})\s*=\s*(.*\b(?:MILL|DRILL|BIT|TAP)\b.*)", re.IGNORECASE),
 )
 """Comments that begin with the tool's number."""
@@ -29,7 +31,7 @@ _KINDS: tuple[tuple[str, str], ...] = (
         r"SPOT|CENT(?:ER|RE) ?DRILL|CHAMFER|COUNTERSINK|C'?SINK|\bV[- ]?(?:BIT|CARVE|TOOL)|ENGRAV|FASE",
         "chamfer",
     ),
-    (r"DRILL|BOHRER|\bTAP\b|\bTAPPING|REAM", "drill"),
+    (r"(?<!SLOT)(?<!SLOT )DRILL|BOHRER|\bTAP\b|\bTAPPING|REAM", "drill"),
     (r"BULL|CORNER RAD|RADIUSED|TOROID", "bull"),
     (r"BALL|SPHER|\bKUGEL", "ball"),
 )
@@ -45,6 +47,18 @@ _DIAMETERS = (
     rf"^(?!.*\bH\s*[0-9]).*\bD\s*({_NUMBER})()(?![0-9.])",
 )
 _FRACTION = re.compile(r"(?<![0-9.])([0-9]{1,4})/([0-9]{1,4})(?![0-9])")
+_GAUGE = re.compile(r"(?:#|\bNO\.?)\s*([1-9][0-9]?)\s+(?:\w+\s+)?DRILL")
+_GAUGES = (
+    *(228.0, 221.0, 213.0, 209.0, 205.5, 204.0, 201.0, 199.0, 196.0, 193.5),
+    *(191.0, 189.0, 185.0, 182.0, 180.0, 177.0, 173.0, 169.5, 166.0, 161.0),
+    *(159.0, 157.0, 154.0, 152.0, 149.5, 147.0, 144.0, 140.5, 136.0, 128.5),
+    *(120.0, 116.0, 113.0, 111.0, 110.0, 106.5, 104.0, 101.5, 99.5, 98.0),
+    *(96.0, 93.5, 89.0, 86.0, 82.0, 81.0, 78.5, 76.0, 73.0, 70.0),
+    *(67.0, 63.5, 59.5, 55.0, 52.0, 46.5, 43.0, 42.0, 41.0, 40.0),
+)
+"""Diameters of number drills 1 to 60, ASME B94.11M [inch/1000]."""
+_CENTERS = re.compile(r"SPOT|CENT(?:ER|RE) ?DRILL", re.IGNORECASE)
+"""Tools of the kind chamfer that cut over their centre."""
 _THREAD = re.compile(r"\bM([0-9]+(?:\.[0-9]+)?)(?:\s*[Xx][0-9.]+)?\s*(?:TAP|GEWINDE)")
 _CORNER = re.compile(
     rf"\b(?:CR|R|RAD(?:IUS)?|CORNER RAD(?:IUS)?)\s*[=:.-]?\s*({_NUMBER})", re.IGNORECASE
@@ -62,6 +76,7 @@ class ToolComment(NamedTuple):
         diameter: [mm]; None: it is not stated.
         corner: Radius of a bull-nose's corner [mm].
         wear: Its contours are the path of its centre, so that D holds its wear alone; None: that is not told.
+        name: By which the program calls it; empty: by its number.
     """
 
     kind: str
@@ -69,6 +84,7 @@ class ToolComment(NamedTuple):
     corner: float | None
     text: str
     wear: bool | None = None
+    name: str = ""
 
     @property
     def table_radius(self) -> float | None:
@@ -95,7 +111,9 @@ def tool_of_comment(text: str, *, inches: bool) -> ToolComment:
     radius = None if corner is None else _value(corner[1]) * (_INCH if inches else 1.0)
     if diameter and radius and kind in ("", "bull") and "CR=" in upper.replace(" ", ""):
         kind = "ball" if 2.0 * radius >= diameter * 0.999 else "bull"
-    if not kind and re.search(r"MILL|CUTTER|FRÄSER|FLAT|ROUTER|UPCUT|DOWNCUT|COMPRESSION", upper):
+    if not kind and re.search(
+        r"MILL|CUTTER|FRÄSER|FRAESER|SLOT ?DRILL|FLAT|ROUTER|UPCUT|DOWNCUT|COMPRESSION", upper
+    ):
         kind = "flat"
     if kind == "bull" and (not diameter or not radius or 2.0 * radius > diameter):
         kind, radius = "flat", None
@@ -103,10 +121,21 @@ def tool_of_comment(text: str, *, inches: bool) -> ToolComment:
     return ToolComment(kind, diameter, radius if kind == "bull" else None, text.strip(), wear)
 
 
+def named_tools(names: Mapping[int, str], *, inches: bool) -> dict[int, ToolComment]:
+    """What the names by which a program calls tools say about them, by number: ``T="MILL_D16"``."""
+    return {
+        number: tool_of_comment(name.replace("_", " "), inches=inches)._replace(name=name)
+        for number, name in names.items()
+    }
+
+
 def _diameter(text: str, *, inches: bool) -> float | None:
     thread = _THREAD.search(text)
     if thread is not None:
         return float(thread[1])
+    gauge = _GAUGE.search(text)
+    if gauge is not None and int(gauge[1]) <= len(_GAUGES):
+        return round(_GAUGES[int(gauge[1]) - 1] * _INCH / 1000.0, 4)
     fraction = _FRACTION.search(text)
     if fraction is not None and int(fraction[2]) in (2, 4, 8, 16, 32, 64):
         return int(fraction[1]) / int(fraction[2]) * _INCH
@@ -176,12 +205,17 @@ def tool_lines(
     told: list[str] = []
     largest = 0.0
     for number in numbers:
+        own = declared.get(number)
+        tool = own if own and own.diameter else None
         tool = (
-            declared.get(number)
+            tool
             or listed.get(number)
             or _near_comment(number, calls, comments, inches=inches)
             or _while_in_spindle(number, calls, comments, inches=inches)
+            or own
         )
+        if own and tool:
+            tool = tool._replace(name=own.name)
         rows = _rows_of(number, calls, len(moves))
         more, said, diameter = _tool_table(
             (number, tool), moves, rows, top=top, least_length=least_length, worn=number in worn
@@ -293,6 +327,12 @@ def _tool_table(
         f"number = {number}" + (f"  # {_plain(tool.text)}" if tool else ""),
         f'kind = "{kind}"  # flat, ball, bull, drill, chamfer: from {kind_from}',
         f"diameter = {round(float(diameter), 4)}  # mm: {size_from}",
+        *([f"name = {json.dumps(tool.name)}"] if tool and tool.name else []),
+        *(
+            ["center_cutting = true"]
+            if kind == "chamfer" and tool and _CENTERS.search(tool.text)
+            else []
+        ),
         *([f"corner = {tool.corner}  # mm"] if tool and tool.corner and kind == "bull" else []),
         *(["radius_offset = 0.0  # D holds its wear alone"] if worn else []),
         f"flute = {flute:.1f}  # mm: a guess",

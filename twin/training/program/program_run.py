@@ -10,7 +10,6 @@ import math
 import numpy as np
 
 from twin.machine.description.config import Machine
-from twin.machine.description.motion_limits import motion_limits
 from twin.motion.blocks.corners import CONTEXT
 from twin.motion.live.live_motion import LiveMotion
 from twin.motion.profile.windows import LOOK_AHEAD
@@ -74,7 +73,7 @@ class ProgramRun:
     ) -> None:
         """Read a program from its beginning; see ``ProgramReader`` for arguments and errors."""
         self._machine = machine
-        self._limits = motion_limits(machine)
+        self._limits = machine.motion_limits
         self._stream = options.stream
         self.reader = ProgramReader(source, dialect, settings, machine, options)
         self.dropped = False

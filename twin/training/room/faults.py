@@ -3,7 +3,7 @@
 from typing import Any
 
 from twin.errors import ConfigError
-from twin.machine.description.config import AxisTable
+from twin.machine.description.machine_file import AxisTable
 from twin.training.room.observed import Notice, Observed
 from twin.training.scene.fault_table import FaultTable
 

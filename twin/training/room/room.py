@@ -16,7 +16,6 @@ from twin.nc.iso.base import jog_block
 from twin.nc.text.diagnostics import ProgramError
 from twin.nc.text.source import Source, source_from_text
 from twin.recording.reader import Samples
-from twin.run.layout import lay_out, start_position
 from twin.training.program.program_run import ProgramRun
 from twin.training.program.run_options import RunOptions
 from twin.training.room.alarm_log import AlarmLog
@@ -344,8 +343,8 @@ def _switched_on(scene: Scene) -> tuple[LiveMachine, Tables]:
     """The machine of a scene where its axes begin, and the tables of its control."""
     preparation, start = scene.preparation, scene.file.start
     machine, job = preparation.machine, preparation.job.file
-    zero, _, blank = lay_out(job, machine)
-    stand = start_position(job, machine) + zero
+    layout = preparation.layout
+    zero, stand = layout.part_zero, layout.start + layout.part_zero
     for axis, value in start.position.items():
         stand[machine.axes.index(axis)] = value
-    return LiveMachine(machine, job.tools[0], stand, blank), scene_tables(scene, zero)
+    return LiveMachine(machine, job.tools[0], stand, layout.blank), scene_tables(scene, zero)

@@ -10,7 +10,6 @@ from collections.abc import Iterator
 
 from twin.job.fixture import FixtureTable
 from twin.machine.description.config import Blank, Machine
-from twin.run.layout import lay_out
 from twin.run.preparation import Preparation
 
 GRIP_SHARE, GRIP_MM = 0.3, (2.0, 8.0)
@@ -39,7 +38,7 @@ def with_work_holding(preparation: Preparation) -> Preparation:
         return preparation
     if machine.part_frame.table_about(_Z) is None:
         return preparation
-    blank = lay_out(job.file, machine).blank
+    blank = preparation.layout.blank
     assert blank is not None
     if blank.direction != _Z:
         return preparation  # A bar that lies is held by its ends, on machines that have something for that.

@@ -162,7 +162,8 @@ def let(control: Control, statement: Statement) -> None:
     if match[2]:
         value = control.compute(control.statements.expression(rest, column), column)
     elif rest.strip():
-        control.report.fail("declaration", "this cannot follow a declaration", column)
+        hint = "LET #x : LREAL := 1"
+        control.report.fail("declaration", "this cannot follow a declaration", column, 1, hint)
     control.variables.write(match[1].upper(), value)
 
 

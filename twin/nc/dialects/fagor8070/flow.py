@@ -81,7 +81,8 @@ def destination(control: Control, statement: Statement) -> Location:
     """Where a jump leads."""
     match = _PLACE.fullmatch(statement.text)
     if match is None:
-        control.fail("jump-target", "$GOTO needs N10 or [NAME]", statement)
+        hint = "write $GOTO N50 or $GOTO [END]"
+        control.fail("jump-target", "$GOTO needs N10 or [NAME]", statement, hint)
     label = int(match[1]) if match[1] else match[2].upper()
     span = statement.text_column, len(statement.text)
     place = control.program_counter.find_label(label, span, "$GOTO", lines_around(control))
@@ -179,7 +180,8 @@ def _for_values(
         control.fail("structure", "$FOR needs its parameter", statement, "$FOR P1=0,10,1")
     column = statement.text_column + len(name) + 1
     first, last, step = (
-        control.compute(each, column) for each in control.statements.expressions(values, column, 3)
+        control.compute(each, column)
+        for each in control.statements.expressions(values, column, 3, "$FOR P1=0,10,1")
     )
     if step == 0.0:
         control.fail("structure", "a step of 0 never ends", error_at)

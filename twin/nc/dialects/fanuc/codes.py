@@ -17,7 +17,7 @@ from twin.nc.dialects.fanuc import (
     tool_tips,
     transformations,
 )
-from twin.nc.dialects.fanuc.cycles.canned_cycles import cycles
+from twin.nc.dialects.fanuc.cycles.canned_cycles import begin_rigid_tapping, cycles
 from twin.nc.dialects.fanuc.memory import Variant, memory_of
 from twin.nc.dialects.fanuc.tool_offsets import compensation_code, end_length, length_code
 from twin.nc.iso import base, fixed_cycles
@@ -37,13 +37,15 @@ def _lose_feed(control: Control) -> None:
 
 
 def passed_over(meaning: str, letters: str, *, modes: tuple[float, ...] = ()) -> GCode:
-    """A code whose words change nothing of the path here; other modes P are refused, if there are any."""
+    """A code whose words change nothing of the path here; of modes P others are refused, and P0 is none to be left out."""
 
     def perform(control: Control) -> None:
         mode, code = control.words.get("P"), control.codes[-1][0]
-        if modes and (mode is None or control.number(mode) not in modes):
-            message = "of the modes of G5 only P10000 and P0 are known to change no path"
-            control.fail("unsupported-g", message, mode or control.code_word(5))
+        left_out = mode is None and 0.0 not in modes
+        if modes and not left_out and (mode is None or control.number(mode) not in modes):
+            known = ", ".join(f"P{each:g}" for each in modes)
+            message = f"{code.text} is followed with {known} alone"
+            control.fail("unsupported-g", message, mode or code)
         for letter in letters:
             control.take(letter)
         message = f"{code.text} does not change the path here: {meaning}"
@@ -68,7 +70,7 @@ _MOTION: Mapping[float, GCode] = {
         base.dwell("PX", "G4 needs its time", "G4 P500 or G4 X0.5 waits half a second"),
     ),
     5: passed_over(
-        "look-ahead (high-precision contour control): P10000 on, P0 off", "P", modes=(0.0, 10000.0)
+        "look-ahead (high-precision contour control): P10000 on, P0 off", "P", modes=(10000.0, 0.0)
     ),
     5.1: passed_over("look-ahead (AI contour control): Q1 on, Q0 off", "QRXYZC"),
     8: passed_over("look-ahead (advanced preview): P1 on, P0 off", "P"),
@@ -217,7 +219,7 @@ REPLACEMENTS: Mapping[float, str] = {
 M_CODES: Mapping[int, MCode] = {
     **base.M_CODES,
     19: MCode(meaning="spindle orientation", basis="manual"),
-    29: MCode(meaning="rigid tapping", basis="manual"),
+    29: MCode(meaning="rigid tapping", action=begin_rigid_tapping, basis="manual"),
     98: flow_function("run a subprogram: P L", programs.call),
     99: flow_function("end of a subprogram, or jump: P", programs.return_),
 }

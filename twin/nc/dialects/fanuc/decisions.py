@@ -86,7 +86,8 @@ DECISIONS: tuple[Decision, ...] = (
     Decision(
         "What happens where a compensated contour is narrower than the tool?",
         "Paths that cross among three elements are refused, as the control's interference check does; a crossing that lies farther apart is driven, with a warning.",
-        "Parameter 19625 is how many blocks the control reads ahead, three when it comes from its maker; it gouges beyond them.",
+        "Parameter 19625 is how many blocks the control reads ahead, three when it comes from its maker; it gouges beyond them. "
+        "A Haas is taken to look as far: its manual names no number, and G103 limits it.",
         example="narrow_contour",
     ),
     Decision(
@@ -162,8 +163,8 @@ DECISIONS: tuple[Decision, ...] = (
     ),
     Decision(
         "How does tapping follow the spindle?",
-        "By its feed: G74 and G84 reverse the spindle at the bottom and feed back, with M29 or without; with Q they "
-        "tap in passes, and come back by 0.5 mm behind each.",
+        "By its feed: G74 and G84 reverse the spindle at the bottom and feed back, with M29 or without; behind M29 "
+        "they start a spindle that stands, and stop it behind the hole; with Q they tap in passes, and come back by 0.5 mm behind each.",
         "The twin's spindle has no angle; with a feed of pitch times speed the path is the same. Parameters 5200 #5 "
         "and 5213 decide how far a tap comes back.",
         example="tapping",

@@ -74,8 +74,8 @@ def _operand(control: Control, statement: Statement, at: int) -> tuple[Expressio
 
 def _while(control: Control, statement: Statement) -> None:
     """WHILE [...] DO1: run the blocks up to END1 as long as the condition holds."""
-    loop = _loop(control, statement)
     condition, at = _operand(control, statement, 0)
+    loop = _loop(control, statement)
     if _DO.match(statement.text, at) is None:
         message = f"{statement.keyword} needs DO and its number behind the condition, and no more"
         hint = "WHILE [#1 LT 5] DO1; what the loop does is in lines of its own"

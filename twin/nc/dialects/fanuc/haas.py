@@ -123,7 +123,11 @@ _OWN: Mapping[float, GCode] = {
     101: dataclasses.replace(codes(HAAS)[51.1], meaning="mirror the axes at the places named"),
     103: passed_over("limit of the blocks that are looked ahead", "P"),
     154: modal("work offset P1 to P99 of the job", "offset", offsets.extended_offset),
-    187: passed_over("smoothness: P roughness, E deviation at corners", "PE"),
+    187: passed_over(
+        "smoothness: P1 rough, P2 medium, P3 finish, E deviation at corners",
+        "PE",
+        modes=(1.0, 2.0, 3.0),
+    ),
     **{number: _offset(number) for number in range(110, 130)},
     **refused("engraving", "the shapes of its letters are the control's own", 47),
     **refused("general pocket", "it clears any outline by a way that is the control's own", 150),
@@ -167,6 +171,11 @@ REPLACEMENTS: Mapping[float, str] = {
     51.1: "a mirror is G101",
     54.1: "further work offsets are G154 P",
     50.1: "a mirror ends by G100",
+    43.4: "the tip is led by G234",
+    **dict.fromkeys(
+        (5, 5.1, 8, 61.1),
+        "Fanuc's high speed: G187 P1 to P3 is the smoothness here, or leave it out",
+    ),
 }
 
 _CHANGE_HEIGHT = 0.0

@@ -61,6 +61,7 @@ EXPRESSIONS = ExpressionSyntax(
     variable=Q_PARAMETER,
     brackets="()",
     bracketed=True,
+    one_sign=True,
     prefixes={
         **{name: function.compute for name, function in IN_DEGREES.items()},
         "SQ": lambda a: a * a,

@@ -9,7 +9,7 @@ from twin.nc.dialects.heidenhain.feeds import set_feed
 from twin.nc.dialects.heidenhain.memory import Deltas, memory_of
 from twin.nc.dialects.heidenhain.values import computed_words, named_word, text_of, word_of
 from twin.nc.functions import BLANK
-from twin.nc.iso.base import next_tool
+from twin.nc.iso.base import next_tool, set_spindle_speed
 from twin.nc.iso.tool_change import change_tool_at
 from twin.nc.iso.tool_compensation import set_length
 from twin.nc.text.blocks import Statement, Word
@@ -36,6 +36,9 @@ def call_tool(control: Control, statement: Statement) -> None:
         control.fail("unsupported-word", message, statement, "TOOL CALL 1 Z S3000")
     words = computed_words(control, statement, match.end())
     number = _number_of(control, statement, match)
+    if number is None and not words and not match["axis"]:
+        message = "TOOL CALL names no tool, no speed and no feed"
+        control.fail("tool-number", message, statement, "TOOL CALL 1 Z S3000")
     speed, feed = words.pop("S", None), words.pop("F", None)
     lengths = {name: control.length(words.pop(name, None)) for name in ("DL", "DR", "DR2")}
     if words:
@@ -50,8 +53,7 @@ def call_tool(control: Control, statement: Statement) -> None:
         memory_of(control).deltas = Deltas(lengths["DR"], lengths["DL"])
         _put_length(control)
     if speed is not None:
-        control.motion.spindle = control.number(speed)
-        control.function("S", {"S": control.motion.spindle})
+        control.function("S", {"S": set_spindle_speed(control, speed)})
     memory_of(control).tool_feed = None
     if feed is not None:
         set_feed(control, feed)

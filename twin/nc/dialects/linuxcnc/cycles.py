@@ -155,8 +155,12 @@ def _take_words(control: Control, kind: Kind) -> None:
     elif values["axis"] != axis:
         refuse_other_plane(control, f"G{kind.number}")
     if memory.cycle != kind.number:
-        needed = ("R", control.settings.axes.names[axis], *kind.needed)
-        missing = [letter for letter in needed if letter not in control.words]
+        deep = control.settings.axes.names[axis]
+        values_of = {"R": "reference", deep: "bottom", "Q": "peck"}
+        needed = ("R", deep, *kind.needed)
+        missing = {
+            letter: values_of.get(letter, "") for letter in needed if letter not in control.words
+        }
         if missing:
             refuse_missing(control, f"G{kind.number}", missing)
         memory.back_boring = (0.0, 0.0, 0.0)

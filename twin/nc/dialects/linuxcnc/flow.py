@@ -51,7 +51,9 @@ def _read_values(
             at += 1
             continue
         if text[at] != "[":
-            refuse(control, statement, "o-word", "values stand in square brackets here")
+            rest = text[at:].strip()
+            hint = "leave then out" if rest.lower() == "then" else f"write {word.shown} [{rest}]"
+            refuse(control, statement, "o-word", "values stand in square brackets here", hint)
         value, end = control.statements.operand(text, at, word.column)
         found.append((value, word.column + at))
         at = end

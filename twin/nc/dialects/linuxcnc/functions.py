@@ -102,7 +102,8 @@ def read_input(control: Control) -> None:
     refuse_in_compensation(control, "no input can be read")
     digital, analog, kind, limit = (control.take(letter) for letter in "PELQ")
     if (digital is None) == (analog is None):
-        control.fail("code-words", "M66 reads a digital input P or an analog input E")
+        message = "M66 reads a digital input P or an analog input E"
+        control.fail("code-words", message, hint="M66 P0 L0")
     how = 0.0 if kind is None else control.number(kind)
     if how not in TIMES_OUT:
         control.fail("code-words", "L of M66 is 0 to 4", kind)
@@ -111,7 +112,7 @@ def read_input(control: Control) -> None:
     seconds = 0.0 if limit is None else control.number(limit)
     if how != 0.0 and seconds <= 0.0:
         message = "M66 that waits needs Q, the seconds after which it gives up"
-        control.fail("code-words", message, limit)
+        control.fail("code-words", message, limit, "M66 P0 L3 Q5")
     value = 0.0
     if how in (1.0, 2.0, 3.0):
         control.dwell(seconds)
@@ -124,7 +125,7 @@ def _end_early(control: Control) -> None:
     memory_of(control).functions["spindle"] = 5.0
 
 
-def _function(meaning: str, letters: str = "", *, optional: bool = False) -> MCode:
+def _function(number: int, meaning: str, letters: str = "", *, optional: bool = False) -> MCode:
     """An output or an override, which changes no path, with its words."""
 
     def action(control: Control) -> None:
@@ -132,7 +133,8 @@ def _function(meaning: str, letters: str = "", *, optional: bool = False) -> MCo
         words = {letter: control.take(letter) for letter in letters}
         missing = [letter for letter, word in words.items() if word is None and not optional]
         if missing:
-            control.fail("code-words", f"the function needs {' and '.join(missing)}")
+            hint = f"M{number} {' '.join(f'{letter}0' for letter in letters)}: {meaning}"
+            control.fail("code-words", f"M{number} needs {' and '.join(missing)}", hint=hint)
 
     group = f"function {meaning}"
     return MCode(meaning=meaning, group=group, action=action, silent=True, basis="manual")
@@ -157,23 +159,23 @@ M_CODES = {
               action=orient_spindle, basis="manual"),
     30: MCode(meaning="end of program, pallets exchanged", group="stop", after_motion=True, ends=True, action=compensation.end,
               basis="manual"),
-    48: _function("feed and speed overrides on"),
-    49: _function("feed and speed overrides off"),
-    50: _function("feed override, P1 on, P0 off", "P", optional=True),
-    51: _function("speed override, P1 on, P0 off", "P", optional=True),
-    52: _function("adaptive feed, P1 on, P0 off", "P", optional=True),
-    53: _function("feed hold, P1 on, P0 off", "P", optional=True),
+    48: _function(48, "feed and speed overrides on"),
+    49: _function(49, "feed and speed overrides off"),
+    50: _function(50, "feed override, P1 on, P0 off", "P", optional=True),
+    51: _function(51, "speed override, P1 on, P0 off", "P", optional=True),
+    52: _function(52, "adaptive feed, P1 on, P0 off", "P", optional=True),
+    53: _function(53, "feed hold, P1 on, P0 off", "P", optional=True),
     60: MCode(meaning="pallets exchanged, program stop", group="stop", after_motion=True, basis="manual"),
     61: MCode(meaning="number of the tool in the spindle, Q", group="tool", action=set_tool,
               silent=True, basis="manual"),
-    62: _function("output P on with the next move", "P"),
-    63: _function("output P off with the next move", "P"),
-    64: _function("output P on", "P"),
-    65: _function("output P off", "P"),
+    62: _function(62, "output P on with the next move", "P"),
+    63: _function(63, "output P off with the next move", "P"),
+    64: _function(64, "output P on", "P"),
+    65: _function(65, "output P off", "P"),
     66: MCode(meaning="input P or E read into #5399, L how, Q seconds at most", group="input",
               action=read_input, silent=True, basis="manual"),
-    67: _function("analog output E set to Q with the next move", "EQ"),
-    68: _function("analog output E set to Q", "EQ"),
+    67: _function(67, "analog output E set to Q with the next move", "EQ"),
+    68: _function(68, "analog output E set to Q", "EQ"),
     70: MCode(meaning="what is in force is put aside", group="state", action=saved_state.save(until_return=False),
               silent=True, basis="manual"),
     71: MCode(meaning="what was put aside is dropped", group="state", action=saved_state.forget,

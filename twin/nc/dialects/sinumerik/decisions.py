@@ -10,6 +10,13 @@ DECISIONS = (
         example="no_offset_programmed",
     ),
     Decision(
+        "Which edge of a tool is D2?",
+        "That of the job, which gives every tool one: the edge is the one whose number the program calls with the "
+        "tool, and a second number of the same tool is refused.",
+        "The control has up to twelve edges a tool; posts that number offsets by tools write T2 D2.",
+        example="edge_of_a_tool",
+    ),
+    Decision(
         "What does G500 do?",
         "Coordinates count from machine zero; a job that does not say where that lies is refused as "
         "soon as a block moves.",

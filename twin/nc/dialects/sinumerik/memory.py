@@ -116,6 +116,7 @@ class SinumerikMemory:
         polar_radius: RP as programmed last [mm]; NaN: computed from where the tool is.
         polar_angle: AP as programmed last, likewise [deg].
         tool_on: The tool in the spindle has its offset D.
+        edges: Number of the edge that the program calls of each tool.
         unit: Of lengths, as it was before the block [mm].
         allowance: OFFN [mm].
         sharp_corners: DISC=100: G450 goes to the intersection, too.
@@ -149,6 +150,7 @@ class SinumerikMemory:
     polar_radius: float = math.nan
     polar_angle: float = math.nan
     tool_on: bool = True
+    edges: dict[int, float] = dataclasses.field(default_factory=dict)
     unit: float = 1.0
     allowance: float = 0.0
     sharp_corners: bool = False

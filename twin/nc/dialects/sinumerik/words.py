@@ -31,6 +31,8 @@ _BLENDING = re.compile(rb"[RrCc](?:[Nn][Dd]|[Hh][FfRr])")
 _BLENDS = {"RND": BlendKind.FILLET, "CHR": BlendKind.CHAMFER, "CHF": BlendKind.CHAMFER_LENGTH}
 _CORNERS, _INTERSECTION = "compensation corners", 451.0
 _LARGEST_H = 99_999.0
+_MOST_EDGES = 12.0
+"""D numbers of a tool go so far (tool management manual)."""
 
 
 # --- feeds
@@ -97,12 +99,31 @@ def change_tool(control: Control) -> None:
 
 
 def tool_offset(control: Control, word: Word) -> None:
-    """D1: length and radius of the tool count; D0: they do not."""
+    """D1: length and radius of the tool count; D0: they do not.
+
+    Decision: the job gives a tool one edge, and that is the one whose number the program calls with it.
+    """
     number = control.number(word)
-    if number not in (0.0, 1.0):
-        message = f"the job gives every tool one edge, D1, not D{number:g}"
-        control.fail("tool-offset", message, word)
-    _apply_offset(control, on=number == 1.0)
+    if not is_whole(number, _MOST_EDGES):
+        control.fail("tool-offset", f"{word.text} is no edge of a tool", word, "D1")
+    if number > 0.0:
+        _take_edge(control, word, number)
+    _apply_offset(control, on=number > 0.0)
+
+
+def _take_edge(control: Control, word: Word, number: float) -> None:
+    """Refuse another edge of a tool than the one that the program has called before."""
+    comes = any(each.address == "T" for each in control.block.words)
+    tool = control.tools.selected if comes else control.tools.spindle
+    edge = memory_of(control).edges.setdefault(tool or 0, number)
+    if edge != number:
+        message = f"the job gives every tool one edge, and the program has called D{edge:g} of tool {tool or 0} before"
+        control.fail("tool-offset", message, word, f"write D{edge:g}")
+    if number != 1.0:
+        message = (
+            f"the job gives every tool one edge: {word.text} is taken for that of tool {tool or 0}"
+        )
+        control.report.warn_once("tool-edge", message, word.column, word.width)
 
 
 def _apply_offset(control: Control, *, on: bool) -> None:

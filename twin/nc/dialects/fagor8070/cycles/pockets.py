@@ -65,7 +65,9 @@ def mill_pocket(control: Control, name: str, *, circular: bool) -> None:
     needed = ["I", "J", "B", *([] if circular else ["K"])]
     missing = [address for address in needed if address not in values]
     if missing:
-        control.fail("cycle-word", f"{name} needs {' and '.join(missing)}")
+        size = "J: its radius" if circular else "J and K: half its length and half its width"
+        hint = f"I: its depth; {size}; B: the depth of a pass"
+        control.fail("cycle-word", f"{name} needs {' and '.join(missing)}", hint=hint)
     tool = control.tools.data(control.tools.spindle)
     if tool is None:
         control.fail("no-such-tool", f"{name} needs a tool, and the job has none")

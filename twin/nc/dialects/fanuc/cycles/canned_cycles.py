@@ -60,18 +60,41 @@ def _unscaled(number: int, code: GCode) -> GCode:
     return dataclasses.replace(code, action=call)
 
 
+def begin_rigid_tapping(control: Control) -> None:
+    """M29: the next tapping cycle couples the spindle and the feed, and turns the spindle itself (manual)."""
+    control.tools.rigid = True
+
+
+def _always_rigid(code: GCode) -> GCode:
+    """A tapping cycle that needs no M29: a Haas starts the spindle in it (its manual of G74 and G84)."""
+    action = code.action
+    assert action is not None
+
+    def call(control: Control) -> None:
+        begin_rigid_tapping(control)
+        action(control)
+
+    return dataclasses.replace(code, action=call)
+
+
+def _end_rigid_tapping(control: Control) -> None:
+    control.tools.rigid = False
+
+
 def cycles(variant: Variant) -> dict[float, GCode]:
     """The cycles of a control of the family."""
     drills = {**_DRILLS, **(_HAAS_DRILLS if variant.own_cycle_words else {})}
     made = {
         number: drilling_code(number, drill, holes_of(variant)) for number, drill in drills.items()
     }
+    if variant.own_cycle_words:
+        made |= {number: _always_rigid(made[number]) for number in _TAPS}
     return {
         **{
             number: _unscaled(number, code) if drills[number].pecking else code
             for number, code in made.items()
         },
-        **base.by_manual({80: CYCLES[80]}),
+        **base.by_manual({80: dataclasses.replace(CYCLES[80], action=_end_rigid_tapping)}),
         76: boring_code(76, "fine boring, out with the tool shifted", variant),
         87: boring_code(87, "back boring, from below", variant),
         88: GCode(meaning="boring by hand", group="cycle", refused=BY_HAND, basis="manual"),

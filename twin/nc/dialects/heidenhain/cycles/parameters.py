@@ -9,7 +9,7 @@ from twin.nc.dialects.heidenhain.memory import memory_of
 from twin.nc.text.blocks import Location, Statement
 
 _PARAMETER = re.compile(
-    r"Q([0-9]{3})[ \t]*=[ \t]*(FMAX|FAUTO|PREDEF|[-+]?[ \t]*(?:[.0-9]+|Q[LR]?[0-9]+))?",
+    r"Q([0-9]{3})[ \t]*=[ \t]*(F?MAX|F?AUTO|PREDEF|[-+]?[ \t]*(?:[.0-9]+|Q[LR]?[0-9]+))?",
     re.IGNORECASE,
 )
 _LINE = re.compile(r"[ \t]*Q[0-9]{3}[ \t]*=", re.IGNORECASE)
@@ -66,9 +66,9 @@ def take_parameters(
 def _value(control: Control, match: re.Match[str], text: str, column: int) -> float:
     written = (match[2] or "").upper()
     at = column + match.start()
-    if written == "FMAX":
+    if written in ("FMAX", "MAX"):
         return RAPID
-    if written == "FAUTO":
+    if written in ("FAUTO", "AUTO"):
         feed = memory_of(control).tool_feed
         if feed is None:
             message = "FAUTO needs the F of TOOL CALL, and it had none"

@@ -40,6 +40,8 @@ _WORD = re.compile(
 _KIND = re.compile(r"[ \t]*([A-Z]+)", re.IGNORECASE)
 _ROTARY_PARAMETERS = {"A": "Q120", "B": "Q121", "C": "Q122"}
 _HEIGHT = 2
+_SPATIAL_ANGLES = ("SPA", "SPB", "SPC")
+"""All three are always defined (manual)."""
 
 
 def plane(control: Control, statement: Statement) -> None:
@@ -48,9 +50,13 @@ def plane(control: Control, statement: Statement) -> None:
     name = "" if kind is None else kind[1].upper()
     if kind is None or (name != "RESET" and name not in MATRICES):
         known = ", ".join((*MATRICES, "RESET"))
-        message = f"PLANE {name or '...'} is not simulated"
+        message = f"PLANE {name} is not simulated" if name else "PLANE needs its kind"
         control.fail("tilted-plane", message, statement, f"these are: {known}")
     words = _words(control, statement, kind.end())
+    missing = [each for each in _SPATIAL_ANGLES if each not in words.values]
+    if name == "SPATIAL" and missing:
+        message = f"PLANE SPATIAL needs {' and '.join(missing)}"
+        control.fail("tilted-plane", message, statement, "PLANE SPATIAL SPA+0 SPB+30 SPC+0 TURN")
     if len(words.flags & {"TURN", "MOVE", "STAY"}) > 1:
         control.fail("tilted-plane", "PLANE takes one of TURN, MOVE and STAY", statement)
     matrix = None if name == "RESET" else MATRICES[name](control, statement, words)

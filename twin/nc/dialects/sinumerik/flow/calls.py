@@ -22,6 +22,7 @@ from twin.nc.dialects.sinumerik.values import bracketed, split_values
 from twin.nc.dialects.sinumerik.variables import axis_of_value, text_named, write_variable
 from twin.nc.text.blocks import Block, Location, Statement
 from twin.nc.text.expressions import ExpressionError, Variable
+from twin.nc.text.slips import near, slip_at
 
 _TIMES = re.compile(r"[ \t]*P[ \t]*=?[ \t]*(.+)", re.IGNORECASE)
 _PATH = re.compile(
@@ -55,9 +56,16 @@ def _subprogram(control: Control, statement: Statement, name: str) -> Subprogram
     if found is None and name[0] == "L" and name[1:].isdigit():
         found = memory.subprograms.get(f"L{int(name[1:])}")
     if found is None:
-        known = ", ".join(sorted(memory.subprograms)) or "none"
+        own = ", ".join(sorted(memory.subprograms))
         message = f"there is no subprogram {name}"
-        hint = f"it is a file {name}.SPF beside the program, or follows it behind %_N_{name}_SPF; here: {known}"
+        alike = near(name, (*control.program_counter.lexer.keywords, *memory.subprograms))
+        hints = [
+            slip_at(control.report.text_of(control.block.line), statement.column, "sinumerik"),
+            f"near it: {', '.join(alike)}" if alike else None,
+            f"a subprogram is a file {name}.SPF beside the program, or follows it behind %_N_{name}_SPF",
+            f"here: {own}" if own else None,
+        ]
+        hint = "; ".join(filter(None, hints))
         control.fail("unknown-subprogram", message, statement, hint)
     return found
 

@@ -190,7 +190,8 @@ def go_to(control: Control, statement: Statement) -> None:
     label = _LABEL.fullmatch(statement.text)
     if label is None:
         message = f"{keyword} needs a label or a block number"
-        control.fail("jump-target", message, statement, f"write {keyword} LABEL or {keyword} N100")
+        hint = f"write {keyword} LABEL, whose name begins with two letters, or {keyword} N100"
+        control.fail("jump-target", message, statement, hint)
     place = find_label(control, statement, int(label[1]) if label[1] else label[2].upper())
     if place is None:
         return
