@@ -19,8 +19,9 @@ from twin.nc.dialects.recognition import comments_of, without_comments
 from twin.nc.functions import SPINDLE_SPEED, SPINDLE_STARTS, TOOL_CHANGE
 from twin.nc.interpreter import Interpretation
 from twin.nc.text.diagnostics import ProgramError
+from twin.run.control_settings import IGNORED_AT_ZERO
 from twin.run.layout import lay_out
-from twin.run.preparation import IGNORED_AT_ZERO, Preparation, anywhere, prepare_job
+from twin.run.preparation import Preparation, anywhere, prepare_job
 from twin.run.reading.assumed_reading import AssumedReading
 from twin.run.reading.assumed_stock import (
     MARGIN,
