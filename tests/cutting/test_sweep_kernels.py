@@ -7,8 +7,9 @@ import pytest
 from examples import examples
 
 from twin.cutting.height_map import HeightMap
+from twin.cutting.kernels.covered_cells import Marks
 from twin.cutting.kernels.simplify import simplify
-from twin.cutting.kernels.sweep import Marks, Removal
+from twin.cutting.kernels.sweep import Removal
 from twin.cutting.kernels.wall_distance import no_walls_known
 from twin.cutting.outline import Outline
 from twin.cutting.sweeping import Rectangle, sweep_lines

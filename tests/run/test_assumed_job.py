@@ -457,7 +457,7 @@ def test_words_of_an_axis_that_stays_at_zero_are_passed_over(tmp_path: Path) -> 
     with pytest.raises(ProgramError, match="no axis A") as raised:
         prepare(path)
     assert '[axes] A = "ignored at 0"' in str(raised.value)
-    assert 'A = "C" where it stands for C' in str(raised.value)
+    assert 'A = "C" where it means C' in str(raised.value)
 
 
 def test_a_word_stands_for_an_axis_of_the_machine(tmp_path: Path) -> None:
@@ -573,3 +573,15 @@ def test_stock_keeps_clear_of_rapids_in_the_plane_beside_the_part(tmp_path: Path
     assert stock.position[0] - stock.size[0] / 2.0 > -15.0
     made, job = raw(tmp_path, "%\nO1\n" + beside.format("G0 X90. Y60."))
     assert "less where" not in " ".join(job.assumptions)
+
+
+def test_tools_that_a_program_writes_into_the_table_are_its_own(tmp_path: Path) -> None:
+    """HeeksCNC and Fabex write G10 L1 for each; where lengths are called they count from those, and nobody knows them."""
+    text = "G21 G90\nG10 L1 P1 R4.000 Z20.000\nG10 L1 P2 R1.5 Z20\nT1 M6\nS900 M3\n{}G0 X1 Z5\nG1 Z-1 F90\nX9\nG0 Z5\nT2 M6\nG1 Z-2 F90\nG0 Z5\nM2\n"
+    made, _ = raw(tmp_path, text.format(""))
+    assert made.dialect.name == "linuxcnc"
+    tools = [(each.number, each.kind, each.diameter) for each in made.job.file.tools]
+    assert tools == [(1, "flat", 8.0), (2, "drill", 3.0)]
+    assert list(made.interpretation().chunks())
+    with pytest.raises(ProgramError, match="no tool 2"):
+        raw(tmp_path, text.format("G43 H1\n"))

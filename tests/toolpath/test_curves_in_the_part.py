@@ -7,8 +7,8 @@ from tests.five_axes import FIRST_LENGTH, on_machine, settings, trunnion
 from tests.nc.running import run
 from twin.nc.canonical import Shape
 from twin.toolpath.nearest import ends_of, path_columns
-from twin.toolpath.nearest_kernels import PathKind
 from twin.toolpath.part_frame import PartFrame
+from twin.toolpath.place_kernels import PathKind
 
 PROGRAMS = {
     "a line": ("G1 X40. Y-10. Z3. A30. C90. F500.", PathKind.LINE),

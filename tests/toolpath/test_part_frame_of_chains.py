@@ -10,8 +10,9 @@ from test_nearest import PART_ZERO, any_move, line, move_position, moves_of
 from twin.kinematics import Kinematics
 from twin.nc.canonical import FloatArray, Moves
 from twin.toolpath.nearest import path_columns
-from twin.toolpath.nearest_kernels import PathKind, derivatives, nearest_on_move
+from twin.toolpath.nearest_kernels import nearest_on_move
 from twin.toolpath.part_frame import PartFrame, chain_from_text
+from twin.toolpath.place_kernels import PathKind, derivatives
 
 X, Y, Z = np.eye(3)
 coordinate = st.floats(-500.0, 500.0)

@@ -16,8 +16,8 @@ from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Axes, FloatArray, IntArray, Moves, concatenate
 from twin.recording.reader import Samples
 from twin.toolpath.nearest import drop_moves, join_paths, path_columns
-from twin.toolpath.nearest_kernels import derivatives
 from twin.toolpath.part_frame import PartFrame
+from twin.toolpath.place_kernels import derivatives
 from twin.units import MDEG_PER_DEGREE, UM_PER_MM
 
 REACH_S = 0.5

@@ -21,7 +21,8 @@ from twin.coupling.turning_tool import (
     time_of_tooth,
     turn_spindle,
 )
-from twin.cutting.kernels.sweep import ALL_ROWS, Marks, sweep
+from twin.cutting.kernels.covered_cells import Marks
+from twin.cutting.kernels.sweep import ALL_ROWS, sweep
 from twin.cutting.kernels.tooth_forces import tooth_forces
 from twin.cutting.kernels.walls import Material, leave_walls, lose_trace, no_trace
 from twin.machine.simulation.drive_kernels import hold_push

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
+from twin.cutting.kernels.covered_cells import Grid
 from twin.cutting.kernels.rasterize import rasterize
-from twin.cutting.kernels.sweep import Grid
 from twin.cutting.kernels.wall_distance import KNOWN, WallDistance, no_walls_known
 from twin.cutting.kernels.walls import BASE, REACH, WallArray, no_walls
 from twin.cutting.outline import BoolArray, Outline, outline

@@ -5,8 +5,9 @@ from pathlib import Path
 import numpy as np
 
 from twin.cutting.height_map import HeightMap
+from twin.cutting.kernels.covered_cells import Marks
 from twin.cutting.kernels.simplify import simplify
-from twin.cutting.kernels.sweep import Marks, Removal
+from twin.cutting.kernels.sweep import Removal
 from twin.cutting.kernels.wall_distance import note_walls
 from twin.cutting.material import (
     LONGEST_SHARE,

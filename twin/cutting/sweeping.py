@@ -6,11 +6,11 @@ from typing import NamedTuple
 import numpy as np
 
 from twin.cutting.height_map import HeightMap
+from twin.cutting.kernels.covered_cells import Marks
 from twin.cutting.kernels.sweep import (
     ALL_ROWS,
     EVEN_ROWS,
     ODD_ROWS,
-    Marks,
     Removal,
     removal_of_sums,
     sweep,

@@ -19,8 +19,9 @@ from twin.nc.dialects.recognition import comments_of, without_comments
 from twin.nc.functions import SPINDLE_SPEED, SPINDLE_STARTS, TOOL_CHANGE
 from twin.nc.interpreter import Interpretation
 from twin.nc.text.diagnostics import ProgramError
+from twin.run.control_settings import IGNORED_AT_ZERO
 from twin.run.layout import lay_out
-from twin.run.preparation import IGNORED_AT_ZERO, Preparation, anywhere, prepare_job
+from twin.run.preparation import Preparation, anywhere, prepare_job
 from twin.run.reading.assumed_reading import AssumedReading
 from twin.run.reading.assumed_stock import (
     MARGIN,
@@ -30,7 +31,7 @@ from twin.run.reading.assumed_stock import (
     turns_about_x,
 )
 from twin.run.reading.assumed_tools import BELOW, SPEED_BY_HAND, named_tools, tool_lines
-from twin.run.reading.declared import declared_stock, declared_tools
+from twin.run.reading.declared import declared_stock, declared_tools, table_tools
 
 _MACHINE_ZERO_UNKNOWN = "no-machine-zero"
 """The finding of a program that counts from machine zero, where no job says where that lies."""
@@ -94,7 +95,8 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
     comments = list(_comments(preparation))
     functions = [each for chunk in chunks for each in chunk.events if isinstance(each, Function)]
     named = named_tools(interpretation.tool_names, inches=inches)
-    declared = {**named, **declared_tools(functions)}
+    blocks = list(map(without_comments, preparation.source.lines))
+    declared = {**named, **table_tools(blocks, inches=inches), **declared_tools(functions)}
     length = _least_length(preparation.machine, moves)
     blank = declared_stock(functions)
     top = top_of_stock(moves) if blank is None else float(blank.top[2])

@@ -14,8 +14,9 @@ from twin.machine.watching.alarms import Alarm
 from twin.machine.watching.travel import soft_limit_alarm
 from twin.nc.canonical import Chunk, FloatArray, Function
 from twin.nc.text.diagnostics import Diagnostic
+from twin.run.control_settings import says_itself
 from twin.run.messages import Notice, shown, speed_notice
-from twin.run.preparation import Preparation, says_itself
+from twin.run.preparation import Preparation
 from twin.run.program_watch import ProgramWatch
 from twin.run.progress import StageClock
 from twin.run.spindle_dwells import with_spindle_dwells

@@ -23,8 +23,8 @@ import numpy as np
 
 from twin.kinematics import Kinematics, with_rotary_at_rest
 from twin.nc.canonical import SPATIAL_AXES, CodeArray, FloatArray, IntArray, Moves, Shape
-from twin.toolpath.nearest_kernels import PathKind, derivatives
 from twin.toolpath.part_frame import PartFrame
+from twin.toolpath.place_kernels import PathKind, derivatives
 from twin.units import DEGREE
 
 

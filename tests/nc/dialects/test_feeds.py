@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+import random
 import re
 import subprocess
 from itertools import product
@@ -11,9 +12,11 @@ import pytest
 
 from tests.nc.linuxcnc.oracle import RS274
 from tests.nc.running import ROOT, SETTINGS, good
+from twin.nc.canonical import Axes, Motion
 from twin.nc.dialects import OWN
 from twin.nc.dialects.feed_tables import KINDS, feed_rows
 
+MILL_A = Axes(("X", "Y", "Z", "A"), ("linear", "linear", "linear", "rotary"))
 PROGRAMS = sorted((ROOT / "tests" / "golden").glob("*/feeds/*.nc"))
 
 
@@ -102,3 +105,43 @@ def test_inverse_time_has_the_rate_of_linuxcnc_itself(kind: str) -> None:
     rates = re.findall(r"SET_FEED_RATE\(([0-9.]+)\)", done.stdout)
     moves = good(path.read_text(encoding="utf-8"), "linuxcnc").moves
     assert math.isclose(float(rates[0]), float(moves.feed[0]), abs_tol=1e-4)
+
+
+@pytest.mark.skipif(RS274 is None, reason="LinuxCNC's rs274 is not installed (linuxcnc-uspace)")
+@pytest.mark.parametrize("mode", ["G93", "G94", "G95"])
+def test_a_rotary_axis_a_moves_and_feeds_as_linuxcnc_itself(mode: str, tmp_path: Path) -> None:
+    """Lines, arcs and rapids with and without A, seeded: places, kinds and rates; G95 counts a turn of the spindle."""
+    drawn, speed = random.Random(mode), 800.0  # noqa: S311 (no cryptography)
+    lines = ["G21 G90 G17", f"{mode} M3 S{speed:g}", "G0 X1 Y1 Z1"]
+    for _ in range(60):
+        x, y, z, a = (round(drawn.uniform(-80.0, 80.0), 3) for _ in range(4))
+        kind = drawn.choice(["G0", "G1", "G1", "G1", "G2 R90"])
+        words = f"X{x} Y{y} Z{z}" if drawn.random() < 0.7 or "R" in kind else ""
+        turned = f" A{a}" if drawn.random() < 0.6 or not words else ""
+        lines.append(
+            f"{kind} {words}{turned}{'' if kind == 'G0' else f' F{drawn.uniform(0.1, 9.0):.3f}'}"
+        )
+    path = tmp_path / "part.ngc"
+    path.write_text("\n".join([*lines, "M2", ""]))
+    done = subprocess.run(
+        [str(RS274), "-g", path], capture_output=True, text=True, check=False, timeout=30
+    )
+    moves = good(path.read_text(), "linuxcnc", axes=MILL_A, periodic=frozenset({"A"})).moves
+    rate, row = math.nan, 0
+    for call, text in re.findall(r"(SET_FEED_RATE|STRAIGHT_\w+|ARC_FEED)\(([^)]*)\)", done.stdout):
+        values = [float(each) for each in text.split(",")]
+        if call == "SET_FEED_RATE":
+            rate = values[0] * (speed if mode == "G95" else 1.0)
+            continue
+        place = [
+            values[0],
+            values[1],
+            values[5 if call == "ARC_FEED" else 2],
+            values[6 if call == "ARC_FEED" else 3],
+        ]
+        assert moves.end[row].tolist() == pytest.approx(place, abs=1e-4)
+        assert (moves.motion[row] == Motion.RAPID) == (call == "STRAIGHT_TRAVERSE")
+        if call != "STRAIGHT_TRAVERSE":
+            assert moves.feed[row] == pytest.approx(rate, rel=1e-3, abs=1e-3)
+        row += 1
+    assert row == len(moves) == 61

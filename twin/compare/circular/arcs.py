@@ -10,7 +10,7 @@ from twin.compare.circular.circle_kernels import into_planes
 from twin.compare.figures import ArcFigures, BidirectionalFigures
 from twin.nc.canonical import BoolArray, FloatArray, IntArray, Moves, Shape
 from twin.toolpath.nearest import PathColumns
-from twin.toolpath.nearest_kernels import PathKind
+from twin.toolpath.place_kernels import PathKind
 from twin.units import UM_PER_MM
 
 SMALLEST_SWEEP = 90.0 - 1e-6

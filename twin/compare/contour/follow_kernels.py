@@ -6,13 +6,8 @@ from typing import NamedTuple
 from twin.compilation.compilable import inlined
 from twin.compilation.kernel import kernel
 from twin.nc.canonical import FloatArray, IntArray
-from twin.toolpath.nearest_kernels import (
-    derivatives,
-    distance_at,
-    nearest_between,
-    speed_at,
-    walk,
-)
+from twin.toolpath.nearest_kernels import nearest_between
+from twin.toolpath.place_kernels import derivatives, distance_at, speed_at, walk
 
 _TIE_MM = 1e-7
 """Of places equally near within this, the last up to the command is taken: a path that goes back

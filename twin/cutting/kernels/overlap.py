@@ -4,7 +4,7 @@ import math
 from typing import NamedTuple
 
 from twin.compilation.kernel import array_kernel
-from twin.cutting.kernels.sweep import Grid, chord
+from twin.cutting.kernels.covered_cells import Grid, chord
 from twin.cutting.kernels.tool_height import Profile, lowest_height, steepness
 from twin.cutting.kernels.wall_distance import HALF, WallDistance, nearest_foot, reach_before
 from twin.nc.canonical import FloatArray

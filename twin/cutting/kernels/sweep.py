@@ -8,9 +8,18 @@ import numpy as np
 
 from twin.compilation.compilable import inlined
 from twin.compilation.kernel import arithmetic_kernel, threaded_kernel
+from twin.cutting.kernels.covered_cells import (
+    Grid,
+    Marks,
+    Scratch,
+    columns_of,
+    lay_disc,
+    outline_of,
+    span_of,
+)
 from twin.cutting.kernels.run_heights import lowest_in_run
 from twin.cutting.kernels.tool_height import Profile
-from twin.nc.canonical import FloatArray, IntArray
+from twin.nc.canonical import FloatArray
 
 RUN = 128
 """Cells that are looked at together."""
@@ -19,9 +28,6 @@ ALL_ROWS = (0, 1)
 EVEN_ROWS = (0, 2)
 ODD_ROWS = (1, 2)
 """For ``sweep``: all, or what two threads take that cut together."""
-
-_WHOLE = 1.5 * 2.0**52
-"""Added to a number that is much smaller, it leaves no room for what is behind the point."""
 
 
 class _Sum(enum.IntEnum):
@@ -34,22 +40,6 @@ class _Sum(enum.IntEnum):
     ROWS = 2
     DEEPEST = 3
     """Greatest height [mm]."""
-
-
-class Grid(NamedTuple):
-    """Where the cells of a height map lie.
-
-    Attributes:
-        origin: X and Y of the middle of cell ``[0, 0]`` [mm].
-        cell: Side of a cell [mm].
-        bottom: Z below which there is nothing to cut [mm].
-        top: Z above which there is none.
-    """
-
-    origin: tuple[float, float]
-    cell: float
-    bottom: float
-    top: float
 
 
 class Removal(NamedTuple):
@@ -65,44 +55,6 @@ class Removal(NamedTuple):
     volume: FloatArray
     depth: FloatArray
     aside: FloatArray
-
-
-class Marks(NamedTuple):
-    """What each of n lines leaves where it cuts.
-
-    Attributes:
-        cells: Set to the line's mark, shape (ny, nx); of no size, if nobody asks.
-        mark: Of each line, shape (n,).
-    """
-
-    cells: FloatArray
-    mark: FloatArray
-
-
-class _Scratch(NamedTuple):
-    """What is at hand while lines are swept.
-
-    Attributes:
-        heights: The height map, shape (ny, nx) [mm].
-        marks: As ``sweep`` has them.
-        rows: Of the map, which are cut: the first, and how far it is to the next.
-        low: Row at which the disc that the tool covers begins, at either end of a line, shape (2,).
-        spans: First column of that disc in each of its rows and the one after its last, shape (2, 2, m).
-        lowest: Heights of the tool over a run of cells, shape (RUN,) [mm].
-        sums: As ``sweep`` has it.
-        changed: Row, row end, column, column end of the cells that changed, shape (4,).
-    """
-
-    heights: FloatArray
-    grid: Grid
-    profile: Profile
-    marks: Marks
-    rows: tuple[int, int]
-    low: IntArray
-    spans: FloatArray
-    lowest: FloatArray
-    sums: FloatArray
-    changed: IntArray
 
 
 @threaded_kernel
@@ -135,7 +87,7 @@ def sweep(
         First and last-but-one row, first and last-but-one column of the cells that changed.
     """
     count = int(2.0 * profile.radius / grid.cell) + 2
-    scratch = _Scratch(
+    scratch = Scratch(
         heights, grid, profile, marks, rows, np.zeros(2, np.int64),
         np.zeros((2, 2, count)), np.zeros(RUN), sums, np.zeros(4, np.int64),
     )  # fmt: skip
@@ -170,7 +122,7 @@ def removal_of_sums(sums: FloatArray, points: FloatArray, grid: Grid, removal: R
 
 
 @arithmetic_kernel
-def _sweep_lines(scratch: _Scratch, points: FloatArray, stood: bool) -> None:
+def _sweep_lines(scratch: Scratch, points: FloatArray, stood: bool) -> None:
     known, flat = False, scratch.profile.flat >= scratch.profile.radius
     for i in range(len(points) - 1):
         a, b = points[i], points[i + 1]
@@ -178,8 +130,8 @@ def _sweep_lines(scratch: _Scratch, points: FloatArray, stood: bool) -> None:
             known = False
             continue
         if not known:
-            _lay_disc(scratch, a, i % 2)
-        _lay_disc(scratch, b, (i + 1) % 2)
+            lay_disc(scratch, a, i % 2)
+        lay_disc(scratch, b, (i + 1) % 2)
         known = True
         # What the tool is in already, no line that does not sink can take off again.
         done = (stood or i > 0) and b[2] >= a[2]
@@ -190,133 +142,17 @@ def _sweep_lines(scratch: _Scratch, points: FloatArray, stood: bool) -> None:
 
 
 @arithmetic_kernel
-def _lay_disc(scratch: _Scratch, center: FloatArray, which: int) -> None:
-    """Note the columns of the disc that a tool covers; a row outside of it begins behind its end.
-
-    Columns are counted as floating-point numbers, several at a time, and rounded by a sum whose last
-    bit is one.
-    """
-    grid, columns = scratch.grid, float(scratch.heights.shape[1])
-    radius, cell, first, end = (
-        scratch.profile.radius, grid.cell, scratch.spans[which, 0], scratch.spans[which, 1],
-    )  # fmt: skip
-    low = math.ceil((center[1] - radius - grid.origin[1]) / cell)
-    scratch.low[which] = low
-    offset = grid.origin[1] - center[1]
-    for k in range(len(first)):
-        y = offset + (low + k) * cell
-        squared = radius * radius - y * y
-        half = math.sqrt(max(squared, 0.0))
-        left = min(max((center[0] - half - grid.origin[0]) / cell, 0.0), columns)
-        right = min(max((center[0] + half - grid.origin[0]) / cell, -1.0), columns - 1.0)
-        begin, last = (left + _WHOLE) - _WHOLE, (right + _WHOLE) - _WHOLE
-        begin = begin + 1.0 if begin < left else begin
-        last = last if last > right else last + 1.0
-        first[k] = begin if squared >= 0.0 else columns
-        end[k] = last if squared >= 0.0 else 0.0
-
-
-class _Side(NamedTuple):
-    """A side of the outline of a disc swept from a to b, as far as it is no part of the discs.
-
-    Attributes:
-        x: Where it begins [mm].
-        rise: By how much X grows with Y.
-        low: First row that it crosses; so on.
-        high: Last one.
-    """
-
-    x: float
-    y: float
-    rise: float
-    low: int
-    high: int
-
-
-class _Outline(NamedTuple):
-    """The outline of the place that a tool covers along a line.
-
-    Attributes:
-        before: Which of the bench's discs is that at the beginning.
-        after: Which is that at the end.
-        right: The side to the right of the way.
-        low: First row, of those that are cut.
-        high: The one after the last.
-    """
-
-    before: int
-    after: int
-    right: _Side
-    left: _Side
-    low: int
-    high: int
-
-
-@arithmetic_kernel
-def _outline(scratch: _Scratch, a: FloatArray, b: FloatArray, line: int) -> _Outline:
-    before, after = line % 2, (line + 1) % 2
-    low_a, low_b, (begin, step) = scratch.low[before], scratch.low[after], scratch.rows
-    low = max(0, min(low_a, low_b))
-    high = min(scratch.heights.shape[0], max(low_a, low_b) + scratch.spans.shape[2])
-    right, left = (
-        _side(scratch, a, b, scratch.profile.radius),
-        _side(scratch, a, b, -scratch.profile.radius),
-    )
-    return _Outline(before, after, right, left, low + (begin - low) % step, high)
-
-
-@arithmetic_kernel
-def _side(scratch: _Scratch, a: FloatArray, b: FloatArray, right: float) -> _Side:
-    """The side of an outline that lies so far right of the way."""
-    grid = scratch.grid
-    dx, dy = b[0] - a[0], b[1] - a[1]
-    if dy == 0.0:
-        # It lies along the rows, which meet the discs at its ends.
-        return _Side(0.0, 0.0, 0.0, 0, -1)
-    length = math.hypot(dx, dy)
-    x, y, end = a[0] + right * dy / length, a[1] - right * dx / length, b[1] - right * dx / length
-    low = math.ceil((min(y, end) - grid.origin[1]) / grid.cell)
-    high = math.floor((max(y, end) - grid.origin[1]) / grid.cell)
-    return _Side(x, y, dx / dy, low, high)
-
-
-@inlined
-def _columns(scratch: _Scratch, outline: _Outline, row: int) -> tuple[int, int]:
-    """Columns that the tool covers in a row: the first, and the one after the last."""
-    grid, columns = scratch.grid, scratch.heights.shape[1]
-    first_a, end_a = _span(scratch, outline.before, row)
-    first_b, end_b = _span(scratch, outline.after, row)
-    first, end = min(first_a, first_b), max(end_a, end_b)
-    for side in (outline.right, outline.left):
-        if side.low <= row <= side.high:
-            x = side.x + (grid.origin[1] + row * grid.cell - side.y) * side.rise
-            column = (x - grid.origin[0]) / grid.cell
-            first = min(first, max(0, math.ceil(column)))
-            end = max(end, min(columns, math.floor(column) + 1))
-    return first, end
-
-
-@inlined
-def _span(scratch: _Scratch, disc: int, row: int) -> tuple[int, int]:
-    """Columns of a disc in a row; where it has none, the first is beyond all that there are."""
-    k = row - scratch.low[disc]
-    if k < 0 or k >= scratch.spans.shape[2]:
-        return scratch.heights.shape[1], 0
-    return int(scratch.spans[disc, 0, k]), int(scratch.spans[disc, 1, k])
-
-
-@arithmetic_kernel
-def _sweep_level(scratch: _Scratch, a: FloatArray, b: FloatArray, line: int) -> None:
+def _sweep_level(scratch: Scratch, a: FloatArray, b: FloatArray, line: int) -> None:
     """Cut along a level line with a flat tool that has cut all it is in at its beginning.
 
     Only the crescents before and beside it are left: in most rows a cell or two. They are taken in
     pairs, because the processor cannot guess of how many cells a row's crescent will be.
     """
     heights, z = scratch.heights, max(a[2], scratch.grid.bottom)
-    outline = _outline(scratch, a, b, line)
+    outline = outline_of(scratch, a, b, line)
     for row in range(outline.low, outline.high, scratch.rows[1]):
-        first, end = _columns(scratch, outline, row)
-        done, done_end = _span(scratch, outline.before, row)
+        first, end = columns_of(scratch, outline, row)
+        done, done_end = span_of(scratch, outline.before, row)
         if done >= done_end:
             done = done_end = end
         left = max(done - first, 0)
@@ -338,7 +174,7 @@ def _sweep_level(scratch: _Scratch, a: FloatArray, b: FloatArray, line: int) -> 
 
 
 @arithmetic_kernel
-def _sweep_line(scratch: _Scratch, a: FloatArray, b: FloatArray, line: int, done: bool) -> None:
+def _sweep_line(scratch: Scratch, a: FloatArray, b: FloatArray, line: int, done: bool) -> None:
     """Cut along one line.
 
     Args:
@@ -347,17 +183,17 @@ def _sweep_line(scratch: _Scratch, a: FloatArray, b: FloatArray, line: int, done
         b: At its end.
         done: Whether nothing is left of what the tool at the beginning meets, or behind it.
     """
-    flat, outline = scratch.profile.flat >= scratch.profile.radius, _outline(scratch, a, b, line)
+    flat, outline = scratch.profile.flat >= scratch.profile.radius, outline_of(scratch, a, b, line)
     begins_lower = a[2] <= b[2]
     lower = a if begins_lower else b
     for row in range(outline.low, outline.high, scratch.rows[1]):
-        first, end = _columns(scratch, outline, row)
+        first, end = columns_of(scratch, outline, row)
         if first >= end:
             continue
         inner, inner_end = end, end
         if flat:
             # All that the tool covers where it is lowest comes down to there.
-            inner, inner_end = _span(
+            inner, inner_end = span_of(
                 scratch, outline.before if begins_lower else outline.after, row
             )
             if inner >= inner_end:
@@ -373,7 +209,7 @@ def _sweep_line(scratch: _Scratch, a: FloatArray, b: FloatArray, line: int, done
 
 @arithmetic_kernel
 def _behind(
-    scratch: _Scratch, a: FloatArray, b: FloatArray, row: int, run: tuple[int, int]
+    scratch: Scratch, a: FloatArray, b: FloatArray, row: int, run: tuple[int, int]
 ) -> tuple[int, int]:
     """Columns of a run over which a tool that comes from a, and does not sink, is lowest at a."""
     grid = scratch.grid
@@ -389,7 +225,7 @@ def _behind(
 
 @arithmetic_kernel
 def _lower_run(
-    scratch: _Scratch, a: FloatArray, b: FloatArray, row: int, run: tuple[int, int], line: int
+    scratch: Scratch, a: FloatArray, b: FloatArray, row: int, run: tuple[int, int], line: int
 ) -> None:
     """Lower a run of cells to the height of the tool over each."""
     grid = scratch.grid
@@ -423,7 +259,7 @@ def _lower_run(
 
 @inlined
 def _add(
-    scratch: _Scratch, line: int, row: int, run: tuple[int, int], cut: tuple[float, float, float]
+    scratch: Scratch, line: int, row: int, run: tuple[int, int], cut: tuple[float, float, float]
 ) -> None:
     """Add what a run of cells lost: in all, that times the columns' numbers, and at most [mm]."""
     sums, changed = scratch.sums[line, row % 2], scratch.changed
@@ -433,25 +269,3 @@ def _add(
     sums[_Sum.DEEPEST] = max(sums[_Sum.DEEPEST], cut[2])
     changed[0], changed[1] = min(changed[0], row), max(changed[1], row + 1)
     changed[2], changed[3] = min(changed[2], run[0]), max(changed[3], run[1])
-
-
-@arithmetic_kernel
-def chord(
-    ax: float, ay: float, bx: float, by: float, radius: float, y: float
-) -> tuple[float, float]:
-    """Where the row at ``y`` crosses the outline of a disc swept from a to b [mm]."""
-    left, right = math.inf, -math.inf
-    for cx, cy in ((ax, ay), (bx, by)):
-        squared = radius * radius - (y - cy) * (y - cy)
-        if squared >= 0.0:
-            half = math.sqrt(squared)
-            left, right = min(left, cx - half), max(right, cx + half)
-    dx, dy = bx - ax, by - ay
-    length = math.hypot(dx, dy)
-    if length > 0.0 and dy != 0.0:
-        for side in (-radius, radius):
-            share = (y - (ay + side * dx / length)) / dy
-            if 0.0 <= share <= 1.0:
-                x = ax - side * dy / length + share * dx
-                left, right = min(left, x), max(right, x)
-    return left, right

@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from twin.compilation.compilable import inlined
 from twin.compilation.kernel import kernel
-from twin.cutting.kernels.sweep import Grid, chord
+from twin.cutting.kernels.covered_cells import Grid, chord
 from twin.nc.canonical import FloatArray
 
 WallDistance = npt.NDArray[np.float32]

@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from twin.compilation.kernel import kernel
-from twin.cutting.kernels.sweep import Grid
+from twin.cutting.kernels.covered_cells import Grid
 from twin.nc.canonical import FloatArray
 
 WallArray = npt.NDArray[np.float32]

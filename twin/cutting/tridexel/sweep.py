@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from twin.compilation.compilable import inlined
 from twin.compilation.kernel import arithmetic_kernel, threaded_kernel
-from twin.cutting.kernels.sweep import chord
+from twin.cutting.kernels.covered_cells import chord
 from twin.cutting.tridexel.dexels import Dexels, Lattice
 from twin.cutting.tridexel.intervals import (
     BEGINS_ABOVE,

@@ -13,6 +13,7 @@ from twin.nc.dialects.recognition import comments_of, without_comments
 from twin.nc.geometry.arcs import TURN
 from twin.nc.text.source import Source
 from twin.run.reading.assumed_tools import USUAL_LENGTH, listed_tools
+from twin.run.reading.declared import table_tools
 
 _MOST_LINES = 200_000
 """So many lines are looked at."""
@@ -166,10 +167,14 @@ def _comments(source: Source) -> Iterator[str]:
 
 
 def _commented_tools(source: Source, *, inches: bool) -> dict[int, ToolData]:
+    """Tools of comments, and those that the program writes into the control's table."""
     blocks = list(_blocks(source))
     numbers = {int(found[1]) for line in blocks for found in _TOOL.finditer(line)}
     inches = inches or any(_INCHES.search(line) for line in blocks)
-    listed = listed_tools(_comments(source), numbers, inches=inches)
+    listed = {
+        **listed_tools(_comments(source), numbers, inches=inches),
+        **table_tools(blocks, inches=inches),
+    }
     return {
         number: ToolData(radius=tool.table_radius, length=USUAL_LENGTH)
         for number, tool in listed.items()

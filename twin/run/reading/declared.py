@@ -1,6 +1,7 @@
 """What a program itself declares of its blank and its tools, as Klartext does by BLK FORM and TOOL DEF, and a SINUMERIK by WORKPIECE."""
 
-from collections.abc import Iterable
+import re
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -10,6 +11,10 @@ from twin.nc.functions import BLANK
 from twin.run.reading.assumed_tools import ToolComment
 
 _RADIUS = "R"
+_TABLE = re.compile(r"(?<![A-Z0-9.])G[ \t]*10(?![0-9.])[^A-Z]*L[ \t]*1(?![0-9.])", re.IGNORECASE)
+_TABLE_NUMBER = re.compile(r"P[ \t]*([0-9]+)(?![0-9.])", re.IGNORECASE)
+_TABLE_RADIUS = re.compile(r"R[ \t]*([0-9]+\.?[0-9]*|\.[0-9]+)", re.IGNORECASE)
+_CALLS_LENGTH = re.compile(r"(?<![A-Z0-9.])G[ \t]*4[34](?![0-9])", re.IGNORECASE)
 
 
 class DeclaredStock(NamedTuple):
@@ -64,3 +69,20 @@ def declared_tools(functions: Iterable[Function]) -> dict[int, ToolComment]:
         for each in functions
         if each.word[:1] == "T" and each.word[1:].isdigit() and each.arguments.get(_RADIUS)
     }
+
+
+def table_tools(blocks: Sequence[str], *, inches: bool) -> dict[int, ToolComment]:
+    """The tools whose radius G10 L1 writes, by number, of a program that calls no length.
+
+    One that calls lengths counts heights from those that it writes, and they may be those of no real tool.
+    """
+    if any(map(_CALLS_LENGTH.search, blocks)):
+        return {}
+    unit = 25.4 if inches else 1.0
+    tools: dict[int, ToolComment] = {}
+    for block in filter(_TABLE.search, blocks):
+        number, radius = _TABLE_NUMBER.search(block), _TABLE_RADIUS.search(block)
+        if number and radius and float(radius[1]) > 0.0:
+            tool = ToolComment("", 2.0 * float(radius[1]) * unit, None, block.strip())
+            tools[int(number[1])] = tool
+    return tools

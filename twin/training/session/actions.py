@@ -11,6 +11,13 @@ from twin.training.program.run_options import RunOptions
 from twin.training.room.manual_motion import SHORTEST_MOVE, JogMove, within_travel
 from twin.training.room.room import Room
 from twin.training.session import commands as c
+from twin.training.session.requirements import (
+    column_of,
+    require_jog,
+    require_no_alarm,
+    require_no_run,
+    require_still,
+)
 from twin.units import SECONDS_PER_MINUTE
 
 DRY_RUN_FEED = 3000.0
@@ -52,7 +59,7 @@ def _mode(room: Room, command: c.SelectMode) -> None:
 
 
 def _cycle_start(room: Room, _command: c.CycleStart) -> None:
-    _require_no_alarm(room)
+    require_no_alarm(room)
     slot, mode = room.slot, room.panel.mode
     if slot.suspended is not None and slot.run is None and mode != "jog":
         slot.resume(room.machine.setpoint)
@@ -84,14 +91,14 @@ def _start_program(room: Room) -> None:
 
 
 def _search(room: Room, command: c.Search) -> None:
-    _require_no_run(room, "a search begins while nothing runs: reset first")
+    require_no_run(room, "a search begins while nothing runs: reset first")
     room.program.begin_at(command.line)
 
 
 def _switch(room: Room, command: c.Switch) -> None:
     # A program is read ahead of the axes: what changes how it is read cannot change any more.
     if command.name != "optional_stop":
-        _require_no_run(room, "that switch cannot change while something runs: reset first")
+        require_no_run(room, "that switch cannot change while something runs: reset first")
     room.panel.turn_switch(command.name, on=command.on)
 
 
@@ -132,7 +139,7 @@ def _override(room: Room, command: c.Override) -> None:
 
 
 def _jog(room: Room, command: c.Jog) -> None:
-    _require_jog(room, command.axis)
+    require_jog(room, command.axis)
     if room.slot.run is not None:
         raise UsageError("an axis is being jogged already")
     place = _position(room, command.axis)
@@ -144,7 +151,7 @@ def _jog(room: Room, command: c.Jog) -> None:
 
 
 def _handwheel(room: Room, command: c.Handwheel) -> None:
-    _require_jog(room, command.axis)
+    require_jog(room, command.axis)
     axis, last, run = command.axis, room.manual.wheel_move, room.slot.run
     if run is not None and not (last is not None and last.axis == axis):
         raise UsageError("an axis is being jogged already")
@@ -158,7 +165,7 @@ def _handwheel(room: Room, command: c.Handwheel) -> None:
 
 
 def _reference(room: Room, _command: c.Reference) -> None:
-    _require_still(room)
+    require_still(room)
     names = room.machine.machine.axes.names
     order = sorted(names, key=lambda name: name != "Z")
     room.drive_by_hand(_jog_move(room, name, REFERENCE) for name in order)
@@ -168,7 +175,7 @@ def _return_to_path(room: Room, _command: c.ReturnToPath) -> None:
     suspended = room.slot.suspended
     if suspended is None:
         raise UsageError("no program is held")
-    _require_still(room)
+    require_still(room)
     names = room.machine.machine.axes.names
     goal = dict(zip(names, map(float, suspended.place), strict=True))
     # Up first, down last: the tool goes over what it may meet.
@@ -178,7 +185,7 @@ def _return_to_path(room: Room, _command: c.ReturnToPath) -> None:
 
 
 def _position(room: Room, axis: str) -> float:
-    return float(room.standing_setpoint[_column(room, axis)])
+    return float(room.standing_setpoint[column_of(room, axis)])
 
 
 def _jog_move(room: Room, axis: str, target: float, feed: float = HAND_FEED) -> JogMove:
@@ -228,7 +235,7 @@ def _reload(room: Room, _command: c.Reload) -> None:
 
 
 def _require_editable(room: Room) -> None:
-    _require_no_run(room, "a program cannot be edited while something runs: reset first")
+    require_no_run(room, "a program cannot be edited while something runs: reset first")
 
 
 def _spindle(room: Room, command: c.Spindle) -> None:
@@ -236,7 +243,7 @@ def _spindle(room: Room, command: c.Spindle) -> None:
     if command.speed is not None:
         state = dataclasses.replace(state, speed=command.speed)
     if command.on:
-        _require_no_alarm(room)
+        require_no_alarm(room)
         slot = room.slot
         if slot.run is not None and slot.running != "jog" and not slot.held:
             # AXIS: the spindle is started by hand only where nothing runs; stopped, always.
@@ -249,13 +256,13 @@ def _spindle(room: Room, command: c.Spindle) -> None:
 
 def _coolant(room: Room, command: c.Coolant) -> None:
     if command.on:
-        _require_no_alarm(room)
+        require_no_alarm(room)
     room.auxiliaries.switch_coolant(on=command.on)
 
 
 def _change_tool(room: Room, command: c.ChangeTool) -> None:
-    _require_no_run(room, "the tool cannot change while something runs: reset first")
-    _require_still(room)
+    require_no_run(room, "the tool cannot change while something runs: reset first")
+    require_still(room)
     if room.auxiliaries.spindle.turns:
         raise UsageError("the spindle turns: stop it before the tool is changed")
     room.mount(command.number)
@@ -264,8 +271,8 @@ def _change_tool(room: Room, command: c.ChangeTool) -> None:
 
 
 def _new_blank(room: Room, _command: c.NewBlank) -> None:
-    _require_no_run(room, "the blank cannot change while something runs: reset first")
-    _require_still(room)
+    require_no_run(room, "the blank cannot change while something runs: reset first")
+    require_still(room)
     if room.auxiliaries.spindle.turns:
         raise UsageError("the spindle turns: stop it before the blank is changed")
     room.judge.note_blank()
@@ -273,8 +280,8 @@ def _new_blank(room: Room, _command: c.NewBlank) -> None:
 
 
 def _set_zero(room: Room, command: c.SetZero) -> None:
-    column = _column(room, command.axis)
-    _require_no_run(room)
+    column = column_of(room, command.axis)
+    require_no_run(room)
     tables = room.setup.tables
     place = float(room.machine.position[column])
     length_difference = float((tables.program_zero - tables.zero)[column])
@@ -283,8 +290,8 @@ def _set_zero(room: Room, command: c.SetZero) -> None:
 
 
 def _set_offset(room: Room, command: c.SetOffset) -> None:
-    _require_no_run(room)
-    column, tables = _column(room, command.axis), room.setup.tables
+    require_no_run(room)
+    column, tables = column_of(room, command.axis), room.setup.tables
     if command.name is not None:
         moved = tables.set_offset(command.name, command.axis, command.value)
         room.slot.shift_offset(command.name, column, moved)
@@ -294,12 +301,12 @@ def _set_offset(room: Room, command: c.SetOffset) -> None:
 
 
 def _set_tool(room: Room, command: c.SetTool) -> None:
-    _require_no_run(room)
+    require_no_run(room)
     room.setup.tables.set_tool(command.number, command.length, command.radius)
 
 
 def _add_tool(room: Room, command: c.AddTool) -> None:
-    _require_no_run(room)
+    require_no_run(room)
     flute = min(LONGEST_FLUTE, 0.5 * command.length)
     tool = ToolTable(
         number=command.number,
@@ -333,47 +340,6 @@ def _inject(room: Room, command: c.Inject) -> None:
 
 def _repair(room: Room, _command: c.Repair) -> None:
     room.faults.repair(room)
-
-
-def _require_no_alarm(room: Room) -> None:
-    if room.alarm is not None:
-        raise UsageError(f"an alarm is active ({room.alarm.code}): reset first")
-
-
-def _require_no_run(
-    room: Room, why: str = "the tables cannot change while something runs: reset first"
-) -> None:
-    if not room.slot.empty:
-        raise UsageError(why)
-
-
-def _require_jog(room: Room, axis: str) -> None:
-    """An axis may be jogged; off its limit switch also while that alarm is active."""
-    if room.panel.mode != "jog":
-        raise UsageError("jogging needs the mode manual jog")
-    _column(room, axis)
-    if room.alarm is None or room.alarm.code != "hard-limit" or room.panel.stop_pressed:
-        _require_no_alarm(room)
-    elif room.machine.on_limit_switch not in ("", axis):
-        raise UsageError(
-            f"{room.machine.on_limit_switch} is on its limit switch: jog it back first"
-        )
-
-
-def _require_still(room: Room) -> None:
-    """Nothing runs, and no alarm is active."""
-    _require_no_alarm(room)
-    if room.panel.mode != "jog":
-        raise UsageError("that is done in the mode manual jog")
-    if room.slot.run is not None or room.machine.moving:
-        raise UsageError("the axes still move")
-
-
-def _column(room: Room, axis: str) -> int:
-    names = room.machine.machine.axes.names
-    if axis not in names:
-        raise UsageError(f"no axis '{axis}': the machine has {', '.join(names)}")
-    return names.index(axis)
 
 
 _ACTIONS: dict[type, Callable[[Room, Any], None]] = {
