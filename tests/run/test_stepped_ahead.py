@@ -1,6 +1,5 @@
 """The machine is stepped one chunk ahead of who looks at it; an alarm finds all as if it were not."""
 
-import dataclasses
 from pathlib import Path
 
 import pytest
@@ -63,7 +62,17 @@ def test_an_alarm_finds_nothing_of_what_was_stepped_beyond_it(tmp_path, monkeypa
     )
     assert [alarm.code for alarm in beside.alarms] == ["rapid-into-stock"]
     assert beside.near_miss is None
-    for name in (field.name for field in dataclasses.fields(Outcome) if field.name != "loads"):
+    for name in (
+        "verdict",
+        "alarms",
+        "near_miss",
+        "warnings",
+        "figures",
+        "cut",
+        "tools",
+        "samples",
+        "duration_s",
+    ):
         assert repr(getattr(alone, name)) == repr(getattr(beside, name)), name
 
 

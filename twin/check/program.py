@@ -131,9 +131,9 @@ def _run(variant: Variant, settings: CheckSettings) -> CheckOutcome:
         program=str(path),
         verdict="fail" if failed else outcome.verdict.outcome,
         exit_code=ExitCode.FAILED if failed else outcome.verdict.exit_code,
-        contour_um=contour.max,
+        contour_um=contour.max if outcome.samples else None,
         worst_line=contour.worst_line,
-        cycle_time_s=outcome.duration_s,
+        cycle_time_s=outcome.duration_s if outcome.samples else None,
         findings=(
             *(_alarm_finding(preparation, alarm) for alarm in outcome.alarms),
             *_findings(preparation, outcome.verdict.reasons[len(outcome.alarms) :]),

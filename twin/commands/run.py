@@ -120,7 +120,9 @@ def summary(run: Run, outcome: Outcome, folder: Path) -> str:
         finding = "nothing moves"
     else:
         finding = f"contour error at most {contour.max:.1f} µm (line {contour.worst_line})"
+    reasons = dict.fromkeys(reason.what for reason in outcome.verdict.reasons)
+    by = f" by {', '.join(reasons)}" if reasons and not outcome.alarms else ""
     return (
-        f"{outcome.verdict.outcome}: {finding}, {outcome.duration_s:.3f} s of machine time "
+        f"{outcome.verdict.outcome}{by}: {finding}, {outcome.duration_s:.3f} s of machine time "
         f"in {run.clock.wall_s:.1f} s; results in {folder}"
     )

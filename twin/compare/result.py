@@ -29,7 +29,8 @@ class RunSummary:
         duration_s: Machine time of the program, without the settling after it [s].
         wall_s: How long the whole run took [s].
         stages: Seconds by stage: ``interpret_s``, ``plan_s``, ``simulate_s``, ``compare_s``,
-            ``cut_s``, ``render_s``; a stage that was left out is 0.
+            ``cut_s``, ``render_s``; a stage that was left out is 0. The machine is planned and stepped beside the others:
+            ``simulate_s`` is how long they waited for it.
         cut: The content of the key ``cut``, or None when nothing was cut.
         commanded: Final setpoint by axis, part coordinates [mm or deg].
         simulated: Final joint position by axis, part coordinates [mm or deg].

@@ -129,7 +129,11 @@ def scope_of(
         *(_silent_spindle(file, watch)),
         *_unknown_functions(file),
         *_never_read(preparation.settings),
-        *(Unwatched(reason.what, reason.message) for reason in unjudged),
+        *_expected(file),
+        *(
+            Unwatched(each.what, each.message.removeprefix(f"{each.what} has judged nothing: "))
+            for each in unjudged
+        ),
         *(
             Unwatched(f"all behind line {each.line}", "the alarm ended the run")
             for each in alarms[:1]
@@ -181,6 +185,11 @@ def _never_read(settings: ControlSettings) -> Iterator[Unwatched]:
     """Values that the job gives the program, and that it never asked for."""
     for table, names in settings.never_read.items():
         yield Unwatched(f"{table} {', '.join(names)}", "the program never asks for them")
+
+
+def _expected(job: JobFile) -> Iterator[Unwatched]:
+    if job.expect is not None:
+        yield Unwatched(f"expect = {job.expect!r}", "twin check holds the end of a job to it")
 
 
 def _blind(job: JobFile, *, forces: bool) -> Iterator[Unwatched]:

@@ -13,7 +13,7 @@ from twin.compare.comparison import Comparison
 from twin.compare.report.report import Report, render_report, write_report
 from twin.compare.result import RunSummary, result
 from twin.compare.trace import Trace
-from twin.compare.verdict import judge
+from twin.compare.verdict import Reason, judge
 from twin.job.job_file import ToleranceTable
 from twin.nc.canonical import Moves
 from twin.nc.text.lines import Lines
@@ -106,6 +106,14 @@ def test_a_run_within_its_tolerance_says_so():
     text = render_report(report_of(MOVES[:1], tolerance=500.0))
     assert "Pass" in text
     assert 'class="reasons"' not in text
+
+
+def test_a_tolerance_that_judged_nothing_is_in_the_table():
+    made = report_of(MOVES[:1], tolerance=500.0)
+    unjudged = made.verdict.with_more([Reason("corner_um", "no corner", 0, 0.0)])
+    tolerance = made.tolerance.model_copy(update={"corner_um": 7.5})
+    page = Page(render_report(dataclasses.replace(made, verdict=unjudged, tolerance=tolerance)))
+    assert "– – 7.5 – – corner_um ✖ judged nothing" in " ".join(" ".join(page.text).split())
 
 
 def test_the_page_needs_no_network(tmp_path: Path):

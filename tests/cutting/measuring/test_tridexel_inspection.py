@@ -1,6 +1,7 @@
 """Parts that are off by what is known beforehand, measured on a tri-dexel stock."""
 
 import math
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -67,6 +68,52 @@ def test_a_wall_is_off_by_how_far_aside_it_was_cut() -> None:
     assert figures["max_um"] == pytest.approx(30.0, abs=0.2)
     assert figures["min_um"] == pytest.approx(-30.0, abs=0.2)
     assert figures["bound_um"] < 1e3 * (EXACT_MM + CELL_MM + 1e-6)
+
+
+def groove(kind: str, cell: float, diameter: float = 3.0, **defect: float) -> TriDexel:
+    """A groove through a small block by a tool that leans, with a defect: off, aside [mm] or turned about Z [rad]."""
+    corner = {"corner": 0.5} if kind == "bull" else {}
+    tool = ToolTable.model_validate({"number": 1, "kind": kind, "diameter": diameter, **corner})
+    block = box(np.array([-HALF, -HALF, -HALF]), np.array([HALF, HALF, 0.0]), cell)
+    axis = np.array([0.0, math.sin(LEAN), math.cos(LEAN)])
+    turn, way = defect.get("turn", 0.0), np.linspace(-HALF - 3.0, HALF + 3.0, 60)[:, None]
+    along = way * [math.cos(turn), math.sin(turn), 0.0] + [0.0, defect.get("aside", 0.0), 0.0]
+    poses = Poses(along + (defect.get("off", 0.0) - 1.5) * axis, np.tile(axis, (60, 1)))
+    cut(block, poses, cutting_edge(profile(tool), 20.0), 1)
+    return block
+
+
+def defects_of(cell: float) -> Iterator[tuple[str, float, float]]:
+    """Kinds and sizes, and how far the surface of walls that lean is off for them at least [mm]."""
+    for size in (0.01, 0.03, -0.05, cell, -1.2 * cell):
+        yield "off", size, abs(size)
+    for size in (0.01, 0.03, 0.5 * cell, cell):
+        yield "aside", size, size * math.cos(LEAN)
+    for size in (0.01, cell / HALF):
+        yield "turn", size, size * HALF * math.cos(LEAN)
+    for size in (0.02, 0.06, cell):
+        yield "under", size, 0.9 * size
+
+
+HALF, LEAN = 3.0, 0.37
+FINE_CELLS = [
+    pytest.param(cell, marks=pytest.mark.by_hand("fine cells take up to a minute each"))
+    for cell in (0.05, 0.1)
+]
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("cell", [*FINE_CELLS, 0.2, 0.5])
+@pytest.mark.parametrize("kind", ["flat", "ball", "bull"])
+def test_no_displacement_is_missed(kind: str, cell: float) -> None:
+    nominal = groove(kind, cell)
+    for what, size, least in defects_of(cell):
+        diameter = 3.0 - 2.0 * size if what == "under" else 3.0
+        found, figures = measured(groove(kind, cell, diameter, **{what: size}), nominal)
+        seen = max(figures["max_um"], -figures["min_um"]) / 1e3
+        assert seen >= least - 1e-3 - found.bound_mm, (what, size)
+        if least > TOLERANCE_UM / 1e3 + found.bound_mm:
+            assert not found.holds, (what, size)
 
 
 def test_a_part_is_what_it_is_and_the_blanks_own_skin_is_not_judged() -> None:

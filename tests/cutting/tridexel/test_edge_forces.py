@@ -177,3 +177,13 @@ def test_what_was_cut_before_pushes_no_more() -> None:
     full = forces(slot, tool, axes, straight(4.0))
     again = forces(stock, tool, axes, straight(4.0))
     assert np.linalg.norm(again.mean) < 0.02 * np.linalg.norm(full.mean)
+
+
+def test_a_cutter_that_slides_over_a_face_at_rapid_cuts_no_chip() -> None:
+    """It stands where the program begins, at the blank's top: a part of a micrometre of it is in the material."""
+    tool, axes = ToolTable(number=1, diameter=10.0, teeth=4), frame(0.0, 0.0, 20.0)
+    slid = forces(block(axes), tool, axes, straight(1e-6)[[0, -1]])
+    assert (slid.figures[0], slid.figures[2]) == (0.0, 0.0)
+    assert forces(block(axes), tool, axes, straight(0.02)).figures[2] == pytest.approx(
+        FEED, rel=0.01
+    )

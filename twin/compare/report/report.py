@@ -22,9 +22,10 @@ from twin.nc.canonical import FloatArray, IntArray
 from twin.recording.reader import RecordingHeader
 from twin.units import SECONDS_PER_MINUTE
 
+_MM3_PER_CM3 = 1000.0
 _HEADINGS = {
     "pass": ("✔", "Pass", "every tolerance holds"),
-    "fail": ("✖", "Fail", "a tolerance does not hold"),
+    "fail": ("✖", "Fail", "what the job asks for does not hold"),
     "alarm": ("▲", "Alarm", "the machine stopped"),
 }
 _HOVER_POINTS = 2000
@@ -39,7 +40,11 @@ _TABLE_ROWS = 100
 """A table shows so many arcs or events; all of them are in result.json."""
 _MEDIA = {".png": "image/png", ".jpg": "image/jpeg", ".jpeg": "image/jpeg"}
 _CUT_FIGURES: tuple[tuple[str, str, Callable[[Any], str]], ...] = (
-    ("removed_mm3", "Material removed", lambda v: f"{v / 1000.0:,.2f} cm³"),
+    (
+        "removed_mm3",
+        "Material removed",
+        lambda v: f"{v / _MM3_PER_CM3:,.2f} cm³" if v >= _MM3_PER_CM3 else f"{v:,.1f} mm³",
+    ),
     ("air_share", "Share of the feed path in air", lambda v: f"{v:.1%}"),
     ("force_n", "Greatest cutting force", lambda v: f"{v:,.0f} N"),
     ("power_w", "Greatest power of the cut", lambda v: f"{v:,.0f} W"),
@@ -110,6 +115,7 @@ def render_report(report: Report) -> str:
         undefined=jinja2.StrictUndefined,
     )
     environment.filters["fixed"] = _fixed
+    environment.filters["written"] = "{:.15g}".format
     source = report.source
     symbol, heading, meaning = _HEADINGS[report.verdict.outcome]
     cut = report.result["cut"] or {}
@@ -117,6 +123,7 @@ def render_report(report: Report) -> str:
         header=report.header,
         figures=report.figures,
         verdict=report.verdict,
+        unjudged=_unjudged(report.verdict, report.tolerance),
         scope=report.scope,
         warnings=report.warnings[:_TABLE_ROWS],
         result=report.result,
@@ -135,6 +142,14 @@ def render_report(report: Report) -> str:
         hover=_safe(_hover_data(report.trace, source)) if len(report.trace.time) else None,
         plots=_plots(report) if len(report.trace.time) else None,
     )
+
+
+def _unjudged(verdict: Verdict, tolerance: ToleranceTable) -> dict[str, float]:
+    """Tolerances that are a reason although nothing was held to them, and what they allow, by their keys."""
+    judged = {check.what for check in verdict.checks}
+    given = tolerance.model_dump(exclude_none=True)
+    keys = [reason.what for reason in verdict.reasons if reason.what not in judged]
+    return {key: given[key] for key in keys if key in given}
 
 
 def _plots(report: Report) -> dict[str, Any]:

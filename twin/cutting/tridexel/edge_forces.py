@@ -21,6 +21,7 @@ from twin.cutting.kernels.teeth import (
     push,
     sum_teeth,
 )
+from twin.cutting.material import AIR_MM
 from twin.cutting.tridexel.dexels import Dexels, Lattice
 from twin.cutting.tridexel.inside import EdgePoint, Standing, inside
 from twin.nc.canonical import FloatArray
@@ -33,6 +34,8 @@ _SLICE_CELLS = 2.0
 """Height of a slice at least [cells]."""
 _HALVINGS = 5
 """Halvings in search of where the material begins on a ring, or about the axis."""
+_TOUCH = 0.5 ** (_HALVINGS + 2)
+"""Share of a ring that is found where one of its ends alone is in material: a cutter that slides over a face cuts no chip."""
 _CLEAR = 0.15
 """How far before the edge the material is looked at, along the normal [cells]: beyond what the planes of crossings
 are off a round surface."""
@@ -268,7 +271,9 @@ def _look_along(edge: _Edge, border: int, length: FloatArray, middle: FloatArray
                 total += end - begin
                 moment += 0.5 * (end - begin) * (end + begin)
             last = now
-        length[number] = total
+        side = number >= len(edge.cutter.radius)
+        whole = edge.side.height if side else edge.cutter.width[number]
+        length[number] = total if total > _TOUCH and total * whole > AIR_MM else 0.0
         middle[number] = moment / total if total > 0.0 else 0.5
 
 
