@@ -152,7 +152,7 @@ class Unreadable:
 
     def _comments(self) -> str:
         comments = [each for each in self._grammar.syntax.comments if not each.whole_line]
-        shown = " or ".join(f"{each.opening} {each.closing}".strip() for each in comments)
+        shown = " or ".join(f"{each.opening} {each.closing or '...'}" for each in comments)
         return f"comments are written {shown}"
 
     def _slip_at(self, column: int) -> str | None:

@@ -16,7 +16,15 @@ SWITCHES = 3
 
 
 def set_acceleration(control: Control, word: Word) -> None:
-    """E: above 0 the path's acceleration, below 0 its deceleration [units/s²]."""
+    """E: above 0 the path's acceleration, below 0 its deceleration [units/s²].
+
+    Decision: E follows a blank, as the manual separates words: behind a digit it may be an exponent.
+    """
+    before = control.report.text_of(control.block.line)[: word.column]
+    if before[-1:].isdigit():
+        message = f"'{word.text}' may be an acceleration or an exponent"
+        hint = "write a blank before E, or the number without an exponent"
+        control.fail("unreadable", message, word, hint)
     value = control.number(word)
     if value > 0.0:
         control.motion.acceleration = value
