@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from motion_programs import Program, duration, mill, run
 
-from twin.motion.blocks.corner_choice_kernels import CURVE_SHARE
+from twin.motion.blocks.corner_limit_kernels import CURVE_SHARE
 from twin.motion.blocks.knee_kernels import (
     LONGEST_VIEW,
     SHORTEST_SPAN,

@@ -17,13 +17,9 @@ from twin.motion.blocks.border_kernels import (
     border_velocities,
     tolerance_shares,
 )
-from twin.motion.blocks.corner_choice_kernels import (
-    BlockMotion,
-    Corners,
-    choose_stops,
-    clip_widths,
-)
+from twin.motion.blocks.corner_choice_kernels import choose_stops, clip_widths
 from twin.motion.blocks.corner_kernels import MAX_NEIGHBOURS, find_widths
+from twin.motion.blocks.corner_limit_kernels import BlockMotion, Corners
 from twin.motion.blocks.knee_kernels import (
     LONGEST_VIEW,
     Chain,

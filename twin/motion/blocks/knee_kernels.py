@@ -11,7 +11,7 @@ import numpy as np
 
 from twin.compilation.kernel import array_kernel, kernel
 from twin.motion.blocks.blocks import BoolArray
-from twin.motion.blocks.corner_choice_kernels import CURVE_SHARE
+from twin.motion.blocks.corner_limit_kernels import CURVE_SHARE
 from twin.nc.canonical import FloatArray, IntArray
 
 MOST_TOGETHER = 32

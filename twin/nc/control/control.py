@@ -8,7 +8,7 @@ from typing import NoReturn, Protocol
 
 from twin.nc.canonical import Dwell, Function
 from twin.nc.control.modal import Modal
-from twin.nc.control.motion import Motion
+from twin.nc.control.motion import MotionState
 from twin.nc.control.program_counter import Call, ProgramCounter
 from twin.nc.control.settings import ControlSettings
 from twin.nc.control.statements import StatementReader
@@ -120,7 +120,7 @@ class Control:
         self.memory = rules.memory()
         self._rules = rules
         feed_rule = rules.feed_rule(settings)
-        self.motion = Motion(settings, modal, self.report, self._refuse_feed, feed_rule)
+        self.motion = MotionState(settings, modal, self.report, self._refuse_feed, feed_rule)
         if rules.place_switches is not None:
             self.motion.before_move = functools.partial(rules.place_switches, self)
         self.frame = self.motion.frame
@@ -271,7 +271,7 @@ class Control:
         self.motion.move_to(target, self.block, rapid=rapid)
 
     def arc_to(self, target: list[float], center: Point, sweep: float) -> None:
-        """Move on an arc about the plane's normal; centre and sweep as for ``Motion.arc``."""
+        """Move on an arc about the plane's normal; centre and sweep as for ``MotionState.arc``."""
         self.motion.move_to(target, self.block, arc=self.motion.arc(center, sweep))
 
     def dwell(self, seconds: float) -> None:

@@ -40,7 +40,7 @@ _STRAIGHT = (None, (NAN, NAN, NAN), 0.0)
 """Centre, normal and sweep of a line."""
 
 
-class Motion:
+class MotionState:
     """Where a control is and how fast it goes.
 
     Attributes:

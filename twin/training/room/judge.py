@@ -10,7 +10,7 @@ from twin.training.scene.scene_file import Scene
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Verdict:
+class TaskState:
     """The state of a task.
 
     Attributes:
@@ -34,7 +34,7 @@ class Judge:
 
     def __init__(self, scene: Scene) -> None:
         self._file = scene.file
-        self.verdicts: list[Verdict] = [Verdict() for _ in self._file.tasks]
+        self.verdicts: list[TaskState] = [TaskState() for _ in self._file.tasks]
         self.hints = 0
         self.over = False
         self.evidence = Evidence()
@@ -161,7 +161,7 @@ class Judge:
                 good = task.to_end and self.evidence.made
             if task.condition == "within_s":
                 good = good and self._others_done()
-            self.verdicts[number] = Verdict("done" if good else "failed", room.time_s)
+            self.verdicts[number] = TaskState("done" if good else "failed", room.time_s)
         self.over = True
 
     def _others_done(self) -> bool:
@@ -188,6 +188,6 @@ class Judge:
             if self.verdicts[number].state == "open" and not task.at_end:
                 state = CHECKS[task.condition](self.evidence, room, task, number + 1)
                 if state != "open":
-                    self.verdicts[number] = Verdict(state, room.time_s)
+                    self.verdicts[number] = TaskState(state, room.time_s)
         if self.time_s(room) >= self._file.time_limit_s:
             self.finish(room)

@@ -7,7 +7,7 @@ import numpy as np
 from twin.nc.canonical import FloatArray
 from twin.nc.functions import SpindleState
 from twin.training.program.block_walk import ModalState
-from twin.training.room.judge import Verdict
+from twin.training.room.judge import TaskState
 from twin.training.room.live_cut import Loads
 from twin.training.room.observed import Notice
 from twin.training.room.room import Room
@@ -95,7 +95,7 @@ class Snapshot:
     finder: Row
     """How far the edge finder's tip is pushed aside, seen from the part, X and Y [mm]; empty: there is no sound one in
     the spindle."""
-    verdicts: tuple[Verdict, ...]
+    verdicts: tuple[TaskState, ...]
     answers: tuple[tuple[int, str], ...]
     hints: int
     score: int
