@@ -134,7 +134,7 @@ def _blank(job: JobFile, frame: PartFrame, zero: FloatArray, over_table: float) 
         round=stock.diameter is not None,
         weight=None if weight is None else weight.moved(place),
         on_post=stock.on_post,
-        direction=order.index(stock.direction),
+        direction=_Z if stock.diameter is None else order.index(stock.direction),
         relief=stock.relief or 0.0,
     )
 

@@ -4,6 +4,7 @@ Numbers are those of Grbl's own tables (``error_codes_en_US.csv``, ``alarm_codes
 """
 
 import enum
+import re
 
 from twin.nc.text.diagnostics import Diagnostic
 
@@ -75,12 +76,18 @@ _ERRORS = {
 }
 
 
+_NAME = re.compile(r"'[A-Za-z]{2}")
+"""A letter where Grbl reads the number of the one before."""
+
+
 def error_of(finding: Diagnostic) -> Error:
     """Grbl's code of what is wrong with a block; what it has no code for is a command that it does not support."""
     if finding.code == "dwell" and "negative" in finding.message:
         return Error.NEGATIVE_VALUE
     if finding.code == "conflicting-codes" and "axis words" in finding.message:
         return Error.AXIS_WORD_CONFLICT
+    if finding.code == "unknown-word" and _NAME.match(finding.message):
+        return Error.BAD_NUMBER
     return _ERRORS.get(finding.code, Error.UNSUPPORTED_COMMAND)
 
 
