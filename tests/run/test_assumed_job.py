@@ -579,7 +579,7 @@ def test_stock_keeps_clear_of_rapids_in_the_plane_beside_the_part(tmp_path: Path
 
 def test_tools_that_a_program_writes_into_the_table_are_its_own(tmp_path: Path) -> None:
     """HeeksCNC and Fabex write G10 L1 for each; where lengths are called they count from those, and nobody knows them."""
-    text = "G21 G90\nG10 L1 P1 R4.000 Z20.000\nG10 L1 P2 R1.5 Z20\nT1 M6\nS900 M3\n{}G0 X1 Z5\nG1 Z-1 F90\nX9\nG0 Z5\nT2 M6\nG1 Z-2 F90\nG0 Z5\nM2\n"
+    text = "G21 G90\nG10 L1 P1 R4.000 Z20.000\nN30G10L1P2 R1.5Z20\nT1 M6\nS900 M3\n{}G0 X1 Z5\nG1 Z-1 F90\nX9\nG0 Z5\nT2 M6\nG1 Z-2 F90\nG0 Z5\nM2\n"
     made, _ = raw(tmp_path, text.format(""))
     assert made.dialect.name == "linuxcnc"
     tools = [(each.number, each.kind, each.diameter) for each in made.job.file.tools]

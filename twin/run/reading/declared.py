@@ -11,10 +11,10 @@ from twin.nc.functions import BLANK
 from twin.run.reading.assumed_tools import ToolComment
 
 _RADIUS = "R"
-_TABLE = re.compile(r"(?<![A-Z0-9.])G[ \t]*10(?![0-9.])[^A-Z]*L[ \t]*1(?![0-9.])", re.IGNORECASE)
+_TABLE = re.compile(r"(?<![A-Z])G[ \t]*10(?![0-9.])[^A-Z]*L[ \t]*1(?![0-9.])", re.IGNORECASE)
 _TABLE_NUMBER = re.compile(r"P[ \t]*([0-9]+)(?![0-9.])", re.IGNORECASE)
 _TABLE_RADIUS = re.compile(r"R[ \t]*([0-9]+\.?[0-9]*|\.[0-9]+)", re.IGNORECASE)
-_CALLS_LENGTH = re.compile(r"(?<![A-Z0-9.])G[ \t]*4[34](?![0-9])", re.IGNORECASE)
+_CALLS_LENGTH = re.compile(r"(?<![A-Z])G[ \t]*4[34](?![0-9])", re.IGNORECASE)
 
 
 class DeclaredStock(NamedTuple):
