@@ -578,15 +578,27 @@ def test_stock_keeps_clear_of_rapids_in_the_plane_beside_the_part(tmp_path: Path
 
 
 def test_tools_that_a_program_writes_into_the_table_are_its_own(tmp_path: Path) -> None:
-    """HeeksCNC and Fabex write G10 L1 for each; where lengths are called they count from those, and nobody knows them."""
+    """HeeksCNC and Fabex write G10 L1 for each; where lengths are called, heights count from those that it writes."""
     text = "G21 G90\nG10 L1 P1 R4.000 Z20.000\nN30G10L1P2 R1.5Z20\nT1 M6\nS900 M3\n{}G0 X1 Z5\nG1 Z-1 F90\nX9\nG0 Z5\nT2 M6\nG1 Z-2 F90\nG0 Z5\nM2\n"
     made, _ = raw(tmp_path, text.format(""))
     assert made.dialect.name == "linuxcnc"
     tools = [(each.number, each.kind, each.diameter) for each in made.job.file.tools]
     assert tools == [(1, "flat", 8.0), (2, "drill", 3.0)]
     assert list(made.interpretation().chunks())
+    called, _ = raw(tmp_path, text.format("G43 H1\n"))
+    assert [each.length for each in called.job.file.tools] == [20.0, 20.0]
     with pytest.raises(ProgramError, match="no tool 2"):
-        raw(tmp_path, text.format("G43 H1\n"))
+        raw(tmp_path, text.format("G43 H1\n").replace("R1.5Z20", "R1.5"))
+
+
+def test_rounding_that_a_program_allows_is_no_error_of_its_contour(tmp_path: Path) -> None:
+    """Raw files of pcb2gcode say G64 P in inches: up to that the control may leave the path."""
+    text = "G20 G90\n{}\nT1 M6\nS900 M3\nG0 X1 Z.5\nG1 Z-.1 F9\nX2\nG0 Z.5\nM2\n"
+    allowed, job = raw(tmp_path, text.format("G64 P0.005"))
+    assert allowed.job.file.tolerance.contour_um == pytest.approx(147.0)
+    assert any("by 127 µm more" in each for each in job.assumptions)
+    silent, _ = raw(tmp_path, text.format("G64"))
+    assert silent.job.file.tolerance.contour_um == pytest.approx(20.0)
 
 
 @pytest.mark.seconds("a program is run")

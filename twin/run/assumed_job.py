@@ -143,6 +143,14 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
     left_out = tuple(f"{word} stays at 0: the machine has no such axis" for word in lacking)
     rapids = f"rapids may leave their path by {_RAPID_TOLERANCE_UM:g} µm"
     told += [rapids] if (moves.motion == Motion.RAPID).any() else []
+    rounding = _rounding_um(moves)
+    told += (
+        [
+            f"feeds may leave their path by {rounding:g} µm more: so far the program lets corners be rounded"
+        ]
+        if rounding
+        else []
+    )
     speed = f"the spindle turns at {SPEED_BY_HAND:g} /min, set by hand, where the program starts it: it holds no S"
     told += [speed] if by_hand else []
     return AssumedJob("\n".join(lines), (*preparation.reading.notes, said, *told, *left_out))
@@ -191,10 +199,19 @@ def _start_lines(moves: Moves, top: FloatArray | None) -> list[str]:
     return ["[start]", f"Z = {height:.3f}", ""] if height > 0.0 else []
 
 
+def _rounding_um(moves: Moves) -> float:
+    """How far a program lets the control round the corners of its feeds, as by G64 P [µm]; 0 where it does not say."""
+    stated = moves.corner_tolerance[moves.motion == Motion.FEED]
+    return 1e3 * float(np.nanmax(stated)) if np.isfinite(stated).any() else 0.0
+
+
 def _tolerance_lines(moves: Moves, contour_um: float) -> list[str]:
     """The tolerances, those alone that some move of the program is held to."""
     rapid = moves.motion == Motion.RAPID
-    feeds = [f"contour_um = {contour_um}"] if (~rapid).any() or not rapid.any() else []
+    rounding = _rounding_um(moves)
+    told = f"  # {rounding:g} of it the program lets corners be rounded by" if rounding else ""
+    total = round(contour_um + rounding, 3)
+    feeds = [f"contour_um = {total}{told}"] if (~rapid).any() or not rapid.any() else []
     rapids = [f"rapid_contour_um = {_RAPID_TOLERANCE_UM}  # a guess"] if rapid.any() else []
     return ["[tolerance]", *feeds, *rapids, ""]
 

@@ -176,7 +176,7 @@ def _commented_tools(source: Source, *, inches: bool) -> dict[int, ToolData]:
         **table_tools(blocks, inches=inches),
     }
     return {
-        number: ToolData(radius=tool.table_radius, length=USUAL_LENGTH)
+        number: ToolData(radius=tool.table_radius, length=tool.length or USUAL_LENGTH)
         for number, tool in listed.items()
         if tool.table_radius is not None
     }

@@ -77,6 +77,7 @@ class ToolComment(NamedTuple):
         corner: Radius of a bull-nose's corner [mm].
         wear: Its contours are the path of its centre, so that D holds its wear alone; None: that is not told.
         name: By which the program calls it; empty: by its number.
+        length: That the program writes into the control's table [mm]; None: it writes none.
     """
 
     kind: str
@@ -85,6 +86,7 @@ class ToolComment(NamedTuple):
     text: str
     wear: bool | None = None
     name: str = ""
+    length: float | None = None
 
     @property
     def table_radius(self) -> float | None:
@@ -320,6 +322,10 @@ def _tool_table(
     diameter = (tool.diameter if tool else None) or _USUAL_DIAMETER
     flute = max(_USUAL_FLUTE, np.ceil(depth + 5.0))
     length = max(USUAL_LENGTH, np.ceil(flute * 1.6 + 20.0), np.ceil(least_length))
+    length_from = "a guess"
+    if tool and tool.length:
+        length, length_from = tool.length, "the program's own"
+        flute = min(flute, length)
     kind_from = "its comment" if tool and tool.kind else "what it does"
     size_from = "its comment" if tool and tool.diameter else "a guess"
     lines = [
@@ -336,7 +342,7 @@ def _tool_table(
         *([f"corner = {tool.corner}  # mm"] if tool and tool.corner and kind == "bull" else []),
         *(["radius_offset = 0.0  # D holds its wear alone"] if worn else []),
         f"flute = {flute:.1f}  # mm: a guess",
-        f"length = {length:.1f}  # from the spindle nose to the tip, mm: a guess",
+        f"length = {round(float(length), 4)}  # from the spindle nose to the tip, mm: {length_from}",
     ]
     said = f"T{number} {kind} of {diameter:g} mm: " + (
         f"from its comment ({_plain(tool.text)})"

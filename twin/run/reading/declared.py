@@ -13,6 +13,7 @@ from twin.run.reading.assumed_tools import ToolComment
 _RADIUS = "R"
 _TABLE = re.compile(r"(?<![A-Z])G[ \t]*10(?![0-9.])[^A-Z]*L[ \t]*1(?![0-9.])", re.IGNORECASE)
 _TABLE_NUMBER = re.compile(r"P[ \t]*([0-9]+)(?![0-9.])", re.IGNORECASE)
+_TABLE_LENGTH = re.compile(r"Z[ \t]*([0-9]+\.?[0-9]*|\.[0-9]+)", re.IGNORECASE)
 _TABLE_RADIUS = re.compile(r"R[ \t]*([0-9]+\.?[0-9]*|\.[0-9]+)", re.IGNORECASE)
 _CALLS_LENGTH = re.compile(r"(?<![A-Z])G[ \t]*4[34](?![0-9])", re.IGNORECASE)
 
@@ -72,17 +73,22 @@ def declared_tools(functions: Iterable[Function]) -> dict[int, ToolComment]:
 
 
 def table_tools(blocks: Sequence[str], *, inches: bool) -> dict[int, ToolComment]:
-    """The tools whose radius G10 L1 writes, by number, of a program that calls no length.
+    """The tools whose radius G10 L1 writes, by number, and the lengths that it writes where the program calls lengths.
 
-    One that calls lengths counts heights from those that it writes, and they may be those of no real tool.
+    A control counts heights from what is in its table, and so a tool without a length there is none of
+    a program that calls it.
     """
-    if any(map(_CALLS_LENGTH.search, blocks)):
-        return {}
+    calls_lengths = any(map(_CALLS_LENGTH.search, blocks))
     unit = 25.4 if inches else 1.0
     tools: dict[int, ToolComment] = {}
     for block in filter(_TABLE.search, blocks):
         number, radius = _TABLE_NUMBER.search(block), _TABLE_RADIUS.search(block)
         if number and radius and float(radius[1]) > 0.0:
             tool = ToolComment("", 2.0 * float(radius[1]) * unit, None, block.strip())
+            if calls_lengths:
+                written = _TABLE_LENGTH.search(block)
+                if written is None or not float(written[1]) > 0.0:
+                    continue
+                tool = tool._replace(length=float(written[1]) * unit)
             tools[int(number[1])] = tool
     return tools

@@ -66,7 +66,11 @@ def begin_rigid_tapping(control: Control) -> None:
 
 
 def _always_rigid(code: GCode) -> GCode:
-    """A tapping cycle that needs no M29: a Haas starts the spindle in it (its manual of G74 and G84)."""
+    """A tapping cycle that needs no M29: a Haas starts the spindle in it.
+
+    Haas, "G84 Tapping Canned Cycle (Group 09)": that it need not be started before, since the control does so
+    (of the page, the edition for lathes was at hand); G74 is taken to be its mirror.
+    """
     action = code.action
     assert action is not None
 
