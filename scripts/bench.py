@@ -1,6 +1,8 @@
 """Measures the packages and their peers side by side and prints one table.
 
-Each file ``scripts/benches/<package>_bench.py`` has a function ``rows()`` that yields its lines.
+Each file ``scripts/benches/<package>_bench.py`` has a function ``rows()`` that yields its lines. A figure
+and that of a peer are taken in turns, so that other load slows both, and many are no times: pytest-benchmark times one
+function in a test, and asv compares commits of a project, each in an environment that it builds.
 """
 
 import importlib

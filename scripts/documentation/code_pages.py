@@ -44,7 +44,7 @@ def codes_page() -> str:
         sections += [
             f"### `{name}`",
             f"{finding.text} {finding.remedy}",
-            f'```text title="earned by this program, {finding.dialect}"\n{_shortened(finding.example)}\n```',
+            f'```text title="a program that causes it, {finding.dialect}"\n{_shortened(finding.example)}\n```',
         ]
     return "\n\n".join(sections) + "\n"
 

@@ -52,7 +52,7 @@ def test_explain_shows_text_and_example():
     text = explain("no-lead")
     assert "Z1.05 G10" in text
     assert "N5 G09 G02 X0 I100 F100" in text
-    assert "met the column" in explain("collision")
+    assert "hit the column" in explain("collision")
     assert "range of lines" in explain("blocks[0].contour_um")
 
 

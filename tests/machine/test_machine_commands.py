@@ -38,7 +38,7 @@ def test_show_prints_the_lag_at_the_feed(capsys):
 
 def test_check_tells_point_by_point(capsys):
     assert print_check("mill4_light") == ExitCode.OK
-    assert capsys.readouterr().out.count("ok ") == 8
+    assert capsys.readouterr().out.count("ok ") == 9
 
 
 def test_circle_writes_its_plot_and_prints_its_figures(capsys, tmp_path):

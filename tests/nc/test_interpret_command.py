@@ -60,4 +60,4 @@ def test_an_empty_file_is_called_so(twin: Twin, tmp_path: Path) -> None:
 
 def test_codes_are_listed_and_explained(twin: Twin) -> None:
     assert "no-feed" in twin("explain").stdout
-    assert "Earned by this program" in twin("explain", "no-feed").stdout
+    assert "Example of a program that causes it" in twin("explain", "no-feed").stdout

@@ -85,5 +85,5 @@ def _program_text(code: str, finding: Explanation) -> str:
     example = "\n".join(f"    {line}" for line in finding.example.splitlines())
     return (
         f"{code}\n\n{finding.text}\n{finding.remedy}\n\n"
-        f"Earned by this program ({finding.dialect}):\n\n{example}\n"
+        f"Example of a program that causes it ({finding.dialect}):\n\n{example}\n"
     )

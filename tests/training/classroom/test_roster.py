@@ -42,7 +42,7 @@ def test_one_column_needs_no_head_and_names_are_what_they_are(tmp_path):
         ("name,name\nAnna,1\n", "twice"),
         ("name,scene\nAnna\n,mefi_lead\n", "line 3: no name"),
         ("name\nAnna,mefi_lead\n", "line 2: 2 cells in 1 columns"),
-        ("Anna\nBob\nANNA\n", "line 3: 'ANNA' stands in line 1 already"),
+        ("Anna\nBob\nANNA\n", "line 3: 'ANNA' is in line 1 already"),
         (f"{'a' * 81}\n", "line 1: a name of 81 letters"),
         ("An\x07na\n", "line 1: a name with a letter that cannot be shown"),
         ("name,scene\nAnna,mefi_leed\n", "line 2: no scene 'mefi_leed'"),

@@ -18,7 +18,7 @@ class Explanation(pydantic.BaseModel):
     dialect: str
     """In which the example is written."""
     example: str
-    """A program that earns the diagnostic."""
+    """A program that causes the diagnostic."""
     text: str
     """What it means."""
     remedy: str

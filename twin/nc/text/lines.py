@@ -2,6 +2,8 @@
 
 So a program of many millions of lines takes a fraction of its length, and the others lie as they
 were read. A page is unpacked, turned into UTF-8 and divided into lines when one of them is wanted.
+The file is not mapped (``mmap``): where an editor saves over it during a run, a mapping shows the new lines,
+and ends the process (SIGBUS) where the file has become shorter; text from MDI has no file.
 """
 
 import bisect
