@@ -5,7 +5,7 @@ import numpy as np
 from twin.kinematics import Kinematics
 from twin.nc.canonical import Axes, FloatArray
 from twin.nc.control.settings import ControlSettings, ToolData
-from twin.nc.path.tool_center import Setup
+from twin.nc.path.tool_center.tool_center import Setup
 
 TRUNNION_AXES = Axes(("X", "Y", "Z", "A", "C"), ("linear",) * 3 + ("rotary",) * 2)
 HEAD_AXES = Axes(("X", "Y", "Z", "B", "C"), ("linear",) * 3 + ("rotary",) * 2)

@@ -18,8 +18,6 @@ import numpy.typing as npt
 from twin.units import DEGREE
 
 _Floats = npt.NDArray[np.float64]
-_SINGULAR = 1e-6
-"""Volume that the directions of three linear axes span, below which they leave the tip a direction short."""
 
 
 class Kinematics(NamedTuple):
@@ -111,28 +109,6 @@ def with_rotary_at_rest(
         along = np.tile(chain.axis[joint], (len(joints), 1))
         steps[:, :, chain.column[joint]] = rotated(chain, along, joints, after=joint)
     return tool_point(chain, still, length), steps
-
-
-def linear_axes(chain: Kinematics, points: _Floats, joints: _Floats, length: float) -> _Floats:
-    """Machine coordinates that bring the tip of a tool to points of the part.
-
-    Args:
-        points: Where the tip is meant to be, seen from the part, shape (n, 3) [mm].
-        joints: Where the rotary axes stand, shape (n, k) [deg]; X, Y and Z are not looked at.
-        length: From the spindle nose to the tip [mm].
-
-    Returns:
-        ``joints`` with X, Y and Z put in, shape (n, k).
-
-    Raises:
-        ValueError: With the rotary axes there X, Y and Z do not span space.
-    """
-    at_zero, steps = with_rotary_at_rest(chain, joints, length)
-    if np.any(np.abs(np.linalg.det(steps)) < _SINGULAR):
-        raise ValueError("with the rotary axes there X, Y and Z do not reach every point")
-    solved = joints.copy()
-    solved[:, :3] = np.linalg.solve(steps, (points - at_zero)[:, :, None])[:, :, 0]
-    return solved
 
 
 def counted_from(chain: Kinematics, zero: _Floats, length: float) -> Kinematics:

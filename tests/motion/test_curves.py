@@ -16,7 +16,7 @@ from twin.motion.limits import MotionLimits
 from twin.motion.planner import plan
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Chunk, FloatArray, Moves, Shape
-from twin.nc.path.tool_center import ToolCenter
+from twin.nc.path.tool_center.tool_center import ToolCenter
 
 PERIOD = 0.001
 SETTINGS = settings(on_machine(trunnion()))

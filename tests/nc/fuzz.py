@@ -18,7 +18,7 @@ from twin.nc.control.settings import ToolData
 from twin.nc.dialects import DIALECTS
 from twin.nc.interpreter import Interpretation
 from twin.nc.text.diagnostics import ProgramError
-from twin.nc.text.source import source_from_bytes
+from twin.nc.text.source import source_from_pieces
 
 FUZZ_SETTINGS = dataclasses.replace(
     SETTINGS,
@@ -172,7 +172,7 @@ def check(data: bytes, dialect: Dialect) -> str:
 def _interpreted(data: bytes, dialect: Dialect) -> tuple[str, bool]:
     """Code of a program's diagnostic, and whether it took too long."""
     begin = time.process_time()
-    source = source_from_bytes(data, "fuzz.nc", dialect)
+    source = source_from_pieces([data], "fuzz.nc", dialect)
     interpretation = Interpretation(source, dialect, FUZZ_SETTINGS)
     before, moves = None, 0
     try:

@@ -17,7 +17,7 @@ from twin.nc.interpreter import Interpretation
 from twin.nc.text.diagnostics import ProgramError
 from twin.nc.text.explain import findings
 from twin.nc.text.reporter import NOTICE
-from twin.nc.text.source import source_from_bytes
+from twin.nc.text.source import source_from_pieces
 
 WITH_TOOL = dataclasses.replace(SETTINGS, tools={1: ToolData(5.0, 60.0)})
 BAD = sorted((ROOT / "tests" / "bad").rglob("*.nc"))
@@ -30,7 +30,7 @@ def diagnostic_of(path: Path) -> str:
     dialect = dialect_named(path.parent.parent.name if strict else path.parent.name)
     code = path.stem.split(".")[0]
     settings = dataclasses.replace(WITH_TOOL, strict=strict, **findings()[code].settings)
-    source = source_from_bytes(path.read_bytes(), path.name, dialect)
+    source = source_from_pieces([path.read_bytes()], path.name, dialect)
     with pytest.raises(ProgramError) as raised:
         for _ in Interpretation(source, dialect, settings).chunks():
             pass

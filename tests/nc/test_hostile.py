@@ -11,7 +11,7 @@ from tests.nc.running import SETTINGS, bad
 from twin.nc.dialects import DIALECTS, dialect_named
 from twin.nc.interpreter import Interpretation
 from twin.nc.text.diagnostics import ProgramError
-from twin.nc.text.source import read_source, source_from_bytes
+from twin.nc.text.source import read_source, source_from_pieces
 
 MEBIBYTE = 2**20
 
@@ -37,7 +37,7 @@ HOSTILE = {
 @pytest.mark.parametrize("dialect", DIALECTS)
 @pytest.mark.parametrize("name", HOSTILE)
 def test_a_diagnostic_within_a_second(name: str, dialect: str) -> None:
-    source = source_from_bytes(HOSTILE[name], "hostile.nc", dialect_named(dialect))
+    source = source_from_pieces([HOSTILE[name]], "hostile.nc", dialect_named(dialect))
     begin = time.perf_counter()
     with pytest.raises(ProgramError) as raised:
         list(Interpretation(source, dialect_named(dialect), SETTINGS).chunks())
@@ -80,7 +80,7 @@ def test_memory_does_not_grow_with_the_program() -> None:
 
     def peak(blocks: int) -> int:
         text = b"G1 F100\n" + b"X1 Y2\nX3 Y4\n" * (blocks // 2)
-        interpretation = Interpretation(source_from_bytes(text, "p", dialect), dialect, SETTINGS)
+        interpretation = Interpretation(source_from_pieces([text], "p", dialect), dialect, SETTINGS)
         tracemalloc.start()
         for _ in interpretation.chunks():
             pass

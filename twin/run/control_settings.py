@@ -8,7 +8,7 @@ from twin.job.load import VARIED, Job, layer_of
 from twin.machine.description.config import Machine
 from twin.nc.control.settings import Consulted, ControlSettings, MachineFunction, ToolData
 from twin.nc.dialects import DIALECTS, Dialect
-from twin.nc.path.tool_center import Setup
+from twin.nc.path.tool_center.tool_center import Setup
 from twin.run.layout import Layout, require_axes
 
 

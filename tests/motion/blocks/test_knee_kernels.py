@@ -12,10 +12,12 @@ from motion_programs import Program, duration, mill, run
 from twin.motion.blocks.corner_limit_kernels import CURVE_SHARE
 from twin.motion.blocks.knee_kernels import (
     LONGEST_VIEW,
+    MOST_TOGETHER,
     SHORTEST_SPAN,
     SPANS,
     Chain,
     slow_bending_chords,
+    slow_dense_knees,
 )
 from twin.motion.corner_candidates import PiecesOfChunks
 from twin.motion.limits import MotionLimits
@@ -135,3 +137,53 @@ def test_planned_by_blocks_is_planned_whole(corner: Corner) -> None:
         times.append([phases.end_time for phases in phases_of_pieces(pieces, machine)][-1])
     assert 2.0 * LONGEST_VIEW < 0.02 * 2100 / 2
     assert times[0] == pytest.approx(times[1], rel=1e-9)
+
+
+def gains(velocity: FloatArray, turn: FloatArray, length: FloatArray) -> FloatArray:
+    """What axes gain along each stretch, each knee at no more than its own velocity, by what they may gain."""
+    found = [0.0]
+    for i in range(1, len(length)):
+        for j in range(i + 1, min(len(length), i + MOST_TOGETHER + 1)):
+            fastest = max(velocity[i], velocity[j])
+            if fastest < math.inf:
+                gained = np.minimum(velocity[i : j + 1], fastest) @ turn[i : j + 1]
+                allowed = STEP + 2000.0 * length[i:j].sum() / fastest
+                found.append(float(np.abs(gained).max() / allowed))
+    return np.array(found)
+
+
+@settings(derandomize=True, deadline=None, max_examples=examples(20))
+@given(st.integers(0, 10**6), st.sampled_from([1e-3, 0.02, 0.05]), st.sampled_from([0.0, 0.1]))
+def test_a_stretch_of_knees_gains_one_step_and_what_its_acceleration_gives(
+    seed: int, bend: float, corners: float
+) -> None:
+    rng, count = np.random.default_rng(seed), 45
+    turn, length = rng.normal(size=(count, 4)) * bend, rng.uniform(0.01, 0.2, count)
+    sharp = rng.random(count) < corners
+    turn[sharp] = rng.uniform(-2.0, 2.0, (np.count_nonzero(sharp), 4))
+    turn[rng.random(count) < 0.2] = 0.0
+    with np.errstate(divide="ignore"):
+        alone = (STEP / np.abs(turn)).min(axis=1)
+    alone = np.where(np.isinf(alone), np.inf, np.minimum(alone, 60.0))
+    found = alone.copy()
+    slow_dense_knees(found, turn, length, np.zeros(count), np.full(4, STEP), np.full(4, 2000.0))
+    assert np.all(found <= alone)
+    assert gains(found, turn, length).max() <= 1.0 + 1e-5
+    if corners == 0.0 and gains(alone, turn, length).max() <= 1.0:
+        assert np.array_equal(found, alone)
+
+
+def test_beside_a_corner_chords_are_as_fast_as_a_line() -> None:
+    """Chords rounded to 0.1 µm, there and back at a right angle."""
+    machine = mill(junction_velocity_step=STEP, junction_acceleration_step=400.0)
+    times = []
+    for count in (400, 1):
+        program = Program()
+        program.corner = Corner.EXACT_PATH
+        for x, y in ((16.0, 12.0), (4.0, 28.0)):
+            here = program.position
+            for share in np.arange(1, count + 1) / count:
+                place = here + share * (np.array([x, y, 0.0, 0.0]) - here)
+                program.line(*np.round(place, 4), feed=6000.0)
+        times.append(duration(program, machine))
+    assert times[0] == pytest.approx(times[1], rel=1e-3)

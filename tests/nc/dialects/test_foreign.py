@@ -10,7 +10,7 @@ from tests.nc.running import ROOT, SHIPPED
 from twin.errors import UsageError
 from twin.nc.dialects.foreign import foreign_files, foreign_kind, require_program, require_text
 from twin.nc.dialects.recognition import reading_of
-from twin.nc.text.source import source_from_bytes
+from twin.nc.text.source import source_from_pieces
 
 PROGRAMS = [
     *SHIPPED,
@@ -179,7 +179,7 @@ def test_a_foreign_file_is_named(name: str, data: bytes, tmp_path: Path) -> None
 def test_a_head_that_names_another_control_is_believed(name: str, data: bytes) -> None:
     assert foreign_kind(data) is None
     with pytest.raises(UsageError) as raised:
-        reading_of(source_from_bytes(data, "file.nc"))
+        reading_of(source_from_pieces([data], "file.nc"))
     assert any(each.lower() in str(raised.value).lower() for each in name.split("|"))
 
 

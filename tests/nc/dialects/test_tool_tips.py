@@ -10,7 +10,7 @@ from tests.nc.running import Outcome, run
 from twin.kinematics import tool_direction
 from twin.nc.canonical import Moves, Shape
 from twin.nc.control.settings import ControlSettings
-from twin.nc.path.tool_center import ToolCenter
+from twin.nc.path.tool_center.tool_center import ToolCenter
 
 SETTINGS = settings(on_machine(trunnion()))
 TIP = ToolCenter(on_machine(trunnion()), 0.0, [0.0] * 5)

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from twin.nc.dialects import dialect_named
 from twin.nc.text import lines as room
 from twin.nc.text.lines import Lines
-from twin.nc.text.source import read_source, source_from_bytes, source_from_text
+from twin.nc.text.source import read_source, source_from_pieces, source_from_text
 
 CUTS = st.lists(st.integers(1, 40), max_size=8)
 TEXTS = st.text("GX1 .Ж\r\n\n", max_size=200)
@@ -85,13 +85,13 @@ def test_every_page_is_read_in_the_encoding_of_the_whole(
 
 def test_one_byte_beyond_the_code_page_and_all_bytes_count_as_they_are() -> None:
     data = b"$ \xc6\n" * 20 + b"$ \x98\n"  # 0x98 is nothing in cp1251
-    lines = source_from_bytes(data, "p.nc", dialect_named("gost")).lines
+    lines = source_from_pieces([data], "p.nc", dialect_named("gost")).lines
     assert lines[0] == "$ Æ"
 
 
 @pytest.mark.parametrize("data", [b"", b"\xef\xbb\xbf"])
 def test_nothing_has_no_lines(data: bytes) -> None:
-    assert list(source_from_bytes(data, "p.nc").lines) == []
+    assert list(source_from_pieces([data], "p.nc").lines) == []
 
 
 def test_jumping_about_in_a_packed_program() -> None:

@@ -10,7 +10,7 @@ from twin.nc.dialects import DIALECTS
 from twin.nc.interpreter import Interpretation
 from twin.nc.iso.base import is_ellipsis
 from twin.nc.text.diagnostics import ProgramError
-from twin.nc.text.source import source_from_bytes
+from twin.nc.text.source import source_from_pieces
 
 PIECES = [
     ".",
@@ -41,7 +41,7 @@ def test_a_long_line_is_read_in_time(dialect: str) -> None:
         for end in ("G284 X360", "!", "X..5"):
             text = f"%\nG0 X1\n{piece * 400}{end}\nM30\n".encode()
             running = Interpretation(
-                source_from_bytes(text, "long.nc"), DIALECTS[dialect], SETTINGS
+                source_from_pieces([text], "long.nc"), DIALECTS[dialect], SETTINGS
             )
             with contextlib.suppress(ProgramError):
                 for _ in running.chunks():

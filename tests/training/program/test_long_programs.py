@@ -14,7 +14,7 @@ from twin.training.session.session import Session
 def session_of(program: str) -> Session:
     """The first LinuxCNC scene with another program, without its blank."""
     session = Session(read_scene(scene_path("linuxcnc_round_corners")))
-    session.room.setup.remove_blank()
+    session.room.setup.work = None
     session.room.program.load(program)
     return session
 

@@ -171,7 +171,7 @@ def lived(room: Room, acts: list[tuple[int, dict[str, Any]]]) -> list[tuple[Any,
 @pytest.mark.parametrize("name", ENDLESS)
 def test_going_back_in_an_endless_program_is_the_same_to_the_last_bit(name):
     room = Room(read_scene(scene_path(SCENES[name])))
-    room.setup.remove_blank()
+    room.setup.work = None
     room.program.load(ENDLESS[name])
     start = [(1, {"do": "cycle_start"})]
     lived(room, start + hands(name))

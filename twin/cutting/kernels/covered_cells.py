@@ -110,7 +110,7 @@ class Side(NamedTuple):
     high: int
 
 
-class Outline(NamedTuple):
+class SweptOutline(NamedTuple):
     """The outline of the place that a tool covers along a line.
 
     Attributes:
@@ -130,7 +130,7 @@ class Outline(NamedTuple):
 
 
 @arithmetic_kernel
-def outline_of(scratch: Scratch, a: FloatArray, b: FloatArray, line: int) -> Outline:
+def outline_of(scratch: Scratch, a: FloatArray, b: FloatArray, line: int) -> SweptOutline:
     """The outline of what a tool covers from a to b, in the rows that are cut."""
     before, after = line % 2, (line + 1) % 2
     low_a, low_b, (begin, step) = scratch.low[before], scratch.low[after], scratch.rows
@@ -140,7 +140,7 @@ def outline_of(scratch: Scratch, a: FloatArray, b: FloatArray, line: int) -> Out
         side_of(scratch, a, b, scratch.profile.radius),
         side_of(scratch, a, b, -scratch.profile.radius),
     )
-    return Outline(before, after, right, left, low + (begin - low) % step, high)
+    return SweptOutline(before, after, right, left, low + (begin - low) % step, high)
 
 
 @arithmetic_kernel
@@ -159,7 +159,7 @@ def side_of(scratch: Scratch, a: FloatArray, b: FloatArray, right: float) -> Sid
 
 
 @inlined
-def columns_of(scratch: Scratch, outline: Outline, row: int) -> tuple[int, int]:
+def columns_of(scratch: Scratch, outline: SweptOutline, row: int) -> tuple[int, int]:
     """Columns that the tool covers in a row: the first, and the one after the last."""
     grid, columns = scratch.grid, scratch.heights.shape[1]
     first_a, end_a = span_of(scratch, outline.before, row)

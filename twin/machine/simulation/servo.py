@@ -215,7 +215,7 @@ class Servo:
         self._warned = self._data.warning.number
         self._solver = self._data.qacc_warmstart
         addresses = stepper(self.model, self._data)
-        arrays = (self._ctrl, self._pushed, self._solver)
+        arrays = (self._ctrl, self._pushed)
         self._loop = loop_of(self._drives, addresses, (self._substeps, _STATE), arrays)
         self._physics = Physics(
             addresses, self._ctrl, self._pushed, self._drives, self._substeps, _STATE

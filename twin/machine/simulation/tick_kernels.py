@@ -32,7 +32,6 @@ class Loop(NamedTuple):
         places: Its columns of places, in their order, shape (., k).
         control: The data's controls, shape (nu,).
         pushed: The data's applied forces, shape (nv,).
-        warmstart: Where the data's solver begins, shape (nv,).
     """
 
     stepper: Stepper
@@ -43,7 +42,6 @@ class Loop(NamedTuple):
     places: IntArray
     control: FloatArray
     pushed: FloatArray
-    warmstart: FloatArray
 
 
 class Followed(NamedTuple):
@@ -63,13 +61,13 @@ class Followed(NamedTuple):
 
 
 def loop_of(
-    drives: Drives, stepper: Stepper, steps: tuple[int, int], arrays: tuple[FloatArray, ...]
+    drives: Drives, stepper: Stepper, steps: tuple[int, int], arrays: tuple[FloatArray, FloatArray]
 ) -> Loop:
     """Lay out what the kernels take.
 
     Args:
         steps: Steps in a servo period, and the signature of the state.
-        arrays: Of the data: controls, applied forces, warm start.
+        arrays: Of the data: controls and applied forces.
     """
     floats = [column for column in drives[1:] if column.dtype == np.float64]
     others = [column for column in drives[1:] if column.dtype != np.float64]

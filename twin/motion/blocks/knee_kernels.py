@@ -17,6 +17,15 @@ from twin.nc.canonical import FloatArray, IntArray
 MOST_TOGETHER = 32
 """Borders that are looked at together: of short blocks some milliseconds at the feed."""
 
+NEARLY = 1e-6
+"""Relative step of the search for a velocity from which on the next would be rounding."""
+
+MUCH_SLOWER = 0.5
+"""A knee passed at less than this share of what the stretch about it allows counts at its own velocity, not at the stretch's."""
+
+NARROWINGS = 12
+"""How often the velocity of a stretch with much slower knees is looked for again: each time it falls by less."""
+
 
 @array_kernel
 def slow_dense_knees(
@@ -28,9 +37,10 @@ def slow_dense_knees(
     Each knee alone may step an axis's velocity; along a stretch d between two of them, which takes d / v, an axis
     gains by all its knees S v. That is to be no more than one step and what its acceleration gains
     meanwhile: S v <= step + acceleration d / v. So an arc that is written as chords is driven no faster than as an arc.
+    A corner that is passed far more slowly than the rest of the stretch adds to S v no more than at its own velocity.
 
     Args:
-        velocity: Highest at each border, shape (n,).
+        velocity: Highest at each border, shape (n,); infinite where nothing steps.
         tangent_step: From ``border_steps``.
         length: Of the blocks, shape (n,).
         angle: Sweep of the blocks, 0 for lines, shape (n,) [rad].
@@ -39,26 +49,96 @@ def slow_dense_knees(
     """
     count, axes = tangent_step.shape
     sums = np.zeros(axes)
+    next_rough = _next_rough(velocity, tangent_step, length, velocity_step, acceleration)
     for i in range(1, count):
-        if not 0.0 < velocity[i] < math.inf:
+        if not 0.0 < velocity[i] < math.inf or next_rough[i] > i + MOST_TOGETHER:
             continue
-        way = 0.0
+        way, slowest = 0.0, velocity[i]
         sums[:] = tangent_step[i]
         for j in range(i + 1, min(count, i + MOST_TOGETHER + 1)):
             if angle[j - 1] != 0.0 or velocity[j] == 0.0:
                 break
             way += length[j - 1]
+            sums += tangent_step[j]
+            if velocity[j] == math.inf:
+                continue
+            slowest = min(slowest, velocity[j])
             lowest, fastest = math.inf, max(velocity[i], velocity[j])
             per_fastest = 1.0 / fastest
             for axis in range(axes):
-                sums[axis] += tangent_step[j, axis]
                 turn, step = abs(sums[axis]), velocity_step[axis]
                 gain = acceleration[axis] * way
                 # The root waits for what it lowers.
                 if turn > 0.0 and turn * fastest > step + gain * per_fastest:
-                    gained = math.sqrt(step * step + 4.0 * turn * gain)
-                    lowest = min(lowest, 0.5 * (step + gained) / turn)
+                    lowest = min(lowest, _highest_together(turn, step, gain))
+            if slowest < MUCH_SLOWER * lowest < math.inf:
+                knees = velocity[i : j + 1], tangent_step[i : j + 1]
+                lowest = _highest_beside_corners(knees, way, velocity_step, acceleration, fastest)
             velocity[i], velocity[j] = min(velocity[i], lowest), min(velocity[j], lowest)
+
+
+@array_kernel
+def _next_rough(
+    velocity: FloatArray, tangent_step: FloatArray, length: FloatArray, velocity_step: FloatArray,
+    acceleration: FloatArray,
+) -> IntArray:  # fmt: skip
+    """Up to which border a stretch from each border on gains no more than it may, whatever its velocity, shape (n,).
+
+    It does not where at the highest velocity of all knees the first one is within its step and the acceleration during each
+    block makes up for the knee at its end. So most knees of a smooth curve need no look at their stretches.
+    """
+    count, axes = tangent_step.shape
+    highest = 0.0
+    for i in range(count):
+        if velocity[i] < math.inf:
+            highest = max(highest, velocity[i])
+    found, rough = np.empty(count, np.int64), 2 * count + MOST_TOGETHER
+    for i in range(count - 1, -1, -1):
+        corner, steep = False, False
+        for axis in range(axes):
+            gain = abs(tangent_step[i, axis]) * highest
+            corner |= gain > velocity_step[axis]
+            steep |= i == 0 or gain * highest > acceleration[axis] * length[i - 1]
+        found[i] = i if corner else rough
+        if steep:
+            rough = i
+    return found
+
+
+@kernel
+def _highest_together(turn: float, step: float, gain: float) -> float:
+    """The highest v with turn v <= step + gain / v."""
+    return 0.5 * (step + math.sqrt(step * step + 4.0 * turn * gain)) / turn
+
+
+@kernel
+def _highest_beside_corners(
+    knees: tuple[FloatArray, FloatArray], way: float, velocity_step: FloatArray,
+    acceleration: FloatArray, fastest: float,
+) -> float:  # fmt: skip
+    """The highest velocity along a stretch where knees that must be passed more slowly count at their own.
+
+    Args:
+        knees: The velocities at the stretch's borders, and the steps of their tangents.
+        way: Length of the stretch [mm or deg].
+        velocity_step: As in ``slow_dense_knees``.
+        acceleration: As in ``slow_dense_knees``.
+        fastest: Where the search begins, from above.
+    """
+    velocity, tangent_step = knees
+    for _ in range(NARROWINGS):
+        lowest = fastest
+        for axis in range(len(velocity_step)):
+            gained = 0.0
+            for k in range(len(velocity)):
+                gained += tangent_step[k, axis] * min(fastest, velocity[k])
+            step, gain = velocity_step[axis], acceleration[axis] * way
+            if abs(gained) > (step + gain / fastest) * (1.0 + NEARLY):
+                lowest = min(lowest, _highest_together(abs(gained) / fastest, step, gain))
+        if lowest == fastest:
+            break
+        fastest = lowest
+    return fastest
 
 
 SHORTEST_SPAN, SPANS = 0.05, 7
@@ -66,9 +146,6 @@ SHORTEST_SPAN, SPANS = 0.05, 7
 
 LONGEST_VIEW = 3.0 * SHORTEST_SPAN * 2.0 ** (SPANS - 1)
 """How far along the path the velocity at a knee can depend on other knees [mm or deg]."""
-
-NEARLY = 1e-6
-"""Relative step of the search for a velocity from which on the next would be rounding."""
 
 
 class Chain(NamedTuple):

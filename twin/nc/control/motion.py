@@ -32,7 +32,7 @@ from twin.nc.path.moves import (
 )
 from twin.nc.path.path import Path
 from twin.nc.path.segments import direction_of
-from twin.nc.path.tool_center import ToolCenter
+from twin.nc.path.tool_center.tool_center import ToolCenter
 from twin.nc.text.blocks import Block
 from twin.nc.text.reporter import Reporter
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 from typing import Literal, TypeVar
 
 from twin.nc.canonical import Axes
-from twin.nc.path.tool_center import Setup
+from twin.nc.path.tool_center.tool_center import Setup
 from twin.nc.text.blocks import Block
 
 V = TypeVar("V")

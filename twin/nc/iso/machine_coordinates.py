@@ -12,7 +12,7 @@ from twin.nc.control.control import Control
 from twin.nc.geometry.frame import SHIFTS, Frame
 from twin.nc.geometry.matrices import IDENTITY, Matrix
 from twin.nc.iso.offsets import machine_zero
-from twin.nc.path.tool_center import ToolCenter
+from twin.nc.path.tool_center.tool_center import ToolCenter
 
 
 class PartFrame(NamedTuple):

@@ -13,7 +13,7 @@ from twin.nc.geometry.arcs import direction
 from twin.nc.geometry.matrices import Matrix, applied, transposed
 from twin.nc.geometry.planes import Vector, cross
 from twin.nc.iso.tool_center import begin_tool_center, end_tool_center
-from twin.nc.path.tool_center import ToolCenter
+from twin.nc.path.tool_center.tool_center import ToolCenter
 from twin.nc.text.blocks import Statement
 
 _Z: Vector = (0.0, 0.0, 1.0)

@@ -6,7 +6,7 @@ Decisions:
   rotary axes that carry the part are at the zero of their work offset.
 * F counts the path of the tip in the part; where it rests, the degrees of the rotary axes.
 * Rotary axes go evenly between the angles of two blocks, or turn the tool in the plane of both directions where the
-  control says so (``path.great_circle``); the tip goes straight or on its arc also in rapids.
+  control says so (``path.tool_center.great_circle``); the tip goes straight or on its arc also in rapids.
 """
 
 import math
@@ -14,7 +14,7 @@ import math
 from twin.nc.control.control import Control
 from twin.nc.geometry.matrices import applied
 from twin.nc.geometry.planes import Vector
-from twin.nc.path.tool_center import ToolCenter
+from twin.nc.path.tool_center.tool_center import ToolCenter
 from twin.nc.text.blocks import Word
 
 

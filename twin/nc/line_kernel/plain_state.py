@@ -1,6 +1,5 @@
 """When a control may let plain lines run in the kernel, what it tells it, and what it takes back."""
 
-import enum
 import functools
 import math
 import os
@@ -45,22 +44,6 @@ from twin.nc.text.comments import comment_marks
 
 VARIABLE = "MILL_TWIN_COMPILATION"
 """Environment variable: ``wait`` lets everything wait for the compiler, as tests and benches want it."""
-
-
-class Speed(enum.Enum):
-    """What a run does while there is no compiled form."""
-
-    COLD = "cold"
-    """It never asks for one."""
-    WHEN_READY = "when ready"
-    """It begins without, has it compiled in the background, and changes over when it is there."""
-    HOT = "hot"
-    """It waits for it."""
-
-
-def usual_speed() -> Speed:
-    """``WHEN_READY``, unless the environment wants everybody to wait."""
-    return Speed.HOT if os.environ.get(VARIABLE) == "wait" else Speed.WHEN_READY
 
 
 LineKernel = Callable[[PageColumns, PlainRules, PlainState, MoveRows], int]
@@ -299,7 +282,7 @@ def usual_kernel(lines: int) -> LineKernel | None:
     """The compiled form for a program of so many lines, where it pays; it runs nothing where it is not there."""
     if lines < (PAYS_LOADED if _COMPILER in sys.modules else LONG_PROGRAM):
         return None
-    if usual_speed() is Speed.HOT or lines >= PAYS_COMPILED:
+    if os.environ.get(VARIABLE) == "wait" or lines >= PAYS_COMPILED:
         return compiled_kernel()
     return _WhereCompiled()
 

@@ -64,14 +64,9 @@ def read_source(path: Path, dialect: Language | None = None) -> Source:
     """Read a program as UTF-8, else in the legacy code page of its dialect, if that is known, else byte by byte."""
     try:
         with path.open("rb") as file:
-            return _source_of(iter(lambda: file.read(PAGE), b""), str(path), dialect)
+            return source_from_pieces(iter(lambda: file.read(PAGE), b""), str(path), dialect)
     except OSError as error:
         raise UsageError(f"{path}: cannot be read: {error.strerror}") from error
-
-
-def source_from_bytes(data: bytes, name: str, dialect: Language | None = None) -> Source:
-    """Make a source of bytes that need not come from a file; arguments as in ``read_source``."""
-    return _source_of([data], name, dialect)
 
 
 def source_from_text(text: str, name: str = "program") -> Source:
@@ -80,7 +75,10 @@ def source_from_text(text: str, name: str = "program") -> Source:
     return Source(name, Lines([data]), hashlib.sha256(data).hexdigest())
 
 
-def _source_of(pieces: Iterable[bytes], name: str, dialect: Language | None) -> Source:
+def source_from_pieces(
+    pieces: Iterable[bytes], name: str, dialect: Language | None = None
+) -> Source:
+    """Make a source of the bytes of a file, piece by piece; encodings as in ``read_source``."""
     digest = hashlib.sha256()
 
     def seen() -> Iterator[bytes]:

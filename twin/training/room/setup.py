@@ -73,10 +73,6 @@ class Setup:
         if self.work is not None:
             self.work.mount(self.tables.tool)
 
-    def remove_blank(self) -> None:
-        """Clear the table."""
-        self.work = None
-
     def mount(self, number: int | None) -> None:
         """Put a tool of the scene into the spindle.
 

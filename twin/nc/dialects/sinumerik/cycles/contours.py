@@ -76,11 +76,12 @@ class _Milling:
         depart(control, self.leads[1], None)
         here, safe = control.motion.programmed[across], self.heights.safe
         rise: dict[int, float] = {
+            _Rise.TO_RETURN: self.heights.back,
             _Rise.TO_SAFETY: safe,
             _Rise.BY_SAFETY: here + safe - self.heights.surface,
             _Rise.NOT_AT_ALL: here,
         }
-        go_to_height(control, rise.get(self.rises, self.heights.back))
+        go_to_height(control, rise[self.rises])
         if self.levels:
             self.begin()
             return

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from tests.five_axes import TRAVEL, head_and_table, trunnion
 from twin.kinematics import Kinematics, tool_direction
-from twin.nc.path.orientation import rotary_axes_for
+from twin.nc.path.tool_center.orientation import rotary_axes_for
 
 _CHAINS = st.sampled_from((trunnion(), head_and_table()))
 

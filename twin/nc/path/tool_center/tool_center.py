@@ -10,12 +10,12 @@ import numpy as np
 from twin.kinematics import Kinematics, counted_from, rotated, turns_part
 from twin.nc.canonical import FloatArray
 from twin.nc.geometry.planes import Vector
-from twin.nc.path.great_circle import TwoAxes
 from twin.nc.path.move_columns import Segment
-from twin.nc.path.orientation import rotary_axes_for
-from twin.nc.path.tip_curves import TipCurves
-from twin.nc.path.tip_kinematics import TipKinematics, still
-from twin.nc.path.tip_path import screen_from, vector
+from twin.nc.path.tool_center.great_circle import TwoAxes
+from twin.nc.path.tool_center.orientation import rotary_axes_for
+from twin.nc.path.tool_center.tip_curves import TipCurves
+from twin.nc.path.tool_center.tip_kinematics import TipKinematics, still
+from twin.nc.path.tool_center.tip_path import screen_from, vector
 
 FARTHEST_TURN = 36_000.0
 """What an axis may turn in one move of a tip that is led [deg]: beyond it, it is a slip of the pen."""

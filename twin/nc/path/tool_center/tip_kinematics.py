@@ -6,7 +6,7 @@ import numpy as np
 
 from twin.kinematics import Kinematics, tool_direction, tool_point, turned
 from twin.nc.canonical import FloatArray
-from twin.nc.path.tip_path import PathMotion
+from twin.nc.path.tool_center.tip_path import PathMotion
 from twin.units import DEGREE
 
 _SINGULAR = 1e-6

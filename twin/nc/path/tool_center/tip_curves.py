@@ -15,10 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.nc.canonical import Corner, FloatArray
-from twin.nc.path.great_circle import Turning, TwoAxes
 from twin.nc.path.move_columns import Curve, Segment
-from twin.nc.path.tip_kinematics import TipKinematics
-from twin.nc.path.tip_path import (
+from twin.nc.path.tool_center.great_circle import Turning, TwoAxes
+from twin.nc.path.tool_center.tip_kinematics import TipKinematics
+from twin.nc.path.tool_center.tip_path import (
     PathMotion,
     advance_of,
     hermite,

@@ -12,10 +12,10 @@ from tests.five_axes import head_and_table, on_machine, trunnion
 from twin.kinematics import Kinematics
 from twin.nc.canonical import FloatArray, Motion
 from twin.nc.geometry.planes import Vector
-from twin.nc.path.great_circle import POLE
 from twin.nc.path.move_columns import Segment
-from twin.nc.path.tip_curves import DIRECTION_ERROR
-from twin.nc.path.tool_center import ToolCenter
+from twin.nc.path.tool_center.great_circle import POLE
+from twin.nc.path.tool_center.tip_curves import DIRECTION_ERROR
+from twin.nc.path.tool_center.tool_center import ToolCenter
 
 NOWHERE = 1e-9
 """[mm]."""

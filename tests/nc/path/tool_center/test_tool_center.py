@@ -12,7 +12,7 @@ from tests.five_axes import HEAD_AXES, head_and_table, on_machine, trunnion
 from twin.nc.canonical import Corner, Motion
 from twin.nc.path.move_columns import Segment
 from twin.nc.path.moves import SMALLEST_MOVE
-from twin.nc.path.tool_center import ToolCenter
+from twin.nc.path.tool_center.tool_center import ToolCenter
 
 NOWHERE = 1e-9
 """[mm]."""

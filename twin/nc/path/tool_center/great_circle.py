@@ -17,7 +17,7 @@ import numpy as np
 
 from twin.kinematics import Kinematics, tool_direction, turned
 from twin.nc.canonical import FloatArray
-from twin.nc.path.tip_path import PathMotion
+from twin.nc.path.tool_center.tip_path import PathMotion
 
 POLE = 1e-5
 """What is nearer to the pole is at it, and how far the direction may leave its plane there [rad]."""
