@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from twin.job.job_file import JobFile
     from twin.machine.description.config import Machine
     from twin.serve.agent import Agent
+    from twin.serve.device import Component
     from twin.serve.playback import Playhead, Production
     from twin.training.scene.scene_file import Scene
 
@@ -72,7 +73,6 @@ def serve_job(path: Path, source: Source) -> ExitCode:
     if source.view:
         require_extra("train", "twin serve --view")
     from twin.serve.agent import Agent, Clock
-    from twin.serve.device import device_of
     from twin.serve.playback import Playhead, feed, ticks
 
     with _listen(source.host, source.port) as listener, tempfile.TemporaryDirectory() as folder:
@@ -80,7 +80,7 @@ def serve_job(path: Path, source: Source) -> ExitCode:
         run = Run(prepare(path, dialect=source.dialect, machine=source.machine))
         production = _produce(run, Path(folder))
         machine = run.preparation.machine
-        device = device_of(machine.file.name, machine.axes)
+        device = _device(machine)
         description = _description(source.speed)
         job_tools = run.preparation.job.file.tools
         agent = Agent(device, Clock(source.speed), description, source.buffer, job_tools)
@@ -186,13 +186,12 @@ def _serve_room(
 ) -> None:  # fmt: skip
     """Open a room, tell monitors of its machine, and let senders drive it where there is a line for them."""
     from twin.serve.agent import Agent, Clock
-    from twin.serve.device import device_of
     from twin.serve.grbl.server import GrblLine
     from twin.serve.room import RoomObserver, observe_room
     from twin.training.server.launch import open_room
 
     machine = scene.preparation.machine
-    device = device_of(machine.file.name, machine.axes)
+    device = _device(machine)
     job_tools = scene.preparation.job.file.tools
     agent = Agent(device, Clock(source.speed), description, source.buffer, job_tools)
     observer = RoomObserver(scene.preparation.source.name)
@@ -353,6 +352,20 @@ def _served(
         thread.join()
     if failures:
         raise failures[0]
+
+
+def _device(machine: "Machine") -> "Component":
+    """The machine as monitors see it.
+
+    Raises:
+        ConfigError: Its model is no mill.
+    """
+    from twin.serve.device import device_of
+    from twin.serve.motions import motions_of
+
+    endless = {name for name in machine.axes.names if machine.axis(name).periodic}
+    motions = motions_of(machine.axes, machine.kinematics, endless)
+    return device_of(machine.file.name, machine.axes, motions)
 
 
 def _description(speed: float) -> str:

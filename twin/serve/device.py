@@ -1,10 +1,12 @@
 """What the agent says about a machine: components and data items after MTConnect Part 2."""
 
 import dataclasses
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from types import MappingProxyType
 from typing import Literal
 
 from twin.nc.canonical import Axes
+from twin.serve.motions import Motion
 
 Category = Literal["SAMPLE", "EVENT", "CONDITION"]
 UNAVAILABLE = "UNAVAILABLE"
@@ -41,6 +43,7 @@ class Component:
 
     Attributes:
         element: In the words of the standard, such as ``Linear``.
+        motion: How it moves; None: it is no axis of the machine, or nobody has said.
     """
 
     element: str
@@ -48,6 +51,7 @@ class Component:
     name: str
     items: tuple[DataItem, ...] = ()
     components: tuple["Component", ...] = ()
+    motion: Motion | None = None
 
     def walk(self) -> Iterator["Component"]:
         """This component and all that it consists of, outermost first."""
@@ -56,7 +60,9 @@ class Component:
             yield from component.walk()
 
 
-def device_of(name: str, axes: Axes) -> Component:
+def device_of(
+    name: str, axes: Axes, motions: Mapping[str, Motion] = MappingProxyType({})
+) -> Component:
     """The device that a machine is to a monitor.
 
     Identifiers begin with what they are about: ``X_position``, ``X_position_commanded``, ``X_load``,
@@ -65,8 +71,10 @@ def device_of(name: str, axes: Axes) -> Component:
 
     Args:
         axes: Its axes, in order.
+        motions: How they move, by their names.
     """
-    pairs = zip(axes.names, axes.kinds, strict=True)
+    kinds = zip(axes.names, axes.kinds, strict=True)
+    moved = tuple(_axis(name, kind, motions.get(name)) for name, kind in kinds)
     spindle = Component(
         "Rotary",
         "S",
@@ -117,7 +125,7 @@ def device_of(name: str, axes: Axes) -> Component:
             DataItem("asset_removed", "EVENT", "ASSET_REMOVED"),
         ),
         (
-            Component("Axes", "axes", "base", (), (*(_axis(*pair) for pair in pairs), spindle)),
+            Component("Axes", "axes", "base", (), (*moved, spindle)),
             controller,
             Component("Systems", "systems", "systems", (), (coolant,)),
             Component("Door", "door", "door", (DataItem("door_state", "EVENT", "DOOR_STATE"),)),
@@ -125,7 +133,7 @@ def device_of(name: str, axes: Axes) -> Component:
     )
 
 
-def _axis(name: str, kind: str) -> Component:
+def _axis(name: str, kind: str, motion: Motion | None) -> Component:
     linear = kind == "linear"
     what, units = ("POSITION", "MILLIMETER") if linear else ("ANGLE", "DEGREE")
     return Component(
@@ -137,4 +145,5 @@ def _axis(name: str, kind: str) -> Component:
             DataItem(f"{name}_position_commanded", "SAMPLE", what, units, "COMMANDED"),
             DataItem(f"{name}_load", "SAMPLE", "LOAD", "PERCENT"),
         ),
+        motion=motion,
     )

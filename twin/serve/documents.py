@@ -11,6 +11,8 @@ from twin.version import __version__
 
 VERSION = "2.0"
 _SCHEMA_INSTANCE = "http://www.w3.org/2001/XMLSchema-instance"
+_MACHINE_ZERO = "machine_zero"
+"""Identifier of the coordinate system in which the axes' motions are given."""
 _CATEGORIES = {"SAMPLE": "Samples", "EVENT": "Events", "CONDITION": "Condition"}
 """Of each category the element that holds its observations, in the order of the schema."""
 
@@ -59,6 +61,11 @@ def device_element(device: Component, uuid: str, description: str) -> ET.Element
 
 def _component_element(component: Component) -> ET.Element:
     element = ET.Element(component.element, id=component.id, name=component.name)
+    if any(each.motion for each in component.components):
+        systems = ET.SubElement(ET.SubElement(element, "Configuration"), "CoordinateSystems")
+        ET.SubElement(systems, "CoordinateSystem", id=_MACHINE_ZERO, type="MACHINE")
+    if component.motion:
+        ET.SubElement(element, "Configuration").append(_motion_element(component))
     if component.items:
         items = ET.SubElement(element, "DataItems")
         for item in component.items:
@@ -67,6 +74,27 @@ def _component_element(component: Component) -> ET.Element:
         inner = ET.SubElement(element, "Components")
         inner.extend(_component_element(each) for each in component.components)
     return element
+
+
+def _motion_element(component: Component) -> ET.Element:
+    motion = component.motion
+    assert motion is not None
+    attributes = {"id": _motion_id(component.id), "type": motion.type, "actuation": "DIRECT"}
+    if motion.parent:
+        attributes["parentIdRef"] = _motion_id(motion.parent)
+    element = ET.Element("Motion", attributes | {"coordinateSystemIdRef": _MACHINE_ZERO})
+    if motion.origin:
+        ET.SubElement(element, "Origin").text = _vector(motion.origin)
+    ET.SubElement(element, "Axis").text = _vector(motion.axis)
+    return element
+
+
+def _motion_id(axis: str) -> str:
+    return f"{axis}_motion"
+
+
+def _vector(values: Iterable[float]) -> str:
+    return " ".join(f"{value:g}" for value in values)
 
 
 def _item_attributes(item: DataItem) -> dict[str, str]:

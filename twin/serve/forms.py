@@ -20,10 +20,13 @@ _SINGLE = frozenset(
     {
         "Header", "Description", "Devices", "Components", "DataItems", "Streams", "Samples",
         "Events", "Condition", "Errors", "Assets", "CuttingToolLifeCycle", "CutterStatus", "Measurements",
-        "CuttingItems", "ProgramToolNumber", "ProcessSpindleSpeed",
+        "CuttingItems", "ProgramToolNumber", "ProcessSpindleSpeed", "Configuration", "CoordinateSystems",
+        "Motion", "Origin", "Axis",
     }
 )  # fmt: skip
 """Elements that stand once at most in their parent."""
+_VECTORS = frozenset({"Origin", "Axis"})
+"""Elements whose text is three numbers: a list of them in JSON."""
 _WHOLE_NUMBERS = frozenset(
     {
         "sequence", "instanceId", "bufferSize", "assetBufferSize", "assetCount", "firstSequence",
@@ -104,7 +107,7 @@ def _members(element: ET.Element, *, measured: bool = False) -> dict[str, object
         members["value"] = _number(element.text) if measured else element.text
     children = element.children() if isinstance(element, Holder) else element
     for child in children:
-        inner = _members(child, measured=element.tag == "Samples")
+        inner = _inner(child, element)
         if child.tag in _SINGLE:
             members[child.tag] = inner
         else:
@@ -112,6 +115,12 @@ def _members(element: ET.Element, *, measured: bool = False) -> dict[str, object
             assert isinstance(several, list)
             several.append(inner)
     return members
+
+
+def _inner(child: ET.Element, parent: ET.Element) -> dict[str, object] | list[float]:
+    if child.tag in _VECTORS:
+        return [float(value) for value in (child.text or "").split()]
+    return _members(child, measured=parent.tag == "Samples")
 
 
 def _number(text: str) -> float | str:

@@ -218,10 +218,18 @@ function centre(what) {
   if (what === "part") {
     if (machine.faces_of_part.length) return around_part().getCenter(point);
     const grid = machine.stock?.grid;
-    if (grid) point.set(grid.origin[0] + 0.5 * grid.cell * grid.columns, grid.origin[1] + 0.5 * grid.cell * grid.rows, grid.top);
+    if (!grid) return around_table().getCenter(point);
+    point.set(grid.origin[0] + 0.5 * grid.cell * grid.columns, grid.origin[1] + 0.5 * grid.cell * grid.rows, grid.top);
     return machine.part.localToWorld(point);
   }
   return new THREE.Box3().setFromObject(machine.root).getCenter(point);
+}
+
+/** The box around what would carry a part, and what is clamped to it: where there is no stock, that is looked at. */
+function around_table() {
+  const box = new THREE.Box3();
+  for (const node of machine.part.parent.children) if (node !== machine.part) box.expandByObject(node);
+  return box;
 }
 
 /** The box around a part that is drawn as a mesh. */
