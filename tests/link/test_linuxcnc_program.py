@@ -1,14 +1,14 @@
 """Canonical moves written for LinuxCNC, and found again in its commands."""
 
 import dataclasses
-import shutil
-import subprocess
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from tests.motion.motion_programs import AXES, PERIOD, Program, mill
+from tests.nc.linuxcnc.marks import NEEDS_RS274
+from tests.nc.linuxcnc.oracle import printed_by_rs274
 from twin.columns import join
 from twin.errors import UsageError
 from twin.link.linuxcnc_program import linuxcnc_program
@@ -17,9 +17,6 @@ from twin.motion.planner import plan
 from twin.nc.canonical import Chunk, Corner, Dwell, Function, Shape
 
 pytestmark = pytest.mark.oracle
-
-RS274 = shutil.which("rs274")
-NEEDS_RS274 = pytest.mark.skipif(RS274 is None, reason="rs274 of linuxcnc-uspace is not installed")
 
 
 def part() -> Program:
@@ -87,10 +84,7 @@ def test_linuxcncs_interpreter_reads_the_same_ends_and_turns(tmp_path: Path):
     (tmp_path / "variables.var").write_text("")
     path = tmp_path / "part.ngc"
     path.write_text(linuxcnc_program(program.chunks(), AXES).text)
-    read = subprocess.run(
-        [str(RS274), "-g", "-t", "tools.tbl", "-v", "variables.var", path.name],
-        cwd=tmp_path, capture_output=True, text=True, check=True,
-    ).stdout  # fmt: skip
+    read = printed_by_rs274(tmp_path, "-g", "-t", "tools.tbl", "-v", "variables.var", path.name)
     calls = [
         line.split(maxsplit=2)[2]
         for line in read.splitlines()

@@ -86,19 +86,14 @@ def refuse_taken_functions(job: Job, machine: Machine, dialect: Dialect) -> None
             )
 
 
-_KEYS_OF_SOME = ("decimal_point", "offset_rows", "rollover")
-"""Keys of a job that some dialects read, and the others pass over."""
-
-
 def refuse_unread_keys(job: Job, dialect: Dialect) -> None:
     """Refuse keys of the job itself that its dialect passes over; a file that jobs of several dialects share may have them.
 
     Raises:
         ConfigError: There is one; the message names its file and key.
     """
-    for key in _KEYS_OF_SOME:
-        if key not in job.file.model_fields_set or key in dialect.job_keys:
-            continue
+    keys_of_some = frozenset().union(*(each.job_keys for each in DIALECTS.values()))
+    for key in sorted((keys_of_some - dialect.job_keys) & job.file.model_fields_set):
         if says_itself(job, key):
             place = layer_of(job.layers, key) if job.layers else "job"
             readers = ", ".join(name for name, each in DIALECTS.items() if key in each.job_keys)

@@ -2,7 +2,6 @@
 
 import dataclasses
 import pickle
-import re
 import tempfile
 import weakref
 from collections.abc import Iterable, Iterator
@@ -13,6 +12,7 @@ from twin.cutting.program_summary import PlacedPart, ProgramSummary, SummaryBuil
 from twin.machine.watching.alarms import Alarm
 from twin.machine.watching.travel import soft_limit_alarm
 from twin.nc.canonical import Chunk, FloatArray, Function
+from twin.nc.control.settings import is_work_offset
 from twin.nc.text.diagnostics import Diagnostic
 from twin.run.control_settings import says_itself
 from twin.run.messages import Notice, shown, speed_notice
@@ -172,17 +172,11 @@ def interpret_all(preparation: Preparation, clock: StageClock) -> DryRun:
     )
 
 
-_WORK_OFFSET = re.compile(
-    r"G5[4-9](\.[123])?|G5(0[5-9]|[1-9]\d)|G(54\.1|154) P[1-9]\d*|G159=[1-9]\d*|PRESET\d+|M92"
-)
-"""What controls call their work offsets: a job may list some that one of its programs does not call."""
-
-
 def _never_read(preparation: Preparation) -> Iterator[Notice]:
     """Values that the job itself gives and the program never asks for, work offsets of a real name left out."""
     for table, names in preparation.settings.never_read.items():
         for name in names:
-            if _WORK_OFFSET.fullmatch(name) or not says_itself(preparation.job, f"{table}.{name}"):
+            if is_work_offset(name) or not says_itself(preparation.job, f"{table}.{name}"):
                 continue
             message = f"{table} of the job has {name}, and the program never asks for it"
             yield Notice("value-never-read", 0, message)

@@ -4,13 +4,13 @@ import dataclasses
 import math
 import random
 import re
-import subprocess
 from itertools import product
 from pathlib import Path
 
 import pytest
 
-from tests.nc.linuxcnc.oracle import RS274
+from tests.nc.linuxcnc.marks import NEEDS_RS274
+from tests.nc.linuxcnc.oracle import printed_by_rs274
 from tests.nc.running import ROOT, SETTINGS, good
 from twin.nc.canonical import Axes, Motion
 from twin.nc.dialects import OWN
@@ -95,19 +95,17 @@ def test_the_keys_of_a_machine_file_are_those_of_the_control() -> None:
     assert keys <= known & set(ControlTable.model_fields)
 
 
-@pytest.mark.skipif(RS274 is None, reason="LinuxCNC's rs274 is not installed (linuxcnc-uspace)")
+@NEEDS_RS274
 @pytest.mark.parametrize("kind", KINDS.values())
-def test_inverse_time_has_the_rate_of_linuxcnc_itself(kind: str) -> None:
+def test_inverse_time_has_the_rate_of_linuxcnc_itself(kind: str, tmp_path: Path) -> None:
     path = ROOT / "tests" / "golden" / "linuxcnc" / "feeds" / f"G93_{kind}.nc"
-    done = subprocess.run(
-        [str(RS274), "-g", path], capture_output=True, text=True, check=False, timeout=30
-    )
-    rates = re.findall(r"SET_FEED_RATE\(([0-9.]+)\)", done.stdout)
+    printed = printed_by_rs274(tmp_path, "-g", path)
+    rates = re.findall(r"SET_FEED_RATE\(([0-9.]+)\)", printed)
     moves = good(path.read_text(encoding="utf-8"), "linuxcnc").moves
     assert math.isclose(float(rates[0]), float(moves.feed[0]), abs_tol=1e-4)
 
 
-@pytest.mark.skipif(RS274 is None, reason="LinuxCNC's rs274 is not installed (linuxcnc-uspace)")
+@NEEDS_RS274
 @pytest.mark.parametrize("mode", ["G93", "G94", "G95"])
 def test_a_rotary_axis_a_moves_and_feeds_as_linuxcnc_itself(mode: str, tmp_path: Path) -> None:
     """Lines, arcs and rapids with and without A, seeded: places, kinds and rates; G95 counts a turn of the spindle."""
@@ -123,12 +121,10 @@ def test_a_rotary_axis_a_moves_and_feeds_as_linuxcnc_itself(mode: str, tmp_path:
         )
     path = tmp_path / "part.ngc"
     path.write_text("\n".join([*lines, "M2", ""]))
-    done = subprocess.run(
-        [str(RS274), "-g", path], capture_output=True, text=True, check=False, timeout=30
-    )
+    printed = printed_by_rs274(tmp_path, "-g", path)
     moves = good(path.read_text(), "linuxcnc", axes=MILL_A, periodic=frozenset({"A"})).moves
     rate, row = math.nan, 0
-    for call, text in re.findall(r"(SET_FEED_RATE|STRAIGHT_\w+|ARC_FEED)\(([^)]*)\)", done.stdout):
+    for call, text in re.findall(r"(SET_FEED_RATE|STRAIGHT_\w+|ARC_FEED)\(([^)]*)\)", printed):
         values = [float(each) for each in text.split(",")]
         if call == "SET_FEED_RATE":
             rate = values[0] * (speed if mode == "G95" else 1.0)

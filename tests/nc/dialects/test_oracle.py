@@ -6,19 +6,18 @@ Needs its ``rs274`` (Debian: linuxcnc-uspace) on the path.
 import math
 import random
 import re
-import shutil
-import subprocess
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from tests.nc.linuxcnc.marks import NEEDS_RS274
+from tests.nc.linuxcnc.oracle import printed_by_rs274
 from tests.nc.running import good
 from twin.nc.canonical import Moves, Shape
 from twin.nc.control.settings import ToolData
 
-RS274 = shutil.which("rs274")
-pytestmark = pytest.mark.skipif(RS274 is None, reason="LinuxCNC's rs274 is not installed")
+pytestmark = NEEDS_RS274
 
 PRINTED = 2e-4
 """LinuxCNC prints four decimals, and computes arcs from what it reads."""
@@ -36,12 +35,10 @@ def by_linuxcnc(text: str, folder: Path, tools: str = "") -> Made:
     program, table = folder / "program.ngc", folder / "tools.tbl"
     program.write_text(f"G21 G64\n{text}\nM2\n")
     table.write_text(tools)
-    assert RS274 is not None
-    command = [RS274, "-g", "-t", str(table), str(program)]
-    done = subprocess.run(command, capture_output=True, text=True, check=True, timeout=30)
+    printed = printed_by_rs274(folder, "-g", "-t", table, program)
     made: Made = []
     plane, here = "XY", [0.0, 0.0, 0.0, 0.0]
-    for name, given in _CALL.findall(done.stdout):
+    for name, given in _CALL.findall(printed):
         if name == "SELECT_PLANE":
             plane = given.removeprefix("CANON_PLANE_")
             continue

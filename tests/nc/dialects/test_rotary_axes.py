@@ -2,13 +2,13 @@
 
 import math
 import re
-import subprocess
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from tests.nc.linuxcnc.oracle import RS274
+from tests.nc.linuxcnc.marks import NEEDS_RS274
+from tests.nc.linuxcnc.oracle import printed_by_rs274
 from tests.nc.running import ControlSettings, bad, good
 from twin.nc.canonical import Axes, FeedUnit
 
@@ -93,17 +93,12 @@ WRAPPED = "G21 G90 G94 F500\nG1 X1 A90\nX2 A10\nX3 A-350\nX4 A350\nX5 A-0\nX6 A0
 
 
 @pytest.mark.oracle
-@pytest.mark.skipif(RS274 is None, reason="LinuxCNC's rs274 is not installed (linuxcnc-uspace)")
+@NEEDS_RS274
 def test_wrapped_axes_of_linuxcnc_are_those_of_linuxcnc_itself(tmp_path: Path) -> None:
     (tmp_path / "a.ini").write_text("[RS274NGC]\n[AXIS_A]\nTYPE=ANGULAR\nWRAPPED_ROTARY=1\n")
     (tmp_path / "a.ngc").write_text(WRAPPED)
-    done = subprocess.run(
-        [str(RS274), "-i", tmp_path / "a.ini", "-g", tmp_path / "a.ngc"],
-        capture_output=True, text=True, check=False, timeout=30,
-    )  # fmt: skip
-    expected = [
-        float(each) for each in re.findall(r"FEED\((?:[-0-9.]+, ){3}([-0-9.]+)", done.stdout)
-    ]
+    printed = printed_by_rs274(tmp_path, "-i", "a.ini", "-g", "a.ngc")
+    expected = [float(each) for each in re.findall(r"FEED\((?:[-0-9.]+, ){3}([-0-9.]+)", printed)]
     moves = good(WRAPPED, "linuxcnc", axes=FIVE, module_rotary=True).moves
     assert moves.end[:, 3].tolist() == pytest.approx(expected)
 

@@ -12,6 +12,7 @@ import re
 import shutil
 import subprocess
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -127,6 +128,27 @@ def _folder() -> Path:
 _folder_kept: list[tempfile.TemporaryDirectory[str]] = []
 
 
+def run_rs274(command: Sequence[str | Path], folder: Path) -> subprocess.CompletedProcess[str]:
+    """Run ``rs274`` in a folder, which is its home too: two at once must not share the tool table that is mapped there."""
+    return subprocess.run(
+        command,
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=_LONGEST,
+        errors="replace",
+        cwd=folder,
+        env={**os.environ, "HOME": str(folder)},
+    )
+
+
+def printed_by_rs274(folder: Path, *arguments: str | Path) -> str:
+    """What the installed ``rs274`` prints of a program that it takes."""
+    done = run_rs274([str(RS274), *arguments], folder)
+    done.check_returncode()
+    return done.stdout
+
+
 def by_linuxcnc(text: str) -> Answer:
     """Run a program by ``rs274``."""
     folder = _folder()
@@ -134,17 +156,8 @@ def by_linuxcnc(text: str) -> Answer:
     program.write_text(text)
     parameters.write_text("")
     command = [folder / "rs274", "-g", "-t", folder / "tools.tbl", "-v", parameters, program]
-    own_home = {**os.environ, "HOME": str(folder)}  # the tool table in use lies there
     try:
-        done = subprocess.run(
-            command,
-            capture_output=True,
-            text=True,
-            check=False,
-            timeout=_LONGEST,
-            errors="replace",
-            env=own_home,
-        )
+        done = run_rs274(command, folder)
     except subprocess.TimeoutExpired:
         return Answer([], f"rs274 runs longer than {_LONGEST} s", [])
     said = [each for each in done.stderr.splitlines() if not _CONVERSATION.match(each)]

@@ -2,7 +2,8 @@
 
 import pytest
 
-from tests.nc.linuxcnc.oracle import RS274, by_linuxcnc, by_twin, difference
+from tests.nc.linuxcnc.marks import NEEDS_RS274
+from tests.nc.linuxcnc.oracle import by_linuxcnc, by_twin, difference
 from twin.nc.dialects.linuxcnc.curves import CHORDS_OF_A_PART
 
 _COMPENSATED = "T2 M6\nF100\nG41 G1 X10\nX20\n{}\nX30\nG40 X40\nM2\n"
@@ -108,14 +109,14 @@ def test_moved(text: str) -> None:
 
 
 @pytest.mark.oracle
-@pytest.mark.skipif(RS274 is None, reason="LinuxCNC's rs274 is not installed (linuxcnc-uspace)")
+@NEEDS_RS274
 @pytest.mark.parametrize("text", [*REFUSED, *ENDS])
 def test_as_rs274(text: str) -> None:
     assert not difference(text)
 
 
 @pytest.mark.oracle
-@pytest.mark.skipif(RS274 is None, reason="LinuxCNC's rs274 is not installed (linuxcnc-uspace)")
+@NEEDS_RS274
 @pytest.mark.parametrize(
     "begin", ["G5.2", "G5.2 P2", "G5.2 P2 L4", "G5.2 L2", "G5.2 X1 Y-1 P3", "G5.2 P2\n(and)\n"]
 )

@@ -1,6 +1,7 @@
 """What the interpreter must be given about the machine and the job, without knowing either."""
 
 import dataclasses
+import re
 from collections.abc import Iterator, Mapping
 from typing import Literal, TypeVar
 
@@ -9,6 +10,15 @@ from twin.nc.path.tool_center.tool_center import Setup
 from twin.nc.text.blocks import Block
 
 V = TypeVar("V")
+
+_WORK_OFFSET = re.compile(
+    r"G5[4-9](\.[123])?|G5(0[5-9]|[1-9]\d)|G(54\.1|154) P[1-9]\d*|G159=[1-9]\d*|PRESET\d+|M92"
+)
+
+
+def is_work_offset(name: str) -> bool:
+    """Whether some control calls a work offset so: a job may list some that one of its programs does not call."""
+    return _WORK_OFFSET.fullmatch(name) is not None
 
 
 class Consulted(Mapping[str, V]):
