@@ -1,15 +1,12 @@
 """The chain of joints that a probe tells, against MuJoCo's own bodies."""
 
 import json
-import re
 import xml.etree.ElementTree as ET
-from pathlib import Path
 
 import mujoco
 import numpy as np
 import pytest
 
-from tests.serve.schema_check import Schemas
 from twin.files.shipped import machine_file, machine_names
 from twin.kinematics import turned
 from twin.machine.description.kinematics import SPINDLE_NOSE, TABLE_TOP
@@ -17,7 +14,7 @@ from twin.machine.load import read_machine
 from twin.nc.canonical import FloatArray
 from twin.serve.agent import Agent, Clock
 from twin.serve.device import device_of
-from twin.serve.forms import JSON, XML
+from twin.serve.forms import JSON
 from twin.serve.motions import motions_of
 from twin.units import MM
 
@@ -74,13 +71,8 @@ def test_what_follows_from_the_motions_is_where_mujoco_has_tool_and_table(name: 
         assert carried(start, end) == pytest.approx(expected, abs=1e-3)
 
 
-def test_the_document_is_valid_and_its_json_holds_vectors() -> None:
+def test_the_json_of_motions_holds_vectors() -> None:
     probe = probe_of("mill5")
-    document = XML.written(probe)
-    schemas = Schemas(Path(__file__).with_name("schemas"))
-    assert schemas.complaints(document) == []
-    for valid, broken in ((b'="CONTINUOUS"', b'="ENDLESS"'), (b"<Axis>0 ", b"<Axis>")):
-        assert schemas.complaints(re.sub(valid, broken, document, count=1))
     (device,) = json.loads(JSON.written(probe))["MTConnectDevices"]["Devices"]["Device"]
     (axes,) = device["Components"]["Axes"]
     rotary = {each["id"]: each for each in axes["Components"]["Rotary"]}

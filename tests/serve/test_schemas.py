@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.serve.schema_check import Schemas
+from tests.serve.test_motions import probe_of
 from twin.job.job_file import ToolTable
 from twin.nc.canonical import Axes
 from twin.serve.agent import Agent, Clock, RequestError
@@ -154,3 +155,10 @@ def test_numbers_and_moments_of_a_stream_hang_together() -> None:
     stamps = re.findall(r' timestamp="([^"]*)"', text)
     assert min(stamps) == began
     assert {len(stamp) for stamp in stamps} == {len("2026-01-01T00:00:00.000000Z")}
+
+
+def test_the_motions_of_axes_are_as_the_schemas_want_them(schemas: Schemas) -> None:
+    document = XML.written(probe_of("mill5"))
+    assert schemas.complaints(document) == []
+    for valid, broken in ((b'="CONTINUOUS"', b'="ENDLESS"'), (b"<Axis>0 ", b"<Axis>")):
+        assert schemas.complaints(re.sub(valid, broken, document, count=1))
