@@ -66,7 +66,7 @@ def preset(control: Control) -> None:
     """G92: the place where the machine is gets the coordinates of the block."""
     words = control.take_axis_words()
     if not words:
-        control.fail("preset", "G92 needs the coordinates that this place shall have")
+        control.fail("preset", "G92 needs the coordinates that this place shall have", hint="G92 X0 Y0 makes it X0 Y0")
     set_position(control, words, "preset")
 
 

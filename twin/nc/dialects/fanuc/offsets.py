@@ -116,7 +116,7 @@ def preset(control: Control) -> None:
     refuse_transformed(control, "G92")
     words = control.take_axis_words()
     if not words:
-        control.fail("preset", "G92 needs the coordinates that this place shall have")
+        control.fail("preset", "G92 needs the coordinates that this place shall have", hint="G92 X0 Y0 makes it X0 Y0")
     local = control.frame.shift("increment")
     programmed = list(control.motion.programmed)
     for index, word in words:

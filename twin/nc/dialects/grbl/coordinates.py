@@ -86,7 +86,7 @@ def preset(control: Control) -> None:
     """G92: the place where the machine is gets the coordinates of the block."""
     memory, words = memory_of(control), control.take_axis_words()
     if not words:
-        control.fail("preset", "G92 needs the coordinates that this place shall have")
+        control.fail("preset", "G92 needs the coordinates that this place shall have", hint="G92 X0 Y0 makes it X0 Y0")
     for index, word in words:
         memory.preset[index] += control.motion.programmed[index] - control.axis_value(index, word)
     reframe(control)
