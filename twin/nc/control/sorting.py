@@ -114,7 +114,9 @@ class WordSorter:
             hint = codes.replacements.get(number) or self._codes_near(number)
             self._control.fail("unknown-g", message, word, hint=hint)
         if code.refused:
-            self._control.fail("unsupported-g", f"{word.text} {code.refusal}", word, code.advice or None)
+            self._control.fail(
+                "unsupported-g", f"{word.text} {code.refusal}", word, code.advice or None
+            )
         return code
 
     def _m_code(self, word: Word) -> MCode:
