@@ -15,7 +15,7 @@ from twin.nc.control.settings import ControlSettings
 from twin.nc.control.sorting import Codes, Functions, WordSorter
 from twin.nc.functions import starts_spindle, turns_behind
 from twin.nc.text.blocks import Assignment, Block, Statement, Word
-from twin.nc.text.expressions import ExpressionError
+from twin.nc.text.expressions.expressions import ExpressionError
 from twin.nc.text.source import Source
 
 _IN_INCHES: dict[float, float] = {21: 20, 71: 70, 710: 700}
@@ -177,7 +177,10 @@ class Executor:
             if code.non_modal:
                 restore.append(control.modal.values_of(code.sets))
             if code.exclusive and len(control.block.words) > 1:
-                control.fail("alone", f"{word.text} must stand alone in its block", word)
+                message = f"{word.text} must stand alone in its block"
+                control.fail(
+                    "alone", message, word, "write the other words in a block of their own"
+                )
             self.put_into_force(number_of(word), code)
         return restore
 

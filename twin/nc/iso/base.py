@@ -13,15 +13,15 @@ from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.planes import XY, YZ, ZX
 from twin.nc.iso.circular import BOUNDS, both_senses, iso_arc
 from twin.nc.iso.declared import modal, motion_code, plane_code, replacement
-from twin.nc.iso.fixed_cycles import CYCLES
+from twin.nc.iso.drilling.fixed_cycles import CYCLES
 from twin.nc.iso.offsets import OFFSETS, PRESET
 from twin.nc.iso.tool_change import change_tool_at
 from twin.nc.iso.tool_compensation import COMPENSATION, LENGTH
 from twin.nc.path.feed_rates import FeedMode, feed_per_minute, needs_own_feed
 from twin.nc.path.splines import MOST_CHORDS
-from twin.nc.text.arithmetic import is_whole
 from twin.nc.text.blocks import Statement, Word
-from twin.nc.text.expressions import LARGEST_NUMBER
+from twin.nc.text.expressions.arithmetic import is_whole
+from twin.nc.text.expressions.expressions import LARGEST_NUMBER
 
 
 def straight(
@@ -77,11 +77,15 @@ def excuse_ellipsis(line: str, _previous: str) -> str | None:
     return "ellipsis" if is_ellipsis(line) else None
 
 
+POSITIVE_FEED = "a feed is above 0: F100"
+"""What to write in place of a feed that is none."""
+
+
 def set_feed(control: Control, word: Word) -> None:
     """F: the feed; must be positive."""
     feed = control.number(word)
     if not feed > 0.0:
-        control.fail("feed-range", f"the feed {word.text} is not positive", word)
+        control.fail("feed-range", f"the feed {word.text} is not positive", word, POSITIVE_FEED)
     control.motion.feed = feed
 
 

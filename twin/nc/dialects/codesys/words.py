@@ -6,7 +6,7 @@ from twin.nc.control.codes import WordAction
 from twin.nc.control.control import Control
 from twin.nc.dialects.codesys.actions import axis_named, lead_into_length
 from twin.nc.dialects.codesys.program import memory_of
-from twin.nc.iso.rotary_targets import go_shorter
+from twin.nc.iso.orientation.rotary_targets import go_shorter
 from twin.nc.text.blocks import Word
 
 LARGEST_SWITCH = 32_767
@@ -38,7 +38,7 @@ def set_rapid_feed(control: Control, word: Word) -> None:
     """FF: the feed of G0; 0 gives it back to F."""
     value = control.number(word)
     if value < 0.0:
-        control.fail("feed-range", f"the feed {word.text} is negative", word)
+        control.fail("feed-range", f"the feed {word.text} is negative", word, "write FF100")
     control.motion.rapid_feed = value
 
 

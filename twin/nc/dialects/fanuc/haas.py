@@ -6,13 +6,15 @@ from collections.abc import Mapping
 from twin.nc.control.codes import GCode, MCode
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Decision
-from twin.nc.dialects.fanuc import offsets, programs, tilted_planes, tool_tips, transformations
+from twin.nc.dialects.fanuc import programs
 from twin.nc.dialects.fanuc.codes import GROUPS as FANUC_GROUPS
 from twin.nc.dialects.fanuc.codes import M_CODES, NO_PROBE, codes, passed_over
 from twin.nc.dialects.fanuc.cycles.bolt_holes import bolt_holes
 from twin.nc.dialects.fanuc.decisions import DECISIONS as FANUC_DECISIONS
+from twin.nc.dialects.fanuc.frames import offsets, tilted_planes, transformations
 from twin.nc.dialects.fanuc.memory import HAAS
-from twin.nc.dialects.fanuc.tool_offsets import radius_in_force
+from twin.nc.dialects.fanuc.tools import tool_tips
+from twin.nc.dialects.fanuc.tools.tool_offsets import radius_in_force
 from twin.nc.geometry.planes import XY
 from twin.nc.iso.declared import flow_function, modal, refused, replacement
 from twin.nc.iso.tool_change import change_tool_at
@@ -34,7 +36,8 @@ def circular_pocket(control: Control, *, clockwise: bool) -> None:
     first, last, step = control.take("I"), control.take("K"), control.take("Q")
     depth, count = control.take("Z"), control.take("L")
     if first is None:
-        control.fail("cycle-word", "a circular pocket needs I, the radius of its circle")
+        message = "a circular pocket needs I, the radius of its circle"
+        control.fail("cycle-word", message, hint="G12 I10. Z-5. D1 F100. mills one of radius 10")
     if control.path.compensation.in_force:
         message = (
             "a circular pocket takes the radius of D itself, and radius compensation is in force"

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from twin.nc.control.control import Control
 from twin.nc.dialects.sinumerik.cycles.calls import CycleCall, CycleForm, require_no_compensation
-from twin.nc.iso.hole import turn_spindle
+from twin.nc.iso.drilling.hole import turn_spindle
 from twin.nc.iso.plane_moves import at_feed, go_to_height
 
 _HEIGHTS = "RTP RFP SDIS DP DPR"
@@ -46,7 +46,8 @@ def heights_of(call: CycleCall) -> Heights:
         call.refuse("unsupported-word", "drills along the axis across the plane alone (AXN)")
     call.need("RTP", "RFP")
     if "DP" not in call.values and "DPR" not in call.values:
-        call.refuse("cycle-word", "needs DP, the bottom, or DPR, the depth")
+        hint = f"{call.statement.keyword}(10, 0, 2, -20): RTP, RFP, SDIS, DP"
+        call.refuse("cycle-word", "needs DP, the bottom, or DPR, the depth", hint)
     back, above, bottom = call.length("RTP"), call.length("RFP"), call.length("DP")
     if "DP" not in call.values:
         bottom = above - abs(call.length("DPR"))
