@@ -136,14 +136,16 @@ def open_room(
 @contextlib.contextmanager
 def prompt_threads() -> Iterator[None]:
     """Let no thread wait long for another, nor all of them for the search through modules' objects."""
-    turns_s = sys.getswitchinterval()
+    turns_s, threshold = sys.getswitchinterval(), gc.get_threshold()
     sys.setswitchinterval(TURNS_S)
+    gc.set_threshold(COLLECT_AFTER)
     gc.collect()
     gc.freeze()
     try:
         yield
     finally:
         gc.unfreeze()
+        gc.set_threshold(*threshold)
         sys.setswitchinterval(turns_s)
 
 
