@@ -19,7 +19,8 @@ from twin.web.server import LOOPBACK, WebServer, require_three
 
 TURNS_S = 0.0005
 """How long a thread keeps the interpreter while another waits for it [s]: a press must not wait."""
-
+COLLECT_AFTER = 100_000
+"""New objects between two searches for garbage, which then takes some milliseconds."""
 
 WARMING: tuple[tuple[Who, dict[str, object]], ...] = (
     ("operator", {"do": "override", "dial": "feed", "percent": 50}),
