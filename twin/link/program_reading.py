@@ -18,7 +18,7 @@ from twin.errors import ExitCode, TwinError, UsageError
 from twin.job.job_file import JobFile
 from twin.link.tables import LETTERS, offsets_text, tools_text
 from twin.nc.canonical import Axes, FloatArray
-from twin.nc.text.diagnostics import Diagnostic
+from twin.nc.text.diagnostics.diagnostics import Diagnostic
 
 DIALECT = "gost"
 """The dialect in which the program is written down: plain ISO codes, arcs by their centre."""
