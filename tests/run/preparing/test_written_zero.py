@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.run.preparing.test_assumed_job import raw
 
+from tests.run.preparing.test_assumed_job import raw
 from twin.nc.canonical import FloatArray, concatenate
 from twin.run.dry_run.dry_run import interpret_all
 from twin.run.preparing.assumed_job import text_beside, with_assumptions
