@@ -27,6 +27,7 @@ def control_settings(
     control = machine.file.control
     for name, values in job.file.offsets.items():
         require_axes(values, machine, f"offsets.{name}")
+    require_axes(job.file.written_zero, machine, "written_zero")
     return ControlSettings(
         axes=machine.axes,
         periodic=frozenset(name for name in machine.axes.names if machine.axis(name).periodic),
@@ -43,6 +44,7 @@ def control_settings(
         offset_rows=job.file.offset_rows,
         setup=_setup(job, machine, layout),
         machine_zero=_machine_zero(job, machine),
+        written_zero=Consulted(job.file.written_zero) if job.file.written_zero else None,
         variables=Consulted(job.file.variables),
         m_functions={
             int(code[1:]): MachineFunction(declared.meaning, declared.dwell)
