@@ -49,7 +49,7 @@ from twin.nc.path.moves import (
     line_length,
     only_turns,
 )
-from twin.nc.text.arithmetic import is_whole
+from twin.nc.text.expressions.arithmetic import is_whole
 from twin.nc.text.line_reader import LARGEST_LABEL
 from twin.units import LARGEST_COORDINATE
 
