@@ -6,6 +6,7 @@ from twin.errors import ConfigError
 from twin.job.job_file import JobFile
 from twin.job.load import VARIED, Job, layer_of
 from twin.machine.description.config import Machine
+from twin.nc.control.dialect import JobKey
 from twin.nc.control.settings import Consulted, ControlSettings, MachineFunction, ToolData
 from twin.nc.dialects import DIALECTS, Dialect
 from twin.nc.path.tool_center.tool_center import Setup
@@ -94,8 +95,7 @@ def refuse_unread_keys(job: Job, dialect: Dialect) -> None:
     Raises:
         ConfigError: There is one; the message names its file and key.
     """
-    keys_of_some = frozenset().union(*(each.job_keys for each in DIALECTS.values()))
-    for key in sorted((keys_of_some - dialect.job_keys) & job.file.model_fields_set):
+    for key in sorted((set(JobKey) - dialect.job_keys) & job.file.model_fields_set):
         if says_itself(job, key):
             place = layer_of(job.layers, key) if job.layers else "job"
             readers = ", ".join(name for name, each in DIALECTS.items() if key in each.job_keys)
