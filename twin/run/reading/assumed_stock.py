@@ -26,7 +26,7 @@ _MOST_CLIPPED = 0.5
 """Share of the stock's area that may be taken from it so that no rapid plunges into it; beyond that there is none."""
 
 _N = r"([0-9]+(?:\.[0-9]*)?)"
-_NUMBER = r"\s*[:=-]?\s*([0-9]+(?:\.[0-9]*)?)"
+_NUMBER = rf"\s*[:=-]?\s*{_N}"
 _STOCK_WORDS = (
     r"(?:STOCK(?:/BLOCK)?|BLOCK SIZE|BLANK|PART SIZE|MATERIAL(?: SIZE)?|WORKPIECE SIZE|ROHTEIL)"
 )
@@ -42,7 +42,7 @@ _STOCKS = (
     re.compile(rf"\bQUADER:\s*QX{_N}\s*QY{_N}\s*QZ{_N}"),
 )
 _ROUND = re.compile(
-    rf"(?:STOCK|BLANK|BAR|MATERIAL|ROHTEIL)\b[^0-9]{{0,20}}(?:[ØΦ⌀]|\bDIA(?:METER)?\b\.?|\bD)\s*[=:]?\s*{_N}\s*(?:MM)?\s*(?:[X*]|L(?:ENGTH)?|H(?:EIGHT)?)[ =:]*{_N}"
+    rf"(?:STOCK|BLANK|BAR|MATERIAL|ROHTEIL)\b[^0-9\n]{{0,20}}(?:[ØΦ⌀]|\bDIA(?:METER)?\b\.?|\bD)\s*[=:]?\s*{_N}\s*(?:MM)?\s*(?:[X*]|L(?:ENGTH)?|H(?:EIGHT)?)[ =:]*{_N}"
 )
 """Diameter and length of a round blank."""
 
