@@ -21,7 +21,7 @@ from twin.nc.interpreter import Interpretation
 from twin.nc.text.diagnostics.diagnostics import ProgramError
 from twin.run.preparing.control_settings import IGNORED_AT_ZERO
 from twin.run.preparing.layout import lay_out
-from twin.run.preparing.preparation import Preparation, anywhere, prepare_job
+from twin.run.preparing.preparation import Preparation, anywhere, prepare, prepare_job
 from twin.run.reading.assumed_heights import MARGIN, Cuts, top_of_stock, turns_about_x
 from twin.run.reading.assumed_reading import AssumedReading
 from twin.run.reading.assumed_stock import assumed_stock, bar_ends
@@ -51,6 +51,31 @@ class AssumedJob:
     def tables(self) -> dict[str, object]:
         """The keys of the job file."""
         return tomllib.loads(self.text)
+
+
+def prepare_run(
+    path: Path, *, dialect: str | None = None, machine: str | None = None, strict: bool = False
+) -> tuple[Preparation, AssumedJob | None]:
+    """All that the run of a job or a program needs; a program without a job gets the one that is assumed for it.
+
+    Args:
+        dialect: Overrides the job's dialect.
+        machine: Overrides the job's machine; a path is relative to the working folder.
+
+    Returns:
+        What is run, and the job that was assumed, if one was.
+
+    Raises:
+        UsageError: A file is missing or wrong, or the dialect cannot be recognised.
+        ProgramError: A program without a job is wrong.
+    """
+    preparation = prepare(path, dialect=dialect, machine=machine, strict=strict, assuming=True)
+    if preparation.job.path is not None:
+        return preparation, None
+    try:
+        return with_assumptions(preparation, machine=machine, strict=strict)
+    except ProgramError as error:
+        raise read_as(error, preparation) from None
 
 
 def with_assumptions(
