@@ -347,6 +347,9 @@ class JobFile(Table):
     part_zero: dict[str, float] = Field(default_factory=dict)
     """Program zero in machine coordinates, by axis [mm or deg]; an axis left out: on the table's
     centre line, at the height of the stock's top face, other axes at 0."""
+    written_zero: dict[str, float] = Field(default_factory=dict)
+    """What the program itself writes into the control's table for the work offset that lies at part zero (G10 L2,
+    #5221, $P_UIFR), by axis, in coordinates of the machine that it was written for [mm or deg]; none: in this one's."""
     start: dict[str, float] = Field(default_factory=dict)
     """Where the axes are when the program starts, program coordinates [mm or deg]."""
     stock: StockTable | None = None
