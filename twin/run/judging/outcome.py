@@ -213,7 +213,7 @@ def _notices(
         yield Notice("no-stock", watch.spindle_line, message)
     if floats is not None:
         yield Notice("stock-floats", 0, f"nothing carries the stock: {floats}")
-    yield from tolerance_notices(job.tolerance, len(preparation.source.lines))
+    yield from tolerance_notices(job.tolerance, len(preparation.source.lines), preparation.machine)
 
 
 def _unsimulated_notices(
