@@ -146,15 +146,33 @@ def tolerance_notices(tolerance: ToleranceTable, lines: int, machine: Machine) -
             yield Notice("tolerance-lines", lines, message)
     axes = (machine.axis(name) for name in machine.axes.names)
     stops_mm = math.hypot(*(axis.following_error_limit for axis in axes if axis.kind == "linear"))
-    allowed = {
-        f"blocks[{number}].contour_um": part.contour_um
-        for number, part in enumerate(tolerance.blocks)
+    allowed = {key: getattr(tolerance, key) for key in _FOLLOWED}
+    allowed |= {
+        f"blocks[{n}].contour_um": part.contour_um for n, part in enumerate(tolerance.blocks)
     }
-    allowed |= {"contour_um": tolerance.contour_um, "rapid_contour_um": tolerance.rapid_contour_um}
     for key, limit_um in allowed.items():
         if limit_um is not None and limit_um > 1e3 * stops_mm > 0.0:
             message = (
                 f"tolerance.{key} allows {1e-3 * limit_um:,.15g} mm, and a following error of "
                 f"{stops_mm:.3g} mm in all axes together stops the machine: the tolerance fails nothing"
+            )
+            yield Notice("tolerance-too-wide", 0, message)
+
+
+_FOLLOWED = ("contour_um", "rapid_contour_um", "circular_deviation_um", "following_um")
+"""Tolerances of what following errors make."""
+
+
+def nominal_notices(job: JobFile) -> Iterator[Notice]:
+    """Tolerances of the part that are wider than its stock."""
+    if job.nominal is None or job.stock is None:
+        return
+    widest_mm = max(job.stock.extent)
+    for key in ("gouge_um", "standing_um"):
+        limit_um = getattr(job.nominal, key)
+        if limit_um is not None and limit_um > 1e3 * widest_mm:
+            message = (
+                f"nominal.{key} allows {1e-3 * limit_um:,.15g} mm, and the stock measures {widest_mm:g} mm: "
+                "the tolerance fails nothing"
             )
             yield Notice("tolerance-too-wide", 0, message)
