@@ -378,6 +378,27 @@ def test_text_before_the_first_percent_is_passed_over(tmp_path: Path) -> None:
     assert next(each.code for each in interpretation.diagnostics) == "before-tape-start"
 
 
+def test_a_set_up_sheet_before_a_klartext_program_is_passed_over(tmp_path: Path) -> None:
+    path = tmp_path / "part.h"
+    begin = "( Set-up sheet\n(   Tool: L X+10\n(\n"
+    path.write_text(f"{begin}BEGIN PGM A MM\nTOOL CALL 1 Z S2000\nL X+10 F100\nEND PGM A MM\n")
+    interpretation = prepare(path, assuming=True).interpretation()
+    assert sum(len(chunk.moves) for chunk in interpretation.chunks()) == 1
+    assert [each.code for each in interpretation.diagnostics] == ["before-program"]
+    path.write_text("L X+5 F100\n" + path.read_text().removeprefix(begin))
+    assert sum(len(chunk.moves) for chunk in prepare(path).interpretation().chunks()) == 2
+
+
+def test_no_dialect_is_offered_that_refuses_the_same_line(tmp_path: Path) -> None:
+    path = tmp_path / "part.nc"
+    path.write_text("G21 G90\n(PART (REV A).MCX)\nG0 X1.\nM30\n")
+    with pytest.raises(ProgramError) as raised:
+        prepare(path, assuming=True)
+    assert raised.value.diagnostic.hint == (
+        "close the first comment before, or leave the inner ( ) out"
+    )
+
+
 def test_a_program_that_a_router_alone_reads_is_its(tmp_path: Path) -> None:
     """K of an arc in X Y, as an old post writes it: LinuxCNC refuses it, Grbl passes over it."""
     arc = "G17 G90\nG21\nG0 X0. Y0. Z1.\nG1 Z-1. F90.\nG2 X4. Y0. I2. J0. K0.0 F200.\nM30\n"

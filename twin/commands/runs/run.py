@@ -50,7 +50,7 @@ def run_and_print(
         elif save_job is not None:
             raise UsageError(f"--save-job: {preparation.job.path} is the program's job already")
         run = Run(preparation)
-    with without_verdict(folder), run_folder(folder, RESULT_FILES):
+    with run_folder(folder, RESULT_FILES):
         with shown_progress() as progress:
             outcome = run.execute(folder, progress)
             if video and outcome.samples:

@@ -12,7 +12,7 @@ from twin.nc.text.blocks import Block
 V = TypeVar("V")
 
 _WORK_OFFSET = re.compile(
-    r"G5[4-9](\.[123])?|G5(0[5-9]|[1-9]\d)|G(54\.1|154) P[1-9]\d*|G159=[1-9]\d*|PRESET\d+|M92"
+    r"G5[4-9](\.[123])?|G5(0[5-9]|[1-9]\d)|G(54\.1|154) P[1-9]\d*|G159=[1-9]\d*|(PRESET|DATUM)\d+|M92"
 )
 
 
