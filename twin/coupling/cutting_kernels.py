@@ -21,7 +21,7 @@ from twin.coupling.turning_tool import (
     time_of_tooth,
     turn_spindle,
 )
-from twin.cutting.kernels.covered_cells import Marks
+from twin.cutting.kernels.covered_cells import Cells, Marks
 from twin.cutting.kernels.sweep import ALL_ROWS, sweep
 from twin.cutting.kernels.tooth_forces import tooth_forces
 from twin.cutting.kernels.walls import Material, leave_walls, lose_trace, no_trace
@@ -52,6 +52,7 @@ class Cut(NamedTuple):
     """A tool in a height map, which is cut, and where the part is."""
 
     material: Material
+    cells: Cells
     tool: TurningTool
     place: Place
 
@@ -173,7 +174,7 @@ def _look(period: float, cut: Cut, memory: Memory, swept: Swept) -> None:
         return
     material, cutter = cut.material, cut.tool.cutter
     sweep(
-        material.heights, material.grid, tips, cutter.profile,
+        cut.cells, tips, cutter.profile,
         swept.sums, swept.marks, numbers[CutNumber.STOOD] > 0.0, ALL_ROWS,
     )  # fmt: skip
     numbers[CutNumber.STOOD] = 1.0

@@ -47,13 +47,15 @@ class HeightMapProcess(CuttingProcess):
         self._swept = nothing_swept()
 
     def _cut_along(self, physics: Physics, turning: Turning, tool: TurningTool, rows: Rows) -> None:
-        material = Material(self.material.heights, self.material.grid, self.walls)
+        cells = self.material.cells
+        material = Material(cells.heights, cells.grid, self.walls)
+        place = self._place._replace(length_difference=turning.length_difference)
         follow_cutting(
             physics,
             rows.controls,
             rows.states,
             turning.speed / SECONDS_PER_MINUTE,
-            Cut(material, tool, self._place._replace(length_difference=turning.length_difference)),
+            Cut(material, cells, tool, place),
             self._memory,
             self._swept,
             rows.loads,
