@@ -22,7 +22,7 @@ from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Axes
 from twin.nc.dialects import DIALECTS
 from twin.recording.reader import RecordingHeader, Samples, open_recording, record
-from twin.run.preparation import prepare
+from twin.run.preparing.preparation import prepare
 from twin.toolpath.part_frame import PartFrame
 from twin.training.scene.scene_file import read_scene
 

@@ -13,7 +13,7 @@ from benches.row import Row, median_cpu_seconds
 from twin.motion.limits import MotionLimits
 from twin.motion.planner import plan_phases
 from twin.nc.canonical import Chunk
-from twin.run.preparation import Preparation, prepare
+from twin.run.preparing.preparation import Preparation, prepare
 
 CAMOTICS_LINES, CAMOTICS_ARCS = 78e3, 2.5e3
 """What its planner was once measured at, on short lines and on arcs [blocks/s]: it is not run here."""

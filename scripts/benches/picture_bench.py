@@ -9,20 +9,20 @@ from pathlib import Path
 import numpy as np
 from benches.row import REPEATS, Row, median_cpu_seconds
 
-from twin.cutting.height_map import blank
-from twin.cutting.sweeping import sweep_lines
+from twin.cutting.heights.height_map import blank
+from twin.cutting.heights.sweeping import sweep_lines
 from twin.cutting.tools import profile
 from twin.cutting.tridexel import engagement
 from twin.cutting.tridexel.blanks import box
-from twin.cutting.tridexel.moving_solid import Poses
-from twin.cutting.tridexel.solids import cutting_edge
+from twin.cutting.tridexel.solids.moving_solid import Poses
+from twin.cutting.tridexel.solids.solids import cutting_edge
 from twin.files.shipped import resource_root
 from twin.job.job_file import StockTable, ToolTable, VideoTable
 from twin.nc.canonical import FloatArray
 from twin.recording.reader import open_recording
 from twin.render.film import film
 from twin.render.scene.stage import Scene
-from twin.run.preparation import prepare
+from twin.run.preparing.preparation import prepare
 from twin.run.progress import no_progress
 from twin.run.replay import scene_of
 from twin.run.run import Run

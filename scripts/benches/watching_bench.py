@@ -18,7 +18,7 @@ from twin.files.shipped import resource_root
 from twin.machine.simulation.simulate import simulate
 from twin.motion.setpoints.sampling import settle
 from twin.run.pipeline import cutting_forces, planned
-from twin.run.preparation import prepare
+from twin.run.preparing.preparation import prepare
 from twin.run.progress import no_progress
 from twin.run.run import Run
 

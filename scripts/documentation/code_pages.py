@@ -8,7 +8,7 @@ import twin.errors
 from twin.command_line.streams import CLOSED_PIPE
 from twin.commands.explain import codes
 from twin.errors import ExitCode
-from twin.nc.text.explain import findings
+from twin.nc.text.diagnostics.explain import findings
 
 _LEAD = (
     "A message begins with its place and its code: `part.nc:4:1: error soft-limit: ...`. `twin explain CODE` "

@@ -21,7 +21,7 @@ from twin.job.job_file import VideoTable
 from twin.recording.reader import open_recording
 from twin.render.film import film
 from twin.render.still import Shot, stills
-from twin.run.preparation import prepare
+from twin.run.preparing.preparation import prepare
 from twin.run.progress import no_progress
 from twin.run.replay import scene_of
 from twin.run.run import Run

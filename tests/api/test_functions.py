@@ -9,10 +9,10 @@ import twin.run.run
 from tests.check.test_check_runs import write_job
 from twin import api
 from twin.api import functions
-from twin.commands.compare import compare_and_print
-from twin.commands.export import export_and_print
+from twin.commands.runs.compare import compare_and_print
+from twin.commands.runs.export import export_and_print
 from twin.errors import ExitCode, UsageError
-from twin.nc.text.diagnostics import ProgramError
+from twin.nc.text.diagnostics.diagnostics import ProgramError
 
 
 def test_a_program_from_text_to_difference(tmp_path: Path, capsys: pytest.CaptureFixture[str]):

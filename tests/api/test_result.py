@@ -8,7 +8,7 @@ import pytest
 import twin
 from twin.api.result import NoSuchColumnError
 from twin.errors import UsageError
-from twin.nc.text.diagnostics import ProgramError
+from twin.nc.text.diagnostics.diagnostics import ProgramError
 
 JOB = twin.Job(
     program="G90 G1 X10. Y4. F600.\nG1 Z-1. F300.\nG1 X20.\nM30",

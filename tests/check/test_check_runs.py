@@ -15,7 +15,7 @@ from twin.check.outcome import CheckOutcome
 from twin.check.program import file_of
 from twin.check.runner import check_all, check_program
 from twin.check.task import CheckSettings
-from twin.commands.check import CODE_QUALITY_FILE, check_and_print
+from twin.commands.programs.check import CODE_QUALITY_FILE, check_and_print
 from twin.errors import ExitCode, UsageError
 from twin.job.job_file import JobFile
 from twin.job.load import Job, load_job
@@ -213,7 +213,7 @@ def test_an_interrupted_check_keeps_what_was_complete(
         yield outcome_of(jobs[0])
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("twin.commands.check.run_tasks", interrupted)
+    monkeypatch.setattr("twin.commands.programs.check.run_tasks", interrupted)
     with pytest.raises(KeyboardInterrupt):
         check_and_print(
             jobs, settings=CheckSettings(), junit=tmp_path / "a.xml", json_file=tmp_path / "a.json",
@@ -230,7 +230,9 @@ def test_outputs_that_cannot_be_written_are_told_before_anything_runs(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
     job = str(write_job(tmp_path, "part"))
-    monkeypatch.setattr("twin.commands.check.run_tasks", lambda *_, **__: pytest.fail("it ran"))
+    monkeypatch.setattr(
+        "twin.commands.programs.check.run_tasks", lambda *_, **__: pytest.fail("it ran")
+    )
     for junit, json_file in ((tmp_path, None), (None, Path(job) / "a.json")):
         with pytest.raises(OSError, match=str(tmp_path)):
             check_and_print(
@@ -242,7 +244,9 @@ def test_json_alone_stands_on_the_standard_output(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ):
     job = str(write_job(tmp_path, "part"))
-    monkeypatch.setattr("twin.commands.check.run_tasks", lambda *_, **__: [outcome_of(job)])
+    monkeypatch.setattr(
+        "twin.commands.programs.check.run_tasks", lambda *_, **__: [outcome_of(job)]
+    )
     check_and_print([job], settings=CheckSettings(), json_file=Path("-"), environment={})
     shown = capfd.readouterr()
     assert json.loads(shown.out)["programs"][0]["program"] == job

@@ -14,7 +14,7 @@ from twin.check.task import CheckSettings, Variant
 from twin.check.variation import variants
 from twin.errors import ExitCode, UsageError
 from twin.files.toml import changed
-from twin.run.preparation import prepare
+from twin.run.preparing.preparation import prepare
 
 JOB = Path(__file__).parents[2] / "programs" / "mefi" / "helix.toml"
 

@@ -15,7 +15,7 @@ from tests.check.test_check_runs import PROGRAM, write_job
 from twin.check.runner import check_program
 from twin.check.task import CheckSettings
 from twin.cli import app
-from twin.commands.export import export_and_print
+from twin.commands.runs.export import export_and_print
 from twin.files.toml import read_toml
 from twin.job.job_file import BaselineTable, ToleranceTable
 from twin.version import __version__

@@ -9,8 +9,8 @@ import pytest
 from tests.loaded_kernels import loaded
 from twin.commands import compilation
 from twin.files.shipped import resource_root
-from twin.run.outcome import Outcome
-from twin.run.preparation import prepare
+from twin.run.judging.outcome import Outcome
+from twin.run.preparing.preparation import prepare
 from twin.run.progress import no_progress
 from twin.run.run import Run
 

@@ -14,7 +14,7 @@ from twin.cutting.forces.materials import materials
 from twin.errors import UsageError
 from twin.job.job_file import ToleranceTable
 from twin.machine.watching.alarms import AlarmCode
-from twin.nc.text.explain import findings
+from twin.nc.text.diagnostics.explain import findings
 
 PACKAGE = Path(twin.commands.explain.__file__).parents[1]
 ROOMS = ("check", "commands", "compare", "run", "machine")

@@ -17,7 +17,7 @@ from twin.compare.verdict import Reason
 from twin.errors import UsageError
 from twin.job.job_file import BaselineTable
 from twin.nc.canonical import Axes, Chunk, Dwell, Function, Moves
-from twin.nc.text.diagnostics import Diagnostic, ProgramError
+from twin.nc.text.diagnostics.diagnostics import Diagnostic, ProgramError
 
 CORNER = np.array([50.0, 0, 0, 0])
 ROWS = [

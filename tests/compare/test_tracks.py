@@ -7,7 +7,7 @@ import pytest
 
 from tests.compare.paths import AXES, UP, arc, line, moves_of
 from tests.compare.runs import FRAME, PART_ZERO, samples, setpoints
-from twin.commands.export import csv_header, export_csv
+from twin.commands.runs.export import csv_header, export_csv
 from twin.compare.track_comparison import compare_tracks
 from twin.compare.tracks import read_track
 from twin.errors import RecordingError, UsageError

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from examples import examples
 
-from twin.cutting.height_map import HeightMap
+from twin.cutting.heights.height_map import HeightMap
+from twin.cutting.heights.outline import Outline
+from twin.cutting.heights.sweeping import Rectangle, sweep_lines
 from twin.cutting.kernels.covered_cells import Marks
 from twin.cutting.kernels.simplify import simplify
 from twin.cutting.kernels.sweep import Removal
 from twin.cutting.kernels.wall_distance import no_walls_known
-from twin.cutting.outline import Outline
-from twin.cutting.sweeping import Rectangle, sweep_lines
 from twin.cutting.tools import Profile
 from twin.nc.canonical import FloatArray
 

@@ -13,7 +13,7 @@ from documentation.recording_page import recording_page
 from documentation.repository_pages import PAGES, with_links
 
 from twin.recording.reader import open_recording
-from twin.run.preparation import prepare
+from twin.run.preparing.preparation import prepare
 from twin.run.progress import no_progress
 from twin.run.run import Run
 

@@ -19,6 +19,7 @@ import pytest
 from command_line import Finished, Twin
 
 from tests.machine.machine_fixtures import three_axis_machine
+from tests.nc.running import good
 from twin.columns import join
 from twin.files.shipped import machine_file
 from twin.link.component import COMPILER, is_installed, module_folder
@@ -68,6 +69,17 @@ G0 Z5
 M2
 """
 SPINDLE = "G21 G90 G61\nG0 X1\nS1000 M3\nG1 X2 F600\nM2\n"
+MOVES = (
+    "G1 X3 Y4",
+    "G1 X2 C5",
+    "G1 C5",
+    "G2 X4 Y0 I2 J0",
+    "G2 X4 Y0 Z-1 I2 J0",
+    "G2 X4 Y0 C5 I2 J0",
+)
+_RAMPS_S = 0.02
+"""More than starting and stopping add to a move of 13 mm/s [s]."""
+FEEDS = {"G93": "F120", "G94": "F600", "G95": "F0.6"}
 RAPID = "G21 G90\nG0 Z5\nG0 X200\nM2\n"
 LONG = "G21 G90 G64\nG1 Z5 F600\n" + "G1 X20 F600\nG1 X0\n" * 30 + "M2\n"
 
@@ -130,6 +142,25 @@ def test_a_sound_machine_runs_a_program_and_can_be_played_back(folder: Path, twi
     assert corner[:2] == pytest.approx([15.0, 0.0], abs=0.1)
     with open_scene(folder / "out" / "recording.h5") as (scene, _):
         assert len(scene.recording) == told["samples"]
+
+
+def test_each_move_takes_the_time_that_its_f_says(folder: Path, twin: Twin):
+    """Every kind of move with every mode of feed, by LinuxCNC's planner, which stops between."""
+    text = "G21 G91 G61 G17\nM3 S1000\n" + "".join(
+        f"{mode} {move} {feed}\nG4 P0.1\n" for mode, feed in FEEDS.items() for move in MOVES
+    )
+    text += "G20 G95 F0.02\nG1 X0.2\nG4 P0.1\nG94 G1 C5 F600\nM2\n"
+    ran = linked(twin, folder, text, "--machine", "mill4")
+    assert ran.code in (0, 1), ran.stderr
+    with open_recording(folder / "out" / "recording.h5") as recording:
+        setpoint = join(list(recording.chunks())).setpoint
+    steps = np.diff(setpoint.position, axis=0, prepend=setpoint.position[:1])
+    moving = np.any(np.abs(steps) > STEPS["setpoint/position"], axis=1)
+    moves = good(text, "linuxcnc").moves
+    assert len(moves) == len(FEEDS) * len(MOVES) + 2
+    for line, seconds in zip(moves.line, moves.length / moves.feed * 60.0, strict=True):
+        taken = np.count_nonzero(moving & (setpoint.line == line)) * 0.001
+        assert taken == pytest.approx(seconds, abs=_RAMPS_S), line
 
 
 @pytest.mark.parametrize(("waits", "least_s", "most_s"), [("true", 0.5, 0.8), ("false", 0.0, 0.3)])

@@ -10,7 +10,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from twin.commands.link import _explain_blending
+from twin.commands.live.link import _explain_blending
 from twin.errors import UsageError
 from twin.link import linuxcnc
 from twin.link.headless_screen import FailedError, Operator

@@ -9,9 +9,9 @@ from command_line import Twin
 
 from twin.check.runner import check_program
 from twin.check.task import CheckSettings
-from twin.commands.pictures import ALARMS_OF_CONTACT
+from twin.commands.runs.pictures import ALARMS_OF_CONTACT
 from twin.files.shipped import resource_root
-from twin.run.preparation import prepare
+from twin.run.preparing.preparation import prepare
 from twin.run.progress import no_progress
 from twin.run.run import Run
 

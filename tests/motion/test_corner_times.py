@@ -13,7 +13,7 @@ from twin.machine.load import read_machine
 from twin.motion.limits import MotionLimits
 from twin.motion.planner import plan_phases
 from twin.nc.canonical import Chunk, Corner, FloatArray
-from twin.run.preparation import prepare
+from twin.run.preparing.preparation import prepare
 
 PROGRAMS = resource_root("programs")
 JOBS = sorted(path for path in PROGRAMS.rglob("*.toml") if "alarms" not in path.parts)

@@ -10,8 +10,8 @@ from motion_programs import mill
 from twin.columns import join
 from twin.motion.planner import plan, plan_phases
 from twin.motion.setpoints.setpoints import Setpoints
-from twin.run.dry_run import interpreted
-from twin.run.preparation import Preparation, prepare
+from twin.run.dry_run.dry_run import interpreted
+from twin.run.preparing.preparation import Preparation, prepare
 
 NIMBLE = mill(
     velocity=np.full(4, 1e4), acceleration=np.full(4, 1e7), jerk=np.full(4, 1e13),

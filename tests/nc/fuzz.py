@@ -17,7 +17,7 @@ from twin.nc.control.dialect import Dialect
 from twin.nc.control.settings import ToolData
 from twin.nc.dialects import DIALECTS
 from twin.nc.interpreter import Interpretation
-from twin.nc.text.diagnostics import ProgramError
+from twin.nc.text.diagnostics.diagnostics import ProgramError
 from twin.nc.text.source import source_from_pieces
 
 FUZZ_SETTINGS = dataclasses.replace(

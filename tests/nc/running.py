@@ -10,9 +10,9 @@ from twin.nc.control.settings import ControlSettings, ToolData
 from twin.nc.dialects import dialect_named
 from twin.nc.interpreter import Interpretation
 from twin.nc.jsonl import records
-from twin.nc.text.diagnostics import Diagnostic, ProgramError
+from twin.nc.text.diagnostics.diagnostics import Diagnostic, ProgramError
 from twin.nc.text.source import source_from_text
-from twin.run.preparation import prepare_job
+from twin.run.preparing.preparation import prepare_job
 
 ROOT = Path(__file__).resolve().parents[2]
 SHIPPED = sorted(

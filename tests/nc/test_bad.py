@@ -14,9 +14,9 @@ from tests.nc.running import ROOT, SETTINGS
 from twin.nc.control.settings import ToolData
 from twin.nc.dialects import dialect_named
 from twin.nc.interpreter import Interpretation
-from twin.nc.text.diagnostics import ProgramError
-from twin.nc.text.explain import findings
-from twin.nc.text.reporter import NOTICE
+from twin.nc.text.diagnostics.diagnostics import ProgramError
+from twin.nc.text.diagnostics.explain import findings
+from twin.nc.text.diagnostics.reporter import NOTICE
 from twin.nc.text.source import source_from_pieces
 
 WITH_TOOL = dataclasses.replace(SETTINGS, tools={1: ToolData(5.0, 60.0)})

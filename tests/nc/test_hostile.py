@@ -10,7 +10,7 @@ from tests.nc import fuzz
 from tests.nc.running import SETTINGS, bad
 from twin.nc.dialects import DIALECTS, dialect_named
 from twin.nc.interpreter import Interpretation
-from twin.nc.text.diagnostics import ProgramError
+from twin.nc.text.diagnostics.diagnostics import ProgramError
 from twin.nc.text.source import read_source, source_from_pieces
 
 MEBIBYTE = 2**20

@@ -11,7 +11,7 @@ from twin.nc.control.settings import ToolData
 from twin.nc.dialects import dialect_named
 from twin.nc.interpreter import Interpretation
 from twin.nc.jsonl import json_lines, text_lines
-from twin.nc.text.diagnostics import ProgramError
+from twin.nc.text.diagnostics.diagnostics import ProgramError
 from twin.nc.text.source import source_from_text
 
 TEXT = "N5 G0 X1 C5\nM3 S5\nN7 G1 X5 Y2 F100\nG2 X15 I5 J0\nG4 P1\nG1 C90\nX1e5\n"

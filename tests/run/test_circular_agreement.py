@@ -8,7 +8,7 @@ import pytest
 from twin.files.shipped import machine_file
 from twin.machine.circle.circular_test import circular_test
 from twin.machine.load import read_machine
-from twin.run.preparation import prepare
+from twin.run.preparing.preparation import prepare
 from twin.run.progress import no_progress
 from twin.run.run import Run
 

@@ -15,7 +15,7 @@ from twin.coupling.cutting_process import CuttingProcess
 from twin.cutting.height_map_material import HeightMapMaterial
 from twin.files.shipped import resource_root
 from twin.nc.interpreter import Interpretation
-from twin.run.preparation import prepare
+from twin.run.preparing.preparation import prepare
 from twin.run.progress import no_progress
 from twin.run.run import Run
 

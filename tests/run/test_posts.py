@@ -9,8 +9,8 @@ from typing import NamedTuple
 import pytest
 
 from twin.errors import UsageError
-from twin.run.assumed_job import with_assumptions
-from twin.run.preparation import prepare
+from twin.run.preparing.assumed_job import with_assumptions
+from twin.run.preparing.preparation import prepare
 
 
 class Post(NamedTuple):

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from tests.command_line import Twin
-from twin.commands.run import run_and_print
+from twin.commands.runs.run import run_and_print
 from twin.errors import ExitCode
 from twin.run.run_folder import VERDICT_FILES
 

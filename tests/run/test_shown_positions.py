@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from twin.run.preparation import prepare
+from twin.run.preparing.preparation import prepare
 from twin.run.progress import no_progress
 from twin.run.run import Run
 

@@ -6,8 +6,8 @@ import pytest
 
 from twin import processor
 from twin.files.shipped import resource_root
-from twin.run.outcome import Outcome
-from twin.run.preparation import prepare
+from twin.run.judging.outcome import Outcome
+from twin.run.preparing.preparation import prepare
 from twin.run.progress import no_progress
 from twin.run.run import Run
 

@@ -17,7 +17,7 @@ import pytest
 
 import twin
 import twin.processor
-from twin.commands import run as command
+from twin.commands.runs import run as command
 from twin.files.shipped import resource_root
 from twin.recording.writer import RecordingWriter
 

@@ -16,7 +16,7 @@ import pytest
 
 from twin.machine.watching.alarms import Alarm
 from twin.recording.reader import open_recording
-from twin.run.preparation import prepare
+from twin.run.preparing.preparation import prepare
 from twin.run.progress import no_progress
 from twin.run.run import Run
 from twin.serve.agent import Agent, Clock

@@ -5,7 +5,7 @@ import pytest
 from panel_player import browser
 from test_view import JOB, PROGRAM
 
-from twin.run.preparation import prepare
+from twin.run.preparing.preparation import prepare
 from twin.run.run import Run
 from twin.view.app import open_view
 from twin.view.live_run import LiveRun, Moment

@@ -9,9 +9,9 @@ import pytest
 import trimesh
 from panel_player import browser
 
-from twin.commands.run import run_and_print
-from twin.commands.view import report_of, view
-from twin.cutting.patches import LEVELS
+from twin.commands.live.view import report_of, view
+from twin.commands.runs.run import run_and_print
+from twin.cutting.heights.patches import LEVELS
 from twin.cutting.recut import recut
 from twin.errors import UsageError
 from twin.run.replay import open_scene

@@ -9,7 +9,7 @@ from twin.columns import join
 from twin.errors import UsageError
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Moves, concatenate
-from twin.run.dry_run import interpreted
+from twin.run.dry_run.dry_run import interpreted
 from twin.run.pipeline import planned
 from twin.run.progress import no_progress
 from twin.run.results import RESULT_FILES, write_results

@@ -9,8 +9,8 @@ from pathlib import Path
 
 from twin.job.job_file import JobFile
 from twin.job.load import Job
-from twin.run.assumed_job import with_assumptions
-from twin.run.preparation import Preparation, prepare, prepare_job
+from twin.run.preparing.assumed_job import with_assumptions
+from twin.run.preparing.preparation import Preparation, prepare, prepare_job
 
 Program = str | Path | JobFile
 """A path, the name of a shipped program (``mefi/helix``), NC text, or a job."""

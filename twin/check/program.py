@@ -18,11 +18,11 @@ from twin.files.toml_lines import place_of_key
 from twin.job.load import Job, load_job
 from twin.machine.watching.alarms import Alarm
 from twin.nc.canonical import Chunk
-from twin.nc.text.diagnostics import Diagnostic, ProgramError
+from twin.nc.text.diagnostics.diagnostics import Diagnostic, ProgramError
 from twin.recording.reader import LONGEST_TEXT
+from twin.run.judging.outcome import Outcome
 from twin.run.messages import alarm_diagnostic, reason_text
-from twin.run.outcome import Outcome
-from twin.run.preparation import Preparation, prepare
+from twin.run.preparing.preparation import Preparation, prepare
 from twin.run.progress import no_progress
 from twin.run.run import Run
 

@@ -43,7 +43,7 @@ def linuxcnc(
     ] = False,
 ) -> None:
     """LinuxCNC drives the twin in lock-step: its planner, the twin's drives and axes."""
-    from twin.commands.link import link_linuxcnc
+    from twin.commands.live.link import link_linuxcnc
 
     code = link_linuxcnc(
         out, headless, opened=opened, machine=machine, dialect=dialect, period_us=period_us, display=display,

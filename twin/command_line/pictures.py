@@ -86,7 +86,7 @@ def render(
     machine: MachineOption = None,
 ) -> None:
     """Film a recording or a job, draw stills, write and measure the part."""
-    from twin.commands.render import Wanted, render_and_print
+    from twin.commands.runs.render import Wanted, render_and_print
 
     wanted = Wanted(
         video={

@@ -24,7 +24,7 @@ def interpret(
     strict: StrictOption = False,
 ) -> None:
     """Print what the interpreter made of a program, before any machine moves."""
-    from twin.commands.interpret import print_interpretation
+    from twin.commands.programs.interpret import print_interpretation
 
     print_interpretation(program, dialect=dialect, machine=machine, form=form, strict=strict)
 
@@ -38,7 +38,7 @@ def plan(
     strict: StrictOption = False,
 ) -> None:
     """Print the cycle time and where it is lost, and draw feed and axis speeds."""
-    from twin.commands.plan import plan_and_print
+    from twin.commands.programs.plan import plan_and_print
 
     plan_and_print(job, out, dialect=dialect, machine=machine, form=form, strict=strict)
 
@@ -56,7 +56,7 @@ def run(
     ] = None,
 ) -> None:
     """Interpret, plan, simulate, compare and cut; write the results and print the verdict."""
-    from twin.commands.run import run_and_print
+    from twin.commands.runs.run import run_and_print
 
     code = run_and_print(
         job, out, dialect=dialect, machine=machine, video=video, strict=strict, save_job=save_job
@@ -71,7 +71,7 @@ def init(
     force: Annotated[bool, typer.Option("--force", help="Replace a job file.")] = False,
 ) -> None:
     """Write a first job file beside a program: stock and tools as the program tells them."""
-    from twin.commands.init import init_and_print
+    from twin.commands.programs.init import init_and_print
 
     code = init_and_print(program, dialect=dialect, machine=machine, force=force)
     raise typer.Exit(code)

@@ -61,7 +61,7 @@ def train(
     cluster: ClusterOption = None,
 ) -> None:
     """Run a machine, and wreck it, in a browser: the training room."""
-    from twin.commands import train as room
+    from twin.commands.live import train as room
 
     if list_scenes:
         room.print_scenes(language)
@@ -94,7 +94,7 @@ def view(
     ] = 0,
 ) -> None:
     """Look at a run in a browser: play, scrub, by line, with its contour error and its part."""
-    from twin.commands.view import view as show
+    from twin.commands.live.view import view as show
 
     raise typer.Exit(show(recording, port))
 
@@ -146,7 +146,7 @@ def serve(
     machine: MachineOption = None,
 ) -> None:
     """Tell monitors over MTConnect of a machine that runs a job again and again, or of a room."""
-    from twin.commands import serve as agent
+    from twin.commands.live import serve as agent
 
     source = agent.Source(
         host=host, port=port, speed=speed, buffer=buffer, dialect=dialect, machine=machine,

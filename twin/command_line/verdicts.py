@@ -51,7 +51,7 @@ def check(
     """Run many programs without pictures; one table, exit 1 if any falls short."""
     from twin.check.dependents import dependents
     from twin.check.task import CheckSettings
-    from twin.commands.check import check_and_print, write_forms
+    from twin.commands.programs.check import check_and_print, write_forms
 
     settings = CheckSettings(
         dialect=dialect, machine=machine, strict=strict, baseline=baseline,
@@ -98,7 +98,7 @@ def sweep(
 ) -> None:
     """Run a job for every combination of values; exit 1 if any falls short."""
     from twin.check.task import CheckSettings
-    from twin.commands.sweep import sweep_and_print
+    from twin.commands.runs.sweep import sweep_and_print
 
     code = sweep_and_print(
         job,
@@ -129,7 +129,7 @@ def compare(
     ] = None,
 ) -> None:
     """Compare two recordings, or a recording with a log of the real machine."""
-    from twin.commands.compare import compare_and_print
+    from twin.commands.runs.compare import compare_and_print
 
     code = compare_and_print(
         first, second, form=form, period_s=period, offset_s=offset, tolerance=tolerance,
@@ -156,7 +156,7 @@ def export(
     ] = None,
 ) -> None:
     """Write a recording as CSV, units in the header; or a machine for other simulators."""
-    from twin.commands.export import export_and_print, export_unit
+    from twin.commands.runs.export import export_and_print, export_unit
 
     if (recording is None) == (fmu is None):
         raise UsageError("give a recording.h5, or --fmu and a machine")

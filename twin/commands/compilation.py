@@ -28,10 +28,10 @@ from twin.job.job_file import StockTable
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray, Motion
 from twin.processor import available_cores
-from twin.run.assumed_job import with_assumptions
-from twin.run.dry_run import InterpretedProgram, interpreted
+from twin.run.dry_run.dry_run import InterpretedProgram, interpreted
 from twin.run.pipeline import ProgramMotion, cutting_forces
-from twin.run.preparation import prepare
+from twin.run.preparing.assumed_job import with_assumptions
+from twin.run.preparing.preparation import prepare
 from twin.run.progress import no_progress
 from twin.run.run import Run
 

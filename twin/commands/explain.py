@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from twin.cutting.forces.materials import materials
 from twin.errors import UsageError
-from twin.nc.text.explain import Explanation, findings
+from twin.nc.text.diagnostics.explain import Explanation, findings
 
 _FILE = Path(__file__).with_name("codes.toml")
 

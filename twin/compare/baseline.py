@@ -34,7 +34,7 @@ from twin.errors import UsageError
 from twin.files.atomic import complete_or_absent
 from twin.job.job_file import BaselineTable
 from twin.nc.canonical import Axes, Chunk
-from twin.nc.text.diagnostics import ProgramError
+from twin.nc.text.diagnostics.diagnostics import ProgramError
 
 MOST_LISTED = 50
 """Blocks that are named one by one; how many more differ is reported behind them."""

@@ -4,7 +4,7 @@ from twin.coupling.cutting_kernels import Cut, Place, follow_cutting, nothing_sw
 from twin.coupling.cutting_process import CuttingProcess, Operation, Rows, Turning
 from twin.coupling.turning_tool import TurningTool
 from twin.cutting.forces.materials import Kienzle
-from twin.cutting.height_map import HeightMap, raw_walls
+from twin.cutting.heights.height_map import HeightMap, raw_walls
 from twin.cutting.kernels.walls import Material
 from twin.machine.description.machine_file import SpindleTable
 from twin.machine.simulation.process import Physics

@@ -23,7 +23,7 @@ from twin.coupling.turning_tool import (
 )
 from twin.cutting.tridexel.dexels import Dexels, Lattice
 from twin.cutting.tridexel.edge_forces import EdgeScratch, Leaning, edge_forces, empty_scratch
-from twin.cutting.tridexel.moving_solid import Poses
+from twin.cutting.tridexel.solids.moving_solid import Poses
 from twin.cutting.tridexel.sweep import Sum, sweep
 from twin.kinematics import Kinematics
 from twin.machine.simulation.drive_kernels import hold_push

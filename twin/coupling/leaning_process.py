@@ -10,7 +10,7 @@ from twin.cutting.tools import profile
 from twin.cutting.tridexel.dexels import TriDexel
 from twin.cutting.tridexel.engagement import longest_step
 from twin.cutting.tridexel.normals import MOST_TOOLS
-from twin.cutting.tridexel.solids import cutting_edge
+from twin.cutting.tridexel.solids.solids import cutting_edge
 from twin.machine.description.machine_file import SpindleTable
 from twin.machine.simulation.process import Physics
 from twin.nc.canonical import FloatArray

@@ -8,7 +8,7 @@ from twin.coupling.cutting_process import CuttingProcess, Operation, Turning
 from twin.coupling.height_map_process import HeightMapProcess
 from twin.coupling.leaning_process import LeaningProcess
 from twin.cutting.forces.materials import kienzle
-from twin.cutting.height_map import HeightMap, blank
+from twin.cutting.heights.height_map import HeightMap, blank
 from twin.cutting.program_summary import ProgramSummary
 from twin.cutting.tools import default_cell
 from twin.cutting.tridexel import blanks

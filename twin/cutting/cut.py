@@ -6,22 +6,22 @@ from typing import Literal
 
 import numpy as np
 
-from twin.cutting.cut_log import HEIGHT_MAP, TRI_DEXEL, CutLog, CutResult
-from twin.cutting.cut_watch import CutWatch
-from twin.cutting.events import CutEvent, EventLog, StockWatch, Stretches
 from twin.cutting.forces.direction import tool_force
 from twin.cutting.forces.materials import kienzle
 from twin.cutting.forces.mean_force import cutting_load, cutting_width
-from twin.cutting.height_map import BoolArray, HeightMap, blank
 from twin.cutting.height_map_material import HeightMapMaterial
+from twin.cutting.heights.height_map import BoolArray, HeightMap, blank
+from twin.cutting.heights.sweeping import Rectangle
 from twin.cutting.kernels.sweep import Removal
 from twin.cutting.material import AIR_MM, EDGE, Head, Material, Points
-from twin.cutting.stock_contact import above_edge
-from twin.cutting.sweeping import Rectangle
 from twin.cutting.tool_motion import ToolMotion, by_edge, tool_motion
 from twin.cutting.tools import Profile, default_cell, profile
 from twin.cutting.tridexel import blanks
 from twin.cutting.tridexel.material import TriDexelMaterial
+from twin.cutting.watching.cut_log import HEIGHT_MAP, TRI_DEXEL, CutLog, CutResult
+from twin.cutting.watching.cut_watch import CutWatch
+from twin.cutting.watching.events import CutEvent, EventLog, StockWatch, Stretches
+from twin.cutting.watching.stock_contact import above_edge
 from twin.errors import ConfigError
 from twin.job.job_file import StockTable, ToolTable
 from twin.nc.canonical import FloatArray

@@ -4,7 +4,9 @@ from pathlib import Path
 
 import numpy as np
 
-from twin.cutting.height_map import HeightMap
+from twin.cutting.heights.height_map import HeightMap
+from twin.cutting.heights.part import part_picture, write_glb, write_stl
+from twin.cutting.heights.sweeping import Rectangle, sweep_lines, union
 from twin.cutting.kernels.covered_cells import Marks
 from twin.cutting.kernels.simplify import simplify
 from twin.cutting.kernels.sweep import Removal
@@ -18,10 +20,8 @@ from twin.cutting.material import (
     Head,
     Points,
 )
-from twin.cutting.part import part_picture, write_glb, write_stl
-from twin.cutting.stock_contact import StockContact
-from twin.cutting.sweeping import Rectangle, sweep_lines, union
 from twin.cutting.tools import Profile
+from twin.cutting.watching.stock_contact import StockContact
 from twin.job.job_file import ToolTable
 from twin.nc.canonical import FloatArray, IntArray
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from twin.columns import Columns
-from twin.cutting.height_map import BoolArray
+from twin.cutting.heights.height_map import BoolArray
 from twin.cutting.material import Points
 from twin.nc.canonical import FloatArray, IntArray
 from twin.recording.reader import Samples

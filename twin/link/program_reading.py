@@ -18,7 +18,7 @@ from twin.errors import ExitCode, TwinError, UsageError
 from twin.job.job_file import JobFile
 from twin.link.tables import LETTERS, offsets_text, tools_text
 from twin.nc.canonical import Axes, FloatArray
-from twin.nc.text.diagnostics import Diagnostic
+from twin.nc.text.diagnostics.diagnostics import Diagnostic
 
 DIALECT = "gost"
 """The dialect in which the program is written down: plain ISO codes, arcs by their centre."""
@@ -37,6 +37,8 @@ _SPINDLE = {"START_SPINDLE_CLOCKWISE": "M3", "START_SPINDLE_COUNTERCLOCKWISE": "
 _REFUSED = ("PROBE", "TAP", "NURBS", "SYNCH")
 """Parts of the names of calls for which the twin has nothing: probing, tapping, threads."""
 _FULL_TURN = 2.0 * np.pi
+_PRINTED = 1e-4
+"""To what a length is printed, in the program's unit: two that differ by no more are one."""
 
 
 class LinuxcncProgramError(TwinError):
@@ -134,6 +136,7 @@ class _Writer:
         self._offsets = {"g5x": np.zeros(9), "g92": np.zeros(9), "tool": np.zeros(9)}
         self._turn = np.eye(2)
         self._plane, self._feed, self._speed = "G17", 0.0, 0.0
+        self._feed_mode, self._turns = "G94", False
         self._at = np.zeros(len(axes))
         self._begun = False
 
@@ -169,15 +172,22 @@ class _Writer:
         self._plane = _PLANES[arguments.strip()]
 
     def feed(self, _call: str, _arguments: str, values: list[float]) -> None:
-        self._feed = values[0] * self._unit
+        self._feed = values[0]
+
+    def feed_mode(self, _call: str, _arguments: str, values: list[float]) -> None:
+        self._feed_mode = "G95" if values[-1] else "G94"
 
     def speed(self, _call: str, _arguments: str, values: list[float]) -> None:
         self._speed = values[-1]
+        if self._turns:
+            self._write(f"S{_number(self._speed)}")
 
     def spindle(self, call: str, _arguments: str, _values: list[float]) -> None:
+        self._turns = True
         self._write(f"{_SPINDLE[call]} S{_number(self._speed)}")
 
     def spindle_stop(self, _call: str, _arguments: str, _values: list[float]) -> None:
+        self._turns = False
         if self._begun:
             self._write("M5")
 
@@ -237,9 +247,17 @@ class _Writer:
         target = " ".join(
             f"{name}{_number(value)}" for name, value in zip(self._axes.names, end, strict=True)
         )
-        rate = f" F{_number(self._feed)}" if feed and self._feed > 0.0 else ""
+        rate = (
+            f" {self._feed_mode} F{_number(self._rate(end))}" if feed and self._feed > 0.0 else ""
+        )
         self._write(f"{words} {target}{rate}")
         self._at = end
+
+    def _rate(self, end: FloatArray) -> float:
+        """F towards an end; degrees are converted as lengths where they count per revolution."""
+        moved = np.abs(end - self._at)[~self._axes.rotary()]
+        linear = np.any(moved > _PRINTED * self._unit)
+        return self._feed * (self._unit if linear or self._feed_mode == "G95" else 1.0)
 
     def _write(self, text: str) -> None:
         self._lines += [""] * (self._line - 1 - len(self._lines))
@@ -267,6 +285,7 @@ _ACTIONS = {
     "SET_XY_ROTATION": _Writer.rotation,
     "SELECT_PLANE": _Writer.plane,
     "SET_FEED_RATE": _Writer.feed,
+    "SET_FEED_MODE": _Writer.feed_mode,
     "SET_SPINDLE_SPEED": _Writer.speed,
     "START_SPINDLE_CLOCKWISE": _Writer.spindle,
     "START_SPINDLE_COUNTERCLOCKWISE": _Writer.spindle,

@@ -28,9 +28,9 @@ from twin.link.place import Places
 from twin.machine.simulation.live import LiveMachine
 from twin.machine.watching.alarms import Alarm, AlarmCode
 from twin.nc.canonical import FloatArray, concatenate
-from twin.run.dry_run import InterpretedProgram
-from twin.run.outcome import Outcome
-from twin.run.preparation import Preparation
+from twin.run.dry_run.dry_run import InterpretedProgram
+from twin.run.judging.outcome import Outcome
+from twin.run.preparing.preparation import Preparation
 from twin.run.progress import Progress
 from twin.run.run import Run
 

@@ -3,9 +3,9 @@
 import re
 
 from twin.nc.control.dialect import Dialect
-from twin.nc.text.diagnostics import ProgramError
+from twin.nc.text.diagnostics.diagnostics import ProgramError
+from twin.nc.text.diagnostics.reporter import Reporter
 from twin.nc.text.lexer import Lexer
-from twin.nc.text.reporter import Reporter
 from twin.nc.text.source import Source
 
 _SUBPROGRAM = re.compile(r"^\s*(?:[O:%]|L\d|#?SUB|\(SUB|N\d+\s*$)", re.IGNORECASE)

@@ -13,7 +13,7 @@ from twin.nc.length_calls import LengthCalls
 from twin.nc.line_kernel.plain_state import LineKernel, LineRuns, usual_kernel
 from twin.nc.path.move_columns import CHUNK, Refused
 from twin.nc.text.blocks import Block
-from twin.nc.text.diagnostics import Diagnostic, ProgramError
+from twin.nc.text.diagnostics.diagnostics import Diagnostic, ProgramError
 from twin.nc.text.source import Source
 
 _NO_COMPENSATION = 40

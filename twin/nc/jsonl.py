@@ -26,7 +26,7 @@ from twin.nc.canonical import (
     Shape,
 )
 from twin.nc.interpreter import Interpretation
-from twin.nc.text.diagnostics import Diagnostic, ProgramError
+from twin.nc.text.diagnostics.diagnostics import Diagnostic, ProgramError
 
 Record = dict[str, Any]
 

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 from PIL import Image, ImageDraw
 
-from twin.cutting.colours import deviation_colours
-from twin.cutting.height_map import HeightMap
+from twin.cutting.heights.colours import deviation_colours
+from twin.cutting.heights.height_map import HeightMap
 from twin.cutting.measuring.inspection import Inspection
 from twin.cutting.measuring.measured_part import MeasuredPart
 from twin.render.drawing.canvas import quality_named

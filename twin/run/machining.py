@@ -6,9 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from twin.cutting.cut import Cutter
-from twin.cutting.cut_log import CutResult
-from twin.cutting.events import CutEvent
-from twin.cutting.height_map import HeightMap
+from twin.cutting.heights.height_map import HeightMap
 from twin.cutting.measuring.inspection import Inspection
 from twin.cutting.measuring.measured_part import measured
 from twin.cutting.measuring.nominal import NominalGouge, NominalWatch
@@ -16,14 +14,16 @@ from twin.cutting.measuring.nominal_from_above import HeightMapNominalWatch
 from twin.cutting.measuring.nominal_from_any_side import TriDexelNominalWatch
 from twin.cutting.program_summary import ProgramSummary
 from twin.cutting.tridexel.dexels import TriDexel
+from twin.cutting.watching.cut_log import CutResult
+from twin.cutting.watching.events import CutEvent
 from twin.job.job_file import JobFile, ToolTable
 from twin.machine.model.model import MachineModel
 from twin.machine.simulation.tool_changes import REMEDY
 from twin.machine.watching.alarms import Alarm
 from twin.nc.canonical import FloatArray
 from twin.recording.form import Samples
+from twin.run.dry_run.program_watch import Stop
 from twin.run.observers import Observer
-from twin.run.program_watch import Stop
 from twin.toolpath.part_frame import PartFrame
 
 

@@ -8,7 +8,7 @@ from twin.compare.verdict import Reason
 from twin.machine.watching.alarms import Alarm, NearMiss
 from twin.machine.watching.clearance import TOUCH
 from twin.nc.functions import SPINDLE_LIMITED
-from twin.nc.text.diagnostics import Diagnostic, ProgramError, Severity
+from twin.nc.text.diagnostics.diagnostics import Diagnostic, ProgramError, Severity
 from twin.nc.text.source import Source
 
 _FIRST_WORD = re.compile(r"\S+")

@@ -11,8 +11,8 @@ import numpy as np
 from twin.compare.comparison import Comparison
 from twin.compare.figures import Figures
 from twin.compare.trace import Trace
-from twin.cutting.cut_log import CutResult
 from twin.cutting.forces.load_log import LoadLog
+from twin.cutting.watching.cut_log import CutResult
 from twin.job.job_file import ToolTable
 from twin.machine.watching.alarms import Alarm
 from twin.nc.canonical import FloatArray

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from twin.coupling.cutting_process import CuttingProcess
 from twin.coupling.operations import ProgramOperation, program_process
 from twin.cutting.axis_load import AxisLoad
-from twin.cutting.height_map import HeightMap
+from twin.cutting.heights.height_map import HeightMap
 from twin.cutting.program_summary import ProgramSummary
 from twin.errors import ConfigError
 from twin.machine.description.config import Machine
@@ -21,8 +21,8 @@ from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Chunk, Moves
 from twin.processor import made_ahead
 from twin.recording.reader import Samples
-from twin.run.dry_run import InterpretedProgram
-from twin.run.preparation import Preparation
+from twin.run.dry_run.dry_run import InterpretedProgram
+from twin.run.preparing.preparation import Preparation
 
 
 class MachineMotion(abc.ABC):

@@ -10,7 +10,7 @@ from twin.errors import UsageError
 from twin.machine.model.model import build_spec
 from twin.recording.reader import Recording, RecordingHeader, open_recording
 from twin.render.scene.scene import Scene
-from twin.run.preparation import Preparation, prepare_recorded
+from twin.run.preparing.preparation import Preparation, prepare_recorded
 
 EVENTS = ("end", "worst", "alarm", "rapid", "gouge")
 """Moments that can be asked for by name: the run's end, its greatest contour error, the machine's

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from twin.compare.result import RunSummary, result, write_result
 from twin.cutting.forces.materials import kienzle
 from twin.job.job_file import StockTable
-from twin.run.outcome import Outcome
+from twin.run.judging.outcome import Outcome
 from twin.run.run import Run
 
 if TYPE_CHECKING:

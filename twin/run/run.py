@@ -14,8 +14,8 @@ from twin.machine.model.model import MachineModel
 from twin.machine.watching.alarms import Alarm
 from twin.nc.text.source import Source
 from twin.recording.reader import LONGEST_TEXT, RecordingHeader, RecordingWriter, record
-from twin.run.dry_run import interpret_all
-from twin.run.layout import bore_of
+from twin.run.dry_run.dry_run import interpret_all
+from twin.run.judging.outcome import Followers, Outcome, outcome_of, refuse_unjudged_loads
 from twin.run.machining import Machining
 from twin.run.observers import (
     Compared,
@@ -25,7 +25,6 @@ from twin.run.observers import (
     Traced,
     observed,
 )
-from twin.run.outcome import Followers, Outcome, outcome_of, refuse_unjudged_loads
 from twin.run.pipeline import (
     MachineMotion,
     PlannedMoves,
@@ -34,7 +33,8 @@ from twin.run.pipeline import (
     grown,
     planned,
 )
-from twin.run.preparation import Preparation
+from twin.run.preparing.layout import bore_of
+from twin.run.preparing.preparation import Preparation
 from twin.run.progress import Progress, StageClock
 from twin.version import __version__
 

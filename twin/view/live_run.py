@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from twin.cutting.cut import Cutter
-from twin.cutting.patches import grid_of, patch_message
+from twin.cutting.heights.patches import grid_of, patch_message
 from twin.machine.description.config import Machine
 from twin.nc.canonical import FloatArray
 from twin.render.machine_glb import DrawnMachine, drawn_machine
-from twin.run.preparation import Preparation
+from twin.run.preparing.preparation import Preparation
 
 
 @dataclasses.dataclass(frozen=True, slots=True)

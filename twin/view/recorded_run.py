@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from twin.cutting.cut import Cutter
-from twin.cutting.patches import grid_of, patch_message
+from twin.cutting.heights.patches import grid_of, patch_message
 from twin.cutting.tridexel.material import TriDexelMaterial
-from twin.cutting.tridexel.mesh import mesh_message
+from twin.cutting.tridexel.surface.mesh import mesh_message
 from twin.machine.description.config import Machine
 from twin.nc.canonical import FloatArray, IntArray
 from twin.recording.reader import Samples

@@ -5,9 +5,9 @@ import pytest
 
 from tests.cutting.conftest import Motion
 from twin.cutting.cut import Cutter
-from twin.cutting.cut_log import TIME_BINS
 from twin.cutting.forces.direction import RADIAL_SHARE
 from twin.cutting.forces.materials import materials
+from twin.cutting.watching.cut_log import TIME_BINS
 from twin.job.job_file import StockTable, ToolTable
 from twin.nc.canonical import FloatArray
 from twin.toolpath.part_frame import PartFrame

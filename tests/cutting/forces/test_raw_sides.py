@@ -8,7 +8,7 @@ import pytest
 
 from tests.cutting.forces.test_tooth_forces import FEED, STEEL, Plate, by_hand, cut
 from twin.cutting.forces.cutter_form import cutter_form, force_law
-from twin.cutting.height_map import blank, raw_walls
+from twin.cutting.heights.height_map import blank, raw_walls
 from twin.cutting.kernels.teeth import ToothScratch, tooth_bench
 from twin.cutting.kernels.tooth_forces import tooth_forces
 from twin.cutting.tools import default_cell

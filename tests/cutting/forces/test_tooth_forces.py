@@ -8,11 +8,11 @@ import pytest
 
 from twin.cutting.forces.cutter_form import cutter_form, force_law
 from twin.cutting.forces.materials import materials
-from twin.cutting.height_map import HeightMap, blank
+from twin.cutting.heights.height_map import HeightMap, blank
+from twin.cutting.heights.sweeping import sweep_lines
 from twin.cutting.kernels.teeth import ANGLE_BINS, ToothScratch, add_force_between, tooth_bench
 from twin.cutting.kernels.tooth_forces import tooth_forces
 from twin.cutting.kernels.walls import Material, WallArray, leave_walls, no_trace, no_walls
-from twin.cutting.sweeping import sweep_lines
 from twin.cutting.tools import profile
 from twin.job.job_file import StockTable, ToolTable
 from twin.nc.canonical import FloatArray

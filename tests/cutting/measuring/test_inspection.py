@@ -10,12 +10,12 @@ import trimesh
 from trimesh.visual import ColorVisuals
 
 from tests.cutting.conftest import samples
-from twin.cutting.colours import MACHINED_RGB, RAW_RGB, deviation_colours
 from twin.cutting.cut import Cutter
-from twin.cutting.height_map import HeightMap, blank
+from twin.cutting.heights.colours import MACHINED_RGB, RAW_RGB, deviation_colours
+from twin.cutting.heights.height_map import HeightMap, blank
+from twin.cutting.heights.part import part_mesh, write_glb, write_stl
 from twin.cutting.measuring.inspection import inspect
 from twin.cutting.measuring.nominal_from_above import nominal_map
-from twin.cutting.part import part_mesh, write_glb, write_stl
 from twin.errors import ConfigError
 from twin.job.job_file import JobFile, StockTable, ToolTable
 from twin.job.load import Job

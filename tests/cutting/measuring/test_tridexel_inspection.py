@@ -14,9 +14,9 @@ from twin.cutting.tools import profile
 from twin.cutting.tridexel.blanks import box
 from twin.cutting.tridexel.dexels import TriDexel
 from twin.cutting.tridexel.engagement import cut
-from twin.cutting.tridexel.mesh import part_mesh
-from twin.cutting.tridexel.moving_solid import Poses
-from twin.cutting.tridexel.solids import cutting_edge
+from twin.cutting.tridexel.solids.moving_solid import Poses
+from twin.cutting.tridexel.solids.solids import cutting_edge
+from twin.cutting.tridexel.surface.mesh import part_mesh
 from twin.errors import ConfigError
 from twin.files.stl import stl_text
 from twin.job.job_file import ToolTable

@@ -8,7 +8,7 @@ from twin.cutting.tools import profile
 from twin.cutting.tridexel.blanks import box
 from twin.cutting.tridexel.boxes import Box, boxes_met
 from twin.cutting.tridexel.material import TriDexelMaterial
-from twin.cutting.tridexel.moving_solid import Poses
+from twin.cutting.tridexel.solids.moving_solid import Poses
 from twin.job.job_file import ToolTable
 from twin.machine.model.head_shape import HeadSolid
 from twin.nc.canonical import FloatArray

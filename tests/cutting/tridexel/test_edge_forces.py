@@ -15,8 +15,8 @@ from twin.cutting.tridexel.blanks import box
 from twin.cutting.tridexel.dexels import TriDexel
 from twin.cutting.tridexel.edge_forces import Leaning, edge_forces, empty_scratch
 from twin.cutting.tridexel.engagement import cut
-from twin.cutting.tridexel.moving_solid import Poses
-from twin.cutting.tridexel.solids import cutting_edge, cylinder
+from twin.cutting.tridexel.solids.moving_solid import Poses
+from twin.cutting.tridexel.solids.solids import cutting_edge, cylinder
 from twin.job.job_file import ToolTable
 from twin.nc.canonical import FloatArray
 

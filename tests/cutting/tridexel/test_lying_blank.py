@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from twin.cutting import height_map
+from twin.cutting.heights import height_map
 from twin.cutting.program_summary import SummaryBuilder
 from twin.cutting.tridexel import blanks
 from twin.cutting.tridexel.engagement import volume

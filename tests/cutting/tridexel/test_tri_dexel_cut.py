@@ -11,7 +11,7 @@ import trimesh
 
 from tests.cutting.conftest import samples
 from twin.cutting.cut import Cutter
-from twin.cutting.cut_log import HEIGHT_MAP, TRI_DEXEL
+from twin.cutting.watching.cut_log import HEIGHT_MAP, TRI_DEXEL
 from twin.errors import ConfigError
 from twin.files.shipped import machine_file
 from twin.job.job_file import StockTable, ToolTable

@@ -11,7 +11,7 @@ from twin.machine.description.config import Machine
 from twin.machine.load import read_machine
 from twin.machine.model.model import BLANK, MachineModel
 from twin.machine.model.supplied import CAMERAS, supply
-from twin.run.layout import lay_out
+from twin.run.preparing.layout import lay_out
 from twin.units import MM
 
 MODEL = """<mujoco>

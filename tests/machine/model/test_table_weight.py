@@ -17,7 +17,7 @@ from twin.machine.description.config import Blank, Machine
 from twin.machine.load import read_machine
 from twin.machine.model.model import BLANK, build_spec, drives, moved, physics_model
 from twin.machine.simulation.servo import Servo
-from twin.run.layout import blank_weight, lay_out
+from twin.run.preparing.layout import blank_weight, lay_out
 
 DISC = StockTable(shape="cylinder", diameter=340.0, height=98.21564381, density=7.85)
 """70 kg; its inertia about its axis is m r²/2 = 1.01 kg m²."""

@@ -18,7 +18,7 @@ from twin.machine.load import read_machine
 from twin.machine.simulation.growth import Growth
 from twin.nc.canonical import FloatArray
 from twin.recording.reader import Samples, open_recording
-from twin.run.preparation import prepare
+from twin.run.preparing.preparation import prepare
 from twin.run.progress import no_progress
 from twin.run.run import Run
 

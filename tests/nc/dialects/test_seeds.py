@@ -9,7 +9,7 @@ import pytest
 from tests.nc.running import ROOT, SHIPPED, good, shipped
 from twin.nc.canonical import Axes, Moves, Shape, concatenate
 from twin.nc.interpreter import Interpretation
-from twin.nc.text.reporter import NOTICE
+from twin.nc.text.diagnostics.reporter import NOTICE
 
 PROGRAMS = ROOT / "programs"
 

@@ -5,7 +5,7 @@ import dataclasses
 import pytest
 
 from tests.nc.running import SETTINGS, run
-from twin.cutting.events import CutEvent
+from twin.cutting.watching.events import CutEvent
 from twin.job.job_file import ToolTable
 from twin.nc.control.settings import ToolData
 from twin.nc.functions import TOOL_CHANGE

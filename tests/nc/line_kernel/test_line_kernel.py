@@ -20,9 +20,9 @@ from twin.nc.interpreter import Interpretation
 from twin.nc.line_kernel.kernel import run_lines
 from twin.nc.line_kernel.plain_state import LineKernel, compiled_kernel, line_format
 from twin.nc.line_kernel.reading import AXIS, NOT_PLAIN, NUMBER, read_line
-from twin.nc.text.diagnostics import ProgramError
+from twin.nc.text.diagnostics.diagnostics import ProgramError
+from twin.nc.text.diagnostics.reporter import Reporter
 from twin.nc.text.lexer import Lexer
-from twin.nc.text.reporter import Reporter
 from twin.nc.text.source import Source, source_from_text
 
 POINTED = dataclasses.replace(WITH_TABLES, decimal_point="calculator")

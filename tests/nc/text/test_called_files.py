@@ -9,7 +9,7 @@ from twin.nc.canonical import Moves, concatenate
 from twin.nc.dialects.fagor8070 import FAGOR8070
 from twin.nc.dialects.fagor8070.subroutines import LIBRARY
 from twin.nc.interpreter import Interpretation
-from twin.nc.text.diagnostics import ProgramError
+from twin.nc.text.diagnostics.diagnostics import ProgramError
 from twin.nc.text.source import read_source
 
 

@@ -9,7 +9,7 @@ from tests.nc.running import SETTINGS
 from twin.nc.dialects import DIALECTS
 from twin.nc.interpreter import Interpretation
 from twin.nc.iso.base import is_ellipsis
-from twin.nc.text.diagnostics import ProgramError
+from twin.nc.text.diagnostics.diagnostics import ProgramError
 from twin.nc.text.source import source_from_pieces
 
 PIECES = [

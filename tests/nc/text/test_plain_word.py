@@ -14,10 +14,10 @@ from twin.nc.text.comments import (
     comment_marks,
     comments_of,
 )
+from twin.nc.text.diagnostics.reporter import Reporter
 from twin.nc.text.grammar import Grammar
 from twin.nc.text.lexer import Lexer
 from twin.nc.text.plain_word import NUMBER, SIGNED_NUMBER
-from twin.nc.text.reporter import Reporter
 from twin.nc.text.source import source_from_text
 
 DIALECT = dialect_named("codesys")

@@ -6,7 +6,7 @@ import re
 import pytest
 
 from twin.files.shipped import resource_root
-from twin.run.preparation import prepare
+from twin.run.preparing.preparation import prepare
 from twin.serve.grbl import stream
 from twin.serve.grbl.controller import GrblController
 from twin.training.room.room import Room

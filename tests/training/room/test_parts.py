@@ -8,7 +8,7 @@ import pytest
 
 TWIN = Path(__file__).parents[3] / "twin"
 PARTS = [
-    path for folder in ("room", "program") for path in (TWIN / "training" / folder).glob("*.py")
+    path for folder in ("room", "program") for path in (TWIN / "training" / folder).rglob("*.py")
 ]
 OTHERS = [*(TWIN / "training").rglob("*.py"), *(TWIN / "serve").rglob("*.py")]
 MUTATORS = {"append", "appendleft", "extend", "pop", "popleft", "remove", "setdefault", "update"}  # fmt: skip

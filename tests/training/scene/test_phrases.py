@@ -9,8 +9,8 @@ import pytest
 
 from twin import training
 from twin.files.toml import read_toml
-from twin.nc.text.diagnostics import Diagnostic
-from twin.nc.text.explain import findings
+from twin.nc.text.diagnostics.diagnostics import Diagnostic
+from twin.nc.text.diagnostics.explain import findings
 from twin.training.scene import phrases
 from twin.training.scene.phrases import PhrasesFile, finding_in, translated
 from twin.training.scene.vocabulary import LANGUAGES, Language
@@ -19,7 +19,7 @@ from twin.training.session.commands import WRONG
 SPEAKERS = [
     path
     for folder in ("room", "session")
-    for path in sorted((Path(training.__file__).parent / folder).glob("*.py"))
+    for path in sorted((Path(training.__file__).parent / folder).rglob("*.py"))
     if path.name not in ("commands.py", "script.py")
 ]
 RAISED = ("UsageError", "TwinError", "AlarmStandsError")

@@ -4,7 +4,7 @@ import pytest
 
 from twin.machine.model.clamping import refuse_overlaps
 from twin.machine.model.model import MachineModel
-from twin.run.layout import lay_out
+from twin.run.preparing.layout import lay_out
 from twin.training.scene.scene_file import Scene, read_scene, scene_names, scene_path
 from twin.training.session.session import Session
 

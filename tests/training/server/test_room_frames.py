@@ -7,9 +7,9 @@ import zlib
 
 import numpy as np
 
-from twin.cutting.patches import LEVELS
-from twin.training.room.live_cut import Loads
+from twin.cutting.heights.patches import LEVELS
 from twin.training.room.run_settings import path_to_come
+from twin.training.room.setup.live_cut import Loads
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.server.app import RoomApp
 from twin.training.server.attempts import CELLS_ACROSS

@@ -19,7 +19,7 @@ from twin.errors import TwinError
 from twin.nc.canonical import Chunk
 from twin.nc.control.executor import Executor
 from twin.nc.dialects import DIALECTS, dialect_named
-from twin.nc.text.diagnostics import ProgramError
+from twin.nc.text.diagnostics.diagnostics import ProgramError
 from twin.nc.text.source import read_source
 from twin.training.room.room import Room
 from twin.training.scene.scene_file import read_scene, scene_path

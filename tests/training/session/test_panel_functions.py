@@ -10,8 +10,8 @@ from twin.nc.control.settings import ToolData
 from twin.nc.dialects.linuxcnc import LINUXCNC
 from twin.nc.text.source import source_from_text
 from twin.training.program.program_run import ProgramRun, RunOptions
+from twin.training.room.control.tables import MAGAZINE_PLACES
 from twin.training.room.observed import block_number
-from twin.training.room.tables import MAGAZINE_PLACES
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.session import checkpoints
 from twin.training.session.commands import LONGEST_TEXT
@@ -69,7 +69,7 @@ def second_tool(session: Session) -> float:
 
 
 def test_a_tool_change_takes_the_time_that_the_machine_file_says(session):
-    """As in a run: twin.run.spindle_dwells; a tool that is there already takes none."""
+    """As in a run: twin.run.dry_run.spindle_dwells; a tool that is there already takes none."""
     change_s = second_tool(session)
     same = seconds(session, "N10 T1 M6\nN20 G90 G1 F500 X1\nN30 M30")
     other = seconds(session, "N10 T2 M6\nN20 G90 G1 F500 X2\nN30 M30")

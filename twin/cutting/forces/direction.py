@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 
-from twin.cutting.events import Stretches, tool_frame
 from twin.cutting.forces.materials import Kienzle
 from twin.cutting.forces.mean_force import cutting_width
+from twin.cutting.watching.events import Stretches, tool_frame
 from twin.job.job_file import ToolTable
 from twin.nc.canonical import FloatArray
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from twin.cutting.cut_log import LINES_REMEMBERED, LINES_TOLD
+from twin.cutting.watching.cut_log import LINES_REMEMBERED, LINES_TOLD
 from twin.nc.canonical import FloatArray
 from twin.recording.form import Samples, ToolLoad
 from twin.units import UM_PER_MM

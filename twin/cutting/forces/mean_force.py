@@ -5,9 +5,9 @@ import math
 
 import numpy as np
 
-from twin.cutting.events import Stretches
 from twin.cutting.forces.materials import Kienzle
 from twin.cutting.kernels.teeth import THINNEST_CHIP_MM
+from twin.cutting.watching.events import Stretches
 from twin.job.job_file import ToolTable
 from twin.nc.canonical import FloatArray
 from twin.units import SECONDS_PER_MINUTE

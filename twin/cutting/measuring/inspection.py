@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from twin.cutting.height_map import HeightMap
 from twin.cutting.height_map_material import WALL_MM
+from twin.cutting.heights.height_map import HeightMap
 from twin.cutting.kernels.surface_distance import FoundBy, Surface, surface_distances
 from twin.cutting.kernels.wall_distance import KNOWN, WallDistance
 from twin.errors import ConfigError

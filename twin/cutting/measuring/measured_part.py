@@ -3,19 +3,19 @@
 import dataclasses
 from pathlib import Path
 
-from twin.cutting.colours import deviation_colours
 from twin.cutting.cut import Cutter
-from twin.cutting.height_map import HeightMap
 from twin.cutting.height_map_material import HeightMapMaterial
+from twin.cutting.heights.colours import deviation_colours
+from twin.cutting.heights.height_map import HeightMap
+from twin.cutting.heights.part import export_glb, write_glb
 from twin.cutting.material import Material
 from twin.cutting.measuring.inspection import Inspection, inspect
 from twin.cutting.measuring.nominal import Nominal
 from twin.cutting.measuring.nominal_from_above import nominal_map
 from twin.cutting.measuring.tridexel_inspection import deviations, inspect_stock, nominal_stock
-from twin.cutting.part import export_glb, write_glb
 from twin.cutting.tridexel.dexels import TriDexel
 from twin.cutting.tridexel.material import TriDexelMaterial
-from twin.cutting.tridexel.mesh import Surface, part_mesh
+from twin.cutting.tridexel.surface.mesh import Surface, part_mesh
 from twin.nc.canonical import FloatArray
 from twin.toolpath.part_frame import PartFrame
 from twin.units import UM_PER_MM

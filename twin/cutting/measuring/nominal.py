@@ -8,7 +8,7 @@ from typing import Any, Generic, NamedTuple, TypeVar
 import numpy as np
 
 from twin.cutting.cut import Cutter
-from twin.cutting.height_map import HeightMap
+from twin.cutting.heights.height_map import HeightMap
 from twin.cutting.tridexel.dexels import TriDexel
 from twin.errors import ConfigError
 from twin.files.stl import read_stl

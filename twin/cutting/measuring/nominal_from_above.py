@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from twin.cutting.height_map import HeightMap
+from twin.cutting.heights.height_map import HeightMap
 from twin.cutting.kernels.rasterize import note_sides, rasterize
 from twin.cutting.kernels.surface_distance import (
     REACH,

@@ -15,7 +15,7 @@ from twin.cutting.tridexel.dexels import TriDexel
 from twin.cutting.tridexel.engagement import volume
 from twin.cutting.tridexel.material import TriDexelMaterial
 from twin.cutting.tridexel.normals import OWN, tools
-from twin.cutting.tridexel.surface_gap import depths_along_lines
+from twin.cutting.tridexel.surface.surface_gap import depths_along_lines
 from twin.recording.reader import Samples
 
 

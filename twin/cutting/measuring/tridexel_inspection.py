@@ -10,9 +10,9 @@ from twin.cutting.tridexel.blanks import require_closed
 from twin.cutting.tridexel.closed_mesh import mesh_dexels
 from twin.cutting.tridexel.dexels import DIRECTIONS, FacetArray, Lattice, TriDexel
 from twin.cutting.tridexel.intervals import Node
-from twin.cutting.tridexel.mesh import Surface
 from twin.cutting.tridexel.normals import OWN, normals, tools
-from twin.cutting.tridexel.surface_gap import DISC_CELLS, Gaps, difference, find_gaps
+from twin.cutting.tridexel.surface.mesh import Surface
+from twin.cutting.tridexel.surface.surface_gap import DISC_CELLS, Gaps, difference, find_gaps
 from twin.errors import ConfigError
 from twin.files.stl import read_stl
 from twin.nc.canonical import BoolArray, FloatArray, IntArray

@@ -9,9 +9,9 @@ from twin.compilation.kernel import arithmetic_kernel
 from twin.cutting.tridexel.closed_mesh import mesh_dexels
 from twin.cutting.tridexel.dexels import Dexels, Lattice, TriDexel, lattice_around, no_material
 from twin.cutting.tridexel.engagement import cut
-from twin.cutting.tridexel.moving_solid import Poses, surface, within
 from twin.cutting.tridexel.normals import OWN, packed
-from twin.cutting.tridexel.solids import Solid, cylinder
+from twin.cutting.tridexel.solids.moving_solid import Poses, surface, within
+from twin.cutting.tridexel.solids.solids import Solid, cylinder
 from twin.errors import ConfigError
 from twin.files.stl import read_stl
 from twin.job.job_file import StockTable

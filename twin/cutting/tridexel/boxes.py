@@ -8,7 +8,7 @@ import numpy as np
 from twin.compilation.kernel import arithmetic_kernel
 from twin.cutting.tridexel.dexels import Dexels, Lattice, TriDexel
 from twin.cutting.tridexel.intervals import overlap
-from twin.cutting.tridexel.moving_solid import Poses
+from twin.cutting.tridexel.solids.moving_solid import Poses
 from twin.nc.canonical import FloatArray, IntArray
 
 STEP_CELLS = 2.0

@@ -7,8 +7,8 @@ import numpy as np
 
 from twin.cutting.tridexel.dexels import DIRECTIONS, TriDexel
 from twin.cutting.tridexel.intervals import Node, total_worth
-from twin.cutting.tridexel.moving_solid import Poses
-from twin.cutting.tridexel.solids import Solid
+from twin.cutting.tridexel.solids.moving_solid import Poses
+from twin.cutting.tridexel.solids.solids import Solid
 from twin.cutting.tridexel.sweep import MEASURE, Sum, sweep
 from twin.nc.canonical import BoolArray, FloatArray, IntArray
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from twin.cutting.events import SCRAPE_MM
+from twin.cutting.heights.part import export_glb
 from twin.cutting.kernels.overlap import Overlap
 from twin.cutting.kernels.simplify import simplify
 from twin.cutting.kernels.sweep import Removal
@@ -22,16 +22,16 @@ from twin.cutting.material import (
     Upright,
     runs_of,
 )
-from twin.cutting.part import export_glb
-from twin.cutting.stock_contact import BRUSH_MM, above_edge
 from twin.cutting.tools import Profile
 from twin.cutting.tridexel.boxes import Box, boxes_met
 from twin.cutting.tridexel.dexels import TriDexel
 from twin.cutting.tridexel.engagement import cut, met
-from twin.cutting.tridexel.mesh import part_colours, part_mesh, surface
-from twin.cutting.tridexel.moving_solid import Poses
 from twin.cutting.tridexel.normals import MOST_TOOLS
-from twin.cutting.tridexel.solids import Solid, cutting_edge, cylinder, thinner
+from twin.cutting.tridexel.solids.moving_solid import Poses
+from twin.cutting.tridexel.solids.solids import Solid, cutting_edge, cylinder, thinner
+from twin.cutting.tridexel.surface.mesh import part_colours, part_mesh, surface
+from twin.cutting.watching.events import SCRAPE_MM
+from twin.cutting.watching.stock_contact import BRUSH_MM, above_edge
 from twin.files.atomic import complete_or_absent
 from twin.files.stl import stl_text
 from twin.job.job_file import ToolTable

@@ -16,7 +16,7 @@ from twin.cutting.tridexel.intervals import (
     overlap,
     subtract,
 )
-from twin.cutting.tridexel.moving_solid import (
+from twin.cutting.tridexel.solids.moving_solid import (
     Pose,
     Poses,
     is_ball,
@@ -24,9 +24,9 @@ from twin.cutting.tridexel.moving_solid import (
     pose_at,
     surface,
 )
-from twin.cutting.tridexel.rays import greatest_radius
-from twin.cutting.tridexel.solids import Solid
-from twin.cutting.tridexel.swept import within_swept, within_swept_ball
+from twin.cutting.tridexel.solids.rays import greatest_radius
+from twin.cutting.tridexel.solids.solids import Solid
+from twin.cutting.tridexel.solids.swept import within_swept, within_swept_ball
 from twin.nc.canonical import FloatArray
 
 

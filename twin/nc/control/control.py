@@ -18,9 +18,9 @@ from twin.nc.geometry.arcs import Point
 from twin.nc.path.feed_rates import PATH_COUNTS, STANDING, WITHOUT_SPEED, FeedRule
 from twin.nc.path.moves import LARGEST_COORDINATE, axis_target
 from twin.nc.text.blocks import Assignment, Block, Location, Statement, Word
-from twin.nc.text.expressions import Expression, ExpressionError
+from twin.nc.text.diagnostics.reporter import Reporter
+from twin.nc.text.expressions.expressions import Expression, ExpressionError
 from twin.nc.text.lexer import Lexer
-from twin.nc.text.reporter import Reporter
 from twin.nc.text.source import Source
 from twin.nc.text.syntax import Language
 

@@ -15,7 +15,7 @@ from twin.nc.control.settings import ControlSettings
 from twin.nc.control.sorting import Codes, Functions, WordSorter
 from twin.nc.functions import starts_spindle, turns_behind
 from twin.nc.text.blocks import Assignment, Block, Statement, Word
-from twin.nc.text.expressions import ExpressionError
+from twin.nc.text.expressions.expressions import ExpressionError
 from twin.nc.text.source import Source
 
 _IN_INCHES: dict[float, float] = {21: 20, 71: 70, 710: 700}

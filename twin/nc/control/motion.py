@@ -34,7 +34,7 @@ from twin.nc.path.path import Path
 from twin.nc.path.segments import direction_of
 from twin.nc.path.tool_center.tool_center import ToolCenter
 from twin.nc.text.blocks import Block
-from twin.nc.text.reporter import Reporter
+from twin.nc.text.diagnostics.reporter import Reporter
 
 _STRAIGHT = (None, (NAN, NAN, NAN), 0.0)
 """Centre, normal and sweep of a line."""

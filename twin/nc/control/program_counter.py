@@ -8,9 +8,9 @@ from typing import NoReturn, TypeVar, cast
 from twin.nc.canonical import NO_BLOCK_NUMBER
 from twin.nc.control.modal import Modal
 from twin.nc.text.blocks import Block, Location
-from twin.nc.text.diagnostics import ProgramError
+from twin.nc.text.diagnostics.diagnostics import ProgramError
+from twin.nc.text.diagnostics.reporter import Reporter
 from twin.nc.text.lexer import Lexer
-from twin.nc.text.reporter import Reporter
 from twin.nc.text.source import Source
 
 _LABEL = re.compile(r"N[ \t]*[0-9]|[\[:]", re.IGNORECASE)

@@ -7,7 +7,7 @@ from twin.nc.control.codes import GCode, MCode
 from twin.nc.control.control import Control, integer_of, number_of
 from twin.nc.control.dialect import Dialect
 from twin.nc.text.blocks import Word
-from twin.nc.text.expressions import Expression
+from twin.nc.text.expressions.expressions import Expression
 
 Codes = Sequence[tuple[Word, GCode]]
 Functions = Sequence[tuple[Word, MCode]]

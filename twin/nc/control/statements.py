@@ -4,10 +4,10 @@ from collections.abc import Callable
 from typing import TypeVar
 
 from twin.nc.text.blocks import Block, Statement
-from twin.nc.text.expressions import Expression, ExpressionError
+from twin.nc.text.diagnostics.reporter import Reporter
+from twin.nc.text.expressions.expressions import Expression, ExpressionError
 from twin.nc.text.lexer import Lexer
 from twin.nc.text.lines import Lines
-from twin.nc.text.reporter import Reporter
 
 Found = TypeVar("Found")
 Read = Callable[[str, int], tuple[Found, int]]

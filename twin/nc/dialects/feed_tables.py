@@ -84,7 +84,7 @@ _TABLES: Mapping[str, tuple[FeedRow, ...]] = {
         ("the helix", _MINUTES),
         (f"the root of the squares of the arc and {_DIAMETER}", _MINUTES, "decision: as in a line"),
     ),
-    "linuxcnc": _path_counts(_MINUTES, "manual of G93, G94; checked against rs274"),
+    "linuxcnc": _path_counts(_MINUTES, "manual of G93, G94; LinuxCNC 2.9 takes these times"),
     "sinumerik": _path_counts(
         _MINUTES, "programming manual, F and G93; decision: FGROUP holds X, Y, Z"
     ),

@@ -10,8 +10,9 @@ from twin.nc.canonical import Corner
 from twin.nc.control.codes import Codes, Words
 from twin.nc.control.control import Control, Rules
 from twin.nc.control.dialect import Decision, Dialect
-from twin.nc.iso import base, fixed_cycles, shared_marks
+from twin.nc.iso import base, shared_marks
 from twin.nc.iso.declared import modal, replacement
+from twin.nc.iso.drilling import fixed_cycles
 from twin.nc.text.syntax import HEADING, Comment, Mark, Syntax
 
 RESOLUTION = 9

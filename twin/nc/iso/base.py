@@ -13,15 +13,15 @@ from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.planes import XY, YZ, ZX
 from twin.nc.iso.circular import BOUNDS, both_senses, iso_arc
 from twin.nc.iso.declared import modal, motion_code, plane_code, replacement
-from twin.nc.iso.fixed_cycles import CYCLES
+from twin.nc.iso.drilling.fixed_cycles import CYCLES
 from twin.nc.iso.offsets import OFFSETS, PRESET
 from twin.nc.iso.tool_change import change_tool_at
 from twin.nc.iso.tool_compensation import COMPENSATION, LENGTH
 from twin.nc.path.feed_rates import FeedMode, feed_per_minute, needs_own_feed
 from twin.nc.path.splines import MOST_CHORDS
-from twin.nc.text.arithmetic import is_whole
 from twin.nc.text.blocks import Statement, Word
-from twin.nc.text.expressions import LARGEST_NUMBER
+from twin.nc.text.expressions.arithmetic import is_whole
+from twin.nc.text.expressions.expressions import LARGEST_NUMBER
 
 
 def straight(

@@ -50,7 +50,7 @@ from twin.nc.path.moves import (
     line_length,
     only_turns,
 )
-from twin.nc.text.arithmetic import is_whole
+from twin.nc.text.expressions.arithmetic import is_whole
 from twin.nc.text.line_reader import LARGEST_LABEL
 
 NO_MOTION, RAPID_LINE, FEED_LINE, CLOCKWISE, COUNTER_CLOCKWISE = -1, 0, 1, 2, 3

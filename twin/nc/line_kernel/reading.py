@@ -12,7 +12,7 @@ import numpy.typing as npt
 from twin.compilation.compilable import compilable, inlined
 from twin.nc.canonical import FloatArray, IntArray
 from twin.nc.text.comments import CommentMarks, comment_end
-from twin.nc.text.expressions import LARGEST_NUMBER
+from twin.nc.text.expressions.expressions import LARGEST_NUMBER
 from twin.nc.text.plain_word import (
     ADDRESS,
     BEGIN,

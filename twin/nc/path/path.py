@@ -19,7 +19,7 @@ from twin.nc.path.segments import MoveReport
 from twin.nc.path.splines import Spline
 from twin.nc.path.synchronous_axes import MOST_MOVES, SynchronousAxes
 from twin.nc.path.tool_center.tool_center import ToolCenter
-from twin.nc.text.reporter import Reporter
+from twin.nc.text.diagnostics.reporter import Reporter
 
 
 class Path:

@@ -11,7 +11,7 @@ from twin.nc.geometry.curves import Curve
 from twin.nc.geometry.matrices import applied, dot
 from twin.nc.geometry.planes import Plane, Vector, cross
 from twin.nc.path.move_columns import Segment
-from twin.nc.text.reporter import Reporter
+from twin.nc.text.diagnostics.reporter import Reporter
 
 IN_PLANE = 1.0 - 1e-9
 """Cosine between an arc's normal and a plane's from which the arc lies in the plane."""

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from twin.nc.canonical import NO_BLOCK_NUMBER
-from twin.nc.text.expressions import Expression, NumberedVariable, Variable
+from twin.nc.text.expressions.expressions import Expression, NumberedVariable, Variable
 
 
 class Location(NamedTuple):

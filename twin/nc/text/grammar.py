@@ -11,8 +11,8 @@ from twin.nc.text.comments import (
     comments_of,
     without_comments,
 )
-from twin.nc.text.expression_reader import ExpressionReader, operator_pattern
-from twin.nc.text.expressions import ExpressionSyntax
+from twin.nc.text.expressions.expression_reader import ExpressionReader, operator_pattern
+from twin.nc.text.expressions.expressions import ExpressionSyntax
 from twin.nc.text.plain_word import BLANKS, BLANKS_BETWEEN, SIGNED_NUMBER
 from twin.nc.text.syntax import Language
 

@@ -5,12 +5,12 @@ from collections.abc import Callable, Collection
 
 from twin.nc.text.blocks import Block, Statement
 from twin.nc.text.comments import is_control
-from twin.nc.text.diagnostics import ProgramError
-from twin.nc.text.expression_reader import ExpressionReader
+from twin.nc.text.diagnostics.diagnostics import ProgramError
+from twin.nc.text.diagnostics.reporter import Reporter
+from twin.nc.text.expressions.expression_reader import ExpressionReader
 from twin.nc.text.grammar import Grammar
 from twin.nc.text.keyword_line import KeywordLine
 from twin.nc.text.line_reader import LineReader
-from twin.nc.text.reporter import Reporter
 from twin.nc.text.syntax import Language
 
 _SPLIT = re.compile(r"[0-9.][ \t]+[0-9.]")

@@ -5,10 +5,13 @@ import string
 from typing import NoReturn
 
 from twin.nc.canonical import NO_BLOCK_NUMBER
-from twin.nc.text.arithmetic import is_whole
 from twin.nc.text.blocks import Assignment, Block, Statement, Word, assignment_of
 from twin.nc.text.comments import NO_COMMENT, OPEN_COMMENT
-from twin.nc.text.expressions import (
+from twin.nc.text.diagnostics.reporter import Reporter
+from twin.nc.text.diagnostics.slips import slip_at
+from twin.nc.text.diagnostics.unreadable import Unreadable
+from twin.nc.text.expressions.arithmetic import is_whole
+from twin.nc.text.expressions.expressions import (
     LARGEST_NUMBER,
     ExpressionError,
     NumberedVariable,
@@ -16,9 +19,6 @@ from twin.nc.text.expressions import (
 )
 from twin.nc.text.grammar import Grammar
 from twin.nc.text.plain_word import BLANKS
-from twin.nc.text.reporter import Reporter
-from twin.nc.text.slips import slip_at
-from twin.nc.text.unreadable import Unreadable
 
 LARGEST_LABEL = 4_294_967_295
 """Largest N number (32 bits, as the Fagor manual states)."""

@@ -4,7 +4,7 @@ import dataclasses
 from collections.abc import Callable, Collection, Mapping
 from typing import Protocol
 
-from twin.nc.text.expressions import ExpressionSyntax
+from twin.nc.text.expressions.expressions import ExpressionSyntax
 
 LONGEST_LINE = 65_536
 """Characters of a line: far beyond any control's block, so that one line cannot eat the memory."""

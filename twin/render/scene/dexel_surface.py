@@ -5,10 +5,10 @@ from collections.abc import Callable
 import mujoco
 import numpy as np
 
-from twin.cutting.colours import MACHINED_RGB, RAW_RGB, deviation_colours
+from twin.cutting.heights.colours import MACHINED_RGB, RAW_RGB, deviation_colours
 from twin.cutting.tridexel.material import TriDexelMaterial
-from twin.cutting.tridexel.mesh import MOST_VERTICES, TRIANGLES, Surface, surface
 from twin.cutting.tridexel.normals import OWN, normals, tools
+from twin.cutting.tridexel.surface.mesh import MOST_VERTICES, TRIANGLES, Surface, surface
 from twin.nc.canonical import BoolArray, FloatArray
 from twin.render.drawing.canvas import Canvas
 from twin.render.scene.live_mesh import LiveMesh, add_live_mesh

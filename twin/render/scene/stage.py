@@ -8,9 +8,9 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 
-from twin.cutting.colours import Colours
 from twin.cutting.cut import Cutter
 from twin.cutting.height_map_material import HeightMapMaterial
+from twin.cutting.heights.colours import Colours
 from twin.cutting.material import Material
 from twin.cutting.tridexel.material import TriDexelMaterial
 from twin.machine.description.kinematics import part_carrier

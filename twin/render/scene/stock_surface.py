@@ -11,10 +11,10 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from twin.cutting.colours import RAW_RGB
 from twin.cutting.height_map_material import HeightMapMaterial
-from twin.cutting.surface_mesh import SurfaceMesh, open_edges, surface_mesh
-from twin.cutting.sweeping import Rectangle, union
+from twin.cutting.heights.colours import RAW_RGB
+from twin.cutting.heights.surface_mesh import SurfaceMesh, open_edges, surface_mesh
+from twin.cutting.heights.sweeping import Rectangle, union
 from twin.nc.canonical import FloatArray, IntArray
 from twin.render.drawing.canvas import Canvas
 from twin.render.scene.live_mesh import LiveMesh, add_live_mesh

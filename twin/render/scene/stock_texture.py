@@ -3,9 +3,9 @@
 import mujoco
 import numpy as np
 
-from twin.cutting.colours import MACHINED_RGB, RAW_RGB, Colours
-from twin.cutting.height_map import HeightMap
-from twin.cutting.sweeping import Rectangle
+from twin.cutting.heights.colours import MACHINED_RGB, RAW_RGB, Colours
+from twin.cutting.heights.height_map import HeightMap
+from twin.cutting.heights.sweeping import Rectangle
 from twin.nc.canonical import FloatArray
 from twin.render.drawing.canvas import Canvas
 from twin.render.scene.shading import blurred

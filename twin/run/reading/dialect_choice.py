@@ -17,7 +17,7 @@ from twin.nc.dialects import DIALECTS
 from twin.nc.dialects.foreign import require_program
 from twin.nc.dialects.recognition import head_of, reading_of
 from twin.nc.interpreter import Interpretation
-from twin.nc.text.diagnostics import Diagnostic, ProgramError
+from twin.nc.text.diagnostics.diagnostics import Diagnostic, ProgramError
 from twin.nc.text.source import Source, read_source
 from twin.run.reading.assumed_reading import UNKNOWN_FUNCTION, unknown_functions
 

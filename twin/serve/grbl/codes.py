@@ -6,7 +6,7 @@ Numbers are those of Grbl's own tables (``error_codes_en_US.csv``, ``alarm_codes
 import enum
 import re
 
-from twin.nc.text.diagnostics import Diagnostic
+from twin.nc.text.diagnostics.diagnostics import Diagnostic
 
 
 class Error(enum.IntEnum):

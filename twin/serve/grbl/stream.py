@@ -10,7 +10,7 @@ from twin.nc.control.executor import Executor
 from twin.nc.control.modal import Modal
 from twin.nc.dialects.grbl.memory import GrblMemory, memory_of
 from twin.nc.text.blocks import Block, Word
-from twin.nc.text.diagnostics import Diagnostic, ProgramError
+from twin.nc.text.diagnostics.diagnostics import Diagnostic, ProgramError
 from twin.serve.grbl.codes import Error, error_of
 from twin.serve.grbl.serial_buffer import LONGEST_LINE, SerialBuffer, cleaned
 

@@ -18,7 +18,7 @@ from twin.nc.canonical import FloatArray, Motion, Moves
 from twin.nc.control.dialect import Dialect
 from twin.nc.control.settings import ControlSettings
 from twin.nc.functions import SpindleState
-from twin.nc.text.diagnostics import Diagnostic, ProgramError
+from twin.nc.text.diagnostics.diagnostics import Diagnostic, ProgramError
 from twin.nc.text.source import Source
 from twin.toolpath.geometry import geometry
 from twin.toolpath.part_frame import PartFrame

@@ -21,9 +21,9 @@ from twin.nc.control.settings import ControlSettings
 from twin.nc.functions import OPTIONAL_STOP, PROGRAM_STOPS, TOOL_CHANGE, SpindleState
 from twin.nc.path.feed_rates import FEED_FACTORS
 from twin.nc.text.blocks import Block
-from twin.nc.text.diagnostics import Diagnostic, ProgramError
+from twin.nc.text.diagnostics.diagnostics import Diagnostic, ProgramError
 from twin.nc.text.source import Source
-from twin.run.spindle_dwells import SpindleDwells
+from twin.run.dry_run.spindle_dwells import SpindleDwells
 from twin.training.program.block_search import BlockSearch
 from twin.training.program.block_walk import BlockWalk, ModalState
 from twin.training.program.run_options import Inherited, RunOptions

@@ -8,7 +8,7 @@ from twin.nc.control.executor import Executor
 from twin.nc.control.modal import Modal
 from twin.nc.geometry.frame import SHIFTS
 from twin.nc.text.blocks import Block
-from twin.nc.text.diagnostics import Diagnostic
+from twin.nc.text.diagnostics.diagnostics import Diagnostic
 
 
 class Inherited(NamedTuple):

@@ -5,17 +5,17 @@ from typing import Protocol
 
 from twin.machine.simulation.live import LiveMachine
 from twin.nc.canonical import NO_BLOCK_NUMBER
-from twin.nc.text.diagnostics import Diagnostic, ProgramError
+from twin.nc.text.diagnostics.diagnostics import Diagnostic, ProgramError
+from twin.nc.text.diagnostics.reporter import Reporter
 from twin.nc.text.lexer import Lexer
-from twin.nc.text.reporter import Reporter
 from twin.nc.text.source import Source
 from twin.nc.text.syntax import Language
 from twin.recording.reader import Samples
-from twin.training.room.auxiliaries import Auxiliaries
-from twin.training.room.panel import Panel
-from twin.training.room.program_memory import ProgramMemory
-from twin.training.room.program_slot import ProgramSlot
-from twin.training.room.setup import Setup
+from twin.training.room.control.auxiliaries import Auxiliaries
+from twin.training.room.control.panel import Panel
+from twin.training.room.control.program_memory import ProgramMemory
+from twin.training.room.control.program_slot import ProgramSlot
+from twin.training.room.setup.setup import Setup
 from twin.training.scene.scene_file import Scene
 
 

@@ -13,25 +13,25 @@ from twin.machine.watching.alarms import Alarm, AlarmCode, AlarmStandsError
 from twin.nc.canonical import FloatArray
 from twin.nc.functions import SPINDLE_LIMITED, SpindleState
 from twin.nc.iso.base import jog_block
-from twin.nc.text.diagnostics import ProgramError
+from twin.nc.text.diagnostics.diagnostics import ProgramError
 from twin.nc.text.source import Source, source_from_text
 from twin.recording.reader import Samples
 from twin.training.program.program_run import ProgramRun
 from twin.training.program.run_options import RunOptions
-from twin.training.room.alarm_log import AlarmLog
-from twin.training.room.auxiliaries import Auxiliaries
+from twin.training.room.control.auxiliaries import Auxiliaries
+from twin.training.room.control.manual_motion import JogMove, ManualMotion
+from twin.training.room.control.panel import Panel
+from twin.training.room.control.program_memory import ProgramMemory
+from twin.training.room.control.program_slot import Kind, ProgramSlot
+from twin.training.room.control.tables import Tables
 from twin.training.room.faults import Faults
-from twin.training.room.inspection import Inspection, inspect_part, moment_of
-from twin.training.room.judge import Judge
-from twin.training.room.manual_motion import JogMove, ManualMotion
+from twin.training.room.judging.alarm_log import AlarmLog
+from twin.training.room.judging.inspection import Inspection, inspect_part, moment_of
+from twin.training.room.judging.judge import Judge
 from twin.training.room.observed import Notice
-from twin.training.room.panel import Panel
-from twin.training.room.program_memory import ProgramMemory
-from twin.training.room.program_slot import Kind, ProgramSlot
 from twin.training.room.rest import Rest
 from twin.training.room.run_settings import run_settings
-from twin.training.room.setup import Setup, scene_tables
-from twin.training.room.tables import Tables
+from twin.training.room.setup.setup import Setup, scene_tables
 from twin.training.scene.scene_file import Scene
 
 SLICE = 10

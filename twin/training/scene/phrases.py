@@ -10,7 +10,7 @@ import re
 from pathlib import Path
 
 from twin.files.toml import Table, read_toml
-from twin.nc.text.diagnostics import Diagnostic
+from twin.nc.text.diagnostics.diagnostics import Diagnostic
 from twin.training.scene.vocabulary import Language, Text, vocabulary
 
 _FOLDER = Path(__file__).resolve().parent / "vocabularies"

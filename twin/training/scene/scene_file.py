@@ -14,7 +14,7 @@ from twin.errors import ConfigError, UsageError
 from twin.files.toml import Table, read_toml
 from twin.job.job_file import JobFile
 from twin.job.load import Job
-from twin.run.preparation import Preparation, prepare_job
+from twin.run.preparing.preparation import Preparation, prepare_job
 from twin.training.scene.confinement import Confinement, leaves_folder
 from twin.training.scene.fault_table import FaultTable
 from twin.training.scene.tasks import TaskTable

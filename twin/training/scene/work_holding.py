@@ -10,7 +10,7 @@ from collections.abc import Iterator
 
 from twin.job.fixture import FixtureTable
 from twin.machine.description.config import Blank, Machine
-from twin.run.preparation import Preparation
+from twin.run.preparing.preparation import Preparation
 
 GRIP_SHARE, GRIP_MM = 0.3, (2.0, 8.0)
 """How much of the part's height the jaws grip: a share of it, within so much [mm]."""

@@ -12,7 +12,7 @@ from typing import Any
 import jinja2
 
 from twin.files.atomic import write_text
-from twin.training.room.inspection import Inspection, Moment
+from twin.training.room.judging.inspection import Inspection, Moment
 from twin.training.scene.phrases import finding_in, translated
 from twin.training.scene.scene_file import Scene
 from twin.training.scene.vocabulary import Words, in_language

@@ -17,14 +17,14 @@ from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from twin.cutting.patches import grid_of
+from twin.cutting.heights.patches import grid_of
 from twin.errors import TwinError
 from twin.nc.iso.base import jog_block
-from twin.nc.text.diagnostics import Diagnostic
+from twin.nc.text.diagnostics.diagnostics import Diagnostic
 from twin.render.machine_glb import DrawnMachine, drawn_machine
 from twin.training.program.preview import Preview
-from twin.training.room.edge_finder import BODY_MM
 from twin.training.room.run_settings import path_to_come
+from twin.training.room.setup.edge_finder import BODY_MM
 from twin.training.scene.fault_table import FAULT_DEFAULTS
 from twin.training.scene.phrases import finding_in, translated
 from twin.training.scene.scene_file import (

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from twin.cutting.height_map import HeightMap
-from twin.cutting.patches import patch_message
-from twin.cutting.sweeping import Rectangle, union
+from twin.cutting.heights.height_map import HeightMap
+from twin.cutting.heights.patches import patch_message
+from twin.cutting.heights.sweeping import Rectangle, union
 from twin.training.program.preview import Preview
 from twin.training.room.room import Room
 from twin.training.server.driver import Look

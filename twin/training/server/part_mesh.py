@@ -6,7 +6,7 @@ import time
 import anyio.to_thread
 
 from twin.cutting.tridexel.dexels import TriDexel
-from twin.cutting.tridexel.mesh import mesh_message
+from twin.cutting.tridexel.surface.mesh import mesh_message
 from twin.training.room.room import Room
 from twin.training.server.driver import Driver
 

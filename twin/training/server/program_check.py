@@ -11,7 +11,7 @@ import anyio.to_thread
 import pydantic
 from starlette.websockets import WebSocketDisconnect
 
-from twin.nc.text.diagnostics import Diagnostic
+from twin.nc.text.diagnostics.diagnostics import Diagnostic
 from twin.nc.text.source import source_from_text
 from twin.training.program.preview import PathToCome
 from twin.training.room.room import Room

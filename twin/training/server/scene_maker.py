@@ -12,7 +12,7 @@ import numpy as np
 from twin.errors import TwinError, UsageError
 from twin.files.atomic import write_text
 from twin.training.room.room import Room
-from twin.training.room.workpiece import Workpiece
+from twin.training.room.setup.workpiece import Workpiece
 from twin.training.scene.scene_file import read_scene
 from twin.training.scene.vocabulary import Language, vocabulary
 

@@ -8,7 +8,7 @@ from twin.errors import UsageError
 from twin.job.job_file import ToolTable
 from twin.nc.text.source import source_from_text
 from twin.training.program.run_options import RunOptions
-from twin.training.room.manual_motion import SHORTEST_MOVE, JogMove, within_travel
+from twin.training.room.control.manual_motion import SHORTEST_MOVE, JogMove, within_travel
 from twin.training.room.room import Room
 from twin.training.session import commands as c
 from twin.training.session.requirements import (

@@ -16,8 +16,8 @@ import numpy.typing as npt
 from pydantic import BaseModel
 
 from twin.copies import copied
-from twin.cutting.height_map import HeightMap
-from twin.cutting.outline import Outline
+from twin.cutting.heights.height_map import HeightMap
+from twin.cutting.heights.outline import Outline
 from twin.machine.description.config import Machine
 from twin.machine.model.head_shape import HeadShape
 from twin.machine.watching.relative_motion import RelativeMotion

@@ -7,10 +7,10 @@ import numpy as np
 from twin.nc.canonical import FloatArray
 from twin.nc.functions import SpindleState
 from twin.training.program.block_walk import ModalState
-from twin.training.room.judge import TaskState
-from twin.training.room.live_cut import Loads
+from twin.training.room.judging.judge import TaskState
 from twin.training.room.observed import Notice
 from twin.training.room.room import Room
+from twin.training.room.setup.live_cut import Loads
 from twin.training.scene.fault_table import FaultTable
 from twin.training.scene.scene_file import Mode
 from twin.units import SECONDS_PER_MINUTE

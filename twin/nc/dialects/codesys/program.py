@@ -9,9 +9,9 @@ from collections.abc import Mapping
 from twin.nc.control.control import Control
 from twin.nc.geometry.planes import Vector
 from twin.nc.path.blends import BlendKind
-from twin.nc.text import arithmetic
 from twin.nc.text.blocks import Statement, Word
-from twin.nc.text.expressions import (
+from twin.nc.text.expressions import arithmetic
+from twin.nc.text.expressions.expressions import (
     ARITHMETIC,
     COMPARISON,
     Computed,

@@ -6,7 +6,7 @@ from twin.nc.control.codes import WordAction
 from twin.nc.control.control import Control
 from twin.nc.dialects.codesys.actions import axis_named, lead_into_length
 from twin.nc.dialects.codesys.program import memory_of
-from twin.nc.iso.rotary_targets import go_shorter
+from twin.nc.iso.orientation.rotary_targets import go_shorter
 from twin.nc.text.blocks import Word
 
 LARGEST_SWITCH = 32_767

@@ -4,14 +4,7 @@ from twin.nc.control.codes import Codes, MCode, Words
 from twin.nc.control.control import Control, Rules
 from twin.nc.control.dialect import Dialect
 from twin.nc.control.settings import ControlSettings
-from twin.nc.dialects.fagor8070 import (
-    arcs,
-    frames,
-    inclined_planes,
-    statements,
-    subroutines,
-    variables,
-)
+from twin.nc.dialects.fagor8070 import arcs, statements, subroutines, variables
 from twin.nc.dialects.fagor8070.codes import (
     CODES,
     REPLACEMENTS,
@@ -20,11 +13,12 @@ from twin.nc.dialects.fagor8070.codes import (
     prepare_blends,
 )
 from twin.nc.dialects.fagor8070.decisions import DECISIONS
+from twin.nc.dialects.fagor8070.frames import frames, inclined_planes
 from twin.nc.dialects.fagor8070.memory import FagorMemory, acts_on_lines
 from twin.nc.dialects.fagor8070.subroutines import LIBRARY
 from twin.nc.iso import base, shared_marks
 from twin.nc.iso.declared import flow_function
-from twin.nc.iso.rotary_targets import turn_by_sign
+from twin.nc.iso.orientation.rotary_targets import turn_by_sign
 from twin.nc.path.feed_rates import PATH_COUNTS, FeedRule
 from twin.nc.text.syntax import Comment, Mark, Syntax
 

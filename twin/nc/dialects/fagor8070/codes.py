@@ -5,18 +5,20 @@ import re
 from twin.nc.canonical import Corner
 from twin.nc.control.codes import Action, GCode
 from twin.nc.control.control import Control
-from twin.nc.dialects.fagor8070 import arcs, frames, polar, transformations
+from twin.nc.dialects.fagor8070 import arcs, polar
 from twin.nc.dialects.fagor8070.cycles.canned_cycles import CYCLES
-from twin.nc.dialects.fagor8070.machine_coordinates import refuse_offset_change
+from twin.nc.dialects.fagor8070.frames import frames, transformations
+from twin.nc.dialects.fagor8070.frames.machine_coordinates import refuse_offset_change
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.geometry.planes import XY, YZ, ZX
-from twin.nc.iso import base, fixed_cycles, offsets
+from twin.nc.iso import base, offsets
 from twin.nc.iso.declared import modal, motion_code, plane_code, refused, replacement
+from twin.nc.iso.drilling import fixed_cycles
 from twin.nc.iso.tool_compensation import LEFT, RIGHT, end_compensation
 from twin.nc.path.blends import Blend, BlendKind
 from twin.nc.path.feed_rates import FeedMode
-from twin.nc.text.arithmetic import is_whole
 from twin.nc.text.blocks import Word
+from twin.nc.text.expressions.arithmetic import is_whole
 
 _BLEND_CODES = re.compile(rb"G[ \t]*0*3[69](?![0-9])", re.IGNORECASE)
 

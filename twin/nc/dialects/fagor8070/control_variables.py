@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.memory import OFFSETS_BY_NUMBER, memory_of, offset_name
 from twin.nc.iso.offsets import machine_zero
-from twin.nc.text.expressions import ExpressionError
+from twin.nc.text.expressions.expressions import ExpressionError
 
 POLAR_ABSCISSA, POLAR_ORDINATE = "V.G.PORGF", "V.G.PORGS"
 

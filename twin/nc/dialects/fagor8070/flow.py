@@ -9,7 +9,7 @@ from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.dialects.fagor8070.subroutines import lines_around
 from twin.nc.text.blocks import Location, Statement
-from twin.nc.text.expressions import Expression, Variable
+from twin.nc.text.expressions.expressions import Expression, Variable
 
 _KEYWORD = re.compile(
     r"[ \t]*/?[ \t]*(?:N[ \t]*[0-9]+[ \t]*|\[\w+\][ \t]*)?(\$[A-Z]+)(.*)", re.IGNORECASE

@@ -6,16 +6,17 @@ from typing import NoReturn
 
 from twin.nc.control.codes import StatementAction
 from twin.nc.control.control import Control
-from twin.nc.dialects.fagor8070 import flow, inclined_planes, subroutines
+from twin.nc.dialects.fagor8070 import flow, subroutines
+from twin.nc.dialects.fagor8070.frames import inclined_planes
+from twin.nc.dialects.fagor8070.frames.machine_coordinates import machine_coordinates
+from twin.nc.dialects.fagor8070.frames.transformations import set_scale
 from twin.nc.dialects.fagor8070.known_statements import ENDED_ONLY, PASSED_OVER, REFUSED
-from twin.nc.dialects.fagor8070.machine_coordinates import machine_coordinates
 from twin.nc.dialects.fagor8070.polar import forget_polar
-from twin.nc.dialects.fagor8070.transformations import set_scale
 from twin.nc.dialects.fagor8070.variables import VARIABLE_STATEMENT, assign
 from twin.nc.iso.base import wait
-from twin.nc.iso.tool_center import begin_tool_center, end_tool_center
+from twin.nc.iso.orientation.tool_center import begin_tool_center, end_tool_center
 from twin.nc.text.blocks import Location, Statement
-from twin.nc.text.expressions import Expression
+from twin.nc.text.expressions.expressions import Expression
 
 _ROUNDED = (1, 4)
 """Kinds of #ROUNDPAR whose value is how far a rounded corner may lie from the programmed one."""

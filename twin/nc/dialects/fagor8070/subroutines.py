@@ -7,7 +7,7 @@ from twin.nc.control.codes import StatementAction
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.text.blocks import Location, Statement
-from twin.nc.text.expressions import Expression, ExpressionError
+from twin.nc.text.expressions.expressions import Expression, ExpressionError
 from twin.nc.text.library import Library
 from twin.nc.text.source import Source
 

@@ -7,9 +7,9 @@ import re
 
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.control_variables import is_live, read_live, write_live
-from twin.nc.text import arithmetic
 from twin.nc.text.blocks import Block, Statement
-from twin.nc.text.expressions import (
+from twin.nc.text.expressions import arithmetic
+from twin.nc.text.expressions.expressions import (
     ARITHMETIC,
     COMPARISON,
     IN_DEGREES,

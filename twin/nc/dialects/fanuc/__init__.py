@@ -11,23 +11,21 @@ from twin.nc.dialects.fanuc import (
     corners,
     decimal_point,
     feeds,
-    flow,
     haas,
     macro_calls,
-    offsets,
     programs,
-    reference_points,
-    tool_offsets,
-    tool_tips,
-    variables,
 )
 from twin.nc.dialects.fanuc.cycles.canned_cycles import OVERRULED_CYCLE, as_read
 from twin.nc.dialects.fanuc.decisions import DECISIONS
+from twin.nc.dialects.fanuc.frames import offsets, reference_points
+from twin.nc.dialects.fanuc.macros import flow, variables
 from twin.nc.dialects.fanuc.memory import FANUC as FANUC_VARIANT
 from twin.nc.dialects.fanuc.memory import HAAS as HAAS_VARIANT
 from twin.nc.dialects.fanuc.memory import FanucMemory, acts_on_lines, holds_any, memory_of
+from twin.nc.dialects.fanuc.tools import tool_offsets, tool_tips
 from twin.nc.geometry.arcs import TURN
-from twin.nc.iso import base, rotary_targets, shared_marks
+from twin.nc.iso import base, shared_marks
+from twin.nc.iso.orientation import rotary_targets
 from twin.nc.text.syntax import HEADING, Comment, Mark, Syntax
 
 

@@ -5,23 +5,21 @@ from collections.abc import Mapping
 from twin.nc.canonical import Corner
 from twin.nc.control.codes import GCode, MCode
 from twin.nc.control.control import Control
-from twin.nc.dialects.fanuc import (
+from twin.nc.dialects.fanuc import macro_calls, motion, programs
+from twin.nc.dialects.fanuc.cycles.canned_cycles import begin_rigid_tapping, cycles
+from twin.nc.dialects.fanuc.frames import (
     cylinder,
-    data_setting,
-    macro_calls,
-    motion,
     offsets,
-    programs,
     reference_points,
     tilted_planes,
-    tool_tips,
     transformations,
 )
-from twin.nc.dialects.fanuc.cycles.canned_cycles import begin_rigid_tapping, cycles
 from twin.nc.dialects.fanuc.memory import Variant, memory_of
-from twin.nc.dialects.fanuc.tool_offsets import compensation_code, end_length, length_code
-from twin.nc.iso import base, fixed_cycles
+from twin.nc.dialects.fanuc.tools import data_setting, tool_tips
+from twin.nc.dialects.fanuc.tools.tool_offsets import compensation_code, end_length, length_code
+from twin.nc.iso import base
 from twin.nc.iso.declared import flow_function, modal, motion_code, refused, replacement
+from twin.nc.iso.drilling import fixed_cycles
 from twin.nc.iso.tool_compensation import LEFT, RIGHT, end_compensation
 from twin.nc.path.feed_rates import FeedMode
 

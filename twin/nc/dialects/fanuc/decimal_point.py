@@ -11,11 +11,11 @@ import operator
 
 from twin.nc.control.control import WITHOUT_POINT, Control
 from twin.nc.control.settings import ControlSettings
+from twin.nc.dialects.fanuc.macros.variables import rounding_to, rounds
 from twin.nc.dialects.fanuc.memory import memory_of
-from twin.nc.dialects.fanuc.variables import rounding_to, rounds
 from twin.nc.path.feed_rates import FeedMode
 from twin.nc.text.blocks import Block, Word
-from twin.nc.text.expressions import Computed, Expression, Number
+from twin.nc.text.expressions.expressions import Computed, Expression, Number
 
 LENGTHS = frozenset("XYZUVWIJKRQ") | {",R", ",C"}
 ANGLES = frozenset("ABC")

@@ -6,13 +6,15 @@ from collections.abc import Mapping
 from twin.nc.control.codes import GCode, MCode
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Decision
-from twin.nc.dialects.fanuc import offsets, programs, tilted_planes, tool_tips, transformations
+from twin.nc.dialects.fanuc import programs
 from twin.nc.dialects.fanuc.codes import GROUPS as FANUC_GROUPS
 from twin.nc.dialects.fanuc.codes import M_CODES, NO_PROBE, codes, passed_over
 from twin.nc.dialects.fanuc.cycles.bolt_holes import bolt_holes
 from twin.nc.dialects.fanuc.decisions import DECISIONS as FANUC_DECISIONS
+from twin.nc.dialects.fanuc.frames import offsets, tilted_planes, transformations
 from twin.nc.dialects.fanuc.memory import HAAS
-from twin.nc.dialects.fanuc.tool_offsets import radius_in_force
+from twin.nc.dialects.fanuc.tools import tool_tips
+from twin.nc.dialects.fanuc.tools.tool_offsets import radius_in_force
 from twin.nc.geometry.planes import XY
 from twin.nc.iso.declared import flow_function, modal, refused, replacement
 from twin.nc.iso.tool_change import change_tool_at

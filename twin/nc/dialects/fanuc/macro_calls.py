@@ -12,7 +12,7 @@ from twin.nc.dialects.fanuc import decimal_point
 from twin.nc.dialects.fanuc.memory import ModalCall, memory_of
 from twin.nc.dialects.fanuc.programs import NAME, line_of, named, program_word, whole
 from twin.nc.text.blocks import Location, Statement, Word
-from twin.nc.text.expressions import Expression
+from twin.nc.text.expressions.expressions import Expression
 
 _LETTERS = "ABCIJKDEF_H_M___QRSTUVWXYZ"
 VARIABLES = {letter: f"#{number}" for number, letter in enumerate(_LETTERS, 1) if letter != "_"}

@@ -11,13 +11,13 @@ from typing import TypeVar
 
 from twin.nc.control.control import Control
 from twin.nc.control.modal import ArcRule
-from twin.nc.dialects.fanuc import cylinder
+from twin.nc.dialects.fanuc.frames import cylinder
+from twin.nc.dialects.fanuc.frames.transformations import refuse_uneven_arc
 from twin.nc.dialects.fanuc.memory import Variant, memory_of
-from twin.nc.dialects.fanuc.transformations import refuse_uneven_arc
 from twin.nc.geometry.arcs import direction
 from twin.nc.iso import base
 from twin.nc.iso.circular import BOUNDS, arc_center, both_senses, plane_center_letters, sweep_arc
-from twin.nc.iso.drilling import Holes, repeats_of
+from twin.nc.iso.drilling.drilling import Holes, repeats_of
 
 _Kind = TypeVar("_Kind")
 _CALLS = (97.0, 98.0)

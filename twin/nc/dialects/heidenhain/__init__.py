@@ -3,13 +3,14 @@
 from twin.nc.control.codes import Codes, Words
 from twin.nc.control.control import Control, Rules
 from twin.nc.control.dialect import Dialect
-from twin.nc.dialects.heidenhain import corners, feeds, flow, parameters, paths
+from twin.nc.dialects.heidenhain import feeds, flow, parameters
 from twin.nc.dialects.heidenhain.cycles.planes import enter_plane
 from twin.nc.dialects.heidenhain.decisions import DECISIONS
 from twin.nc.dialects.heidenhain.functions import FUNCTIONS, reduce_rotary, take_shortest_way
-from twin.nc.dialects.heidenhain.leads import SIDES, compensation_word, refuse_paraxial
 from twin.nc.dialects.heidenhain.memory import KlartextMemory, acts_on_lines, memory_of
 from twin.nc.dialects.heidenhain.page import TABLES
+from twin.nc.dialects.heidenhain.paths import corners, paths
+from twin.nc.dialects.heidenhain.paths.leads import SIDES, compensation_word, refuse_paraxial
 from twin.nc.dialects.heidenhain.statements import STATEMENTS, other_statement
 from twin.nc.dialects.heidenhain.syntax import SYNTAX
 from twin.nc.dialects.heidenhain.tool_tip import begin_tcpm_with_feed, take_spatial_angles

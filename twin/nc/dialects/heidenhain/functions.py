@@ -11,8 +11,8 @@ from twin.nc.dialects.heidenhain.flow import refuse_end_of_called
 from twin.nc.dialects.heidenhain.memory import memory_of
 from twin.nc.dialects.heidenhain.tool_tip import begin_tcpm, end_tcpm
 from twin.nc.iso import base
-from twin.nc.iso.hole import turn_spindle
-from twin.nc.iso.rotary_targets import absolute_targets, go_shorter
+from twin.nc.iso.drilling.hole import turn_spindle
+from twin.nc.iso.orientation.rotary_targets import absolute_targets, go_shorter
 from twin.nc.text.blocks import Word
 
 

@@ -10,7 +10,7 @@ from twin.nc.dialects.heidenhain.memory import memory_of
 from twin.nc.dialects.heidenhain.values import text_of, value_at
 from twin.nc.iso.offsets import machine_zero
 from twin.nc.text.blocks import Statement
-from twin.nc.text.expressions import ExpressionError
+from twin.nc.text.expressions.expressions import ExpressionError
 
 _ASSIGNMENT = re.compile(r"[ \t]*(Q[LR]?[0-9]{1,4})[ \t]*=", re.IGNORECASE)
 _ERROR = re.compile(r"[ \t]*ERROR[ \t]*=[ \t]*(.+)", re.IGNORECASE)

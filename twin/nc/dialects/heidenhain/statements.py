@@ -5,7 +5,7 @@ from collections.abc import Mapping
 
 from twin.nc.control.codes import StatementAction
 from twin.nc.control.control import Control
-from twin.nc.dialects.heidenhain import corners, flow, leads, parameters, paths, tool_tip, tools
+from twin.nc.dialects.heidenhain import flow, parameters, tool_tip, tools
 from twin.nc.dialects.heidenhain.cycles import calls, definitions, patterns, planes
 from twin.nc.dialects.heidenhain.cycles.transformations import (
     Step,
@@ -13,6 +13,7 @@ from twin.nc.dialects.heidenhain.cycles.transformations import (
     shift_datum,
 )
 from twin.nc.dialects.heidenhain.memory import memory_of
+from twin.nc.dialects.heidenhain.paths import corners, leads, paths
 from twin.nc.text.blocks import Statement
 
 _COMMENT = re.compile(r"[ \t]*(?:[0-9]+[ \t]*)?[;*]")

@@ -3,8 +3,8 @@
 import math
 import operator
 
-from twin.nc.text import arithmetic
-from twin.nc.text.expressions import ARITHMETIC, IN_DEGREES, ExpressionSyntax, Operator
+from twin.nc.text.expressions import arithmetic
+from twin.nc.text.expressions.expressions import ARITHMETIC, IN_DEGREES, ExpressionSyntax, Operator
 from twin.nc.text.syntax import Comment, Syntax
 
 _VALUE = r"(?=[ \t]*[-+]?[ \t]*(?:[.0-9]|Q))"

@@ -9,7 +9,7 @@ import re
 from twin.nc.control.control import Control
 from twin.nc.dialects.heidenhain.cycles.plane_directions import spatial
 from twin.nc.dialects.heidenhain.memory import memory_of
-from twin.nc.iso.tool_center import begin_tool_center, end_tool_center, point_by_words
+from twin.nc.iso.orientation.tool_center import begin_tool_center, end_tool_center, point_by_words
 from twin.nc.text.blocks import Statement, Word
 
 _TCPM = re.compile(

@@ -5,7 +5,7 @@ from typing import NoReturn
 from twin.nc.control.control import Control
 from twin.nc.dialects.heidenhain.memory import memory_of
 from twin.nc.text.blocks import Statement, Word
-from twin.nc.text.expressions import Expression
+from twin.nc.text.expressions.expressions import Expression
 
 
 def computed_words(control: Control, statement: Statement, at: int) -> dict[str, Word]:

@@ -11,7 +11,7 @@ from twin.nc.dialects.linuxcnc.memory import LinuxcncMemory, memory_of
 from twin.nc.dialects.linuxcnc.parameters import EXPRESSIONS
 from twin.nc.dialects.linuxcnc.structure import COMMENTS, LIBRARY
 from twin.nc.iso import base, shared_marks
-from twin.nc.iso.rotary_targets import turn_by_sign
+from twin.nc.iso.orientation.rotary_targets import turn_by_sign
 from twin.nc.text.syntax import Mark, Syntax
 
 _LONGEST_LINE = 252

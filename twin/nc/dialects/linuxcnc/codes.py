@@ -13,7 +13,7 @@ from twin.nc.dialects.linuxcnc.motion import CLOCKWISE, COUNTER_CLOCKWISE
 from twin.nc.geometry.planes import XY, YZ, ZX
 from twin.nc.iso import base
 from twin.nc.iso.declared import modal, motion_code, plane_code, refused, replacement
-from twin.nc.iso.fixed_cycles import BY_HAND
+from twin.nc.iso.drilling.fixed_cycles import BY_HAND
 from twin.nc.iso.tool_compensation import LEFT, RIGHT
 from twin.nc.path.feed_rates import FeedMode
 

@@ -19,9 +19,9 @@ from twin.nc.dialects.linuxcnc.structure import (
     scope,
     structure,
 )
-from twin.nc.text.arithmetic import nearest_whole_away
 from twin.nc.text.blocks import Location, Statement
-from twin.nc.text.expressions import Computed, Expression, Variable
+from twin.nc.text.expressions.arithmetic import nearest_whole_away
+from twin.nc.text.expressions.expressions import Computed, Expression, Variable
 
 WITH_VALUES = ("CALL", "RETURN", "ENDSUB", "IF", "ELSEIF", "WHILE", "REPEAT")
 """Keywords that values may follow."""

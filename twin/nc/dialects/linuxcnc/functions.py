@@ -125,7 +125,7 @@ def _end_early(control: Control) -> None:
     memory_of(control).functions["spindle"] = 5.0
 
 
-def _function(number: int, meaning: str, letters: str = "", *, optional: bool = False) -> MCode:
+def _function(number: int, meaning: str, letters: str, *, optional: bool = False) -> MCode:
     """An output or an override, which changes no path, with its words."""
 
     def action(control: Control) -> None:
@@ -140,7 +140,25 @@ def _function(number: int, meaning: str, letters: str = "", *, optional: bool = 
     return MCode(meaning=meaning, group=group, action=action, silent=True, basis="manual")
 
 
+_OVERRIDES = {
+    48: ("feed and speed overrides on", ""),
+    49: ("feed and speed overrides off", ""),
+    50: ("feed override, P1 on, P0 off", "P"),
+    51: ("speed override, P1 on, P0 off", "P"),
+    52: ("adaptive feed, P1 on, P0 off", "P"),
+    53: ("feed hold, P1 on, P0 off", "P"),
+}
+_OUTPUTS = {
+    62: ("output P on with the next move", "P"),
+    63: ("output P off with the next move", "P"),
+    64: ("output P on", "P"),
+    65: ("output P off", "P"),
+    67: ("analog output E set to Q with the next move", "EQ"),
+    68: ("analog output E set to Q", "EQ"),
+}
 M_CODES = {
+    **{number: _function(number, *words, optional=True) for number, words in _OVERRIDES.items()},
+    **{number: _function(number, *words) for number, words in _OUTPUTS.items()},
     0: MCode(meaning="program stop", group="stop", after_motion=True, basis="manual"),
     1: MCode(meaning="optional stop", group="stop", after_motion=True, basis="manual"),
     2: MCode(meaning="end of program", group="stop", after_motion=True, ends=True,
@@ -159,23 +177,11 @@ M_CODES = {
               action=orient_spindle, basis="manual"),
     30: MCode(meaning="end of program, pallets exchanged", group="stop", after_motion=True, ends=True, action=compensation.end,
               basis="manual"),
-    48: _function(48, "feed and speed overrides on"),
-    49: _function(49, "feed and speed overrides off"),
-    50: _function(50, "feed override, P1 on, P0 off", "P", optional=True),
-    51: _function(51, "speed override, P1 on, P0 off", "P", optional=True),
-    52: _function(52, "adaptive feed, P1 on, P0 off", "P", optional=True),
-    53: _function(53, "feed hold, P1 on, P0 off", "P", optional=True),
     60: MCode(meaning="pallets exchanged, program stop", group="stop", after_motion=True, basis="manual"),
     61: MCode(meaning="number of the tool in the spindle, Q", group="tool", action=set_tool,
               silent=True, basis="manual"),
-    62: _function(62, "output P on with the next move", "P"),
-    63: _function(63, "output P off with the next move", "P"),
-    64: _function(64, "output P on", "P"),
-    65: _function(65, "output P off", "P"),
     66: MCode(meaning="input P or E read into #5399, L how, Q seconds at most", group="input",
               action=read_input, silent=True, basis="manual"),
-    67: _function(67, "analog output E set to Q with the next move", "EQ"),
-    68: _function(68, "analog output E set to Q", "EQ"),
     70: MCode(meaning="what is in force is put aside", group="state", action=saved_state.save(until_return=False),
               silent=True, basis="manual"),
     71: MCode(meaning="what was put aside is dropped", group="state", action=saved_state.forget,

@@ -13,7 +13,7 @@ from twin.nc.dialects.linuxcnc.memory import SYSTEMS, CoordinateSystem, Linuxcnc
 from twin.nc.geometry.matrices import IDENTITY, Matrix, applied, rotated, transposed
 from twin.nc.geometry.planes import XY
 from twin.nc.iso.offsets import machine_zero
-from twin.nc.iso.tool_center import begin_tool_center, end_tool_center
+from twin.nc.iso.orientation.tool_center import begin_tool_center, end_tool_center
 from twin.nc.text.blocks import Word
 
 FIXTURE = 9

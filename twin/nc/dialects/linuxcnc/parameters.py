@@ -10,9 +10,9 @@ from twin.nc.dialects.linuxcnc.memory import SYSTEMS, CoordinateSystem, memory_o
 from twin.nc.dialects.linuxcnc.offsets import reframe
 from twin.nc.iso.offsets import machine_zero
 from twin.nc.path.feed_rates import FeedMode
-from twin.nc.text import arithmetic
 from twin.nc.text.blocks import Assignment
-from twin.nc.text.expressions import (
+from twin.nc.text.expressions import arithmetic
+from twin.nc.text.expressions.expressions import (
     IN_DEGREES,
     ExpressionError,
     ExpressionSyntax,

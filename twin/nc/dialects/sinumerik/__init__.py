@@ -3,12 +3,13 @@
 from twin.nc.control.codes import Codes, MCode, WordAction, Words
 from twin.nc.control.control import Control, Rules
 from twin.nc.control.dialect import Dialect
-from twin.nc.dialects.sinumerik import frames, statements, variables, words
+from twin.nc.dialects.sinumerik import frames, statements, words
 from twin.nc.dialects.sinumerik.codes import CODES, NUMBERS, REPLACEMENTS
 from twin.nc.dialects.sinumerik.decisions import DECISIONS
-from twin.nc.dialects.sinumerik.expressions import EXPRESSIONS, NAME
 from twin.nc.dialects.sinumerik.flow import calls, programs
 from twin.nc.dialects.sinumerik.memory import SinumerikMemory, acts_on_lines
+from twin.nc.dialects.sinumerik.variables import variables
+from twin.nc.dialects.sinumerik.variables.expressions import EXPRESSIONS, NAME
 from twin.nc.iso import base, shared_marks
 from twin.nc.iso.declared import flow_function
 from twin.nc.path.compensation.gouge import NEIGHBOURS

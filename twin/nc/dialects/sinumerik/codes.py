@@ -92,10 +92,6 @@ def _corner(meaning: str, corner: Corner) -> GCode:
     return modal(meaning, "corner", corner=corner)
 
 
-def _pole(number: int, from_where: str) -> GCode:
-    return replacement(f"pole of AP= and RP=, from {from_where}", partial(set_pole, number))
-
-
 _ROUND = "rounds corners as far as the machine file's tolerance, or ADIS="
 _SPINDLE = "the twin's spindle has no angle; CYCLE84 and CYCLE840 tap"
 _UNITS: Action = words.keep_feed
@@ -139,9 +135,10 @@ CODES: dict[float, GCode] = {
     95: modal("feed per revolution", "feed", feed_mode=FeedMode.PER_REVOLUTION),
     **refused("constant cutting speed", "a mill's radius is the tool's", 96, 961, 962),
     97: modal("constant spindle speed", "spindle"),
-    110: _pole(110, "where the tool stands"),
-    111: _pole(111, "zero"),
-    112: _pole(112, "the pole before"),
+    **{
+        number: replacement(f"pole of AP= and RP=, from {place}", partial(set_pole, number))
+        for number, place in enumerate(("where the tool stands", "zero", "the pole before"), 110)
+    },
     140: modal("smooth leads come from the side of the tool", "lead side"),
     **refused("direction of smooth leads", "they come from the side of the tool", 141, 142, 143),
     340: modal("smooth leads fall and rise in space", "leads"),

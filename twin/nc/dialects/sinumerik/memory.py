@@ -10,8 +10,8 @@ from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.matrices import IDENTITY, Matrix
 from twin.nc.geometry.planes import Vector
 from twin.nc.iso.machine_coordinates import PartFrame
-from twin.nc.text.arithmetic import nearest_whole_away
 from twin.nc.text.blocks import Statement
+from twin.nc.text.expressions.arithmetic import nearest_whole_away
 
 
 class VariableType(enum.Enum):

@@ -16,14 +16,14 @@ from twin.nc.geometry.frame import chained
 from twin.nc.geometry.matrices import IDENTITY, Matrix, product
 from twin.nc.geometry.planes import Vector
 from twin.nc.iso.machine_coordinates import machine_frame
-from twin.nc.iso.tilted_plane import (
+from twin.nc.iso.orientation.tilted_plane import (
     about,
     directions_of,
     plane_of_axes,
     point_tool,
     refuse_leaning,
 )
-from twin.nc.iso.tool_center import begin_tool_center, end_tool_center, point_by_words
+from twin.nc.iso.orientation.tool_center import begin_tool_center, end_tool_center, point_by_words
 from twin.nc.text.blocks import Statement
 
 _RETRACT, _STATUS, _MODE, _ORIGIN, _ANGLES, _SHIFT, _DIRECTION = (

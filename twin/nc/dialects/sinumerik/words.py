@@ -17,15 +17,15 @@ from twin.nc.dialects.sinumerik.targets import (
     frame_changes,
     shows_within_turn,
 )
-from twin.nc.dialects.sinumerik.variables import text_of
+from twin.nc.dialects.sinumerik.variables.variables import text_of
 from twin.nc.iso import base
 from twin.nc.iso.declared import keep_compensated_plane
 from twin.nc.iso.tool_change import go_to_change_height
 from twin.nc.iso.tool_compensation import radius_in_spindle, set_length
 from twin.nc.path.blends import Blend, BlendKind
 from twin.nc.path.feed_rates import counts_blocks
-from twin.nc.text.arithmetic import is_whole
 from twin.nc.text.blocks import Word
+from twin.nc.text.expressions.arithmetic import is_whole
 
 _BLENDING = re.compile(rb"[RrCc](?:[Nn][Dd]|[Hh][FfRr])")
 _BLENDS = {"RND": BlendKind.FILLET, "CHR": BlendKind.CHAMFER, "CHF": BlendKind.CHAMFER_LENGTH}

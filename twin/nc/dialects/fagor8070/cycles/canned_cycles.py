@@ -20,8 +20,8 @@ from twin.nc.control.codes import Basis, GCode, Interpolation
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.cycles.pockets import call_pocket, mill_pocket
 from twin.nc.dialects.fagor8070.polar import take_goal
-from twin.nc.iso.drilling import Cycle, Holes, Pecking, cycle_code
-from twin.nc.iso.hole import Retract
+from twin.nc.iso.drilling.drilling import Cycle, Holes, Pecking, cycle_code
+from twin.nc.iso.drilling.hole import Retract
 
 _CLEARANCE = 1.0
 """G82: C where it is missing [mm]."""

@@ -13,13 +13,13 @@ from twin.nc.control.codes import GCode
 from twin.nc.control.control import Control
 from twin.nc.dialects.fanuc import decimal_point
 from twin.nc.dialects.fanuc.cycles.boring import boring_code
+from twin.nc.dialects.fanuc.frames.transformations import refuse_scaled_pecks
 from twin.nc.dialects.fanuc.memory import Variant, letter_patterns, memory_of
 from twin.nc.dialects.fanuc.motion import holes_of
-from twin.nc.dialects.fanuc.transformations import refuse_scaled_pecks
 from twin.nc.iso import base
-from twin.nc.iso.drilling import Pecking
-from twin.nc.iso.fixed_cycles import BY_HAND, CYCLES, DRILLS, drilling_code
-from twin.nc.iso.hole import CHIP_CLEARANCE, Retract
+from twin.nc.iso.drilling.drilling import Pecking
+from twin.nc.iso.drilling.fixed_cycles import BY_HAND, CYCLES, DRILLS, drilling_code
+from twin.nc.iso.drilling.hole import CHIP_CLEARANCE, Retract
 from twin.nc.text.blocks import Block
 
 _TAPS = {

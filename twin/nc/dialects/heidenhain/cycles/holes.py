@@ -6,7 +6,14 @@ Decisions, since the manuals leave them open or the twin does not follow them: t
 
 from twin.nc.control.control import Control
 from twin.nc.dialects.heidenhain.cycle_values import Parameters
-from twin.nc.iso.hole import MOST_PECKS, Hole, Retract, count_passes, drill, turn_spindle
+from twin.nc.iso.drilling.hole import (
+    MOST_PECKS,
+    Hole,
+    Retract,
+    count_passes,
+    drill,
+    turn_spindle,
+)
 from twin.nc.iso.plane_moves import at_feed, descend, go, go_to_height
 
 ADVANCE = 0.2

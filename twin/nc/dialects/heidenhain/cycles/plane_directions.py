@@ -12,7 +12,7 @@ from twin.nc.dialects.heidenhain.memory import memory_of
 from twin.nc.geometry.arcs import direction
 from twin.nc.geometry.matrices import IDENTITY, Matrix, product
 from twin.nc.geometry.planes import Vector, cross
-from twin.nc.iso.tilted_plane import about, directions_of, plane_of_axes
+from twin.nc.iso.orientation.tilted_plane import about, directions_of, plane_of_axes
 from twin.nc.text.blocks import Statement
 
 _STEEPEST = 89.9999

@@ -21,14 +21,14 @@ from twin.nc.dialects.heidenhain.memory import memory_of
 from twin.nc.dialects.heidenhain.values import refuse_rest, value_at
 from twin.nc.geometry.matrices import IDENTITY, Matrix
 from twin.nc.iso.machine_coordinates import machine_frame
-from twin.nc.iso.plane_moves import at_feed
-from twin.nc.iso.tilted_plane import (
+from twin.nc.iso.orientation.tilted_plane import (
     count_in_plane,
     rotary_axes_across,
     turn_about,
     turned_with_plane,
 )
-from twin.nc.iso.tool_center import begin_tool_center, end_tool_center
+from twin.nc.iso.orientation.tool_center import begin_tool_center, end_tool_center
+from twin.nc.iso.plane_moves import at_feed
 from twin.nc.text.blocks import Statement
 
 _WORD = re.compile(

@@ -5,7 +5,6 @@ from collections.abc import Sequence
 
 from twin.nc.control.codes import Action, StatementAction
 from twin.nc.control.control import Control
-from twin.nc.dialects.sinumerik.expressions import NAME
 from twin.nc.dialects.sinumerik.flow.programs import heading, name_of_file, procedure
 from twin.nc.dialects.sinumerik.flow.repeats import call_part, repeat_blocks
 from twin.nc.dialects.sinumerik.frames import put_programmable
@@ -19,10 +18,11 @@ from twin.nc.dialects.sinumerik.memory import (
     memory_of,
 )
 from twin.nc.dialects.sinumerik.values import bracketed, split_values
-from twin.nc.dialects.sinumerik.variables import axis_of_value, text_named, write_variable
+from twin.nc.dialects.sinumerik.variables.expressions import NAME
+from twin.nc.dialects.sinumerik.variables.variables import axis_of_value, text_named, write_variable
 from twin.nc.text.blocks import Block, Location, Statement
-from twin.nc.text.expressions import ExpressionError, Variable
-from twin.nc.text.slips import near, slip_at
+from twin.nc.text.diagnostics.slips import near, slip_at
+from twin.nc.text.expressions.expressions import ExpressionError, Variable
 
 _TIMES = re.compile(r"[ \t]*P[ \t]*=?[ \t]*(.+)", re.IGNORECASE)
 _PATH = re.compile(

@@ -8,8 +8,8 @@ import re
 from collections.abc import Iterator
 
 from twin.nc.control.control import Control
-from twin.nc.dialects.sinumerik.expressions import NAME
 from twin.nc.dialects.sinumerik.memory import Formal, Subprogram, VariableType, memory_of
+from twin.nc.dialects.sinumerik.variables.expressions import NAME
 from twin.nc.text.blocks import Location, Statement
 from twin.nc.text.library import Library
 from twin.nc.text.source import Source

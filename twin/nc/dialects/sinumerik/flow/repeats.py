@@ -3,9 +3,9 @@
 import re
 
 from twin.nc.control.control import Control
-from twin.nc.dialects.sinumerik.expressions import NAME
 from twin.nc.dialects.sinumerik.flow.programs import lines_around
 from twin.nc.dialects.sinumerik.memory import DEEPEST_CALL
+from twin.nc.dialects.sinumerik.variables.expressions import NAME
 from twin.nc.text.blocks import Location, Statement
 
 _NAMED = rf"N[ \t]*\d+|{NAME}"

@@ -7,12 +7,18 @@ from typing import NoReturn
 from twin.nc.control.codes import StatementAction
 from twin.nc.control.constructs import Construct, Structure
 from twin.nc.control.control import Control
-from twin.nc.dialects.sinumerik.expressions import NAME
 from twin.nc.dialects.sinumerik.flow.programs import lines_around
 from twin.nc.dialects.sinumerik.memory import memory_of
-from twin.nc.dialects.sinumerik.variables import with_texts_compared, write_variable
+from twin.nc.dialects.sinumerik.variables.expressions import NAME
+from twin.nc.dialects.sinumerik.variables.variables import with_texts_compared, write_variable
 from twin.nc.text.blocks import Location, Statement
-from twin.nc.text.expressions import Expression, ExpressionError, NumberedVariable, Tree, Variable
+from twin.nc.text.expressions.expressions import (
+    Expression,
+    ExpressionError,
+    NumberedVariable,
+    Tree,
+    Variable,
+)
 
 DEEPEST_CONSTRUCT = 16
 """Constructs within each other (manual)."""

@@ -1,0 +1,137 @@
+import math
+from pathlib import Path
+
+import hypothesis
+import hypothesis.strategies as st
+import numpy as np
+import pytest
+import trimesh
+
+from tests.cutting.conftest import samples
+from twin.cutting.cut import Cutter
+from twin.cutting.heights.height_map import HeightMap, blank
+from twin.cutting.heights.part import part_mesh, write_stl
+from twin.job.job_file import StockTable, ToolTable
+from twin.toolpath.part_frame import PartFrame
+
+ORIGIN = np.zeros(3)
+BOX = StockTable(shape="box", size=(30.0, 20.0, 8.0))
+CYLINDER = StockTable(shape="cylinder", diameter=30.0, height=8.0)
+
+
+def reloaded(height_map: HeightMap, folder: Path) -> trimesh.Trimesh:
+    write_stl(height_map, folder / "part.stl")
+    mesh = trimesh.load_mesh(folder / "part.stl")
+    assert isinstance(mesh, trimesh.Trimesh)
+    return mesh
+
+
+@pytest.mark.parametrize(
+    ("stock", "volume"), [(BOX, 30.0 * 20.0 * 8.0), (CYLINDER, math.pi * 15.0**2 * 8.0)]
+)
+def test_uncut_stock_has_its_own_size(stock: StockTable, volume: float, tmp_path: Path) -> None:
+    mesh = reloaded(blank(stock, ORIGIN, 0.5), tmp_path)
+    assert mesh.is_watertight
+    assert mesh.is_winding_consistent
+    assert mesh.volume == pytest.approx(volume, rel=2e-3)
+    np.testing.assert_allclose(mesh.extents, stock.extent, atol=0.01)
+    assert mesh.bounds[1, 2] == 0.0
+
+
+@hypothesis.settings(derandomize=True, max_examples=25, deadline=None)
+@hypothesis.given(
+    st.sampled_from([BOX, CYLINDER]),
+    st.floats(0.3, 2.3),
+    st.lists(
+        st.tuples(st.floats(-18.0, 18.0), st.floats(-14.0, 14.0), st.floats(-9.0, 0.0)),
+        min_size=2,
+        max_size=6,
+    ),
+)
+def test_every_cut_part_is_watertight(
+    stock: StockTable, cell: float, corners: list[tuple[float, float, float]]
+) -> None:
+    tool = ToolTable(number=1, diameter=4.0, kind="ball")
+    cutter = Cutter(
+        stock.model_copy(update={"cell": cell}), tool, PartFrame(None, (0.0, 0.0)), np.zeros(3)
+    )
+    cutter.add(samples(np.array(corners)), np.zeros(len(corners), np.bool_))
+    mesh = part_mesh(cutter.map)
+    mesh.merge_vertices()
+    assert mesh.is_watertight
+    assert mesh.is_winding_consistent
+    wall = 2 * (30.0 + 20.0) * 8.0 + 120.0 * 2 * 8.0
+    assert abs(mesh.volume - cutter.map.volume) < 0.5 * wall * cell
+
+
+def test_touching_corners_are_separated() -> None:
+    height_map = blank(BOX, ORIGIN, 1.0)
+    height_map.heights[:10, :15] = height_map.bottom
+    height_map.heights[10:, 15:] = height_map.bottom
+    mesh = part_mesh(height_map)
+    mesh.merge_vertices()
+    assert mesh.is_watertight
+
+
+def test_nothing_left_gives_an_empty_mesh() -> None:
+    height_map = blank(BOX, ORIGIN, 1.0)
+    height_map.heights[:] = height_map.bottom
+    assert len(part_mesh(height_map).faces) == 0
+
+
+@pytest.mark.seconds("a fine map is made")
+def test_fine_map_is_thinned(tmp_path: Path) -> None:
+    height_map = blank(BOX, ORIGIN, 0.03)
+    mesh = reloaded(height_map, tmp_path)
+    assert len(mesh.faces) < 2_000_000
+    assert mesh.is_watertight
+    assert mesh.volume == pytest.approx(30.0 * 20.0 * 8.0)
+
+
+def test_failed_write_leaves_nothing(tmp_path: Path) -> None:
+    (tmp_path / "part.stl").mkdir()
+    with pytest.raises(OSError, match=r"part\.stl"):
+        write_stl(blank(BOX, ORIGIN, 1.0), tmp_path / "part.stl")
+    assert [path.name for path in tmp_path.iterdir()] == ["part.stl"]
+
+
+@pytest.mark.parametrize("left", [0.05, 0.12, 0.3, 0.45])
+@pytest.mark.parametrize("cell", [0.25, 0.5])
+def test_a_thin_cut_around_a_cylinder_leaves_a_round_side(left: float, cell: float) -> None:
+    cutter = Cutter(
+        CYLINDER.model_copy(update={"cell": cell}),
+        ToolTable(number=1, diameter=4.0),
+        PartFrame(None, (0.0, 0.0)),
+        np.zeros(3),
+    )
+    wall = 15.0 - left
+    turn = np.linspace(0.0, 2 * np.pi, 721)
+    path = np.column_stack(
+        [(wall + 2.0) * np.cos(turn), (wall + 2.0) * np.sin(turn), np.full(len(turn), -3.0)]
+    )
+    cutter.add(samples(path), np.zeros(len(path), np.bool_))
+    mesh = part_mesh(cutter.map)
+    mesh.merge_vertices()
+    assert mesh.is_watertight
+    radius = np.hypot(mesh.vertices[:, 0], mesh.vertices[:, 1])
+    top = mesh.vertices[:, 2] == 0.0
+    assert radius[top].max() == pytest.approx(wall, abs=0.11 * cell)
+    edge = radius > 15.0 - 1e-3
+    assert set(np.unique(mesh.vertices[edge, 2])) == {-8.0, -3.0}
+    ring = math.pi * (15.0**2 - wall**2) * 3.0
+    assert mesh.volume == pytest.approx(math.pi * 15.0**2 * 8.0 - ring, abs=max(0.5 * ring, 5.0))
+
+
+def test_a_slot_through_the_edge_keeps_the_edge_beside_it() -> None:
+    cutter = Cutter(
+        CYLINDER.model_copy(update={"cell": 0.25}),
+        ToolTable(number=1, diameter=4.0),
+        PartFrame(None, (0.0, 0.0)),
+        np.zeros(3),
+    )
+    cutter.add(samples(np.array([[-20.0, 0.1, -3.0], [20.0, 0.1, -3.0]])), np.zeros(2, np.bool_))
+    vertices = part_mesh(cutter.map).vertices
+    edge = (np.hypot(vertices[:, 0], vertices[:, 1]) > 15.0 - 1e-3) & (vertices[:, 2] > -8.0)
+    beside = np.abs(vertices[:, 1] - 0.1) > 2.25
+    assert (vertices[edge & beside, 2] == 0.0).all()
+    assert (vertices[edge & (np.abs(vertices[:, 1] - 0.1) < 1.75), 2] == -3.0).all()

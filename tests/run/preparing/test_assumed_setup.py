@@ -1,0 +1,242 @@
+"""What a raw program's path and comments show of its stock's height, its machine, and the radii in the control's table."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.run.preparing.test_assumed_job import raw
+from twin.errors import UsageError
+from twin.nc.canonical import concatenate
+from twin.nc.text.diagnostics.diagnostics import ProgramError
+from twin.nc.text.source import source_from_text
+from twin.run.preparing.assumed_job import text_beside
+from twin.run.preparing.preparation import Preparation, prepare
+from twin.run.reading.assumed_machine import assumed_machine, turned_axes
+from twin.run.reading.assumed_tools import tool_of_comment
+
+
+def passes(*heights: float, clear: float = 15.0) -> str:
+    """A square at each height, from a plunge beside it."""
+    return f"G0 Z{clear}\nG0 X9. Y9.\nX0. Y0.\n" + "".join(
+        f"G1 Z{height} F100.\nG1 X40. F300.\nY30.\nX0.\nY0.\n" for height in heights
+    )
+
+
+HEAD, END = "G21 G90 G17\nT1 M6\nS900 M3\n", "G0 Z15.\nM30\n"
+
+
+@pytest.mark.parametrize(
+    ("heights", "top", "size"),
+    [
+        ((8.0, 6.0, 4.0, 2.0, 0.0), 10.0, 10.0),  # zero on the bottom, steps of 2 mm
+        ((8.0, 4.0, 0.0, -0.2), 12.0, 13.0),  # through to the table
+        ((14.0, 4.0), 14.0, 14.0),  # rapids at 15 pass above it
+        ((1.0, -2.0, -4.0, -6.0), 0.0, 16.0),  # a feed in the air before the cuts below zero
+        ((-2.0, -4.0), 0.0, 14.0),
+    ],
+)
+def test_the_path_shows_where_zero_lies(
+    heights: tuple[float, ...], top: float, size: float, tmp_path: Path
+) -> None:
+    made, assumed = raw(tmp_path, f"{HEAD}{passes(*heights)}{END}")
+    stock = made.job.file.stock
+    assert stock is not None
+    assert stock.size is not None
+    assert stock.position[2] == pytest.approx(top)
+    assert stock.size[2] == pytest.approx(size)
+    assert any("zero is not on its top" in line for line in assumed.assumptions) == (top > 0.0)
+    assert made.job.file.start.get("Z", 0.0) == (top + 10.0 if top else 0.0)
+
+
+def test_a_path_that_slopes_down_has_no_steps(tmp_path: Path) -> None:
+    ramp = "G0 Z60.\nG0 X9. Y9.\nX0. Y0.\nG1 Z40. F100.\nX2. F300.\n" + "".join(
+        f"X{40 * (n % 2)}. Z{40 - 3 * n}.\n" for n in range(1, 9)
+    )
+    made, _ = raw(tmp_path, f"{HEAD}{ramp}Y30.\nX0.\n{END}")
+    assert made.job.file.stock is not None
+    assert made.job.file.stock.position[2] == 41.0
+
+
+def test_a_router_that_calls_t0_has_a_tool_0(tmp_path: Path) -> None:
+    """MakerCam writes T0 M6 before everything: an empty spindle would cut nothing, and pass."""
+    first = f"{HEAD.replace('T1', 'T0')}{passes(-1.0)}"
+    for text, numbers in (
+        (END, [0]),
+        (f"T1 M6\n{passes(-2.0)}{END}", [0, 1]),
+    ):
+        made, _ = raw(tmp_path, first + text)
+        assert [tool.number for tool in made.job.file.tools] == numbers
+    made, _ = raw(tmp_path, f"{HEAD}{passes(-1.0)}T0 M6\n{END}")  # the spindle is emptied
+    assert [tool.number for tool in made.job.file.tools] == [1]
+
+
+def test_flutes_are_as_long_as_the_deepest_cut_below_the_top(tmp_path: Path) -> None:
+    made, _ = raw(tmp_path, f"{HEAD}{passes(50.0, 40.0, 30.0, 20.0, 10.0, 0.0, clear=70.0)}{END}")
+    assert made.job.file.tools[0].flute == 65.0
+
+
+def test_rapids_into_a_pocket_that_was_fed_take_nothing_from_the_stock(tmp_path: Path) -> None:
+    pocket = "G0 Z5.\nG0 X0. Y0.\nG1 Z-4. F100.\nX40. F300.\nG0 Z5.\nX20. Y1.\nZ-3.5\nG1 X30.\n"
+    made, assumed = raw(tmp_path, HEAD + pocket + END)
+    assert not any("go below its top" in line for line in assumed.assumptions)
+    beside = pocket.replace("X20. Y1.", "X20. Y18.")
+    _, assumed = raw(tmp_path, HEAD + beside + END)
+    assert any("rapids of line 10 go below its top" in line for line in assumed.assumptions)
+    assert made.job.file.stock is not None
+
+
+ROTARY = f"O1\n{HEAD}G54\nG0 A0.\nG0 X10. Y0. Z60.\nG1 Z18. F300.\nX30.\nG0 Z60.\nA90.\nG0 X10.\nG1 Z18.\nX30.\nG0 Z60.\nM30\n"
+
+
+def test_a_program_that_turns_a_runs_on_the_machine_with_a(tmp_path: Path) -> None:
+    made, assumed = raw(tmp_path, ROTARY)
+    file = made.job.file
+    assert file.machine == "mill4a"
+    assert "machine mill4a: the program turns A, and mill4 has no A" in assumed.assumptions
+    assert file.stock is not None
+    assert (file.stock.shape, file.stock.axis) == ("cylinder", "X")
+    assert file.stock.diameter == 38.0  # the only cut, at Z18, is taken to be 1 mm deep
+    assert file.tools[0].length > 60.0  # or it would not reach the axis within the travel of Z
+    chain = made.machine.part_frame.chain
+    assert chain is not None
+    begin = file.stock.position[0] - (file.stock.height or 0.0) / 2.0
+    assert file.part_zero["X"] + begin == pytest.approx(chain.table[0])
+    kept = tmp_path / "kept.toml"
+    kept.write_text(text_beside(kept, assumed, tmp_path / "part.nc"))
+    assert prepare(kept).machine.axes.names == ("X", "Y", "Z", "A")
+    assert (
+        prepare(tmp_path / "part.nc", machine="mill5", assuming=True).machine.file.name == "mill5"
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "turned", "machine"),
+    [
+        ("G0 X1 A0.\nA0", set(), None),
+        ("G1 X1. A#101 F5", {"A"}, "mill4a"),
+        ("G0 C90.", {"C"}, None),
+        ("G0 A30. C90.", {"A", "C"}, "mill5"),
+        ("G0 B90.", {"B"}, None),  # of a table or of a head: nobody knows
+        ("G65 P9001 A1. B2.\n(A90.)\nG1 X5. ,C2.", set(), None),
+        ("N5 L A+30 C-45 FMAX", {"A", "C"}, "mill5"),
+        ("X=AC(5) A=DC(90)", {"A"}, "mill4a"),
+        ("CC X+5 Y+5\nC X+1 DR+\nCYCL DEF 19.1 A+30", set(), None),
+        ("CR=5 AR=90 RP=3", set(), None),
+    ],
+)
+def test_rotary_words_choose_the_machine(text: str, turned: set[str], machine: str | None) -> None:
+    source = source_from_text(text)
+    assert turned_axes(source) == turned
+    found = assumed_machine(source)
+    assert (None if found is None else found[0]) == machine
+
+
+def contour_with(comment: str, lead: str = "G41 D1 X0. F300.", rest: str = "Y30.\n") -> str:
+    return (
+        f"%\nO7\n({comment})\nG21 G90 G17\nT1 M6\nG43 H1 Z50.\nS900 M3\nG0 X-20. Y0.\nG1 Z-1. F90.\n"
+        f"{lead}\n{rest}G40 X-20.\nG0 Z50.\nM30\n%\n"
+    )
+
+
+def reached(made: Preparation, line: int) -> float:
+    chunks = list(made.interpretation().chunks())
+    moves = concatenate([chunk.moves for chunk in chunks], made.machine.axes)
+    return float(moves.end[moves.line == line][-1, 0])
+
+
+@pytest.mark.parametrize(
+    ("comment", "x"),
+    [
+        ("T1 | 10 FLAT ENDMILL | H1 | D1 | WEAR COMP | TOOL DIA. - 10.", 0.0),
+        ("T1 | 10 FLAT ENDMILL | H1 | D1 | CONTROL COMP | TOOL DIA. - 10.", -5.0),
+        ("T1 D=10. CR=0. - ZMIN=-1. - flat end mill", -5.0),
+    ],
+)
+def test_a_post_says_whether_d_holds_the_radius_or_its_wear(
+    comment: str, x: float, tmp_path: Path
+) -> None:
+    made, assumed = raw(tmp_path, contour_with(comment))
+    assert reached(made, 10) == x
+    assert made.job.file.tools[0].radius_offset == (0.0 if x == 0.0 else None)
+    assert made.job.file.tools[0].diameter == 10.0
+    told = any("counts the whole radius" in line for line in assumed.assumptions)
+    assert told == (x != 0.0)
+    kept = tmp_path / "kept.toml"
+    kept.write_text(text_beside(kept, assumed, tmp_path / "part.nc"))
+    assert reached(prepare(kept), 10) == x
+
+
+def test_contours_that_leave_the_tool_no_room_are_the_path_of_its_centre(tmp_path: Path) -> None:
+    small = "Y10.\nG3 X-4. Y14. I-4.\nG1 X-15.\n"  # an inside arc of 4 mm, the tool has 5
+    made, assumed = raw(tmp_path, contour_with("T1 D=10. CR=0. - flat end mill", rest=small))
+    assert reached(made, 10) == 0.0
+    assert any(
+        "contours are the path of the tool's centre: in line 12" in a for a in assumed.assumptions
+    )
+    with pytest.raises(ProgramError, match=r"twin init.*radius_offset"):
+        raw(tmp_path, contour_with("NOTHING OF TOOLS", rest=small))
+
+
+def test_text_before_the_first_percent_is_passed_over(tmp_path: Path) -> None:
+    made, _ = raw(tmp_path, f"PUMP HOUSING, second side\n\n%\nO7\n{HEAD}{passes(-1.0)}{END}%\n")
+    interpretation = made.interpretation()
+    assert sum(len(chunk.moves) for chunk in interpretation.chunks()) > 0
+    assert next(each.code for each in interpretation.diagnostics) == "before-tape-start"
+
+
+def test_a_program_that_a_router_alone_reads_is_its(tmp_path: Path) -> None:
+    """K of an arc in X Y, as an old post writes it: LinuxCNC refuses it, Grbl passes over it."""
+    arc = "G17 G90\nG21\nG0 X0. Y0. Z1.\nG1 Z-1. F90.\nG2 X4. Y0. I2. J0. K0.0 F200.\nM30\n"
+    made, _ = raw(tmp_path, arc)
+    assert made.dialect.name == "grbl"
+    assert (
+        "it alone reads it; fanuc, which reads it farthest of others, refuses line 5"
+        in made.dialect_reason
+    )
+    with pytest.raises(ProgramError, match="read as fanuc"):
+        raw(tmp_path, f"O1\n{arc}")
+
+
+def test_words_in_comments_and_messages_name_no_control(tmp_path: Path) -> None:
+    text = f"; 2D POCKET2 RAW\n{HEAD}{passes(-1.0)}{END}"
+    made, _ = raw(tmp_path, text)
+    assert made.dialect.name in ("fanuc", "linuxcnc")
+    with pytest.raises(UsageError, match="EdingCNC"):
+        raw(tmp_path, f'G90\nMSG "Tool: 1 End mill"\n{HEAD}{passes(-1.0)}{END}')
+
+
+def test_a_post_of_one_language_decides_between_controls(tmp_path: Path) -> None:
+    """G98 is in force at the start of a Fanuc, G99 of LinuxCNC."""
+    drill = "G21\nG90\nG0 Z50.0\nM3 S900\nG81 R3.0 Z-5.0 F100.0 X1.0 Y1.0\nX9.0\nG80\nM30\n"
+    made, _ = raw(tmp_path, f"( pcb2gcode 1.1.4 )\n{drill}")
+    assert made.dialect.name == "linuxcnc"
+    assert made.dialect_reason == "its head names pcb2gcode, which writes linuxcnc's language"
+
+
+@pytest.mark.parametrize(
+    ("comment", "inches", "diameter"),
+    [
+        ("Compensated Tool Path. Diameter: 6.35", True, 6.35),  # FreeCAD counts mm in any program
+        ("TOOL DIAMETER: 3.1 mm", False, 3.1),
+        ("MSG, Change to Tool Dia = 3.1000", False, 3.1),
+        ("384 MM BORING HEAD NO. 12", False, None),
+        ("T1 15 END MILL", True, None),  # 381 mm
+    ],
+)
+def test_diameters_are_those_of_tools(comment: str, inches: bool, diameter: float | None) -> None:
+    found = tool_of_comment(comment, inches=inches).diameter
+    assert found == (None if diameter is None else pytest.approx(diameter))
+
+
+def test_the_diameter_of_a_path_is_that_of_the_tool_in_the_spindle(tmp_path: Path) -> None:
+    path = passes(-1.0)
+    text = (
+        f"{HEAD}(Compensated Tool Path. Diameter: 6.0)\n{path}T2 M6\n"
+        f"(Compensated Tool Path. Diameter: 3.0)\n{path}{END}"
+    )
+    made, _ = raw(tmp_path, text)
+    assert [tool.diameter for tool in made.job.file.tools] == [6.0, 3.0]
+    made, _ = raw(tmp_path, f"G21 G90\nS900 M3\n(TOOL DIAMETER: 3.1 mm)\n{path}{END}")
+    assert made.job.file.tools[0].diameter == 3.1
+    assert np.isclose(made.settings.tools[1].radius, 1.55)

@@ -1,0 +1,1 @@
+"""What commands do with runs and their recordings: run, repeat, draw, export, compare."""

@@ -1,0 +1,1 @@
+"""Bodies about the tool's axis, at rest and moving, and the lines through them."""

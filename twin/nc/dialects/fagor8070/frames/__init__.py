@@ -1,0 +1,1 @@
+"""Planes, offsets and coordinate systems of the Fagor CNC 8070."""

@@ -1,0 +1,1 @@
+"""Where a block of a Fanuc control lies: offsets, transformations, planes, reference points."""

@@ -1,0 +1,1 @@
+"""Custom macro B: variables, expressions and program flow."""

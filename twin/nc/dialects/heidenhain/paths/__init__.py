@@ -1,0 +1,1 @@
+"""Path functions of Klartext: moves, the corners between them, and leads."""

@@ -1,0 +1,1 @@
+"""Drilling cycles, and what happens at their holes."""

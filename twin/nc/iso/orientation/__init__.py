@@ -1,0 +1,1 @@
+"""The tool's orientation: targets of rotary axes, tilted planes, tool centre point control."""

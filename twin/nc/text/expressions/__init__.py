@@ -1,0 +1,1 @@
+"""Expressions: their text, their trees and what they compute."""

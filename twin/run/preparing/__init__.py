@@ -1,0 +1,1 @@
+"""From a job to everything that a run needs."""

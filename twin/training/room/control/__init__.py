@@ -1,0 +1,1 @@
+"""The control that the operator works: panel, programs, tables, manual motion, auxiliaries."""
