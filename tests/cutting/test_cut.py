@@ -279,7 +279,7 @@ def test_a_slot_is_as_exact_along_the_grid_as_across_it(
     along = 30.0 * np.array([math.cos(math.radians(turn)), math.sin(math.radians(turn))])
     way = np.linspace(off * cell - along, off * cell + along, 3000)
     way += np.random.default_rng(1).uniform(-2e-3, 2e-3, way.shape)
-    cutter.add(samples(path(*way.T, -3.0)), np.zeros(len(way), np.bool_))
+    cutter.add(samples(path(way[:, 0], way[:, 1], -3.0)), np.zeros(len(way), np.bool_))
     exact = 3.0 * (60.0 * diameter + math.pi * diameter**2 / 4)
     assert cutter.result().removed_mm3 == pytest.approx(exact, rel=2e-3)
 
