@@ -4,7 +4,7 @@ import math
 import operator
 
 from twin.compare.baseline_text import Entry, number
-from twin.job.job_file import BaselineTable
+from twin.job.tolerance import BaselineTable
 
 _SMALLEST_TIME = 1e-6
 """Dwells that differ by no more are the same [s]."""

@@ -16,13 +16,14 @@ from twin.nc.control.tools import Tools
 from twin.nc.control.variables import Variables
 from twin.nc.geometry.arcs import Point
 from twin.nc.path.feed_rates import PATH_COUNTS, STANDING, WITHOUT_SPEED, FeedRule
-from twin.nc.path.moves import LARGEST_COORDINATE, axis_target
+from twin.nc.path.moves import axis_target
 from twin.nc.text.blocks import Assignment, Block, Location, Statement, Word
 from twin.nc.text.diagnostics.reporter import Reporter
 from twin.nc.text.expressions.expressions import Expression, ExpressionError
 from twin.nc.text.lexer import Lexer
 from twin.nc.text.source import Source
 from twin.nc.text.syntax import Language
+from twin.units import LARGEST_COORDINATE
 
 WITHOUT_POINT = "decimal-point"
 """The warning that a number without a decimal point counts increments."""
@@ -100,6 +101,7 @@ class Control:
         cycle_values: What the cycle in force remembers, by name.
         words: Its words that nothing has taken yet.
         series: Its words for switch points, in order.
+        written_zero: What the program has written first into its table of work offsets, by axis [mm or deg].
         run: Runs one block, also one that is within a statement.
     """
 
@@ -150,6 +152,7 @@ class Control:
         self.words: dict[str, Word] = {}
         self.codes: Sequence[tuple[Word, HasGroup]] = ()
         self.series: list[Word] = []
+        self.written_zero: dict[str, float] = {}
         self.run = run
         self.ended = False
 

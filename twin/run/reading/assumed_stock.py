@@ -1,29 +1,35 @@
 """The stock that is assumed for a raw program: of a comment in its head, or of its path."""
 
 import re
+from typing import NamedTuple
 
 import numpy as np
 
-from twin.nc.canonical import BoolArray, FloatArray, Motion, Moves
+from twin.nc.canonical import FloatArray, Motion, Moves
 from twin.nc.dialects.recognition import HEAD_LINES
+from twin.run.reading.assumed_heights import (
+    MARGIN,
+    Cuts,
+    aside,
+    first_feed,
+    heights,
+    levels_of,
+    over_the_cuts,
+    turns_about_x,
+)
 from twin.run.reading.assumed_tools import BELOW
 
-MARGIN = 10.0
-"""Stock beyond the feed moves, on each side [mm]."""
 _LEAST_HEIGHT = 10.0
 _CLAMPED = 50.0
 """How long a bar is between the table that turns it and the path, so that holder and table do not meet [mm]."""
-_ONLY_CUT = 1.0
-"""How deep the only cut is taken to be [mm]."""
-_LEAST_CLEARANCE = 1.0
-"""Rapids in the plane pass the stock at least so high above it [mm]."""
-_MOST_ABOVE = 0.5
-"""Program zero lies on the stock's top, unless this share of the path of its cuts lies above it."""
 _MOST_CLIPPED = 0.5
 """Share of the stock's area that may be taken from it so that no rapid plunges into it; beyond that there is none."""
 
-_NUMBER = r"\s*[:=-]?\s*([0-9]+(?:\.[0-9]*)?)"
-_STOCK_WORDS = r"(?:STOCK(?:/BLOCK)?|BLOCK SIZE|BLANK|MATERIAL(?: SIZE)?|WORKPIECE SIZE|ROHTEIL)"
+_N = r"([0-9]+(?:\.[0-9]*)?)"
+_NUMBER = rf"\s*[:=-]?\s*{_N}"
+_STOCK_WORDS = (
+    r"(?:STOCK(?:/BLOCK)?|BLOCK SIZE|BLANK|PART SIZE|MATERIAL(?: SIZE)?|WORKPIECE SIZE|ROHTEIL)"
+)
 _STOCKS = (
     re.compile(
         rf"{_STOCK_WORDS}\b[^XYZ]{{0,40}}\bX{_NUMBER}\D{{0,12}}?Y{_NUMBER}\D{{0,12}}?Z{_NUMBER}",
@@ -33,36 +39,131 @@ _STOCKS = (
         rf"{_STOCK_WORDS}\b[^0-9]{{0,20}}([0-9.]+)\s*(?:MM)?\s*[X*]\s*([0-9.]+)\s*(?:MM)?\s*[X*]\s*([0-9.]+)",
         re.DOTALL,
     ),
+    re.compile(rf"\bQUADER:\s*QX{_N}\s*QY{_N}\s*QZ{_N}"),
 )
+_ROUND = re.compile(
+    rf"(?:STOCK|BLANK|BAR|MATERIAL|ROHTEIL)\b[^0-9\n]{{0,20}}(?:[ØΦ⌀]|\bDIA(?:METER)?\b\.?|\bD)\s*[=:]?\s*{_N}\s*(?:MM)?\s*(?:[X*]|L(?:ENGTH)?|H(?:EIGHT)?)[ =:]*{_N}"
+)
+"""Diameter and length of a round blank."""
 
 
 def assumed_stock(
-    moves: Moves, comments: list[tuple[int, str]], radius: float, *, inches: bool
+    cuts: Cuts, comments: list[tuple[int, str]], radius: float, *, inches: bool
 ) -> tuple[list[str], FloatArray | None, str]:
     """Lines of the stock, the centre of its top face, and how it came about."""
+    moves = cuts.moves
     feeds = moves.motion == Motion.FEED
     points = np.concatenate([moves.start[feeds], moves.end[feeds]])[:, :3]
     if not len(points):
-        return _no_stock("the program feeds nowhere")
+        return _under_rapids(cuts)
     low, high = points.min(axis=0), points.max(axis=0)
-    head = "\n".join(text for line, text in comments if line <= HEAD_LINES).upper()
-    told = next((match for pattern in _STOCKS if (match := pattern.search(head))), None)
+    told = _told(comments, inches=inches)
     if turns_about_x(moves):
-        return _bar(moves)
-    found = _heights(moves, low[2])
+        return _bar(cuts) if told is None else _told_bar(moves, told)
+    found = heights(cuts, low[2])
     if told is not None:
-        size = np.array([float(value) for value in told.groups()]) * (25.4 if inches else 1.0)
-        if (size > 0.0).all():
-            center = _center_of(size, low, high)
-            top = 0.0 if found is not None and found[0] == 0.0 else float(size[2])
-            return _box(size, np.array([*center, top]), "a comment in the program's head")
+        center = _center_of(told.size, low, high)
+        top = 0.0 if found is not None and found[0] == 0.0 else float(told.size[2])
+        return _placed(told, np.array([*center, top]), _OF_HEAD)
     if found is None:
         return _no_stock("no feed goes below Z0")
-    top, bottom, height_from = found
+    around = _around(moves, low, high, found, radius)
+    begin, slopes = first_feed(moves)
+    if found[0] == 0.0 and low[2] < begin < -BELOW and (slopes or around is None):
+        found = (
+            begin,
+            found[1],
+            f"; zero is above its top: the first feed goes down from Z{begin:g}",
+        )
+        around = _around(moves, low, high, found, radius)
+    return around or _no_stock("rapids plunge wherever it could lie")
+
+
+_OF_HEAD = "a comment in the program's head"
+
+
+class _Told(NamedTuple):
+    """A blank of a comment.
+
+    Attributes:
+        size: Along X, Y, Z, shape (3,) [mm].
+        axis: Along which of these it is round; None: it is a box.
+    """
+
+    size: FloatArray
+    axis: int | None = None
+
+
+def _told(comments: list[tuple[int, str]], *, inches: bool) -> _Told | None:
+    """What comments in the program's head say of the blank."""
+    unit = 25.4 if inches else 1.0
+    head = "\n".join(text for line, text in comments if line <= HEAD_LINES).upper()
+    box = next((match for pattern in _STOCKS if (match := pattern.search(head))), None)
+    cylinder = _ROUND.search(head) if box is None else None
+    if box is not None:
+        size = np.array([float(value) for value in box.groups()]) * unit
+        return _Told(size) if (size > 0.0).all() else None
+    if cylinder is not None:
+        across, along = (float(value) * unit for value in cylinder.groups())
+        size = np.array([across, across, along])
+        return _Told(size, 2) if (size > 0.0).all() else None
+    return None
+
+
+def _told_bar(moves: Moves, told: _Told) -> tuple[list[str], FloatArray, str]:
+    """A bar of a comment that axis A turns about program zero: the one side that differs lies along X."""
+    size = told.size
+    if told.axis is not None or size[0] == size[1] != size[2]:
+        size = size[[2, 0, 1]]
+    elif size[0] == size[2] != size[1]:
+        size = size[[1, 0, 2]]
+    _, last = bar_ends(moves)
+    top = np.array([last - size[0] / 2.0, 0.0, size[2] / 2.0])
+    return _placed(_Told(size, None if told.axis is None else 0), top, _OF_HEAD)
+
+
+def _placed(blank: _Told, top: FloatArray, source: str) -> tuple[list[str], FloatArray, str]:
+    """A blank by the centre of its top face."""
+    if blank.axis is None:
+        return _box(blank.size, top, source)
+    across, along = blank.size[1], blank.size[blank.axis]
+    lines = [
+        "[stock]",
+        'shape = "cylinder"',
+        f"diameter = {across:.1f}  # mm: from {source}",
+        f"height = {along:.1f}  # mm",
+        *(['axis = "X"  # axis A turns it'] if blank.axis == 0 else []),
+        f"position = [{top[0]:.3f}, {top[1]:.3f}, {top[2]:.3f}]  # centre of its top face, mm",
+        "",
+    ]
+    return lines, top, f"stock ⌀ {across:g} x {along:g} mm, top at Z{top[2]:g}: from {source}"
+
+
+def _under_rapids(cuts: Cuts) -> tuple[list[str], FloatArray | None, str]:
+    """A box where the rapids of a program that feeds nowhere go below zero with its spindle on: G0 may have been left in force."""
+    moves = cuts.moves
+    deep = moves.end[moves.end[:, 2] < -BELOW, :3]
+    if not (cuts.spindle and len(deep)):
+        return _no_stock("the program feeds nowhere")
+    low, high = deep.min(axis=0) - MARGIN, deep.max(axis=0) + MARGIN
+    top = np.array([*((low + high) / 2.0)[:2], 0.0])
+    around = f"where the program, which feeds nowhere, goes below Z0 by rapids, and {MARGIN:g} mm around it"
+    return _box(np.array([*(high - low)[:2], -low[2]]), top, around)
+
+
+def _around(
+    moves: Moves,
+    low: FloatArray,
+    high: FloatArray,
+    heights: tuple[float, float, str],
+    radius: float,
+) -> tuple[list[str], FloatArray, str] | None:
+    """A box around the path, less where rapids plunge; None: little of it would be left."""
+    top, bottom, height_from = heights
     corner, far, plunges = _clipped(moves, low[:2] - MARGIN, high[:2] + MARGIN, top, radius)
     whole = np.prod(high[:2] - low[:2] + 2.0 * MARGIN)
     if (far <= corner).any() or np.prod(far - corner) < (1.0 - _MOST_CLIPPED) * whole:
-        return _no_stock("rapids plunge wherever it could lie")
+        return None
     size = np.array([*(far - corner), max(np.ceil(top - bottom), _LEAST_HEIGHT)])
     size[:2] = np.floor(size[:2] * 10.0) / 10.0
     around = f"the path and {MARGIN:g} mm around it{height_from}"
@@ -75,24 +176,6 @@ def assumed_stock(
     return _box(size, np.array([*((corner + far) / 2.0), top]), around)
 
 
-def top_of_stock(moves: Moves) -> float:
-    """Height of the stock's top, as far as the path shows it [mm]."""
-    feeds = moves.motion == Motion.FEED
-    levels, lengths = _levels(moves)
-    if turns_about_x(moves) and len(levels):
-        return _over_the_cuts(moves, levels, lengths)
-    found = _heights(moves, float(moves.end[feeds, 2].min())) if feeds.any() else None
-    return 0.0 if found is None else found[0]
-
-
-def turns_about_x(moves: Moves) -> bool:
-    """Whether axis A goes anywhere."""
-    if "A" not in moves.axes.names:
-        return False
-    column = moves.axes.index("A")
-    return bool((moves.start[:, column] != moves.end[:, column]).any())
-
-
 def bar_ends(moves: Moves) -> tuple[float, float]:
     """From where to where along X a bar reaches that axis A turns; its beginning is clamped [mm]."""
     feeds = moves.motion == Motion.FEED
@@ -101,12 +184,13 @@ def bar_ends(moves: Moves) -> tuple[float, float]:
     return float(places.min()) - _CLAMPED, float(places.max()) + MARGIN
 
 
-def _bar(moves: Moves) -> tuple[list[str], FloatArray | None, str]:
+def _bar(cuts: Cuts) -> tuple[list[str], FloatArray | None, str]:
     """A bar along X that axis A turns about program zero."""
-    levels, lengths = _levels(moves)
+    moves = cuts.moves
+    levels, _ = levels_of(moves)
     if not len(levels) or levels[0] <= BELOW:
         return _no_stock("axis A turns, and the cuts do not lie above its centre at Z0")
-    radius = float(np.ceil(_over_the_cuts(moves, levels, lengths) * 10.0) / 10.0)
+    radius = float(np.ceil(over_the_cuts(cuts) * 10.0) / 10.0)
     first, last = bar_ends(moves)
     top = np.array([(first + last) / 2.0, 0.0, radius])
     lines = [
@@ -122,62 +206,6 @@ def _bar(moves: Moves) -> tuple[list[str], FloatArray | None, str]:
     return lines, top, said
 
 
-def _heights(moves: Moves, low: float) -> tuple[float, float, str] | None:
-    """Top and bottom of the stock, and what shows them; None: nothing does.
-
-    Program zero lies on its top, unless most of what is cut at one height lies above it: then it lies on its
-    bottom or on the table, and the first of the cuts is as deep as the step to the next.
-    """
-    levels, lengths = _levels(moves)
-    above = levels > BELOW
-    if not above.any() or lengths[above].sum() < _MOST_ABOVE * lengths.sum():
-        return (0.0, low - MARGIN, "") if low < -BELOW else None
-    said = f"; zero is not on its top: cuts lie at Z{levels[0]:g} to Z{levels[-1]:g}, the first taken as deep as the next"
-    return _over_the_cuts(moves, levels, lengths), min(0.0, low), said
-
-
-def _over_the_cuts(moves: Moves, levels: FloatArray, lengths: FloatArray) -> float:
-    """Top of a stock whose first cut is as deep as the step to the next, or a guess where that is no step [mm].
-
-    It is none where there is but one cut, or where the path slopes down to the next longer than it goes level.
-    """
-    highest = float(levels[0])
-    step = highest - float(levels[1]) if len(levels) > 1 else _ONLY_CUT
-    if len(levels) > 1 and _sloping(moves, levels[1], highest) > lengths[0]:
-        step = min(step, _ONLY_CUT)
-    ends = moves.end[moves.motion == Motion.RAPID, 2]
-    above = ends[ends > highest]
-    room = float(above.min()) - _LEAST_CLEARANCE - highest if len(above) else step
-    return highest + max(0.0, min(step, room))
-
-
-def _sloping(moves: Moves, low: float, high: float) -> float:
-    """Length in the plane of feeds that rise or fall to a height between two [mm]."""
-    way, ends = moves.end[:, :3] - moves.start[:, :3], moves.end[:, 2]
-    rows = (moves.motion == Motion.FEED) & (np.abs(way[:, 2]) >= BELOW)
-    rows &= (ends > low + BELOW) & (ends < high - BELOW)
-    return float(np.hypot(way[rows, 0], way[rows, 1]).sum())
-
-
-def _level(moves: Moves) -> BoolArray:
-    """Which moves go in the plane at one height, shape (n,)."""
-    way = np.abs(moves.end[:, :3] - moves.start[:, :3])
-    return (way[:, 2] < BELOW) & ((way[:, :2] > BELOW).any(axis=1) | (moves.sweep != 0.0))
-
-
-def _levels(moves: Moves) -> tuple[FloatArray, FloatArray]:
-    """Heights at which the tool feeds in the plane once it was fed down to them, the highest first, and how long the path at each is [mm]."""
-    drop = moves.end[:, 2] - moves.start[:, 2]
-    rows = np.arange(len(moves))
-    last = np.maximum.accumulate(np.where(np.abs(drop) >= BELOW, rows, -1))
-    feeds = moves.motion == Motion.FEED
-    cuts = feeds & _level(moves) & (last >= 0) & feeds[last] & (drop[last] < 0.0)
-    ways = np.hypot(*(moves.end[cuts, :2] - moves.start[cuts, :2]).T)
-    levels, at = np.unique(moves.end[cuts, 2].round(3), return_inverse=True)
-    lengths = np.bincount(at, ways, minlength=len(levels)).astype(np.float64)
-    return levels[::-1], lengths[::-1]
-
-
 def _clipped(
     moves: Moves, corner: FloatArray, far: FloatArray, top: float, radius: float
 ) -> tuple[FloatArray, FloatArray, list[int]]:
@@ -185,13 +213,14 @@ def _clipped(
     lines: list[int] = []
     fed: dict[tuple[float, float], float] = {}
     rapid, drop = moves.motion == Motion.RAPID, moves.start[:, 2] - moves.end[:, 2]
+    retracts = (drop < 0.0) & ~aside(moves)
     for row in np.flatnonzero(moves.end[:, 2] < top - BELOW):
         x, y, z = moves.end[row, :3].round(3).tolist()
         if not rapid[row]:
             fed[x, y] = min(z, fed.get((x, y), z))
             continue
         plunges = drop[row] > BELOW
-        if plunges and fed.get((x, y), top) <= z + _CLEARED:
+        if retracts[row] or (plunges and fed.get((x, y), top) <= z + _CLEARED):
             continue
         ways = moves.end[row : row + 1, :2] if plunges else _along(moves, int(row))
         ways = np.array(

@@ -37,8 +37,9 @@ _KINDS: tuple[tuple[str, str], ...] = (
 )
 """Words of comments, and the kind that they tell; other tools are end mills."""
 
+_WHAT = r"MILL|DRILL|TAP|REAMER|FRAESER|FRÄSER|BOHRER"
 _DIAMETERS = (
-    rf"\b(?:DIA(?:METER|M)?\.?|DM?(?=\s*[=:]))\s*(?:OFF\.?\s*-?\s*[0-9]+\s*(?:LEN\.?\s*-?\s*[0-9]+\s*)?(?:DIA\.?)\s*)?[-=:]?\s*({_NUMBER})\s*(MM|IN(?:CH)?\b|\")?",
+    rf"(?<![A-Z0-9])(?:DIA(?:METER|M)?\.?|DM?(?=\s*[=:]))[\s\"]*(?:OFF\.?\s*-?\s*[0-9]+\s*(?:LEN\.?\s*-?\s*[0-9]+\s*)?(?:DIA\.?)\s*)?[-=:]?\s*({_NUMBER})\s*(MM|IN(?:CH)?\b|\")?",
     rf"[ØøΦ⌀]\s*({_NUMBER})\s*(MM|IN(?:CH)?\b|\")?",
     rf"\{{\s*({_NUMBER})\s*(MM|IN(?:CH)?)?",
     rf"({_NUMBER})\s*(MM|IN(?:CH)?\b|\")",
@@ -63,6 +64,10 @@ _THREAD = re.compile(r"\bM([0-9]+(?:\.[0-9]+)?)(?:\s*[Xx][0-9.]+)?\s*(?:TAP|GEWI
 _CORNER = re.compile(
     rf"\b(?:CR|R|RAD(?:IUS)?|CORNER RAD(?:IUS)?)\s*[=:.-]?\s*({_NUMBER})", re.IGNORECASE
 )
+_WHOLE_LENGTH = re.compile(rf"\bTL\s*=\s*({_NUMBER})")
+"""What hyperMILL writes from the spindle nose to the tip."""
+_RADIUS = re.compile(r"\bKR\s*[+]?([0-9]+\.[0-9]*)")
+"""What the set-up sheets of Keller write of a tool's radius."""
 _WEAR = re.compile(r"\bWEAR\b")
 _COMPENSATION = re.compile(r"\b(?:WEAR|CONTROL|COMPUTER) COMP")
 """What posts write of how the radius is compensated: by the control, or in the program and the wear by the control."""
@@ -77,7 +82,7 @@ class ToolComment(NamedTuple):
         corner: Radius of a bull-nose's corner [mm].
         wear: Its contours are the path of its centre, so that D holds its wear alone; None: that is not told.
         name: By which the program calls it; empty: by its number.
-        length: That the program writes into the control's table [mm]; None: it writes none.
+        length: That the program writes, into the control's table or a comment [mm]; None: it writes none.
     """
 
     kind: str
@@ -114,21 +119,42 @@ def tool_of_comment(text: str, *, inches: bool) -> ToolComment:
     if diameter and radius and kind in ("", "bull") and "CR=" in upper.replace(" ", ""):
         kind = "ball" if 2.0 * radius >= diameter * 0.999 else "bull"
     if not kind and re.search(
-        r"MILL|CUTTER|FRÄSER|FRAESER|SLOT ?DRILL|FLAT|ROUTER|UPCUT|DOWNCUT|COMPRESSION", upper
+        r"MILL|[0-9] ?MM[ _]FACE|CUTTER|FRÄSER|FRAESER|SLOT ?DRILL|FLAT|ROUTER|UPCUT|DOWNCUT|COMPRESSION",
+        upper,
     ):
+        kind = "flat"
+    if not kind and diameter and corner and "CR=" in upper.replace(" ", ""):
         kind = "flat"
     if kind == "bull" and (not diameter or not radius or 2.0 * radius > diameter):
         kind, radius = "flat", None
     wear = bool(_WEAR.search(upper)) if _COMPENSATION.search(upper) else None
-    return ToolComment(kind, diameter, radius if kind == "bull" else None, text.strip(), wear)
+    whole = _WHOLE_LENGTH.search(upper)
+    length = None if whole is None else _value(whole[1]) * (_INCH if inches else 1.0)
+    return ToolComment(
+        kind, diameter, radius if kind == "bull" else None, text.strip(), wear, length=length
+    )
 
 
 def named_tools(names: Mapping[int, str], *, inches: bool) -> dict[int, ToolComment]:
-    """What the names by which a program calls tools say about them, by number: ``T="MILL_D16"``."""
+    """What the names by which a program calls tools say about them, by number: ``T="MILL_D16"``, ``T="MILL_16"``."""
     return {
-        number: tool_of_comment(name.replace("_", " "), inches=inches)._replace(name=name)
+        number: tool_of_comment(_spaced(name), inches=inches)._replace(name=name)
         for number, name in names.items()
     }
+
+
+def tool_of_call(
+    name: str, line: int, comments: list[tuple[int, str]], *, inches: bool
+) -> ToolComment | None:
+    """What the name by which a line calls a tool says about it, or a comment next to that; None: neither does."""
+    own = tool_of_comment(_spaced(name), inches=inches)
+    return own if own.diameter else _near_comment(0, [(0, line, 0)], comments, inches=inches)
+
+
+def _spaced(name: str) -> str:
+    """A name as a comment would be: a number at the end of what it is, such as MILL_16, is its diameter."""
+    alone = re.fullmatch(rf"([A-Z_-]*?(?:{_WHAT}))[_-]?({_NUMBER})", name, re.IGNORECASE)
+    return (f"{alone[1]} D={alone[2]}" if alone else name).replace("_", " ")
 
 
 def _diameter(text: str, *, inches: bool) -> float | None:
@@ -138,6 +164,9 @@ def _diameter(text: str, *, inches: bool) -> float | None:
     gauge = _GAUGE.search(text)
     if gauge is not None and int(gauge[1]) <= len(_GAUGES):
         return round(_GAUGES[int(gauge[1]) - 1] * _INCH / 1000.0, 4)
+    radius = _RADIUS.search(text)
+    if radius is not None:
+        return 2.0 * float(radius[1])
     fraction = _FRACTION.search(text)
     if fraction is not None and int(fraction[2]) in (2, 4, 8, 16, 32, 64):
         return int(fraction[1]) / int(fraction[2]) * _INCH
@@ -163,7 +192,7 @@ _LARGEST_DIAMETER = 160.0
 _ALWAYS_MM = "COMPENSATED TOOL PATH"
 """FreeCAD's comment counts millimetres whatever the program does."""
 _SAYS_DIAMETER = re.compile(
-    rf"{_ALWAYS_MM}. DIAMETER|\b(?:TOOL|CUTTER|BIT|MILL|DRILL)\b.*\b(?:DIA|DIAMETER|DIAM)\b",
+    rf"{_ALWAYS_MM}. DIAMETER|\b(?:TOOL|CUTTER|BIT|MILL|DRILL)(?:\b.*\b|_)(?:DIA|DIAMETER|DIAM)\b",
     re.IGNORECASE,
 )
 """Comments that speak of a tool's diameter."""
@@ -274,12 +303,13 @@ def _while_in_spindle(
     *,
     inches: bool,
 ) -> ToolComment | None:
-    """What the first comment says that speaks of a diameter before another tool comes; without tools any one."""
+    """What the first comment says that speaks of a diameter before another tool comes; with one tool or none any one."""
+    alone = len({each for each, _, _ in calls}) <= 1
     for line, text in comments:
         if not _SAYS_DIAMETER.search(text):
             continue
         before = [each for each, call, _ in calls if call <= line]
-        if not calls or (before and before[-1] == number):
+        if alone or (before and before[-1] == number):
             tool = tool_of_comment(text, inches=inches)
             if tool.diameter is not None:
                 return tool
@@ -316,7 +346,7 @@ def _tool_table(
     number, tool = called
     feeds = [row for row in rows if moves.motion[row] == Motion.FEED]
     ways = moves.end[feeds, :2] - moves.start[feeds, :2]
-    drills = bool(feeds) and bool((np.abs(ways) < BELOW).all())
+    drills = bool(feeds) and bool((np.abs(ways) < BELOW).all() and not moves.sweep[feeds].any())
     depth = max(0.0, top - float(moves.end[feeds, 2].min())) if feeds else 0.0
     kind = (tool.kind if tool else "") or ("drill" if drills else "flat")
     diameter = (tool.diameter if tool else None) or _USUAL_DIAMETER

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from twin.errors import UsageError
 from twin.nc.canonical import Function, Motion, Moves, concatenate
-from twin.nc.control.dialect import Dialect
+from twin.nc.control.dialect import Dialect, JobKey
 from twin.nc.control.settings import ControlSettings, MachineFunction
 from twin.nc.dialects import DIALECTS
 from twin.nc.dialects.foreign import require_program
@@ -108,7 +108,7 @@ def chosen_dialect(path: Path, settings: ControlSettings, source: Source | None 
         settings.tool_change_height is None
     ):  # nor on where a control goes by itself for another tool
         settings = dataclasses.replace(settings, tool_change_height=-math.inf)
-    rolling = [name for name in candidates if "rollover" in DIALECTS[name].job_keys]
+    rolling = [name for name in candidates if JobKey.ROLLOVER in DIALECTS[name].job_keys]
     rolls = settings.rollover is not None and bool(rolling) and rolling != candidates
     candidates = rolling if rolls else candidates
     common = [name for name in candidates if name in _PREFERENCE]
@@ -171,7 +171,8 @@ def _refused(trials: Sequence[_Trial], others: Sequence[str]) -> ProgramError:
     assert farthest is not None
     message = f"read as {name}, which reads it farthest: {farthest.message}"
     further = f"; {_either(others, 'and')} would read it" if others else ""
-    names = [trial.name for trial in trials if trial.name != name] + list(others)
+    elsewhere = [trial for trial in trials if trial.error and trial.error.line != farthest.line]
+    names = [trial.name for trial in elsewhere] + list(others)
     another = f"another control: {_type(names)}{further}" if names else ""
     hint = "; ".join(filter(None, (farthest.hint, another)))
     return ProgramError(dataclasses.replace(farthest, message=message, hint=hint or None))

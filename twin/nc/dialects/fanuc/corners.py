@@ -31,5 +31,6 @@ def blend_after_motion(control: Control) -> None:
     if scale is not None:
         size *= abs(scale[0][control.modal.plane.axes[0]])
     blend = Blend(_KINDS[word.address], size, control.motion.part_plane)
-    if not control.path.hold_for_blends().blend_next(blend):
-        control.fail("blend", "there is no move before the corner", word)
+    if not control.path.hold_for_blends().blend_next(blend, control.block.line):
+        message = f"{word.text} is for the end of a move with G1, G2 or G3, which this block lacks"
+        control.fail("blend", message, word)
