@@ -26,6 +26,8 @@ FOREIGN: dict[str, list[bytes]] = {
     "gzip": [b"\x1f\x8b\x08\0\0\0"],
     "PNG": [b"\x89PNG\r\n\x1a\n"],
     "JPEG": [b"\xff\xd8\xff\xe0"],
+    "PLY": [b"ply\nformat binary_little_endian 1.0\nend_header\n\0\1\2\3"],
+    "EXPRESS": [b"SCHEMA a;\nENTITY b;\n  c : REAL;\nEND_ENTITY;\nEND_SCHEMA;\n"],
     "DWG": [b"AC1032\0\0"],
     "Windows": [b"MZ\x90\0\x03\0\0\0"],
     "STL": [
