@@ -10,7 +10,8 @@ from twin.cutting.heights.sweeping import Rectangle, sweep_lines, union
 from twin.cutting.kernels.covered_cells import Marks
 from twin.cutting.kernels.simplify import simplify
 from twin.cutting.kernels.sweep import Removal
-from twin.cutting.kernels.wall_distance import note_walls
+from twin.cutting.kernels.tool_height import profile_height
+from twin.cutting.kernels.wall_distance import note_walls, settle_volumes
 from twin.cutting.material import (
     LONGEST_SHARE,
     MOST_JOINED,
@@ -45,6 +46,7 @@ class HeightMapMaterial:
         self.map = height_map
         self.changed: Rectangle = (0, 0, 0, 0)
         self.marks = np.zeros(height_map.heights.shape if keep_marks else (0, 0))
+        self._owed = 0.0
 
     @property
     def cell(self) -> float:
@@ -81,9 +83,9 @@ class HeightMapMaterial:
         self.changed = union(self.changed, found.changed)
         off = min(WALL_SHARE * material.cell, WALL_MM)
         rows = simplify(way[None], np.zeros(len(way), np.int64), off, edge.radius, WALL_JOINED)
-        note_walls(
-            material.heights, material.behind, material.grid, way[rows], edge.radius, edge.flat
-        )
+        side, volume = profile_height(edge.radius, *edge), found.removal.volume
+        note_walls(material.cells, way, rows, edge.radius, edge.flat, side, volume)
+        self._owed = settle_volumes(volume, self._owed)
         return found.removal
 
     def write_stl(self, path: Path, zero: FloatArray) -> None:

@@ -94,7 +94,13 @@ FOREIGN: dict[str, list[bytes]] = {
     "XML": [b'<?xml version="1.0"?><job/>'],
     "APT": [b"PARTNO PLATE\nGOTO / 1.0, 2.0, 3.0\nFEDRAT / 100\n"],
     "HP-GL": [b"IN;SP1;PU0,0;PD100,100;PU;"],
-    "Heidenhain": [b"%PLATE G71 *\nN10 G30 G17 X+0 Y+0 Z-40 *\nN20 T1 G17 S3000 *\n"],
+    "Heidenhain": [
+        b"%PLATE G71 *\nN10 G30 G17 X+0 Y+0 Z-40 *\nN20 T1 G17 S3000 *\n",
+        b"N10 %1001 G71\nN15 G30 G17 X+0. Y+0. Z-20.\nN20 G31 G90 X+100. Y+60. Z+0.\n",
+    ],
+    "Mazak": [b"T1 M06\nG61.1,K70\nG00 X-30. Y10.\nG61.1,K70\n"],
+    "EZ-TRAK": [b"0000 EZTRAK|SX 1 MODE|MM |SAT JAN 1 00:00:00 2011\n0010 RAPID X0\n"],
+    "Dynapath": [b"N100(T)1001$\nN103(9)M3S1800T1$\nN106(0)X-30.Y10.$\nN107(0)Z14.$\n"],
     "Mazatrol": [b"UNo. MAT INITIAL-Z ATC MODE\n0 CBN STL 50\nUNo. UNIT TOOL\n"],
     "Okuma": [
         b"OHAND\nIF [VORD[0024] EQ 0] NSKIP\nVDOUT[992]=1001\nNSKIP\nRTS\n",
@@ -240,6 +246,11 @@ def test_a_dialect_that_is_asked_for_reads_what_looks_foreign(tmp_path: Path) ->
     require_text(path)
     with pytest.raises(UsageError, match="TinyG"):
         require_program(path)
+
+
+def test_overrides_that_a_program_gives_back_make_no_drill_file_of_it() -> None:
+    tool = b"T1 M6\nS5000 M3\nM48\nG0 X1. Y2.\nG1 Z-1. F100.\n"
+    assert foreign_kind(b"%\nO1001 (PART)\n" + tool + tool + b"M30\n%\n") is None
 
 
 def test_the_list_is_whole() -> None:
