@@ -597,6 +597,9 @@ def test_tools_that_a_program_writes_into_the_table_are_its_own(tmp_path: Path) 
     tools = [(each.number, each.kind, each.diameter) for each in made.job.file.tools]
     assert tools == [(1, "flat", 8.0), (2, "drill", 3.0)]
     assert list(made.interpretation().chunks())
+    longer, _ = raw(tmp_path, text.format("").replace("R1.5Z20", "R1.5Z50"))
+    assert longer.job.file.stock == made.job.file.stock  # no length is called
+    assert [each.length for each in longer.job.file.tools] == [60.0, 60.0]
     called, _ = raw(tmp_path, text.format("G43 H1\n"))
     assert [each.length for each in called.job.file.tools] == [20.0, 20.0]
     with pytest.raises(UsageError, match="length of tool 1 and calls it, and not that of tool 2"):

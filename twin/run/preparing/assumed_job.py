@@ -123,14 +123,14 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
         preparation = with_written(preparation, written, own, [number for number, _, _ in calls])
         interpretation, chunks, counts_from_machine_zero = _interpreted(preparation)
     moves = concatenate([chunk.moves for chunk in chunks], preparation.machine.axes)
-    moves = at_the_tips(moves, calls, preparation.settings.tools)
+    calls_lengths = bool(interpretation.lengths.calls)
+    if calls_lengths:
+        moves = at_the_tips(moves, calls, preparation.settings.tools)
     inches, lacking = interpretation.programs_in_inches, _lacking_axes(preparation)
     comments = list(_comments(preparation))
     functions = [each for chunk in chunks for each in chunk.events if isinstance(each, Function)]
     named = named_tools(interpretation.tool_names, inches=inches)
-    in_table = table_tools(
-        own, [number for number, _, _ in calls], calls_lengths=bool(interpretation.lengths.calls)
-    )
+    in_table = table_tools(own, [number for number, _, _ in calls], calls_lengths=calls_lengths)
     declared = {**named, **in_table, **declared_tools(functions)}
     length = _least_length(preparation.machine, moves)
     blank = declared_stock(functions)
