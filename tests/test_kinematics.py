@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from twin.kinematics import Kinematics, tool_direction, tool_point, with_rotary_at_rest
 from twin.nc.canonical import FloatArray
+from twin.toolpath.pose_kernels import tool_poses
 
 number = st.floats(-400.0, 400.0)
 angle = st.floats(-400.0, 400.0)
@@ -59,6 +60,10 @@ def test_point_and_direction_are_those_of_the_matrices(chain, values, length):
     np.testing.assert_allclose(tool_point(chain, joints[None], length)[0], tip[:3], atol=1e-9)
     direction = tool_direction(chain, joints[None])[0]
     np.testing.assert_allclose(direction, expected[:3, :3] @ chain.tool, atol=1e-12)
+    poses = tool_poses(chain, joints[None], length)
+    np.testing.assert_allclose(poses.tip[0], tip[:3], atol=1e-9)
+    np.testing.assert_allclose(poses.along_x[0], expected[:3, 0], atol=1e-12)
+    np.testing.assert_allclose(poses.axis[0], expected[:3, :3] @ chain.tool, atol=1e-12)
 
 
 @settings(derandomize=True, max_examples=examples(100), deadline=None)

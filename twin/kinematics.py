@@ -44,6 +44,20 @@ class Kinematics(NamedTuple):
     table_axes: _Floats
 
 
+class ToolPoses(NamedTuple):
+    """A tool in n places, seen from the part.
+
+    Attributes:
+        tip: Shape (n, 3) [mm].
+        along_x: Which way machine X points on the tool, with which a head turns it, shape (n, 3).
+        axis: Which way the tool points from its tip to the spindle, shape (n, 3).
+    """
+
+    tip: _Floats
+    along_x: _Floats
+    axis: _Floats
+
+
 def tool_point(chain: Kinematics, joints: _Floats, length: float | _Floats = 0.0) -> _Floats:
     """Where a point on the axis of the tool is, seen from the part.
 

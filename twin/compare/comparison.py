@@ -125,9 +125,12 @@ class Comparison:
         self._duration = float(setpoint.time[-1])
         self._add_tracking(samples)
         real = samples.real(self._frame)
-        self._add_direction(real, setpoint)
         length_difference = self._lower(setpoint.move)
-        point = np.ascontiguousarray(self._frame.position(real, length_difference))
+        if self._frame.chain is None:
+            point = np.ascontiguousarray(self._frame.position(real, length_difference))
+        else:
+            point, _, simulated = self._frame.poses(real, length_difference)
+            self._add_direction(simulated, setpoint)
         if int(setpoint.move.max()) >= self._first + len(self._moves):
             raise RecordingError(
                 f"a sample names move {setpoint.move.max()}, but the program has only "
@@ -188,11 +191,8 @@ class Comparison:
                 place = int(setpoint.line[row]), float(setpoint.time[row])
                 self._axis_worst[column] = place
 
-    def _add_direction(self, real: FloatArray, setpoint: Setpoints) -> None:
-        if self._frame.chain is None:
-            return
+    def _add_direction(self, simulated: FloatArray, setpoint: Setpoints) -> None:
         commanded = self._frame.tool_direction(setpoint.position)
-        simulated = self._frame.tool_direction(real)
         across = np.linalg.norm(np.cross(commanded, simulated), axis=1)
         along = np.einsum("ij,ij->i", commanded, simulated)
         row = self._direction.add(np.rad2deg(np.arctan2(across, along)) * MDEG_PER_DEGREE)

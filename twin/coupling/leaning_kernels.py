@@ -30,6 +30,7 @@ from twin.cutting.tridexel.sweep import Sum, sweep
 from twin.kinematics import Kinematics
 from twin.machine.simulation.process import Physics
 from twin.nc.canonical import FloatArray
+from twin.toolpath.pose_kernels import turned
 from twin.units import DEGREE, MM
 
 _ALONG = 0.9
@@ -187,26 +188,23 @@ def _carry(chain: Chain, tip: FloatArray, pose: Pose) -> None:
             ways[column] = axis
             continue
         angle, anchor = value * DEGREE, joints.anchor[j]
+        cosine, sine = math.cos(angle), math.sin(angle)
         tip -= anchor
-        _turn(tip, axis, angle)
+        _turn(tip, axis, cosine, sine)
         _cross(axis, tip, ways[column])
         tip += anchor
-        _turn(frame[0], axis, angle)
-        _turn(frame[2], axis, angle)
+        _turn(frame[0], axis, cosine, sine)
+        _turn(frame[2], axis, cosine, sine)
         for earlier in range(j):
-            _turn(ways[joints.column[earlier]], axis, angle)
+            _turn(ways[joints.column[earlier]], axis, cosine, sine)
     _cross(frame[2], frame[0], frame[1])
 
 
 @kernel
-def _turn(vector: FloatArray, axis: FloatArray, angle: float) -> None:
-    """Turn a vector about an axis by an angle [rad] (Rodrigues)."""
-    cosine, sine = math.cos(angle), math.sin(angle)
+def _turn(vector: FloatArray, axis: FloatArray, cosine: float, sine: float) -> None:
+    """Turn a vector about an axis."""
     x, y, z = vector[0], vector[1], vector[2]
-    along = (x * axis[0] + y * axis[1] + z * axis[2]) * (1.0 - cosine)
-    vector[0] = cosine * x + sine * (axis[1] * z - axis[2] * y) + along * axis[0]
-    vector[1] = cosine * y + sine * (axis[2] * x - axis[0] * z) + along * axis[1]
-    vector[2] = cosine * z + sine * (axis[0] * y - axis[1] * x) + along * axis[2]
+    vector[0], vector[1], vector[2] = turned(x, y, z, axis[0], axis[1], axis[2], cosine, sine)
 
 
 @kernel

@@ -67,9 +67,12 @@ def tool_motion(
     tilts = reach is not None
     carried = {axes: _places(_at_zero(joints, axes), frame, tilts=tilts) for axes in carriers}
     ends = dataclasses.replace(_places(joints, frame, tilts=tilts), carriers=carried)
-    lag = np.abs(frame.position(setpoint.position) - ends.tip).sum(axis=1)
-    if reach is not None and ends.axis is not None:
-        lag += reach * np.linalg.norm(ends.axis - frame.tool_direction(setpoint.position), axis=1)
+    if reach is None or ends.axis is None:
+        lag = np.abs(frame.position(setpoint.position) - ends.tip).sum(axis=1)
+    else:
+        tip, _, axis = frame.poses(setpoint.position)
+        lag = np.abs(tip - ends.tip).sum(axis=1)
+        lag += reach * np.linalg.norm(ends.axis - axis, axis=1)
     return ToolMotion(ends, lag, setpoint.time, setpoint.line, rapid, standing)
 
 
@@ -82,8 +85,7 @@ def _at_zero(joints: FloatArray, axes: tuple[int, ...]) -> FloatArray:
 
 def _places(joints: FloatArray, frame: PartFrame, *, tilts: bool) -> Points:
     if tilts:
-        axis = frame.tool_direction(joints)
-        return Points(frame.position(joints), frame.tool_x(joints), axis)
+        return Points(*frame.poses(joints))
     return Points(frame.position(joints), frame.direction(joints))
 
 

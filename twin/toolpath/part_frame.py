@@ -13,14 +13,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from twin.kinematics import (
-    Kinematics,
-    counted_from,
-    rotated,
-    tool_direction,
-    tool_point,
-    turns_part,
-)
+from twin.kinematics import Kinematics, ToolPoses, counted_from, turns_part
 from twin.nc.canonical import FloatArray
 from twin.toolpath.machine_geometry import NO_ERRORS, MachineGeometry
 
@@ -117,7 +110,7 @@ class PartFrame:
             its frame.
         """
         if self.chain is not None:
-            return tool_point(self.chain, self.counted(joints), length_difference)
+            return self.poses(joints, length_difference).tip
         relative = joints[:, :3] - np.array([*self.center, 0.0])
         if self.rotary is None:
             return _lowered(relative, length_difference)
@@ -144,9 +137,7 @@ class PartFrame:
             Unit vectors, shape (n, 2); with a chain only where the tool is along Z.
         """
         if self.chain is not None:
-            return rotated(
-                self.chain, np.tile([1.0, 0.0, 0.0], (len(joints), 1)), self.counted(joints)
-            )[:, :2]
+            return self.poses(joints).along_x[:, :2]
         if self.rotary is None:
             return np.tile([1.0, 0.0], (len(joints), 1))
         angle = np.deg2rad(joints[:, self.rotary] - self.turn_zero)
@@ -155,15 +146,20 @@ class PartFrame:
     def tool_direction(self, joints: FloatArray) -> FloatArray:
         """Which way the tool points from its tip to the spindle, seen from the part, shape (n, 3)."""
         if self.chain is not None:
-            return tool_direction(self.chain, self.counted(joints))
+            return self.poses(joints).axis
         return np.tile([0.0, 0.0, 1.0], (len(joints), 1))
 
-    def tool_x(self, joints: FloatArray) -> FloatArray:
-        """Which way machine X points on the tool, with which a head turns it, seen from the part, shape (n, 3)."""
+    def poses(self, joints: FloatArray, length_difference: float | FloatArray = 0.0) -> ToolPoses:
+        """Position and directions of the tool at once; arguments as for ``position``."""
         if self.chain is not None:
-            along = np.tile([1.0, 0.0, 0.0], (len(joints), 1))
-            return rotated(self.chain, along, self.counted(joints))
-        return np.pad(self.direction(joints), ((0, 0), (0, 1)))
+            # Those who look at a machine alone need no compiler.
+            from twin.toolpath.pose_kernels import tool_poses
+
+            return tool_poses(self.chain, self.counted(joints), length_difference)
+        along_x = np.pad(self.direction(joints), ((0, 0), (0, 1)))
+        return ToolPoses(
+            self.position(joints, length_difference), along_x, self.tool_direction(joints)
+        )
 
     @property
     def over_table(self) -> tuple[float, float]:

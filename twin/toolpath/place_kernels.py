@@ -9,6 +9,7 @@ import math
 
 from twin.compilation.compilable import inlined
 from twin.compilation.kernel import kernel
+from twin.toolpath.pose_kernels import turned
 
 
 class PathKind(enum.IntEnum):
@@ -94,22 +95,11 @@ def _carried(path, move, u, x, y, z):
         wz += 2.0 * rate * tz + rate * rate * (ax * sy - ay * sx)
         vx, vy, vz = vx + rate * sx, vy + rate * sy, vz + rate * sz
         c, s = math.cos(value), math.sin(value)
-        px, py, pz = _turned(px, py, pz, ax, ay, az, c, s)
-        vx, vy, vz = _turned(vx, vy, vz, ax, ay, az, c, s)
-        wx, wy, wz = _turned(wx, wy, wz, ax, ay, az, c, s)
+        px, py, pz = turned(px, py, pz, ax, ay, az, c, s)
+        vx, vy, vz = turned(vx, vy, vz, ax, ay, az, c, s)
+        wx, wy, wz = turned(wx, wy, wz, ax, ay, az, c, s)
         px, py, pz = px + joint[5], py + joint[6], pz + joint[7]
     return px, py, pz, vx, vy, vz, wx, wy, wz
-
-
-@inlined
-def _turned(x, y, z, ax, ay, az, cosine, sine):
-    """A vector turned about an axis (Rodrigues)."""
-    along = (1.0 - cosine) * (ax * x + ay * y + az * z)
-    return (
-        cosine * x + sine * (ay * z - az * y) + along * ax,
-        cosine * y + sine * (az * x - ax * z) + along * ay,
-        cosine * z + sine * (ax * y - ay * x) + along * az,
-    )
 
 
 @inlined
