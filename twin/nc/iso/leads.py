@@ -12,7 +12,7 @@ from twin.nc.control.compensation import compensate
 from twin.nc.control.control import Control
 from twin.nc.geometry.arcs import SAME_POINT, Point, distance, sweep_between, turned
 from twin.nc.geometry.matrices import applied
-from twin.nc.iso.plane_moves import go, go_to_height, turn
+from twin.nc.iso.cycle_moves import go, go_to_height, turn
 from twin.nc.path.move_columns import Segment
 from twin.nc.path.segments import direction_of
 from twin.nc.text.blocks import Block

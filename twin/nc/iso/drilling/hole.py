@@ -5,7 +5,7 @@ import math
 from typing import NamedTuple
 
 from twin.nc.control.control import Control
-from twin.nc.iso.plane_moves import at_feed, go_to_height
+from twin.nc.iso.cycle_moves import at_feed, go_to_height
 
 CHIP_CLEARANCE = 0.5
 """Deep drilling stops its rapid return this far above where it was [mm]."""

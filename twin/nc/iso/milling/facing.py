@@ -5,7 +5,7 @@ import math
 
 from twin.nc.control.control import Control
 from twin.nc.geometry.arcs import Point, turned
-from twin.nc.iso.plane_moves import at_feed, go, go_to_height
+from twin.nc.iso.cycle_moves import at_feed, go, go_to_height
 
 MOST_STRIPS = 10_000
 """Strips of one face: more is a slip of the pen."""

@@ -7,7 +7,7 @@ from typing import Protocol
 
 from twin.nc.control.control import Control
 from twin.nc.geometry.arcs import Point, turned
-from twin.nc.iso.plane_moves import go, turn
+from twin.nc.iso.cycle_moves import go, turn
 
 
 class Outline(Protocol):

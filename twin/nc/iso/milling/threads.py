@@ -9,8 +9,7 @@ import math
 
 from twin.nc.control.control import Control
 from twin.nc.geometry.arcs import Point
-from twin.nc.iso.places import along
-from twin.nc.iso.plane_moves import at_feed, go, go_to_height, turn
+from twin.nc.iso.cycle_moves import along, at_feed, go, go_to_height, turn
 
 MOST_TURNS = 10_000
 """Turns of one helix: more is a slip of the pen."""

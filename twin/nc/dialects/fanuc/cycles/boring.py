@@ -11,9 +11,9 @@ from twin.nc.control.control import Control
 from twin.nc.dialects.fanuc.frames.transformations import refuse_scaled_pecks
 from twin.nc.dialects.fanuc.memory import Variant, memory_of
 from twin.nc.dialects.fanuc.motion import holes_of, target
+from twin.nc.iso.cycle_moves import go_to_height
 from twin.nc.iso.drilling.drilling import Cycle, cycle_code, require_words, take_words
 from twin.nc.iso.drilling.hole import turn_spindle
-from twin.nc.iso.plane_moves import go_to_height
 
 _WORDS = {"R": "reference", "P": "dwell", "Q": "peck"}
 _NEEDED = ("reference", "bottom", "peck")

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from twin.nc.control.control import Control
-from twin.nc.dialects.heidenhain.cycle_values import Parameters
 from twin.nc.dialects.heidenhain.cycles import (
     holes,
     patterns,
@@ -19,7 +18,7 @@ from twin.nc.dialects.heidenhain.cycles import (
 from twin.nc.dialects.heidenhain.cycles import transformations as frames
 from twin.nc.dialects.heidenhain.cycles.parameters import take_parameters
 from twin.nc.dialects.heidenhain.cycles.transformations import Step
-from twin.nc.dialects.heidenhain.memory import memory_of
+from twin.nc.dialects.heidenhain.memory import Parameters, memory_of
 from twin.nc.text.blocks import Statement, Word
 
 Perform = Callable[[Control, Parameters], None]

@@ -5,7 +5,8 @@ Decisions, since the manuals leave them open or the twin does not follow them: t
 """
 
 from twin.nc.control.control import Control
-from twin.nc.dialects.heidenhain.cycle_values import Parameters
+from twin.nc.dialects.heidenhain.memory import Parameters
+from twin.nc.iso.cycle_moves import at_feed, descend, go, go_to_height
 from twin.nc.iso.drilling.hole import (
     MOST_PECKS,
     Hole,
@@ -14,7 +15,6 @@ from twin.nc.iso.drilling.hole import (
     drill,
     turn_spindle,
 )
-from twin.nc.iso.plane_moves import at_feed, descend, go, go_to_height
 
 ADVANCE = 0.2
 """How far above its last depth a rapid return ends [mm]."""

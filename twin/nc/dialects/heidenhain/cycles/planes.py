@@ -20,6 +20,7 @@ from twin.nc.dialects.heidenhain.cycles.transformations import (
 from twin.nc.dialects.heidenhain.memory import memory_of
 from twin.nc.dialects.heidenhain.values import refuse_rest, value_at
 from twin.nc.geometry.matrices import IDENTITY, Matrix
+from twin.nc.iso.cycle_moves import at_feed
 from twin.nc.iso.machine_coordinates import machine_frame
 from twin.nc.iso.orientation.tilted_plane import (
     count_in_plane,
@@ -28,7 +29,6 @@ from twin.nc.iso.orientation.tilted_plane import (
     turned_with_plane,
 )
 from twin.nc.iso.orientation.tool_center import begin_tool_center, end_tool_center
-from twin.nc.iso.plane_moves import at_feed
 from twin.nc.text.blocks import Statement
 
 _WORD = re.compile(

@@ -7,13 +7,13 @@ X, and cleared inwards.
 """
 
 from twin.nc.control.control import Control
-from twin.nc.dialects.heidenhain.cycle_values import Parameters
 from twin.nc.dialects.heidenhain.cycles.holes import heights
+from twin.nc.dialects.heidenhain.memory import Parameters
 from twin.nc.dialects.heidenhain.tools import compensation_radius
 from twin.nc.geometry.arcs import Point, turned
+from twin.nc.iso.cycle_moves import along
 from twin.nc.iso.milling.clearing import Clearing, clear_around, clear_pocket
 from twin.nc.iso.milling.outlines import Circle, Corner, CornerKind, CurvedSlot, Outline, Rectangle
-from twin.nc.iso.places import along
 
 _BESIDE = 2.0
 """Between the blank of a stud and the tool that plunges beside it (TNC 640 cycle programming, 5.6) [mm]."""

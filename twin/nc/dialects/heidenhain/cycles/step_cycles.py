@@ -6,10 +6,9 @@ They count from where the tool is when they are called, which is the set-up clea
 import re
 
 from twin.nc.control.control import Control
-from twin.nc.dialects.heidenhain.cycle_values import Parameters
 from twin.nc.dialects.heidenhain.cycles import holes, pockets
 from twin.nc.dialects.heidenhain.cycles.transformations import Step
-from twin.nc.dialects.heidenhain.memory import memory_of
+from twin.nc.dialects.heidenhain.memory import Parameters, memory_of
 
 _VALUES = re.compile(r"[-+]?[ \t]*(?:[0-9]*\.?[0-9]+|Q[LR]?[0-9]+)(?=[ \t]|$|[A-Z])", re.IGNORECASE)
 _STEPS: dict[int, tuple[tuple[int, ...], ...]] = {

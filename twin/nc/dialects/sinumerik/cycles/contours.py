@@ -12,9 +12,9 @@ from twin.nc.dialects.sinumerik.cycles.calls import CycleCall, CycleForm
 from twin.nc.dialects.sinumerik.cycles.drilling import MODES, Heights, heights_of
 from twin.nc.dialects.sinumerik.flow.calls import call_subprogram
 from twin.nc.dialects.sinumerik.flow.repeats import call_part
+from twin.nc.iso.cycle_moves import go_to_height
 from twin.nc.iso.leads import Lead, LeadKind, approach, depart, stand_at_height
 from twin.nc.iso.milling.clearing import MOST_PASSES, levels_between
-from twin.nc.iso.plane_moves import go_to_height
 from twin.nc.iso.tool_compensation import radius_in_spindle
 from twin.nc.text.blocks import Block
 

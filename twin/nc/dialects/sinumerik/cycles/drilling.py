@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 from twin.nc.control.control import Control
 from twin.nc.dialects.sinumerik.cycles.calls import CycleCall, CycleForm, require_no_compensation
+from twin.nc.iso.cycle_moves import at_feed, go_to_height
 from twin.nc.iso.drilling.hole import turn_spindle
-from twin.nc.iso.plane_moves import at_feed, go_to_height
 
 _HEIGHTS = "RTP RFP SDIS DP DPR"
 MODES = "GMODE DMODE AMODE"

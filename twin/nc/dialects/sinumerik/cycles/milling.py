@@ -8,12 +8,11 @@ milled in strips to and fro.
 from twin.nc.dialects.sinumerik.cycles.calls import CycleCall, CycleForm
 from twin.nc.dialects.sinumerik.cycles.drilling import MODES, Heights, heights_of
 from twin.nc.geometry.arcs import Point
+from twin.nc.iso.cycle_moves import along, at_feed, go, go_to_height
 from twin.nc.iso.milling.clearing import Clearing, clear_pocket, levels_between
 from twin.nc.iso.milling.facing import MOST_STRIPS, Face, mill_face
 from twin.nc.iso.milling.outlines import Circle, Corner, CornerKind, CurvedSlot, Outline, Rectangle
 from twin.nc.iso.milling.threads import MOST_TURNS, Thread, mill_thread
-from twin.nc.iso.places import along
-from twin.nc.iso.plane_moves import at_feed, go, go_to_height
 from twin.nc.iso.tool_compensation import radius_in_spindle
 
 _WIDTH = 0.8
