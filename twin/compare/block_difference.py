@@ -104,5 +104,5 @@ def _plane(arc: Entry) -> str:
 
 
 def _turn(arc: Entry) -> str:
-    way = "counter-clockwise" if arc.value > 0.0 else "clockwise"
-    return f"{way} by {number(abs(arc.value))} degrees"
+    sense = "counter-clockwise" if arc.value > 0.0 else "clockwise"
+    return f"{sense} by {number(abs(arc.value))} degrees"

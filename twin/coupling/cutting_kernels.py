@@ -1,4 +1,4 @@
-"""The machine stepped while its tool cuts a height map: one loop over setpoints, without a way back to Python."""
+"""The machine stepped while its tool cuts a height map: one loop over setpoints, without a call of Python."""
 
 import math
 from typing import NamedTuple
@@ -94,7 +94,7 @@ def follow_cutting(
     mean over the angle that they turn in a period.
 
     Args:
-        controls: What the drives are commanded on the way to each setpoint, shape (n, nu).
+        controls: What the drives are commanded during the step to each setpoint, shape (n, nu).
         states: Set to the states there, shape (n, width).
         commanded: Speed that the spindle is commanded, shape (n,) [turns/s]; NaN: nothing is known of it.
         memory: Carried on.

@@ -77,7 +77,7 @@ class Rows(NamedTuple):
     """What the machine is commanded in n periods, and what is set by them.
 
     Attributes:
-        controls: What the drives are commanded on the way to each setpoint, shape (n, nu).
+        controls: What the drives are commanded during the step to each setpoint, shape (n, nu).
         states: Set to the states there, shape (n, width).
     """
 
@@ -129,7 +129,7 @@ class CuttingProcess(abc.ABC):
             self._tool = None
 
     def lift(self) -> None:
-        """Take the tool off what it cut: what comes next is no way of it."""
+        """Take the tool off what it cut: what comes next is no travel of it."""
         memory = self._memory
         memory.numbers[CutNumber.FRESH] = 1.0
         for column in (memory.load, memory.bend, memory.looked, memory.scratch.figures):

@@ -236,7 +236,7 @@ def note_load(
 
     Args:
         row: In this row.
-        bend: How far the tip gives way along X, Y and Z of the machine [mm].
+        bend: Deflection of the tip along X, Y and Z of the machine [mm].
     """
     numbers = memory.numbers
     met = numbers[CutNumber.MET] > 0.0

@@ -96,7 +96,7 @@ class AxisLoad:
         for column, rotary in zip(chain.column, chain.rotary, strict=True):
             step = np.zeros(place.shape[1])
             step[column] = _STEP
-            way = frame.position(place + step, lower) - frame.position(place - step, lower)
+            displacement = frame.position(place + step, lower) - frame.position(place - step, lower)
             per_unit = MM / DEGREE if rotary else 1.0
-            load[:, column] = per_unit * (way * force).sum(axis=1) / (2.0 * _STEP)
+            load[:, column] = per_unit * (displacement * force).sum(axis=1) / (2.0 * _STEP)
         return load

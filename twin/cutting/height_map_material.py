@@ -27,7 +27,7 @@ from twin.nc.canonical import FloatArray, IntArray
 WALL_SHARE = 0.02
 WALL_MM = 4e-3
 WALL_JOINED = 32
-"""As ``STRAIGHT_SHARE``, ``STRAIGHT_MM`` and ``MOST_JOINED``, for walls beside the way, which are looked at for more
+"""As ``STRAIGHT_SHARE``, ``STRAIGHT_MM`` and ``MOST_JOINED``, for walls beside the path, which are looked at for more
 stretches together."""
 
 
@@ -76,13 +76,13 @@ class HeightMapMaterial:
     ) -> Removal:
         """Cut what a tool meets, and note the walls that it leaves."""
         del tool
-        material, way = self.map, points.tip
-        found = sweep_lines(material, way, edge, Marks(self.marks, travelled), stood=stood)
+        material, tips = self.map, points.tip
+        found = sweep_lines(material, tips, edge, Marks(self.marks, travelled), stood=stood)
         self.changed = union(self.changed, found.changed)
         off = min(WALL_SHARE * material.cell, WALL_MM)
-        rows = simplify(way[None], np.zeros(len(way), np.int64), off, edge.radius, WALL_JOINED)
+        rows = simplify(tips[None], np.zeros(len(tips), np.int64), off, edge.radius, WALL_JOINED)
         note_walls(
-            material.heights, material.behind, material.grid, way[rows], edge.radius, edge.flat
+            material.heights, material.behind, material.grid, tips[rows], edge.radius, edge.flat
         )
         return found.removal
 

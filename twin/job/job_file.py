@@ -363,7 +363,7 @@ class JobFile(Table):
     cutting_force: Literal["teeth", "mean", "none"] = "teeth"
     """Of a stock whose material is known: ``teeth``, the force of every tooth acts while it is cut, the tool
     bends and may break; ``mean``, the mean force is reported, and with ``cutting_load`` computed ahead, but it
-    bends and breaks no tool: contour errors come out several times too small where a tool gives way, and the
+    bends and breaks no tool: contour errors come out several times too small where a tool deflects, and the
     part does not show it; ``none``, the mean force is only reported. The page of ``twin/coupling`` has one
     job by both methods."""
     offsets: dict[str, dict[str, float]] = Field(default_factory=dict)

@@ -83,9 +83,9 @@ class Gauge:
         they turn alone every control counts degrees.
         """
         assert self._last is not None
-        here, way = self._last.joint_position, _INSTANT_S * self._last.joint_velocity
+        here, displacement = self._last.joint_position, _INSTANT_S * self._last.joint_velocity
         tips = self._scene.recording.header.part_frame.position(
-            np.concatenate([here - way, here + way]), length_difference
+            np.concatenate([here - displacement, here + displacement]), length_difference
         )
         return float(np.linalg.norm(tips[1] - tips[0])) / (2.0 * _INSTANT_S)
 

@@ -2,7 +2,7 @@
 
 A log of ten samples a second hits a ramp of ten milliseconds now and then. Its columns of commanded
 velocity and acceleration then say how far into the ramp the sample was taken, as a planner that
-accelerates at a constant rate from one speed to another leaves few ways in which both numbers come
+accelerates at a constant rate from one speed to another leaves few combinations of which both numbers come
 about. The control forms them as differences over its cycle, which is seen from the numbers too.
 """
 

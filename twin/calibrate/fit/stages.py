@@ -308,7 +308,7 @@ def _without_undetermined(
 
 def _width(problem: Problem, name: str, interval: Interval) -> float:
     """How far an interval reaches, as a share of what would matter."""
-    way = problem.coordinates[name]
+    coordinate = problem.coordinates[name]
     reach = max(interval.high - interval.value, interval.value - interval.low)
     if name in ("delay", "force_delay", "measuring_filter"):
         return reach / max(abs(interval.value), 2e-3)
@@ -316,9 +316,9 @@ def _width(problem: Problem, name: str, interval: Interval) -> float:
         return reach
     if name == "current_at_rest":
         return 0.0
-    if way.logarithmic:
+    if coordinate.logarithmic:
         return reach / interval.value
-    return reach / max(abs(interval.value), 1e2 * way.step)
+    return reach / max(abs(interval.value), 1e2 * coordinate.step)
 
 
 def _why(best: Solution, name: str, interval: Interval, unit: str) -> str:

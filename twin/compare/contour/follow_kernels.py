@@ -98,7 +98,7 @@ def follow(path, first, point, commanded, reach_s, state, found):
             high_move, high_u = move, u
         if move != corner:
             corner, acute = move, _begins_acutely(path, move)
-        around = _way_around(path, move, u, step + error) if acute else 0.0
+        around = _around_corner(path, move, u, step + error) if acute else 0.0
         low_move, low_u = walk(path, low_move, low_u, -margin - around)
         back_move, back_u = _place(commanded, late, first)
         if low_move < back_move or (low_move == back_move and low_u < back_u):
@@ -143,10 +143,10 @@ def _begins_acutely(path, move):
 
 
 @kernel
-def _way_around(path, move, u, error):
+def _around_corner(path, move, u, error):
     """How far back a place may leap around the acute corner where its move begins [mm].
 
-    Both legs of a corner are equally near to a tool between them, at equal ways from its point.
+    Both legs of a corner are equally near to a tool between them, at equal distances from its point.
 
     Args:
         path: The moves.

@@ -30,7 +30,7 @@ FARTHEST = 1.1
 HALF = 0.5
 """Distance that a height map is allowed not to know [cells]."""
 _LEVEL_SHARE = 0.01
-"""Rise of a way below which it counts as level."""
+"""Rise of a path below which it counts as level."""
 EQUAL_MM = 1e-3
 """What passed no deeper below a cell's top than this has not passed beside it [mm]."""
 
@@ -54,7 +54,7 @@ def note_walls(
     Of a top that it has made a slope nothing is reported: deeper, it goes on before the cell's middle.
 
     Args:
-        heights: The height map, cut along the way, shape (ny, nx) [mm].
+        heights: The height map, cut along the path, shape (ny, nx) [mm].
         behind: What is known of its walls; written.
         points: Tool tip positions, shape (n, 3) [mm].
         radius: Of the tool [mm].
@@ -66,8 +66,8 @@ def note_walls(
         level = max(min(a[2], b[2]), grid.bottom) + EQUAL_MM
         if level >= grid.top:
             continue
-        rise, way = abs(b[2] - a[2]), math.hypot(b[0] - a[0], b[1] - a[1])
-        slopes = flat < radius or (way > 0.0 and rise > _LEVEL_SHARE * way)
+        rise, run = abs(b[2] - a[2]), math.hypot(b[0] - a[0], b[1] - a[1])
+        slopes = flat < radius or (run > 0.0 and rise > _LEVEL_SHARE * run)
         low = max(0, math.ceil((min(a[1], b[1]) - outer - grid.origin[1]) / cell))
         high = math.floor((max(a[1], b[1]) + outer - grid.origin[1]) / cell)
         for row in range(low, min(high, heights.shape[0] - 1) + 1):
@@ -95,7 +95,7 @@ def note_walls(
 
 @inlined
 def _squared_distance(grid, column, y, a, b):
-    """Of the middle of a cell from a way, seen from above [mm²]."""
+    """Of the middle of a cell from a path, seen from above [mm²]."""
     x = grid.origin[0] + column * grid.cell
     foot_x, foot_y = nearest_foot(x, y, a, b)
     return (x - foot_x) * (x - foot_x) + (y - foot_y) * (y - foot_y)

@@ -40,7 +40,7 @@ _CLEAR = 0.15
 """How far before the edge the material is looked at, along the normal [cells]: beyond what the planes of crossings
 are off a round surface."""
 _FARTHEST = 2.0
-"""And at most, along its way [cells]."""
+"""And at most, along its path [cells]."""
 _FINER = 4
 """Places in each direction in which a tooth is looked at for the greatest force of a turn."""
 _PARTS = 4.0
@@ -57,7 +57,7 @@ class Leaning(NamedTuple):
     Attributes:
         tip: Where its tip is in the part's frame, shape (3,) [mm].
         frame: Directions of the tool's X, Y and Z there, as rows, shape (3, 3); Z leads to the spindle.
-        feed: Way of the tip in the time between two teeth, in the tool's frame, shape (3,) [mm].
+        feed: Travel of the tip in the time between two teeth, in the tool's frame, shape (3,) [mm].
         lean: What the axis turns by in that time: how much farther a point goes that is a millimetre higher, in the
             tool's frame, shape (3,).
         sense: 1: it turns clockwise, seen from above; -1: counter-clockwise.
@@ -210,26 +210,26 @@ def _point(edge: _Edge, ring: _Ring) -> tuple[float, float, float, float]:
 
 @arithmetic_kernel
 def _chip(edge: _Edge, ring: _Ring, place: float) -> float:
-    """Thickness of the chip at a place of the edge: its way along its normal [mm]."""
+    """Thickness of the chip at a place of the edge: its travel along its normal [mm]."""
     _, height, out, down = _point(edge, ring)
     cosine, sine = bin_direction(place)
-    x, y, z = _way(edge.leaning, height)
+    x, y, z = _feed_at(edge.leaning, height)
     return out * (x * cosine + y * sine) - down * z
 
 
 @arithmetic_kernel
-def _way(leaning: Leaning, height: float) -> _Place:
-    """Way of a point at a height between two teeth, in the tool's frame [mm]."""
+def _feed_at(leaning: Leaning, height: float) -> _Place:
+    """Travel of a point at a height between two teeth, in the tool's frame [mm]."""
     feed, lean = leaning.feed, leaning.lean
     return feed[0] + height * lean[0], feed[1] + height * lean[1], feed[2] + height * lean[2]
 
 
 @arithmetic_kernel
 def _before(edge: _Edge, ring: _Ring, place: float) -> bool:
-    """Whether there is material before a place of the edge, on its way."""
+    """Whether there is material before a place of the edge, in its direction of travel."""
     radius, height, out, down = _point(edge, ring)
     cosine, sine = bin_direction(place)
-    x, y, z = _way(edge.leaning, height)
+    x, y, z = _feed_at(edge.leaning, height)
     pace = math.sqrt(x * x + y * y + z * z)
     chip = out * (x * cosine + y * sine) - down * z
     if chip <= _LEAST:

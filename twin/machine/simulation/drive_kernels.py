@@ -83,7 +83,7 @@ def all_finite(points: Points) -> bool:
 
 @array_kernel
 def hold_controls(drives: Drives, past: Points, points: Points, width: int) -> FloatArray:
-    """Controls to hold on the way to each setpoint.
+    """Controls to hold during the step to each setpoint.
 
     Args:
         past: Setpoints that went before, of which the last counts.

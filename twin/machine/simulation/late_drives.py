@@ -153,7 +153,7 @@ class LateDrives:
         """Position, velocity and force of the axes in states.
 
         Args:
-            told: What the drives saw on the way there; the last rows of it belong to the states.
+            told: What the drives saw until then; the last rows of it belong to the states.
             states: Shape (n, width).
             first_act: Column of the first actuator's state.
         """

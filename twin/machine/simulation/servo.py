@@ -379,7 +379,7 @@ class Servo:
         return rolled[0] if steps == 1 else rolled[0][steps - 1 :: steps]
 
     def _controls(self, past: Points, points: Points, told: Told | None) -> FloatArray:
-        """Controls to hold on the way to each setpoint, shape (n, nu), SI."""
+        """Controls to hold during the step to each setpoint, shape (n, nu), SI."""
         if self._late is None or told is None:
             return hold_controls(self._drives, past, points, self.model.nu)
         before, after = (Points(*(column[part] for column in told.points)) for part in _PARTS)

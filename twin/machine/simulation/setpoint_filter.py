@@ -51,7 +51,7 @@ def relax(start, keep, goal):
     Args:
         start: Before the first row, shape (m,).
         keep: Share of the distance that is left after a step, shape (m,).
-        goal: Where they tend to on the way to each row, shape (n, m).
+        goal: Where they tend to during the step to each row, shape (n, m).
 
     Returns:
         Shape (n, m).

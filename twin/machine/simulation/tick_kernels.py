@@ -1,6 +1,6 @@
 """Few servo periods at once, with a single call from Python: what a control asks for that reacts to each.
 
-The rules are those of ``drive_kernels``; what is saved is the way in and out of compiled code, which for
+The rules are those of ``drive_kernels``; what is saved are the calls into compiled code, which for
 every array that is handed over costs a good part of a step.
 """
 
@@ -85,7 +85,7 @@ def follow_setpoints(
         state: Where it has come to, shape (width,).
         past: Setpoints that went before, of which the last counts.
         points: n setpoints.
-        load: What pushes the axes from outside on the way to each, shape (n, k) [N or N m].
+        load: What pushes the axes from outside during the step to each, shape (n, k) [N or N m].
     """
     drives = _drives(loop)
     if not all_finite(points):

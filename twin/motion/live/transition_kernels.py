@@ -69,7 +69,7 @@ def find_transition(limits: FloatArray, wanted: Course, state: State) -> tuple[B
             for step in range(BISECTIONS):
                 need = brake_distance_from(v, a, w, deceleration, jerk)
                 end = min(max(0.0, need - before), limits[0, p])
-                # Between a stop and a third of the velocity the way grows with w.
+                # Between a stop and a third of the velocity the distance grows with w.
                 fits = need <= after
                 safe = fits and find_brake(wanted, State(p, end, w, 0.0), 0.0) >= 0
                 if safe and -slack <= brake_margin(

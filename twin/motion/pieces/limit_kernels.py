@@ -85,8 +85,8 @@ def _share_of_turns(turns: float) -> float:
     before, share = CURVE_JERK_SHARES[0]
     for at, to in CURVE_JERK_SHARES:
         if turns <= at:
-            way = (turns - before) / (at - before) if turns > before else 0.0
-            return share + (to - share) * way
+            fraction = (turns - before) / (at - before) if turns > before else 0.0
+            return share + (to - share) * fraction
         before, share = at, to
     return share
 

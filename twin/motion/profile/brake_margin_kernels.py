@@ -1,4 +1,4 @@
-"""How much room a brake has: before the border where it is to end, and below the limits on the way.
+"""How much margin a brake has: before the border where it is to end, and below the limits on the way.
 
 The velocity along a brake rises to its peak (while a > 0 falls to zero) and then only falls, so a
 limit of the velocity at a place is kept if the brake comes down to it before that place. Where it

@@ -25,7 +25,7 @@ SHORT_JERK_SHARE = 0.99
 """Of the jerk limits that a run of less than ``LEAST_TURN`` uses: its end is near."""
 
 WHOLE_SHARE = 0.999
-"""Of the jerk limits that a way out of a run uses: between nodes a little more is used."""
+"""Of the jerk limits that a transition out of a run uses: between nodes a little more is used."""
 
 ATTEMPTS = 4
 """At a time law that keeps all limits between the nodes too."""

@@ -132,15 +132,15 @@ def cut_run(ends: RunEnds, pieces: RunPieces, machine: MachineLimits) -> RunNode
             # Of the last change the time counts backwards.
             gone = t if part < 2 else times[2] - t
             wave, sign = rate * gone, 1.0 if part < 2 else -1.0
-            way = (low + rise) * gone - rise / rate * math.sin(wave)
+            covered = (low + rise) * gone - rise / rate * math.sin(wave)
             v, a, j = (
                 low + rise * (1.0 - math.cos(wave)),
                 sign * rise * rate * math.sin(wave),
                 rise * rate * rate * math.cos(wave),
             )
             if part == 1:
-                way, v, a, j = peak * gone, peak, 0.0, 0.0
-            here = place + way if part < 2 else distance - way
+                covered, v, a, j = peak * gone, peak, 0.0, 0.0
+            here = place + covered if part < 2 else distance - covered
             if k > 0:
                 nodes.distance[node] = here - before
                 nodes.jerk[node, 1] = j

@@ -1,6 +1,6 @@
-"""Ways to a contour and away from it: straight or on an arc, as the tool's centre goes.
+"""Approach to a contour and retraction from it: straight or on an arc, as the tool's centre goes.
 
-The way to a contour is made when its first element is known. Its auxiliary point is reached in the working plane first,
+The approach to a contour is made when its first element is known. Its auxiliary point is reached in the working plane first,
 then in the axis across it.
 """
 
@@ -40,8 +40,8 @@ class Lead:
         angle: Of an arc [deg].
         side: Of the tool beside the contour: 1 left, -1 right, 0 on it.
         offset: How far beside it the tool's centre goes, part coordinates [mm].
-        feed_before: Feed on the way to the auxiliary point, or from it.
-        rapid: The way to the auxiliary point, or from it, is as fast as the machine can.
+        feed_before: Feed to the auxiliary point, or from it.
+        rapid: The move to the auxiliary point, or from it, is as fast as the machine can.
         above: How far the auxiliary point lies above the contour [mm].
         spatial: The lead itself falls or rises by that; else the tool does so over the auxiliary point.
         feed_down: Feed of that fall or rise; None: the lead's.

@@ -40,7 +40,7 @@ class Curve(NamedTuple):
     Attributes:
         coefficients: What is added to the start, by powers 1 to 5 of the path fraction, shape (k, 5)
             [mm or deg].
-        length: Of the tip's way in the part [mm]; where it rests, of the rotary axes' [deg].
+        length: Of the tip's path in the part [mm]; where it rests, of the rotary axes' [deg].
         turning: The tip rests: F counts degrees.
     """
 

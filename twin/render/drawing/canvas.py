@@ -249,8 +249,8 @@ class Canvas(abc.ABC):
             aside = np.cross(straight, np.eye(3)[np.argmin(np.abs(straight))])
             aside /= np.linalg.norm(aside)
             upwards = np.cross(aside, straight)
-            way = straight + reach * (math.cos(turn) * aside + math.sin(turn) * upwards)
-            data.light_xdir[light] = way / np.linalg.norm(way)
+            direction = straight + reach * (math.cos(turn) * aside + math.sin(turn) * upwards)
+            data.light_xdir[light] = direction / np.linalg.norm(direction)
             if focus is not None:
                 self._limit_shadows(focus.radius)
                 data.light_xpos[light] = (

@@ -88,8 +88,8 @@ def place(
 
     def frame(body: int) -> tuple[FloatArray, FloatArray]:
         origin = tip_from(body, np.zeros(3))
-        ways = [(tip_from(body, direction) - origin) / MM for direction in np.eye(3)]
-        return origin, np.stack(ways, axis=1)
+        columns = [(tip_from(body, direction) - origin) / MM for direction in np.eye(3)]
+        return origin, np.stack(columns, axis=1)
 
     table = part_carrier(model)
     carrier = int(model.body_parentid[table])

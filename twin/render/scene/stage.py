@@ -271,13 +271,13 @@ def _build_props(
     points = trail_points(scene.recording, scene.summary)
     seen = framed(points.position if cutter is None else cutter.material.corners)
     add_part_cameras(spec, placement, *seen)
-    way = Trail(
+    tool_trail = Trail(
         points if trail else points[_NO_POINTS], _trail_radius(points.position), scene.error_scale
     )
-    way.add_to(spec)
+    tool_trail.add_to(spec)
     tools = ToolBodies(scene.summary.tools, scene.machine.file.spindle.flange_diameter)
     tools.add_to(spec)
-    return _Props(placement, cutter, surface, way, tools, seen)
+    return _Props(placement, cutter, surface, tool_trail, tools, seen)
 
 
 def _stock_surface(

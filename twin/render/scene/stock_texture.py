@@ -160,6 +160,6 @@ class StockTexture:
         """Brightness that the cutter's marks give a machined surface."""
         if not self._marks.size:
             return np.ones_like(self._grain[rows, columns])
-        way = self._marks[:: self._step, :: self._step][rows, columns]
+        travel = self._marks[:: self._step, :: self._step][rows, columns]
         pitch = MARK_TEXELS * self._step * self._map.cell
-        return 1.0 + MARK_DEPTH * np.sin(2 * np.pi * way / pitch)
+        return 1.0 + MARK_DEPTH * np.sin(2 * np.pi * travel / pitch)

@@ -153,16 +153,16 @@ def _over_the_cuts(moves: Moves, levels: FloatArray, lengths: FloatArray) -> flo
 
 def _sloping(moves: Moves, low: float, high: float) -> float:
     """Length in the plane of feeds that rise or fall to a height between two [mm]."""
-    way, ends = moves.end[:, :3] - moves.start[:, :3], moves.end[:, 2]
-    rows = (moves.motion == Motion.FEED) & (np.abs(way[:, 2]) >= BELOW)
+    travel, ends = moves.end[:, :3] - moves.start[:, :3], moves.end[:, 2]
+    rows = (moves.motion == Motion.FEED) & (np.abs(travel[:, 2]) >= BELOW)
     rows &= (ends > low + BELOW) & (ends < high - BELOW)
-    return float(np.hypot(way[rows, 0], way[rows, 1]).sum())
+    return float(np.hypot(travel[rows, 0], travel[rows, 1]).sum())
 
 
 def _level(moves: Moves) -> BoolArray:
     """Which moves go in the plane at one height, shape (n,)."""
-    way = np.abs(moves.end[:, :3] - moves.start[:, :3])
-    return (way[:, 2] < BELOW) & ((way[:, :2] > BELOW).any(axis=1) | (moves.sweep != 0.0))
+    travel = np.abs(moves.end[:, :3] - moves.start[:, :3])
+    return (travel[:, 2] < BELOW) & ((travel[:, :2] > BELOW).any(axis=1) | (moves.sweep != 0.0))
 
 
 def _levels(moves: Moves) -> tuple[FloatArray, FloatArray]:
@@ -238,11 +238,11 @@ def _fed_before(moves: Moves, row: int, place: FloatArray, height: float, radius
     height += _CLEARED
     feeds = moves.motion[:row] == Motion.FEED
     feeds &= (moves.start[:row, 2] <= height) & (moves.end[:row, 2] <= height)
-    begin, way = moves.start[:row][feeds, :2], (moves.end - moves.start)[:row][feeds, :2]
+    begin, travel = moves.start[:row][feeds, :2], (moves.end - moves.start)[:row][feeds, :2]
     to = place - begin
-    length = np.maximum((way * way).sum(axis=1), BELOW)
-    share = np.clip((to * way).sum(axis=1) / length, 0.0, 1.0)
-    return bool((np.hypot(*(to - share[:, None] * way).T) <= radius).any())
+    length = np.maximum((travel * travel).sum(axis=1), BELOW)
+    share = np.clip((to * travel).sum(axis=1) / length, 0.0, 1.0)
+    return bool((np.hypot(*(to - share[:, None] * travel).T) <= radius).any())
 
 
 _MOST_AT_EDGE = 0.2

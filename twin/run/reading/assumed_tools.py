@@ -174,7 +174,7 @@ _SPEED_LINE = f"speed = {SPEED_BY_HAND}  # 1/min: a guess"
 _NEAR_LINES = 3
 """So far from the call of a tool a comment may stand that describes it."""
 BELOW = 1e-6
-"""Ways and depths that are less are none [mm]."""
+"""Distances and depths that are less are none [mm]."""
 
 
 def tool_lines(
@@ -315,8 +315,8 @@ def _tool_table(
     """A tool's lines, how it came about, and its diameter [mm]."""
     number, tool = called
     feeds = [row for row in rows if moves.motion[row] == Motion.FEED]
-    ways = moves.end[feeds, :2] - moves.start[feeds, :2]
-    drills = bool(feeds) and bool((np.abs(ways) < BELOW).all())
+    travel = moves.end[feeds, :2] - moves.start[feeds, :2]
+    drills = bool(feeds) and bool((np.abs(travel) < BELOW).all())
     depth = max(0.0, top - float(moves.end[feeds, 2].min())) if feeds else 0.0
     kind = (tool.kind if tool else "") or ("drill" if drills else "flat")
     diameter = (tool.diameter if tool else None) or _USUAL_DIAMETER

@@ -269,9 +269,9 @@ def _paths_apart(one: _Trial, other: _Trial) -> str:
     apart &= ~_pecks_apart(a, b, count)
     turned = np.abs(a.sweep[:count] - b.sweep[:count]) > _SAME
     kinds = (a.motion[:count] != b.motion[:count]) | (a.line[:count] != b.line[:count])
-    ways = np.flatnonzero(apart | turned | kinds)
-    if len(ways) or len(a) != len(b):
-        row = int(ways[0]) if len(ways) else count
+    differing = np.flatnonzero(apart | turned | kinds)
+    if len(differing) or len(a) != len(b):
+        row = int(differing[0]) if len(differing) else count
         longer = a if len(a) > row else b
         goals = " and ".join(
             f"{trial.name} goes to {_place(trial.moves, row)}"

@@ -1,4 +1,4 @@
-"""A program, or an MDI block, on its way to the machine: parts between stops, each with its moves.
+"""A program, or an MDI block, as it reaches the machine: parts between stops, each with its moves.
 
 It is interpreted ahead of the axes, a bounded number of blocks in each slice of time, so that a program
 that loops for ever keeps nobody waiting: where the axes have caught up with it, they come to rest until there are

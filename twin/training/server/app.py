@@ -61,7 +61,7 @@ PICTURES_PER_S = 30.0
 LONGEST_SEND_S = 10.0
 """Time for a page to read what it was sent."""
 _EXAMPLE = (10.0, 600.0)
-"""Way [mm] and feed [mm/min] of the block that the empty MDI line shows."""
+"""Travel [mm] and feed [mm/min] of the block that the empty MDI line shows."""
 
 
 async def _panel(_request: Request) -> Response:

@@ -1,4 +1,4 @@
-"""Tool radius compensation of LinuxCNC: its own way of leads and corners.
+"""Tool radius compensation of LinuxCNC: its own leads and corners.
 
 The entry ends beside the programmed point, square to the entry itself. At a convex corner the tool
 turns around the contour's point; at a concave one the move before ends where the two offset paths meet,

@@ -152,8 +152,8 @@ def _leave(control: Control, hole: Hole) -> None:
     elif hole.retract is Retract.STOPPED:
         control.function("M5", {})
     elif hole.retract is not Retract.RAPID:
-        all_the_way = hole.retract is Retract.FEED_ALL
-        _come_back(control, hole, hole.back if all_the_way else hole.reference)
+        fed_back = hole.retract is Retract.FEED_ALL
+        _come_back(control, hole, hole.back if fed_back else hole.reference)
     go_to_height(control, hole.back)
     if hole.retract is Retract.STOPPED:
         turn_spindle(control, "M3")

@@ -1,4 +1,4 @@
-"""Outlines of pockets, slots and studs, and the ways around them."""
+"""Outlines of pockets, slots and studs, and the paths around them."""
 
 import dataclasses
 import enum

@@ -71,7 +71,7 @@ def mill_thread(control: Control, thread: Thread) -> None:
 
 
 def _mill_helix(control: Control, thread: Thread, low: float, turns: int) -> None:
-    """One helix from or to a height, with the ways to it and from it."""
+    """One helix from or to a height, with its approach and retraction."""
     sweep = -360.0 * turns if thread.clockwise else 360.0 * turns
     rise = turns * thread.pitch if thread.upwards else -turns * thread.pitch
     start = low if thread.upwards else low + turns * thread.pitch

@@ -133,9 +133,9 @@ class TwoAxes:
         """
         circle = turning.circle
         if circle is None:
-            way = turning.angles[1] - turning.angles[0]
-            value = turning.angles[0] + fraction[:, None] * way
-            rate = np.tile(way, (len(fraction), 1))
+            travel = turning.angles[1] - turning.angles[0]
+            value = turning.angles[0] + fraction[:, None] * travel
+            rate = np.tile(travel, (len(fraction), 1))
             return PathMotion(value, rate, np.zeros_like(rate))
         directions = circle.at(fraction)
         value = self._solved(directions, turning.side)
@@ -228,8 +228,8 @@ class TwoAxes:
         ]
 
         def cost(turning: Turning) -> tuple[bool, float, float]:
-            way = round(float(np.abs(turning.angles[0] - here).sum()), _DIGITS)
-            return (not self._within_travel(turning.angles), way, -float(turning.angles[1, 0]))
+            travel = round(float(np.abs(turning.angles[0] - here).sum()), _DIGITS)
+            return (not self._within_travel(turning.angles), travel, -float(turning.angles[1, 0]))
 
         best = min(choices, key=cost)
         self._require_travel(best.angles)

@@ -110,7 +110,7 @@ class ExpressionSyntax:
         joined: Two such indices as one number.
         existence: Functions that tell whether their value is defined.
         prefixes: Operators before one value, besides + and -.
-        spelled: One spelling for all ways to write a variable's name.
+        spelled: One spelling for all forms of a variable's name.
         indirect: Character before a value that is a variable's number, such as ``#[#1+2]``; empty:
             there is none.
         quotients: Functions of two values, each in brackets, with a slash between them.

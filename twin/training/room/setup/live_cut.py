@@ -24,7 +24,7 @@ class Loads(NamedTuple):
         spindle_speed: As the drive turns, without its sense [1/min].
         spindle: Torque as a share of what the spindle gives for long.
         force: Level, on the tool [N].
-        bend: How far its tip gives way [mm].
+        bend: Deflection of its tip [mm].
         chip: Thickest chip [mm].
         chip_share: Of what breaks an edge.
     """

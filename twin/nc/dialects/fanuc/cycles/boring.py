@@ -51,8 +51,8 @@ def _bore(control: Control, cycle: Cycle, hole: list[float], *, back: bool) -> N
         control.fail("cycle-depth", f"{name} needs a shift Q not below 0")
     upwards = bottom > reference
     if upwards != back:
-        way = "upwards" if back else "downwards"
-        message = f"{name} must bore {way}, not from {reference:g} to {bottom:g}"
+        direction = "upwards" if back else "downwards"
+        message = f"{name} must bore {direction}, not from {reference:g} to {bottom:g}"
         control.fail("cycle-depth", message)
     if back and to_reference:
         message = "G87 returns to the height of its call: its plane R lies under the part"
@@ -82,7 +82,7 @@ def _orient(control: Control, shift: float) -> None:
     _shift(control, shift)
 
 
-def _shift(control: Control, way: float) -> None:
+def _shift(control: Control, direction: float) -> None:
     there = list(control.motion.programmed)
-    there[control.modal.plane.axes[0]] += way
+    there[control.modal.plane.axes[0]] += direction
     control.line_to(there, rapid=True)

@@ -82,11 +82,11 @@ def define_plane(control: Control, step: Step) -> None:
     _write_angles(control, rotary_axes_across(control, "cycle 19"))
 
 
-def retract(control: Control, way: float | None, *, rapid: bool = True) -> None:
-    """Away from the part along Z by a way [mm]; None: to machine zero of that axis."""
-    if way is not None:
+def retract(control: Control, distance: float | None, *, rapid: bool = True) -> None:
+    """Away from the part along Z by a distance [mm]; None: to machine zero of that axis."""
+    if distance is not None:
         target = list(control.motion.programmed)
-        target[_HEIGHT] += way
+        target[_HEIGHT] += distance
         control.line_to(target, rapid=rapid)
         return
     with machine_frame(control, "MB MAX"):

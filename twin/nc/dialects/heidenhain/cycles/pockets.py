@@ -36,11 +36,11 @@ def _choice(control: Control, given: Parameters, parameter: int, known: dict[int
     return chosen
 
 
-def _middle(control: Control, given: Parameters, halves: Point, ways: dict[int, Point]) -> Point:
+def _middle(control: Control, given: Parameters, halves: Point, corners: dict[int, Point]) -> Point:
     """The middle of what is milled, turned with it about the place of the call."""
-    way = _choice(control, given, 367, ways)
+    corner = _choice(control, given, 367, corners)
     here = _here(control)
-    there = (here[0] + way[0] * halves[0], here[1] + way[1] * halves[1])
+    there = (here[0] + corner[0] * halves[0], here[1] + corner[1] * halves[1])
     return turned(there, here, given.number(224) + given.number(374))
 
 

@@ -221,7 +221,7 @@ def _end_spindle(call: CycleCall) -> None:
 
 
 def _tap_in_chuck(call: CycleCall) -> None:
-    """CYCLE840: tapping in a chuck that gives way; the feed follows from pitch and speed, else F counts."""
+    """CYCLE840: tapping in a compensating chuck; the feed follows from pitch and speed, else F counts."""
     control = call.control
     gives_pitch = bool(call.get("MPIT") or call.get("PIT"))
     if not control.motion.spindle:

@@ -157,14 +157,14 @@ def _face(call: CycleCall) -> None:
     call.need("PA", "PO", "LENG", "WID", "MIDA")
     radius, heights = radius_in_spindle(call.control), heights_of(call)
     length, width, step = call.length("LENG"), call.length("WID"), abs(call.length("MIDA"))
-    way, kind = int(call.get("VARI") // 10.0 % 10.0), call.get("VARI") % 10.0
-    if way not in (1, 2, 3, 4) or kind not in (1.0, 2.0):
-        ways = "1 rough or 2 finish, in tens 1 to 4 the direction of the strips"
-        call.refuse("cycle-word", f"takes VARI 11 to 42: {ways}")
+    strips, kind = int(call.get("VARI") // 10.0 % 10.0), call.get("VARI") % 10.0
+    if strips not in (1, 2, 3, 4) or kind not in (1.0, 2.0):
+        choices = "1 rough or 2 finish, in tens 1 to 4 the direction of the strips"
+        call.refuse("cycle-word", f"takes VARI 11 to 42: {choices}")
     if not 0.0 < step <= 2.0 * radius or not (length and width):
         widest = f"the tool's diameter, {2.0 * radius:g}"
         call.refuse("cycle-size", f"needs a face and strips MIDA up to {widest}")
-    along_ordinate = way in (2, 4)
+    along_ordinate = strips in (2, 4)
     rest = 0.0 if kind == 2.0 else abs(call.length("FALD"))
     depth = abs(call.length("MID")) or heights.surface - heights.bottom
     face = Face(
@@ -175,7 +175,7 @@ def _face(call: CycleCall) -> None:
         angle=call.get("STA"),
         step=step,
         beyond=radius + (abs(call.length("FDP1")) or abs(call.length("SDIS"))),
-        one_way=way in (1, 2),
+        one_direction=strips in (1, 2),
         levels=levels_between(heights.surface, heights.bottom + rest, depth),
         safe=heights.safe,
         back=heights.back,

@@ -1,4 +1,4 @@
-"""Calls of subprograms: L.., by name, with parameters, CALL, PCALL, EXTCALL, MCALL, and the way back."""
+"""Calls of subprograms: L.., by name, with parameters, CALL, PCALL, EXTCALL, MCALL, and the return."""
 
 import re
 from collections.abc import Sequence
