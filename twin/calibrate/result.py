@@ -169,8 +169,6 @@ class Calibration:
     """The whole.
 
     Attributes:
-        axes: By name.
-        logs: In the order of the command line.
         findings: About the logs, by file.
     """
 

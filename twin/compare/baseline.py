@@ -60,12 +60,7 @@ def write_baseline(
     settings: Mapping[str, str] | None = None,
     source: Sequence[str] = (),
 ) -> None:
-    """Store a baseline, complete or not at all.
-
-    Args:
-        settings: Keys of the job and their values, as text.
-        source: Lines of the program.
-    """
+    """Store a baseline, complete or not at all."""
     with complete_or_absent(path) as temporary, temporary.open("w", encoding="utf-8") as file:
         lines = [line for line in without_comments(source) if line]
         write(file, Head(figures, axes.names, settings or {}, lines), entries(chunks))
@@ -85,7 +80,6 @@ def compare_baseline(
     Args:
         figures: What the run came to; None when it did not come to its end.
         chunks: The program; where it no longer interprets, the baseline tells what was there.
-        settings: Keys of the job and their values, as text.
         source: Lines of the program, of which the changed ones are named.
 
     Returns:

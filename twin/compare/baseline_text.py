@@ -56,8 +56,6 @@ class Head(NamedTuple):
     """What is before the entries.
 
     Attributes:
-        axes: Names of the axes.
-        settings: Keys of the job and their values, as text.
         source: The lines of the program without comments; none where it is too long to keep.
     """
 
@@ -234,7 +232,6 @@ def text(entry: Entry, names: tuple[str, ...], position: tuple[float, ...], feed
     """One line of a baseline.
 
     Args:
-        names: Of the axes.
         position: What need not be repeated [mm or deg].
         feed: What need not be repeated [mm/min or deg/min].
     """

@@ -42,7 +42,6 @@ def block_differences(
     """All that differs between two blocks of one kind, in the coordinates that the control shows.
 
     Args:
-        names: Of the axes.
         begins_apart: The block before ends elsewhere, so that this one begins elsewhere.
     """
     tolerance = limits.path_um / 1e3

@@ -72,7 +72,6 @@ def kernel_cache(function: Callable[..., Any], form: Form[Any]) -> "KernelCache 
     """Where the compiled forms of a function are kept; None for one of another package.
 
     Args:
-        function: The function itself.
         form: How they are written.
     """
     file = _whole(function.__code__.co_filename)

@@ -23,7 +23,6 @@ class Places:
         """Take a program.
 
         Args:
-            moves: All of it, n moves, part coordinates.
             control_line: Line of LinuxCNC's program that each of them comes from, shape (n,).
         """
         self._moves = moves

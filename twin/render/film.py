@@ -29,7 +29,6 @@ def film(scene: Scene, *, video: VideoTable, out: Path, progress: Progress | Non
         scene: What is to be seen; the simulated joints move, and the stock is cut as it goes on.
         video: Cameras, length, quality, frame rate and size; odd sizes are made even.
         out: The film, complete or not at all; ``.mp4``, ``.gif`` or ``.webp``.
-        progress: Called after every frame.
 
     Returns:
         ``out``.

@@ -102,7 +102,6 @@ class Display:
         """Lay the panels out.
 
         Args:
-            source: Lines of the program.
             size: Width and height of the frames [px].
             speed: How much faster than in reality the film runs; None for a still.
             error_scale_um: Error that has the trail's last colour [µm]; None: no error colours it.

@@ -110,7 +110,6 @@ class ProgramMotion(MachineMotion):
 
         Args:
             setpoints: As planned, machine coordinates, in chunks.
-            summary: Which tool is in the spindle during which move.
             moves: Those that are planned; None: nobody asks for them.
 
         Raises:

@@ -30,9 +30,6 @@ def without_verdict(folder: Path) -> Iterator[None]:
 
     A folder that another run holds is left as it is, and so it is where the user interrupts. Within ``run_folder`` the
     run itself would be that other one: this is the outer of the two.
-
-    Args:
-        folder: Of the results; it need not exist.
     """
     try:
         yield
@@ -61,7 +58,6 @@ def run_folder(folder: Path, results: Iterable[str]) -> Iterator[None]:
     carries the lock, so that nothing stays behind when the holder is killed.
 
     Args:
-        folder: The folder; made when missing.
         results: Names of the files that a run may leave.
 
     Raises:

@@ -70,7 +70,6 @@ def device_of(
     program only runs behind a closed one.
 
     Args:
-        axes: Its axes, in order.
         motions: How they move, by their names.
     """
     kinds = zip(axes.names, axes.kinds, strict=True)

@@ -43,7 +43,6 @@ class Production(NamedTuple):
     """What is made, and how a run of it went.
 
     Attributes:
-        source: Its lines.
         summary: What is in the spindle when, and how fast it turns.
         recording: Of the run; None where nothing moved.
         alarms: Of the run, in order.

@@ -59,7 +59,6 @@ def _carried(path, move, u, x, y, z):
     """Where a chain of joints carries the tip: point, first and second derivative, nine numbers [mm].
 
     Args:
-        path: The moves.
         move: One that a chain turns.
         u: Fraction of it.
         x: Coordinate of X with its first and second derivative [mm].

@@ -79,11 +79,7 @@ class Core:
         return [name for name in self.extras if name in solution.free]
 
     def unset_where(self, free: Sequence[str]) -> dict[str, float]:
-        """Values of what some structures have, and not the one that fits these.
-
-        Args:
-            free: Names that are fitted.
-        """
+        """Values of what some structures have, and not the one that fits these."""
         optional = [*self.extras, *({VISCOUS} - set(self.names))]
         return {name: getattr(self.unset, name) for name in optional if name not in free}
 

@@ -61,10 +61,8 @@ class Solution:
     """An optimum.
 
     Attributes:
-        free: Names of those that were fitted.
         cost: Root mean square of the weighted residuals.
         squares: Their sum over each of the stretches of time, shape (batches,).
-        intervals: By name of the fitted.
         covariance: Of the coordinates, shape (p, p), in the order of ``free``.
     """
 
@@ -111,7 +109,6 @@ def solve(
 
     Args:
         start: Where the search begins; the others stay so.
-        free: Names of those that are fitted.
         until: ``EXACT`` or ``ROUGH``.
     """
     coordinates = [problem.coordinates[name] for name in free]

@@ -59,8 +59,6 @@ def link_linuxcnc(
     Args:
         headless: NC program or job file to run without a screen.
         opened: The same, which LinuxCNC's screen opens with; neither: it opens without one.
-        machine: Overrides the job's machine.
-        dialect: Overrides the job's dialect.
         period_us: Servo period of both [µs].
         following_error_limit: LinuxCNC's own limit [mm or deg]; None: the machine's.
         view: Whether a page shows the machine meanwhile.

@@ -41,8 +41,6 @@ class Source:
     Attributes:
         port: 0: the first free one of ``PORTS``.
         speed: Seconds of the twin for each second of the day.
-        dialect: Overrides the job's dialect.
-        machine: Overrides the job's machine.
         opcua_port: Port of OPC UA, which reports in addition to MTConnect; None: it does not.
         opcua_trust: Folder of the certificates of OPC UA's clients.
         grbl: Port at which a machine takes programs from Grbl's senders, or ``pty``; None: it takes none.

@@ -20,7 +20,6 @@ class DirectedCircle:
 
     Attributes:
         circle: Centre, plane and radius, to a micrometre: equal for both directions.
-        counter_clockwise: Seen from the positive side of the plane.
     """
 
     line: int

@@ -149,7 +149,6 @@ def _around_corner(path, move, u, error):
     Both legs of a corner are equally near to a tool between them, at equal distances from its point.
 
     Args:
-        path: The moves.
         move: Where the place is.
         u: Where the place is.
         error: Of the tool, with what it may change by in a sample [mm].

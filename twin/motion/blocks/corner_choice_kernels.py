@@ -92,9 +92,6 @@ def choose_stops(
 ) -> tuple[BoolArray, FloatArray]:
     """Choose the corners at which the path had better stop.
 
-    Args:
-        corners: The borders before them.
-
     Returns:
         Whether to stop, shape (n,); how far from there the moves may overlap, shape (n,).
     """
@@ -166,7 +163,6 @@ def _choose_between(
     """Choose the fastest passage of consecutive borders, in place.
 
     Args:
-        corners: The borders before them.
         chosen: How each is passed, where it is known; the others are written.
         back: Scratch, shape (n, 2).
     """

@@ -57,8 +57,6 @@ class OpenRuns:
         Args:
             more: What follows on those before.
             pieces: Under the plan, as far as runs are looked for.
-            machine: Limits of the axes and the path.
-            override: Factor of the programmed feed.
             at_end: Whether no run goes on beyond them.
         """
         known = more if self.waiting is None else joined([self.waiting, more])
@@ -86,7 +84,6 @@ class OpenRuns:
         """Phases that come back from a retimed run to its reference as soon as they can.
 
         Args:
-            machine: Limits of the axes and the path.
             override: Factor of the programmed feed that it was planned for.
             time: From when on they may change [s].
 

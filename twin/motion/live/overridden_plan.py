@@ -71,7 +71,6 @@ class OverriddenPlan:
 
     Args:
         parts: The program's pieces, in order.
-        machine: Limits of the axes and the path.
         look_ahead: Blocks that are planned at a time, and seen at least beyond these.
 
     Attributes:

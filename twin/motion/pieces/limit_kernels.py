@@ -102,7 +102,6 @@ def piece_limits(
         owner: Block of each of n pieces, shape (n,).
         length: Of the pieces, 0 for dwells, shape (n,).
         ceilings: Highest v at the borders of the pieces, shape (n + 1,).
-        machine: Limits of the axes and the path.
         share: Of an axis's jerk that each block may use at constant velocity, shape (m,).
 
     Returns:

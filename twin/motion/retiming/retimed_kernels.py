@@ -85,8 +85,6 @@ def uses_of_limits(
     Args:
         phases: From ``retimed_phases``.
         phase_pieces: From ``retimed_phases``.
-        machine: Limits of the axes and the path.
-        override: Factor of the programmed feed.
 
     Returns:
         Shares of the three limits, the largest along each of n intervals, shape (n, 3); infinite where

@@ -66,8 +66,6 @@ def _ramp_times(
 
     Args:
         turn: What the path turns by [rad/mm].
-        jerk: Highest of the path.
-        acceleration: Highest of the path.
     """
     v0, v1, peak = ends.begin[0], ends.end[0], ends.peak
     least = min(LEAST_RAMP / turn, 0.5 * ends.distance)
@@ -89,9 +87,6 @@ def cut_run(ends: RunEnds, pieces: RunPieces, machine: MachineLimits) -> RunNode
     """A run with a smooth change of velocity to its peak and another from it, as intervals of time.
 
     The velocity of a change is a cosine's, which begins at rest as a constant jerk does.
-
-    Args:
-        machine: Limits of the axes and the path.
     """
     piece, x, distance, (v0, _), (v1, _), peak = ends
     turn = pieces.fraction_per_length[piece] * abs(pieces.curves.angle[pieces.move[piece]])
@@ -200,12 +195,7 @@ def derivatives_at(
 def run_table(
     nodes: RunNodes, pieces: RunPieces, machine: MachineLimits, override: float
 ) -> RunTable:
-    """What limits a change of a run's time law.
-
-    Args:
-        machine: Limits of the axes and the path.
-        override: Factor of the programmed feed.
-    """
+    """What limits a change of a run's time law."""
     count, axes = len(nodes.step), len(machine.jerk)
     moving = np.zeros(axes, np.int64)
     used = 0

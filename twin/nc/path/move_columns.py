@@ -95,10 +95,6 @@ class Refused(NamedTuple):
     """A block that was refused while it ran: whatever it did is not to happen.
 
     What it let go of earlier blocks, which were waiting for it, stays.
-
-    Attributes:
-        moves: How many moves there were before it.
-        events: How many events there were before it.
     """
 
     moves: int

@@ -91,7 +91,6 @@ def comment_end(line: Characters, begin: int, at: int, end: int, marks: CommentM
 
     Args:
         line: Holds the line, a byte for each character or as UTF-8: what marks comments is ASCII.
-        begin: Where it begins.
         end: Behind its last character.
 
     Returns:

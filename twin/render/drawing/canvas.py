@@ -150,7 +150,6 @@ class Canvas(abc.ABC):
 
         Args:
             data: Positions of everything (after ``mj_forward`` or the like).
-            camera: Number of the camera in the model.
             size: Width and height, at most those of the canvas [px]; None: all of it.
             focus: Where shadows fall; None: as the model says.
             spray: Chips in the air; they cast no shadows.

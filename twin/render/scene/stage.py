@@ -227,7 +227,6 @@ def stage(
         size: Width and height of the pictures [px].
         paint: Colours of the stock's cells, shape (ny, nx, 4), as metal looks where the fourth is 0; or, of one
             that is cut from several sides, what colours its surface; None: all looks like metal.
-        trail: Whether the path of the tool is seen.
 
     Raises:
         RenderError: The renderer does not work here.

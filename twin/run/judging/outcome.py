@@ -50,12 +50,10 @@ class Outcome:
     """What a run came to.
 
     Attributes:
-        verdict: Pass, fail or alarm, with the reasons.
         cut: What was cut; None without a stock.
         gouge: The deepest cut into the nominal part, beyond what the job allows.
         inspection: How far the part is from the nominal one; None without one.
         loads: The greatest of what the tools bore.
-        alarms: Alarms of the machine, in order.
         near_miss: The closest that the tool's side and the part's came, below the machine's limit.
         warnings: Those of the interpreter, of the program and of the cut.
         trace: The run thinned for plots.
@@ -114,7 +112,6 @@ def outcome_of(
 
     Args:
         motion: What moved the machine; None: nothing did.
-        alarms: Alarms of the machine, in order.
         floats: Why nothing carries the stock; None where something does.
     """
     job, reached, machining = preparation.job, followers.reached, followers.machining

@@ -27,11 +27,7 @@ WALLS = "cuts into the nominal part"
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Unwatched:
-    """Something that the verdict does not cover.
-
-    Attributes:
-        why: The reason, and what would have it watched.
-    """
+    """Something that the verdict does not cover."""
 
     what: str
     why: str

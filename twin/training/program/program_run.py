@@ -118,13 +118,7 @@ class ProgramRun:
         self._look_ahead()
 
     def drive(self, count: int, feed: float, rapid: float, *, single: bool) -> Setpoints | None:
-        """The next setpoints; None while the first moves are being interpreted.
-
-        Args:
-            feed: Factor of the feed override.
-            rapid: Factor of the rapid override.
-            single: Whether to stop at the end of every block.
-        """
+        """The next setpoints; None while the first moves are being interpreted."""
         self._look_ahead()
         motion = self._motion
         if motion is None:

@@ -26,7 +26,6 @@ class Notice:
     Attributes:
         code: Stable, searchable name of its kind: those of ``twin.machine.watching.alarms``, and
             ``program`` (the interpreter refused a block), ``external`` (a safety circuit).
-        axis: Name of the axis, or empty.
         line: Source line of the program, 0 where none.
         time_s: When, in machine time [s].
         finding: What the interpreter found, where that is the cause.

@@ -43,14 +43,9 @@ class Room:
     """The machine of a scene while it runs; each of its parts changes by its own methods alone.
 
     Attributes:
-        setup: Blank, tool and tables.
-        program: The program in the control's memory.
-        manual: Moves by hand.
         alarms: Alarms and broken tools.
-        judge: Looks after the tasks.
         rest: Whether the machine rests, and need not be computed.
         tick: Servo periods since the beginning.
-        samples: The last slice.
         handed_in: The part as it was when the scene was judged; None: it has not been.
     """
 

@@ -80,17 +80,11 @@ class RoomApp:
     """What the pages of a room are served.
 
     Attributes:
-        connections: Open pages, and which has the panel.
-        bytes_sent: Through all streams so far.
         messages: Heard from all pages so far.
     """
 
     def __init__(self, driver: Driver, attempts: Attempts, attempt: Attempt) -> None:
-        """Prepare it.
-
-        Args:
-            attempt: The first one.
-        """
+        """Prepare it."""
         self._driver = driver
         self._attempts = attempts
         self.attempt = attempt

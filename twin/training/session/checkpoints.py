@@ -143,11 +143,7 @@ class Checkpoints:
         self._apart = SLICE * round(APART_S / room.slice_s)
 
     def note(self, room: Room, done: int) -> None:
-        """Take a copy where the last one is old enough.
-
-        Args:
-            done: How many commands have been given to it.
-        """
+        """Take a copy where the last one is old enough."""
         if room.tick - self._kept[-1].tick >= self._apart:
             self._kept.append(checkpoint(room, done, self._kept[-1].maps))
             self._thin_out()
@@ -174,7 +170,6 @@ def checkpoint(room: Room, done: int, before: tuple[KeptMap, ...]) -> Checkpoint
     """A copy of a room.
 
     Args:
-        done: How many commands have been given to it.
         before: What the copy before kept of the stock.
     """
     memo: dict[int, Any] = {}

@@ -39,8 +39,6 @@ class Replay:
 
         Args:
             room: The machine as it was at the beginning, or later.
-            entries: What was done to the machine since then.
-            tick: How far to go.
         """
         self.room = room
         self._entries = [entry for entry in entries if entry.tick <= tick]
@@ -70,8 +68,6 @@ def relive(room: Room, entries: Sequence[Entry], tick: int) -> Room:
 
     Args:
         room: The machine as it was at the beginning, or later.
-        entries: What was done to the machine since then.
-        tick: How far to go.
     """
     replay = Replay(room, entries, tick)
     while not replay.over:

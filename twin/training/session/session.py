@@ -40,11 +40,8 @@ class Session:
     """A scene that is being played.
 
     Attributes:
-        log: Everything that was asked for, in order.
-        frozen: Time stands still.
         replay: What is being shown again; None: the machine itself is seen.
         refusal: Why the last command was refused, empty when it was not.
-        refusals: How many commands have been refused.
         signature: Who is at the panel, as far as somebody has said.
     """
 

@@ -125,7 +125,6 @@ class SinumerikMemory:
         rounding: RNDM [mm].
         ends_rounding: RNDM=0: it ends behind the next move.
         modal_feed: F that an FB of the block has put aside, or None.
-        subprograms: By name.
         main: Lines of the main program.
         calls: What belongs to each call, the main program's first.
         structure: Which keywords belong together; None before it was asked for.

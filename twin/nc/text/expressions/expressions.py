@@ -101,7 +101,6 @@ class ExpressionSyntax:
     """How a dialect writes expressions.
 
     Attributes:
-        operators: By symbol or word.
         functions: By name; a function's arguments are in ``brackets``.
         variable: Regular expression of a variable's name.
         indexed: Names that may be followed by an index in brackets, such as ``P``.
