@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from twin.check.outcome import CheckOutcome, died
-from twin.check.task import CheckSettings, Variant
+from twin.check.task import CheckSettings, JobVariant
 from twin.processor import available_cores
 from twin.ray_cluster import connected
 
@@ -30,10 +30,10 @@ LONG_S = 6.0
 
 def check_program(path: Path, settings: CheckSettings) -> CheckOutcome:
     """Run a job or a program and say how it came out; what is wrong with it becomes a finding."""
-    return check_variant(Variant(path, ()), settings)
+    return check_variant(JobVariant(path, ()), settings)
 
 
-def check_variant(variant: Variant, settings: CheckSettings) -> CheckOutcome:
+def check_variant(variant: JobVariant, settings: CheckSettings) -> CheckOutcome:
     """Run a job with some values of it or of its machine changed, and say how it came out.
 
     What runs programs is loaded by the process that runs one, and not by the one that hands them out.

@@ -94,9 +94,9 @@ def calibrate(
     ] = None,
 ) -> None:
     """Fit a machine's drives to logs of a real one, and say what the logs do not tell."""
-    from twin.commands.calibrate import Request, calibrate_and_print
+    from twin.commands.calibrate import CalibrationRequest, calibrate_and_print
 
-    request = Request(
+    request = CalibrationRequest(
         logs=logs or [], base=base, columns=columns, hold_out=hold_out or [], axes=axes, out=out,
         json_file=json_file_of(form, json_file), report=report, require=require, programs=programs,
         ball_bars=ball_bars or [],

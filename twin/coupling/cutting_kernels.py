@@ -32,7 +32,7 @@ from twin.nc.canonical import FloatArray
 from twin.units import MM
 
 
-class Place(NamedTuple):
+class PartTransform(NamedTuple):
     """From machine coordinates to the part's frame (``twin.toolpath.part_frame.PartFrame``).
 
     Attributes:
@@ -53,7 +53,7 @@ class Cut(NamedTuple):
 
     material: Material
     tool: TurningTool
-    place: Place
+    place: PartTransform
 
 
 class Swept(NamedTuple):
@@ -184,7 +184,7 @@ def _look(period: float, cut: Cut, memory: Memory, swept: Swept) -> None:
 
 
 @kernel
-def _load_axes(place: Place, memory: Memory, cosine: float, sine: float) -> None:
+def _load_axes(place: PartTransform, memory: Memory, cosine: float, sine: float) -> None:
     """What the force on the tool pushes the axes with."""
     force, load, tip = memory.force, memory.load, memory.rigid
     load[0] = cosine * force[0] + sine * force[1]

@@ -46,7 +46,7 @@ class ToolBreak:
         return Alarm("tool-broken", self.line, self.time_s, "", message)
 
 
-class Turning(NamedTuple):
+class SpindleTurning(NamedTuple):
     """What is in the spindle during some setpoints, and how fast it shall turn.
 
     Attributes:
@@ -68,7 +68,7 @@ class Operation(Protocol):
         """How fast the spindle turns when the machine begins to move [1/min], signed."""
         ...
 
-    def turnings(self, setpoints: Setpoints) -> Iterator[Turning]:
+    def turnings(self, setpoints: Setpoints) -> Iterator[SpindleTurning]:
         """Split setpoints where the tool changes."""
         ...
 
@@ -113,7 +113,9 @@ class CuttingProcess(abc.ABC):
         self._overloaded_s = 0.0
 
     @abc.abstractmethod
-    def _cut_along(self, physics: Physics, turning: Turning, tool: TurningTool, rows: Rows) -> None:
+    def _cut_along(
+        self, physics: Physics, turning: SpindleTurning, tool: TurningTool, rows: Rows
+    ) -> None:
         """Step the machine from setpoint to setpoint while one tool cuts."""
 
     def begin(self, position: FloatArray) -> None:

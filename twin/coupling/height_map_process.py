@@ -1,7 +1,7 @@
 """Teeth in a height map: the cut of a machine that turns the part about Z at most."""
 
-from twin.coupling.cutting_kernels import Cut, Place, follow_cutting, nothing_swept
-from twin.coupling.cutting_process import CuttingProcess, Operation, Rows, Turning
+from twin.coupling.cutting_kernels import Cut, PartTransform, follow_cutting, nothing_swept
+from twin.coupling.cutting_process import CuttingProcess, Operation, Rows, SpindleTurning
 from twin.coupling.turning_tool import TurningTool
 from twin.cutting.forces.materials import Kienzle
 from twin.cutting.heights.height_map import HeightMap, raw_walls
@@ -39,14 +39,16 @@ class HeightMapProcess(CuttingProcess):
         self.walls = raw_walls(material)
         self._swept = nothing_swept()
         frame, rotary = part_frame, -1 if part_frame.rotary is None else part_frame.rotary
-        self._place = Place(rotary, frame.center, frame.turn_zero, 0.0)
+        self._place = PartTransform(rotary, frame.center, frame.turn_zero, 0.0)
 
     def begin(self, position: FloatArray) -> None:
         """Begin with the machine at rest; see ``Process``."""
         super().begin(position)
         self._swept = nothing_swept()
 
-    def _cut_along(self, physics: Physics, turning: Turning, tool: TurningTool, rows: Rows) -> None:
+    def _cut_along(
+        self, physics: Physics, turning: SpindleTurning, tool: TurningTool, rows: Rows
+    ) -> None:
         material = Material(self.material.heights, self.material.grid, self.walls)
         follow_cutting(
             physics,

@@ -38,7 +38,7 @@ _SINGULAR = 1e-6
 """Volume that the displacements by X, Y and Z span below which they leave the tip a direction short."""
 
 
-class Chain(NamedTuple):
+class JointChain(NamedTuple):
     """The joints between tool and part, and what they count from (``twin.toolpath.part_frame.PartFrame``).
 
     Attributes:
@@ -66,7 +66,7 @@ class LeaningCut(NamedTuple):
     number: int
     longest: float
     tool: TurningTool
-    chain: Chain
+    chain: JointChain
 
 
 class Pose(NamedTuple):
@@ -172,7 +172,7 @@ def _go_to(
 
 
 @array_kernel
-def _carry(chain: Chain, tip: FloatArray, pose: Pose) -> None:
+def _carry(chain: JointChain, tip: FloatArray, pose: Pose) -> None:
     """Carry a tool from joint to joint: tip, frame, and the displacement of the tip by each axis.
 
     Args:

@@ -52,7 +52,7 @@ class LoadBar(NamedTuple):
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
-class Reading:
+class HudValues:
     """What the display shows in one frame."""
 
     line: int
@@ -121,7 +121,7 @@ class Display:
     def _px(self, value: float) -> int:
         return max(1, round(value * self._scale))
 
-    def draw(self, frame: Pixels, reading: Reading) -> Pixels:
+    def draw(self, frame: Pixels, reading: HudValues) -> Pixels:
         """A copy of a frame with the display on it.
 
         Args:
@@ -189,7 +189,7 @@ class Display:
             draw.text(place, text, font=self._mono, fill=ink, anchor="lm")
         return panel
 
-    def _axes_panel(self, reading: Reading) -> Image.Image:
+    def _axes_panel(self, reading: HudValues) -> Image.Image:
         panel = self._axes_form.copy()
         draw = ImageDraw.Draw(panel)
         right = panel.width - self._px(14)

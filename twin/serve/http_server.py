@@ -18,7 +18,7 @@ from starlette.responses import Response, StreamingResponse
 from starlette.routing import Route
 
 from twin.serve.agent import LEAST_INTERVAL_MS, REQUESTS, Agent, Query, RequestError
-from twin.serve.forms import Form, accepted_form
+from twin.serve.forms import DocumentFormat, accepted_form
 from twin.web.origin_check import LOCAL_NAMES
 
 _CODES = {404: "INVALID_URI", 405: "UNSUPPORTED"}
@@ -119,7 +119,7 @@ def _name(host: str) -> str:
         return ""
 
 
-def _form(request: Request) -> Form:
+def _form(request: Request) -> DocumentFormat:
     return accepted_form(request.headers.get("accept", ""))
 
 
@@ -131,7 +131,7 @@ def _response(request: Request, document: ET.Element, status: int = 200) -> Resp
 class _Writer(NamedTuple):
     """How the documents of a stream are written."""
 
-    form: Form
+    form: DocumentFormat
     boundary: str
 
     def part(self, document: ET.Element) -> bytes:

@@ -120,9 +120,9 @@ def _say(text: str) -> None:
 def _shown(run: Run, motion: "LockstepMotion") -> Iterator[None]:
     """Show a machine that a control drives on the page of ``twin view``."""
     from twin.view.app import open_view
-    from twin.view.live_run import LiveRun, Moment
+    from twin.view.live_run import LiveRun, MachineMoment
 
-    live = LiveRun(run.preparation, lambda: Moment(*motion.moment))
+    live = LiveRun(run.preparation, lambda: MachineMoment(*motion.moment))
     with open_view(live, now=live.now) as address:
         _say(f"open {address} in a browser")
         yield

@@ -4,7 +4,7 @@ import dataclasses
 
 import numpy as np
 
-from twin.compare.circular.circle import CirclePath, circle_figures, hysteresis_um
+from twin.compare.circular.circle import ActualCircle, circle_figures, hysteresis_um
 from twin.compare.figures import BidirectionalFigures
 from twin.nc.canonical import Moves
 
@@ -25,7 +25,7 @@ class DirectedCircle:
     line: int
     circle: tuple[float, ...]
     counter_clockwise: bool
-    path: CirclePath
+    path: ActualCircle
 
 
 def directed_circle(moves: Moves, row: int) -> DirectedCircle:
@@ -38,7 +38,7 @@ def directed_circle(moves: Moves, row: int) -> DirectedCircle:
         line=int(moves.line[row]),
         circle=tuple(round(float(value), 3) + 0.0 for value in values),
         counter_clockwise=bool(sign * moves.sweep[row] > 0.0),
-        path=CirclePath(radius),
+        path=ActualCircle(radius),
     )
 
 

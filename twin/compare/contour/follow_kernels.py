@@ -39,7 +39,7 @@ class Commanded(NamedTuple):
     fraction: FloatArray
 
 
-class Followed(NamedTuple):
+class NearestPlaces(NamedTuple):
     """The nearest places on the path of n points.
 
     Attributes:

@@ -150,7 +150,7 @@ LONGEST_VIEW = 3.0 * SHORTEST_SPAN * 2.0 ** (SPANS - 1)
 """How far along the path the velocity at a knee can depend on other knees [mm or deg]."""
 
 
-class Chain(NamedTuple):
+class BlockRun(NamedTuple):
     """n consecutive blocks, and where they lie along the path.
 
     Attributes:
@@ -167,7 +167,7 @@ class Chain(NamedTuple):
 
 @array_kernel
 def slow_bending_chords(
-    velocity: FloatArray, chain: Chain, velocity_step: FloatArray, jerk: FloatArray
+    velocity: FloatArray, chain: BlockRun, velocity_step: FloatArray, jerk: FloatArray
 ) -> None:
     """Lower the velocities of knees where the curve that they are chords of bends too quickly, in place.
 
@@ -200,7 +200,7 @@ def slow_bending_chords(
 
 @kernel
 def _slow_run(
-    velocity: FloatArray, alone: FloatArray, chain: Chain, run: tuple[int, int], span: float,
+    velocity: FloatArray, alone: FloatArray, chain: BlockRun, run: tuple[int, int], span: float,
     velocity_step: FloatArray, jerk: FloatArray, slowest: IntArray,
 ) -> None:  # fmt: skip
     """Lower the velocities of knees within a run by one span.

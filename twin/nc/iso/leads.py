@@ -66,7 +66,7 @@ class Lead:
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Touch:
+class ContourEnd:
     """Where the tool's centre begins or ends a contour, in the plane.
 
     Attributes:
@@ -84,18 +84,18 @@ class Touch:
         return (x + along * u + aside * m, y + along * v + aside * n)
 
 
-def touch_of(control: Control, point: Point, ahead: Point, lead: Lead) -> Touch:
+def touch_of(control: Control, point: Point, ahead: Point, lead: Lead) -> ContourEnd:
     """Where the centre touches a contour that goes through a point in a direction."""
     size = math.hypot(*ahead)
     along = (ahead[0] / size, ahead[1] / size)
     sense = lead.side or 1.0
     aside = (-along[1] * sense, along[0] * sense)
     offset = lead.offset / math.hypot(*applied(control.frame.matrix, (1.0, 0.0, 0.0)))
-    return Touch((point[0] + offset * aside[0], point[1] + offset * aside[1]), along, aside)
+    return ContourEnd((point[0] + offset * aside[0], point[1] + offset * aside[1]), along, aside)
 
 
 def auxiliary_point(
-    control: Control, touch: Touch, lead: Lead, other: Point, *, arrives: bool
+    control: Control, touch: ContourEnd, lead: Lead, other: Point, *, arrives: bool
 ) -> tuple[Point | None, Point]:
     """Centre of a lead's arc, if it has one, and its auxiliary point.
 

@@ -27,7 +27,7 @@ from twin.run.judging.cut_notices import (
     tooth_feed_notices,
     unjudged_limit_notices,
 )
-from twin.run.judging.scope import Scope, nothing_judged, scope_of
+from twin.run.judging.scope import VerdictScope, nothing_judged, scope_of
 from twin.run.machining import Machining
 from twin.run.messages import Notice, shown
 from twin.run.observers import (
@@ -75,7 +75,7 @@ class Outcome:
     alarms: tuple[Alarm, ...]
     near_miss: NearMiss | None
     warnings: tuple[Diagnostic, ...]
-    scope: Scope
+    scope: VerdictScope
     trace: Trace
     tools: tuple[ToolUse, ...] = ()
     part: bytes = b""

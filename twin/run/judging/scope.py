@@ -34,7 +34,7 @@ class Unwatched:
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
-class Scope:
+class VerdictScope:
     """What a verdict looked at.
 
     Attributes:
@@ -104,7 +104,7 @@ def scope_of(
     unjudged: Sequence[Reason],
     alarms: Sequence[Alarm],
     inspection: Inspection | None,
-) -> Scope:
+) -> VerdictScope:
     """Put the scope of a run together.
 
     Args:
@@ -137,7 +137,7 @@ def scope_of(
     )
     unused = (tool.number for tool in file.tools if tool.number not in watch.tools_used)
     listed = "tools" in file.model_fields_set
-    return Scope(
+    return VerdictScope(
         watched=tuple(watched),
         not_watched=blind,
         stock=None if cut is None else cut.stock,

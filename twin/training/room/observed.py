@@ -20,7 +20,7 @@ from twin.training.scene.scene_file import Scene
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Notice:
+class RoomAlarm:
     """An alarm.
 
     Attributes:
@@ -96,10 +96,10 @@ class Observed(Protocol):
         ...
 
     @property
-    def alarm(self) -> Notice | None:
+    def alarm(self) -> RoomAlarm | None:
         """The alarm that has not been cleared."""
         ...
 
-    def raise_alarm(self, notice: Notice) -> None:
+    def raise_alarm(self, notice: RoomAlarm) -> None:
         """The control stops everything and gives the reason."""
         ...

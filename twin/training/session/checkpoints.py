@@ -17,7 +17,7 @@ from pydantic import BaseModel
 
 from twin.copies import copied
 from twin.cutting.heights.height_map import HeightMap
-from twin.cutting.heights.outline import Outline
+from twin.cutting.heights.outline import BlankOutline
 from twin.machine.description.config import Machine
 from twin.machine.model.head_shape import HeadShape
 from twin.machine.watching.relative_motion import RelativeMotion
@@ -46,7 +46,7 @@ _SHARED = (
     mujoco.MjModel,
     HeadShape,
     RelativeMotion,
-    Outline,
+    BlankOutline,
     Grammar,
     Lines,
     FoundInText,

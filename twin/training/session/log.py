@@ -12,7 +12,7 @@ Who = Literal["operator", "trainer"]
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Entry:
+class LogEntry:
     """A line of the log.
 
     Attributes:
@@ -34,7 +34,7 @@ class Replay:
         over: It has come to where the session had come to.
     """
 
-    def __init__(self, room: Room, entries: Sequence[Entry], tick: int) -> None:
+    def __init__(self, room: Room, entries: Sequence[LogEntry], tick: int) -> None:
         """Go back.
 
         Args:
@@ -63,7 +63,7 @@ class Replay:
         room.advance((goal - room.tick) // SLICE)
 
 
-def relive(room: Room, entries: Sequence[Entry], tick: int) -> Room:
+def relive(room: Room, entries: Sequence[LogEntry], tick: int) -> Room:
     """Live a session again.
 
     Args:

@@ -56,7 +56,7 @@ class Held:
     feed: float | None
 
 
-class Compensation:
+class ActiveCompensation:
     """Compensation in force.
 
     Attributes:
@@ -327,10 +327,10 @@ class Compensation:
         self._control.fail("compensation-gouge", message)
 
 
-def in_force(control: Control) -> Compensation | None:
+def in_force(control: Control) -> ActiveCompensation | None:
     """Compensation, where it is in force."""
     compensation = memory_of(control).compensation
-    assert compensation is None or isinstance(compensation, Compensation)
+    assert compensation is None or isinstance(compensation, ActiveCompensation)
     return compensation
 
 
@@ -379,7 +379,7 @@ def _begin(control: Control, side: float, radius: float) -> None:
         side, radius = -side, -radius
     memory = memory_of(control)
     memory.leading_out = False
-    compensation = Compensation(control, side, radius)
+    compensation = ActiveCompensation(control, side, radius)
     memory.compensation = compensation
     control.path.defer = compensation.take_event
 

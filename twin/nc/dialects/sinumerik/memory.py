@@ -9,7 +9,7 @@ from twin.nc.control.control import Control
 from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.matrices import IDENTITY, Matrix
 from twin.nc.geometry.planes import Vector
-from twin.nc.iso.machine_coordinates import PartFrame
+from twin.nc.iso.machine_coordinates import SuspendedFrame
 from twin.nc.text.blocks import Statement
 from twin.nc.text.expressions.arithmetic import nearest_whole_away
 
@@ -143,7 +143,7 @@ class SinumerikMemory:
     offset: str = ""
     offsets: dict[str, dict[str, float]] = dataclasses.field(default_factory=dict)
     machine_pending: bool = False
-    part_frame: PartFrame | None = None
+    part_frame: SuspendedFrame | None = None
     carried: list[float] | None = None
     pole: Point = (0.0, 0.0)
     polar_radius: float = math.nan

@@ -37,7 +37,7 @@ class CornerKind(enum.IntEnum):
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Corner:
+class RectangleCorner:
     """The corners of a rectangle.
 
     Attributes:
@@ -97,7 +97,7 @@ class Rectangle:
     width: float
     angle: float
     clockwise: bool
-    corner: Corner
+    corner: RectangleCorner
 
     @property
     def room(self) -> float:

@@ -13,7 +13,7 @@ import re
 from twin.nc.control.control import Control
 from twin.nc.dialects.heidenhain.cycles.plane_directions import MATRICES, PlaneWords, spatial
 from twin.nc.dialects.heidenhain.cycles.transformations import (
-    Step,
+    DefinitionStep,
     apply_transformations,
     axis_values,
 )
@@ -69,7 +69,7 @@ def plane(control: Control, statement: Statement) -> None:
     _turn(control, statement, words)
 
 
-def define_plane(control: Control, step: Step) -> None:
+def define_plane(control: Control, step: DefinitionStep) -> None:
     """19: the working plane by spatial angles; the program turns the rotary axes to Q120 to Q122 itself."""
     if step.step == 0:
         return

@@ -11,7 +11,14 @@ from twin.nc.geometry.arcs import Point
 from twin.nc.iso.cycle_moves import along, at_feed, go, go_to_height
 from twin.nc.iso.milling.clearing import Clearing, clear_pocket, levels_between
 from twin.nc.iso.milling.facing import MOST_STRIPS, Face, mill_face
-from twin.nc.iso.milling.outlines import Circle, Corner, CornerKind, CurvedSlot, Outline, Rectangle
+from twin.nc.iso.milling.outlines import (
+    Circle,
+    CornerKind,
+    CurvedSlot,
+    Outline,
+    Rectangle,
+    RectangleCorner,
+)
 from twin.nc.iso.milling.threads import MOST_TURNS, Thread, mill_thread
 from twin.nc.iso.tool_compensation import radius_in_spindle
 
@@ -81,7 +88,7 @@ def _rectangle(call: CycleCall) -> None:
         call.refuse("unsupported-word", "is measured from its middle: LENG and WID above 0")
     if corner > min(length, width):
         call.refuse("cycle-size", f"has corners of {corner:g} that do not fit into it")
-    shape = Corner(CornerKind.ROUNDED, max(corner, radius), radius)
+    shape = RectangleCorner(CornerKind.ROUNDED, max(corner, radius), radius)
     sides, angle = (length - radius, width - radius), call.get("STA")
     _clear(call, Rectangle(call.point("PA", "PO"), *sides, angle, _clockwise(call), shape))
 
@@ -105,7 +112,10 @@ def _slots(call: CycleCall) -> None:
     call.need("LENG", "WID")
     radius, center = radius_in_spindle(call.control), call.point("CPA", "CPO")
     length, width = call.length("LENG") / 2.0, call.length("WID") / 2.0
-    shape, sides = Corner(CornerKind.ROUNDED, width, radius), (length - radius, width - radius)
+    shape, sides = (
+        RectangleCorner(CornerKind.ROUNDED, width, radius),
+        (length - radius, width - radius),
+    )
     middles = ((along(center, a, call.length("RAD") + length), a) for a in _angles(call))
     _clear(call, *(Rectangle(at, *sides, a, _clockwise(call), shape) for at, a in middles))
 
