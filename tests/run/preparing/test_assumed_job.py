@@ -232,6 +232,14 @@ def test_a_control_that_alone_reads_a_program_and_crawls_was_not_meant(tmp_path:
     assert "read as linuxcnc, which reads it farthest" in str(raised.value)
 
 
+def test_what_the_machine_acts_upon_is_not_said_to_do_nothing(tmp_path: Path) -> None:
+    path = tmp_path / "part.nc"
+    path.write_text("G21 G90 G54\nM6 T1\nG0 Z5\nM3 S5000\nG1 X10 Z-1 F100\nM88\nM30\n")
+    notes = prepare(path, assuming=True, dialect="grbl").reading.notes
+    assert "M6 is the sender's or the builder's tool change: grbl has no such code" in notes
+    assert "M88 does nothing: grbl has no such code" in notes
+
+
 def test_codes_of_the_builder_and_a_single_work_offset_are_assumed_and_kept(tmp_path: Path) -> None:
     text = CONTOUR.replace("N35 G54", "N35 G57 M155").replace("N110", "N108 M256\nN110")
     path = tmp_path / "part.nc"

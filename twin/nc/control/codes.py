@@ -44,6 +44,7 @@ class GCode:
         exclusive: No other word may be in its block.
         weak: Another code of its group in the block takes its place.
         refused: Why the twin refuses a code that the control knows; empty: it does not.
+        advice: What to write in place of one that is refused.
     """
 
     meaning: str
@@ -57,6 +58,7 @@ class GCode:
     exclusive: bool = False
     weak: bool = False
     refused: str = ""
+    advice: str = ""
     basis: Basis = "decision"
 
     @property

@@ -177,7 +177,10 @@ class Executor:
             if code.non_modal:
                 restore.append(control.modal.values_of(code.sets))
             if code.exclusive and len(control.block.words) > 1:
-                control.fail("alone", f"{word.text} must stand alone in its block", word)
+                message = f"{word.text} must stand alone in its block"
+                control.fail(
+                    "alone", message, word, "write the other words in a block of their own"
+                )
             self.put_into_force(number_of(word), code)
         return restore
 

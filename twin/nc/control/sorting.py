@@ -114,7 +114,9 @@ class WordSorter:
             hint = codes.replacements.get(number) or self._codes_near(number)
             self._control.fail("unknown-g", message, word, hint=hint)
         if code.refused:
-            self._control.fail("unsupported-g", f"{word.text} {code.refusal}", word)
+            self._control.fail(
+                "unsupported-g", f"{word.text} {code.refusal}", word, code.advice or None
+            )
         return code
 
     def _m_code(self, word: Word) -> MCode:
@@ -122,7 +124,8 @@ class WordSorter:
         code = codes.function(number, self._control.settings.m_functions)
         if code is None:
             if number < 0:
-                self._control.fail("unknown-m", f"{word.text}: an M code is a whole number", word)
+                message = f"{word.text}: an M code is a whole number"
+                self._control.fail("unknown-m", message, word, "M0 stops, M3 starts the spindle")
             message = f"{word.text} is unknown to {self._dialect.name}"
             own = f'one of the machine\'s builder: [m_functions] M{number} = "what it does" in the job'
             usual = f"{own}; all of them: twin dialects {self._dialect.name}"

@@ -77,11 +77,15 @@ def excuse_ellipsis(line: str, _previous: str) -> str | None:
     return "ellipsis" if is_ellipsis(line) else None
 
 
+POSITIVE_FEED = "a feed is above 0: F100"
+"""What to write in place of a feed that is none."""
+
+
 def set_feed(control: Control, word: Word) -> None:
     """F: the feed; must be positive."""
     feed = control.number(word)
     if not feed > 0.0:
-        control.fail("feed-range", f"the feed {word.text} is not positive", word)
+        control.fail("feed-range", f"the feed {word.text} is not positive", word, POSITIVE_FEED)
     control.motion.feed = feed
 
 

@@ -63,9 +63,11 @@ def refuse_compensated_plane(control: Control) -> None:
         control.fail("compensation-plane", message, hint="end it by G40 first")
 
 
-def refused(meaning: str, reason: str, *numbers: float, group: str = "") -> Mapping[float, GCode]:
+def refused(
+    meaning: str, reason: str, *numbers: float, group: str = "", advice: str = ""
+) -> Mapping[float, GCode]:
     """Codes that the control knows and the twin does not follow."""
-    code = GCode(meaning=meaning, group=group, refused=reason, basis="manual")
+    code = GCode(meaning=meaning, group=group, refused=reason, advice=advice, basis="manual")
     return dict.fromkeys(numbers, code)
 
 

@@ -6,6 +6,7 @@ machine zero until the next work offset.
 """
 
 from collections.abc import Iterable, Mapping
+from typing import NoReturn
 
 from twin.nc.control.codes import GCode
 from twin.nc.control.control import Control
@@ -62,11 +63,17 @@ def programmed_shift(control: Control, name: str) -> None:
     control.motion.reframed()
 
 
+def refuse_empty_preset(control: Control) -> NoReturn:
+    """G92 names no axis."""
+    message = "G92 needs the coordinates that this place shall have"
+    control.fail("preset", message, hint="G92 X0 Y0 makes it X0 Y0")
+
+
 def preset(control: Control) -> None:
     """G92: the place where the machine is gets the coordinates of the block."""
     words = control.take_axis_words()
     if not words:
-        control.fail("preset", "G92 needs the coordinates that this place shall have")
+        refuse_empty_preset(control)
     set_position(control, words, "preset")
 
 

@@ -2,7 +2,7 @@
 
 import dataclasses
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 
@@ -17,7 +17,7 @@ from twin.machine.load import load_machine
 from twin.nc.control.settings import ControlSettings, MachineFunction, ToolData
 from twin.nc.dialects import Dialect, dialect_named
 from twin.nc.dialects.foreign import require_text
-from twin.nc.functions import SpindleState
+from twin.nc.functions import SpindleState, acts
 from twin.nc.interpreter import Interpretation
 from twin.nc.text.diagnostics.diagnostics import ProgramError
 from twin.nc.text.source import Source, read_source, source_from_text
@@ -184,19 +184,29 @@ def _with_functions(made: Preparation, reading: AssumedReading) -> Preparation:
     unknown = unknown_functions(made.source, made.dialect, frozenset(made.settings.m_functions))
     if not unknown:
         return dataclasses.replace(made, reading=reading)
-    names = [f"M{number}" for number in unknown]
-    declared = dict.fromkeys(names, UNKNOWN_FUNCTION)
-    several = "do" if len(names) > 1 else "does"
-    note = f"{', '.join(names)} {several} nothing: {made.dialect.name} has no such code"
-    reading = AssumedReading({**reading.keys, "m_functions": declared}, (*reading.notes, note))
+    meanings = {number: acts(number) or UNKNOWN_FUNCTION for number in unknown}
+    declared = {f"M{number}": meaning for number, meaning in meanings.items()}
+    notes = (*reading.notes, *_notes_of_unknown(declared, made.dialect.name))
+    reading = AssumedReading({**reading.keys, "m_functions": declared}, notes)
     given = made.job.file.model_dump(exclude_unset=True).get("m_functions", {})
     file = made.job.file.model_dump(exclude_unset=True) | {"m_functions": {**declared, **given}}
     job = made.job.with_file(JobFile.model_validate(file))
-    functions_of_settings = dict.fromkeys(unknown, MachineFunction(UNKNOWN_FUNCTION))
+    functions_of_settings = {number: MachineFunction(each) for number, each in meanings.items()}
     settings = dataclasses.replace(
         made.settings, m_functions={**made.settings.m_functions, **functions_of_settings}
     )
     return dataclasses.replace(made, job=job, settings=settings, reading=reading)
+
+
+def _notes_of_unknown(meanings: Mapping[str, str], dialect: str) -> Iterator[str]:
+    """What M codes that a dialect lacks are taken for: the machine acts upon some of them all the same."""
+    idle = [name for name, meaning in meanings.items() if meaning == UNKNOWN_FUNCTION]
+    if idle:
+        several = "do" if len(idle) > 1 else "does"
+        yield f"{', '.join(idle)} {several} nothing: {dialect} has no such code"
+    for name, meaning in meanings.items():
+        if name not in idle:
+            yield f"{name} is the sender's or the builder's {meaning}: {dialect} has no such code"
 
 
 def prepare_job(

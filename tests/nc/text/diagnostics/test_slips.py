@@ -54,6 +54,11 @@ def test_a_slip_earns_its_diagnostic(slip: Slip) -> None:
     assert diagnostic_of(slip) == slip.diagnostic
 
 
+@pytest.mark.parametrize("slip", SLIPS, ids=lambda slip: f"{slip.dialect}/{slip.program[:30]}")
+def test_a_slip_is_told_what_would_have_worked(slip: Slip) -> None:
+    assert "\nhint: " in slip.diagnostic
+
+
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
 def test_every_control_has_its_twenty(path: Path) -> None:
     assert len({slip.program for slip in slips_of(path)}) >= 20

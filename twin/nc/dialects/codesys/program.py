@@ -211,5 +211,5 @@ def add_to_variable(control: Control) -> None:
 def _value_word(control: Control) -> Word:
     word = control.take("D")
     if word is None:
-        control.fail("variable-value", "the code needs its value D")
+        control.fail("variable-value", "the code needs its value D", hint="write D5")
     return word

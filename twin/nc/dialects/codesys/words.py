@@ -38,7 +38,7 @@ def set_rapid_feed(control: Control, word: Word) -> None:
     """FF: the feed of G0; 0 gives it back to F."""
     value = control.number(word)
     if value < 0.0:
-        control.fail("feed-range", f"the feed {word.text} is negative", word)
+        control.fail("feed-range", f"the feed {word.text} is negative", word, "write FF100")
     control.motion.rapid_feed = value
 
 

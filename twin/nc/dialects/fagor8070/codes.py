@@ -213,7 +213,12 @@ CODES: dict[float, GCode] = {
     152: modal("programming in radii", "diameters"),
     **refused("axes without offset", _UNKNOWN, 157),
     158: replacement("incremental offset", frames.incremental_offset),
-    **refused("multiple machining", "write the positions one by one", *range(160, 166)),
+    **refused(
+        "multiple machining",
+        "the twin has no patterns",
+        *range(160, 166),
+        advice="write the positions one by one",
+    ),
     **refused("Hirth axes", _UNKNOWN, *range(170, 172)),
     **refused("set the machine coordinate", _UNKNOWN, 174),
     **refused("subroutines of the machine's builder", "they are not known", *range(180, 190)),

@@ -43,7 +43,7 @@ def passed_over(meaning: str, letters: str, *, modes: tuple[float, ...] = ()) ->
         if modes and not left_out and (mode is None or control.number(mode) not in modes):
             known = ", ".join(f"P{each:g}" for each in modes)
             message = f"{code.text} is followed with {known} alone"
-            control.fail("unsupported-g", message, mode or code)
+            control.fail("unsupported-g", message, mode or code, f"{code.text} P{modes[-1]:g}")
         for letter in letters:
             control.take(letter)
         message = f"{code.text} does not change the path here: {meaning}"

@@ -36,7 +36,8 @@ def circular_pocket(control: Control, *, clockwise: bool) -> None:
     first, last, step = control.take("I"), control.take("K"), control.take("Q")
     depth, count = control.take("Z"), control.take("L")
     if first is None:
-        control.fail("cycle-word", "a circular pocket needs I, the radius of its circle")
+        message = "a circular pocket needs I, the radius of its circle"
+        control.fail("cycle-word", message, hint="G12 I10. Z-5. D1 F100. mills one of radius 10")
     if control.path.compensation.in_force:
         message = (
             "a circular pocket takes the radius of D itself, and radius compensation is in force"

@@ -48,7 +48,7 @@ def _set_feed(control: Control, word: Word) -> None:
     """F: the feed; F0 is none."""
     feed = control.number(word)
     if feed < 0.0:
-        control.fail("feed-range", f"the feed {word.text} is negative", word)
+        control.fail("feed-range", f"the feed {word.text} is negative", word, base.POSITIVE_FEED)
     control.motion.feed = feed or None
 
 

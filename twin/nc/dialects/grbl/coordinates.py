@@ -9,7 +9,7 @@ from twin.nc.control.codes import Action
 from twin.nc.control.control import Control, integer_of
 from twin.nc.dialects.grbl.memory import SYSTEMS, memory_of
 from twin.nc.iso.base import require_feed_of_block
-from twin.nc.iso.offsets import machine_zero
+from twin.nc.iso.offsets import machine_zero, refuse_empty_preset
 from twin.nc.text.blocks import Statement, Word
 
 _Z = 2
@@ -86,7 +86,7 @@ def preset(control: Control) -> None:
     """G92: the place where the machine is gets the coordinates of the block."""
     memory, words = memory_of(control), control.take_axis_words()
     if not words:
-        control.fail("preset", "G92 needs the coordinates that this place shall have")
+        refuse_empty_preset(control)
     for index, word in words:
         memory.preset[index] += control.motion.programmed[index] - control.axis_value(index, word)
     reframe(control)

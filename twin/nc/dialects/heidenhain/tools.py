@@ -153,9 +153,9 @@ def blank(control: Control, statement: Statement) -> None:
     for index, name in enumerate("XYZ"):
         word = words.pop(name, None)
         if word is None:
-            control.fail(
-                "unreadable-statement", "BLK FORM 0.1 and 0.2 each need X, Y and Z", statement
-            )
+            message = "BLK FORM 0.1 and 0.2 each need X, Y and Z"
+            hint = "BLK FORM 0.1 Z X+0 Y+0 Z-20, and BLK FORM 0.2 X+100 Y+60 Z+0 below"
+            control.fail("unreadable-statement", message, statement, hint)
         base = memory.blank[index] if memory.blank is not None and word.incremental else 0.0
         corner.append(control.length(word) + base)
     if match[1] == "1":

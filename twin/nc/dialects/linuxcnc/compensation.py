@@ -319,12 +319,13 @@ class ActiveCompensation:
         return moved
 
     def _refuse(self, message: str, held: Held | None = None) -> NoReturn:
+        hint = f"the tool's radius is {self.radius:g} mm: a smaller one fits, or a longer move"
         if held is not None:
             self._control.report.line = held.block.line
             word = held.block.words[0] if held.block.words else None
             span = (0, 1) if word is None else (word.column, word.width)
-            self._control.report.fail("compensation-gouge", message, *span)
-        self._control.fail("compensation-gouge", message)
+            self._control.report.fail("compensation-gouge", message, *span, hint)
+        self._control.fail("compensation-gouge", message, hint=hint)
 
 
 def in_force(control: Control) -> ActiveCompensation | None:

@@ -111,7 +111,8 @@ def _corner(meaning: str, corner: Corner) -> GCode:
 
 
 _ROUND = "rounds corners as far as the machine file's tolerance, or ADIS="
-_SPINDLE = "the twin's spindle has no angle; CYCLE84 and CYCLE840 tap"
+_SPINDLE = "the twin's spindle has no angle"
+_TAPPING = "CYCLE84 and CYCLE840 tap"
 _UNITS: Action = words.keep_feed
 
 CODES: dict[float, GCode] = {
@@ -128,7 +129,7 @@ CODES: dict[float, GCode] = {
     **refused(
         "limits of the working area or of the spindle", "they are the machine file's", 25, 26
     ),
-    **refused("threading", _SPINDLE, 33, 34, 35),
+    **refused("threading", _SPINDLE, 33, 34, 35, advice=_TAPPING),
     40: modal("radius compensation off", "compensation", words.end_compensation),
     41: modal("compensation, tool left", "compensation", words.compensation(LEFT)),
     42: modal("compensation, tool right", "compensation", words.compensation(RIGHT)),
@@ -138,7 +139,7 @@ CODES: dict[float, GCode] = {
     59: replacement("fine shift of the frame along single axes", frames.translate_axes(fine=True)),
     60: _corner("exact stop", Corner.EXACT_STOP),
     62: modal("slower at inside corners: no change here", "corner override"),
-    **refused("tapping without an encoder", _SPINDLE, 63),
+    **refused("tapping without an encoder", _SPINDLE, 63, advice=_TAPPING),
     64: _corner(_ROUND, Corner.CONTINUOUS),
     70: modal("lengths in inches, feeds as before", "units", _UNITS, unit=25.4),
     71: modal("lengths in millimetres, feeds as before", "units", _UNITS, unit=1.0),
@@ -169,7 +170,7 @@ CODES: dict[float, GCode] = {
         "programs of the ISO mode are another language; --dialect fanuc reads them",
         291,
     ),
-    **refused("tapping", _SPINDLE, 331, 332),
+    **refused("tapping", _SPINDLE, 331, 332, advice=_TAPPING),
     450: modal("compensation rounds outside corners", "compensation corners", square_corners=False),
     451: modal(
         "compensation goes to the intersection", "compensation corners", square_corners=True

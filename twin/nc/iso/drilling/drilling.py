@@ -242,7 +242,8 @@ def _require_peck_words(control: Control, cycle: Cycle) -> None:
         message = f"{cycle.name} needs Q, the depth of each peck, or I, J and K: the first, less each time, the least"
         control.fail("cycle-word", message, hint="write one or the other, and G80 between both")
     if there and (values["reduction"] < 0.0 or values["least"] <= 0.0):
-        control.fail("cycle-depth", f"{cycle.name} needs pecks above 0")
+        message = f"{cycle.name} needs pecks above 0"
+        control.fail("cycle-depth", message, hint="depths of pecks have no sign: Q2")
 
 
 def hole_of(control: Control, cycle: Cycle, values: Mapping[str, float] | None = None) -> Hole:
@@ -304,4 +305,5 @@ def _refuse_pecks(control: Control, cycle: Cycle) -> NoReturn:
     elif "factor" in letters:
         above = f"{letters['peck']} and {letters['factor']} above 0"
         needed = f"{above}, {letters['lift']} not below 0, and {letters['every']} a count"
-    control.fail("cycle-depth", f"{cycle.name} needs {needed}")
+    hint = f"write {letters['peck']}2"
+    control.fail("cycle-depth", f"{cycle.name} needs {needed}", hint=hint)

@@ -56,8 +56,7 @@ class Unreadable:
         slip = None
         if error.code in ("expression", "unknown-function"):
             slip = self._slip_at(column) or self._slip_at(begin)
-        hint = (slip or error.hint) if error.code == "unknown-function" else (error.hint or slip)
-        self.fail(error.code, str(error), column, hint=hint)
+        self.fail(error.code, str(error), column, hint=slip or error.hint)
 
     def refuse_late_skip(self, address: re.Match[str]) -> None:
         """``N20 /X1``: the mark of block skip is behind the number."""

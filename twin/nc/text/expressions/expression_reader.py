@@ -108,6 +108,9 @@ def operator_pattern(symbol: str) -> str:
     return re.escape(symbol) + (r"(?![A-Z_])" if symbol[-1].isalpha() else "")
 
 
+A_VALUE = "write a number or a variable here"
+
+
 class _Reading:
     """One expression being read: the text and the place reached."""
 
@@ -190,7 +193,7 @@ class _Reading:
         match = self._reader.name.match(self._text, self.at)
         if match is None:
             foreign = self._text[self.at : self.at + 1] in ("(", "[", "{")
-            hint = f"brackets are {opening} {self._syntax.brackets[1]}" if foreign else None
+            hint = f"brackets are {opening} {self._syntax.brackets[1]}" if foreign else A_VALUE
             self._fail("expression", "a value is missing here", hint)
         name, after = self._syntax.full_name(match[0].upper()), match.end()
         if name in self._syntax.indexed and self._text[after : after + 1] == opening:
@@ -264,7 +267,8 @@ class _Reading:
     def _expect(self, character: str, hint: str | None = None) -> None:
         self._skip_blanks()
         if self._text[self.at : self.at + 1] != character:
-            hint = self._reader.comparison_at(self._text, self.at) or hint
+            closing = f"write {character} where its bracket ends"
+            hint = self._reader.comparison_at(self._text, self.at) or hint or closing
             self._fail("expression", f"'{character}' is missing here", hint)
         self.at += 1
 

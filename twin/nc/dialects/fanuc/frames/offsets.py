@@ -9,7 +9,7 @@ from twin.nc.control.codes import Action
 from twin.nc.control.control import Control
 from twin.nc.dialects.fanuc.memory import memory_of, refuse_transformed
 from twin.nc.dialects.fanuc.programs import whole
-from twin.nc.iso.offsets import machine_zero, select_offset, shift_by
+from twin.nc.iso.offsets import machine_zero, refuse_empty_preset, select_offset, shift_by
 from twin.nc.text.blocks import Word
 
 LARGEST_EXTENDED = 300
@@ -116,7 +116,7 @@ def preset(control: Control) -> None:
     refuse_transformed(control, "G92")
     words = control.take_axis_words()
     if not words:
-        control.fail("preset", "G92 needs the coordinates that this place shall have")
+        refuse_empty_preset(control)
     local = control.frame.shift("increment")
     programmed = list(control.motion.programmed)
     for index, word in words:

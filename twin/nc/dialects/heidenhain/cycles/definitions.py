@@ -134,7 +134,9 @@ def _define_with_parameters(
     needed = known if definition is None else definition.needed
     missing = [f"Q{each} ({MEANINGS[each]})" for each in needed if each not in given.values]
     if missing:
-        control.fail("cycle-word", f"{name} needs {', '.join(missing)}", statement)
+        first = missing[0].split()[0]
+        hint = f"{name.upper().replace('CYCLE', 'CYCL DEF')} ~, and {first}=2 in a line below"
+        control.fail("cycle-word", f"{name} needs {', '.join(missing)}", statement, hint)
     if definition is None:
         word = Word("Q339=", given.number(339), statement.text_column, at)
         frames.select_preset(control, given.number(339), word)

@@ -60,4 +60,4 @@ def _blend(
         Blend(kind, size, control.motion.part_plane, feed=rate)
     ):
         message = f"{statement.keyword} belongs between two moves, and none is before it"
-        control.fail("blend", message, statement)
+        control.fail("blend", message, statement, "write it between two lines L")

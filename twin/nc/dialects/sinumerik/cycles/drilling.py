@@ -46,7 +46,8 @@ def heights_of(call: CycleCall) -> Heights:
         call.refuse("unsupported-word", "drills along the axis across the plane alone (AXN)")
     call.need("RTP", "RFP")
     if "DP" not in call.values and "DPR" not in call.values:
-        call.refuse("cycle-word", "needs DP, the bottom, or DPR, the depth")
+        hint = f"{call.statement.keyword}(10, 0, 2, -20): RTP, RFP, SDIS, DP"
+        call.refuse("cycle-word", "needs DP, the bottom, or DPR, the depth", hint)
     back, above, bottom = call.length("RTP"), call.length("RFP"), call.length("DP")
     if "DP" not in call.values:
         bottom = above - abs(call.length("DPR"))

@@ -226,7 +226,10 @@ def call_modally(control: Control, statement: Statement) -> None:
             "call-values", "MCALL needs a name", statement, "write MCALL CYCLE81(...) or MCALL"
         )
     column = statement.text_column + match.start(2)
-    memory.modal_call = Statement(match[2].upper(), match[3], column, column + len(match[2]))
+    called = Statement(match[2].upper(), match[3], column, column + len(match[2]))
+    if called.keyword not in control.program_counter.lexer.keywords:
+        _subprogram(control, called, called.keyword)
+    memory.modal_call = called
 
 
 STATEMENTS: dict[str, StatementAction] = {

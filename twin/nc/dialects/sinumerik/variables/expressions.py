@@ -124,7 +124,9 @@ def bracketed(control: Control, text: str, column: int) -> tuple[str, int, int]:
     depth, quoted, end = 0, False, at
     while depth > 0 or end == at:
         if end == len(text):
-            control.report.fail("expression", "')' is missing here", column + len(text.rstrip()))
+            hint = "write ) where its bracket ends"
+            at = column + len(text.rstrip())
+            control.report.fail("expression", "')' is missing here", at, hint=hint)
         character = text[end]
         quoted ^= character == '"'
         depth += 0 if quoted else (character == "(") - (character == ")")
