@@ -1,4 +1,4 @@
-"""The cutting force as a load on the axes, reckoned ahead of the motion along the setpoints."""
+"""The cutting force as a load on the axes, computed ahead of the motion along the setpoints."""
 
 import numpy as np
 
@@ -41,7 +41,7 @@ class AxisLoad:
 
         Raises:
             ConfigError: The stock's material or any spindle speed is missing, so that no force can
-                be reckoned.
+                be computed.
         """
         if kienzle(stock) is None:
             raise ConfigError(

@@ -361,7 +361,7 @@ class Cutter:
         return latest
 
     def _note(self, stretches: Stretches, duration: FloatArray) -> FloatArray:
-        """Enter air and removal, and the force where it can be reckoned.
+        """Enter air and removal, and the force where it can be computed.
 
         Returns:
             Mean force on the tool along each stretch, shape (n, 3) [N]; 0 where it is not known.

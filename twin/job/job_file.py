@@ -45,7 +45,7 @@ class StockTable(Table):
     """Grid of the height map [mm]; none: a tenth of the smallest tool's radius, or a fortieth of the
     stock's shorter side where that is less, 0.1 at the finest."""
     material: str | None = None
-    """What it is made of, for the cutting force and its weight; none: no force is reckoned."""
+    """What it is made of, for the cutting force and its weight; none: no force is computed."""
     specific_force: Positive | None = None
     """Its own kc1.1: force on a chip 1 mm wide and 1 mm thick [N/mm²]; with ``exponent``."""
     exponent: Annotated[float, Field(ge=0, lt=1)] | None = None
@@ -155,7 +155,7 @@ class ToolTable(Table):
     helix: Annotated[float, Field(ge=0, le=60)] | None = None
     """Helix angle of the edges, for the cutting force [deg]; none: 30, of drills and chamfer cutters 0."""
     speed: Positive | None = None
-    """Spindle speed for the cutting force [1/min]; none: no force is reckoned."""
+    """Spindle speed for the cutting force [1/min]; none: no force is computed."""
     hand: Literal["right", "left"] = "right"
     """Which way it cuts, seen from the spindle: ``right`` clockwise (M3)."""
     center_cutting: bool | None = None

@@ -156,10 +156,10 @@ async def _parts(
     yield writer.part(document)
     interval = max(query.interval_ms or 0, LEAST_INTERVAL_MS) / MS_PER_S
     heartbeat = query.heartbeat_ms / MS_PER_S
-    quiet = 0.0
+    idle = 0.0
     while True:
         await asyncio.sleep(interval)
-        quiet += interval
+        idle += interval
         if query.request == "sample":
             query = dataclasses.replace(query, first=following)
         try:
@@ -168,6 +168,6 @@ async def _parts(
             yield writer.part(agent.error(error))
             yield writer.end()
             return
-        if any_observed or quiet >= heartbeat:
-            quiet = 0.0
+        if any_observed or idle >= heartbeat:
+            idle = 0.0
             yield writer.part(document)

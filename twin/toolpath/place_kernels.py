@@ -160,7 +160,7 @@ def speed_at(path, move, u):
 
 
 @kernel
-def walk(path, move, u, distance):
+def moved_along(path, move, u, distance):
     """The place a signed path length away, or the end of the path.
 
     On curves whose speed changes, the length is measured with the speed where a move is entered:

@@ -230,12 +230,12 @@ def _before(edge: _Edge, ring: _Ring, place: float) -> bool:
     radius, height, out, down = _point(edge, ring)
     cosine, sine = bin_direction(place)
     x, y, z = _feed_at(edge.leaning, height)
-    pace = math.sqrt(x * x + y * y + z * z)
+    speed = math.sqrt(x * x + y * y + z * z)
     chip = out * (x * cosine + y * sine) - down * z
     if chip <= _LEAST:
         return False
     cell, tip, frame = edge.lattice.cell, edge.leaning.tip, edge.leaning.frame
-    ahead = min(_CLEAR * cell / chip, _FARTHEST * cell / pace)
+    ahead = min(_CLEAR * cell / chip, _FARTHEST * cell / speed)
     off = (radius * cosine + ahead * x, radius * sine + ahead * y, height + ahead * z)
     x, y, z = _in_part(frame, off)
     normal = _in_part(frame, (-out * cosine, -out * sine, down))

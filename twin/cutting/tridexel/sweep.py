@@ -56,7 +56,7 @@ _LEVEL = 1e-9
 
 
 class Step(NamedTuple):
-    """A step of the tool: its poses, and which columns of the tally it writes."""
+    """A step of the tool: its poses, and which columns of the result it writes."""
 
     number: int
     tool: int

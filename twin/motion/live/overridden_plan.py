@@ -36,7 +36,7 @@ class Overrides:
     """Factor of the velocity of rapids."""
 
     held: bool = False
-    """Stop, wherever it be."""
+    """Stop at the current position."""
 
     single_block: bool = False
     """Stop at the end of the block."""

@@ -183,7 +183,7 @@ class Stage:
         return frame.position(self._position[None], length_difference(self._tool))[0]
 
     def _spray(self) -> Chips:
-        """Chips of what was removed of late; out of a slot of a height map they fly from its upper edge."""
+        """Chips of what was removed last; out of a slot of a height map they fly from its upper edge."""
         tip = tip_position(self.model, self.data, self._tool.length)
         if self._cutter is not None and not self._cutter.tilts:
             tip[2] += MM * max(0.0, self._cutter.map.top - self._tip[2])

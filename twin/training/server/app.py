@@ -80,7 +80,7 @@ class RoomApp:
     """What the pages of a room are served.
 
     Attributes:
-        messages: Heard from all pages so far.
+        messages: Received from all pages so far.
     """
 
     def __init__(self, driver: Driver, attempts: Attempts, attempt: Attempt) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 
 from twin.nc.canonical import FloatArray
 from twin.nc.functions import SpindleState
-from twin.training.program.block_walk import ModalState
+from twin.training.program.block_tracker import ModalState
 from twin.training.room.judging.judge import TaskState
 from twin.training.room.observed import RoomAlarm
 from twin.training.room.room import Room
@@ -112,7 +112,7 @@ class Snapshot:
     signature: str = ""
     """Who is at the panel."""
     speed: float = 1.0
-    """Machine time per time on the wall, as it has been of late."""
+    """Machine time per wall-clock time, of the last seconds."""
 
 
 def take_snapshot(room: Room) -> Snapshot:
