@@ -16,8 +16,8 @@ LEAST_ADDRESS_SPACE = 900_000_000
 """In less the libraries of a run cannot be loaded, and some die of it without a word, or never come
 to an end [bytes]."""
 
-COLLECT_AFTER = 100_000
-"""New objects between two searches for garbage: what libraries make while they load all stays."""
+COLLECT_AFTER = 500_000
+"""New objects between two searches for garbage: what libraries make while they load, some 300,000, all stays."""
 
 
 _BOXING_NAME, _BOXING_MODULE = "_numba_unpickle", "namedtuple_"

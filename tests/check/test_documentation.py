@@ -17,7 +17,7 @@ from twin.check.task import CheckSettings
 from twin.cli import app
 from twin.commands.runs.export import export_and_print
 from twin.files.toml import read_toml
-from twin.job.job_file import BaselineTable, ToleranceTable
+from twin.job.tolerance import BaselineTable, ToleranceTable
 from twin.version import __version__
 
 pytestmark = pytest.mark.documentation

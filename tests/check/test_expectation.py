@@ -10,6 +10,7 @@ from twin.check.runner import check_program
 from twin.check.task import CheckSettings
 from twin.errors import ExitCode
 from twin.files.shipped import resource_root
+from twin.job import load
 from twin.job.load import load_job
 
 ALARM = CheckOutcome(
@@ -72,6 +73,17 @@ def test_what_is_expected_has_a_baseline_like_any_other(tmp_path: Path, end: str
     changed = check_program(job, held)
     # Without moves there is nothing to hold but the expectation itself.
     assert changed.passed == (end == "no program")
+
+
+def test_a_job_is_read_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    (tmp_path / "part.nc").write_text("N10 G01 X5 F600\n", encoding="utf-8")
+    job = tmp_path / "part.toml"
+    job.write_text('program = "part.nc"\ndialect = "mefi"\n', encoding="utf-8")
+    read: list[Path] = []
+    load_toml = load.load_toml
+    monkeypatch.setattr(load, "load_toml", lambda path: read.append(path) or load_toml(path))
+    assert check_program(job, CheckSettings()).passed
+    assert read == [job]
 
 
 def test_every_shipped_job_that_ends_badly_says_so():

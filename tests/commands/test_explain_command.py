@@ -12,7 +12,7 @@ import twin.commands.explain
 from twin.commands.explain import codes, explain, overview
 from twin.cutting.forces.materials import materials
 from twin.errors import UsageError
-from twin.job.job_file import ToleranceTable
+from twin.job.tolerance import ToleranceTable
 from twin.machine.watching.alarms import AlarmCode
 from twin.nc.text.diagnostics.explain import findings
 

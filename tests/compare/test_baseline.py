@@ -15,7 +15,7 @@ from twin.compare.baseline import MOST_LISTED, compare_baseline, write_baseline
 from twin.compare.baseline_text import RunFigures
 from twin.compare.verdict import Reason
 from twin.errors import UsageError
-from twin.job.job_file import BaselineTable
+from twin.job.tolerance import BaselineTable
 from twin.nc.canonical import Axes, Chunk, Dwell, Function, Moves
 from twin.nc.text.diagnostics.diagnostics import Diagnostic, ProgramError
 

@@ -18,7 +18,7 @@ from twin.compare.figures import (
 from twin.compare.result import RunSummary, result, write_result
 from twin.compare.verdict import PRINTED_DIGITS, Check, judge
 from twin.errors import ExitCode
-from twin.job.job_file import BlocksToleranceTable, ToleranceTable
+from twin.job.tolerance import BlocksToleranceTable, ToleranceTable
 from twin.run.judging.outcome import LOAD_FIGURES
 
 

@@ -21,8 +21,8 @@ from twin.api.variations import sweep
 from twin.compare.track_comparison import compare_files as compare
 from twin.job.job_file import JobFile as Job
 from twin.job.job_file import StockTable as Stock
-from twin.job.job_file import ToleranceTable as Tolerance
 from twin.job.job_file import ToolTable as Tool
+from twin.job.tolerance import ToleranceTable as Tolerance
 
 __all__ = [
     "Job",

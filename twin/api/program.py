@@ -9,7 +9,7 @@ from pathlib import Path
 
 from twin.job.job_file import JobFile
 from twin.job.load import Job
-from twin.run.preparing.assumed_job import with_assumptions
+from twin.run.preparing.assumed_job import prepare_run
 from twin.run.preparing.preparation import Preparation, prepare, prepare_job
 
 Program = str | Path | JobFile
@@ -52,11 +52,12 @@ def prepared(
         return prepare_job(job, dialect=dialect, machine=machine), ()
     if isinstance(program, str) and is_text(program):
         program = _written(program, folder)
-    found = prepare(Path(program), dialect=dialect, machine=machine, assuming=True)
-    if not assuming or found.job.path is not None:
+    path = Path(program)
+    if not assuming:
+        found = prepare(path, dialect=dialect, machine=machine, assuming=True)
         return found, found.reading.notes
-    made, assumed = with_assumptions(found, machine=machine, strict=False)
-    return made, assumed.assumptions
+    made, assumed = prepare_run(path, dialect=dialect, machine=machine)
+    return made, made.reading.notes if assumed is None else assumed.assumptions
 
 
 def _job(file: JobFile, folder: Path) -> Job:

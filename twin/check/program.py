@@ -9,13 +9,13 @@ from pathlib import Path
 from typing import Any
 
 from twin.check.outcome import CheckOutcome, Finding
-from twin.check.task import CheckSettings, JobVariant
+from twin.check.task import CheckSettings, Variant
 from twin.compare.baseline import compare_baseline, write_baseline
 from twin.compare.baseline_text import RunFigures
 from twin.compare.verdict import Reason
 from twin.errors import ConfigError, EmptyProgramError, ExitCode, TwinError, UsageError
 from twin.files.toml_lines import place_of_key
-from twin.job.load import Job, load_job
+from twin.job.load import Job
 from twin.machine.watching.alarms import Alarm
 from twin.nc.canonical import Chunk
 from twin.nc.text.diagnostics.diagnostics import Diagnostic, ProgramError
@@ -25,14 +25,6 @@ from twin.run.messages import alarm_diagnostic, reason_text
 from twin.run.preparing.preparation import Preparation, prepare
 from twin.run.progress import no_progress
 from twin.run.run import Run
-
-
-def expectation(path: Path) -> str | None:
-    """The code that a job expects; None where it shall pass, or cannot be read."""
-    try:
-        return load_job(path).file.expect
-    except (TwinError, OSError):
-        return None
 
 
 def held_to_expectation(outcome: CheckOutcome, expected: str | None) -> CheckOutcome:
@@ -63,11 +55,11 @@ _FILES_OF_MACHINE = {"model"}
 """Keys of a machine file that name another file."""
 
 
-def run_variant(variant: JobVariant, settings: CheckSettings) -> CheckOutcome:
+def run_variant(variant: Variant, settings: CheckSettings) -> CheckOutcome:
     """Run a program and say how it came out; what is wrong with it becomes a finding."""
     began, path = time.perf_counter(), variant.path
     try:
-        outcome = held_to_expectation(_run(variant, settings), expectation(path))
+        outcome = _checked(variant, settings)
     except TwinError as error:
         outcome = _not_run(path, error)
     except OSError as error:
@@ -95,15 +87,19 @@ def file_of(folder: Path, job: Job, suffix: str) -> Path:
     return folder / parts.with_name(name + suffix)
 
 
-def _run(variant: JobVariant, settings: CheckSettings) -> CheckOutcome:
-    path = variant.path
+def _checked(variant: Variant, settings: CheckSettings) -> CheckOutcome:
     preparation = prepare(
-        path,
+        variant.path,
         dialect=settings.dialect,
         machine=settings.machine,
         strict=settings.strict,
         changes=variant.changes,
     )
+    outcome = _run(preparation, variant.path, settings)
+    return held_to_expectation(outcome, preparation.job.file.expect)
+
+
+def _run(preparation: Preparation, path: Path, settings: CheckSettings) -> CheckOutcome:
     try:
         run = Run(preparation)
         outcome = run.execute(None, no_progress)

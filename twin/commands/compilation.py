@@ -30,7 +30,7 @@ from twin.nc.canonical import FloatArray, Motion
 from twin.processor import available_cores
 from twin.run.dry_run.dry_run import InterpretedProgram, interpreted
 from twin.run.pipeline import ProgramMotion, cutting_forces
-from twin.run.preparing.assumed_job import with_assumptions
+from twin.run.preparing.assumed_job import prepare_run
 from twin.run.preparing.preparation import prepare
 from twin.run.progress import no_progress
 from twin.run.run import Run
@@ -193,10 +193,7 @@ def _compile_later_stages(path: Path, dialect: str | None, machine: str | None) 
     sys.stdout = sys.stderr = Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115 (until the process ends)
     threading.Thread(target=_end_with_parent, daemon=True).start()
     with contextlib.suppress(TwinError):
-        preparation = prepare(path, dialect=dialect, machine=machine)
-        if preparation.job.path is None:
-            preparation, _ = with_assumptions(preparation, machine=machine, strict=False)
-        run = Run(preparation)
+        run = Run(prepare_run(path, dialect=dialect, machine=machine)[0])
         run.execute(None, no_progress, later_motion(run))
 
 

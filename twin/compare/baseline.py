@@ -32,7 +32,7 @@ from twin.compare.changed_lines import (
 from twin.compare.verdict import Reason
 from twin.errors import UsageError
 from twin.files.atomic import complete_or_absent
-from twin.job.job_file import BaselineTable
+from twin.job.tolerance import BaselineTable
 from twin.nc.canonical import Axes, Chunk
 from twin.nc.text.diagnostics.diagnostics import ProgramError
 

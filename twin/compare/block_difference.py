@@ -3,8 +3,8 @@
 import math
 import operator
 
-from twin.compare.baseline_text import BaselineEntry, number
-from twin.job.job_file import BaselineTable
+from twin.compare.baseline_text import Entry, number
+from twin.job.tolerance import BaselineTable
 
 _SMALLEST_TIME = 1e-6
 """Dwells that differ by no more are the same [s]."""
@@ -19,7 +19,7 @@ Finding = tuple[str, str]
 """A code and a sentence."""
 
 
-def same_end(before: BaselineEntry, now: BaselineEntry, tolerance: float) -> bool:
+def same_end(before: Entry, now: Entry, tolerance: float) -> bool:
     """Whether two blocks are of one kind and end in one place; then they are taken for each other.
 
     Args:
@@ -32,8 +32,8 @@ def same_end(before: BaselineEntry, now: BaselineEntry, tolerance: float) -> boo
 
 
 def block_differences(
-    before: BaselineEntry,
-    now: BaselineEntry,
+    before: Entry,
+    now: Entry,
     names: tuple[str, ...],
     limits: BaselineTable,
     *,
@@ -42,6 +42,7 @@ def block_differences(
     """All that differs between two blocks of one kind, in the coordinates that the control shows.
 
     Args:
+        names: Of the axes.
         begins_apart: The block before ends elsewhere, so that this one begins elsewhere.
     """
     tolerance = limits.path_um / 1e3
@@ -80,7 +81,7 @@ def block_differences(
 
 
 def _arc_differences(
-    before: BaselineEntry, now: BaselineEntry, tolerance: float, *, begins_apart: bool
+    before: Entry, now: Entry, tolerance: float, *, begins_apart: bool
 ) -> list[str]:
     same_side = sum(a * b for a, b in zip(now.normal, before.normal, strict=True))
     if abs(same_side) < _PARALLEL:
@@ -97,11 +98,11 @@ def _arc_differences(
     return found
 
 
-def _plane(arc: BaselineEntry) -> str:
+def _plane(arc: Entry) -> str:
     axis = tuple(round(abs(part), 9) for part in arc.normal)
     return _PLANES.get(axis, f"across ({' '.join(map(number, arc.normal))})")
 
 
-def _turn(arc: BaselineEntry) -> str:
-    sense = "counter-clockwise" if arc.value > 0.0 else "clockwise"
-    return f"{sense} by {number(abs(arc.value))} degrees"
+def _turn(arc: Entry) -> str:
+    way = "counter-clockwise" if arc.value > 0.0 else "clockwise"
+    return f"{way} by {number(abs(arc.value))} degrees"

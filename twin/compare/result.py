@@ -12,7 +12,7 @@ import numpy as np
 from twin.compare.figures import ArcFigures, AxisTracking, BlockFigures, Figures
 from twin.compare.verdict import PRINTED_DIGITS, AlarmLike, Verdict
 from twin.files.atomic import write_text
-from twin.job.job_file import ToleranceTable
+from twin.job.tolerance import ToleranceTable
 from twin.units import AxisKind
 
 SCHEMA = 1

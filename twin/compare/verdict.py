@@ -8,7 +8,7 @@ import numpy as np
 
 from twin.compare.figures import Figures
 from twin.errors import ExitCode
-from twin.job.job_file import ToleranceTable
+from twin.job.tolerance import ToleranceTable
 
 Outcome = Literal["pass", "fail", "alarm"]
 EXIT_CODES = {"pass": ExitCode.OK, "fail": ExitCode.FAILED, "alarm": ExitCode.ALARM}

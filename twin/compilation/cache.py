@@ -19,9 +19,10 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any, Generic, NamedTuple, TypeVar
 
+from llvmlite.binding import add_symbol
 from numba.core.caching import _Cache
 from numba.core.compiler import CompileResult
-from numba.core.runtime.nrt import rtsys
+from numba.core.runtime._nrt_python import c_helpers
 from numba.core.serialize import dumps
 from numba.core.sigutils import normalize_signature
 
@@ -94,9 +95,13 @@ class KernelCache(_Cache):
 
     def __init__(self, function: Callable[..., Any], file: Path, form: CacheFormat[Any]) -> None:
         self._name = f"{function.__module__}.{function.__qualname__}"
-        self._folder = content_key(file)
+        self._file = file
         self._form = form
         self._locks: dict[str, int] = {}
+
+    @functools.cached_property
+    def _folder(self) -> str:
+        return content_key(self._file)
 
     @property
     def cache_path(self) -> Any:
@@ -110,7 +115,7 @@ class KernelCache(_Cache):
             sig: Types of the arguments and of the result.
             target_context: Numba's, which the kernel is loaded into.
         """
-        _prepare(target_context)
+        _register_helpers()
         data = self._read(sig, target_context)
         if data is None:
             self._begin(self._file_name(sig, _processor(target_context.codegen())))
@@ -193,13 +198,16 @@ class KernelCache(_Cache):
         return f"{stem}-{hashlib.sha256(about.encode()).hexdigest()[:24]}{_SUFFIX}"
 
 
-def _prepare(context: Any) -> None:
-    """Let code that is compiled already be loaded into Numba's context.
+@functools.cache
+def _register_helpers() -> None:
+    """Let code that is compiled already find the C functions of Numba's run time.
 
-    Numba's own cache makes the context ready to compile for that, which takes a fifth of the start of a run: it loads all
-    that kernels may call, SciPy with it. Its compiler does so too, when there is something to compile.
+    Numba's own cache makes the context ready to compile for that, which takes a fifth of the start of a run: it compiles
+    the run time, which the code holds already, and loads all that kernels may call, SciPy with it. Its compiler does so
+    too, when there is something to compile.
     """
-    rtsys.initialize(context)
+    for name, address in c_helpers.items():
+        add_symbol(name if name.startswith("_") else f"NRT_{name}", address)
 
 
 def _processor(codegen: Any) -> tuple[str, ...]:

@@ -61,6 +61,11 @@ class Interpretation:
         return {number: name for name, number in self._control.tools.names.items()}
 
     @property
+    def written_zero(self) -> dict[str, float]:
+        """What the program has written first into its table of work offsets, by axis [mm or deg]."""
+        return dict(self._control.written_zero)
+
+    @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
         """The warnings so far."""
         return tuple(self._control.report.warnings)

@@ -14,7 +14,7 @@ from twin.compare.report.report import Report, render_report, write_report
 from twin.compare.result import RunSummary, result
 from twin.compare.trace import Trace
 from twin.compare.verdict import Reason, judge
-from twin.job.job_file import ToleranceTable
+from twin.job.tolerance import ToleranceTable
 from twin.nc.canonical import Moves
 from twin.nc.text.lines import Lines
 from twin.recording.reader import RecordingHeader

@@ -562,12 +562,16 @@ def test_tolerances_are_assumed_for_moves_that_there_are(tmp_path: Path) -> None
 
 
 def test_the_names_of_tools_tell_what_they_are(tmp_path: Path) -> None:
-    text = 'G17 G71 G90\nT="MILL_D16"\nM6\nT="BORE 1"\nM6 ; BOHRER D8.5\nG0 X0 Y0 Z5\nG1 Z-3 F200\nM30\n'
+    text = 'G17 G71 G90\nT="MILL_D16"\nM6\nT="MILL_12"\nM6\nT="BORE 1"\nM6 ; BOHRER D8.5\nG0 X0 Y0 Z5\nG1 Z-3 F200\nM30\n'
     (tmp_path / "part.mpf").write_text(text)
     preparation = prepare(tmp_path / "part.mpf")
     made, _ = with_assumptions(preparation, machine=None, strict=False)
     tools = [(each.name, each.kind, each.diameter) for each in made.job.file.tools]
-    assert tools == [("MILL_D16", "flat", 16.0), ("BORE 1", "drill", 8.5)]
+    assert tools == [
+        ("MILL_D16", "flat", 16.0),
+        ("MILL_12", "flat", 12.0),
+        ("BORE 1", "drill", 8.5),
+    ]
     assert list(made.interpretation().chunks())
     assert not made.interpretation().diagnostics
 

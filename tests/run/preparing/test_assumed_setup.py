@@ -58,6 +58,89 @@ def test_a_path_that_slopes_down_has_no_steps(tmp_path: Path) -> None:
     assert made.job.file.stock.position[2] == 41.0
 
 
+def helix(begin: float, end: float, x: float = 24.5) -> str:
+    """A bore with zero on the part's bottom: down along a helix, and round once more."""
+    middle = (begin + end) / 2.0
+    return (
+        f"G0 Z{begin + 5.0}\nX{x} Y0.\nG0 Z{begin}\nG1 Z{begin} F100.\nG2 X15.5 Z{middle} I-4.5 J0. F300.\n"
+        f"X{x} Z{end} I4.5\nX15.5 I-4.5\nX{x} I4.5\nG0 Z{begin}\n"
+    )
+
+
+def ramp(begin: float, *heights: float) -> str:
+    return f"G0 Z{begin + 2.0}\nG0 X9. Y9.\nX0. Y0.\nZ{begin}\n" + "".join(
+        f"G1 X20. Z{height} F100.\nX40. F300.\nY30.\nX0.\nY0.\n" for height in heights
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "top"),
+    [
+        (helix(14.0, 8.0), 14.0),  # as FreeCAD begins them: from the top itself
+        (helix(14.0, 8.0) + helix(14.0, 7.0), 14.0),  # a step of 1 mm is none, 6 mm below the begin
+        (helix(14.0, 8.0) + helix(14.0, 0.0), 14.0),  # nor one of 8 mm, above it
+        (ramp(18.0, 9.0, 3.0), 15.0),  # from a safe height, 3 mm above the step of 6 mm
+        (ramp(16.5, 12.0, 10.0, 8.0), 14.0),  # and 2.5 mm above one of 2 mm
+        (ramp(16.5, 12.0), 16.5),  # one level has no step
+        (passes(14.0, clear=19.0) + "T2 M6\n" + passes(10.0, 6.0, clear=19.0), 15.0),
+        (passes(14.0, 12.0, clear=19.0) + "T2 M6\n" + passes(6.0, clear=19.0), 16.0),
+    ],
+)
+def test_feeds_that_begin_to_go_down_show_the_top(text: str, top: float, tmp_path: Path) -> None:
+    made, assumed = raw(tmp_path, f"{HEAD}{text}G0 Z30.\nM30\n")
+    assert made.job.file.stock is not None
+    assert made.job.file.stock.position[2] == pytest.approx(top)
+    assert any("zero is not on its top" in line for line in assumed.assumptions)
+
+
+@pytest.mark.parametrize(
+    ("cycle", "top"),
+    [
+        ("G99 G81 X10. Y10. Z0. R17. F80.", 16.0),  # to the bottom, where zero is
+        ("G99 G83 X10. Y10. Z-1. R17. Q3. F80.", 16.0),  # and through it
+        ("G99 G81 X10. Y10. Z-1. R5. F80.", 0.0),  # spotted from 5 mm above the top
+        ("G99 G81 X10. Y10. Z-20. R2. F80.", 0.0),
+    ],
+)
+def test_holes_alone_show_the_top_by_where_their_cycles_begin(
+    cycle: str, top: float, tmp_path: Path
+) -> None:
+    made, assumed = raw(tmp_path, f"{HEAD}G0 Z30.\n{cycle}\nX40.\nG80\nG0 Z30.\nM30\n")
+    assert made.job.file.stock is not None
+    assert made.job.file.stock.position[2] == top
+    assert any("1 mm lower" in line for line in assumed.assumptions) == (top > 0.0)
+
+
+def test_rapids_far_below_zero_show_that_it_is_above_the_stock(tmp_path: Path) -> None:
+    slope = "G1 X30. Z-12. F100.\nX0.\nX30. Z-13.\nX0.\n"
+    made, assumed = raw(tmp_path, f"{HEAD}G0 Z10.\nX0. Y0.\nZ-9.75\n{slope}{END}")
+    assert made.job.file.stock is not None
+    assert made.job.file.stock.position[2] == -9.75
+    assert any("the first feed goes down from Z-9.75" in line for line in assumed.assumptions)
+
+
+def test_a_full_circle_is_no_drilling(tmp_path: Path) -> None:
+    down = "G0 Z1.\nX4. Y0.\nG2 I-4. Z-1. F100.\nI-4. Z-2.\nI-4.\n"
+    made, _ = raw(tmp_path, f"{HEAD}{down}{END}")
+    assert made.job.file.tools[0].kind == "flat"
+
+
+@pytest.mark.parametrize(
+    ("comment", "diameter"),
+    [
+        ('"tool_diameter": 6,', 6.0),
+        ("TOOL DIAMETER: 3.0", 3.0),
+        ("20mm_Face001", 20.0),
+        ("FACE 2 MM OFF THE TOP", 10.0),
+    ],
+)
+def test_comments_before_the_only_tool_are_of_it(
+    comment: str, diameter: float, tmp_path: Path
+) -> None:
+    made, _ = raw(tmp_path, f"({comment})\n{HEAD}{passes(-1.0)}{END}")
+    assert made.job.file.tools[0].diameter == diameter
+
+
 def test_a_router_that_calls_t0_has_a_tool_0(tmp_path: Path) -> None:
     """MakerCam writes T0 M6 before everything: an empty spindle would cut nothing, and pass."""
     first = f"{HEAD.replace('T1', 'T0')}{passes(-1.0)}"

@@ -9,11 +9,10 @@ from twin.commands.runs.pictures import ALARMS_OF_CONTACT, draw_contact, film_ru
 from twin.compilation.announcement import announce_compilation
 from twin.errors import ExitCode, RenderError, UsageError
 from twin.files.atomic import write_text
-from twin.nc.text.diagnostics.diagnostics import ProgramError
 from twin.run.judging.outcome import Outcome
 from twin.run.messages import alarm_diagnostic, near_miss_diagnostic, reason_text
-from twin.run.preparing.assumed_job import read_as, reading_notes, text_beside, with_assumptions
-from twin.run.preparing.preparation import Preparation, prepare
+from twin.run.preparing.assumed_job import AssumedJob, prepare_run, reading_notes, text_beside
+from twin.run.preparing.preparation import Preparation
 from twin.run.progress import shown_progress
 from twin.run.results import RESULT_FILES, write_results
 from twin.run.run import Run
@@ -43,9 +42,9 @@ def run_and_print(
     announce_compilation(meanwhile=lambda: start_compiling(path, dialect, machine))
     folder = out or Path("out") / program_stem(path)
     with without_verdict(folder):
-        preparation = prepare(path, dialect=dialect, machine=machine, strict=strict, assuming=True)
-        if preparation.job.path is None:
-            preparation = _assumed(preparation, machine, strict=strict, save_job=save_job)
+        preparation, assumed = prepare_run(path, dialect=dialect, machine=machine, strict=strict)
+        if assumed is not None:
+            _tell_assumed(preparation, assumed, save_job)
         elif save_job is not None:
             raise UsageError(f"--save-job: {preparation.job.path} is the program's job already")
         run = Run(preparation)
@@ -66,24 +65,17 @@ def run_and_print(
     return outcome.verdict.exit_code
 
 
-def _assumed(
-    preparation: Preparation, machine: str | None, *, strict: bool, save_job: Path | None
-) -> Preparation:
-    """A raw program with the job that is assumed for it, which is printed, and kept where that is asked for."""
+def _tell_assumed(preparation: Preparation, assumed: AssumedJob, save_job: Path | None) -> None:
+    """Print the job that is assumed for a raw program, and keep it where that is asked for."""
     if save_job is not None and save_job.exists():
         raise UsageError(f"{save_job}: exists already")
-    try:
-        made, assumed = with_assumptions(preparation, machine=machine, strict=strict)
-    except ProgramError as error:
-        raise read_as(error, preparation) from None
-    for line in reading_notes(made, assumed.assumptions):
+    for line in reading_notes(preparation, assumed.assumptions):
         typer.echo(line, err=True)
     if save_job is None:
         typer.echo("to keep and correct this: --save-job FILE", err=True)
     else:
         write_text(save_job, text_beside(save_job, assumed, preparation.job.program))
         typer.echo(f"the job is kept in {save_job}", err=True)
-    return made
 
 
 def _draw_contact(run: Run, folder: Path) -> None:

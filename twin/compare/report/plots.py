@@ -25,7 +25,7 @@ from twin.compare.report.plot_style import (
     styled,
 )
 from twin.compare.trace import Trace, line_changes
-from twin.job.job_file import ToleranceTable
+from twin.job.tolerance import ToleranceTable
 from twin.nc.canonical import FloatArray
 from twin.units import SECONDS_PER_MINUTE
 

@@ -17,7 +17,7 @@ from twin.compare.report.plots import error_plot, following_plot, path_plot, pol
 from twin.compare.trace import Trace
 from twin.compare.verdict import Verdict
 from twin.files.atomic import write_text
-from twin.job.job_file import ToleranceTable
+from twin.job.tolerance import ToleranceTable
 from twin.nc.canonical import FloatArray, IntArray
 from twin.recording.reader import RecordingHeader
 from twin.units import SECONDS_PER_MINUTE

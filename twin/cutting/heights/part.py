@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
-from PIL import Image
 
 from twin.cutting.heights.colours import RAW_RGB, Colours, surface_colours
 from twin.cutting.heights.height_map import HeightMap
@@ -148,6 +147,8 @@ _DEEP = 0.25
 
 def part_picture(height_map: HeightMap) -> bytes:
     """A PNG of the part from above, +X to the right and +Y up; where there is no material it is clear."""
+    from PIL import Image
+
     step = max(1, -(-max(height_map.heights.shape) // _LONGEST))
     heights = height_map.heights[::step, ::step]
     slope_y, slope_x = (

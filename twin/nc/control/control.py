@@ -98,6 +98,7 @@ class Control:
         cycle_values: What the cycle in force remembers, by name.
         words: Its words that nothing has taken yet.
         series: Its words for switch points, in order.
+        written_zero: What the program has written first into its table of work offsets, by axis [mm or deg].
         run: Runs one block, also one that is within a statement.
     """
 
@@ -148,6 +149,7 @@ class Control:
         self.words: dict[str, Word] = {}
         self.codes: Sequence[tuple[Word, HasGroup]] = ()
         self.series: list[Word] = []
+        self.written_zero: dict[str, float] = {}
         self.run = run
         self.ended = False
 

@@ -1,12 +1,21 @@
 """What a dialect is made of: its syntax, its codes, its words, its rules, and the decisions behind them."""
 
 import dataclasses
+import enum
 from collections.abc import Collection, Mapping
 
 from twin.nc.control.codes import Codes, Words
 from twin.nc.control.control import Rules
 from twin.nc.text.library import Library
 from twin.nc.text.syntax import Mark, Syntax
+
+
+class JobKey(enum.StrEnum):
+    """Keys of a job that some controls have a setting for, and most have not."""
+
+    DECIMAL_POINT = "decimal_point"
+    OFFSET_ROWS = "offset_rows"
+    ROLLOVER = "rollover"
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -34,7 +43,7 @@ class Dialect:
         tables: Further tables of its page: what is named, and what it is, by title.
         library: Adds files that the program calls, looked for in the folder of the program and read as the
             dialect is.
-        job_keys: Keys of a job that its control has a setting for, and most others have not.
+        job_keys: Those that its control has a setting for.
     """
 
     name: str
@@ -50,7 +59,7 @@ class Dialect:
     suffixes: tuple[str, ...] = ()
     tables: Mapping[str, Mapping[str, str]] = dataclasses.field(default_factory=dict)
     library: Library | None = None
-    job_keys: frozenset[str] = frozenset()
+    job_keys: frozenset[JobKey] = frozenset()
 
     @property
     def keywords(self) -> Collection[str]:

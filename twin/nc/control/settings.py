@@ -107,6 +107,10 @@ class ControlSettings:
     machine_zero: Mapping[str, float] | None = None
     """Part coordinates of machine zero by axis [mm or deg]; None: not known, G53 is refused."""
 
+    written_zero: Mapping[str, float] | None = None
+    """What the program writes into the control's table for the work offset at part zero, by axis [mm or deg]; None: it
+    counts from machine zero."""
+
     variables: Mapping[str, float] = dataclasses.field(default_factory=dict)
     """Values of variables that the program reads but does not set, by their name in it."""
 
@@ -161,8 +165,12 @@ class ControlSettings:
 
     @property
     def never_read(self) -> dict[str, list[str]]:
-        """Variables and work offsets of the job that no program has asked for, by their table."""
-        tables = {"variables": self.variables, "offsets": self.offsets}
+        """Variables, work offsets and their zero that no program has asked for, by the job's table."""
+        tables = {
+            "variables": self.variables,
+            "offsets": self.offsets,
+            "written_zero": self.written_zero,
+        }
         return {
             name: sorted(table.unread)
             for name, table in tables.items()

@@ -21,7 +21,7 @@ from twin.nc.text.source import LEADER
 
 
 class _Entry(pydantic.BaseModel):
-    model_config = pydantic.ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
+    model_config = pydantic.ConfigDict(extra="forbid", frozen=True)
 
     name: str
     """What the file looks to be."""
@@ -54,7 +54,7 @@ class TextKind(_Entry):
 class ForeignFiles(pydantic.BaseModel):
     """Kinds of files, in the order in which they are looked for."""
 
-    model_config = pydantic.ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
+    model_config = pydantic.ConfigDict(extra="forbid", frozen=True)
 
     advice: Mapping[str, str]
     """What to do, by key."""

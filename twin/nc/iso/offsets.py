@@ -45,6 +45,22 @@ def machine_zero(control: Control, code: str) -> Mapping[str, float]:
     return zero
 
 
+def table_zero(control: Control, code: str) -> Mapping[str, float]:
+    """Part coordinates of the point from which the control's table of work offsets counts, by axis [mm or deg].
+
+    It is machine zero, or lies so that what the program writes there first is part zero (the job's ``written_zero``).
+    """
+    written = control.settings.written_zero
+    if written is None:
+        return machine_zero(control, code)
+    return {axis: -written[axis] for axis in written}
+
+
+def note_written(control: Control, axis: str, value: float) -> None:
+    """The program writes a value of a work offset into the control's table; the first one of an axis is kept [mm or deg]."""
+    control.written_zero.setdefault(axis, value)
+
+
 def shift_by(control: Control, values: Mapping[str, float], *, ends_preset: bool = True) -> None:
     """Put a work offset by its values into force, 0 for axes that it leaves out [mm or deg]."""
     names = control.settings.axes.names

@@ -5,7 +5,8 @@ from collections.abc import Iterator
 from twin.cutting.forces.load_log import LoadLog
 from twin.cutting.watching.cut_log import CutResult
 from twin.cutting.watching.cut_watch import CutSlip
-from twin.job.job_file import JobFile, ToleranceTable, ToolTable
+from twin.job.job_file import JobFile, ToolTable
+from twin.job.tolerance import ToleranceTable
 from twin.run.dry_run.dry_run import DryRun
 from twin.run.dry_run.program_watch import ProgramWatch, ToothFeed
 from twin.run.machining import Machining

@@ -13,7 +13,8 @@ from twin.cutting.measuring.nominal import NominalGouge
 from twin.cutting.program_summary import ProgramSummary
 from twin.cutting.watching.cut_log import CutResult
 from twin.errors import ConfigError
-from twin.job.job_file import JobFile, ToleranceTable
+from twin.job.job_file import JobFile
+from twin.job.tolerance import ToleranceTable
 from twin.machine.watching.alarms import Alarm, NearMiss
 from twin.nc.canonical import FloatArray
 from twin.nc.text.diagnostics.diagnostics import Diagnostic

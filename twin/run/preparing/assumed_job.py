@@ -5,7 +5,7 @@ import json
 import os
 import re
 import tomllib
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
 import numpy as np
@@ -21,15 +21,10 @@ from twin.nc.interpreter import Interpretation
 from twin.nc.text.diagnostics.diagnostics import ProgramError
 from twin.run.preparing.control_settings import IGNORED_AT_ZERO
 from twin.run.preparing.layout import lay_out
-from twin.run.preparing.preparation import Preparation, anywhere, prepare_job
+from twin.run.preparing.preparation import Preparation, anywhere, prepare, prepare_job
+from twin.run.reading.assumed_heights import MARGIN, Cuts, top_of_stock, turns_about_x
 from twin.run.reading.assumed_reading import AssumedReading
-from twin.run.reading.assumed_stock import (
-    MARGIN,
-    assumed_stock,
-    bar_ends,
-    top_of_stock,
-    turns_about_x,
-)
+from twin.run.reading.assumed_stock import assumed_stock, bar_ends
 from twin.run.reading.assumed_tools import BELOW, SPEED_BY_HAND, named_tools, tool_lines
 from twin.run.reading.declared import declared_stock, declared_tools, table_tools
 
@@ -56,6 +51,31 @@ class AssumedJob:
     def tables(self) -> dict[str, object]:
         """The keys of the job file."""
         return tomllib.loads(self.text)
+
+
+def prepare_run(
+    path: Path, *, dialect: str | None = None, machine: str | None = None, strict: bool = False
+) -> tuple[Preparation, AssumedJob | None]:
+    """All that the run of a job or a program needs; a program without a job gets the one that is assumed for it.
+
+    Args:
+        dialect: Overrides the job's dialect.
+        machine: Overrides the job's machine; a path is relative to the working folder.
+
+    Returns:
+        What is run, and the job that was assumed, if one was.
+
+    Raises:
+        UsageError: A file is missing or wrong, or the dialect cannot be recognised.
+        ProgramError: A program without a job is wrong.
+    """
+    preparation = prepare(path, dialect=dialect, machine=machine, strict=strict, assuming=True)
+    if preparation.job.path is not None:
+        return preparation, None
+    try:
+        return with_assumptions(preparation, machine=machine, strict=strict)
+    except ProgramError as error:
+        raise read_as(error, preparation) from None
 
 
 def with_assumptions(
@@ -88,6 +108,11 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
         ProgramError: The program is wrong.
     """
     interpretation, chunks, counts_from_machine_zero = _interpreted(preparation)
+    written = interpretation.written_zero
+    if written:
+        settings = dataclasses.replace(preparation.settings, written_zero=written)
+        preparation = dataclasses.replace(preparation, settings=settings)
+        interpretation, chunks, counts_from_machine_zero = _interpreted(preparation)
     moves = concatenate([chunk.moves for chunk in chunks], preparation.machine.axes)
     calls = _tool_calls(chunks)
     inches, lacking = interpretation.programs_in_inches, _lacking_axes(preparation)
@@ -98,7 +123,8 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
     declared = {**named, **table_tools(blocks, inches=inches), **declared_tools(functions)}
     length = _least_length(preparation.machine, moves)
     blank = declared_stock(functions)
-    top = top_of_stock(moves) if blank is None else float(blank.top[2])
+    cuts = Cuts(moves, [begin for _, _, begin in calls], interpretation.drilled)
+    top = top_of_stock(cuts) if blank is None else float(blank.top[2])
     worn = {number for number, tool in preparation.settings.tools.items() if not tool.radius}
     by_hand = _speed_is_set_by_hand(functions)
     tools, told, diameter = tool_lines(
@@ -112,7 +138,7 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
         worn=worn,
         by_hand=by_hand,
     )
-    stock, position, said = blank or assumed_stock(moves, comments, diameter / 2.0, inches=inches)
+    stock, position, said = blank or assumed_stock(cuts, comments, diameter / 2.0, inches=inches)
     stock, said = _with_relief(stock, said, moves, position)
     lines = [
         f'program = "{preparation.job.program.name}"',
@@ -124,6 +150,7 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
             position,
             [*stock, *tools] if counts_from_machine_zero else None,
         ),
+        *_written_zero_lines(written),
         *_unit_lines(preparation.reading),
         "",
         *_start_lines(moves, position),
@@ -137,6 +164,9 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
         ),
         *_tolerance_lines(moves, preparation.job.file.tolerance.contour_um),
     ]
+    if written:
+        place = " ".join(f"{axis}{value:g}" for axis, value in written.items())
+        told.append(f"the zero that the program writes ({place}) lies at part zero")
     left_out = tuple(f"{word} stays at 0: the machine has no such axis" for word in lacking)
     rapids = f"rapids may leave their path by {_RAPID_TOLERANCE_UM:g} µm"
     told += [rapids] if (moves.motion == Motion.RAPID).any() else []
@@ -151,6 +181,11 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
     speed = f"the spindle turns at {SPEED_BY_HAND:g} /min, set by hand, where the program starts it: it holds no S"
     told += [speed] if by_hand else []
     return AssumedJob("\n".join(lines), (*preparation.reading.notes, said, *told, *left_out))
+
+
+def _written_zero_lines(written: Mapping[str, float]) -> list[str]:
+    values = ", ".join(f"{axis} = {value:g}" for axis, value in written.items())
+    return [f"written_zero = {{ {values} }}  # what the program writes itself"] if written else []
 
 
 def _speed_is_set_by_hand(functions: Iterable[Function]) -> bool:

@@ -6,6 +6,7 @@ from twin.errors import ConfigError
 from twin.job.job_file import JobFile
 from twin.job.load import VARIED, Job, layer_of
 from twin.machine.description.config import Machine
+from twin.nc.control.dialect import JobKey
 from twin.nc.control.settings import Consulted, ControlSettings, MachineFunction, ToolData
 from twin.nc.dialects import DIALECTS, Dialect
 from twin.nc.path.tool_center.tool_center import PartOnMachine
@@ -26,6 +27,7 @@ def control_settings(
     control = machine.file.control
     for name, values in job.file.offsets.items():
         require_axes(values, machine, f"offsets.{name}")
+    require_axes(job.file.written_zero, machine, "written_zero")
     return ControlSettings(
         axes=machine.axes,
         periodic=frozenset(name for name in machine.axes.names if machine.axis(name).periodic),
@@ -42,6 +44,7 @@ def control_settings(
         offset_rows=job.file.offset_rows,
         setup=_setup(job, machine, layout),
         machine_zero=_machine_zero(job, machine),
+        written_zero=Consulted(job.file.written_zero) if job.file.written_zero else None,
         variables=Consulted(job.file.variables),
         m_functions={
             int(code[1:]): MachineFunction(declared.meaning, declared.dwell)
@@ -92,8 +95,7 @@ def refuse_unread_keys(job: Job, dialect: Dialect) -> None:
     Raises:
         ConfigError: There is one; the message names its file and key.
     """
-    keys_of_some = frozenset().union(*(each.job_keys for each in DIALECTS.values()))
-    for key in sorted((keys_of_some - dialect.job_keys) & job.file.model_fields_set):
+    for key in sorted((set(JobKey) - dialect.job_keys) & job.file.model_fields_set):
         if says_itself(job, key):
             place = layer_of(job.layers, key) if job.layers else "job"
             readers = ", ".join(name for name, each in DIALECTS.items() if key in each.job_keys)

@@ -7,7 +7,7 @@ from itertools import islice
 from types import MappingProxyType
 from typing import NamedTuple
 
-from twin.nc.control.dialect import Dialect
+from twin.nc.control.dialect import Dialect, JobKey
 from twin.nc.control.settings import ControlSettings, ToolData
 from twin.nc.dialects.recognition import comments_of, without_comments
 from twin.nc.geometry.arcs import TURN
@@ -40,7 +40,7 @@ _CALLS_OFFSET = re.compile(r"(?<![A-Z0-9.])G[ \t]*4[1-4](?![0-9.])", re.IGNORECA
 _ROW = re.compile(r"(?<![A-Z#\[])[HD][ \t]*0*([1-9][0-9]{0,3})(?![0-9.])", re.IGNORECASE)
 """H and D name rows of the offset memory on controls where it is numbered."""
 _ROWS_TOLD, _ROLLOVER_TOLD = "offsets H and D: ", "rotary axes roll over: "
-_OF_SOME = {"offset_rows": _ROWS_TOLD, "rollover": _ROLLOVER_TOLD}
+_OF_SOME = {JobKey.OFFSET_ROWS: _ROWS_TOLD, JobKey.ROLLOVER: _ROLLOVER_TOLD}
 """Keys that some dialects alone have a setting for, and how their notes begin."""
 _ANGLE = re.compile(r"(?<![A-Z#\[])([ABC])[ \t]*([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))", re.IGNORECASE)
 _MOTION = re.compile(r"(?<![A-Z0-9.])G[ \t]*0?([0-3])(?![0-9.])", re.IGNORECASE)

@@ -4,26 +4,29 @@ import re
 
 import numpy as np
 
-from twin.nc.canonical import BoolArray, FloatArray, Motion, Moves
+from twin.nc.canonical import FloatArray, Motion, Moves
 from twin.nc.dialects.recognition import HEAD_LINES
+from twin.run.reading.assumed_heights import (
+    MARGIN,
+    Cuts,
+    first_feed,
+    heights,
+    levels_of,
+    over_the_cuts,
+    turns_about_x,
+)
 from twin.run.reading.assumed_tools import BELOW
 
-MARGIN = 10.0
-"""Stock beyond the feed moves, on each side [mm]."""
 _LEAST_HEIGHT = 10.0
 _CLAMPED = 50.0
 """How long a bar is between the table that turns it and the path, so that holder and table do not meet [mm]."""
-_ONLY_CUT = 1.0
-"""How deep the only cut is taken to be [mm]."""
-_LEAST_CLEARANCE = 1.0
-"""Rapids in the plane pass the stock at least so high above it [mm]."""
-_MOST_ABOVE = 0.5
-"""Program zero lies on the stock's top, unless this share of the path of its cuts lies above it."""
 _MOST_CLIPPED = 0.5
 """Share of the stock's area that may be taken from it so that no rapid plunges into it; beyond that there is none."""
 
 _NUMBER = r"\s*[:=-]?\s*([0-9]+(?:\.[0-9]*)?)"
-_STOCK_WORDS = r"(?:STOCK(?:/BLOCK)?|BLOCK SIZE|BLANK|MATERIAL(?: SIZE)?|WORKPIECE SIZE|ROHTEIL)"
+_STOCK_WORDS = (
+    r"(?:STOCK(?:/BLOCK)?|BLOCK SIZE|BLANK|PART SIZE|MATERIAL(?: SIZE)?|WORKPIECE SIZE|ROHTEIL)"
+)
 _STOCKS = (
     re.compile(
         rf"{_STOCK_WORDS}\b[^XYZ]{{0,40}}\bX{_NUMBER}\D{{0,12}}?Y{_NUMBER}\D{{0,12}}?Z{_NUMBER}",
@@ -37,9 +40,10 @@ _STOCKS = (
 
 
 def assumed_stock(
-    moves: Moves, comments: list[tuple[int, str]], radius: float, *, inches: bool
+    cuts: Cuts, comments: list[tuple[int, str]], radius: float, *, inches: bool
 ) -> tuple[list[str], FloatArray | None, str]:
     """Lines of the stock, the centre of its top face, and how it came about."""
+    moves = cuts.moves
     feeds = moves.motion == Motion.FEED
     points = np.concatenate([moves.start[feeds], moves.end[feeds]])[:, :3]
     if not len(points):
@@ -48,8 +52,8 @@ def assumed_stock(
     head = "\n".join(text for line, text in comments if line <= HEAD_LINES).upper()
     told = next((match for pattern in _STOCKS if (match := pattern.search(head))), None)
     if turns_about_x(moves):
-        return _bar(moves)
-    found = _heights(moves, low[2])
+        return _bar(cuts)
+    found = heights(cuts, low[2])
     if told is not None:
         size = np.array([float(value) for value in told.groups()]) * (25.4 if inches else 1.0)
         if (size > 0.0).all():
@@ -58,11 +62,31 @@ def assumed_stock(
             return _box(size, np.array([*center, top]), "a comment in the program's head")
     if found is None:
         return _no_stock("no feed goes below Z0")
-    top, bottom, height_from = found
+    around = _around(moves, low, high, found, radius)
+    begin, slopes = first_feed(moves)
+    if found[0] == 0.0 and low[2] < begin < -BELOW and (slopes or around is None):
+        found = (
+            begin,
+            found[1],
+            f"; zero is above its top: the first feed goes down from Z{begin:g}",
+        )
+        around = _around(moves, low, high, found, radius)
+    return around or _no_stock("rapids plunge wherever it could lie")
+
+
+def _around(
+    moves: Moves,
+    low: FloatArray,
+    high: FloatArray,
+    heights: tuple[float, float, str],
+    radius: float,
+) -> tuple[list[str], FloatArray, str] | None:
+    """A box around the path, less where rapids plunge; None: little of it would be left."""
+    top, bottom, height_from = heights
     corner, far, plunges = _clipped(moves, low[:2] - MARGIN, high[:2] + MARGIN, top, radius)
     whole = np.prod(high[:2] - low[:2] + 2.0 * MARGIN)
     if (far <= corner).any() or np.prod(far - corner) < (1.0 - _MOST_CLIPPED) * whole:
-        return _no_stock("rapids plunge wherever it could lie")
+        return None
     size = np.array([*(far - corner), max(np.ceil(top - bottom), _LEAST_HEIGHT)])
     size[:2] = np.floor(size[:2] * 10.0) / 10.0
     around = f"the path and {MARGIN:g} mm around it{height_from}"
@@ -75,24 +99,6 @@ def assumed_stock(
     return _box(size, np.array([*((corner + far) / 2.0), top]), around)
 
 
-def top_of_stock(moves: Moves) -> float:
-    """Height of the stock's top, as far as the path shows it [mm]."""
-    feeds = moves.motion == Motion.FEED
-    levels, lengths = _levels(moves)
-    if turns_about_x(moves) and len(levels):
-        return _over_the_cuts(moves, levels, lengths)
-    found = _heights(moves, float(moves.end[feeds, 2].min())) if feeds.any() else None
-    return 0.0 if found is None else found[0]
-
-
-def turns_about_x(moves: Moves) -> bool:
-    """Whether axis A goes anywhere."""
-    if "A" not in moves.axes.names:
-        return False
-    column = moves.axes.index("A")
-    return bool((moves.start[:, column] != moves.end[:, column]).any())
-
-
 def bar_ends(moves: Moves) -> tuple[float, float]:
     """From where to where along X a bar reaches that axis A turns; its beginning is clamped [mm]."""
     feeds = moves.motion == Motion.FEED
@@ -101,12 +107,13 @@ def bar_ends(moves: Moves) -> tuple[float, float]:
     return float(places.min()) - _CLAMPED, float(places.max()) + MARGIN
 
 
-def _bar(moves: Moves) -> tuple[list[str], FloatArray | None, str]:
+def _bar(cuts: Cuts) -> tuple[list[str], FloatArray | None, str]:
     """A bar along X that axis A turns about program zero."""
-    levels, lengths = _levels(moves)
+    moves = cuts.moves
+    levels, _ = levels_of(moves)
     if not len(levels) or levels[0] <= BELOW:
         return _no_stock("axis A turns, and the cuts do not lie above its centre at Z0")
-    radius = float(np.ceil(_over_the_cuts(moves, levels, lengths) * 10.0) / 10.0)
+    radius = float(np.ceil(over_the_cuts(cuts) * 10.0) / 10.0)
     first, last = bar_ends(moves)
     top = np.array([(first + last) / 2.0, 0.0, radius])
     lines = [
@@ -120,62 +127,6 @@ def _bar(moves: Moves) -> tuple[list[str], FloatArray | None, str]:
     ]
     said = f"stock a bar along X, ⌀ {2.0 * radius:g} mm and {last - first:g} mm long about Y0 Z0: axis A turns it, and its highest cut lies at Z{levels[0]:g}"
     return lines, top, said
-
-
-def _heights(moves: Moves, low: float) -> tuple[float, float, str] | None:
-    """Top and bottom of the stock, and what shows them; None: nothing does.
-
-    Program zero lies on its top, unless most of what is cut at one height lies above it: then it lies on its
-    bottom or on the table, and the first of the cuts is as deep as the step to the next.
-    """
-    levels, lengths = _levels(moves)
-    above = levels > BELOW
-    if not above.any() or lengths[above].sum() < _MOST_ABOVE * lengths.sum():
-        return (0.0, low - MARGIN, "") if low < -BELOW else None
-    said = f"; zero is not on its top: cuts lie at Z{levels[0]:g} to Z{levels[-1]:g}, the first taken as deep as the next"
-    return _over_the_cuts(moves, levels, lengths), min(0.0, low), said
-
-
-def _over_the_cuts(moves: Moves, levels: FloatArray, lengths: FloatArray) -> float:
-    """Top of a stock whose first cut is as deep as the step to the next, or a guess where that is no step [mm].
-
-    It is none where there is but one cut, or where the path slopes down to the next longer than it goes level.
-    """
-    highest = float(levels[0])
-    step = highest - float(levels[1]) if len(levels) > 1 else _ONLY_CUT
-    if len(levels) > 1 and _sloping(moves, levels[1], highest) > lengths[0]:
-        step = min(step, _ONLY_CUT)
-    ends = moves.end[moves.motion == Motion.RAPID, 2]
-    above = ends[ends > highest]
-    room = float(above.min()) - _LEAST_CLEARANCE - highest if len(above) else step
-    return highest + max(0.0, min(step, room))
-
-
-def _sloping(moves: Moves, low: float, high: float) -> float:
-    """Length in the plane of feeds that rise or fall to a height between two [mm]."""
-    travel, ends = moves.end[:, :3] - moves.start[:, :3], moves.end[:, 2]
-    rows = (moves.motion == Motion.FEED) & (np.abs(travel[:, 2]) >= BELOW)
-    rows &= (ends > low + BELOW) & (ends < high - BELOW)
-    return float(np.hypot(travel[rows, 0], travel[rows, 1]).sum())
-
-
-def _level(moves: Moves) -> BoolArray:
-    """Which moves go in the plane at one height, shape (n,)."""
-    travel = np.abs(moves.end[:, :3] - moves.start[:, :3])
-    return (travel[:, 2] < BELOW) & ((travel[:, :2] > BELOW).any(axis=1) | (moves.sweep != 0.0))
-
-
-def _levels(moves: Moves) -> tuple[FloatArray, FloatArray]:
-    """Heights at which the tool feeds in the plane once it was fed down to them, the highest first, and how long the path at each is [mm]."""
-    drop = moves.end[:, 2] - moves.start[:, 2]
-    rows = np.arange(len(moves))
-    last = np.maximum.accumulate(np.where(np.abs(drop) >= BELOW, rows, -1))
-    feeds = moves.motion == Motion.FEED
-    cuts = feeds & _level(moves) & (last >= 0) & feeds[last] & (drop[last] < 0.0)
-    ways = np.hypot(*(moves.end[cuts, :2] - moves.start[cuts, :2]).T)
-    levels, at = np.unique(moves.end[cuts, 2].round(3), return_inverse=True)
-    lengths = np.bincount(at, ways, minlength=len(levels)).astype(np.float64)
-    return levels[::-1], lengths[::-1]
 
 
 def _clipped(
@@ -238,11 +189,11 @@ def _fed_before(moves: Moves, row: int, place: FloatArray, height: float, radius
     height += _CLEARED
     feeds = moves.motion[:row] == Motion.FEED
     feeds &= (moves.start[:row, 2] <= height) & (moves.end[:row, 2] <= height)
-    begin, travel = moves.start[:row][feeds, :2], (moves.end - moves.start)[:row][feeds, :2]
+    begin, way = moves.start[:row][feeds, :2], (moves.end - moves.start)[:row][feeds, :2]
     to = place - begin
-    length = np.maximum((travel * travel).sum(axis=1), BELOW)
-    share = np.clip((to * travel).sum(axis=1) / length, 0.0, 1.0)
-    return bool((np.hypot(*(to - share[:, None] * travel).T) <= radius).any())
+    length = np.maximum((way * way).sum(axis=1), BELOW)
+    share = np.clip((to * way).sum(axis=1) / length, 0.0, 1.0)
+    return bool((np.hypot(*(to - share[:, None] * way).T) <= radius).any())
 
 
 _MOST_AT_EDGE = 0.2

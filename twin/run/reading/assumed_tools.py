@@ -37,8 +37,9 @@ _KINDS: tuple[tuple[str, str], ...] = (
 )
 """Words of comments, and the kind that they tell; other tools are end mills."""
 
+_WHAT = r"MILL|DRILL|TAP|REAMER|FRAESER|FRÄSER|BOHRER"
 _DIAMETERS = (
-    rf"\b(?:DIA(?:METER|M)?\.?|DM?(?=\s*[=:]))\s*(?:OFF\.?\s*-?\s*[0-9]+\s*(?:LEN\.?\s*-?\s*[0-9]+\s*)?(?:DIA\.?)\s*)?[-=:]?\s*({_NUMBER})\s*(MM|IN(?:CH)?\b|\")?",
+    rf"(?<![A-Z0-9])(?:DIA(?:METER|M)?\.?|DM?(?=\s*[=:]))[\s\"]*(?:OFF\.?\s*-?\s*[0-9]+\s*(?:LEN\.?\s*-?\s*[0-9]+\s*)?(?:DIA\.?)\s*)?[-=:]?\s*({_NUMBER})\s*(MM|IN(?:CH)?\b|\")?",
     rf"[ØøΦ⌀]\s*({_NUMBER})\s*(MM|IN(?:CH)?\b|\")?",
     rf"\{{\s*({_NUMBER})\s*(MM|IN(?:CH)?)?",
     rf"({_NUMBER})\s*(MM|IN(?:CH)?\b|\")",
@@ -114,7 +115,8 @@ def tool_of_comment(text: str, *, inches: bool) -> ToolComment:
     if diameter and radius and kind in ("", "bull") and "CR=" in upper.replace(" ", ""):
         kind = "ball" if 2.0 * radius >= diameter * 0.999 else "bull"
     if not kind and re.search(
-        r"MILL|CUTTER|FRÄSER|FRAESER|SLOT ?DRILL|FLAT|ROUTER|UPCUT|DOWNCUT|COMPRESSION", upper
+        r"MILL|[0-9] ?MM[ _]FACE|CUTTER|FRÄSER|FRAESER|SLOT ?DRILL|FLAT|ROUTER|UPCUT|DOWNCUT|COMPRESSION",
+        upper,
     ):
         kind = "flat"
     if kind == "bull" and (not diameter or not radius or 2.0 * radius > diameter):
@@ -124,11 +126,17 @@ def tool_of_comment(text: str, *, inches: bool) -> ToolComment:
 
 
 def named_tools(names: Mapping[int, str], *, inches: bool) -> dict[int, ToolComment]:
-    """What the names by which a program calls tools say about them, by number: ``T="MILL_D16"``."""
+    """What the names by which a program calls tools say about them, by number: ``T="MILL_D16"``, ``T="MILL_16"``."""
     return {
-        number: tool_of_comment(name.replace("_", " "), inches=inches)._replace(name=name)
+        number: tool_of_comment(_spaced(name), inches=inches)._replace(name=name)
         for number, name in names.items()
     }
+
+
+def _spaced(name: str) -> str:
+    """A name as a comment would be: a number at the end of what it is, such as MILL_16, is its diameter."""
+    alone = re.fullmatch(rf"([A-Z_-]*?(?:{_WHAT}))[_-]?({_NUMBER})", name, re.IGNORECASE)
+    return (f"{alone[1]} D={alone[2]}" if alone else name).replace("_", " ")
 
 
 def _diameter(text: str, *, inches: bool) -> float | None:
@@ -163,7 +171,7 @@ _LARGEST_DIAMETER = 160.0
 _ALWAYS_MM = "COMPENSATED TOOL PATH"
 """FreeCAD's comment counts millimetres whatever the program does."""
 _SAYS_DIAMETER = re.compile(
-    rf"{_ALWAYS_MM}. DIAMETER|\b(?:TOOL|CUTTER|BIT|MILL|DRILL)\b.*\b(?:DIA|DIAMETER|DIAM)\b",
+    rf"{_ALWAYS_MM}. DIAMETER|\b(?:TOOL|CUTTER|BIT|MILL|DRILL)(?:\b.*\b|_)(?:DIA|DIAMETER|DIAM)\b",
     re.IGNORECASE,
 )
 """Comments that speak of a tool's diameter."""
@@ -174,7 +182,7 @@ _SPEED_LINE = f"speed = {SPEED_BY_HAND}  # 1/min: a guess"
 _NEAR_LINES = 3
 """So far from the call of a tool a comment may stand that describes it."""
 BELOW = 1e-6
-"""Distances and depths that are less are none [mm]."""
+"""Ways and depths that are less are none [mm]."""
 
 
 def tool_lines(
@@ -274,12 +282,13 @@ def _while_in_spindle(
     *,
     inches: bool,
 ) -> ToolComment | None:
-    """What the first comment says that speaks of a diameter before another tool comes; without tools any one."""
+    """What the first comment says that speaks of a diameter before another tool comes; with one tool or none any one."""
+    alone = len({each for each, _, _ in calls}) <= 1
     for line, text in comments:
         if not _SAYS_DIAMETER.search(text):
             continue
         before = [each for each, call, _ in calls if call <= line]
-        if not calls or (before and before[-1] == number):
+        if alone or (before and before[-1] == number):
             tool = tool_of_comment(text, inches=inches)
             if tool.diameter is not None:
                 return tool
@@ -315,8 +324,8 @@ def _tool_table(
     """A tool's lines, how it came about, and its diameter [mm]."""
     number, tool = called
     feeds = [row for row in rows if moves.motion[row] == Motion.FEED]
-    travel = moves.end[feeds, :2] - moves.start[feeds, :2]
-    drills = bool(feeds) and bool((np.abs(travel) < BELOW).all())
+    ways = moves.end[feeds, :2] - moves.start[feeds, :2]
+    drills = bool(feeds) and bool((np.abs(ways) < BELOW).all() and not moves.sweep[feeds].any())
     depth = max(0.0, top - float(moves.end[feeds, 2].min())) if feeds else 0.0
     kind = (tool.kind if tool else "") or ("drill" if drills else "flat")
     diameter = (tool.diameter if tool else None) or _USUAL_DIAMETER

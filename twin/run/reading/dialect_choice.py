@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from twin.errors import UsageError
 from twin.nc.canonical import Function, Motion, Moves, concatenate
-from twin.nc.control.dialect import Dialect
+from twin.nc.control.dialect import Dialect, JobKey
 from twin.nc.control.settings import ControlSettings, MachineFunction
 from twin.nc.dialects import DIALECTS
 from twin.nc.dialects.foreign import require_program
@@ -110,7 +110,7 @@ def chosen_dialect(
         settings.tool_change_height is None
     ):  # nor on where a control goes by itself for another tool
         settings = dataclasses.replace(settings, tool_change_height=-math.inf)
-    rolling = [name for name in candidates if "rollover" in DIALECTS[name].job_keys]
+    rolling = [name for name in candidates if JobKey.ROLLOVER in DIALECTS[name].job_keys]
     rolls = settings.rollover is not None and bool(rolling) and rolling != candidates
     candidates = rolling if rolls else candidates
     common = [name for name in candidates if name in _PREFERENCE]

@@ -19,7 +19,8 @@ from twin.web.server import LOOPBACK, WebServer, require_three
 
 TURNS_S = 0.0005
 """How long a thread keeps the interpreter while another waits for it [s]: a press must not wait."""
-
+COLLECT_AFTER = 100_000
+"""New objects between two searches for garbage, which then takes some milliseconds."""
 
 WARMING: tuple[tuple[Who, dict[str, object]], ...] = (
     ("operator", {"do": "override", "dial": "feed", "percent": 50}),
@@ -136,14 +137,16 @@ def open_room(
 @contextlib.contextmanager
 def prompt_threads() -> Iterator[None]:
     """Let no thread wait long for another, nor all of them for the search through modules' objects."""
-    turns_s = sys.getswitchinterval()
+    turns_s, threshold = sys.getswitchinterval(), gc.get_threshold()
     sys.setswitchinterval(TURNS_S)
+    gc.set_threshold(COLLECT_AFTER)
     gc.collect()
     gc.freeze()
     try:
         yield
     finally:
         gc.unfreeze()
+        gc.set_threshold(*threshold)
         sys.setswitchinterval(turns_s)
 
 

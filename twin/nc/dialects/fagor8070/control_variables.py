@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.memory import OFFSETS_BY_NUMBER, memory_of, offset_name
-from twin.nc.iso.offsets import machine_zero
+from twin.nc.iso.offsets import note_written, table_zero
 from twin.nc.text.expressions.expressions import ExpressionError
 
 POLAR_ABSCISSA, POLAR_ORDINATE = "V.G.PORGF", "V.G.PORGS"
@@ -49,7 +49,7 @@ def read_live(control: Control, name: str) -> float | None:
         return None
     offset, axis = cell
     values = memory_of(control).offsets.get(offset, control.settings.offsets.get(offset, {}))
-    zero = machine_zero(control, "V.A.ORGT").get(axis, 0.0)
+    zero = table_zero(control, "V.A.ORGT").get(axis, 0.0)
     return (values.get(axis, 0.0) - zero) / control.motion.unit_of(control.axis_index[axis])
 
 
@@ -64,10 +64,12 @@ def write_live(control: Control, name: str, value: float) -> bool:
     if cell is None:
         return False
     offset, axis = cell
-    zero = machine_zero(control, "V.A.ORGT").get(axis, 0.0)
+    zero = table_zero(control, "V.A.ORGT").get(axis, 0.0)
     given = dict(control.settings.offsets.get(offset, {}))
     values = memory_of(control).offsets.setdefault(offset, given)
-    values[axis] = zero + value * control.motion.unit_of(control.axis_index[axis])
+    written = value * control.motion.unit_of(control.axis_index[axis])
+    note_written(control, axis, written)
+    values[axis] = zero + written
     return True
 
 

@@ -5,7 +5,7 @@ import math
 
 from twin.nc.control.codes import Codes, Words
 from twin.nc.control.control import Control, Rules
-from twin.nc.control.dialect import Dialect
+from twin.nc.control.dialect import Dialect, JobKey
 from twin.nc.dialects.fanuc import (
     codes,
     decimal_point,
@@ -174,7 +174,7 @@ FANUC = Dialect(
         length_by_code=True,
     ),
     units='mm, inches (G20), degrees; numbers without a point count 0.001 mm, 0.0001 inch or 0.001 degree, unless decimal_point = "calculator"; F in mm/min',
-    job_keys=frozenset({"decimal_point", "offset_rows", "rollover"}),
+    job_keys=frozenset(JobKey),
     decisions=DECISIONS,
     marks=(
         *_FAMILY,
@@ -230,7 +230,7 @@ HAAS = dataclasses.replace(
         feed_rule=motion.haas_rule,
     ),
     units=FANUC.units.replace("F in mm/min", "F in mm/min, without a point 0.001 mm/min"),
-    job_keys=frozenset({"decimal_point", "offset_rows"}),
+    job_keys=frozenset({JobKey.DECIMAL_POINT, JobKey.OFFSET_ROWS}),
     decisions=haas.DECISIONS,
     marks=(
         *_FAMILY,

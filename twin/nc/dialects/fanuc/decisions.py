@@ -101,8 +101,8 @@ DECISIONS: tuple[Decision, ...] = (
     Decision(
         "Where do work offsets count from?",
         "Those of the job from its part zero, and G54 is part zero itself where the job gives it no "
-        "values; those that the program writes or reads (G10 L2, #5221) from machine zero. G52 and "
-        "G92 shift all of them.",
+        "values; those that the program writes or reads (G10 L2, #5221) from machine zero, "
+        "or so that the job's written_zero is part zero. G52 and G92 shift all of them.",
         "The job says where part zero lies on the machine.",
         example="work_offsets",
     ),

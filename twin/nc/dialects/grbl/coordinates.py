@@ -9,7 +9,7 @@ from twin.nc.control.codes import Action
 from twin.nc.control.control import Control, integer_of
 from twin.nc.dialects.grbl.memory import SYSTEMS, memory_of
 from twin.nc.iso.base import require_feed_of_block
-from twin.nc.iso.offsets import machine_zero, refuse_empty_preset
+from twin.nc.iso.offsets import machine_zero, note_written, refuse_empty_preset, table_zero
 from twin.nc.text.blocks import Statement, Word
 
 _Z = 2
@@ -70,7 +70,7 @@ def write_system(control: Control) -> None:
     memory = memory_of(control)
     which = which or memory.system
     here = control.number(kind) == 20.0
-    machine, names = machine_zero(control, "G10"), control.settings.axes.names
+    machine, names = table_zero(control, "G10"), control.settings.axes.names
     zero = memory.systems.setdefault(which, [machine.get(name, 0.0) for name in names])
     for index, word in words:
         value = control.axis_value(index, word)
@@ -78,6 +78,7 @@ def write_system(control: Control) -> None:
             length = memory.length if index == _Z else 0.0
             zero[index] = control.motion.part[index] - memory.preset[index] - length - value
         else:
+            note_written(control, names[index], value)
             zero[index] = value + machine.get(names[index], 0.0)
     reframe(control)
 

@@ -25,7 +25,8 @@ DECISIONS = (
     ),
     Decision(
         "Where do coordinate systems count from?",
-        "G54 is the job's part zero; G55 to G59 are the job's, or what G10 writes: L2 in machine coordinates.",
+        "G54 is the job's part zero; G55 to G59 are the job's, or what G10 writes: L2 in machine coordinates, or "
+        "so that the job's written_zero is part zero.",
         "The job says where part zero lies on the machine; a zero that nobody gave would be a guess.",
         example="systems_of_the_job",
     ),

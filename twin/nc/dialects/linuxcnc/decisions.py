@@ -21,7 +21,8 @@ DECISIONS = (
         "Where do coordinate systems lie?",
         "Those of the job count from its part zero; G54 is part zero itself where the job gives it no "
         "values, and others are refused until the job or G10 L2 gives them. Machine coordinates "
-        "(G53, G28, G30, G10 L2, #5221) need the job's part_zero.",
+        "(G53, G28, G30, G10 L2, #5221) need the job's part_zero; written_zero of the job says instead what "
+        "G10 L2 and #5221 write for part zero.",
         "The control keeps them in a file of the machine that no program brings along.",
         example="systems_of_the_job",
     ),

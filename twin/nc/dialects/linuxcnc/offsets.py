@@ -12,7 +12,7 @@ from twin.nc.control.tools import LENGTH_ENDED
 from twin.nc.dialects.linuxcnc.memory import SYSTEMS, CoordinateSystem, LinuxcncMemory, memory_of
 from twin.nc.geometry.matrices import IDENTITY, Matrix, applied, rotated, transposed
 from twin.nc.geometry.planes import XY
-from twin.nc.iso.offsets import machine_zero
+from twin.nc.iso.offsets import note_written, table_zero
 from twin.nc.iso.orientation.tool_center import begin_tool_center, end_tool_center
 from twin.nc.text.blocks import Word
 
@@ -222,7 +222,7 @@ def _write_system(control: Control, number: Word, *, here: bool) -> None:
         message = f"{number.text} is no coordinate system"
         control.fail("code-words", message, number, "P1 is G54, P9 is G59.3, P0 the one in force")
     which = which or memory.system
-    zero = _zeros(control, "G10 L2") if not here or which not in memory.systems else None
+    zero = table_zeros(control, "G10 L2") if not here or which not in memory.systems else None
     system = memory.systems.get(which)
     if system is None:
         assert zero is not None
@@ -237,7 +237,9 @@ def _write_system(control: Control, number: Word, *, here: bool) -> None:
     else:
         assert zero is not None
         for index, word in axes:
-            system.origin[index] = control.axis_value(index, word) + zero[index]
+            value = control.axis_value(index, word)
+            note_written(control, control.settings.axes.names[index], value)
+            system.origin[index] = value + zero[index]
     memory.systems[which] = system
     reframe(control)
 
@@ -273,9 +275,9 @@ def _set_origin_here(
     system.origin[:] = [a - b for a, b in zip(place, turned_there, strict=True)]
 
 
-def _zeros(control: Control, code: str) -> list[float]:
-    """Part coordinates of machine zero, shape (k,)."""
-    zero = machine_zero(control, code)
+def table_zeros(control: Control, code: str) -> list[float]:
+    """Part coordinates of the point from which the coordinate systems count, shape (k,)."""
+    zero = table_zero(control, code)
     return [zero.get(name, 0.0) for name in control.settings.axes.names]
 
 

@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping
 
 from twin.nc.control.control import Control
 from twin.nc.dialects.linuxcnc.memory import SYSTEMS, CoordinateSystem, memory_of, written_feed
-from twin.nc.dialects.linuxcnc.offsets import reframe
-from twin.nc.iso.offsets import machine_zero
+from twin.nc.dialects.linuxcnc.offsets import reframe, table_zeros
+from twin.nc.iso.offsets import machine_zero, note_written
 from twin.nc.path.feed_rates import FeedMode
 from twin.nc.text.blocks import Assignment
 from twin.nc.text.expressions import arithmetic
@@ -166,10 +166,7 @@ def _of(control: Control, values: list[float], place: int) -> float:
     return 0.0 if axis is None else values[axis]
 
 
-def _zero(control: Control, axis: int) -> float:
-    return machine_zero(control, "a parameter of machine coordinates").get(
-        control.settings.axes.names[axis], 0.0
-    )
+_OF_MACHINE = "a parameter of machine coordinates"
 
 
 def _read_live(control: Control, number: int) -> float | None:
@@ -207,7 +204,7 @@ def _read_system(control: Control, at: int) -> float | None:
         return 0.0 if system is None else system.rotation
     if axis is None or system is None:
         return 0.0 if place < _ROTATION else None
-    return system.origin[axis] - _zero(control, axis)
+    return system.origin[axis] - table_zeros(control, _OF_MACHINE)[axis]
 
 
 def _read_tool(control: Control, number: int) -> float:
@@ -246,12 +243,12 @@ def _write_system(control: Control, at: int, value: float) -> bool:
     if number == memory.system:
         message = "the coordinate system in force is changed by G10"
         control.fail("control-variable", message, hint=f"write G10 L2 P{number}")
-    names = control.settings.axes.names
-    zero = [_zero(control, each) for each in range(len(names))]
+    zero = table_zeros(control, _OF_MACHINE)
     system = memory.systems.setdefault(number, CoordinateSystem(zero))
     if axis is None:
         system.rotation = value
     else:
+        note_written(control, control.settings.axes.names[axis], value)
         system.origin[axis] = value + zero[axis]
     reframe(control)
     return True
@@ -275,7 +272,7 @@ def _position(letter: str, *, of_machine: bool) -> Callable[[Control], float]:
         if axis is None:
             return 0.0
         place = (
-            control.motion.part[axis] - _zero(control, axis)
+            control.motion.part[axis] - machine_zero(control, _OF_MACHINE).get(letter, 0.0)
             if of_machine
             else control.motion.programmed[axis]
         )

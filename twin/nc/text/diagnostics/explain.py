@@ -13,7 +13,7 @@ _FILE = Path(__file__).with_name("findings.toml")
 class Explanation(pydantic.BaseModel):
     """One kind of diagnostic."""
 
-    model_config = pydantic.ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
+    model_config = pydantic.ConfigDict(extra="forbid", frozen=True)
 
     dialect: str
     """In which the example is written."""

@@ -9,7 +9,13 @@ from twin.nc.control.codes import Action
 from twin.nc.control.control import Control
 from twin.nc.dialects.fanuc.memory import memory_of, refuse_transformed
 from twin.nc.dialects.fanuc.programs import whole
-from twin.nc.iso.offsets import machine_zero, refuse_empty_preset, select_offset, shift_by
+from twin.nc.iso.offsets import (
+    note_written,
+    refuse_empty_preset,
+    select_offset,
+    shift_by,
+    table_zero,
+)
 from twin.nc.text.blocks import Word
 
 LARGEST_EXTENDED = 300
@@ -82,7 +88,9 @@ def write_offset(control: Control, name: str | None, axis: str, value: float, co
     if name is None:
         memory.common_offset[axis] = value
     else:
-        zero = machine_zero(control, code)
+        zero = table_zero(control, code)
+        if not control.modal.incremental:
+            note_written(control, axis, value)
         values = memory.offsets.setdefault(name, offset_values(control, name))
         values[axis] = value + zero.get(axis, 0.0)
 
@@ -91,7 +99,7 @@ def read_offset(control: Control, name: str | None, axis: str, code: str) -> flo
     """A work offset from machine zero [mm or deg]."""
     if name is None:
         return memory_of(control).common_offset.get(axis, 0.0)
-    zero = machine_zero(control, code)
+    zero = table_zero(control, code)
     return offset_values(control, name).get(axis, 0.0) - zero.get(axis, 0.0)
 
 

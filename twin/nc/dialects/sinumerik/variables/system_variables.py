@@ -8,6 +8,7 @@ from twin.nc.control.control import Control
 from twin.nc.control.settings import ToolData
 from twin.nc.dialects.sinumerik import frames
 from twin.nc.dialects.sinumerik.memory import VariableType, memory_of
+from twin.nc.iso.offsets import note_written
 from twin.nc.text.expressions.expressions import ExpressionError
 
 _NAME = re.compile(r"(\$\w+)(?:\[([^\]]*)\])?")
@@ -41,8 +42,9 @@ def read(control: Control, name: str) -> float:
         number, axis = _number(control, indices[0]), _axis(control, indices[1])
         if indices[2] == "FI":
             return 0.0
-        values = _offset_values(control, number)
-        return values.get(control.settings.axes.names[axis], 0.0) / control.motion.unit_of(axis)
+        name = control.settings.axes.names[axis]
+        value = _offset_values(control, number).get(name, 0.0) + _written_zero(control, name)
+        return value / control.motion.unit_of(axis)
     tool = control.tools.data(control.tools.spindle)
     if key == "$P_TOOLNO":
         return float(control.tools.spindle or 0)
@@ -130,6 +132,11 @@ def _offset_values(control: Control, number: int) -> dict[str, float]:
     return dict(written if written is not None else given or {})
 
 
+def _written_zero(control: Control, axis: str) -> float:
+    """What the program writes for an axis of the work offset at part zero [mm or deg]."""
+    return (control.settings.written_zero or {}).get(axis, 0.0)
+
+
 def _write_offset(control: Control, indices: list[str], value: float) -> None:
     """It counts from the next G54 to G599 on (manual)."""
     number, axis = _number(control, indices[0]), _axis(control, indices[1])
@@ -137,5 +144,7 @@ def _write_offset(control: Control, indices: list[str], value: float) -> None:
     values = memory.offsets.get(name)
     if values is None:
         values = dict(control.settings.offsets.get(name, {}))
-    values[control.settings.axes.names[axis]] = value * control.motion.unit_of(axis)
+    written, named = value * control.motion.unit_of(axis), control.settings.axes.names[axis]
+    note_written(control, named, written)
+    values[named] = written - _written_zero(control, named)
     memory.offsets[name] = values
