@@ -114,6 +114,8 @@ def _run(stopped: list[int]) -> None:
         raise SystemExit(2)
     # Pictures are drawn in contexts of this package's own: MuJoCo needs to load no window library.
     os.environ.setdefault("MUJOCO_GL", "disable")
+    # Nor does pydantic need to search all that is installed for plug-ins, of which the tables of files have no use.
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     try:
         import logging
 

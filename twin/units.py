@@ -17,6 +17,9 @@ SECONDS_PER_MINUTE = 60.0
 UM_PER_MM = 1e3
 MDEG_PER_DEGREE = 1e3
 
+LARGEST_COORDINATE = 1e7
+"""Ten kilometres, or 27 thousand turns: beyond it a coordinate is a slip of the pen [mm or deg]."""
+
 
 def to_si(kind: AxisKind) -> float:
     """Factor from an axis's own unit (mm or degree) to SI (m or rad)."""

@@ -85,3 +85,39 @@ def test_true_is_no_number_in_any_table(tmp_path: Path) -> None:
     assert "'offsets.G54.X'" in str(told.value)
     job.write_text('program = "a.nc"\nblock_skip = true\ncutting_load = false\n')
     assert load_job(job).file.block_skip is True
+
+
+def test_a_number_in_quotes_is_refused_with_what_to_write(tmp_path: Path) -> None:
+    (tmp_path / "a.nc").write_text("G0 X1\n")
+    job = tmp_path / "a.toml"
+    job.write_text(
+        'program = "a.nc"\nstep_limit = "7"\nblock_skip = "yes"\n[offset_rows]\n1 = "1"\n'
+        '[tolerance]\ncontour_um = " 5.5"\n[[tools]]\nnumber = 1\ncenter_cutting = 1\n'
+    )
+    with pytest.raises(ConfigError) as raised:
+        load_job(job)
+    message = str(raised.value)
+    assert "'step_limit': a number is written without quotes: 7 (got '7')" in message
+    assert "'block_skip': true or false, without quotes, is wanted here (got 'yes')" in message
+    assert "'offset_rows.1': a number is written without quotes: 1 (got '1')" in message
+    assert "'tolerance.contour_um': a number is written without quotes: 5.5" in message
+    assert "'tools.0.center_cutting': true or false, without quotes" in message
+
+
+@pytest.mark.parametrize(
+    "written",
+    [
+        "start.C = 1e12",
+        "part_zero.X = -1e12",
+        "offsets.G54.Z = 1e8",
+        "tool_change.height = 1e9",
+        'stock = { shape = "box", size = [1, 1, 1], position = [0, 1e9, 0] }',
+        'fixtures = [{ name = "vise", size = [1, 1, 1], position = [0, 1e9, 0] }]',
+    ],
+)
+def test_a_place_that_no_machine_reaches_is_refused(tmp_path: Path, written: str) -> None:
+    (tmp_path / "a.nc").write_text("G0 X1\n")
+    job = tmp_path / "a.toml"
+    job.write_text(f'program = "a.nc"\n{written}\n')
+    with pytest.raises(ConfigError, match=r"should be (less|greater) than or equal to -?10000000"):
+        load_job(job)

@@ -238,10 +238,32 @@ def test_a_program_that_the_screen_opens_with_is_the_one_that_is_judged(
     ] * 2
 
 
+def test_a_screen_that_was_closed_before_the_programs_end_is_no_pass(
+    folder: Path, twin: Twin, monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.setenv("DISPLAY", ":0")
+    (folder / "part.ngc").write_text(SQUARE)
+    ran = twin(
+        "link", "linuxcnc", "--machine", "mill4", "--out", folder / "out",
+        "--open", folder / "part.ngc", "--display", "sleep 1",
+    )  # fmt: skip
+    assert ran.code == 4
+    assert [each["code"] for each in result(folder)["alarms"]] == ["control-stop"]
+
+
 def test_a_program_that_linuxcnc_refuses_ends_with_its_line(folder: Path, twin: Twin):
     ran = linked(twin, folder, "G21\nG1 X1 F100\nG1 X2 Q\nM2\n")
     assert ran.code == 3
     assert "part.ngc:3:1: error linuxcnc:" in ran.stderr
+
+
+def test_a_program_that_linuxcnc_gives_up_does_not_pass(folder: Path, twin: Twin):
+    """Nothing orients the spindle: LinuxCNC gives up after Q seconds, and the last move is never made."""
+    ran = linked(twin, folder, "G21 G90 G61\nG0 X1\nM19 R0 Q0.5\nG1 X2 F600\nM2\n")
+    alarm = result(folder)["alarms"][0]
+    assert ran.code == 4
+    assert (alarm["code"], result(folder)["verdict"]) == ("control-stop", "alarm")
+    assert "wait for orient complete: TIMED OUT" in alarm["message"]
 
 
 @contextlib.contextmanager

@@ -14,6 +14,7 @@ from twin.commands.live.link import _explain_blending
 from twin.errors import UsageError
 from twin.link import linuxcnc
 from twin.link.headless_screen import FailedError, Operator
+from twin.link.program_reading import Listing
 
 
 @pytest.fixture
@@ -73,11 +74,9 @@ def test_the_operator_leaves_as_soon_as_the_twin_has_gone():
     ],
 )
 def test_a_g64_without_p_is_explained_with_its_line(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], block: str, explained: bool
+    capsys: pytest.CaptureFixture[str], block: str, explained: bool
 ) -> None:
-    program = tmp_path / "part.ngc"
-    program.write_text(f"G21\n{block}\nM2\n", encoding="utf-8")
-    _explain_blending(program)
+    _explain_blending(Listing(Path("part.ngc"), f"G21\n{block}\nM2\n"))
     assert ("part.ngc:2: G64 without P" in capsys.readouterr().err) == explained
 
 

@@ -151,8 +151,12 @@ def test_moves_of_one_line_follow_one_another():
         )
     )  # fmt: skip
     places = Places(program.moves, np.full(4, 7))
+    places.find(np.full(len(setpoints) - 20, 7), setpoints.position[:-20])
+    assert not places.done
+    places = Places(program.moves, np.full(4, 7))
     move, share, _ = places.find(np.full(len(setpoints), 7), setpoints.position)
     began = setpoints.move >= 0
     assert np.mean(move[began] != setpoints.move[began]) < 0.05
     assert np.abs(program.moves.end[3] - setpoints.position[-1]).max() < 1e-9
     assert (move[-1], share[-1]) == (3, pytest.approx(1.0))
+    assert places.done

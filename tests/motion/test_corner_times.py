@@ -168,6 +168,51 @@ def test_many_long_chains_are_no_slower_for_being_continuous() -> None:
         long_chain_is_no_slower(seed)
 
 
+def arc_chain(rng: np.random.Generator, corner: Corner, blocks: tuple[int, int]) -> Program:
+    """Arcs with knees between them and no stop, in a wave or anyhow, lines among them now and then."""
+    program = Program()
+    program.corner = corner
+    kind = ("wave", "arcs", "arcs and lines")[rng.integers(3)]
+    size, feed = np.exp(rng.uniform(np.log([0.3, 300.0]), np.log([10.0, 30000.0]))).tolist()
+    for number in range(int(rng.integers(blocks[0], blocks[1]))):
+        here = program.position
+        if kind == "arcs and lines" and rng.random() < 0.3:
+            program.line(*(here + np.append(rng.normal(size=3) * size, 0.0)), feed=feed)
+            continue
+        aside = np.array([size, 0.0]) if kind == "wave" else rng.normal(size=2) * size
+        sweep = 180.0 if kind == "wave" else float(rng.uniform(20.0, 400.0))
+        sense = (-1.0) ** number if kind == "wave" else rng.choice([-1.0, 1.0])
+        center = (here[0] + aside[0], here[1] + aside[1], here[2])
+        program.arc(center, (0.0, 0.0, 1.0), sweep * sense, feed=feed)
+    return program
+
+
+def arc_chains_are_no_slower(first: int, last: int, blocks: tuple[int, int]) -> None:
+    """Continuous, exact path, exact stop, however many blocks there are between two stops."""
+    for seed in range(first, last):
+        times = []
+        for corner in (Corner.CONTINUOUS, Corner.EXACT_PATH, Corner.EXACT_STOP):
+            rng = np.random.default_rng(seed)
+            machine, program = knee_machine(rng), arc_chain(rng, corner, blocks)
+            times.append(seconds(program.chunks(), machine, program.start))
+        assert times[0] <= times[1] * SLACK, seed
+        assert times[1] <= times[2] * SLACK, seed
+
+
+@pytest.mark.seconds("chains of hundreds of arcs are planned in three ways")
+def test_a_chain_of_arcs_is_no_slower_for_a_freer_way() -> None:
+    arc_chains_are_no_slower(0, 2, (520, 530))
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize(("last", "blocks"), [(104, (600, 1500)), (101, (2500, 3000))])
+def test_chains_of_arcs_of_any_length_are_no_slower_for_a_freer_way(
+    last: int, blocks: tuple[int, int]
+) -> None:
+    """The longer ones go on over the blocks that are cut together."""
+    arc_chains_are_no_slower(100, last, blocks)
+
+
 @pytest.mark.seconds("40 programs are planned in three ways")
 def test_each_freer_way_through_corners_is_no_slower() -> None:
     never_slower(7000, 7040)

@@ -96,7 +96,6 @@ def stays(calls: list[Call]) -> list[tuple[str, bool]]:
 
 @pytest.mark.seconds("a run is followed call by call")
 def test_a_run_goes_straight(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(command, "start_compiling", lambda *_: None)
     monkeypatch.setattr(command, "announce_compilation", lambda **_: None)
     monkeypatch.setattr(twin.processor, "available_cores", lambda: 1)
     job = Path(resource_root("programs") / "gallery/fagor8070/medallion.toml")

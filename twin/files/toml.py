@@ -61,34 +61,34 @@ def checked(data: Data, table: type[TableT], where: str | Callable[[str], str | 
             f"{placed(_key(detail))}: {_explain(detail, table)}" for detail in error.errors()
         )
         raise ConfigError(lines) from error
-    if wrong := list(_switches_as_numbers(data, made)):
-        raise ConfigError(
-            "\n".join(
-                f"{placed(key)}: '{key}': a number is wanted here (got {str(value).lower()})"
-                for key, value in wrong
-            )
-        )
+    if wrong := list(_of_another_type(data, made)):
+        raise ConfigError("\n".join(f"{placed(key)}: '{key}': {fault}" for key, fault in wrong))
     return made
 
 
-def _switches_as_numbers(written: Any, made: Any, key: str = "") -> Iterator[tuple[str, bool]]:
-    """Keys that say true or false and were read as 1 or 0, which pydantic takes for numbers, and what they say."""
-    if isinstance(written, bool):
-        if isinstance(made, int | float) and not isinstance(made, bool):
-            yield key, written
+def _of_another_type(written: Any, made: Any, key: str = "") -> Iterator[tuple[str, str]]:
+    """Keys whose values pydantic has made something else of, such as 1 of true and 5 of "5", and what is wrong."""
+    if isinstance(made, bool):
+        if not isinstance(written, bool):
+            yield key, f"true or false, without quotes, is wanted here (got {written!r})"
+    elif isinstance(made, int | float) and isinstance(written, str):
+        yield key, f"a number is written without quotes: {written.strip()} (got {written!r})"
+    elif isinstance(written, bool):
+        if isinstance(made, int | float):
+            yield key, f"a number is wanted here (got {str(written).lower()})"
     elif isinstance(written, dict):
         for name, value in written.items():
             inner = _made_of(made, name)
-            yield from _switches_as_numbers(value, inner, f"{key}.{name}" if key else str(name))
+            yield from _of_another_type(value, inner, f"{key}.{name}" if key else str(name))
     elif isinstance(written, list | tuple) and isinstance(made, list | tuple):
         for index, (value, inner) in enumerate(zip(written, made, strict=False)):
-            yield from _switches_as_numbers(value, inner, f"{key}.{index}")
+            yield from _of_another_type(value, inner, f"{key}.{index}")
 
 
 def _made_of(made: Any, name: str) -> Any:
     """What a key of a table has become; None where a validator has made something else of it."""
     if isinstance(made, Mapping):
-        return made.get(name)
+        return made.get(int(name) if name.isdecimal() and name not in made else name)
     if not isinstance(made, pydantic.BaseModel):
         return None
     fields = type(made).model_fields.items()

@@ -5,6 +5,11 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, BeforeValidator, Field
 
 from twin.files.toml import Table
+from twin.units import LARGEST_COORDINATE
+
+Positive = Annotated[float, Field(gt=0)]
+Coordinate = Annotated[float, Field(ge=-LARGEST_COORDINATE, le=LARGEST_COORDINATE)]
+Triple = tuple[Coordinate, Coordinate, Coordinate]
 
 
 class MachineFunctionTable(Table):
@@ -42,6 +47,6 @@ MachineFunctions = Annotated[
 class ToolChangeTable(Table):
     """The tool change."""
 
-    height: float | None = None
+    height: Coordinate | None = None
     """Z that the control, or the builder's macro behind M6, rises to by itself before the tool changes, machine
     coordinates [mm]; none: a Haas rises to machine zero, other controls change the tool where it is."""

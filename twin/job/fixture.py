@@ -10,10 +10,9 @@ from pydantic import Field
 
 from twin.files.stl import read_stl
 from twin.files.toml import Table
+from twin.job.builder import Positive, Triple
 from twin.units import MM
 
-Positive = Annotated[float, Field(gt=0)]
-Triple = tuple[float, float, float]
 Six = tuple[float, float, float, float, float, float]
 
 
@@ -81,7 +80,7 @@ class FixtureTable(Table):
     file: str | None = None
     """STL [mm], relative to the file that names it, in coordinates of the surface: their zero lies in its middle, Z
     points up. Its hollows count."""
-    position: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    position: Triple = (0.0, 0.0, 0.0)
     """Centre of its lower face over the middle of the surface [mm], all axes at zero; an STL is moved by it."""
     mass: Annotated[float, Field(ge=0)] = 0.0
     """What it weighs, evenly spread [kg]: the axes below it move that too."""

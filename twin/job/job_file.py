@@ -8,8 +8,8 @@ from pydantic import Field
 
 from twin.files.stl import stl_extent
 from twin.files.toml import Table
-from twin.job.builder import MachineFunctions, ToolChangeTable
-from twin.job.fixture import FixtureTable, Positive
+from twin.job.builder import Coordinate, MachineFunctions, Positive, ToolChangeTable, Triple
+from twin.job.fixture import FixtureTable
 from twin.job.tolerance import BaselineTable, ToleranceTable
 
 DEFAULT_MACHINE = "mill4"
@@ -33,7 +33,7 @@ class StockTable(Table):
     Z, it stands."""
     file: str | None = None
     """STL: its file [mm], relative to the job file."""
-    position: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    position: Triple = (0.0, 0.0, 0.0)
     """Centre of the top face in program coordinates [mm]; of the box around an STL, or a cylinder that lies."""
     relief: Positive | None = None
     """How deep parallels or a post below it leave room for drills and cutters that go through its lower face
@@ -278,13 +278,13 @@ class JobFile(Table):
     """Feed where the program sets none [mm/min]; none: the machine's."""
     default_rotary_feed: Positive | None = None
     """Feed of moves of rotary axes alone where the program sets none [deg/min]; none: the machine's."""
-    part_zero: dict[str, float] = Field(default_factory=dict)
+    part_zero: dict[str, Coordinate] = Field(default_factory=dict)
     """Program zero in machine coordinates, by axis [mm or deg]; an axis left out: on the table's
     centre line, at the height of the stock's top face, other axes at 0."""
-    written_zero: dict[str, float] = Field(default_factory=dict)
+    written_zero: dict[str, Coordinate] = Field(default_factory=dict)
     """What the program itself writes into the control's table for the work offset that lies at part zero (G10 L2,
     #5221, $P_UIFR), by axis, in coordinates of the machine that it was written for [mm or deg]; none: in this one's."""
-    start: dict[str, float] = Field(default_factory=dict)
+    start: dict[str, Coordinate] = Field(default_factory=dict)
     """Where the axes are when the program starts, program coordinates [mm or deg]."""
     stock: StockTable | None = None
     nominal: NominalTable | None = None
@@ -303,7 +303,7 @@ class JobFile(Table):
     bends and breaks no tool: contour errors come out several times too small where a tool deflects, and the
     part does not show it; ``none``, the mean force is only reported. The page of ``twin/coupling`` has one
     job by both methods."""
-    offsets: dict[str, dict[str, float]] = Field(default_factory=dict)
+    offsets: dict[str, dict[str, Coordinate]] = Field(default_factory=dict)
     """Work offsets by name (``G54``), each by axis, from part zero [mm or deg]."""
     offset_rows: dict[Annotated[int, Field(ge=1)], Annotated[int, Field(ge=0)]] = Field(
         default_factory=dict

@@ -6,7 +6,7 @@ import pydantic
 from pydantic import Field
 
 from twin.files.toml import Table
-from twin.job.fixture import Positive
+from twin.job.builder import Positive
 
 DEFAULT_CONTOUR_UM = 20.0
 """Contour tolerance of a job that names none [µm]: what a general mill holds under IT7."""

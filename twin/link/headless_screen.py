@@ -34,6 +34,7 @@ class Operator:
         self._twin = twin
         self._command, self._status = linuxcnc.command(), linuxcnc.stat()
         self._errors = linuxcnc.error_channel()
+        self._failed = False
 
     def tell(self, event: str, text: str = "") -> None:
         """Write a line of the log."""
@@ -79,7 +80,8 @@ class Operator:
             if idle and time.monotonic() - began > 10 * PAUSE_S:
                 break
             time.sleep(PAUSE_S)
-        if self._look():
+        self._look()
+        if self._failed:
             raise FailedError("LinuxCNC reported an error")
 
     def _go_on(self) -> None:
@@ -103,17 +105,15 @@ class Operator:
             time.sleep(PAUSE_S)
         raise FailedError(f"LinuxCNC does not {what}")
 
-    def _look(self) -> bool:
-        """Log what LinuxCNC says; returns whether it reported an error."""
-        failed = False
+    def _look(self) -> None:
+        """Log what LinuxCNC says."""
         while (told := self._errors.poll()) is not None:
             kind, text = told
             wrong = kind in (self._linuxcnc.NML_ERROR, self._linuxcnc.OPERATOR_ERROR)
             self.tell("error" if wrong else "message", text.strip())
-            failed = failed or wrong
+            self._failed = self._failed or wrong
         if not self._any_twin():
             raise FailedError("the twin has gone")
-        return failed
 
     def _any_twin(self) -> bool:
         try:

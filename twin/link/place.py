@@ -12,6 +12,8 @@ from twin.toolpath.geometry import geometry
 _FULL_TURN = 360.0
 _DONE = 1.0 - 1e-4
 """Share of a move's path from which the next one of the same line begins."""
+_SEEN = 0.01
+"""What is shorter may begin and end within one servo period [mm or deg]."""
 _NEARER = 1e-6
 """How much nearer a position must be to the next move of the same line to belong to it [mm]."""
 
@@ -28,6 +30,15 @@ class Places:
         self._moves = moves
         self._control_line = control_line
         self._move, self._fraction = -1, 0.0
+
+    @property
+    def done(self) -> bool:
+        """Whether the program was driven to its end, but for a last step that no period may have seen."""
+        length = self._moves.length
+        seen = np.flatnonzero(length > _SEEN)
+        if not len(seen) or self._move != seen[-1]:
+            return not len(seen) or self._move > seen[-1]
+        return bool((1.0 - self._fraction) * length[self._move] <= _SEEN)
 
     def find(self, line: IntArray, position: FloatArray) -> tuple[IntArray, FloatArray, IntArray]:
         """Move, fraction and source line of the next positions.

@@ -5,12 +5,16 @@ are written down as a program without any of it, in a dialect of the twin: what 
 Where the program allows it, each line keeps its number; the N words are LinuxCNC's lines always.
 """
 
+import itertools
 import re
 import shutil
+import signal
 import subprocess
 import tempfile
+import threading
 from collections.abc import Sequence
 from pathlib import Path
+from typing import NamedTuple, TextIO
 
 import numpy as np
 
@@ -24,7 +28,10 @@ DIALECT = "gost"
 """The dialect in which the program is written down: plain ISO codes, arcs by their centre."""
 _INCH_MM = 25.4
 _READER = "rs274"
-_TIMEOUT_S = 300
+_TIMEOUT_S = 300.0
+_MOST_CALLS = 2_000_000
+"""A program that makes more has no end."""
+_LONGEST_REFUSAL = 10_000
 _CALL = re.compile(r"\s*\d+ N([0-9]+|\.+)\s+([A-Z0-9_]+)\((.*)\)\s*$")
 _OWN_NUMBER = re.compile(r"^(\s*/?\s*)(?:[Nn]\s*[0-9.]+)?(?=\s*\S)")
 _N_WORD = re.compile(r"\s*/?\s*N([0-9]+)")
@@ -36,6 +43,7 @@ _IN_PLANE = {"G17": (0, 1, 2), "G18": (2, 0, 1), "G19": (1, 2, 0)}
 _SPINDLE = {"START_SPINDLE_CLOCKWISE": "M3", "START_SPINDLE_COUNTERCLOCKWISE": "M4"}
 _REFUSED = ("PROBE", "TAP", "NURBS", "SYNCH")
 """Parts of the names of calls for which the twin has nothing: probing, tapping, threads."""
+_READ_BY_THE_TWIN = "--dialect linuxcnc: the twin reads the program, and LinuxCNC drives its moves"
 _FULL_TURN = 2.0 * np.pi
 _PRINTED = 1e-4
 """To what a length is printed, in the program's unit: two that differ by no more are one."""
@@ -47,8 +55,31 @@ class LinuxcncProgramError(TwinError):
     exit_code = ExitCode.PROGRAM
 
 
+class Listing(NamedTuple):
+    """A program of LinuxCNC's own language, as it was when it was read."""
+
+    path: Path
+    text: str
+
+    def error(self, line: int, message: str, hint: str | None = None) -> LinuxcncProgramError:
+        """What is wrong in a line, counted from 1."""
+        lines = self.text.splitlines()
+        text = lines[line - 1] if 0 < line <= len(lines) else ""
+        stripped = len(text) - len(text.lstrip())
+        diagnostic = Diagnostic(
+            severity="error", code="linuxcnc", message=message, file=str(self.path), line=line,
+            column=stripped + 1, width=max(len(text.strip()), 1), source=text, hint=hint,
+        )  # fmt: skip
+        return LinuxcncProgramError(str(diagnostic))
+
+
+def listing_of(program: Path) -> Listing:
+    """Read the text of a program, whatever its bytes."""
+    return Listing(program, program.read_text(encoding="utf-8", errors="replace"))
+
+
 def read_program(
-    program: Path, axes: Axes, start: FloatArray, part_zero: FloatArray, job: JobFile
+    listing: Listing, axes: Axes, start: FloatArray, part_zero: FloatArray, job: JobFile
 ) -> str:
     """Let LinuxCNC's interpreter read a program, and write it down.
 
@@ -60,13 +91,13 @@ def read_program(
         The program in the dialect ``DIALECT``; its N words are the lines of LinuxCNC's program.
 
     Raises:
-        LinuxcncProgramError: The program is wrong.
-        UsageError: ``rs274`` is not installed, or the program does what the twin has nothing for.
+        LinuxcncProgramError: The program is wrong, does not come to its end, or does what the twin has nothing for.
+        UsageError: ``rs274`` is not installed.
     """
     found = shutil.which(_READER)
     if found is None:
         raise UsageError(f"{_READER} is missing: it comes with LinuxCNC")
-    lines = program.read_text(encoding="utf-8", errors="replace").splitlines()
+    writer = _Writer(axes, part_zero, listing)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         # By itself rs274 takes the lengths of its files for inches.
@@ -74,64 +105,74 @@ def read_program(
         (folder / "offsets.var").write_text(offsets_text(axes, inches), encoding="utf-8")
         (folder / "tools.tbl").write_text(tools_text(job, _INCH_MM), encoding="utf-8")
         there = " ".join(f"{name}{value:.6f}" for name, value in axes.named(start).items())
-        numbered = [f"G21 G53 G0 {there}", *_numbered(lines)]
+        numbered = [f"G21 G53 G0 {there}", *_numbered(listing.text.splitlines())]
+        if numbered[-1].strip() == "%":
+            numbered.insert(0, "%")
         (folder / "program.ngc").write_text("\n".join(numbered) + "\n", encoding="utf-8")
-        try:
-            read = subprocess.run(  # noqa: S603 - the program is the user's own
-                [
-                    found, "-g", "-t", str(folder / "tools.tbl"),
-                    "-v", str(folder / "offsets.var"), str(folder / "program.ngc"),
-                ],
-                cwd=program.resolve().parent, capture_output=True, text=True, check=False,
-                timeout=_TIMEOUT_S, errors="replace",
-            )  # fmt: skip
-        except subprocess.TimeoutExpired as error:
-            raise UsageError(f"{program}: {_READER} does not come to its end") from error
-    if read.returncode:
-        raise _error(program, lines, read.stderr)
-    writer = _Writer(axes, part_zero)
-    for text in read.stdout.splitlines():
-        if call := _CALL.match(text):
-            writer.take(int(call[1]) if call[1].isdigit() else None, call[2], call[3])
+        command = [
+            found, "-g", "-t", str(folder / "tools.tbl"),
+            "-v", str(folder / "offsets.var"), str(folder / "program.ngc"),
+        ]  # fmt: skip
+        with (folder / "refusal").open("w+", encoding="utf-8", errors="replace") as refusal:
+            code = _run(command, listing.path.resolve().parent, refusal, writer)
+            refusal.seek(0)
+            if code == -signal.SIGKILL:
+                raise listing.error(writer.line, f"{_READER} does not come to its end")
+            if code:
+                raise _refused(listing, refusal.read(_LONGEST_REFUSAL))
     return writer.finish()
+
+
+def _run(command: Sequence[str], folder: Path, refusal: TextIO, writer: "_Writer") -> int:
+    """Hand what the interpreter prints to the writer; returns its code, of a process killed where it never ends."""
+    with subprocess.Popen(  # noqa: S603 - the program is the user's own
+        command, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=refusal,
+        text=True, errors="replace",
+    ) as reader:  # fmt: skip
+        late = threading.Timer(_TIMEOUT_S, reader.kill)
+        late.start()
+        try:
+            for text in itertools.islice(reader.stdout or (), _MOST_CALLS):
+                if call := _CALL.match(text):
+                    writer.take(int(call[1]) if call[1].isdigit() else None, call[2], call[3])
+            if reader.stdout is not None and reader.stdout.readline():
+                reader.kill()
+            return reader.wait()
+        finally:
+            late.cancel()
+            reader.kill()
 
 
 def _numbered(lines: Sequence[str]) -> list[str]:
     """The program with its lines' numbers as N words, which ``rs274`` repeats with each call.
 
-    What is before and behind a pair of ``%`` is no program.
+    What is before and behind a pair of ``%`` is no program; the second one ends it.
     """
     marks = [number for number, line in enumerate(lines) if line.strip() == "%"]
     first = marks[0] + 1 if marks else 0
-    last = marks[1] if len(marks) > 1 else len(lines)
+    last = marks[1] + 1 if len(marks) > 1 else len(lines)
     return [
         line if _NOT_NUMBERED.match(line) else _OWN_NUMBER.sub(rf"\g<1>N{number} ", line, count=1)
         for number, line in enumerate(lines[first:last], first + 1)
     ]
 
 
-def _error(program: Path, lines: Sequence[str], told: str) -> LinuxcncProgramError:
+def _refused(listing: Listing, told: str) -> LinuxcncProgramError:
     said = [line for line in told.splitlines() if line.strip() and line.strip() != "executing"]
     message = said[0] if said else "it does not say why"
     number = next((int(found[1]) for line in said[1:] if (found := _N_WORD.match(line))), 1)
-    text = lines[number - 1] if 0 < number <= len(lines) else ""
-    stripped = len(text) - len(text.lstrip())
-    diagnostic = Diagnostic(
-        severity="error", code="linuxcnc", message=message, file=str(program), line=number,
-        column=stripped + 1, width=max(len(text.strip()), 1), source=text,
-    )  # fmt: skip
-    return LinuxcncProgramError(str(diagnostic))
+    return listing.error(number, message)
 
 
 class _Writer:
     """Follows canonical calls and writes what moves, and what else the twin needs to know."""
 
-    def __init__(self, axes: Axes, part_zero: FloatArray) -> None:
-        self._axes = axes
+    def __init__(self, axes: Axes, part_zero: FloatArray, listing: Listing) -> None:
+        self._axes, self._listing = axes, listing
         self._columns = [LETTERS.index(name) for name in axes.names]
         self._zero = part_zero
         self._lines: list[str] = []
-        self._line = 0
+        self.line = 0
         self._unit = 1.0
         self._offsets = {"g5x": np.zeros(9), "g92": np.zeros(9), "tool": np.zeros(9)}
         self._turn = np.eye(2)
@@ -141,9 +182,10 @@ class _Writer:
         self._begun = False
 
     def take(self, line: int | None, call: str, arguments: str) -> None:
-        self._line = line or self._line
+        self.line = line or self.line
         if any(part in call for part in _REFUSED):
-            raise UsageError(f"line {self._line}: the twin has nothing for LinuxCNC's {call}")
+            message = f"the twin has nothing for LinuxCNC's {call}"
+            raise self._listing.error(self.line, message, _READ_BY_THE_TWIN)
         values = (
             [float(text) for text in _NUMBER.findall(arguments)] if call in _WITH_NUMBERS else []
         )
@@ -216,7 +258,7 @@ class _Writer:
         end[3 : 3 + len(further)] = further
         centre[[one, two, three]] = first, second, third_end
         if self._plane != "G17" and not np.array_equal(self._turn, np.eye(2)):
-            raise UsageError(f"line {self._line}: an arc in an inclined plane")
+            raise self._listing.error(self.line, "an arc in an inclined plane", _READ_BY_THE_TWIN)
         self._arc(self._part(end), self._part(centre)[:3], turns)
 
     def _arc(self, end: FloatArray, centre: FloatArray, turns: float) -> None:
@@ -260,8 +302,8 @@ class _Writer:
         return self._feed * (self._unit if linear or self._feed_mode == "G95" else 1.0)
 
     def _write(self, text: str) -> None:
-        self._lines += [""] * (self._line - 1 - len(self._lines))
-        self._lines.append(f"N{self._line} {text}")
+        self._lines += [""] * (self.line - 1 - len(self._lines))
+        self._lines.append(f"N{self.line} {text}")
 
     def _in_mm(self, values: FloatArray) -> FloatArray:
         scale = np.array([self._unit] * 3 + [1.0] * 3 + [self._unit] * 3)

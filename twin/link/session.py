@@ -25,8 +25,9 @@ from twin.link.linuxcnc import (
 from twin.link.linuxcnc_program import linuxcnc_program
 from twin.link.lockstep import LockstepMotion
 from twin.link.place import Places
+from twin.link.program_reading import Listing
 from twin.machine.simulation.live import LiveMachine
-from twin.machine.watching.alarms import Alarm, AlarmCode
+from twin.machine.watching.alarms import Alarm, AlarmCode, AlarmStandsError
 from twin.nc.canonical import FloatArray, concatenate
 from twin.run.dry_run.dry_run import InterpretedProgram
 from twin.run.judging.outcome import Outcome
@@ -60,7 +61,8 @@ def rehearse(run: Run, tool: ToolTable, position: FloatArray) -> None:
     live.stand_at(position)
     live.follow(live.setpoint)
     live.brake(1)
-    live.clear()
+    with contextlib.suppress(AlarmStandsError):
+        live.clear()
 
 
 def _enough(_stage: str, _share: float) -> None:
@@ -85,7 +87,7 @@ class Wish(NamedTuple):
         following_error_limit: LinuxCNC's own limit [mm or deg]; None: the machine's.
     """
 
-    own_program: Path | None = None
+    own_program: Listing | None = None
     display: str | None = None
     opens: bool = False
     following_error_limit: float | None = None
@@ -131,7 +133,7 @@ def run_on_twin(
             settings = Settings(
                 display=wish.display or _operator_command(own, len(axes)),
                 port=motion.port,
-                programs=(wish.own_program or preparation.job.program).resolve().parent,
+                programs=_path_of(preparation, wish).resolve().parent,
                 opened=own / PROGRAM_NAME if wish.opens else None,
                 following_error_limit=wish.following_error_limit,
                 part_zero=run.part_zero,
@@ -143,8 +145,7 @@ def run_on_twin(
                 running(start, ini, folder / LOG_NAME) as linuxcnc,
             ):
                 motion.goes_on = linuxcnc.goes_on
-                if not session:
-                    motion.last_word = _last_word(linuxcnc, axes.names)
+                motion.last_word = _last_word(linuxcnc, places, axes.names, session=session)
                 outcome = run.execute(folder, progress, motion)
                 if motion.left:
                     linuxcnc.end_soon()
@@ -161,14 +162,19 @@ def run_on_twin(
         return outcome, figures
 
 
+def _path_of(preparation: Preparation, wish: Wish) -> Path:
+    own = wish.own_program
+    return preparation.job.program if own is None else own.path
+
+
 def _write_program(
-    program: InterpretedProgram, preparation: Preparation, path: Path, own_program: Path | None
+    program: InterpretedProgram, preparation: Preparation, path: Path, own_program: Listing | None
 ) -> Places:
     """Write what LinuxCNC reads, and tell where its lines lie in the prepared program."""
     chunks, axes = list(program.chunks()), preparation.machine.axes
     moves = concatenate([chunk.moves for chunk in chunks], axes)
     if own_program is not None:
-        write_text(path, own_program.read_text(encoding="utf-8", errors="replace"))
+        write_text(path, own_program.text)
         return Places(moves, moves.block)
     written = linuxcnc_program(
         chunks, axes, lambda line: "{}:{}".format(*preparation.source.place(line))
@@ -190,13 +196,16 @@ def _operator_command(folder: Path, joints: int) -> str:
     return f"{path} --program {program} --joints {joints} --twin {os.getpid()} --log {log}"
 
 
-def _last_word(linuxcnc: LinuxCnc, axes: tuple[str, ...]) -> Callable[[float, int], Alarm | None]:
-    """What LinuxCNC itself stopped for, asked when it has gone."""
+def _last_word(
+    linuxcnc: LinuxCnc, places: Places, axes: tuple[str, ...], *, session: bool
+) -> Callable[[float, int], Alarm | None]:
+    """What LinuxCNC itself stopped for, asked when it has gone: with or without a word, before its program's end."""
 
     def alarm(time_s: float, line: int) -> Alarm | None:
         linuxcnc.end_soon()
         events = linuxcnc.events()
-        if any(event.event == "finished" for event in events):
+        finished = session or any(event.event == "finished" for event in events)
+        if finished and places.done:
             return None
         errors = [event.text for event in events if event.event == "error"]
         code: AlarmCode = "control-stop"
@@ -204,9 +213,8 @@ def _last_word(linuxcnc: LinuxCnc, axes: tuple[str, ...]) -> Callable[[float, in
         for text in errors:
             if found := _FOLLOWING_ERROR.search(text):
                 code, axis = "following-error", axes[int(found.group(1))]
-        said = "; ".join(errors or [event.text for event in events[-1:]])
-        if linuxcnc.lost:
-            said = f"its process {linuxcnc.lost} has gone"
+        gone = [f"its process {linuxcnc.lost} has gone"] if linuxcnc.lost else []
+        said = "; ".join(errors + gone or [event.text for event in events[-1:]])
         reason = f"LinuxCNC stopped: {said}" if said else "LinuxCNC ended before the program did"
         return Alarm(code, line, time_s, axis, reason)
 

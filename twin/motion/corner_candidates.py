@@ -17,19 +17,11 @@ from twin.columns import join
 from twin.motion.blocks.blocks import Blocks, BoolArray, Surroundings
 from twin.motion.blocks.corners import Borders, find_borders
 from twin.motion.limits import MotionLimits
-from twin.motion.open_chains import (
-    MOST_SLOW_ARCS,
-    OpenChains,
-    first_pieces,
-    slow_arcs,
-)
+from twin.motion.open_chains import OpenChains, first_pieces
 from twin.motion.phases_of_pieces import seconds_alone
 from twin.motion.pieces.pieces import BATCH, Pieces, blocks_to_cut, cut
 from twin.motion.steps import Step
 from twin.nc.canonical import Chunk, Corner, FloatArray, IntArray
-
-MOST_BLOCKS = 512
-"""Between two stops, for stopping everywhere to be tried: of more, a plan takes too long for what it may gain."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -80,7 +72,7 @@ class _Spans(Step[Surroundings, _Span]):
         stopping = _worth_stopping(part, borders)
         whole = set[tuple[int, int]]()
         if self._chains.has_knees and np.any(part.blocks.corner == Corner.CONTINUOUS):
-            whole |= set(_continuous(part, borders, slow_arcs(pieces, self._largest_override)))
+            whole |= set(_continuous(part, borders))
         waiting, done = deque(stopping), 0
         for first, last in _outermost(whole, stopping):
             begin, end = begins[[first - part.first, last - part.first]].tolist()
@@ -165,21 +157,17 @@ def _worth_stopping(surroundings: Surroundings, borders: Borders) -> list[tuple[
     knee = (borders.entry > 0.0) & (borders.entry < np.inf)
     doubtful = ((borders.width > 0.0) & (bends | changes)) | (knee & bends)
     stops = np.flatnonzero((borders.entry == 0.0) & (borders.width == 0.0))
-    return [
-        (first, last)
-        for first, last in _between(surroundings, stops, doubtful)
-        if last - first <= MOST_BLOCKS
-    ]
+    if not np.any(blocks.corner == Corner.CONTINUOUS):
+        # A path that is kept exactly is the same whatever happens at the ends of these blocks: it may stop there too.
+        stops = np.union1d(stops, [surroundings.first, surroundings.last])
+    return list(_between(surroundings, stops, doubtful))
 
 
-def _continuous(
-    surroundings: Surroundings, borders: Borders, slow_arcs: BoolArray
-) -> list[tuple[int, int]]:
+def _continuous(surroundings: Surroundings, borders: Borders) -> list[tuple[int, int]]:
     """Between which stops that are asked for a continuous corner is rounded, or stops.
 
     Args:
         borders: Before each of them.
-        slow_arcs: From ``slow_arcs``, of those to work on.
 
     Returns:
         First block and the one after the last.
@@ -187,13 +175,7 @@ def _continuous(
     blocks = surroundings.blocks
     asked = np.flatnonzero(blocks.corner == Corner.EXACT_STOP)
     slowed = (blocks.corner == Corner.CONTINUOUS) & ((borders.width > 0.0) | (borders.entry == 0.0))
-    bent = np.append(0, np.cumsum(slow_arcs))
-    first_known = surroundings.first
-    return [
-        (first, last)
-        for first, last in _between(surroundings, asked, slowed)
-        if bent[last - first_known] - bent[first - first_known] <= MOST_SLOW_ARCS
-    ]
+    return list(_between(surroundings, asked, slowed))
 
 
 def _between(

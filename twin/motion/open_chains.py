@@ -11,16 +11,12 @@ from typing import NamedTuple
 import numpy as np
 
 from twin.columns import join
-from twin.motion.blocks.blocks import BoolArray, Surroundings
+from twin.motion.blocks.blocks import Surroundings
 from twin.motion.blocks.corners import CONTEXT, Borders, find_borders
 from twin.motion.limits import MotionLimits
 from twin.motion.phases_of_pieces import seconds_alone
 from twin.motion.pieces.pieces import Pieces, cut
 from twin.nc.canonical import Corner, IntArray
-
-MOST_SLOW_ARCS = 512
-"""In a path for which the exact one is tried: arcs that are slower than the feed get a time law of their own, which
-takes most of a plan."""
 
 AT_FEED = 1.0 - 1e-9
 """Share of the feed from which on nothing but the feed bounds a piece."""
@@ -135,11 +131,6 @@ class OpenChains:
         one, other = first_pieces(here.pieces)[[look[0] - begin, look[1] - begin]].tolist()
         if not _is_slowed(here.pieces[one:other], self._largest_override):
             return None
-        if (
-            np.count_nonzero(slow_arcs(here.pieces[one:other], self._largest_override))
-            > MOST_SLOW_ARCS
-        ):
-            return None
         there = self._cut(_kept(here.part, *exact))
         rounded = here
         if own + CONTEXT < look[1]:
@@ -159,15 +150,6 @@ class OpenChains:
         )
         slack = WAY_BACK if begins_rounding else 0.0
         return there if seconds[1] < seconds[0] * (1.0 + slack) else None
-
-
-def slow_arcs(pieces: Pieces, largest_override: float) -> BoolArray:
-    """Which blocks are arcs that are driven more slowly than is asked: a time law of its own costs most of a plan."""
-    wanted = pieces.feed * np.where(pieces.rapid, 1.0, largest_override)
-    slow = (pieces.velocity < AT_FEED * wanted) & (
-        pieces.geometry.table.angle[pieces.geometry.row] != 0.0
-    )
-    return np.logical_or.reduceat(slow, first_pieces(pieces)[:-1])
 
 
 def first_pieces(pieces: Pieces) -> IntArray:

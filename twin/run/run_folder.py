@@ -26,33 +26,25 @@ def program_stem(path: Path) -> str:
 
 @contextlib.contextmanager
 def without_verdict(folder: Path) -> Iterator[None]:
-    """Leave no verdict where a run fails: neither an earlier one nor a part of its own.
+    """Leave no earlier verdict where a run fails before it holds its folder.
 
-    A folder that another run holds is left as it is, and so it is where the user interrupts. Within ``run_folder`` the
-    run itself would be that other one: this is the outer of the two.
+    A folder that another run holds is left as it is, and so it is where the user interrupts.
+
+    Args:
+        folder: Of the results; it need not exist.
     """
     try:
         yield
     except Exception:
-        with contextlib.suppress(OSError, UsageError):
-            if folder.is_dir():
-                _remove_verdict(folder)
+        if folder.is_dir():
+            with contextlib.suppress(OSError, UsageError), run_folder(folder, VERDICT_FILES):
+                pass
         raise
-
-
-def _remove_verdict(folder: Path) -> None:
-    handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
-    try:
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        for name in VERDICT_FILES:
-            (folder / name).unlink(missing_ok=True)
-    finally:
-        os.close(handle)
 
 
 @contextlib.contextmanager
 def run_folder(folder: Path, results: Iterable[str]) -> Iterator[None]:
-    """Hold a folder for one run; at its begin the files of an earlier run are removed.
+    """Hold a folder for one run; at its begin the files of an earlier run are removed, where it fails its verdict.
 
     What a killed run left half-written under a temporary name is removed too. The folder itself
     carries the lock, so that nothing stays behind when the holder is killed.
@@ -72,8 +64,16 @@ def run_folder(folder: Path, results: Iterable[str]) -> Iterator[None]:
         except BlockingIOError as error:
             message = f"{folder}: another run writes into this folder; give --out another one"
             raise UsageError(message) from error
-        for path in [*(folder / name for name in results), *folder.glob(LEFTOVERS)]:
-            path.unlink(missing_ok=True)
-        yield
+        _remove([*(folder / name for name in results), *folder.glob(LEFTOVERS)])
+        try:
+            yield
+        except Exception:
+            _remove(folder / name for name in VERDICT_FILES)
+            raise
     finally:
         os.close(handle)
+
+
+def _remove(paths: Iterable[Path]) -> None:
+    for path in paths:
+        path.unlink(missing_ok=True)

@@ -135,7 +135,7 @@ def test_a_program_that_moves_an_axis_that_it_lacks_is_refused_with_those_it_has
         ("velocity = 100.0", "velocty = 100.0", "did you mean 'velocity'?"),
         ("[path]", "[pth]", "unknown key 'pth'; did you mean 'path'?"),
         ("kv = 5.0", "kv = nan", "'axes.X.kv': Input should be a finite number"),
-        ("kv = 5.0", 'kv = "5"', "'axes.X.kv': Input should be a valid number (got '5')"),
+        ("kv = 5.0", 'kv = "5"', "'axes.X.kv': a number is written without quotes: 5 (got '5')"),
         ("kv = 5.0", "kv = 1e9", "kv up to 600 works"),
         ("schema = 1", "schema = 1\nservo_period_s = 1e-9", "greater than or equal to 0.0001"),
         ("schema = 1", "schema = 1\nservo_period_s = 10", "less than or equal to 0.02"),

@@ -101,6 +101,41 @@ def test_an_acceleration_keeps_its_limit_between_the_instants_that_are_looked_at
     assert np.abs(run(program, machine).acceleration[:, 0]).max() <= 100.0 * (1.0 + 1e-4)
 
 
+def test_a_velocity_keeps_its_limit_between_the_instants_that_are_looked_at() -> None:
+    """X may go 5 mm/s along an arc of R16.5, and its acceleration changes sign while the path brakes."""
+    machine = dataclasses.replace(
+        mill(),
+        velocity=np.array([5.0, 5.0, 19.0, 5.0]),
+        acceleration=np.full(4, 50.0),
+        jerk=np.array([500.0, 500.0, 510.0, 500.0]),
+        path_acceleration=50.0,
+        path_jerk=501.0,
+    )
+    program = Program().arc((-16.5, 0.0, 0.5), (0.0, 1.0, 0.0), 87.0, feed=None)
+    assert np.abs(run(program, machine).velocity[:, 0]).max() <= 5.0 * (1.0 + 1e-9)
+
+
+def test_a_brake_that_begins_within_a_run_keeps_the_jerk() -> None:
+    """There the acceleration was 2.6 times what the bounds allow, and Y's jerk 1.3 times its limit."""
+    machine = dataclasses.replace(
+        mill(),
+        velocity=np.array([496.0, 496.0, 14.0, 85.0]),
+        acceleration=np.array([16091.0, 5527.0, 4820.0, 1043.0]),
+        jerk=np.array([16671.0, 4212.0, 771169.0, 431087.0]),
+        path_acceleration=6335.0,
+        path_jerk=56346.0,
+    )
+    program = Program()
+    program.arc((-7.6, 10.4, 0.0), (0.0, 0.0, 1.0), -210.0, advance=1.2, turn=-22.0, feed=28041.0)
+    for pressed in range(101, 116, 7):
+        motion = live(program, machine, 1.5)
+        parts = [motion.advance(pressed)]
+        motion.feed_override = 0.5
+        while not motion.finished:
+            parts.append(motion.advance(500))
+        assert_within_limits(join(parts), machine, PERIOD)
+
+
 @pytest.mark.parametrize(("radius", "longest"), [(0.5, 1.3), (5.0, 1.7)])
 def test_a_hold_leaves_a_run_before_its_end(radius: float, longest: float) -> None:
     """It comes back to the plan of the bounds first, whose own brake takes 1.1 s and 1.5 s."""

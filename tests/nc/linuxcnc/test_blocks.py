@@ -55,6 +55,9 @@ REFUSED = {
     "o1.5 sub\no1.5 endsub\nM2\n": "o-word",
 }
 ENDS = {
+    "F90\nM70\nG52 X5 Z2\nG1 X1\nM72\nG1 X3 Z1\nM2\n": [3.0, 0.0, 1.0],
+    "F90\nG92 X10\nM70\nG92.2\nG1 X1\nM72\nG1 X12\nM2\n": [2.0, 0.0, 0.0],
+    "F90\no1 sub\nM73\nG92 X7\nG1 X8\no1 endsub\no1 call\nG1 X4\nM2\n": [4.0, 0.0, 0.0],
     "F90\nG0 Z9\nG81 X1 Z-1 R2\nX2 R3\nX4 R1.5\nX5 R4 L2\nG91 X1 R-4 L2\nG80\nM2\n": [7.0, 0.0, 5.0],
     "F90\nG0 Z9\nG91 G83 X1 Z-3 R-7 Q1\nX2 R-6\nX4 R-8 L2\nG80\nM2\n": [11.0, 0.0, 1.0],
     "F90\nG0 Z9\nG81 X1 Z-1 R2\nG85 X2 Z-2 R3\nG98 X3 R12\nM2\n": [3.0, 0.0, 12.0],

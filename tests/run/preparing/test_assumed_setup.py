@@ -8,9 +8,10 @@ import pytest
 from tests.run.preparing.test_assumed_job import raw
 from twin.errors import UsageError
 from twin.nc.canonical import concatenate
+from twin.nc.dialects.recognition import comments_of
 from twin.nc.text.diagnostics.diagnostics import ProgramError
 from twin.nc.text.source import source_from_text
-from twin.run.preparing.assumed_job import text_beside
+from twin.run.preparing.assumed_job import text_beside, with_assumptions
 from twin.run.preparing.preparation import Preparation, prepare
 from twin.run.reading.assumed_machine import assumed_machine, turned_axes
 from twin.run.reading.assumed_tools import tool_of_comment
@@ -117,6 +118,115 @@ def test_rapids_far_below_zero_show_that_it_is_above_the_stock(tmp_path: Path) -
     assert made.job.file.stock is not None
     assert made.job.file.stock.position[2] == -9.75
     assert any("the first feed goes down from Z-9.75" in line for line in assumed.assumptions)
+
+
+@pytest.mark.parametrize(
+    ("comment", "size", "across"),
+    [
+        ("STOCK 50 X 50 X 120 MM", (120.0, 50.0, 50.0), None),
+        ("STOCK X100 Y40 Z30", (100.0, 40.0, 30.0), None),
+        ("BAR DIA 60 X 120", None, 60.0),
+        ("MATERIAL Ø60 L=120", None, 60.0),
+    ],
+)
+def test_a_comment_gives_the_bar_that_axis_a_turns(
+    comment: str, size: tuple[float, ...] | None, across: float | None, tmp_path: Path
+) -> None:
+    made, assumed = raw(tmp_path, ROTARY.replace("O1\n", f"O1 ({comment})\n"))
+    stock = made.job.file.stock
+    assert stock is not None
+    assert (stock.size, stock.diameter) == (size, across)
+    length = 120.0 if size is None else size[0]
+    assert stock.position == (40.0 - length / 2.0, 0.0, 0.5 * (across or stock.extent[2]))
+    chain = made.machine.part_frame.chain
+    assert chain is not None
+    begin = stock.position[0] - length / 2.0
+    assert made.job.file.part_zero["X"] + begin == pytest.approx(chain.table[0])
+    assert any("from a comment in the program's head" in line for line in assumed.assumptions)
+
+
+@pytest.mark.parametrize(
+    ("comment", "size", "diameter"),
+    [
+        ("Part size X:100 Y:100 Z:50", (100.0, 100.0, 50.0), None),
+        ("Quader: QX90 QY80 QZ100", (90.0, 80.0, 100.0), None),
+        ("BLANK D=80 H=30", None, 80.0),
+        ("BAR STOCK SUPPORT, 3 X 4 PIECES", (60.0, 50.0, 11.0), None),  # none: around the path
+    ],
+)
+def test_comments_give_the_blank(
+    comment: str, size: tuple[float, ...] | None, diameter: float | None, tmp_path: Path
+) -> None:
+    made, _ = raw(tmp_path, f"O1\n({comment})\n{HEAD}{passes(-1.0)}{END}")
+    stock = made.job.file.stock
+    assert stock is not None
+    assert (stock.size, stock.diameter) == (size, diameter)
+    assert stock.position[2] == 0.0
+
+
+def test_rapids_into_the_part_are_judged_where_a_program_feeds_nowhere(tmp_path: Path) -> None:
+    drilling = "G0 X20. Y10. Z10.\nZ0.1\nZ-3.5 F2.\nZ10. F600.\n"
+    made, assumed = raw(tmp_path, f"{HEAD}{drilling}M5\nM30\n")  # G0 is still in force
+    assert made.job.file.stock is not None
+    assert made.job.file.stock.position == (20.0, 10.0, 0.0)
+    assert any("which feeds nowhere, goes below Z0" in line for line in assumed.assumptions)
+    for harmless in (drilling.replace("Z-3.5", "Z0."), f"M5\n{drilling}"):
+        made, _ = raw(tmp_path, f"{HEAD.replace('S900 M3', '')}{harmless}M30\n")
+        assert made.job.file.stock is None
+
+
+def test_a_tool_that_rises_in_its_hole_takes_nothing_from_the_stock(tmp_path: Path) -> None:
+    cycle = "G0 Z20.\nX0. Y0.\nG73 G99 X10. Z-30. R5. Q10. F200.\nX70.\nG80\n"
+    made, assumed = raw(tmp_path, f"O1\n{HEAD}{cycle}{END}")
+    assert made.job.file.stock is not None
+    assert made.job.file.stock.extent[0] == 80.0
+    assert not any("go below its top" in line for line in assumed.assumptions)
+
+
+KLARTEXT = """0 BEGIN PGM NAMED MM
+1 ; T915 | FRA-P8221-S5.7R0_H63W6L65 / DM=5.7 CR=0 TL=101
+2 BLK FORM 0.1 Z X-50 Y-50 Z-20
+3 BLK FORM 0.2 X+50 Y+50 Z+0
+4 * - TOOL: T915 | FRA-P8221-S5.7R0_H63W6L65 / DM=5.7 CR=0 TL=101
+5 TOOL CALL "SN0570" Z S6700
+6 L X+0 Y+0 R0 FMAX M3
+7 L Z+20 R0 FMAX
+8 CYCL DEF 208 BORE MILLING ~
+   Q200=+2 ~
+   Q201=-10 ~
+   Q206=+300 ~
+   Q334=+1 ~
+   Q203=+0 ~
+   Q204=+20 ~
+   Q335=+9 ~
+   Q342=+0 ~
+   Q351=+1
+9 CYCL CALL
+10 TOOL CALL "FRAESER_D8" Z S5000
+11 L X+30 Y+0 R0 FMAX M3
+12 L Z+2 R0 FMAX
+13 L Z-2 R0 F200
+14 L Z+20 R0 FMAX
+15 M30
+16 END PGM NAMED MM
+"""
+
+
+def test_tools_that_are_called_by_names_have_the_radius_of_their_comment(tmp_path: Path) -> None:
+    """Cycle 208 asks for it: a hole of 9 mm takes no tool of 10."""
+    (tmp_path / "part.h").write_text(KLARTEXT)
+    preparation = prepare(tmp_path / "part.h", assuming=True)
+    made, _ = with_assumptions(preparation, machine=None, strict=False)
+    tools = [(each.name, each.diameter, each.length) for each in made.job.file.tools]
+    assert tools == [("SN0570", 5.7, 101.0), ("FRAESER_D8", 8.0, 60.0)]
+    assert list(made.interpretation().chunks())
+
+
+def test_open_brackets_of_a_set_up_sheet_tell_the_radius() -> None:
+    assert comments_of("(     T01 TC1: KL+087.000 KR020.000 NZ06") == [
+        "T01 TC1: KL+087.000 KR020.000 NZ06"
+    ]
+    assert tool_of_comment("TC1: KL+087.000 KR020.000 NZ06", inches=False).diameter == 40.0
 
 
 def test_a_full_circle_is_no_drilling(tmp_path: Path) -> None:
@@ -266,6 +376,27 @@ def test_text_before_the_first_percent_is_passed_over(tmp_path: Path) -> None:
     interpretation = made.interpretation()
     assert sum(len(chunk.moves) for chunk in interpretation.chunks()) > 0
     assert next(each.code for each in interpretation.diagnostics) == "before-tape-start"
+
+
+def test_a_set_up_sheet_before_a_klartext_program_is_passed_over(tmp_path: Path) -> None:
+    path = tmp_path / "part.h"
+    begin = "( Set-up sheet\n(   Tool: L X+10\n(\n"
+    path.write_text(f"{begin}BEGIN PGM A MM\nTOOL CALL 1 Z S2000\nL X+10 F100\nEND PGM A MM\n")
+    interpretation = prepare(path, assuming=True).interpretation()
+    assert sum(len(chunk.moves) for chunk in interpretation.chunks()) == 1
+    assert [each.code for each in interpretation.diagnostics] == ["before-program"]
+    path.write_text("L X+5 F100\n" + path.read_text().removeprefix(begin))
+    assert sum(len(chunk.moves) for chunk in prepare(path).interpretation().chunks()) == 2
+
+
+def test_no_dialect_is_offered_that_refuses_the_same_line(tmp_path: Path) -> None:
+    path = tmp_path / "part.nc"
+    path.write_text("G21 G90\n(PART (REV A).MCX)\nG0 X1.\nM30\n")
+    with pytest.raises(ProgramError) as raised:
+        prepare(path, assuming=True)
+    assert raised.value.diagnostic.hint == (
+        "close the first comment before, or leave the inner ( ) out"
+    )
 
 
 def test_a_program_that_a_router_alone_reads_is_its(tmp_path: Path) -> None:

@@ -5,7 +5,7 @@ import re
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import typer
 
@@ -28,6 +28,7 @@ from twin.run.run_folder import run_folder, without_verdict
 
 if TYPE_CHECKING:
     from twin.link.lockstep import LockstepMotion
+    from twin.link.program_reading import Listing
 
 SECONDS_PER_US = 1e-6
 LINUXCNC_SUFFIX = ".ngc"
@@ -77,7 +78,7 @@ def link_linuxcnc(
     changes: list[Change] = [("machine.servo_period_s", period_us * SECONDS_PER_US)]
     with without_verdict(out):
         own = None if dialect or program is None else _linuxcnc_program(program, changes)
-    with without_verdict(out), run_folder(out, RESULT_FILES):
+    with run_folder(out, RESULT_FILES):
         if headless is None:
             _require_screen(display)
         if program is None:
@@ -89,7 +90,7 @@ def link_linuxcnc(
             preparation = _prepare_as_read(own, machine, out, changes)
         run = Run(preparation)
         wish = Wish(
-            own_program=None if own is None else own.program,
+            own_program=None if own is None else own.listing,
             display=display if headless is None else None,
             opens=opened is not None,
             following_error_limit=following_error_limit,
@@ -106,7 +107,7 @@ def link_linuxcnc(
         own_language = {} if own is None else {"dialect": OWN_LANGUAGE}
         write_results(run, outcome, out, {"link": figures, **own_language})
         if own is not None and outcome.verdict.exit_code is ExitCode.FAILED:
-            _explain_blending(own.program)
+            _explain_blending(own.listing)
     print_findings(run, outcome)
     typer.echo(summary(run, outcome, out))
     return outcome.verdict.exit_code
@@ -128,13 +129,12 @@ def _shown(run: Run, motion: "LockstepMotion") -> Iterator[None]:
         yield
 
 
-def _explain_blending(program: Path) -> None:
+def _explain_blending(listing: "Listing") -> None:
     """Say what a G64 without P does, along with a verdict that fails."""
-    lines = program.read_text(encoding="utf-8", errors="replace").splitlines()
-    for number, line in enumerate(lines, 1):
+    for number, line in enumerate(listing.text.splitlines(), 1):
         if _BLENDING.match(line):
             typer.echo(
-                f"{program}:{number}: G64 without P lets LinuxCNC round corners as far as its speed wants "
+                f"{listing.path}:{number}: G64 without P lets LinuxCNC round corners as far as its speed wants "
                 "it; what it cuts off is contour error here: G64 P0.01 keeps within 0.01 mm, G61 stops "
                 "at none and cuts none off",
                 err=True,
@@ -150,11 +150,20 @@ def _require_screen(display: str) -> None:
         )
 
 
-def _linuxcnc_program(path: Path, changes: list[Change]) -> Job | None:
-    """The job of a program in LinuxCNC's own language; None for one of the twin's dialects.
+class _OwnProgram(NamedTuple):
+    """A program in LinuxCNC's own language."""
+
+    job: Job
+    listing: "Listing"
+
+
+def _linuxcnc_program(path: Path, changes: list[Change]) -> _OwnProgram | None:
+    """A program in LinuxCNC's own language; None for one of the twin's dialects.
 
     A program that no dialect's own words are in is LinuxCNC's.
     """
+    from twin.link.program_reading import listing_of
+
     if not path.is_file():
         return None
     job = load_job(path, changes)
@@ -164,21 +173,22 @@ def _linuxcnc_program(path: Path, changes: list[Change]) -> Job | None:
         try:
             recognise(read_source(job.program, None))
         except UsageError:
-            return job
+            return _OwnProgram(job, listing_of(job.program))
         return None
-    return job
+    return _OwnProgram(job, listing_of(job.program))
 
 
 def _prepare_as_read(
-    job: Job, machine: str | None, out: Path, changes: list[Change]
+    own: _OwnProgram, machine: str | None, out: Path, changes: list[Change]
 ) -> Preparation:
     """Prepare a program of LinuxCNC's own language, as LinuxCNC's interpreter reads it."""
     from twin.link.program_reading import DIALECT, read_program
 
+    job = own.job
     read = load_machine(job, machine, changes)
     layout = lay_out(job.file, read)
     zero, start = layout.part_zero, layout.start + layout.part_zero
     path = (out / READ_PROGRAM).resolve()
-    write_text(path, read_program(job.program, read.axes, start, zero, job.file))
+    write_text(path, read_program(own.listing, read.axes, start, zero, job.file))
     file = job.file.model_copy(update={"program": str(path), "dialect": DIALECT})
     return prepare_job(job.with_file(file), machine=machine, changes=changes)

@@ -4,7 +4,6 @@ from pathlib import Path
 
 import typer
 
-from twin.commands.compilation import start_compiling
 from twin.commands.runs.pictures import ALARMS_OF_CONTACT, draw_contact, film_run
 from twin.compilation.announcement import announce_compilation
 from twin.errors import ExitCode, RenderError, UsageError
@@ -39,7 +38,13 @@ def run_and_print(
     Raises:
         TwinError: Something is wrong before the run could end; see each error's exit code.
     """
-    announce_compilation(meanwhile=lambda: start_compiling(path, dialect, machine))
+
+    def compile_meanwhile() -> None:
+        from twin.commands.compilation import start_compiling
+
+        start_compiling(path, dialect, machine)
+
+    announce_compilation(meanwhile=compile_meanwhile)
     folder = out or Path("out") / program_stem(path)
     with without_verdict(folder):
         preparation, assumed = prepare_run(path, dialect=dialect, machine=machine, strict=strict)
@@ -48,7 +53,7 @@ def run_and_print(
         elif save_job is not None:
             raise UsageError(f"--save-job: {preparation.job.path} is the program's job already")
         run = Run(preparation)
-    with without_verdict(folder), run_folder(folder, RESULT_FILES):
+    with run_folder(folder, RESULT_FILES):
         with shown_progress() as progress:
             outcome = run.execute(folder, progress)
             if video and outcome.samples:

@@ -4,7 +4,6 @@ Names and signs are those of ISO 230-1 (``twin.toolpath.machine_geometry``).
 """
 
 import re
-from typing import Annotated
 
 import pydantic
 from pydantic import Field
@@ -14,7 +13,6 @@ from twin.nc.canonical import SPATIAL_AXES, Axes
 from twin.toolpath.machine_geometry import ErrorTerm, MachineGeometry
 from twin.units import MDEG_PER_DEGREE, MM, UM_PER_MM
 
-Coordinate = Annotated[float, Field(strict=True)]
 _NAME = re.compile(r"E([A-Z])([A-Z]\w*)")
 _FAR = 1e5
 """Beyond any travel: a slope is a table between the two [mm]."""
@@ -24,11 +22,11 @@ _TURN = 360.0
 class ErrorTable(Table):
     """An error by the position of its axis; straight lines between, constant beyond the ends."""
 
-    at: tuple[Coordinate, ...] = Field(min_length=1)
+    at: tuple[float, ...] = Field(min_length=1)
     """Positions of the axis, rising [mm or deg]; of a rotary axis without travel within one turn."""
-    um: tuple[Coordinate, ...] | None = None
+    um: tuple[float, ...] | None = None
     """The error there, of errors along X, Y, Z [µm]."""
-    mdeg: tuple[Coordinate, ...] | None = None
+    mdeg: tuple[float, ...] | None = None
     """The error there, of the indexing of a rotary axis [mdeg]."""
 
     @pydantic.model_validator(mode="after")
@@ -46,20 +44,20 @@ class ErrorTable(Table):
 class SquarenessTable(Table):
     """Angles between axes less 90 degrees [µm/m]: positive where the angle is greater."""
 
-    XY: Coordinate = 0.0
+    XY: float = 0.0
     """Between X and Y: at greater Y the tool is at lesser X."""
-    YZ: Coordinate = 0.0
+    YZ: float = 0.0
     """Between Y and Z: at greater Z the tool is at lesser Y."""
-    ZX: Coordinate = 0.0
+    ZX: float = 0.0
     """Between Z and X: at greater Z the tool is at lesser X."""
 
 
 class TableAxisTable(Table):
     """Where the rotary table's axis lies, against where the control takes it to be."""
 
-    offset_um: tuple[Coordinate, Coordinate] = (0.0, 0.0)
+    offset_um: tuple[float, float] = (0.0, 0.0)
     """Along X and Y (EX0C, EY0C) [µm]."""
-    tilt_um_per_m: tuple[Coordinate, Coordinate] = (0.0, 0.0)
+    tilt_um_per_m: tuple[float, float] = (0.0, 0.0)
     """Turned about X and about Y (EA0C, EB0C) [µm/m]."""
 
 

@@ -6,18 +6,16 @@ import pydantic
 from pydantic import Field
 
 from twin.files.toml import Table
-from twin.job.builder import MachineFunctions, ToolChangeTable
+from twin.job.builder import Coordinate, MachineFunctions, Positive, ToolChangeTable
 from twin.job.fixture import FixtureTable
 from twin.machine.description.geometry import GeometryTable
 from twin.nc.canonical import SPATIAL_AXES, Axes
 from twin.units import AxisKind
 
-Positive = Annotated[float, Field(gt=0, strict=True)]
-NonNegative = Annotated[float, Field(ge=0, strict=True)]
-Share = Annotated[float, Field(ge=0, le=1, strict=True)]
-Coordinate = Annotated[float, Field(strict=True)]
-Lateness = Annotated[float, Field(ge=0, le=0.1, strict=True)]
-ServoPeriod = Annotated[float, Field(ge=1e-4, le=0.02, strict=True)]
+NonNegative = Annotated[float, Field(ge=0)]
+Share = Annotated[float, Field(ge=0, le=1)]
+Lateness = Annotated[float, Field(ge=0, le=0.1)]
+ServoPeriod = Annotated[float, Field(ge=1e-4, le=0.02)]
 
 
 class LuGreTable(Table):
@@ -70,8 +68,8 @@ class AxisTable(Table):
     """Of guides and screw [N s/mm or N m s/deg]."""
     dry_friction: NonNegative = 0.0
     """Coulomb friction of guides and screw [N or N m]."""
-    constant_force: Coordinate = 0.0
-    """What pulls the axis in either direction of travel, positive along + [N or N m]: weight that no
+    constant_force: float = 0.0
+    """What pulls the axis whichever way it goes, positive along + [N or N m]: weight that no
     counterbalance carries, a cable, a cover's spring."""
     lugre: LuGreTable | None = None
     """Refines ``dry_friction``; none: Coulomb's law."""
@@ -110,7 +108,7 @@ class AxisTable(Table):
     """Largest drive force [N or N m]; 0: no limit."""
     current_scale: NonNegative = 0.0
     """Force of the drive per ampere that its control shows [N/A or N m/A]; 0: not known."""
-    current_at_rest: Coordinate = 0.0
+    current_at_rest: float = 0.0
     """What the control shows where the drive gives no force [A]."""
     saturation_time_s: NonNegative = 0.05
     """Alarm when the drive stays at its force limit for this long [s]."""
@@ -197,7 +195,7 @@ class GrowthTable(Table):
     """What warms it: ``spindle``, by its speed, or an axis, by the power of its drive."""
     at: Positive
     """Speed [1/min] or power [W] that leads to ``um``."""
-    um: tuple[Coordinate, Coordinate, Coordinate]
+    um: tuple[float, float, float]
     """Where the tool goes in the end, along X, Y and Z [µm]."""
     time_constant_s: Positive
     """After which 63 % of it are there [s]."""

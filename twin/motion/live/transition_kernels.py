@@ -44,6 +44,9 @@ def find_transition(limits: FloatArray, wanted: PathAhead, state: State) -> tupl
         there is none.
     """
     i, x, v, a = state
+    if a > limits[2, i] * (1.0 + ROUNDING):
+        # As in a run with a time law of its own: the jerk of a brake allows for no more than that.
+        return Brake(-1, 0.0, 0.0, 0.0), 0.0
     allowed = PathAhead(limits, wanted.entry, wanted.controllable)
     before = -x
     deceleration, jerk, softest = math.inf, math.inf, math.inf

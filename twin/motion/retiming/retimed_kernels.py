@@ -142,7 +142,10 @@ def _highest(v0: float, a0: float, v1: float, a1: float, step: float) -> float:
     rise, fall = sign * a0, -sign * a1
     highest = max(abs(v0), abs(v1))
     if rise > 0.0 and fall > 0.0:
-        s = rise / (rise + fall)
+        # Where the cubic's rate of change, rise + b s + c s², comes down to zero: once, as it changes sign.
+        mean = sign * (v1 - v0) / step
+        b, c = 6.0 * mean - 4.0 * rise + 2.0 * fall, 3.0 * (rise - fall - 2.0 * mean)
+        s = 2.0 * rise / (math.sqrt(max(0.0, b * b - 4.0 * c * rise)) - b)
         r = 1.0 - s
         ends = v0 * r * r * (1.0 + 2.0 * s) + v1 * s * s * (1.0 + 2.0 * r)
         between = sign * ends + (rise * r + fall * s) * r * s * step

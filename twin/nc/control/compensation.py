@@ -47,6 +47,10 @@ def tool_named(control: Control, name: str, word: Word) -> int:
             hint = f'give one of its [[tools]] name = "{name}"; named there: {", ".join(named) or "none"}'
             control.fail("no-such-tool", message, word, hint)
         known[name] = order[len(known)]
+        measure = control.settings.tool_of_call
+        tool = measure(name, control.block.line) if measure is not None else None
+        if tool is not None:
+            tools.table = {**tools.table, known[name]: tool}
         message = f'the job names no tools: "{name}" is taken for tool {known[name]}, by the order of the calls'
         hint = f'name = "{name}" in the [[tools]] of the job says it'
         control.warn("tool-name", message, word, hint)

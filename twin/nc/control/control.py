@@ -16,13 +16,14 @@ from twin.nc.control.tools import Tools
 from twin.nc.control.variables import Variables
 from twin.nc.geometry.arcs import Point
 from twin.nc.path.feed_rates import PATH_COUNTS, STANDING, WITHOUT_SPEED, FeedRule
-from twin.nc.path.moves import LARGEST_COORDINATE, axis_target
+from twin.nc.path.moves import axis_target
 from twin.nc.text.blocks import Assignment, Block, Location, Statement, Word
 from twin.nc.text.diagnostics.reporter import Reporter
 from twin.nc.text.expressions.expressions import Expression, ExpressionError
 from twin.nc.text.lexer import Lexer
 from twin.nc.text.source import Source
 from twin.nc.text.syntax import Language
+from twin.units import LARGEST_COORDINATE
 
 WITHOUT_POINT = "decimal-point"
 """The warning that a number without a decimal point counts increments."""

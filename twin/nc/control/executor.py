@@ -15,6 +15,7 @@ from twin.nc.control.settings import ControlSettings
 from twin.nc.control.sorting import Codes, Functions, WordSorter
 from twin.nc.functions import starts_spindle, turns_behind
 from twin.nc.text.blocks import Assignment, Block, Statement, Word
+from twin.nc.text.diagnostics.slips import slip_at
 from twin.nc.text.expressions.expressions import ExpressionError
 from twin.nc.text.source import Source
 
@@ -269,7 +270,9 @@ class Executor:
             message = f"nothing in this block uses '{word.text}'"
             control.fail("unused-word", message, word, self._meaning_of(word.address))
         message = f"'{word.address}' is no word of {self.dialect.name}"
-        hint = f"its words are listed by: twin dialects {self.dialect.name}"
+        line = control.report.text_of(control.block.line)
+        listed = f"its words are listed by: twin dialects {self.dialect.name}"
+        hint = slip_at(line, word.column, self.dialect.name) or listed
         control.fail("unknown-word", message, word, hint)
 
     def _meaning_of(self, address: str) -> str:

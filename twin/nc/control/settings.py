@@ -2,7 +2,7 @@
 
 import dataclasses
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Literal, TypeVar
 
 from twin.nc.canonical import Axes
@@ -12,7 +12,7 @@ from twin.nc.text.blocks import Block
 V = TypeVar("V")
 
 _WORK_OFFSET = re.compile(
-    r"G5[4-9](\.[123])?|G5(0[5-9]|[1-9]\d)|G(54\.1|154) P[1-9]\d*|G159=[1-9]\d*|PRESET\d+|M92"
+    r"G5[4-9](\.[123])?|G5(0[5-9]|[1-9]\d)|G(54\.1|154) P[1-9]\d*|G159=[1-9]\d*|(PRESET|DATUM)\d+|M92"
 )
 
 
@@ -91,6 +91,9 @@ class ControlSettings:
 
     tools: Mapping[int, ToolData] = dataclasses.field(default_factory=dict)
     """The tool table by tool number; the first is in the spindle when the program starts."""
+
+    tool_of_call: Callable[[str, int], ToolData | None] | None = None
+    """What a tool that the job does not name measures, by its name and the line that calls it first; None: nobody knows."""
 
     any_tool: bool = False
     """Nobody gave a tool table: every number means the first tool."""

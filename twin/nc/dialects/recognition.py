@@ -29,7 +29,7 @@ _NAMES: Mapping[str, str] = {
 _SHARED_CODES = ("linuxcnc",)
 """A dialect among whose marks are codes that controls like Fanuc's have too, such as G61.1."""
 
-_COMMENT = re.compile(r"\(([^()]*)\)|;(.*)|^%(.*)")
+_COMMENT = re.compile(r"\(([^()]*)(?:\)|$)|;(.*)|^%(.*)|^\s*\d*\s*\*\s*-(.*)")
 
 
 class Reading(NamedTuple):

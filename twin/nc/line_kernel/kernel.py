@@ -41,7 +41,6 @@ from twin.nc.path.feed_rates import (
     rapid_feed,
 )
 from twin.nc.path.moves import (
-    LARGEST_COORDINATE,
     RAPIDS_END,
     SMALLEST_MOVE,
     arc_length,
@@ -52,6 +51,7 @@ from twin.nc.path.moves import (
 )
 from twin.nc.text.expressions.arithmetic import is_whole
 from twin.nc.text.line_reader import LARGEST_LABEL
+from twin.units import LARGEST_COORDINATE
 
 NO_MOTION, RAPID_LINE, FEED_LINE, CLOCKWISE, COUNTER_CLOCKWISE = -1, 0, 1, 2, 3
 """How a line moves; other motions are ``NO_MOTION``."""

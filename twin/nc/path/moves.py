@@ -12,8 +12,6 @@ from twin.nc.geometry.planes import Vector, along
 
 Position = list[float] | FloatArray
 
-LARGEST_COORDINATE = 1e7
-"""Ten kilometres, or 27 thousand turns: beyond it a coordinate is a slip of the pen."""
 RAPIDS_END = Corner.EXACT_STOP
 """How the end of a rapid is passed."""
 SMALLEST_MOVE = 1e-9

@@ -28,9 +28,17 @@ class Rounding:
         self.always: Blend | None = None
         self.once: Blend | None = None
 
-    def blend_next(self, blend: Blend) -> bool:
-        """Blend the corner between the last move and the next; False where there is no last."""
-        if self._held is None:
+    def blend_next(self, blend: Blend, line: int | None = None) -> bool:
+        """Blend the corner between the last move and the next.
+
+        Args:
+            line: Whose feed move that must be; None: any.
+
+        Returns:
+            False where there is no such move.
+        """
+        held = self._held
+        if held is None or (line is not None and (held.line, held.motion) != (line, Motion.FEED)):
             return False
         self.once = blend
         return True

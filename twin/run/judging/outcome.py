@@ -1,7 +1,7 @@
 """What a run came to, judged: what result.json, the report and the exit code are made of."""
 
 import dataclasses
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from twin.compare.figures import Figures
@@ -28,7 +28,7 @@ from twin.run.judging.cut_notices import (
     tooth_feed_notices,
     unjudged_limit_notices,
 )
-from twin.run.judging.scope import VerdictScope, nothing_judged, scope_of
+from twin.run.judging.scope import Unwatched, VerdictScope, nothing_judged, scope_of
 from twin.run.machining import Machining
 from twin.run.messages import Notice, shown
 from twin.run.observers import (
@@ -129,7 +129,9 @@ def outcome_of(
     forces = motion is not None and motion.process is not None
     blind, notices = (), []
     if not alarms:
-        blind = tuple(_unjudged(preparation, judged, dry_run, figures))
+        if dry_run.moves:
+            asked = job.tolerances_from
+            blind = tuple(nothing_judged(job.file, judged.checks, asked, figures))
         notices = [
             *_notices(preparation, dry_run, machining, cut, loads, floats),
             *(() if forces else _unsimulated_notices(job.file, dry_run.watch, cut)),
@@ -138,8 +140,9 @@ def outcome_of(
         Reason(each.code, each.message, each.line, 0.0)
         for each in (notices if preparation.settings.strict else ())
     ]
+    still = not (alarms or dry_run.moves)
     return Outcome(
-        verdict=judged.with_more([*failing, *blind]),
+        verdict=judged.with_more([*failing, *_blind_reasons(blind, still=still)]),
         figures=figures,
         cut=cut,
         gouge=machining.gouge,
@@ -181,15 +184,12 @@ def refuse_unjudged_loads(tolerance: ToleranceTable) -> None:
             )
 
 
-def _unjudged(
-    preparation: Preparation, judged: Verdict, dry_run: DryRun, figures: Figures
-) -> Iterator[Reason]:
-    """What was asked for and judged nothing."""
-    job = preparation.job
-    if not dry_run.moves:
+def _blind_reasons(blind: Sequence[Unwatched], *, still: bool) -> Iterator[Reason]:
+    """Why a run does not pass in which nothing moved, or something that was asked for judged nothing."""
+    if still:
         yield Reason("nothing-moves", "the program makes no move", 0, 0.0)
-    else:
-        yield from nothing_judged(job.file, judged.checks, job.tolerances_from, figures)
+    for each in blind:
+        yield Reason(each.what, f"{each.what} has judged nothing: {each.why}", 0, 0.0)
 
 
 def _notices(

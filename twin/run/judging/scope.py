@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from twin.compare.figures import Figures
-from twin.compare.verdict import Check, Reason
+from twin.compare.verdict import Check
 from twin.cutting.measuring.inspection import Inspection
 from twin.cutting.watching.cut_log import TRI_DEXEL, CutResult
 from twin.job.job_file import JobFile
@@ -101,7 +101,7 @@ def scope_of(
     cut: CutResult | None,
     *,
     forces: bool,
-    unjudged: Sequence[Reason],
+    unjudged: Sequence[Unwatched],
     alarms: Sequence[Alarm],
     inspection: Inspection | None,
 ) -> VerdictScope:
@@ -126,10 +126,7 @@ def scope_of(
         *_unknown_functions(file),
         *_never_read(preparation.settings),
         *_expected(file),
-        *(
-            Unwatched(each.what, each.message.removeprefix(f"{each.what} has judged nothing: "))
-            for each in unjudged
-        ),
+        *unjudged,
         *(
             Unwatched(f"all behind line {each.line}", "the alarm ended the run")
             for each in alarms[:1]
@@ -219,7 +216,7 @@ def _why_no_forces(job: JobFile) -> str:
 
 def nothing_judged(
     job: JobFile, checks: Sequence[Check], asked: Mapping[str, str], figures: Figures
-) -> Iterator[Reason]:
+) -> Iterator[Unwatched]:
     """Tolerances that the job asks for and that no check was made of.
 
     Args:
@@ -227,17 +224,15 @@ def nothing_judged(
     """
     judged, nominal = {check.what for check in checks}, job.nominal
     if nominal is not None and nominal.standing_um is not None and "standing_um" not in judged:
-        message = "standing_um has judged nothing: no surface of the part could be measured"
-        yield Reason("standing_um", message, 0, 0.0)
+        yield Unwatched("standing_um", "no surface of the part could be measured")
     for key, place in asked.items():
         if key not in judged and key != "blocks" and place != DEFAULT:
-            yield Reason(key, f"{key} has judged nothing: {_WHY.get(key, _NO_FIGURE)}", 0, 0.0)
+            yield Unwatched(key, _WHY.get(key, _NO_FIGURE))
     for number, part in enumerate(job.tolerance.blocks):
         first, last = part.lines
         key = f"blocks[{number}].contour_um"
         if key not in judged and figures.samples:
-            message = f"{key} has judged nothing: no move is in lines {first} to {last}"
-            yield Reason(key, message, 0, 0.0)
+            yield Unwatched(key, f"no move is in lines {first} to {last}")
 
 
 _NO_FIGURE = "the run holds nothing that it could be held against"

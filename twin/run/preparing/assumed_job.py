@@ -123,7 +123,8 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
     declared = {**named, **table_tools(blocks, inches=inches), **declared_tools(functions)}
     length = _least_length(preparation.machine, moves)
     blank = declared_stock(functions)
-    cuts = Cuts(moves, [begin for _, _, begin in calls], interpretation.drilled)
+    starts = any(each.word in SPINDLE_STARTS for each in functions)
+    cuts = Cuts(moves, [begin for _, _, begin in calls], interpretation.drilled, starts)
     top = top_of_stock(cuts) if blank is None else float(blank.top[2])
     worn = {number for number, tool in preparation.settings.tools.items() if not tool.radius}
     by_hand = _speed_is_set_by_hand(functions)
@@ -148,6 +149,7 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
             preparation,
             moves,
             position,
+            stock,
             [*stock, *tools] if counts_from_machine_zero else None,
         ),
         *_written_zero_lines(written),
@@ -334,12 +336,14 @@ def _zero_line(
     preparation: Preparation,
     moves: Moves,
     top: FloatArray | None,
+    stock: list[str],
     decides_height: list[str] | None,
 ) -> list[str]:
     """Where program zero lies: the stock in the table's middle, and its height.
 
     Args:
         top: Centre of the stock's top face; None: there is no stock.
+        stock: Its lines.
         decides_height: Lines of stock and tools, where the program counts from machine zero; else None.
     """
     machine = preparation.machine
@@ -351,7 +355,11 @@ def _zero_line(
         zero["X"], zero["Y"] = float(center[0] - top[0]), float(center[1] - top[1])
     chain = machine.part_frame.chain
     if turns_about_x(moves) and chain is not None:
-        zero["X"] = float(chain.table[0]) - bar_ends(moves)[0]
+        begin = bar_ends(moves)[0]
+        if top is not None:
+            table = StockTable.model_validate(tomllib.loads("\n".join(stock))["stock"])
+            begin = float(top[0]) - table.extent[0] / 2.0
+        zero["X"] = float(chain.table[0]) - begin
     if decides_height is not None:
         text = "\n".join(['program = "x"', *decides_height])
         zero["Z"] = _height(JobFile.model_validate(tomllib.loads(text)), machine)

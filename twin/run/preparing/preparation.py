@@ -98,9 +98,13 @@ def prepare(
         job, reading = _assumed(job, machine)
 
     def made_with(tools: Mapping[int, ToolData]) -> Preparation:
-        return prepare_job(
+        made = prepare_job(
             job, dialect=dialect, machine=machine, strict=strict, changes=changes, tools=tools
         )
+        if reading is None or not made.settings.any_tool:
+            return made
+        settings = dataclasses.replace(made.settings, tool_of_call=reading.tool_of_call)
+        return dataclasses.replace(made, settings=settings)
 
     if reading is None:
         return made_with({})

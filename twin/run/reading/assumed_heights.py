@@ -30,11 +30,13 @@ class Cuts(NamedTuple):
     Attributes:
         changes: The next move of every tool that comes.
         drilled: Lines that make a hole by a drilling cycle.
+        spindle: The program starts it.
     """
 
     moves: Moves
     changes: Sequence[int]
     drilled: Collection[int]
+    spindle: bool
 
 
 def top_of_stock(cuts: Cuts) -> float:
@@ -124,7 +126,7 @@ def _with_the_tool_of(cuts: Cuts, level: float) -> Moves:
 def _ramps(moves: Moves) -> list[float]:
     """Heights from which feeds begin to slope down, each once [mm]."""
     down = _down(moves)
-    sloped = down & _aside(moves)
+    sloped = down & aside(moves)
     sloped[1:] &= ~down[:-1]
     return np.unique(moves.start[sloped, 2].round(3)).tolist()
 
@@ -133,7 +135,7 @@ def first_feed(moves: Moves) -> tuple[float, bool]:
     """From which height the first feed goes down, infinite where it does not, and whether it slopes [mm]."""
     row = int(np.argmax(moves.motion == Motion.FEED))
     begin, down = float(moves.start[row, 2]), bool(_down(moves)[row])
-    return begin if down else np.inf, down and bool(_aside(moves)[row])
+    return begin if down else np.inf, down and bool(aside(moves)[row])
 
 
 def _down(moves: Moves) -> BoolArray:
@@ -141,7 +143,7 @@ def _down(moves: Moves) -> BoolArray:
     return (moves.motion == Motion.FEED) & (moves.end[:, 2] < moves.start[:, 2] - BELOW)
 
 
-def _aside(moves: Moves) -> BoolArray:
+def aside(moves: Moves) -> BoolArray:
     """Which moves go along X or Y, shape (n,)."""
     way = np.abs(moves.end[:, :2] - moves.start[:, :2])
     return (way > BELOW).any(axis=1) | (moves.sweep != 0.0)
@@ -157,7 +159,7 @@ def _sloping(moves: Moves, low: float, high: float) -> float:
 
 def _level(moves: Moves) -> BoolArray:
     """Which moves go in the plane at one height, shape (n,)."""
-    return (np.abs(moves.end[:, 2] - moves.start[:, 2]) < BELOW) & _aside(moves)
+    return (np.abs(moves.end[:, 2] - moves.start[:, 2]) < BELOW) & aside(moves)
 
 
 def levels_of(moves: Moves) -> tuple[FloatArray, FloatArray]:

@@ -2,7 +2,7 @@
 
 import dataclasses
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from itertools import islice
 from types import MappingProxyType
 from typing import NamedTuple
@@ -12,7 +12,12 @@ from twin.nc.control.settings import ControlSettings, ToolData
 from twin.nc.dialects.recognition import comments_of, without_comments
 from twin.nc.geometry.arcs import TURN
 from twin.nc.text.source import Source
-from twin.run.reading.assumed_tools import USUAL_LENGTH, listed_tools
+from twin.run.reading.assumed_tools import (
+    USUAL_LENGTH,
+    ToolComment,
+    listed_tools,
+    tool_of_call,
+)
 from twin.run.reading.declared import table_tools
 
 _MOST_LINES = 200_000
@@ -58,11 +63,13 @@ class AssumedReading(NamedTuple):
         notes: A line each.
         tools: What comments say of the tools, for radius compensation; the job's own come later, by what
             they do.
+        tool_of_call: The same of tools that are called by names.
     """
 
     keys: dict[str, object]
     notes: tuple[str, ...]
     tools: Mapping[int, ToolData] = MappingProxyType({})
+    tool_of_call: Callable[[str, int], ToolData | None] | None = None
 
     def as_read_by(self, dialect: Dialect, settings: ControlSettings) -> "AssumedReading":
         """What of it matters to a dialect, in which numbers without a point may always count whole units."""
@@ -109,7 +116,29 @@ def assumed_reading(source: Source) -> AssumedReading:
     if turn:
         keys["rollover"] = "shorter"
         notes.append(f"{_ROLLOVER_TOLD}{turn}")
-    return AssumedReading(keys, tuple(notes), _commented_tools(source, inches=bool(tool)))
+    inches = bool(tool) or any(_INCHES.search(line) for line in _blocks(source))
+    return AssumedReading(
+        keys, tuple(notes), _commented_tools(source, inches=inches), _named_tools(source, inches)
+    )
+
+
+def _named_tools(source: Source, inches: bool) -> Callable[[str, int], ToolData | None]:
+    """What tells a tool by its name and the line that calls it."""
+
+    def tool(name: str, line: int) -> ToolData | None:
+        lines = enumerate(islice(source.lines, _MOST_LINES), 1)
+        comments = [(at, each) for at, text in lines for each in comments_of(text)]
+        found = tool_of_call(name, line, comments, inches=inches)
+        return None if found is None else _data_of(found)
+
+    return tool
+
+
+def _data_of(tool: ToolComment) -> ToolData | None:
+    """What the control's table has of a tool; None: its radius is not known."""
+    if tool.table_radius is None:
+        return None
+    return ToolData(radius=tool.table_radius, length=tool.length or USUAL_LENGTH)
 
 
 def _turn_within_a_cut(source: Source) -> str:
@@ -170,16 +199,12 @@ def _commented_tools(source: Source, *, inches: bool) -> dict[int, ToolData]:
     """Tools of comments, and those that the program writes into the control's table."""
     blocks = list(_blocks(source))
     numbers = {int(found[1]) for line in blocks for found in _TOOL.finditer(line)}
-    inches = inches or any(_INCHES.search(line) for line in blocks)
     listed = {
         **listed_tools(_comments(source), numbers, inches=inches),
         **table_tools(blocks, inches=inches),
     }
-    return {
-        number: ToolData(radius=tool.table_radius, length=tool.length or USUAL_LENGTH)
-        for number, tool in listed.items()
-        if tool.table_radius is not None
-    }
+    data = {number: _data_of(tool) for number, tool in listed.items()}
+    return {number: each for number, each in data.items() if each is not None}
 
 
 def unknown_functions(

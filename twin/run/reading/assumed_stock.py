@@ -1,6 +1,7 @@
 """The stock that is assumed for a raw program: of a comment in its head, or of its path."""
 
 import re
+from typing import NamedTuple
 
 import numpy as np
 
@@ -9,6 +10,7 @@ from twin.nc.dialects.recognition import HEAD_LINES
 from twin.run.reading.assumed_heights import (
     MARGIN,
     Cuts,
+    aside,
     first_feed,
     heights,
     levels_of,
@@ -23,7 +25,8 @@ _CLAMPED = 50.0
 _MOST_CLIPPED = 0.5
 """Share of the stock's area that may be taken from it so that no rapid plunges into it; beyond that there is none."""
 
-_NUMBER = r"\s*[:=-]?\s*([0-9]+(?:\.[0-9]*)?)"
+_N = r"([0-9]+(?:\.[0-9]*)?)"
+_NUMBER = rf"\s*[:=-]?\s*{_N}"
 _STOCK_WORDS = (
     r"(?:STOCK(?:/BLOCK)?|BLOCK SIZE|BLANK|PART SIZE|MATERIAL(?: SIZE)?|WORKPIECE SIZE|ROHTEIL)"
 )
@@ -36,7 +39,12 @@ _STOCKS = (
         rf"{_STOCK_WORDS}\b[^0-9]{{0,20}}([0-9.]+)\s*(?:MM)?\s*[X*]\s*([0-9.]+)\s*(?:MM)?\s*[X*]\s*([0-9.]+)",
         re.DOTALL,
     ),
+    re.compile(rf"\bQUADER:\s*QX{_N}\s*QY{_N}\s*QZ{_N}"),
 )
+_ROUND = re.compile(
+    rf"(?:STOCK|BLANK|BAR|MATERIAL|ROHTEIL)\b[^0-9\n]{{0,20}}(?:[ØΦ⌀]|\bDIA(?:METER)?\b\.?|\bD)\s*[=:]?\s*{_N}\s*(?:MM)?\s*(?:[X*]|L(?:ENGTH)?|H(?:EIGHT)?)[ =:]*{_N}"
+)
+"""Diameter and length of a round blank."""
 
 
 def assumed_stock(
@@ -47,19 +55,16 @@ def assumed_stock(
     feeds = moves.motion == Motion.FEED
     points = np.concatenate([moves.start[feeds], moves.end[feeds]])[:, :3]
     if not len(points):
-        return _no_stock("the program feeds nowhere")
+        return _under_rapids(cuts)
     low, high = points.min(axis=0), points.max(axis=0)
-    head = "\n".join(text for line, text in comments if line <= HEAD_LINES).upper()
-    told = next((match for pattern in _STOCKS if (match := pattern.search(head))), None)
+    told = _told(comments, inches=inches)
     if turns_about_x(moves):
-        return _bar(cuts)
+        return _bar(cuts) if told is None else _told_bar(moves, told)
     found = heights(cuts, low[2])
     if told is not None:
-        size = np.array([float(value) for value in told.groups()]) * (25.4 if inches else 1.0)
-        if (size > 0.0).all():
-            center = _center_of(size, low, high)
-            top = 0.0 if found is not None and found[0] == 0.0 else float(size[2])
-            return _box(size, np.array([*center, top]), "a comment in the program's head")
+        center = _center_of(told.size, low, high)
+        top = 0.0 if found is not None and found[0] == 0.0 else float(told.size[2])
+        return _placed(told, np.array([*center, top]), _OF_HEAD)
     if found is None:
         return _no_stock("no feed goes below Z0")
     around = _around(moves, low, high, found, radius)
@@ -72,6 +77,78 @@ def assumed_stock(
         )
         around = _around(moves, low, high, found, radius)
     return around or _no_stock("rapids plunge wherever it could lie")
+
+
+_OF_HEAD = "a comment in the program's head"
+
+
+class _Told(NamedTuple):
+    """A blank of a comment.
+
+    Attributes:
+        size: Along X, Y, Z, shape (3,) [mm].
+        axis: Along which of these it is round; None: it is a box.
+    """
+
+    size: FloatArray
+    axis: int | None = None
+
+
+def _told(comments: list[tuple[int, str]], *, inches: bool) -> _Told | None:
+    """What comments in the program's head say of the blank."""
+    unit = 25.4 if inches else 1.0
+    head = "\n".join(text for line, text in comments if line <= HEAD_LINES).upper()
+    box = next((match for pattern in _STOCKS if (match := pattern.search(head))), None)
+    cylinder = _ROUND.search(head) if box is None else None
+    if box is not None:
+        size = np.array([float(value) for value in box.groups()]) * unit
+        return _Told(size) if (size > 0.0).all() else None
+    if cylinder is not None:
+        across, along = (float(value) * unit for value in cylinder.groups())
+        size = np.array([across, across, along])
+        return _Told(size, 2) if (size > 0.0).all() else None
+    return None
+
+
+def _told_bar(moves: Moves, told: _Told) -> tuple[list[str], FloatArray, str]:
+    """A bar of a comment that axis A turns about program zero: the one side that differs lies along X."""
+    size = told.size
+    if told.axis is not None or size[0] == size[1] != size[2]:
+        size = size[[2, 0, 1]]
+    elif size[0] == size[2] != size[1]:
+        size = size[[1, 0, 2]]
+    _, last = bar_ends(moves)
+    top = np.array([last - size[0] / 2.0, 0.0, size[2] / 2.0])
+    return _placed(_Told(size, None if told.axis is None else 0), top, _OF_HEAD)
+
+
+def _placed(blank: _Told, top: FloatArray, source: str) -> tuple[list[str], FloatArray, str]:
+    """A blank by the centre of its top face."""
+    if blank.axis is None:
+        return _box(blank.size, top, source)
+    across, along = blank.size[1], blank.size[blank.axis]
+    lines = [
+        "[stock]",
+        'shape = "cylinder"',
+        f"diameter = {across:.1f}  # mm: from {source}",
+        f"height = {along:.1f}  # mm",
+        *(['axis = "X"  # axis A turns it'] if blank.axis == 0 else []),
+        f"position = [{top[0]:.3f}, {top[1]:.3f}, {top[2]:.3f}]  # centre of its top face, mm",
+        "",
+    ]
+    return lines, top, f"stock ⌀ {across:g} x {along:g} mm, top at Z{top[2]:g}: from {source}"
+
+
+def _under_rapids(cuts: Cuts) -> tuple[list[str], FloatArray | None, str]:
+    """A box where the rapids of a program that feeds nowhere go below zero with its spindle on: G0 may have been left in force."""
+    moves = cuts.moves
+    deep = moves.end[moves.end[:, 2] < -BELOW, :3]
+    if not (cuts.spindle and len(deep)):
+        return _no_stock("the program feeds nowhere")
+    low, high = deep.min(axis=0) - MARGIN, deep.max(axis=0) + MARGIN
+    top = np.array([*((low + high) / 2.0)[:2], 0.0])
+    around = f"where the program, which feeds nowhere, goes below Z0 by rapids, and {MARGIN:g} mm around it"
+    return _box(np.array([*(high - low)[:2], -low[2]]), top, around)
 
 
 def _around(
@@ -136,13 +213,14 @@ def _clipped(
     lines: list[int] = []
     fed: dict[tuple[float, float], float] = {}
     rapid, drop = moves.motion == Motion.RAPID, moves.start[:, 2] - moves.end[:, 2]
+    retracts = (drop < 0.0) & ~aside(moves)
     for row in np.flatnonzero(moves.end[:, 2] < top - BELOW):
         x, y, z = moves.end[row, :3].round(3).tolist()
         if not rapid[row]:
             fed[x, y] = min(z, fed.get((x, y), z))
             continue
         plunges = drop[row] > BELOW
-        if plunges and fed.get((x, y), top) <= z + _CLEARED:
+        if retracts[row] or (plunges and fed.get((x, y), top) <= z + _CLEARED):
             continue
         ways = moves.end[row : row + 1, :2] if plunges else _along(moves, int(row))
         ways = np.array(

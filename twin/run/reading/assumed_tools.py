@@ -64,6 +64,10 @@ _THREAD = re.compile(r"\bM([0-9]+(?:\.[0-9]+)?)(?:\s*[Xx][0-9.]+)?\s*(?:TAP|GEWI
 _CORNER = re.compile(
     rf"\b(?:CR|R|RAD(?:IUS)?|CORNER RAD(?:IUS)?)\s*[=:.-]?\s*({_NUMBER})", re.IGNORECASE
 )
+_WHOLE_LENGTH = re.compile(rf"\bTL\s*=\s*({_NUMBER})")
+"""What hyperMILL writes from the spindle nose to the tip."""
+_RADIUS = re.compile(r"\bKR\s*[+]?([0-9]+\.[0-9]*)")
+"""What the set-up sheets of Keller write of a tool's radius."""
 _WEAR = re.compile(r"\bWEAR\b")
 _COMPENSATION = re.compile(r"\b(?:WEAR|CONTROL|COMPUTER) COMP")
 """What posts write of how the radius is compensated: by the control, or in the program and the wear by the control."""
@@ -78,7 +82,7 @@ class ToolComment(NamedTuple):
         corner: Radius of a bull-nose's corner [mm].
         wear: Its contours are the path of its centre, so that D holds its wear alone; None: that is not told.
         name: By which the program calls it; empty: by its number.
-        length: That the program writes into the control's table [mm]; None: it writes none.
+        length: That the program writes, into the control's table or a comment [mm]; None: it writes none.
     """
 
     kind: str
@@ -119,10 +123,16 @@ def tool_of_comment(text: str, *, inches: bool) -> ToolComment:
         upper,
     ):
         kind = "flat"
+    if not kind and diameter and corner and "CR=" in upper.replace(" ", ""):
+        kind = "flat"
     if kind == "bull" and (not diameter or not radius or 2.0 * radius > diameter):
         kind, radius = "flat", None
     wear = bool(_WEAR.search(upper)) if _COMPENSATION.search(upper) else None
-    return ToolComment(kind, diameter, radius if kind == "bull" else None, text.strip(), wear)
+    whole = _WHOLE_LENGTH.search(upper)
+    length = None if whole is None else _value(whole[1]) * (_INCH if inches else 1.0)
+    return ToolComment(
+        kind, diameter, radius if kind == "bull" else None, text.strip(), wear, length=length
+    )
 
 
 def named_tools(names: Mapping[int, str], *, inches: bool) -> dict[int, ToolComment]:
@@ -131,6 +141,14 @@ def named_tools(names: Mapping[int, str], *, inches: bool) -> dict[int, ToolComm
         number: tool_of_comment(_spaced(name), inches=inches)._replace(name=name)
         for number, name in names.items()
     }
+
+
+def tool_of_call(
+    name: str, line: int, comments: list[tuple[int, str]], *, inches: bool
+) -> ToolComment | None:
+    """What the name by which a line calls a tool says about it, or a comment next to that; None: neither does."""
+    own = tool_of_comment(_spaced(name), inches=inches)
+    return own if own.diameter else _near_comment(0, [(0, line, 0)], comments, inches=inches)
 
 
 def _spaced(name: str) -> str:
@@ -146,6 +164,9 @@ def _diameter(text: str, *, inches: bool) -> float | None:
     gauge = _GAUGE.search(text)
     if gauge is not None and int(gauge[1]) <= len(_GAUGES):
         return round(_GAUGES[int(gauge[1]) - 1] * _INCH / 1000.0, 4)
+    radius = _RADIUS.search(text)
+    if radius is not None:
+        return 2.0 * float(radius[1])
     fraction = _FRACTION.search(text)
     if fraction is not None and int(fraction[2]) in (2, 4, 8, 16, 32, 64):
         return int(fraction[1]) / int(fraction[2]) * _INCH

@@ -173,7 +173,8 @@ def _refused(trials: Sequence[_Trial], others: Sequence[str]) -> ProgramError:
     assert farthest is not None
     message = f"read as {name}, which reads it farthest: {farthest.message}"
     further = f"; {_either(others, 'and')} would read it" if others else ""
-    names = [trial.name for trial in trials if trial.name != name] + list(others)
+    elsewhere = [trial for trial in trials if trial.error and trial.error.line != farthest.line]
+    names = [trial.name for trial in elsewhere] + list(others)
     another = f"another control: {_type(names)}{further}" if names else ""
     hint = "; ".join(filter(None, (farthest.hint, another)))
     return ProgramError(dataclasses.replace(farthest, message=message, hint=hint or None))

@@ -146,8 +146,9 @@ def blend_corner(control: Control) -> None:
     if scale is not None:
         size *= abs(scale[0][control.modal.plane.axes[0]])
     blend = Blend(_CORNERS[word.address], size, control.motion.part_plane)
-    if not control.path.hold_for_blends().blend_next(blend):
-        control.fail("blend", "there is no move before the corner", word)
+    if not control.path.hold_for_blends().blend_next(blend, control.block.line):
+        message = f"{word.text} is for the end of a move with G1, G2 or G3, which this block lacks"
+        control.fail("blend", message, word)
 
 
 DEGREE_AS_LENGTH = 1.0

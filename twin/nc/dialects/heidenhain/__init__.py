@@ -29,6 +29,7 @@ def _nothing(_control: Control, _word: Word) -> None:
 
 def _prepare(control: Control) -> None:
     corners.prepare(control)
+    flow.pass_text_before_program(control)
     control.modal.interpolation = paths.LINE
 
 

@@ -34,6 +34,12 @@ DECISIONS = (
         example="first_presets",
     ),
     Decision(
+        "Where are the rows of the datum table (CYCL DEF 7.1 #2)?",
+        "The job gives them, as [offsets.DATUM2]; 0 and 1 shift nothing where it does not.",
+        "The table belongs to the machine; posts for older controls write #1 for the first setting.",
+        example="first_datum_rows",
+    ),
+    Decision(
         "In which order do shift, mirror, rotation and scale act?",
         "In the order in which the program has put them into force; one that is changed keeps its place.",
         "The manual says that the result depends on the order of programming, and not what a change does.",

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from twin.nc.control.control import Control
 from twin.nc.control.program_counter import FoundInText
 from twin.nc.dialects.heidenhain.memory import memory_of
+from twin.nc.dialects.heidenhain.syntax import KEYWORDS
 from twin.nc.dialects.heidenhain.values import refuse_rest, text_of, value_at
 from twin.nc.text.blocks import Location, Statement
 from twin.nc.text.library import Library
@@ -36,6 +37,10 @@ _COMPARED = {
     "GT": lambda a, b: a > b,
     "LT": lambda a, b: a < b,
 }
+_BEGINS = re.compile(r"[ \t]*[0-9]*[ \t]*BEGIN[ \t]+PGM\b", re.IGNORECASE)
+_BLOCK = re.compile(rf"[ \t]*/?[ \t]*[0-9]*[ \t]*(?:{KEYWORDS})", re.IGNORECASE)
+_LONGEST_TEXT = 200
+"""So many lines of text may come before BEGIN PGM."""
 FILE = "; CALL PGM "
 """Begins the line before a program that another file holds."""
 _CALLED = re.compile(r"\bCALL[ \t]+PGM[ \t]+(\"[^\"]*\"|[^ \t;~]+)", re.IGNORECASE)
@@ -59,6 +64,22 @@ LIBRARY = Library(_calls, FILE, (".h",))
 
 
 # --- a program and its end
+
+
+def pass_text_before_program(control: Control) -> None:
+    """Begin at BEGIN PGM where lines that are no blocks come before it, such as a set-up sheet."""
+    lines = control.program_counter.lines
+    head = [lines[at] for at in range(min(len(lines), _LONGEST_TEXT))]
+    first = next((at for at, line in enumerate(head) if _BEGINS.match(line)), 0)
+    text = [line for line in head[:first] if line.strip() and not line.lstrip().startswith(";")]
+    if not text or any(map(_BLOCK.match, text)):
+        return
+    control.program_counter.go(Location(first, 0))
+    control.report.line = 1
+    message = (
+        f"the program begins by BEGIN PGM in line {first + 1}: what is before it is passed over"
+    )
+    control.report.warn_once("before-program", message)
 
 
 def begin_program(control: Control, statement: Statement) -> None:

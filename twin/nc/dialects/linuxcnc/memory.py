@@ -32,11 +32,13 @@ class SavedState:
     Attributes:
         feed: F as it was written, or None.
         spindle: S, or None [1/min].
+        preset_on: Whether G92 or G52 shifted.
     """
 
     modal: Modal
     feed: float | None
     spindle: float | None
+    preset_on: bool
 
 
 @dataclasses.dataclass(slots=True)

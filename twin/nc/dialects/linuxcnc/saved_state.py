@@ -3,7 +3,7 @@
 from twin.nc.control.codes import Action
 from twin.nc.control.control import Control
 from twin.nc.dialects.linuxcnc.memory import SYSTEMS, SavedState, memory_of, written_feed
-from twin.nc.dialects.linuxcnc.offsets import reframe, refuse_in_compensation
+from twin.nc.dialects.linuxcnc.offsets import change_preset, reframe, refuse_in_compensation
 
 _COMPENSATION = "compensation"
 _FRAME = ("offset", "units", "plane")
@@ -16,8 +16,11 @@ def save(*, until_return: bool) -> Action:
     """M70, and M73, which the end of the subroutine puts back."""
 
     def action(control: Control) -> None:
-        state = SavedState(control.modal.fork(), written_feed(control), control.motion.spindle)
-        memory_of(control).saved[control.program_counter.depth] = (state, until_return)
+        memory = memory_of(control)
+        state = SavedState(
+            control.modal.fork(), written_feed(control), control.motion.spindle, memory.preset_on
+        )
+        memory.saved[control.program_counter.depth] = (state, until_return)
 
     return action
 
@@ -67,5 +70,7 @@ def _put_back(control: Control, state: SavedState) -> None:
         control.motion.feed, memory_of(control).converted_feed = state.feed, None
     system = f"G{control.modal.active.get('offset', 54):g}"
     memory_of(control).system = SYSTEMS.index(system) + 1
+    if memory_of(control).preset_on != state.preset_on:
+        change_preset(on=state.preset_on)(control)
     if not compensated:  # else the programmed position is that of the contour, not of the tool
         reframe(control)

@@ -45,6 +45,8 @@ class Definition(NamedTuple):
     only: Mapping[int, float] = {}
 
 
+_OF_BUILDERS = range(300, 400)
+"""Numbers that the manuals leave to the machine's builder."""
 _FILE = Path(__file__).with_name("cycles.toml")
 _MODULES = (holes, patterns, pockets, threads)
 
@@ -115,13 +117,13 @@ def define(control: Control, statement: Statement) -> None:
         near = sorted({*STEPS, *DEFINITIONS, 247}, key=lambda each: abs(each - number))[:5]
         known = ", ".join(map(str, sorted(near)))
         message = f"there is no cycle {number}"
-        control.report.fail(
-            "unsupported-cycle",
-            message,
-            statement.text_column,
-            match.end(),
-            f"cycles near it: {known}; all of them: twin dialects heidenhain",
-        )
+        hint = f"cycles near it: {known}; all of them: twin dialects heidenhain"
+        if number in _OF_BUILDERS:
+            message = (
+                f"cycle {number} is one of the machine's builder, and what it does is not known"
+            )
+            hint = "leave it out where it moves nothing, with its Q lines; else write its moves"
+        control.report.fail("unsupported-cycle", message, statement.text_column, match.end(), hint)
     _define_with_parameters(control, statement, number, match.end(), definition)
 
 

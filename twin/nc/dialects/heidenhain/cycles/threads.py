@@ -25,7 +25,9 @@ def bore_milling(control: Control, given: Parameters) -> None:
     radius, pitch = given.length(335) / 2.0 - compensation_radius(control), abs(given.length(334))
     if radius <= 0.0 or pitch == 0.0 or (reference - bottom) / pitch > MOST_TURNS:
         message = "208 needs a hole Q335 that is wider than the tool, and a pitch Q334 above 0"
-        control.fail("cycle-size", message)
+        tool = 2.0 * compensation_radius(control)
+        hint = f"the hole is {given.length(335):g} mm wide and the tool {tool:g} mm, the pitch {pitch:g} mm"
+        control.fail("cycle-size", message, hint=hint)
     go_to_height(control, reference)
     with at_feed(control, given.feed(206)):
         mill_hole(control, radius, pitch, bottom, clockwise=given.number(351, 1.0) < 0.0)

@@ -5,6 +5,7 @@ before it, so that it turns and mirrors about the datum in force (decision: one 
 """
 
 import re
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from twin.nc.canonical import Corner
@@ -30,8 +31,9 @@ _LAST = re.compile(
     r"(I?)(?:ROT|SCL|T|DWELL|TIME|[A-Z.]*ZEIT|[A-Z.]*)[ \t]*([-+]?[ \t]*(?:[.0-9]+|Q[LR]?[0-9]+))[ \t]*",
     re.IGNORECASE,
 )
-_OWN_PRESETS = (0, 1)
-"""Presets of 247 that are part zero where the job gives them no values (decision)."""
+_ROW = re.compile(r"[ \t]*#[ \t]*([0-9]+|Q[LR]?[0-9]+)[ \t]*", re.IGNORECASE)
+_OWN_ROWS = (0, 1)
+"""Presets of 247, and rows of the datum table, that are part zero where the job gives them no values (decision)."""
 
 
 class DefinitionStep(NamedTuple):
@@ -69,9 +71,10 @@ def shift_datum(control: Control, step: DefinitionStep) -> None:
     memory = memory_of(control)
     if step.step == 0:
         return
-    if "#" in step.text:
-        message = "the twin has no datum table"
-        step.fail(control, "unsupported-word", message, "write the shift: CYCL DEF 7.1 X+60")
+    row = _ROW.fullmatch(step.text)
+    if row is not None:
+        _shift_by_row(control, step, row)
+        return
     given = list(_AXIS.finditer(step.text))
     if not given or _AXIS.sub("", step.text).strip():
         step.fail(control, "cycle-word", "7 needs an axis and its shift", "CYCL DEF 7.1 X+60")
@@ -87,6 +90,24 @@ def shift_datum(control: Control, step: DefinitionStep) -> None:
         there = memory.shift.get(index, 0.0) if match[1] else 0.0
         memory.shift[index] = there + number * control.motion.unit_of(index)
     _enter(control, "shift", any(memory.shift.values()))
+
+
+def _shift_by_row(control: Control, step: DefinitionStep, row: re.Match[str]) -> None:
+    """7.1 #2: the shift is the row ``DATUM2`` of the job; 0 and 1 shift nothing where the job does not give them."""
+    value, _ = control.statements.operand(step.text, row.start(1), step.column)
+    number = control.compute(value, step.column + row.start(1))
+    word = Word("#", number, step.column + row.start(1) - 1, len(row[1]) + 1)
+    given = _values_of_row(control, f"DATUM{number:g}", number, word)
+    names = control.settings.axes.names
+    memory_of(control).shift = {names.index(name): each for name, each in given.items()}
+    _enter(control, "shift", any(given.values()))
+
+
+def _values_of_row(control: Control, name: str, number: float, word: Word) -> Mapping[str, float]:
+    """The values that the job gives a row of the control's tables [mm or deg]."""
+    if number in _OWN_ROWS and name not in control.settings.offsets:
+        return {}
+    return offset_of_job(control, name, word)
 
 
 def mirror(control: Control, step: DefinitionStep) -> None:
@@ -205,8 +226,4 @@ def set_tolerance(control: Control, step: DefinitionStep) -> None:
 
 def select_preset(control: Control, number: float, word: Word) -> None:
     """247: a preset of the job, ``PRESET2``; 0 and 1 are part zero where the job gives them no values."""
-    name = f"PRESET{number:g}"
-    if number in _OWN_PRESETS and name not in control.settings.offsets:
-        shift_by(control, {})
-    else:
-        shift_by(control, offset_of_job(control, name, word))
+    shift_by(control, _values_of_row(control, f"PRESET{number:g}", number, word))
