@@ -149,7 +149,7 @@ def serve(
     """Tell monitors over MTConnect of a machine that runs a job again and again, or of a room."""
     from twin.commands.live import serve as agent
 
-    source = agent.Source(
+    source = agent.Reported(
         host=host, port=port, speed=speed, buffer=buffer, dialect=dialect, machine=machine,
         opcua_port=opcua, opcua_trust=opcua_trust, grbl=grbl, view=view,
     )  # fmt: skip
