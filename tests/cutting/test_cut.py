@@ -264,3 +264,36 @@ def test_a_slot_along_the_grid_takes_no_row_too_many(
     way = np.linspace([-80.0, 0.0, -3.0, 0.0], [80.0, 0.0, -3.0, 0.0], 400)
     cutter.add(samples(way), np.zeros(400, np.bool_))
     assert cutter.result().removed_mm3 == pytest.approx(3.0 * diameter * size, rel=3e-3)
+
+
+@pytest.mark.parametrize("diameter", [3.0, 8.0, 20.0])
+@pytest.mark.parametrize("turn", [0.0, 17.0, 45.0])
+@pytest.mark.parametrize("off", [0.0, 0.5, 0.71])
+def test_a_slot_is_as_exact_along_the_grid_as_across_it(
+    samples: Motion, diameter: float, turn: float, off: float
+) -> None:
+    """At its default cell, and by a machine that is 2 µm off its way."""
+    stock = StockTable(shape="box", size=(150.0, 140.0, 20.0))
+    cutter = Cutter(stock, ToolTable(number=1, diameter=diameter), FRAME, np.zeros(3))
+    cell = cutter.material.cell
+    along = 30.0 * np.array([math.cos(math.radians(turn)), math.sin(math.radians(turn))])
+    way = np.linspace(off * cell - along, off * cell + along, 3000)
+    way += np.random.default_rng(1).uniform(-2e-3, 2e-3, way.shape)
+    cutter.add(samples(path(way[:, 0], way[:, 1], -3.0)), np.zeros(len(way), np.bool_))
+    exact = 3.0 * (60.0 * diameter + math.pi * diameter**2 / 4)
+    assert cutter.result().removed_mm3 == pytest.approx(exact, rel=2e-3)
+
+
+@pytest.mark.parametrize("diameter", [6.0, 8.0, 12.0])
+@pytest.mark.parametrize("width", [0.1, 1.0, 2.64])
+def test_a_shoulder_is_as_wide_as_it_is_cut(samples: Motion, diameter: float, width: float) -> None:
+    """Less than a cell wide, or no multiple of one, along a side that does not end with a cell."""
+    stock = StockTable(shape="box", size=(100.0, 100.0, 20.0))
+    cutter = Cutter(stock, ToolTable(number=1, diameter=diameter), FRAME, np.zeros(3))
+    y, blank = 50.0 - width + 0.5 * diameter, cutter.map.volume
+    for depth in (2.0, 5.0):
+        way = path(np.linspace(-70.0, 70.0, 3000), y, -depth)
+        cutter.add(samples(way), np.zeros(len(way), np.bool_))
+    removed = cutter.result().removed_mm3
+    assert removed == pytest.approx(100.0 * width * 5.0, rel=4e-3)
+    assert blank - cutter.map.volume == pytest.approx(removed, rel=1e-4)

@@ -366,7 +366,8 @@ def test_a_killed_twin_is_a_fault_and_linuxcnc_ends_by_itself(folder: Path):
         process.wait()
         log = folder / "out" / "linuxcnc" / "operator.jsonl"
         until(lambda: "failed" in log.read_text(), 120.0)
-        until(lambda: not LOCK.exists(), 120.0)
+        # The start script takes its lock away before it ends itself.
+        until(lambda: not LOCK.exists() and not processes_at_home(log.parent), 120.0)
     assert "amplifier fault" in log.read_text() or "the twin has gone" in log.read_text()
     assert "the twin does not answer" in (folder / "out" / "linuxcnc.log").read_text()
     assert not (folder / "out" / "result.json").exists()

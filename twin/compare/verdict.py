@@ -189,7 +189,8 @@ def _contour_checks(figures: Figures, tolerance: ToleranceTable) -> Iterator[Che
             place = int(blocks.line[row]), float(blocks.time_s[row])
             value = float(blocks.max_um[row])
             note = _shares_text(figures) if value == figures.contour.max else ""
-            yield Check(key, "contour error", value, limit, "µm", *place, note)
+            figure = "contour error" + (" of rapids" if key == "rapid_contour_um" else "")
+            yield Check(key, figure, value, limit, "µm", *place, note)
 
 
 def _shares_text(figures: Figures) -> str:

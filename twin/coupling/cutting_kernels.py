@@ -18,16 +18,15 @@ from twin.coupling.turning_tool import (
     feel_teeth,
     note_load,
     share_of_tooth,
+    step_period,
     time_of_tooth,
     turn_spindle,
 )
-from twin.cutting.kernels.covered_cells import Marks
+from twin.cutting.kernels.covered_cells import Cells, Marks
 from twin.cutting.kernels.sweep import ALL_ROWS, sweep
 from twin.cutting.kernels.tooth_forces import tooth_forces
 from twin.cutting.kernels.walls import Material, leave_walls, lose_trace, no_trace
-from twin.machine.simulation.drive_kernels import hold_push
 from twin.machine.simulation.process import Physics
-from twin.machine.simulation.stepping import pass_state, step_machine
 from twin.nc.canonical import FloatArray
 from twin.units import MM
 
@@ -52,6 +51,7 @@ class Cut(NamedTuple):
     """A tool in a height map, which is cut, and where the part is."""
 
     material: Material
+    cells: Cells
     tool: TurningTool
     place: PartTransform
 
@@ -101,16 +101,9 @@ def follow_cutting(
         swept: Carried on.
         loads: Set to what the tool loads.
     """
-    stepper, period = physics.stepper, physics.drives.period
+    period = physics.drives.period
     for row in range(len(controls)):
-        hold_push(physics.drives, memory.load, physics.pushed)
-        physics.control[:] = controls[row]
-        for _ in range(physics.substeps):
-            step_machine(stepper.step, stepper.model, stepper.data)
-        place = states[row].ctypes.data
-        pass_state(
-            stepper.get_state, stepper.model, stepper.data, place, np.int64(physics.signature)
-        )
+        step_period(physics, controls[row], memory.load, states[row])
         cosine, sine = _go_to(physics, states[row], cut, memory, swept)
         if turn_spindle(period, commanded[row], cut.tool, memory):
             _look(period, cut, memory, swept)
@@ -173,7 +166,7 @@ def _look(period: float, cut: Cut, memory: Memory, swept: Swept) -> None:
         return
     material, cutter = cut.material, cut.tool.cutter
     sweep(
-        material.heights, material.grid, tips, cutter.profile,
+        cut.cells, tips, cutter.profile,
         swept.sums, swept.marks, numbers[CutNumber.STOOD] > 0.0, ALL_ROWS,
     )  # fmt: skip
     numbers[CutNumber.STOOD] = 1.0

@@ -20,6 +20,7 @@ from twin.machine.watching.alarms import Alarm
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
 from twin.recording.form import ToolLoad
+from twin.toolpath.part_frame import PartFrame
 from twin.units import SECONDS_PER_MINUTE
 
 STALLED_SHARE = 0.1
@@ -86,6 +87,20 @@ class Rows(NamedTuple):
     loads: ToolLoads
 
 
+class CutSetting(NamedTuple):
+    """What a process is set up with besides its material.
+
+    Attributes:
+        resists: What the material does to the teeth.
+        part_frame: How the axes carry tool and part.
+    """
+
+    resists: Kienzle
+    operation: Operation
+    part_frame: PartFrame
+    spindle: SpindleTable
+
+
 class CuttingProcess(abc.ABC):
     """Cuts a material of its own along the simulated motion, and pushes the axes by what the teeth feel.
 
@@ -99,16 +114,14 @@ class CuttingProcess(abc.ABC):
         alarm: The spindle's alarm of the last ``follow``.
     """
 
-    def __init__(self, resists: Kienzle, operation: Operation, spindle: SpindleTable) -> None:
+    def __init__(self, setting: CutSetting) -> None:
         """Begin with the spindle as it turns."""
         self.breaks: list[ToolBreak] = []
         self.alarm: Alarm | None = None
-        self._resists = resists
-        self._operation = operation
-        self._table = spindle
-        self._drive = spindle_drive(spindle)
+        self._resists, self._operation = setting.resists, setting.operation
+        self._table, self._drive = setting.spindle, spindle_drive(setting.spindle)
         self._memory = new_memory(0)
-        self._memory.numbers[CutNumber.SPEED] = operation.speed_at_start / SECONDS_PER_MINUTE
+        self._memory.numbers[CutNumber.SPEED] = self._operation.speed_at_start / SECONDS_PER_MINUTE
         self._tool: ToolTable | None = None
         self._overloaded_s = 0.0
 

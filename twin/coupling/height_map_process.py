@@ -1,15 +1,12 @@
 """Teeth in a height map: the cut of a machine that turns the part about Z at most."""
 
 from twin.coupling.cutting_kernels import Cut, PartTransform, follow_cutting, nothing_swept
-from twin.coupling.cutting_process import CuttingProcess, Operation, Rows, SpindleTurning
+from twin.coupling.cutting_process import CutSetting, CuttingProcess, Rows, SpindleTurning
 from twin.coupling.turning_tool import TurningTool
-from twin.cutting.forces.materials import Kienzle
 from twin.cutting.heights.height_map import HeightMap, raw_walls
 from twin.cutting.kernels.walls import Material
-from twin.machine.description.machine_file import SpindleTable
 from twin.machine.simulation.process import Physics
 from twin.nc.canonical import FloatArray
-from twin.toolpath.part_frame import PartFrame
 from twin.units import SECONDS_PER_MINUTE
 
 
@@ -20,25 +17,14 @@ class HeightMapProcess(CuttingProcess):
         walls: Those that tools have left in it, of ``twin.cutting.kernels.walls``.
     """
 
-    def __init__(
-        self,
-        material: HeightMap,
-        resists: Kienzle,
-        operation: Operation,
-        part_frame: PartFrame,
-        spindle: SpindleTable,
-    ) -> None:
-        """Lay the material on the table.
-
-        Args:
-            material: It is cut; nobody else may.
-            resists: As for ``CuttingProcess``; so on.
-        """
-        super().__init__(resists, operation, spindle)
+    def __init__(self, material: HeightMap, setting: CutSetting) -> None:
+        """Lay the material on the table; it is cut, and nobody else may."""
+        super().__init__(setting)
         self.material = material
         self.walls = raw_walls(material)
         self._swept = nothing_swept()
-        frame, rotary = part_frame, -1 if part_frame.rotary is None else part_frame.rotary
+        frame = setting.part_frame
+        rotary = -1 if frame.rotary is None else frame.rotary
         self._place = PartTransform(rotary, frame.center, frame.turn_zero, 0.0)
 
     def begin(self, position: FloatArray) -> None:
@@ -49,13 +35,15 @@ class HeightMapProcess(CuttingProcess):
     def _cut_along(
         self, physics: Physics, turning: SpindleTurning, tool: TurningTool, rows: Rows
     ) -> None:
-        material = Material(self.material.heights, self.material.grid, self.walls)
+        cells = self.material.cells
+        material = Material(cells.heights, cells.grid, self.walls)
+        place = self._place._replace(length_difference=turning.length_difference)
         follow_cutting(
             physics,
             rows.controls,
             rows.states,
             turning.speed / SECONDS_PER_MINUTE,
-            Cut(material, tool, self._place._replace(length_difference=turning.length_difference)),
+            Cut(material, cells, tool, place),
             self._memory,
             self._swept,
             rows.loads,

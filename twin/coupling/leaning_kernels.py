@@ -18,17 +18,17 @@ from twin.coupling.turning_tool import (
     feel_teeth,
     note_load,
     share_of_tooth,
+    step_period,
     time_of_tooth,
     turn_spindle,
 )
 from twin.cutting.tridexel.dexels import Dexels, Lattice
-from twin.cutting.tridexel.edge_forces import EdgeScratch, Leaning, edge_forces, empty_scratch
+from twin.cutting.tridexel.edge import Leaning
+from twin.cutting.tridexel.edge_forces import EdgeScratch, edge_forces, empty_scratch
 from twin.cutting.tridexel.solids.moving_solid import Poses
 from twin.cutting.tridexel.sweep import Sum, sweep
 from twin.kinematics import Kinematics
-from twin.machine.simulation.drive_kernels import hold_push
 from twin.machine.simulation.process import Physics
-from twin.machine.simulation.stepping import pass_state, step_machine
 from twin.nc.canonical import FloatArray
 from twin.units import DEGREE, MM
 
@@ -121,16 +121,9 @@ def follow_leaning(
         How many rows were followed: fewer than all where there was no memory for what is left of the material. The
         next call cuts what the last one could not.
     """
-    stepper, period = physics.stepper, physics.drives.period
+    period = physics.drives.period
     for row in range(len(controls)):
-        hold_push(physics.drives, memory.load, physics.pushed)
-        physics.control[:] = controls[row]
-        for _ in range(physics.substeps):
-            step_machine(stepper.step, stepper.model, stepper.data)
-        place = states[row].ctypes.data
-        pass_state(
-            stepper.get_state, stepper.model, stepper.data, place, np.int64(physics.signature)
-        )
+        step_period(physics, controls[row], memory.load, states[row])
         _go_to(physics, states[row], cut, memory, pose)
         enough = True
         if turn_spindle(period, commanded[row], cut.tool, memory):

@@ -2,46 +2,31 @@
 
 import numpy as np
 
-from twin.coupling.cutting_process import CuttingProcess, Operation, Rows, SpindleTurning
+from twin.coupling.cutting_process import CutSetting, CuttingProcess, Rows, SpindleTurning
 from twin.coupling.leaning_kernels import JointChain, LeaningCut, follow_leaning, nowhere
 from twin.coupling.turning_tool import ToolLoads, TurningTool
-from twin.cutting.forces.materials import Kienzle
 from twin.cutting.tools import profile
 from twin.cutting.tridexel.dexels import TriDexel
 from twin.cutting.tridexel.engagement import longest_step
 from twin.cutting.tridexel.normals import MOST_TOOLS
 from twin.cutting.tridexel.solids.solids import cutting_edge
-from twin.machine.description.machine_file import SpindleTable
 from twin.machine.simulation.process import Physics
 from twin.nc.canonical import FloatArray
-from twin.toolpath.part_frame import PartFrame
 from twin.units import SECONDS_PER_MINUTE
 
 
 class LeaningProcess(CuttingProcess):
     """Cuts a tri-dexel stock with a tool that leans against the part."""
 
-    def __init__(
-        self,
-        material: TriDexel,
-        resists: Kienzle,
-        operation: Operation,
-        part_frame: PartFrame,
-        spindle: SpindleTable,
-    ) -> None:
-        """Lay the material on the table.
-
-        Args:
-            material: It is cut; nobody else may.
-            resists: As for ``CuttingProcess``; so on.
-            part_frame: How the axes carry tool and part; it has a chain.
-        """
-        super().__init__(resists, operation, spindle)
-        assert part_frame.chain is not None
-        assert part_frame.zero is not None
+    def __init__(self, material: TriDexel, setting: CutSetting) -> None:
+        """Lay the material on the table; it is cut, and nobody else may. The axes are a chain."""
+        super().__init__(setting)
+        frame = setting.part_frame
+        assert frame.chain is not None
+        assert frame.zero is not None
         self.material = material
-        self._chain = JointChain(part_frame.chain, part_frame.zero, 0.0)
-        self._pose = nowhere(len(part_frame.zero))
+        self._chain = JointChain(frame.chain, frame.zero, 0.0)
+        self._pose = nowhere(len(frame.zero))
 
     def begin(self, position: FloatArray) -> None:
         """Begin with the machine at rest; see ``Process``."""

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from twin.coupling.cutting_process import CuttingProcess, Operation, SpindleTurning
+from twin.coupling.cutting_process import CutSetting, CuttingProcess, Operation, SpindleTurning
 from twin.coupling.height_map_process import HeightMapProcess
 from twin.coupling.leaning_process import LeaningProcess
 from twin.cutting.forces.materials import kienzle
@@ -148,7 +148,9 @@ def cutting_process(
     if resists is None:
         return None
     material = blanks.blank(stock, part_frame.program_zero(part_zero), cell)
-    return LeaningProcess(material, resists, operation, part_frame, machine.file.spindle)
+    return LeaningProcess(
+        material, CutSetting(resists, operation, part_frame, machine.file.spindle)
+    )
 
 
 def height_map_process(
@@ -168,4 +170,6 @@ def height_map_process(
         material = blank(stock, part_frame.program_zero(part_zero), cell)
     else:
         material = laid.copy()
-    return HeightMapProcess(material, resists, operation, part_frame, machine.file.spindle)
+    return HeightMapProcess(
+        material, CutSetting(resists, operation, part_frame, machine.file.spindle)
+    )

@@ -19,7 +19,9 @@ from twin.cutting.kernels.teeth import (
     add_force_between,
     tooth_bench,
 )
-from twin.machine.simulation.drive_kernels import Drives
+from twin.machine.simulation.drive_kernels import Drives, hold_push
+from twin.machine.simulation.process import Physics
+from twin.machine.simulation.stepping import pass_state, step_machine
 from twin.nc.canonical import FloatArray
 from twin.units import MM, SECONDS_PER_MINUTE
 
@@ -120,6 +122,24 @@ def new_memory(axes: int) -> Memory:
     three = [np.zeros(3) for _ in range(6)]
     rigid, speed, looked, bend, force, feed = three
     return Memory(numbers, rigid, speed, looked, bend, np.zeros(axes), tooth_bench(), force, feed)
+
+
+@array_kernel
+def step_period(physics: Physics, control: FloatArray, load: FloatArray, state: FloatArray) -> None:
+    """Step a machine through a servo period, its axes pushed by what the tool does.
+
+    Args:
+        control: What the drives are commanded, shape (nu,).
+        load: What pushes the axes, shape (k,) [N or N m].
+        state: Set to that at the end, shape (width,).
+    """
+    stepper = physics.stepper
+    hold_push(physics.drives, load, physics.pushed)
+    physics.control[:] = control
+    for _ in range(physics.substeps):
+        step_machine(stepper.step, stepper.model, stepper.data)
+    place, signature = state.ctypes.data, np.int64(physics.signature)
+    pass_state(stepper.get_state, stepper.model, stepper.data, place, signature)
 
 
 @kernel

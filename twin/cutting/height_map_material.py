@@ -10,7 +10,8 @@ from twin.cutting.heights.sweeping import Rectangle, sweep_lines, union
 from twin.cutting.kernels.covered_cells import Marks
 from twin.cutting.kernels.simplify import simplify
 from twin.cutting.kernels.sweep import Removal
-from twin.cutting.kernels.wall_distance import note_walls
+from twin.cutting.kernels.tool_height import profile_height
+from twin.cutting.kernels.wall_distance import note_walls, settle_volumes
 from twin.cutting.material import (
     LONGEST_SHARE,
     MOST_JOINED,
@@ -27,7 +28,7 @@ from twin.nc.canonical import FloatArray, IntArray
 WALL_SHARE = 0.02
 WALL_MM = 4e-3
 WALL_JOINED = 32
-"""As ``STRAIGHT_SHARE``, ``STRAIGHT_MM`` and ``MOST_JOINED``, for walls beside the path, which are looked at for more
+"""As ``STRAIGHT_SHARE``, ``STRAIGHT_MM`` and ``MOST_JOINED``, for walls beside the way, which are looked at for more
 stretches together."""
 
 
@@ -45,6 +46,7 @@ class HeightMapMaterial:
         self.map = height_map
         self.changed: Rectangle = (0, 0, 0, 0)
         self.marks = np.zeros(height_map.heights.shape if keep_marks else (0, 0))
+        self._owed = 0.0
 
     @property
     def cell(self) -> float:
@@ -76,14 +78,14 @@ class HeightMapMaterial:
     ) -> Removal:
         """Cut what a tool meets, and note the walls that it leaves."""
         del tool
-        material, tips = self.map, points.tip
-        found = sweep_lines(material, tips, edge, Marks(self.marks, travelled), stood=stood)
+        material, way = self.map, points.tip
+        found = sweep_lines(material, way, edge, Marks(self.marks, travelled), stood=stood)
         self.changed = union(self.changed, found.changed)
         off = min(WALL_SHARE * material.cell, WALL_MM)
-        rows = simplify(tips[None], np.zeros(len(tips), np.int64), off, edge.radius, WALL_JOINED)
-        note_walls(
-            material.heights, material.behind, material.grid, tips[rows], edge.radius, edge.flat
-        )
+        rows = simplify(way[None], np.zeros(len(way), np.int64), off, edge.radius, WALL_JOINED)
+        side, volume = profile_height(edge.radius, *edge), found.removal.volume
+        note_walls(material.cells, way, rows, edge.radius, edge.flat, side, volume)
+        self._owed = settle_volumes(volume, self._owed)
         return found.removal
 
     def write_stl(self, path: Path, zero: FloatArray) -> None:

@@ -66,6 +66,11 @@ class Interpretation:
         return dict(self._control.written_zero)
 
     @property
+    def written_tools(self) -> dict[int, dict[str, float]]:
+        """Radius and length that the program has written into the control's table, by tool [mm]."""
+        return self._control.tools.written
+
+    @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
         """The warnings so far."""
         return tuple(self._control.report.warnings)

@@ -25,10 +25,12 @@ class Shot:
     Attributes:
         out: The picture (PNG), complete or not at all.
         end: How many samples of the recording lie behind it; see ``moment``.
+        line: Source line that is shown as the running one; 0: that of the last sample.
     """
 
     out: Path
     end: int
+    line: int = 0
 
 
 def stills(
@@ -66,10 +68,13 @@ def stills(
             gauge.add(samples)
             if not due:
                 continue
+            shot = next(waiting)
             pixels = play.picture(*cameras)
             if panels is not None:
-                pixels = panels.draw(pixels, gauge.reading(play.warning))
-            save(pixels, next(waiting).out)
+                reading = gauge.reading(play.warning)
+                reading = dataclasses.replace(reading, line=shot.line or reading.line)
+                pixels = panels.draw(pixels, reading)
+            save(pixels, shot.out)
 
 
 def save(pixels: Pixels, out: Path) -> None:

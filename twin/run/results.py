@@ -48,7 +48,10 @@ def write_results(
 
     content = {**result_of(run, outcome), **further}
     moments = [
-        (f"Line {alarm.line}, {alarm.time_s:.3f} s: {alarm.message}", folder / ALARM_STILL_NAME)
+        (
+            f"Line {alarm.line}, {alarm.time_s:.3f} s: the moment of the alarm",
+            folder / ALARM_STILL_NAME,
+        )
         for alarm in outcome.alarms[:1]
     ]
     drawn = [*moments, ("The end of the run", folder / STILL_NAME)]

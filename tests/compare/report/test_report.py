@@ -167,3 +167,14 @@ def test_the_tools_and_the_part_are_shown() -> None:
     assert re.findall(r">([^<>]+)</td>", row[0]) == ["T7", "ball", "6.00", "60.0", "2.5", "0.01"]
     assert 'alt="the part from above' in page
     assert 'alt="the part from above' not in render_report(report_of())
+
+
+def test_the_time_of_a_reason_is_followed_by_its_colon_and_pictures_come_before_tables(
+    tmp_path: Path,
+) -> None:
+    Image.new("RGB", (8, 8)).save(tmp_path / "collision.png")
+    made = report_of(MOVES[:1], tolerance=0.001)
+    made = dataclasses.replace(made, stills=[("Line 1", tmp_path / "collision.png")])
+    source = render_report(made)
+    assert re.search(r"<b>Line \d+, [\d.]+ s<a class=\"in-viewer\"[^>]*>show</a>:</b>", source)
+    assert source.index("<figcaption>Line 1<") < source.index("<h2>Tolerances</h2>")

@@ -13,7 +13,8 @@ from twin.cutting.kernels.teeth import ToothScratch, tooth_bench
 from twin.cutting.tools import profile
 from twin.cutting.tridexel.blanks import box
 from twin.cutting.tridexel.dexels import TriDexel
-from twin.cutting.tridexel.edge_forces import Leaning, edge_forces, empty_scratch
+from twin.cutting.tridexel.edge import Leaning
+from twin.cutting.tridexel.edge_forces import edge_forces, empty_scratch
 from twin.cutting.tridexel.engagement import cut
 from twin.cutting.tridexel.solids.moving_solid import Poses
 from twin.cutting.tridexel.solids.solids import cutting_edge, cylinder

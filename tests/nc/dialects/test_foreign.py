@@ -26,6 +26,8 @@ FOREIGN: dict[str, list[bytes]] = {
     "gzip": [b"\x1f\x8b\x08\0\0\0"],
     "PNG": [b"\x89PNG\r\n\x1a\n"],
     "JPEG": [b"\xff\xd8\xff\xe0"],
+    "PLY": [b"ply\nformat binary_little_endian 1.0\nend_header\n\0\1\2\3"],
+    "EXPRESS": [b"SCHEMA a;\nENTITY b;\n  c : REAL;\nEND_ENTITY;\nEND_SCHEMA;\n"],
     "DWG": [b"AC1032\0\0"],
     "Windows": [b"MZ\x90\0\x03\0\0\0"],
     "STL": [
@@ -96,6 +98,9 @@ FOREIGN: dict[str, list[bytes]] = {
         b"%PLATE G71 *\nN10 G30 G17 X+0 Y+0 Z-40 *\nN20 T1 G17 S3000 *\n",
         b"N10 %1001 G71\nN15 G30 G17 X+0. Y+0. Z-20.\nN20 G31 G90 X+100. Y+60. Z+0.\n",
     ],
+    "Mazak": [b"T1 M06\nG61.1,K70\nG00 X-30. Y10.\nG61.1,K70\n"],
+    "EZ-TRAK": [b"0000 EZTRAK|SX 1 MODE|MM |SAT JAN 1 00:00:00 2011\n0010 RAPID X0\n"],
+    "Dynapath": [b"N100(T)1001$\nN103(9)M3S1800T1$\nN106(0)X-30.Y10.$\nN107(0)Z14.$\n"],
     "Mazatrol": [b"UNo. MAT INITIAL-Z ATC MODE\n0 CBN STL 50\nUNo. UNIT TOOL\n"],
     "Okuma": [
         b"OHAND\nIF [VORD[0024] EQ 0] NSKIP\nVDOUT[992]=1001\nNSKIP\nRTS\n",

@@ -133,6 +133,11 @@ def test_marks_within_a_comment_decide_nothing(dialect: str, line: str) -> None:
     assert recognise(source_from_text(line)).name == dialect
 
 
+def test_a_line_behind_slashes_decides_nothing() -> None:
+    found = marks_found(source_from_text("//T1  D=50. CR=0. - ZMIN=1. - face mill\nG0 X1"))
+    assert not any(found.values())
+
+
 def test_no_words_of_its_own_ask() -> None:
     with pytest.raises(UsageError) as raised:
         recognise(source_from_text("G0 X1\nG1 Y2 F100", "plain.nc"))

@@ -33,7 +33,7 @@ _REFUSED = re.compile(
     r"|has changed the unit since a tool length|cannot be turned while G92|tools have a length along Z"
     r"|#<<|it belongs to lathes|no O-word of the control|O needs a label"
     r"|follows the spindle, which stands at S0|in a block with M72 are lost|M6 needs a tool that T has prepared|cannot be in a block with M0*9[89]|put aside would change the radius|G92(?:\.\d)? and G92(?:\.\d)? exclude"
-    r"|too much for two points so near each other|error line-too-long|in square brackets.*\n.*elseif"
+    r"|probing needs a feed per minute|too much for two points so near each other|error line-too-long|in square brackets.*\n.*elseif"
     r"|nothing in this block uses 'Q.*\n.*G\s*1\s*0\s*L\s*20?(?!\d)",
     re.IGNORECASE,
 )

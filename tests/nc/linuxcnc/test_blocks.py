@@ -14,6 +14,8 @@ _NOT_COMPENSATED = (
 """What the control refuses while the radius is compensated."""
 REFUSED = {
     **{_COMPENSATED.format(code): "compensation-change" for code in _NOT_COMPENSATED},
+    "o1 if [1]\nG0 X1\no1 elseif [0]\no1 elseif [1/0]\no1 endif\nM2\n": "undefined-value",
+    "o1 if [0]\no1 elseif [1]\nG0 X1\no1 elseif [#<x> GT 1]\no1 endif\nM2\n": "unknown-variable",
     "#1=#5602\nM2\n": "parameter-number",
     "F100\nG2\nM2\n": "arc-without-center",
     "F100\nG3\nG1 X1\nM2\n": "arc-without-center",

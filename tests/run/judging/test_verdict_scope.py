@@ -180,10 +180,10 @@ def test_cycles_that_are_no_drills_take_end_mills(cycle: str, tmp_path: Path) ->
 
 
 def test_a_cut_on_a_side_that_is_thinner_than_a_cell_is_one(tmp_path: Path) -> None:
-    """No cell's middle is reached, and the force shows it."""
+    """No cell's middle is reached, and volume and force show it: the blank is 40 mm wide."""
     program = HEAD + "G0 X-30. Y23.9\nG0 Z-3.\nG1 X30. F480.\nG0 Z20.\nM30\n"
     outcome = run(tmp_path, program, {"stock": 'material = "C45"'})
-    assert outcome.scope.removed_mm3 == 0.0
+    assert outcome.scope.removed_mm3 == pytest.approx(40.0 * 0.1 * 3.0, rel=0.01)
     assert codes(outcome) == {}
 
 

@@ -597,10 +597,58 @@ def test_tools_that_a_program_writes_into_the_table_are_its_own(tmp_path: Path) 
     tools = [(each.number, each.kind, each.diameter) for each in made.job.file.tools]
     assert tools == [(1, "flat", 8.0), (2, "drill", 3.0)]
     assert list(made.interpretation().chunks())
+    longer, _ = raw(tmp_path, text.format("").replace("R1.5Z20", "R1.5Z50"))
+    assert longer.job.file.stock == made.job.file.stock  # no length is called
+    assert [each.length for each in longer.job.file.tools] == [60.0, 60.0]
     called, _ = raw(tmp_path, text.format("G43 H1\n"))
     assert [each.length for each in called.job.file.tools] == [20.0, 20.0]
-    with pytest.raises(ProgramError, match="no tool 2"):
+    with pytest.raises(UsageError, match="length of tool 1 and calls it, and not that of tool 2"):
         raw(tmp_path, text.format("G43 H1\n").replace("R1.5Z20", "R1.5"))
+    with pytest.raises(UsageError, match="writes 0 mm as the length of tool 2 and calls it"):
+        raw(tmp_path, text.format("G43 H1\n").replace("R1.5Z20", "R1.5Z0"))
+
+
+FANUC_TABLE = """O31
+G21 G90 G17 G40 G49 G80
+G10 L10 P1 R152.4
+G10 L12 P1 R4.
+G10 L10 P2 R101.
+G10 L12 P2 R2.5
+T1 M6
+G54 G0 X0. Y0. S3000 M3
+G43 H1 Z20.
+Z2.
+G1 Z-3. F200.
+G41 D1 X10. F400.
+Y30.
+G40 X40.
+G0 Z20.
+G49
+T2 M6
+S3000 M3
+G43 H2 Z60.
+G0 X20. Y10.
+G99 G81 Z-9. R2. F100.
+G80
+G0 Z20.
+M30
+"""
+
+
+def test_lengths_and_radii_that_a_fanuc_program_writes_are_its_tools(tmp_path: Path) -> None:
+    """Heights count from those lengths: with others they lay 90 mm too high."""
+    made, assumed = raw(tmp_path, FANUC_TABLE)
+    tools = [(each.number, each.diameter, each.length) for each in made.job.file.tools]
+    assert tools == [(1, 8.0, 152.4), (2, 5.0, 101.0)]
+    stock = made.job.file.stock
+    assert stock is not None
+    assert stock.size is not None
+    assert (stock.position[2], stock.size[2]) == (0.0, 19.0)
+    assert any("from what the program writes" in line for line in assumed.assumptions)
+    moves = concatenate([each.moves for each in made.interpretation().chunks()], made.machine.axes)
+    assert moves.end[moves.line == 11][-1, 2] == -3.0
+    with pytest.raises(UsageError, match=r"-250\.5 mm as the length of tool 1"):
+        raw(tmp_path, FANUC_TABLE.replace("R152.4", "R-250.5"))
 
 
 def test_rounding_that_a_program_allows_is_no_error_of_its_contour(tmp_path: Path) -> None:

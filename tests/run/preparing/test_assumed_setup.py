@@ -265,8 +265,13 @@ def test_a_router_that_calls_t0_has_a_tool_0(tmp_path: Path) -> None:
 
 
 def test_flutes_are_as_long_as_the_deepest_cut_below_the_top(tmp_path: Path) -> None:
-    made, _ = raw(tmp_path, f"{HEAD}{passes(50.0, 40.0, 30.0, 20.0, 10.0, 0.0, clear=70.0)}{END}")
+    deep = passes(50.0, 40.0, 30.0, 20.0, 10.0, 0.0, clear=70.0)
+    made, assumed = raw(tmp_path, f"{HEAD}{deep}{END}")
     assert made.job.file.tools[0].flute == 65.0
+    assert made.job.file.tools[0].length == 124.0
+    assert any("124 mm long, a guess: so far it must reach" in line for line in assumed.assumptions)
+    _, shallow = raw(tmp_path, f"{HEAD}{passes(-1.0)}{END}")
+    assert not any("mm long" in line for line in shallow.assumptions)
 
 
 def test_rapids_into_a_pocket_that_was_fed_take_nothing_from_the_stock(tmp_path: Path) -> None:

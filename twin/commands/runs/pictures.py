@@ -49,11 +49,12 @@ def film_run(run: Run, folder: Path, progress: Progress) -> None:
         )
 
 
-def draw_contact(run: Run, folder: Path) -> None:
+def draw_contact(run: Run, folder: Path, line: int) -> None:
     """Draw the moment at which two things met, which is the last of its recording, near and from afar.
 
     Args:
         folder: Where ``recording.h5`` lies and the picture goes.
+        line: Of the alarm; the last sample may be of a later one.
 
     Raises:
         RenderError: Pictures cannot be made here.
@@ -64,5 +65,5 @@ def draw_contact(run: Run, folder: Path) -> None:
     with open_recording(folder / "recording.h5") as recording:
         scene = scene_of(recording, run.preparation, run.dry_run.summary)
         cameras = [name for name in ALARM_CAMERAS if name in scene.camera_names()]
-        shot = Shot(folder / ALARM_STILL_NAME, len(recording))
+        shot = Shot(folder / ALARM_STILL_NAME, len(recording), line)
         stills(scene, [shot], cameras=cameras, size=_ALARM_SIZE, quality="draft")

@@ -61,7 +61,7 @@ def run_and_print(
                     film_run(run, folder, progress)
             if any(alarm.code in ALARMS_OF_CONTACT for alarm in outcome.alarms):
                 with run.clock.stage("render"):
-                    _draw_contact(run, folder)
+                    _draw_contact(run, folder, outcome.alarms[0].line)
         write_results(run, outcome, folder)
     print_findings(run, outcome)
     for line in outcome.scope.lines():
@@ -83,10 +83,10 @@ def _tell_assumed(preparation: Preparation, assumed: AssumedJob, save_job: Path 
         typer.echo(f"the job is kept in {save_job}", err=True)
 
 
-def _draw_contact(run: Run, folder: Path) -> None:
+def _draw_contact(run: Run, folder: Path, line: int) -> None:
     """Draw the moment for the report; the alarm is printed even where no picture can be made."""
     try:
-        draw_contact(run, folder)
+        draw_contact(run, folder, line)
     except RenderError as error:
         typer.echo(f"no picture of the alarm: {error}", err=True)
 

@@ -67,8 +67,8 @@ def path_plot(trace: Trace, across: int, up: int, tolerance_um: float) -> Plot:
     axes.set_ylim(middle[1] - span[1] / 2, middle[1] + span[1] / 2)
     if len(points):
         worst = int(error.argmax())
-        axes.plot(*points[worst], "o", ms=11, mfc="none", mec=LIMIT, mew=1.8)
-        axes.plot(*points[0], "s", ms=5, mfc="none", mec=INK)
+        axes.plot(*points[worst], "o", ms=11, mfc="none", mec=LIMIT, mew=1.8, clip_on=False)
+        axes.plot(*points[0], "s", ms=5, mfc="none", mec=INK, clip_on=False)
     axes.set_aspect("equal")
     axes.set_xlabel(f"{'XYZ'[across]} [mm]")
     axes.set_ylabel(f"{'XYZ'[up]} [mm]")

@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from twin.cutting.heights.outline import BlankOutline, BoolArray, outline
-from twin.cutting.kernels.covered_cells import Grid
+from twin.cutting.kernels.covered_cells import Cells, Grid
 from twin.cutting.kernels.rasterize import rasterize
-from twin.cutting.kernels.wall_distance import KNOWN, WallDistance, no_walls_known
+from twin.cutting.kernels.wall_distance import KNOWN, WallDistance, no_walls_known, share_before
 from twin.cutting.kernels.walls import BASE, REACH, WallArray, no_walls
 from twin.errors import ConfigError
 from twin.files.stl import read_stl
@@ -56,9 +56,17 @@ class HeightMap:
         return Grid(self.origin, self.cell, self.bottom, self.top)
 
     @property
+    def cells(self) -> Cells:
+        """What kernels take."""
+        return Cells(self.heights, self.behind, self.grid)
+
+    @property
     def volume(self) -> float:
-        """Material that is left [mm³]."""
-        return float((self.heights - self.bottom).sum()) * self.cell**2
+        """Material that is left, up to the very walls [mm³]."""
+        _, lowest, near, down_to, far = np.moveaxis(self.behind, -1, 0)
+        cut = near * np.maximum(self.heights - down_to, 0.0)
+        cut += far * np.maximum(np.minimum(self.heights, down_to) - lowest, 0.0)
+        return float((self.heights - self.bottom - cut).sum()) * self.cell**2
 
     @property
     def x(self) -> FloatArray:
@@ -131,7 +139,9 @@ def blank(stock: StockTable, corner: FloatArray, cell: float) -> HeightMap:
     if stock.file is None:
         inside = edge.inside(result.x, result.y[:, None])
         beside = within & (inside <= cell)
-        behind[beside] = np.column_stack(np.broadcast_arrays(inside[beside] / cell + KNOWN, bottom))
+        off, share = inside[beside] / cell, _share_outside(result, beside)
+        raw = np.broadcast_arrays(off + KNOWN, bottom, share, bottom, 0.0)
+        behind[beside] = np.column_stack(raw)
     if stock.file is not None:
         mesh = read_stl(Path(stock.file))
         low, high = mesh.bounds
@@ -140,8 +150,17 @@ def blank(stock: StockTable, corner: FloatArray, cell: float) -> HeightMap:
         heights[:], behind[:] = bottom, 0.0
         rasterize(heights, result.origin, cell, triangles)
         result.uncut = heights.copy()
-        behind[_beside_lower(heights, bottom)] = KNOWN, bottom
+        behind[_beside_lower(heights, bottom)] = KNOWN, bottom, 0.0, bottom, 0.0
     return result
+
+
+def _share_outside(uncut: HeightMap, cells: BoolArray) -> FloatArray:
+    """Which share of some cells by the blank's sides lies outside of it; see ``share_before``."""
+    rows, columns = np.nonzero(cells)
+    x, y = uncut.x[columns], uncut.y[rows]
+    off = uncut.outline.inside(x, y) / uncut.cell
+    widest = np.abs(uncut.outline.inwards(x, y)).max(axis=1)
+    return np.where(off < widest, share_before(off, widest), 0.0)
 
 
 def raw_walls(uncut: HeightMap) -> WallArray:

@@ -62,7 +62,7 @@ def sweep_lines(
     marks = Marks(np.zeros((0, 0)), np.zeros(count)) if marks is None else marks
 
     def cut(rows: tuple[int, int]) -> Rectangle:
-        return sweep(material.heights, grid, points, edge, sums, marks, stood, rows)
+        return sweep(material.cells, points, edge, sums, marks, stood, rows)
 
     if count >= FEWEST_LINES and (available_cores() if cores is None else cores) > 1:
         with ThreadPoolExecutor(1, "sweep") as other:

@@ -3,6 +3,9 @@
 import math
 from typing import NamedTuple
 
+import numpy as np
+import numpy.typing as npt
+
 from twin.compilation.compilable import inlined
 from twin.compilation.kernel import arithmetic_kernel
 from twin.cutting.kernels.tool_height import Profile
@@ -28,6 +31,19 @@ class Grid(NamedTuple):
     top: float
 
 
+class Cells(NamedTuple):
+    """A height map as kernels have it.
+
+    Attributes:
+        heights: Of the material over each cell, shape (ny, nx) [mm].
+        behind: How far the middles of cells are behind walls, shape (ny, nx, 5); see ``wall_distance``.
+    """
+
+    heights: FloatArray
+    behind: npt.NDArray[np.float32]
+    grid: Grid
+
+
 class Marks(NamedTuple):
     """What each of n lines leaves where it cuts.
 
@@ -45,6 +61,7 @@ class Scratch(NamedTuple):
 
     Attributes:
         heights: The height map, shape (ny, nx) [mm].
+        behind: What is known of its walls.
         marks: As ``sweep`` has them.
         rows: Of the map, which are cut: the first, and how far it is to the next.
         low: Row at which the disc that the tool covers begins, at either end of a line, shape (2,).
@@ -55,6 +72,7 @@ class Scratch(NamedTuple):
     """
 
     heights: FloatArray
+    behind: npt.NDArray[np.float32]
     grid: Grid
     profile: Profile
     marks: Marks

@@ -9,6 +9,7 @@ import numpy as np
 from twin.compilation.compilable import inlined
 from twin.compilation.kernel import arithmetic_kernel, threaded_kernel
 from twin.cutting.kernels.covered_cells import (
+    Cells,
     Grid,
     Marks,
     Scratch,
@@ -19,6 +20,7 @@ from twin.cutting.kernels.covered_cells import (
 )
 from twin.cutting.kernels.run_heights import lowest_in_run
 from twin.cutting.kernels.tool_height import Profile
+from twin.cutting.kernels.wall_distance import cut_of_column
 from twin.nc.canonical import FloatArray
 
 RUN = 128
@@ -34,7 +36,7 @@ class _Sum(enum.IntEnum):
     """What a line took off: columns of ``sums``."""
 
     LOST = 0
-    """Height [mm]."""
+    """Height [mm], of columns of which a wall has left a part by that part."""
     COLUMNS = 1
     """That times the number of the column."""
     ROWS = 2
@@ -59,8 +61,7 @@ class Removal(NamedTuple):
 
 @threaded_kernel
 def sweep(
-    heights: FloatArray,
-    grid: Grid,
+    cells: Cells,
     points: FloatArray,
     profile: Profile,
     sums: FloatArray,
@@ -74,7 +75,7 @@ def sweep(
     that the tool's profile has anywhere along the line.
 
     Args:
-        heights: The height map, shape (ny, nx) [mm]; changed in place.
+        cells: The height map, whose heights are changed.
         points: Tool tip positions, shape (n, 3) [mm].
         sums: What each line took off of rows of even and of odd number is added to it, shape
             (n - 1, 2, 4): height [mm], that times the number of the column and of the row, and the
@@ -86,12 +87,12 @@ def sweep(
     Returns:
         First and last-but-one row, first and last-but-one column of the cells that changed.
     """
-    count = int(2.0 * profile.radius / grid.cell) + 2
+    count = int(2.0 * profile.radius / cells.grid.cell) + 2
     scratch = Scratch(
-        heights, grid, profile, marks, rows, np.zeros(2, np.int64),
+        cells.heights, cells.behind, cells.grid, profile, marks, rows, np.zeros(2, np.int64),
         np.zeros((2, 2, count)), np.zeros(RUN), sums, np.zeros(4, np.int64),
     )  # fmt: skip
-    scratch.changed[0], scratch.changed[2] = heights.shape
+    scratch.changed[0], scratch.changed[2] = cells.heights.shape
     _sweep_lines(scratch, points, stood)
     return scratch.changed[0], scratch.changed[1], scratch.changed[2], scratch.changed[3]
 
@@ -165,10 +166,10 @@ def _sweep_level(scratch: Scratch, a: FloatArray, b: FloatArray, line: int) -> N
                 height = heights[row, column]
                 lower = min(height, z) if k < count else height
                 heights[row, column] = lower
-                cut = height - lower
-                lost += cut
-                moment += cut * column
-                deepest = max(deepest, cut)
+                taken = cut_of_column(scratch.behind, row, column, height, lower)
+                lost += taken
+                moment += taken * column
+                deepest = max(deepest, height - lower)
         if lost > 0.0:
             _add(scratch, line, row, (first, end), (lost, moment, deepest))
 
@@ -247,9 +248,10 @@ def _lower_run(
         for k in range(len(cells)):
             lower = min(cells[k], max(lowest[k], grid.bottom))
             cut = cells[k] - lower
+            taken = cut_of_column(scratch.behind, row, begin + first + k, cells[k], lower)
             cells[k] = lower
-            lost += cut
-            moment += cut * (begin + first + k)
+            lost += taken
+            moment += taken * (begin + first + k)
             deepest = max(deepest, cut)
             if scratch.marks.cells.size and cut > 0.0:
                 scratch.marks.cells[row, begin + first + k] = scratch.marks.mark[line]

@@ -14,6 +14,7 @@ class Tools:
     Attributes:
         any: The tool that every other number means; None: there is none.
         names: Numbers of tools that the program has called by names which the job does not give.
+        written: Radius and length that the program has written into the control's table, by number [mm].
         selected: Number of the tool that the next change brings.
         length_call: Number of the tool whose length the block that runs calls, or ``LENGTH_ENDED``; None: it calls none.
         rigid: Tapping cycles start the spindle themselves, where it stands, and stop it behind each hole.
@@ -24,6 +25,7 @@ class Tools:
         """Put the first tool into the spindle; ``any_tool``: every number means this one."""
         self.table = table
         self.names: dict[str, int] = {}
+        self.written: dict[int, dict[str, float]] = {}
         first = next(iter(table), None)
         self.any = table[first] if any_tool and first is not None else None
         self._reference = 0.0 if first is None else table[first].length
@@ -31,6 +33,10 @@ class Tools:
         self.length_call: int | None = None
         self.rigid = False
         self.drills = False
+
+    def note_written(self, number: int, field: str, value: float) -> None:
+        """The program writes ``radius`` or ``length`` of a tool into the control's table [mm]."""
+        self.written.setdefault(number, {})[field] = value
 
     def change(self) -> None:
         """The selected tool goes into the spindle."""

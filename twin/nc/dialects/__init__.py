@@ -163,7 +163,9 @@ def marks_found(source: Source) -> dict[str, list[str]]:
     found: set[tuple[str, str]] = set()
     seen: set[str] = set()
     for line in source.lines:
-        shape = _VALUES.sub("0", _REMARK.sub("; remark", _BRACKETS.sub(" ", line)))
+        shape = _VALUES.sub(
+            "0", _REMARK.sub("; remark", _BRACKETS.sub(" ", _SLASHES.sub("", line)))
+        )
         if shape not in seen:
             found |= {mark for mark, pattern in patterns.items() if pattern.search(shape)}
             if len(seen) < _MOST_SHAPES:
@@ -185,6 +187,8 @@ def marks_found(source: Source) -> dict[str, list[str]]:
 
 _BRACKETS = re.compile(r"\([^()]*\)")
 """A comment in every dialect: what it says decides nothing."""
+_SLASHES = re.compile(r"^[ \t]*//.*")
+"""A line of comment for some controls: two slashes begin a block nowhere."""
 _REMARK = re.compile(r";(?![ \t]*\$PATH)[ \t]*[^ \t;].*")
 """Text behind ; likewise, but for what names a SINUMERIK's folder."""
 _VALUES = re.compile(

@@ -5,7 +5,7 @@ import json
 import os
 import re
 import tomllib
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +22,12 @@ from twin.nc.text.diagnostics.diagnostics import ProgramError
 from twin.run.preparing.control_settings import IGNORED_AT_ZERO
 from twin.run.preparing.layout import lay_out
 from twin.run.preparing.preparation import Preparation, anywhere, prepare, prepare_job
+from twin.run.preparing.written import (
+    at_the_tips,
+    tool_calls,
+    with_written,
+    written_zero_lines,
+)
 from twin.run.reading.assumed_heights import MARGIN, Cuts, top_of_stock, turns_about_x
 from twin.run.reading.assumed_reading import AssumedReading
 from twin.run.reading.assumed_stock import assumed_stock, bar_ends
@@ -108,19 +114,21 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
         ProgramError: The program is wrong.
     """
     interpretation, chunks, counts_from_machine_zero = _interpreted(preparation)
-    written = interpretation.written_zero
-    if written:
-        settings = dataclasses.replace(preparation.settings, written_zero=written)
-        preparation = dataclasses.replace(preparation, settings=settings)
+    written, own = interpretation.written_zero, interpretation.written_tools
+    calls = tool_calls(chunks)
+    if written or own:
+        preparation = with_written(preparation, written, own, [number for number, _, _ in calls])
         interpretation, chunks, counts_from_machine_zero = _interpreted(preparation)
     moves = concatenate([chunk.moves for chunk in chunks], preparation.machine.axes)
-    calls = _tool_calls(chunks)
+    calls_lengths = bool(interpretation.lengths.calls)
+    if calls_lengths:
+        moves = at_the_tips(moves, calls, preparation.settings.tools)
     inches, lacking = interpretation.programs_in_inches, _lacking_axes(preparation)
     comments = list(_comments(preparation))
     functions = [each for chunk in chunks for each in chunk.events if isinstance(each, Function)]
     named = named_tools(interpretation.tool_names, inches=inches)
-    blocks = list(map(without_comments, preparation.source.lines))
-    declared = {**named, **table_tools(blocks, inches=inches), **declared_tools(functions)}
+    in_table = table_tools(own, [number for number, _, _ in calls], calls_lengths=calls_lengths)
+    declared = {**named, **in_table, **declared_tools(functions)}
     length = _least_length(preparation.machine, moves)
     blank = declared_stock(functions)
     starts = any(each.word in SPINDLE_STARTS for each in functions)
@@ -152,7 +160,7 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
             stock,
             [*stock, *tools] if counts_from_machine_zero else None,
         ),
-        *_written_zero_lines(written),
+        *written_zero_lines(written),
         *_unit_lines(preparation.reading),
         "",
         *_start_lines(moves, position),
@@ -183,11 +191,6 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
     speed = f"the spindle turns at {SPEED_BY_HAND:g} /min, set by hand, where the program starts it: it holds no S"
     told += [speed] if by_hand else []
     return AssumedJob("\n".join(lines), (*preparation.reading.notes, said, *told, *left_out))
-
-
-def _written_zero_lines(written: Mapping[str, float]) -> list[str]:
-    values = ", ".join(f"{axis} = {value:g}" for axis, value in written.items())
-    return [f"written_zero = {{ {values} }}  # what the program writes itself"] if written else []
 
 
 def _speed_is_set_by_hand(functions: Iterable[Function]) -> bool:
@@ -268,23 +271,6 @@ def _interpreted(preparation: Preparation) -> tuple[Interpretation, list[Chunk],
     placed = list(somewhere.chunks())
     depends = sum(len(chunk.moves) for chunk in placed) != sum(len(each.moves) for each in chunks)
     return (somewhere, placed, True) if depends else (interpretation, chunks, False)
-
-
-def _tool_calls(chunks: list[Chunk]) -> list[tuple[int, int, int]]:
-    """Number, line and next move of every tool that comes: by M6, in a program without it by T alone."""
-    selected: list[tuple[int, int, int]] = []
-    changed: list[tuple[int, int, int]] = []
-    done = 0
-    for chunk in chunks:
-        for event in chunk.events:
-            if not isinstance(event, Function):
-                continue
-            if event.word[:1] == "T" and event.word[1:].isdigit():
-                selected.append((int(event.word[1:]), event.line, done + event.before))
-            elif event.word == TOOL_CHANGE and selected:
-                changed.append((selected[-1][0], event.line, done + event.before))
-        done += len(chunk.moves)
-    return changed or selected
 
 
 def _unit_lines(reading: AssumedReading) -> list[str]:

@@ -18,7 +18,6 @@ from twin.run.reading.assumed_tools import (
     listed_tools,
     tool_of_call,
 )
-from twin.run.reading.declared import table_tools
 
 _MOST_LINES = 200_000
 """So many lines are looked at."""
@@ -135,10 +134,8 @@ def _named_tools(source: Source, inches: bool) -> Callable[[str, int], ToolData 
 
 
 def _data_of(tool: ToolComment) -> ToolData | None:
-    """What the control's table has of a tool; None: its radius is not known."""
-    if tool.table_radius is None:
-        return None
-    return ToolData(radius=tool.table_radius, length=tool.length or USUAL_LENGTH)
+    """What the control's table has of a tool, all of them equally long, so that heights are the program's; None: its radius is not known."""
+    return None if tool.table_radius is None else ToolData(tool.table_radius, USUAL_LENGTH)
 
 
 def _turn_within_a_cut(source: Source) -> str:
@@ -196,13 +193,9 @@ def _comments(source: Source) -> Iterator[str]:
 
 
 def _commented_tools(source: Source, *, inches: bool) -> dict[int, ToolData]:
-    """Tools of comments, and those that the program writes into the control's table."""
-    blocks = list(_blocks(source))
-    numbers = {int(found[1]) for line in blocks for found in _TOOL.finditer(line)}
-    listed = {
-        **listed_tools(_comments(source), numbers, inches=inches),
-        **table_tools(blocks, inches=inches),
-    }
+    """The tools of comments whose radius they tell, by number."""
+    numbers = {int(found[1]) for line in _blocks(source) for found in _TOOL.finditer(line)}
+    listed = listed_tools(_comments(source), numbers, inches=inches)
     data = {number: _data_of(tool) for number, tool in listed.items()}
     return {number: each for number, each in data.items() if each is not None}
 

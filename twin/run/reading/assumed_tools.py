@@ -82,6 +82,7 @@ class ToolComment(NamedTuple):
         corner: Radius of a bull-nose's corner [mm].
         wear: Its contours are the path of its centre, so that D holds its wear alone; None: that is not told.
         name: By which the program calls it; empty: by its number.
+        source: What says so, for people.
         length: That the program writes, into the control's table or a comment [mm]; None: it writes none.
     """
 
@@ -92,6 +93,7 @@ class ToolComment(NamedTuple):
     wear: bool | None = None
     name: str = ""
     length: float | None = None
+    source: str = "its comment"
 
     @property
     def table_radius(self) -> float | None:
@@ -246,7 +248,7 @@ def tool_lines(
             or own
         )
         if own and tool:
-            tool = tool._replace(name=own.name)
+            tool = tool._replace(name=own.name, length=own.length or tool.length)
         rows = _rows_of(number, calls, len(moves))
         more, said, diameter = _tool_table(
             (number, tool), moves, rows, top=top, least_length=least_length, worn=number in worn
@@ -357,7 +359,7 @@ def _tool_table(
         length, length_from = tool.length, "the program's own"
         flute = min(flute, length)
     kind_from = "its comment" if tool and tool.kind else "what it does"
-    size_from = "its comment" if tool and tool.diameter else "a guess"
+    size_from = tool.source if tool and tool.diameter else "a guess"
     lines = [
         "[[tools]]",
         f"number = {number}" + (f"  # {_plain(tool.text)}" if tool else ""),
@@ -375,9 +377,14 @@ def _tool_table(
         f"length = {round(float(length), 4)}  # from the spindle nose to the tip, mm: {length_from}",
     ]
     said = f"T{number} {kind} of {diameter:g} mm: " + (
-        f"from its comment ({_plain(tool.text)})"
+        f"from {tool.source} ({_plain(tool.text)})"
         if tool and tool.diameter
         else "diameter is a guess"
+    )
+    said += (
+        ""
+        if length <= USUAL_LENGTH or length_from != "a guess"
+        else f"; {length:g} mm long, a guess: so far it must reach"
     )
     said += "; D holds its wear alone, the contours are the path of its centre" if worn else ""
     return lines, said, diameter

@@ -1,21 +1,19 @@
 """What a program itself declares of its blank and its tools, as Klartext does by BLK FORM and TOOL DEF, and a SINUMERIK by WORKPIECE."""
 
-import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
 import numpy as np
 
+from twin.errors import UsageError
 from twin.nc.canonical import FloatArray, Function
 from twin.nc.functions import BLANK
 from twin.run.reading.assumed_tools import ToolComment
 
 _RADIUS = "R"
-_TABLE = re.compile(r"(?<![A-Z])G[ \t]*10(?![0-9.])[^A-Z]*L[ \t]*1(?![0-9.])", re.IGNORECASE)
-_TABLE_NUMBER = re.compile(r"P[ \t]*([0-9]+)(?![0-9.])", re.IGNORECASE)
-_TABLE_LENGTH = re.compile(r"Z[ \t]*([0-9]+\.?[0-9]*|\.[0-9]+)", re.IGNORECASE)
-_TABLE_RADIUS = re.compile(r"R[ \t]*([0-9]+\.?[0-9]*|\.[0-9]+)", re.IGNORECASE)
-_CALLS_LENGTH = re.compile(r"(?<![A-Z])G[ \t]*4[34](?![0-9])", re.IGNORECASE)
+
+
+_WRITTEN = "what the program writes"
 
 
 class DeclaredStock(NamedTuple):
@@ -65,30 +63,58 @@ def declared_tools(functions: Iterable[Function]) -> dict[int, ToolComment]:
     """The tools that a program gives a radius, by number."""
     return {
         int(each.word[1:]): ToolComment(
-            "", 2.0 * each.arguments[_RADIUS], None, f"TOOL DEF R {each.arguments[_RADIUS]:g}"
+            "",
+            2.0 * each.arguments[_RADIUS],
+            None,
+            f"TOOL DEF R {each.arguments[_RADIUS]:g}",
+            source=_WRITTEN,
         )
         for each in functions
         if each.word[:1] == "T" and each.word[1:].isdigit() and each.arguments.get(_RADIUS)
     }
 
 
-def table_tools(blocks: Sequence[str], *, inches: bool) -> dict[int, ToolComment]:
-    """The tools whose radius G10 L1 writes, by number, and the lengths that it writes where the program calls lengths.
+def table_tools(
+    written: Mapping[int, Mapping[str, float]], called: Iterable[int], *, calls_lengths: bool
+) -> dict[int, ToolComment]:
+    """The tools whose radius or length a program writes into the control's table, by number.
 
-    A control counts heights from what is in its table, and so a tool without a length there is none of
-    a program that calls it.
+    Args:
+        written: Radius and length, by tool [mm].
+        called: Tools that it brings into the spindle.
+        calls_lengths: The program calls lengths, and heights count from those that it writes.
+
+    Raises:
+        UsageError: It calls lengths and writes one that no tool has, or those of some tools alone.
     """
-    calls_lengths = any(map(_CALLS_LENGTH.search, blocks))
-    unit = 25.4 if inches else 1.0
-    tools: dict[int, ToolComment] = {}
-    for block in filter(_TABLE.search, blocks):
-        number, radius = _TABLE_NUMBER.search(block), _TABLE_RADIUS.search(block)
-        if number and radius and float(radius[1]) > 0.0:
-            tool = ToolComment("", 2.0 * float(radius[1]) * unit, None, block.strip())
-            if calls_lengths:
-                written = _TABLE_LENGTH.search(block)
-                if written is None or not float(written[1]) > 0.0:
-                    continue
-                tool = tool._replace(length=float(written[1]) * unit)
-            tools[int(number[1])] = tool
-    return tools
+    lengths = {number: each["length"] for number, each in written.items() if "length" in each}
+    if calls_lengths and lengths:
+        _require_lengths(lengths, called)
+    return {
+        number: ToolComment(
+            "",
+            2.0 * values["radius"] if values.get("radius", 0.0) > 0.0 else None,
+            None,
+            " ".join(f"{name} {value:g}" for name, value in values.items()),
+            length=values.get("length") if calls_lengths else None,
+            source=_WRITTEN,
+        )
+        for number, values in written.items()
+    }
+
+
+def _require_lengths(lengths: Mapping[int, float], called: Iterable[int]) -> None:
+    hint = "leave out what writes lengths, and the tools have those of the job"
+    for number, length in lengths.items():
+        if length <= 0.0:
+            raise UsageError(
+                f"the program writes {length:g} mm as the length of tool {number} and calls it, as where zero is taken "
+                f"with each tool: no tool is so long; {hint}"
+            )
+    for number in called:
+        if number not in lengths:
+            one = next(iter(lengths))
+            raise UsageError(
+                f"the program writes the length of tool {one} and calls it, and not that of tool {number}: how much "
+                f"longer that is nobody knows; write it too, or {hint}"
+            )

@@ -101,8 +101,8 @@ MOTION = {
     38.3: motion_code("probing towards the part, without an alarm", motion.PROBE),
     **refused("probing away from the part", _NO_PROBE, 38.4, group="motion"),
     38.5: motion_code("probing away from the part, without an alarm", motion.PROBE),
-    **refused("finishing cycle", _LATHE, 70, group="motion"),
-    **refused("roughing cycle", _LATHE, 71, group="motion"),
+    **refused("finishing cycle", _LATHE, 70, group="motion", advice="inches are G20"),
+    **refused("roughing cycle", _LATHE, 71, group="motion", advice="millimetres are G21"),
     **refused("facing cycle", _LATHE, 72, group="motion"),
     **refused("threading cycle", _LATHE, 76, group="motion"),
     80: GCode(

@@ -104,7 +104,7 @@ DECISIONS = (
         "motion code with G43.1 or G43.2, X and Y of a tool in G10 L1, L10 and L11, Q in G10 L2 and L20, names of parameters with "
         "brackets in them, codes of lathes, axis words with M72, a radius compensation that M72 or the end "
         "of a subroutine would switch, words with M98 and M99 but for P and L, two of G92 to "
-        "G92.3 in a block, lines that begin with O and are no O-words.",
+        "G92.3 in a block, probing with G93, lines that begin with O and are no O-words.",
         "The manual calls each an error or says nothing of it; what was meant is not done.",
         example="refused_for_clarity",
     ),

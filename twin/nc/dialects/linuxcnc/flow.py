@@ -135,7 +135,12 @@ def _if(control: Control, statement: Statement, word: OWord) -> None:
 
 
 def _leave(control: Control, statement: Statement, word: OWord) -> None:
-    control.jump(_construct_of(control, statement, word).behind)
+    """A condition has held; those of the branches behind are computed on the way to the end, as ``rs274`` does."""
+    construct = _construct_of(control, statement, word)
+    for branch in construct.branches:
+        if branch.line >= control.block.line - 1 and branch.keyword == "ELSEIF":
+            control.compute(*_condition_of(control, *_line_of(control, branch.line)))
+    control.jump(construct.behind)
 
 
 def _nothing(control: Control, statement: Statement, word: OWord) -> None:

@@ -284,7 +284,7 @@ def table_zeros(control: Control, code: str) -> list[float]:
 def _write_tool(control: Control, number: Word, kind: int) -> None:
     """G10 L1: length Z and radius R of a tool; L10, L11: its length so that Z is where it is."""
     which = integer_of(control.number(number))
-    tool = control.tools.table.get(which)
+    tool = control.tools.data(which)
     if tool is None:
         known = ", ".join(map(str, control.tools.table)) or "none"
         message = f"the job has no tool {which}"
@@ -301,6 +301,10 @@ def _write_tool(control: Control, number: Word, kind: int) -> None:
         length = control.axis_value(index, word)
     if length is not None and kind != 1:
         length = _length_here(control, length, from_fixture=kind == 11)
+    if radius is not None:
+        control.tools.note_written(which, "radius", control.length(radius))
+    if length is not None and kind == 1:
+        control.tools.note_written(which, "length", length)
     changed = ToolData(
         tool.radius if radius is None else control.length(radius),
         tool.length if length is None else length,

@@ -28,7 +28,7 @@ def _drill(control: Control, code: int) -> None:
     cycle = control.modal.cycle
     if cycle is None:
         message = f"G{code} places the holes of a canned cycle, and none is in force"
-        hint = "write it before: G81 Z-5. R1. F100. L0"
+        hint = "write it before: G81 Z-5. R1. F100. L0; inches are G20, millimetres G21"
         control.fail("cycle-word", message, control.code_word(code), hint)
     assert isinstance(cycle, Interpolation)
     if control.modal.plane is not XY:

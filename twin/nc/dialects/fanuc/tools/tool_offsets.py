@@ -184,6 +184,8 @@ def radius_in_force(control: Control) -> float:
 def write_tool_offset(control: Control, number: int, field: str, value: float) -> None:
     """Write a value of a row, whose length holds at once where it is in force [mm]."""
     setattr(memory_of(control).tool_offsets.setdefault(number, ToolOffset()), field, value)
+    if field in ("length", "radius"):
+        control.tools.note_written(_tool_of(control, number), field, value)
 
 
 def read_tool_offset(control: Control, number: int, field: str) -> float:

@@ -82,8 +82,10 @@ def write(control: Control, name: str, value: float) -> None:
     elif key in (_LENGTH, _RADIUS) and len(indices) == 2 and _number(control, indices[1]) == 1:
         number = _number(control, indices[0])
         old = control.tools.data(number) or ToolData(0.0, 0.0)
-        change = {"length": value} if key == _LENGTH else {"radius": value}
-        control.tools.table = {**control.tools.table, number: dataclasses.replace(old, **change)}
+        field = "length" if key == _LENGTH else "radius"
+        control.tools.note_written(number, field, value)
+        changed = dataclasses.replace(old, **{field: value})
+        control.tools.table = {**control.tools.table, number: changed}
     elif _TOLD_ONLY.fullmatch(key) is None:
         message = f"{name} belongs to the control, and the twin does not simulate it"
         hint = "programs write $P_UIFR[1,X,TR], $TC_DP3[1,1] and $TC_DP6[1,1]"
