@@ -129,7 +129,10 @@ FOREIGN: dict[str, list[bytes]] = {
     ],
     "TinyG": [b'{"sr":null}\nG0 X1\n'],
     "Brother": [b"O1000\nG100 T1 X0 Y0 Z50. G43 H1 S3000 M3\nG1 X10. F100.\nM30\n"],
-    "Excellon": [b"M48\nMETRIC,TZ\nT1C0.800\nT2C1.000\n%\nG90\nG05\nT1\nX10.0Y5.0\nM30\n"],
+    "Excellon": [
+        b"G90\r\nM72\r\nM48\r\nT105C0.12\r\n%\r\nM30\r\n",
+        b"M48\nMETRIC,TZ\nT1C0.800\nT2C1.000\n%\nG90\nG05\nT1\nX10.0Y5.0\nM30\n",
+    ],
     "Gerber": [b"%FSLAX46Y46*%\n%MOMM*%\n%ADD10C,0.200*%\nD10*\nX100Y100D02*\nM02*\n"],
     "Fanuc TP": [
         b"/PROG  PICK\n/ATTR\nOWNER = MNEDITOR;\n/MN\n 1:J P[1] 100% FINE ;\n/POS\n/END\n"
