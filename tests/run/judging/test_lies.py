@@ -31,6 +31,12 @@ TOLD: dict[str, tuple[str, dict[str, str], str, int]] = {
     "holder in the block": (
         HEAD + CUT.replace("Z-2.", "Z-9.") + "M30\n", {"tool": "free_length = 7.0"}, "collision", 5,
     ),
+    "a part with a kilometre to stand": (
+        CUT_, {"more": NOMINAL + "standing_um = 1e9"}, "tolerance-too-wide", 1,
+    ),
+    "a gouge as deep as the block": (
+        CUT_, {"more": NOMINAL + "gouge_um = 41e3"}, "tolerance-too-wide", 1,
+    ),
     "beyond the travel": (HEAD + CUT + "G0 X900.\nM30\n", {}, "soft-limit", 8),
     "a clamp in the way": (
         CUT_, {"more": fixture("clamp", "[10, 10, 60]", "[30, 0, 0]")}, "collision", 6,

@@ -114,6 +114,16 @@ SLIPS: dict[str, tuple[str, dict[str, str], str, int]] = {
         HEAD + CUT + "M30\n",
         {"more": "[[tolerance.blocks]]\nlines = [3, 900]\ncontour_um = 50.0"}, "tolerance-lines", 8,
     ),
+    "a tolerance of a kilometre": (
+        HEAD + CUT + "M30\n", {"more": "[tolerance]\ncontour_um = 1e9"}, "tolerance-too-wide", 1,
+    ),
+    "a rapid's tolerance of a metre": (
+        HEAD + CUT + "M30\n", {"more": "[tolerance]\nrapid_contour_um = 1e6"}, "tolerance-too-wide", 1,
+    ),
+    "a line's tolerance of a metre": (
+        HEAD + CUT + "M30\n", {"more": "[[tolerance.blocks]]\nlines = [6, 6]\ncontour_um = 1e6"},
+        "tolerance-too-wide", 1,
+    ),
     "lines without motion": (
         HEAD + CUT + "M30\n",
         {"more": "[[tolerance.blocks]]\nlines = [100, 900]\ncontour_um = 50.0"},

@@ -1,5 +1,6 @@
 """Warnings about a finished run: cuts of air, mistakes in the material, unjudged limits."""
 
+import math
 from collections.abc import Iterator
 
 from twin.cutting.forces.load_log import LoadLog
@@ -7,6 +8,7 @@ from twin.cutting.watching.cut_log import CutResult
 from twin.cutting.watching.cut_watch import CutSlip
 from twin.job.job_file import JobFile, ToolTable
 from twin.job.tolerance import ToleranceTable
+from twin.machine.description.config import Machine
 from twin.run.dry_run.dry_run import DryRun
 from twin.run.dry_run.program_watch import ProgramWatch, ToothFeed
 from twin.run.machining import Machining
@@ -128,8 +130,13 @@ def unjudged_limit_notices(job: JobFile, watch: ProgramWatch) -> Iterator[Notice
 _LIMITS_OF_FORCE = ("force_limit", "torque_limit", "thrust_limit")
 
 
-def tolerance_notices(tolerance: ToleranceTable, lines: int) -> Iterator[Notice]:
-    """Ranges of lines that go on behind the program's last line, of which the program has so many."""
+def tolerance_notices(tolerance: ToleranceTable, lines: int, machine: Machine) -> Iterator[Notice]:
+    """Ranges of lines behind the program's last line, and contour tolerances that nothing fails.
+
+    Args:
+        lines: How many the program has.
+        machine: Stops by its following error before a tolerance that is wider than that.
+    """
     for number, part in enumerate(tolerance.blocks):
         if part.lines[1] > lines:
             message = (
@@ -137,3 +144,35 @@ def tolerance_notices(tolerance: ToleranceTable, lines: int) -> Iterator[Notice]
                 f"program has {lines}"
             )
             yield Notice("tolerance-lines", lines, message)
+    axes = (machine.axis(name) for name in machine.axes.names)
+    stops_mm = math.hypot(*(axis.following_error_limit for axis in axes if axis.kind == "linear"))
+    allowed = {key: getattr(tolerance, key) for key in _FOLLOWED}
+    allowed |= {
+        f"blocks[{n}].contour_um": part.contour_um for n, part in enumerate(tolerance.blocks)
+    }
+    for key, limit_um in allowed.items():
+        if limit_um is not None and limit_um > 1e3 * stops_mm > 0.0:
+            message = (
+                f"tolerance.{key} allows {1e-3 * limit_um:,.15g} mm, and a following error of "
+                f"{stops_mm:.3g} mm in all axes together stops the machine: the tolerance fails nothing"
+            )
+            yield Notice("tolerance-too-wide", 0, message)
+
+
+_FOLLOWED = ("contour_um", "rapid_contour_um", "circular_deviation_um", "following_um")
+"""Tolerances of what following errors make."""
+
+
+def nominal_notices(job: JobFile) -> Iterator[Notice]:
+    """Tolerances of the part that are wider than its stock."""
+    if job.nominal is None or job.stock is None:
+        return
+    widest_mm = max(job.stock.extent)
+    for key in ("gouge_um", "standing_um"):
+        limit_um = getattr(job.nominal, key)
+        if limit_um is not None and limit_um > 1e3 * widest_mm:
+            message = (
+                f"nominal.{key} allows {1e-3 * limit_um:,.15g} mm, and the stock measures {widest_mm:g} mm: "
+                "the tolerance fails nothing"
+            )
+            yield Notice("tolerance-too-wide", 0, message)

@@ -24,6 +24,7 @@ from twin.run.dry_run.program_watch import ProgramWatch
 from twin.run.judging.cut_notices import (
     cut_notices,
     lost_length_notices,
+    nominal_notices,
     tolerance_notices,
     tooth_feed_notices,
     unjudged_limit_notices,
@@ -210,7 +211,8 @@ def _notices(
         yield Notice("no-stock", watch.spindle_line, message)
     if floats is not None:
         yield Notice("stock-floats", 0, f"nothing carries the stock: {floats}")
-    yield from tolerance_notices(job.tolerance, len(preparation.source.lines))
+    yield from nominal_notices(job)
+    yield from tolerance_notices(job.tolerance, len(preparation.source.lines), preparation.machine)
 
 
 def _unsimulated_notices(
