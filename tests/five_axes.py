@@ -5,7 +5,7 @@ import numpy as np
 from twin.kinematics import Kinematics
 from twin.nc.canonical import Axes, FloatArray
 from twin.nc.control.settings import ControlSettings, ToolData
-from twin.nc.path.tool_center.tool_center import Setup
+from twin.nc.path.tool_center.tool_center import PartOnMachine
 
 TRUNNION_AXES = Axes(("X", "Y", "Z", "A", "C"), ("linear",) * 3 + ("rotary",) * 2)
 HEAD_AXES = Axes(("X", "Y", "Z", "B", "C"), ("linear",) * 3 + ("rotary",) * 2)
@@ -50,11 +50,11 @@ def _chain(
 
 def on_machine(
     chain: Kinematics, zero: tuple[float, ...] = (15.0, 20.0, -430.0, 0.0, 0.0)
-) -> Setup:
-    return Setup(chain, np.array(zero), FIRST_LENGTH, TRAVEL)
+) -> PartOnMachine:
+    return PartOnMachine(chain, np.array(zero), FIRST_LENGTH, TRAVEL)
 
 
-def settings(setup: Setup, axes: Axes = TRUNNION_AXES) -> ControlSettings:
+def settings(setup: PartOnMachine, axes: Axes = TRUNNION_AXES) -> ControlSettings:
     """A control of such a machine: tool 2 is 15 mm longer than tool 1."""
     return ControlSettings(
         axes=axes,

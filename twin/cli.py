@@ -5,14 +5,12 @@ from typing import Annotated, NoReturn
 
 import typer
 
-from twin.command_line.calibration import calibrate
 from twin.command_line.examples import epilog
 from twin.command_line.knowledge import dialects, doctor, explain
-from twin.command_line.links import link_app
-from twin.command_line.machines import machine_app
+from twin.command_line.machines import calibrate, machine_app
 from twin.command_line.pictures import render
 from twin.command_line.programs import init, interpret, plan, run
-from twin.command_line.servers import serve, train, view
+from twin.command_line.servers import link_app, serve, train, view
 from twin.command_line.verdicts import check, compare, export, sweep
 from twin.errors import ExitCode, TwinError
 from twin.version import __version__

@@ -10,7 +10,7 @@ from machine_logs import mill
 
 from twin.calibrate.calibrate import calibrate
 from twin.calibrate.fit.ball_bar import ONE_DIRECTION, fit_ball_bar
-from twin.logs.ball_bar import BallBarLog, Turning
+from twin.logs.ball_bar import BallBarLog, CircleSense
 from twin.machine.circle.circular_test import circular_test
 from twin.machine.description.config import Machine
 from twin.nc.canonical import FloatArray
@@ -47,13 +47,18 @@ def log() -> BallBarLog:
     noise = 2e-4 * np.random.default_rng(4).standard_normal((2, len(angle)))
     turns = {
         sense: turn(angle, sense) + rough
-        for sense, rough in zip((Turning.COUNTER_CLOCKWISE, Turning.CLOCKWISE), noise, strict=True)
+        for sense, rough in zip(
+            (CircleSense.COUNTER_CLOCKWISE, CircleSense.CLOCKWISE), noise, strict=True
+        )
     }
     return BallBarLog("bar.csv", "XY", RADIUS, SPEED, angle, turns)
 
 
 def written(path: Path, log: BallBarLog, scale: float = 1e3) -> Path:
-    turns = np.stack([log.turns[Turning.COUNTER_CLOCKWISE], log.turns[Turning.CLOCKWISE]]) * scale
+    turns = (
+        np.stack([log.turns[CircleSense.COUNTER_CLOCKWISE], log.turns[CircleSense.CLOCKWISE]])
+        * scale
+    )
     np.savetxt(
         path, np.column_stack([np.rad2deg(log.angle), *turns]), delimiter=",",
         header="angle,ccw,cw", comments="",
@@ -77,7 +82,7 @@ def test_both_directions_tell_backlash_squareness_and_lag(log: BallBarLog) -> No
 
 
 def test_one_direction_tells_backlash_and_neither_of_the_others(log: BallBarLog) -> None:
-    one = log._replace(turns={Turning.CLOCKWISE: log.turns[Turning.CLOCKWISE]})
+    one = log._replace(turns={CircleSense.CLOCKWISE: log.turns[CircleSense.CLOCKWISE]})
     found = fit_ball_bar(one)
     assert found.lost["X"].value == pytest.approx(GAPS[0], rel=0.05)
     assert (found.squareness, found.lag) == (None, None)
@@ -105,8 +110,8 @@ def test_the_simulated_machine_s_own_circle_gives_it_back(twin: Twin, tmp_path: 
     machine = with_faults()
     test = circular_test(machine, 40.0, 1000.0)
     turns = {
-        Turning.COUNTER_CLOCKWISE: test.counter_clockwise_um,
-        Turning.CLOCKWISE: test.clockwise_um,
+        CircleSense.COUNTER_CLOCKWISE: test.counter_clockwise_um,
+        CircleSense.CLOCKWISE: test.clockwise_um,
     }
     log = BallBarLog("c", "XY", 40.0, 50.0, np.deg2rad(test.angle_deg), turns)
     bar = written(tmp_path / "bar.csv", log, 1.0)

@@ -7,7 +7,7 @@ import pytest
 
 from twin.calibrate.fit.parameters import Parameters, of_base
 from twin.calibrate.report.loop_plots import autocorrelation, margins, open_loop, whiteness
-from twin.calibrate.result import Course
+from twin.calibrate.result import TimeSeries
 from twin.files.shipped import machine_file
 from twin.machine.load import read_machine
 
@@ -25,9 +25,9 @@ def loop(**changes: float) -> Parameters:
     return dataclasses.replace(base, **{"kv": 6.0, "damping_ratio": 1.0, **plain, **changes})
 
 
-def course(left: np.ndarray) -> Course:
+def course(left: np.ndarray) -> TimeSeries:
     time = np.asarray(np.arange(len(left)) * 1e-3, np.float64)
-    return Course(time, left, np.zeros(len(left)), False, NONE, NONE, NONE, time)
+    return TimeSeries(time, left, np.zeros(len(left)), False, NONE, NONE, NONE, time)
 
 
 def test_the_margin_of_a_second_order_loop_is_its_closed_form() -> None:

@@ -12,7 +12,7 @@ from machine_logs import COLUMNS
 from other_drive import Logger, log_of
 
 from twin.calibrate.defects import find_defects
-from twin.calibrate.findings import Finding
+from twin.calibrate.findings import LogFinding
 from twin.calibrate.fit.simulation import command_of
 from twin.calibrate.fit.solve import Interval
 from twin.calibrate.fit.stretch import stretches_of
@@ -33,7 +33,7 @@ def changed(log: MachineLog, **columns: np.ndarray) -> MachineLog:
     return dataclasses.replace(log, axes={"X": dataclasses.replace(axis, more=more, **columns)})
 
 
-def told(log: MachineLog) -> dict[str, Finding]:
+def told(log: MachineLog) -> dict[str, LogFinding]:
     found = find_defects("X", log.axes["X"], log.time, look_at_clock(log).stretches)
     return {one.code: one for one in found.findings}
 

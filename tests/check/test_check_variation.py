@@ -10,7 +10,7 @@ from command_line import Twin
 
 from twin.check.outcome import CheckOutcome
 from twin.check.runner import check_variant, run_tasks
-from twin.check.task import CheckSettings, Variant
+from twin.check.task import CheckSettings, JobVariant
 from twin.check.variation import variants
 from twin.errors import ExitCode, UsageError
 from twin.files.toml import changed
@@ -62,13 +62,13 @@ def test_changes_reach_machine_and_job() -> None:
 
 
 def test_an_unknown_key_is_a_finding_of_its_run() -> None:
-    outcome = check_variant(Variant(JOB, (("machine.axes.X.kw", 3),)), CheckSettings())
+    outcome = check_variant(JobVariant(JOB, (("machine.axes.X.kw", 3),)), CheckSettings())
     assert outcome.exit_code is ExitCode.USAGE
     assert "unknown key 'axes.X.kw'" in outcome.findings[0].message
     assert outcome.as_json()["changes"] == {"machine.axes.X.kw": 3}
 
 
-def check_that_loses_its_worker_once(task: Variant) -> CheckOutcome:
+def check_that_loses_its_worker_once(task: JobVariant) -> CheckOutcome:
     marker = Path(str(dict(task.changes)["job.marker"]))
     if not marker.exists():
         marker.touch()
@@ -91,7 +91,7 @@ def test_a_lost_worker_is_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     # What workers import of these files lies beside this one and in the folder above.
     places = Path(__file__).parents[:2]
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join(map(str, places)))
-    task = Variant(JOB, (("job.marker", str(tmp_path / "died")),))
+    task = JobVariant(JOB, (("job.marker", str(tmp_path / "died")),))
     found = run_tasks([task], check_that_loses_its_worker_once, jobs=None, cluster="local")
     assert [outcome.verdict for outcome in found] == ["pass"]
     assert (tmp_path / "died").exists()

@@ -7,7 +7,7 @@ import pytest
 from examples import examples
 
 from twin.cutting.heights.height_map import HeightMap
-from twin.cutting.heights.outline import Outline
+from twin.cutting.heights.outline import BlankOutline
 from twin.cutting.heights.sweeping import Rectangle, sweep_lines
 from twin.cutting.kernels.covered_cells import Marks
 from twin.cutting.kernels.simplify import simplify
@@ -41,7 +41,7 @@ def swept_by_small_steps(points: FloatArray, cutter: Profile, shape: tuple[int, 
 
 def board(shape: tuple[int, int]) -> HeightMap:
     """A map whose first cell is over X0 Y0, with its top at Z0."""
-    heights, edge = np.zeros(shape), Outline((0.0, 0.0), (1e3, 1e3), round=False)
+    heights, edge = np.zeros(shape), BlankOutline((0.0, 0.0), (1e3, 1e3), round=False)
     walls = no_walls_known(heights)
     return HeightMap((0.0, 0.0), CELL, BOTTOM, heights, 0.0, edge, np.zeros(shape), walls)
 

@@ -11,7 +11,7 @@ from twin.nc.canonical import FloatArray, Moves
 from twin.toolpath.nearest import drop_moves, join_paths, path_columns
 from twin.toolpath.nearest_kernels import nearest_between, nearest_on_move
 from twin.toolpath.part_frame import PartFrame
-from twin.toolpath.place_kernels import PathKind, derivatives, walk
+from twin.toolpath.place_kernels import PathKind, derivatives, moved_along
 
 FRAME = PartFrame(rotary=3, center=(3.0, -2.0), turn_zero=10.0)
 PART_ZERO = np.array([20.0, -5.0, 7.0, 25.0])
@@ -110,10 +110,10 @@ def test_walking_measures_the_path_over_its_moves():
     first = line(np.zeros(4), np.array([10.0, 0, 0, 0]))
     second = arc(first["end"], np.array([10.0, 5.0, 0]), np.array([0, 0, 1.0]), 180.0)
     path = path_columns(moves_of(first, second), FRAME, PART_ZERO)
-    assert walk(path, 0, 0.5, 5.0 + 2.5 * math.pi) == pytest.approx((1, 0.5))
-    assert walk(path, 1, 0.5, -5.0 - 2.5 * math.pi) == pytest.approx((0, 0.5))
-    assert walk(path, 0, 0.5, 1e3) == (1, 1.0)
-    assert walk(path, 1, 0.5, -1e3) == (0, 0.0)
+    assert moved_along(path, 0, 0.5, 5.0 + 2.5 * math.pi) == pytest.approx((1, 0.5))
+    assert moved_along(path, 1, 0.5, -5.0 - 2.5 * math.pi) == pytest.approx((0, 0.5))
+    assert moved_along(path, 0, 0.5, 1e3) == (1, 1.0)
+    assert moved_along(path, 1, 0.5, -1e3) == (0, 0.0)
 
 
 def test_only_the_window_is_searched():

@@ -8,7 +8,7 @@ from test_view import JOB, PROGRAM
 from twin.run.preparing.preparation import prepare
 from twin.run.run import Run
 from twin.view.app import open_view
-from twin.view.live_run import LiveRun, Moment
+from twin.view.live_run import LiveRun, MachineMoment
 
 
 @pytest.mark.browser
@@ -17,7 +17,7 @@ def test_a_machine_that_moves_is_shown_where_it_is(tmp_path):
     (tmp_path / "square.toml").write_text(JOB, encoding="utf-8")
     run = Run(prepare(tmp_path / "square.toml"))
     place = run.part_zero + np.array([3.0, 0.0, 5.0, 0.0])
-    moments = [Moment(0.5, 3, place)]
+    moments = [MachineMoment(0.5, 3, place)]
     live = LiveRun(run.preparation, lambda: moments[-1])
     wrong: list[str] = []
     with open_view(live, now=live.now) as address, browser() as opened:
@@ -28,7 +28,7 @@ def test_a_machine_that_moves_is_shown_where_it_is(tmp_path):
         page.wait_for_selector("body[data-view=ready]")
         page.wait_for_selector("body[data-line='3']")
         assert "3.000" in page.inner_text("#axes")
-        moments.append(Moment(1.25, 5, place + np.array([17.0, 0.0, 0.0, 0.0])))
+        moments.append(MachineMoment(1.25, 5, place + np.array([17.0, 0.0, 0.0, 0.0])))
         page.wait_for_selector("body[data-line='5']")
         assert "20.000" in page.inner_text("#axes")
         assert page.inner_text("#clock") == "1.250 s"

@@ -17,8 +17,6 @@ class Machine:
 
     Attributes:
         file: Its ``machine.toml``.
-        axes: Names of its axes, in the order of columns.
-        joints: The joint of each axis.
         actuators: The actuator of each axis; its input, a velocity [m/s or rad/s], is integrated to
             the position setpoint (the page of ``twin/machine`` says why).
         integral_actuators: The one that integrates what each axis leaves behind, of axes whose drive does; its

@@ -21,7 +21,6 @@ def plot_run(
         path: The tool's tip in program coordinates, shape (n, 3) [mm].
         error_um: Contour error, shape (n,) [µm].
         joints: Where the axes were, program coordinates, shape (n, k) [mm or deg].
-        axes: Their names and kinds.
     """
     figure = Figure(figsize=(11.0, 5.0), layout="compressed")
     left, right = figure.subplots(1, 2)

@@ -40,10 +40,7 @@ def prepared(
     """Read a program and all that it names; what was assumed for one without a job.
 
     Args:
-        program: The program.
         folder: Where NC text is written to.
-        dialect: Overrides the job's dialect.
-        machine: Overrides the job's machine.
         assuming: Stock, tools and zero of a program without a job are assumed, as ``twin run`` does.
 
     Raises:

@@ -50,9 +50,7 @@ class Result:
     [mm or deg], ...), single axes behind a further slash (``joint/position/X``), and ``contour_um``.
 
     Attributes:
-        run: The prepared job on its machine.
         outcome: Verdict, figures, alarms, scope, final positions.
-        folder: Where its files are.
         assumptions: What was assumed of a program without a job, a line each.
         close: What ends with it: its folder, where nobody asked for one.
     """

@@ -36,7 +36,6 @@ class Command(NamedTuple):
     Attributes:
         tick: Servo periods that had passed.
         name: An override's, or ``hold`` or ``start``.
-        value: Of an override.
     """
 
     tick: int
@@ -61,7 +60,6 @@ class Session:
         run: The job on its machine, with which other sessions of the same program may begin.
         ticks: Servo periods that have passed.
         alarm: What stopped the machine; of a program that would leave the travel before it moves.
-        commands: What was turned or pressed, in order.
     """
 
     def __init__(

@@ -33,8 +33,6 @@ def sweep(
     Args:
         program: The job, the program, or a shipped one's name.
         vary: Values by their key: ``machine.axes.X.kv``, ``job.default_feed``.
-        machine: Overrides the job's machine.
-        dialect: Overrides the job's dialect.
         jobs: How many at a time; one for each core by default.
         cluster: Address of the Ray cluster to run on instead; ``local`` starts one here.
         progress: Tell on stderr how far it is.

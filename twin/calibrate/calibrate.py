@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from twin.calibrate.figures import figures_of
-from twin.calibrate.findings import Finding
+from twin.calibrate.findings import LogFinding
 from twin.calibrate.fit.ball_bar import BallBarFit, fit_ball_bar
 from twin.calibrate.fit.parameters import Parameters, of_base
 from twin.calibrate.fit.slow import fit_slow
@@ -109,9 +109,9 @@ def _masses(machine: Machine) -> dict[str, float]:
 
 def _axis_findings(
     machine: Machine, item: PreparedLog, names: Sequence[str]
-) -> tuple[Finding, ...]:
+) -> tuple[LogFinding, ...]:
     """Refuse what cannot be, tell what is poor."""
-    found: list[Finding] = []
+    found: list[LogFinding] = []
     for name in names:
         if name not in item.log.axes:
             continue
@@ -133,7 +133,7 @@ def _axis_findings(
         rows = sum(end - begin for begin, end in item.rows(name))
         if not item.is_slow and item.role == FIT and rows > MOST_FITTED:
             told = f"{name}: of {rows} samples the {MOST_FITTED} in which it moves most are fitted; all are judged"
-            found.append(Finding("long", told))
+            found.append(LogFinding("long", told))
     return tuple(found)
 
 

@@ -6,7 +6,7 @@ import itertools
 import numpy as np
 from scipy.signal import medfilt
 
-from twin.calibrate.findings import Finding, resolution
+from twin.calibrate.findings import LogFinding, resolution
 from twin.calibrate.fit.stretch import Sound
 from twin.logs.machine_log import AxisLog
 from twin.nc.canonical import BoolArray, FloatArray
@@ -47,7 +47,7 @@ class Defects:
 
     sound: Sound
     rows: tuple[tuple[int, int], ...]
-    findings: tuple[Finding, ...]
+    findings: tuple[LogFinding, ...]
     held: bool
 
 
@@ -76,7 +76,7 @@ def find_defects(
             masks.get(column, sound.force)[_with_neighbours(bad)] = False
             worst = int(np.flatnonzero(bad)[0])
             findings.append(
-                Finding(
+                LogFinding(
                     "spike",
                     f"{name}: {column} has {np.count_nonzero(bad)} spikes, the first in row {worst + 1}, "
                     f"{values[worst]:.6g} {units.get(column, small)}; they are left out",
@@ -146,7 +146,7 @@ def _later_of_runs(same: BoolArray, length: int) -> BoolArray:
 def _held(
     name: str, time: FloatArray, stale: dict[str, tuple[BoolArray, float]],
     sound: Sound,
-) -> tuple[bool, list[Finding]]:  # fmt: skip
+) -> tuple[bool, list[LogFinding]]:  # fmt: skip
     """Leave out what repeats the sample before.
 
     A command that is held while the position is not was held by the interpolator: the drive got its
@@ -170,7 +170,7 @@ def _held(
                 f"repeats the sample before in {np.count_nonzero(repeats)} rows, first row {first}"
             )
         findings.append(
-            Finding(
+            LogFinding(
                 "repeated", f"{name}: {column} {told}; repetitions are left out, as no measurements"
             )
         )
@@ -179,7 +179,7 @@ def _held(
 
 def _cut_off(
     name: str, values: FloatArray, unit: str, time: FloatArray, sound: Sound
-) -> list[Finding]:
+) -> list[LogFinding]:
     """Leave out where a force is at the very end of its range, and positions until it has settled."""
     findings = []
     span = float(np.ptp(values))
@@ -202,7 +202,7 @@ def _cut_off(
             sound.actual[begin:end] = False
             sound.force[begin:end] = False
         findings.append(
-            Finding(
+            LogFinding(
                 "clipped",
                 f"{name}: force or current is cut off {word} {values[at_end][0]:.6g} {unit} in {count} "
                 f"samples, first in row {int(np.flatnonzero(at_end)[0]) + 1}; these and "
@@ -214,7 +214,7 @@ def _cut_off(
 
 def _one_reference(
     name: str, axis: AxisLog, rows: tuple[tuple[int, int], ...]
-) -> tuple[tuple[tuple[int, int], ...], list[Finding]]:
+) -> tuple[tuple[tuple[int, int], ...], list[LogFinding]]:
     """Cut where the position starts to count from another zero, and keep the longest part."""
     lag = axis.command - axis.actual
     lost = [jump for begin, end in rows for jump in _jumps(lag[begin:end], begin)]
@@ -233,7 +233,7 @@ def _one_reference(
         f"{f' and {len(lost) - 3} times more' if len(lost) > 3 else ''}, and stays there; rows "
         f"{begin + 1} to {end}, the longest that count from one zero, are fitted"
     )
-    return kept, [Finding("reference", told)]
+    return kept, [LogFinding("reference", told)]
 
 
 def _jumps(lag: FloatArray, first: int) -> list[tuple[int, float]]:

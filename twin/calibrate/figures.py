@@ -10,7 +10,7 @@ from twin.calibrate.fit.ramps import predict_ramp
 from twin.calibrate.fit.slow import slow_force
 from twin.calibrate.fit.stretch import Stretch, predict
 from twin.calibrate.prepared import PreparedLog
-from twin.calibrate.result import Course, LogFigures, SlowFigures
+from twin.calibrate.result import LogFigures, SlowFigures, TimeSeries
 from twin.nc.canonical import FloatArray
 from twin.units import kv_per_second
 
@@ -35,7 +35,7 @@ def figures_of(item: PreparedLog, name: str, parameters: Parameters) -> LogFigur
         speed = np.abs(seen.force_speed)
         moves = speed > _SEEN_MOVING * speed.max(initial=1e-9)
         correlation = _correlation(seen.force[moves], seen.force_model[moves])
-    course = Course(
+    course = TimeSeries(
         seen.time, seen.lag, seen.lag_model, False, seen.force, seen.force_model, seen.force_time,
         seen.speed,
     )  # fmt: skip
@@ -103,7 +103,7 @@ def _slow_figures(item: PreparedLog, name: str, parameters: Parameters) -> LogFi
         current = (force / parameters.current_scale + parameters.current_at_rest)[moves]
         correlation = _correlation(shown, current)
     rows = np.array([ramp.row for ramp in slow.ramps], np.int64)
-    course = Course(
+    course = TimeSeries(
         item.log.time[rows],
         logged,
         model,

@@ -8,7 +8,7 @@ from twin.nc.canonical import FloatArray
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Finding:
+class LogFinding:
     """Something about a log that a person should know.
 
     Attributes:

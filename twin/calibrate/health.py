@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from twin.calibrate.findings import Finding, resolution
+from twin.calibrate.findings import LogFinding, resolution
 from twin.calibrate.fit.ramps import NEEDED
 from twin.calibrate.fit.solve import Interval
 from twin.calibrate.fit.stretch import stamp_step
@@ -63,7 +63,7 @@ class Health:
 
     period_s: float
     stretches: tuple[tuple[int, int], ...]
-    findings: tuple[Finding, ...]
+    findings: tuple[LogFinding, ...]
 
 
 def look_at_clock(log: MachineLog) -> Health:
@@ -82,7 +82,7 @@ def look_at_clock(log: MachineLog) -> Health:
     if len(log.missing):
         rows = ", ".join(str(row) for row in log.missing[:5])
         findings.append(
-            Finding(
+            LogFinding(
                 "missing",
                 f"{len(log.missing)} rows miss a number and are gaps: row {rows}"
                 + ("" if len(log.missing) <= 5 else " and so on"),
@@ -92,7 +92,7 @@ def look_at_clock(log: MachineLog) -> Health:
         lost = float(np.sum(steps[gaps]) - period * np.count_nonzero(gaps))
         where = int(np.flatnonzero(gaps)[0])
         findings.append(
-            Finding(
+            LogFinding(
                 "gap",
                 f"{np.count_nonzero(gaps)} gaps, {lost:.3g} s without samples, first at "
                 f"{float(log.time[where]):.6g} s; short ones are bridged, what lies between others "
@@ -102,7 +102,7 @@ def look_at_clock(log: MachineLog) -> Health:
     if jumps.any():
         first = float(log.time[np.flatnonzero(jumps)[0]])
         findings.append(
-            Finding(
+            LogFinding(
                 "clock-jump",
                 f"the clock stands or jumps back {np.count_nonzero(jumps)} times, first at "
                 f"{first:.6g} s; what lies between is fitted piece by piece",
@@ -112,7 +112,7 @@ def look_at_clock(log: MachineLog) -> Health:
     spread = float(np.std(steady)) if len(steady) else 0.0
     if spread > _JITTER * period and stamp_step(log.time) < spread:
         findings.append(
-            Finding(
+            LogFinding(
                 "uneven",
                 f"samples come every {period * 1e3:.3g} ms, give or take {spread * 1e3:.2g} ms; time "
                 "stamps are taken as they are",
@@ -123,7 +123,7 @@ def look_at_clock(log: MachineLog) -> Health:
     return Health(period, tuple(long), tuple(findings))
 
 
-def _slow(log: MachineLog, period: float) -> Finding:
+def _slow(log: MachineLog, period: float) -> LogFinding:
     """What a slow log does not tell, and what else would have to be logged for it to tell more."""
     told = (
         f"{1 / period:.3g} samples a second are too few for the dynamics of a drive; what can still be "
@@ -135,7 +135,7 @@ def _slow(log: MachineLog, period: float) -> Finding:
     without = "; ".join(f"{name} {', '.join(roles)}" for name, roles in lacking.items() if roles)
     if without:
         told += f"; columns for ramps that the map lacks: {without}"
-    return Finding("slow", told)
+    return LogFinding("slow", told)
 
 
 def _period(rising: FloatArray) -> float:
@@ -194,7 +194,7 @@ def _band_powers(values: FloatArray) -> list[float]:
     return [float(np.mean(power[(frequency > low) & (frequency <= low + _BAND)])) for low in _BANDS]
 
 
-def look_at_axis(name: str, axis: AxisLog, health: Health) -> list[Finding]:
+def look_at_axis(name: str, axis: AxisLog, health: Health) -> list[LogFinding]:
     """What one axis's columns cannot tell."""
     findings = []
     lag = axis.command - axis.actual
@@ -203,7 +203,7 @@ def look_at_axis(name: str, axis: AxisLog, health: Health) -> list[Finding]:
     peak = float(np.abs(lag - np.median(lag)).max())
     if step > 0.05 * peak > 0:
         findings.append(
-            Finding(
+            LogFinding(
                 "coarse",
                 f"{name}: positions come in steps of {step * 1e3:.4g} {small}, its lag is at most "
                 f"{peak * 1e3:.4g} {small}: small effects drown in the steps",
@@ -216,7 +216,7 @@ def look_at_axis(name: str, axis: AxisLog, health: Health) -> list[Finding]:
         if len(between) and np.median(between) >= 2 and float(np.mean(between >= 2)) > _HELD:
             held = float(np.median(between)) * health.period_s * 1e3
             findings.append(
-                Finding(
+                LogFinding(
                     "held",
                     f"{name}: the command changes every {held:.3g} ms only, in steps: the log is "
                     "faster than the interpolator; steps are taken as they are",
@@ -225,14 +225,14 @@ def look_at_axis(name: str, axis: AxisLog, health: Health) -> list[Finding]:
     return findings
 
 
-def look_at_motion(name: str, axis: AxisLog, period_s: float) -> list[Finding]:
+def look_at_motion(name: str, axis: AxisLog, period_s: float) -> list[LogFinding]:
     """What does not fit between commanded and actual positions of one even stretch."""
     findings = []
     ratio, _, left = straight_law(axis, period_s)
     enough = len(axis.command) >= _SPECTRUM
     if enough and abs(ratio - 1.0) > max(_SCALED, _EXPLAINED * left):
         findings.append(
-            Finding(
+            LogFinding(
                 "scale",
                 f"{name}: actual moves {ratio:.4g} times as far as command: no drive does; give one of "
                 "them a scale in the map, or what is fitted takes it up",
@@ -245,7 +245,7 @@ def look_at_motion(name: str, axis: AxisLog, period_s: float) -> list[Finding]:
         if abs(offset) > _OFFSET * float(np.ptp(lag)) > 0.0:
             unit = "mm" if axis.kind == "linear" else "deg"
             findings.append(
-                Finding(
+                LogFinding(
                     "offset",
                     f"{name}: where the command rests, actual stands {-offset:.4g} {unit} off it: if the "
                     "two count from different zeros, give one of them an offset in the map; else it "
@@ -257,7 +257,7 @@ def look_at_motion(name: str, axis: AxisLog, period_s: float) -> list[Finding]:
 
 def look_at_fit(
     name: str, fitted: Mapping[str, Interval], base_mass: float, *, filtered: bool
-) -> list[Finding]:
+) -> list[LogFinding]:
     """What a fit shows or explains: columns taken at different times, filtered, in other units.
 
     Args:
@@ -276,7 +276,7 @@ def look_at_fit(
                 findings.append(_feed_forward(name, skew))
                 continue
             findings.append(
-                Finding(
+                LogFinding(
                     "skew",
                     f"{name}: {column} is logged {abs(skew.value) * 1e3:.3g} ms {when} than the command "
                     f"({_milliseconds(skew)}); the fit takes that as the log's, and the drive's own "
@@ -286,7 +286,7 @@ def look_at_fit(
     mass = fitted.get("mass")
     if mass is not None and not 1.0 / _OTHER_MASS < mass.value / base_mass < _OTHER_MASS:
         findings.append(
-            Finding(
+            LogFinding(
                 "unit",
                 f"{name}: the mass comes to {mass.value / base_mass:.3g} times the base's: unless the "
                 "base is another kind of machine, force or positions are in another unit (inches, "
@@ -302,7 +302,7 @@ def look_at_fit(
         )  # fmt: skip
         why = ": its noise falls off towards high frequencies" if filtered else ""
         findings.append(
-            Finding(
+            LogFinding(
                 "filtered",
                 f"{name}: actual position is logged behind a filter{seen}{why}; the filter is taken as "
                 "the log's, and loop gain, damping and friction can still be fitted",
@@ -311,9 +311,9 @@ def look_at_fit(
     return findings
 
 
-def _feed_forward(name: str, delay: Interval) -> Finding:
+def _feed_forward(name: str, delay: Interval) -> LogFinding:
     """What an actual position says that seems to be logged before it is there."""
-    return Finding(
+    return LogFinding(
         "feed-forward",
         f"{name}: actual position seems to be logged {abs(delay.value) * 1e3:.3g} ms earlier than the "
         f"command ({_milliseconds(delay)}): unless the columns are that far apart, the drive is told the "

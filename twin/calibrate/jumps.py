@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from twin.calibrate.findings import Finding
+from twin.calibrate.findings import LogFinding
 from twin.logs.machine_log import AxisLog, MachineLog
 from twin.nc.canonical import BoolArray, FloatArray
 
@@ -44,7 +44,7 @@ def _fastest(axis: AxisLog) -> float:
     )
 
 
-def look_at_jumps(log: MachineLog, jumps: BoolArray) -> list[Finding]:
+def look_at_jumps(log: MachineLog, jumps: BoolArray) -> list[LogFinding]:
     """Tell of them, where there are any."""
     if not jumps.any():
         return []
@@ -60,4 +60,4 @@ def look_at_jumps(log: MachineLog, jumps: BoolArray) -> list[Finding]:
         f"{first + 2} ({name} by {sizes[name]:+.4g} {unit} in one sample): the logger repeated other rows "
         "or lost some; speeds are not taken from positions there"
     )
-    return [Finding("jump", told)]
+    return [LogFinding("jump", told)]

@@ -5,7 +5,7 @@ import math
 from collections.abc import Mapping
 from pathlib import Path
 
-from twin.calibrate.findings import Finding
+from twin.calibrate.findings import LogFinding
 from twin.calibrate.fit.ball_bar import ONE_DIRECTION, BallBarFit
 from twin.calibrate.fit.solve import Interval
 from twin.calibrate.fit.stages import NOT_ASKED, AxisFit
@@ -20,7 +20,7 @@ _UNEXPLAINED = 0.5
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Course:
+class TimeSeries:
     """Logged and predicted over time, for plots; shape (n,) each.
 
     Attributes:
@@ -86,7 +86,7 @@ class LogFigures:
     force_share: float | None
     current_correlation: float | None
     ramps: SlowFigures | None
-    course: Course
+    course: TimeSeries
 
     @property
     def share(self) -> float:
@@ -169,15 +169,13 @@ class Calibration:
     """The whole.
 
     Attributes:
-        axes: By name.
-        logs: In the order of the command line.
         findings: About the logs, by file.
     """
 
     base: str
     axes: Mapping[str, AxisResult]
     logs: tuple[LogFigures, ...]
-    findings: Mapping[str, tuple[Finding, ...]]
+    findings: Mapping[str, tuple[LogFinding, ...]]
     ball_bars: tuple[BallBarFit, ...] = ()
 
     def as_contract(self) -> dict[str, object]:

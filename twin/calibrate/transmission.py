@@ -23,7 +23,7 @@ def units_of(kind: AxisKind) -> dict[str, str]:
     give = {"backlash": "mm", "stiffness": "N/mm"}
     if kind == "rotary":
         give = {"backlash": "deg", "stiffness": "N m/deg"}
-    return {name: way.unit for name, way in coordinates(kind, 1.0).items()} | give
+    return {name: coordinate.unit for name, coordinate in coordinates(kind, 1.0).items()} | give
 
 
 def with_give(

@@ -16,7 +16,6 @@ class Finding:
 
     Attributes:
         code: The diagnostic's, alarm's or tolerance's stable name.
-        message: One sentence.
         file: The program or file that it is about.
         line: Source line, or 0.
         column: Column, or 0.

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from twin.check.outcome import CheckOutcome, Finding
-from twin.check.task import CheckSettings, Variant
+from twin.check.task import CheckSettings, JobVariant
 from twin.compare.baseline import compare_baseline, write_baseline
 from twin.compare.baseline_text import RunFigures
 from twin.compare.verdict import Reason
@@ -55,7 +55,7 @@ _FILES_OF_MACHINE = {"model"}
 """Keys of a machine file that name another file."""
 
 
-def run_variant(variant: Variant, settings: CheckSettings) -> CheckOutcome:
+def run_variant(variant: JobVariant, settings: CheckSettings) -> CheckOutcome:
     """Run a program and say how it came out; what is wrong with it becomes a finding."""
     began, path = time.perf_counter(), variant.path
     try:
@@ -87,7 +87,7 @@ def file_of(folder: Path, job: Job, suffix: str) -> Path:
     return folder / parts.with_name(name + suffix)
 
 
-def _checked(variant: Variant, settings: CheckSettings) -> CheckOutcome:
+def _checked(variant: JobVariant, settings: CheckSettings) -> CheckOutcome:
     preparation = prepare(
         variant.path,
         dialect=settings.dialect,

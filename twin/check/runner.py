@@ -1,4 +1,4 @@
-"""Many programs over the cores; one that breaks does not stop the others."""
+"""Many programs over the cores of this computer or of a cluster; one that breaks does not stop the others."""
 
 import concurrent.futures
 import signal
@@ -13,24 +13,27 @@ from pathlib import Path
 from typing import TypeVar
 
 from twin.check.outcome import CheckOutcome, died
-from twin.check.task import CheckSettings, Variant
+from twin.check.task import CheckSettings, JobVariant
 from twin.processor import available_cores
+from twin.ray_cluster import connected
 
 TaskT = TypeVar("TaskT")
 """A program or a variant of one."""
 WORKER_PAYS_S = 8.0
 """Work that is left for one worker from which on another one shortens it: to begin costs it some 3 s, of which
 half is work that the first one has done already (libraries, loading of kernels) [s]."""
+RETRIES = 3
+"""How often a task whose worker on a cluster was lost is run again."""
 LONG_S = 6.0
 """A program that takes longer is none of those that are over before another worker has begun [s]."""
 
 
 def check_program(path: Path, settings: CheckSettings) -> CheckOutcome:
     """Run a job or a program and say how it came out; what is wrong with it becomes a finding."""
-    return check_variant(Variant(path, ()), settings)
+    return check_variant(JobVariant(path, ()), settings)
 
 
-def check_variant(variant: Variant, settings: CheckSettings) -> CheckOutcome:
+def check_variant(variant: JobVariant, settings: CheckSettings) -> CheckOutcome:
     """Run a job with some values of it or of its machine changed, and say how it came out.
 
     What runs programs is loaded by the process that runs one, and not by the one that hands them out.
@@ -102,9 +105,7 @@ def run_tasks(
     """Run tasks over this computer's cores or, given its address, on a Ray cluster."""
     if cluster is None:
         return check_all(tasks, check, jobs=jobs)
-    from twin.check.cluster import check_on_cluster
-
-    return check_on_cluster(tasks, check, address=cluster)
+    return _check_on_cluster(tasks, check, address=cluster)
 
 
 def _pool(workers: int, context: SpawnContext) -> concurrent.futures.ProcessPoolExecutor:
@@ -134,3 +135,37 @@ def _check_alone(
             return pool.submit(check, task).result()
         except BrokenProcessPool:
             return died(str(task))
+
+
+def _check_on_cluster(
+    tasks: Sequence[TaskT], check: Callable[[TaskT], CheckOutcome], *, address: str
+) -> Iterator[CheckOutcome]:
+    """Run tasks on a Ray cluster, whose nodes see the same files under the same paths.
+
+    Args:
+        check: How one is run.
+        address: Of the cluster (``ray://host:10001``, ``auto``), or ``local``.
+
+    Yields:
+        The outcomes as they become known, in any order.
+
+    Raises:
+        UsageError: Ray is not installed, or the cluster does not answer.
+    """
+    ray = connected(address)
+    try:
+        run = ray.remote(max_retries=RETRIES)(_checked)
+        waiting = {run.remote(check, task): task for task in tasks}
+        while waiting:
+            (ready, *_), _ = ray.wait(list(waiting), num_returns=1)
+            task = waiting.pop(ready)
+            try:
+                yield ray.get(ready)
+            except (ray.exceptions.WorkerCrashedError, ray.exceptions.OutOfMemoryError):
+                yield died(str(task))
+    finally:
+        ray.shutdown()
+
+
+def _checked(check: Callable[[TaskT], CheckOutcome], task: TaskT) -> CheckOutcome:
+    return check(task)

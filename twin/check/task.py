@@ -7,7 +7,7 @@ from twin.files.toml import Change
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Variant:
+class JobVariant:
     """One run of a sweep."""
 
     path: Path

@@ -7,14 +7,14 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from twin.check.task import Variant
+from twin.check.task import JobVariant
 from twin.errors import UsageError
 
 MOST_VARIANTS = 10_000
 """Combinations that one sweep may have; more is a slip of the pen."""
 
 
-def variants(path: Path, vary: Sequence[str]) -> list[Variant]:
+def variants(path: Path, vary: Sequence[str]) -> list[JobVariant]:
     """Every combination of the values that are to be varied.
 
     Args:
@@ -26,7 +26,7 @@ def variants(path: Path, vary: Sequence[str]) -> list[Variant]:
     return combinations(path, list(map(_axis, vary)))
 
 
-def combinations(path: Path, vary: Sequence[tuple[str, Sequence[Any]]]) -> list[Variant]:
+def combinations(path: Path, vary: Sequence[tuple[str, Sequence[Any]]]) -> list[JobVariant]:
     """The same, of keys with their values.
 
     Raises:
@@ -44,7 +44,7 @@ def combinations(path: Path, vary: Sequence[tuple[str, Sequence[Any]]]) -> list[
     count = functools.reduce(lambda product, axis: product * len(axis), axes, 1)
     if count > MOST_VARIANTS:
         raise UsageError(f"--vary: {count} combinations are more than {MOST_VARIANTS}")
-    return [Variant(path, changes) for changes in itertools.product(*axes)]
+    return [JobVariant(path, changes) for changes in itertools.product(*axes)]
 
 
 def _axis(text: str) -> tuple[str, list[Any]]:

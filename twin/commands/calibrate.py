@@ -32,7 +32,7 @@ _M_MMAP_THRESHOLD, _LARGE_BYTES = -3, 1 << 20
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
-class Request:
+class CalibrationRequest:
     """What is to be fitted, and what is to be written.
 
     Attributes:
@@ -62,7 +62,7 @@ class Request:
         return bool(self.logs or self.ball_bars)
 
 
-def calibrate_and_print(request: Request) -> ExitCode:
+def calibrate_and_print(request: CalibrationRequest) -> ExitCode:
     """Fit the base machine's drives to logs; write what was asked for and print the figures.
 
     Returns:

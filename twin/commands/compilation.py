@@ -178,8 +178,6 @@ def start_compiling(path: Path, dialect: str | None, machine: str | None) -> Non
 
     Args:
         path: NC program or job file that is run.
-        dialect: Overrides the job's dialect.
-        machine: Overrides the job's machine.
     """
     if available_cores() < 2 or not lasts():
         return

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from twin.compare.baseline_text import (
-    Entry,
+    BaselineEntry,
     Head,
     RunFigures,
     entries,
@@ -60,12 +60,7 @@ def write_baseline(
     settings: Mapping[str, str] | None = None,
     source: Sequence[str] = (),
 ) -> None:
-    """Store a baseline, complete or not at all.
-
-    Args:
-        settings: Keys of the job and their values, as text.
-        source: Lines of the program.
-    """
+    """Store a baseline, complete or not at all."""
     with complete_or_absent(path) as temporary, temporary.open("w", encoding="utf-8") as file:
         lines = [line for line in without_comments(source) if line]
         write(file, Head(figures, axes.names, settings or {}, lines), entries(chunks))
@@ -85,7 +80,6 @@ def compare_baseline(
     Args:
         figures: What the run came to; None when it did not come to its end.
         chunks: The program; where it no longer interprets, the baseline tells what was there.
-        settings: Keys of the job and their values, as text.
         source: Lines of the program, of which the changed ones are named.
 
     Returns:
@@ -173,8 +167,8 @@ def _first_of(reasons: Iterator[Reason]) -> list[Reason]:
 class _Pair(NamedTuple):
     """A pair that was matched: a stored block, a block of the program, or both."""
 
-    before: Entry | None
-    now: Entry | None
+    before: BaselineEntry | None
+    now: BaselineEntry | None
     line: int
 
 
@@ -182,15 +176,18 @@ class _Pairs:
     """Stored blocks and those of the program, side by side, found again behind a lost or new one."""
 
     def __init__(
-        self, stored: Iterator[Entry], program: Iterator[Entry], limits: BaselineTable
+        self,
+        stored: Iterator[BaselineEntry],
+        program: Iterator[BaselineEntry],
+        limits: BaselineTable,
     ) -> None:
         self._sources = (stored, program)
-        self._ahead: tuple[deque[Entry], deque[Entry]] = (deque(), deque())
+        self._ahead: tuple[deque[BaselineEntry], deque[BaselineEntry]] = (deque(), deque())
         self._tolerance = limits.path_um / 1e3
         self._line = 0
         self._broken: ProgramError | None = None
 
-    def expected(self) -> Entry | None:
+    def expected(self) -> BaselineEntry | None:
         """The stored block that comes next."""
         self._fill(0, 1)
         return self._ahead[0][0] if self._ahead[0] else None
@@ -274,7 +271,9 @@ def _program_reasons(
         yield Reason("baseline-path", message, error.diagnostic.line, 0.0)
 
 
-def _instead(before: Entry | None, now: Entry | None, names: tuple[str, ...]) -> str:
+def _instead(
+    before: BaselineEntry | None, now: BaselineEntry | None, names: tuple[str, ...]
+) -> str:
     if now is None:
         return f"lost here: {_text_of(before, names)}"
     if before is None:
@@ -283,7 +282,7 @@ def _instead(before: Entry | None, now: Entry | None, names: tuple[str, ...]) ->
     return f"{_text_of(now, names)}, baseline {_text_of(stored, names)}"
 
 
-def _text_of(entry: Entry | None, names: tuple[str, ...]) -> str:
+def _text_of(entry: BaselineEntry | None, names: tuple[str, ...]) -> str:
     if entry is None:
         return "its end"
     shown = entry.as_shown

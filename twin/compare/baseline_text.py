@@ -56,8 +56,6 @@ class Head(NamedTuple):
     """What is before the entries.
 
     Attributes:
-        axes: Names of the axes.
-        settings: Keys of the job and their values, as text.
         source: The lines of the program without comments; none where it is too long to keep.
     """
 
@@ -68,7 +66,7 @@ class Head(NamedTuple):
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Entry:
+class BaselineEntry:
     """A move, dwell or function as a baseline knows it.
 
     Attributes:
@@ -100,7 +98,7 @@ class Entry:
     shown: tuple[float, ...] = ()
 
     @property
-    def as_shown(self) -> "Entry":
+    def as_shown(self) -> "BaselineEntry":
         """A move in the coordinates that the control shows."""
         if not self.shown:
             return self
@@ -133,7 +131,7 @@ _CORNERS = {
 _MODAL = ("corner", "acceleration")
 
 
-def entries(chunks: Iterable[Chunk]) -> Iterator[Entry]:
+def entries(chunks: Iterable[Chunk]) -> Iterator[BaselineEntry]:
     """What a program does, in order."""
     for chunk in chunks:
         events = iter(chunk.events)
@@ -146,10 +144,10 @@ def entries(chunks: Iterable[Chunk]) -> Iterator[Entry]:
                 yield _move(chunk.moves, row)
 
 
-def _event(event: Event) -> Entry:
+def _event(event: Event) -> BaselineEntry:
     if isinstance(event, Dwell):
-        return Entry("dwell", event.line, value=event.seconds)
-    return Entry(_function_text(event), event.line)
+        return BaselineEntry("dwell", event.line, value=event.seconds)
+    return BaselineEntry(_function_text(event), event.line)
 
 
 def _function_text(event: Function) -> str:
@@ -158,10 +156,10 @@ def _function_text(event: Function) -> str:
     return " ".join([event.word, *arguments, *place])
 
 
-def _move(moves: Moves, row: int) -> Entry:
+def _move(moves: Moves, row: int) -> BaselineEntry:
     motion, shape = Motion(moves.motion[row]), Shape(moves.shape[row])
     arc = shape is Shape.ARC
-    return Entry(
+    return BaselineEntry(
         kind=_KINDS[motion, shape],
         line=int(moves.line[row]),
         start=tuple(moves.start[row].tolist()),
@@ -189,7 +187,7 @@ def _acceleration(moves: Moves, row: int) -> str:
     return " ".join("machine" if math.isnan(limit) else number(limit) for limit in limits)
 
 
-def write(file: TextIO, head: Head, program: Iterable[Entry]) -> None:
+def write(file: TextIO, head: Head, program: Iterable[BaselineEntry]) -> None:
     """Write a baseline.
 
     Args:
@@ -230,11 +228,12 @@ def _key_and_value(text: str) -> tuple[str, str]:
     return key, value
 
 
-def text(entry: Entry, names: tuple[str, ...], position: tuple[float, ...], feed: float) -> str:
+def text(
+    entry: BaselineEntry, names: tuple[str, ...], position: tuple[float, ...], feed: float
+) -> str:
     """One line of a baseline.
 
     Args:
-        names: Of the axes.
         position: What need not be repeated [mm or deg].
         feed: What need not be repeated [mm/min or deg/min].
     """
@@ -297,7 +296,7 @@ def read_head(lines: Iterator[str]) -> tuple[Head, Iterator[str]]:
     return Head(figures, tuple(values["axes"]), settings, source), lines
 
 
-def read_entries(lines: Iterator[str], names: tuple[str, ...]) -> Iterator[Entry]:
+def read_entries(lines: Iterator[str], names: tuple[str, ...]) -> Iterator[BaselineEntry]:
     """The entries of a stored baseline.
 
     Raises:
@@ -315,9 +314,9 @@ def read_entries(lines: Iterator[str], names: tuple[str, ...]) -> Iterator[Entry
         if kind in _MODAL:
             modal[kind] = " ".join(parts[1:])
         elif kind == "dwell":
-            yield Entry(kind, value=float(parts[1]))
+            yield BaselineEntry(kind, value=float(parts[1]))
         elif kind != "start" and kind not in _MOVES:
-            yield Entry(" ".join(parts))
+            yield BaselineEntry(" ".join(parts))
         else:
             start = tuple(position.values())
             parts, arc = _split_arc(parts[len(kind.split()) :])
@@ -329,7 +328,7 @@ def read_entries(lines: Iterator[str], names: tuple[str, ...]) -> Iterator[Entry
             feed = own_feed
             end = tuple(position.values())
             own = 0.0 if "rapid" in kind else feed
-            yield Entry(kind, 0, start, end, own, *arc, **modal)
+            yield BaselineEntry(kind, 0, start, end, own, *arc, **modal)
 
 
 def _split_arc(

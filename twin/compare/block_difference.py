@@ -3,7 +3,7 @@
 import math
 import operator
 
-from twin.compare.baseline_text import Entry, number
+from twin.compare.baseline_text import BaselineEntry, number
 from twin.job.tolerance import BaselineTable
 
 _SMALLEST_TIME = 1e-6
@@ -19,7 +19,7 @@ Finding = tuple[str, str]
 """A code and a sentence."""
 
 
-def same_end(before: Entry, now: Entry, tolerance: float) -> bool:
+def same_end(before: BaselineEntry, now: BaselineEntry, tolerance: float) -> bool:
     """Whether two blocks are of one kind and end in one place; then they are taken for each other.
 
     Args:
@@ -32,8 +32,8 @@ def same_end(before: Entry, now: Entry, tolerance: float) -> bool:
 
 
 def block_differences(
-    before: Entry,
-    now: Entry,
+    before: BaselineEntry,
+    now: BaselineEntry,
     names: tuple[str, ...],
     limits: BaselineTable,
     *,
@@ -81,7 +81,7 @@ def block_differences(
 
 
 def _arc_differences(
-    before: Entry, now: Entry, tolerance: float, *, begins_apart: bool
+    before: BaselineEntry, now: BaselineEntry, tolerance: float, *, begins_apart: bool
 ) -> list[str]:
     same_side = sum(a * b for a, b in zip(now.normal, before.normal, strict=True))
     if abs(same_side) < _PARALLEL:
@@ -98,11 +98,11 @@ def _arc_differences(
     return found
 
 
-def _plane(arc: Entry) -> str:
+def _plane(arc: BaselineEntry) -> str:
     axis = tuple(round(abs(part), 9) for part in arc.normal)
     return _PLANES.get(axis, f"across ({' '.join(map(number, arc.normal))})")
 
 
-def _turn(arc: Entry) -> str:
+def _turn(arc: BaselineEntry) -> str:
     way = "counter-clockwise" if arc.value > 0.0 else "clockwise"
     return f"{way} by {number(abs(arc.value))} degrees"

@@ -8,7 +8,7 @@ from twin.compare.circular.arcs import ArcCollector
 from twin.compare.contour.blocks import BlockCollector
 from twin.compare.contour.corners import CornerCollector
 from twin.compare.contour.features import FeatureCollector
-from twin.compare.contour.follow_kernels import Commanded, Followed, follow
+from twin.compare.contour.follow_kernels import Commanded, NearestPlaces, follow
 from twin.compare.figures import AxisTracking, ContourFigures, Figures, WorstPlace
 from twin.compare.statistics import Distribution
 from twin.errors import RecordingError
@@ -199,7 +199,7 @@ class Comparison:
         if row is not None:
             self._direction_worst = int(setpoint.line[row]), float(setpoint.time[row])
 
-    def _follow(self, samples: Samples, point: FloatArray) -> Followed:
+    def _follow(self, samples: Samples, point: FloatArray) -> NearestPlaces:
         setpoint, late = samples.setpoint, self._late
         commanded = Commanded(
             np.concatenate([late.time, setpoint.time]),
@@ -212,7 +212,7 @@ class Comparison:
             place = (setpoint.move[0], setpoint.fraction[0]) if started else (0, 0.0)
             self._state[:] = (*place, *where, 0.0)
         count = len(setpoint)
-        found = Followed(np.zeros(count), np.zeros(count, np.int64), np.zeros(count))
+        found = NearestPlaces(np.zeros(count), np.zeros(count, np.int64), np.zeros(count))
         back = follow(self._path, self._first, point, commanded, REACH_S, self._state, found)
         self._late = Commanded._make(column[back:] for column in commanded)
         return found

@@ -192,8 +192,6 @@ class Figures:
 
     Attributes:
         duration_s: Time of the last sample [s].
-        tracking: By axis name.
-        arcs: In program order.
         worst: The lines with the greatest contour errors, greatest first.
         blocks: By source line, feeds and rapids apart.
         features: Contour error of ``line`` and ``arc`` blocks; those that the program has.

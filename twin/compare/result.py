@@ -25,7 +25,6 @@ class RunSummary:
     """What the result says in addition to the figures; the caller knows it.
 
     Attributes:
-        program: Name of the program, as the user gave it.
         duration_s: Machine time of the program, without the settling after it [s].
         wall_s: How long the whole run took [s].
         stages: Seconds by stage: ``interpret_s``, ``plan_s``, ``simulate_s``, ``compare_s``,

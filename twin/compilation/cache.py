@@ -44,7 +44,7 @@ _SUFFIX = ".kernel"
 Compiled = TypeVar("Compiled")
 
 
-class Form(NamedTuple, Generic[Compiled]):
+class CacheFormat(NamedTuple, Generic[Compiled]):
     """How what was compiled is written.
 
     Attributes:
@@ -65,15 +65,14 @@ def _unpack_result(data: bytes, context: Any) -> Any:
     return CompileResult._rebuild(context, *pickle.loads(data))  # noqa: S301, SLF001 (from folders that nobody else writes to; Numba has no public place for it)
 
 
-RESULT: Form[Any] = Form(_pack_result, _unpack_result)
+RESULT: CacheFormat[Any] = CacheFormat(_pack_result, _unpack_result)
 """What Numba's own compiler gives."""
 
 
-def kernel_cache(function: Callable[..., Any], form: Form[Any]) -> "KernelCache | None":
+def kernel_cache(function: Callable[..., Any], form: CacheFormat[Any]) -> "KernelCache | None":
     """Where the compiled forms of a function are kept; None for one of another package.
 
     Args:
-        function: The function itself.
         form: How they are written.
     """
     file = _whole(function.__code__.co_filename)
@@ -94,7 +93,7 @@ def is_compiled(kernel: Any, arguments: Iterable[object]) -> bool:
 class KernelCache(_Cache):
     """The compiled forms of one kernel."""
 
-    def __init__(self, function: Callable[..., Any], file: Path, form: Form[Any]) -> None:
+    def __init__(self, function: Callable[..., Any], file: Path, form: CacheFormat[Any]) -> None:
         self._name = f"{function.__module__}.{function.__qualname__}"
         self._file = file
         self._form = form

@@ -8,7 +8,7 @@ from numba.core import event, sigutils
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import CPUDispatcher
 
-from twin.compilation.cache import Form, kernel_cache
+from twin.compilation.cache import CacheFormat, kernel_cache
 from twin.compilation.entry import entry_of, packed, unpacked
 from twin.compilation.part import parts_only
 from twin.compilation.shortcuts import take_array_shortcut
@@ -33,7 +33,7 @@ class KernelDispatcher(CPUDispatcher):
         options["nopython"] = True
         super().__init__(function, targetoptions=options)
         self._vectorize = vectorize
-        self._cache: Any = kernel_cache(function, Form(packed, unpacked)) or self._cache
+        self._cache: Any = kernel_cache(function, CacheFormat(packed, unpacked)) or self._cache
 
     @functools.cached_property
     def _part(self) -> Any:

@@ -13,7 +13,7 @@ from numba.core.typing.templates import Signature
 from twin.compilation.part import link
 
 
-class Entry(NamedTuple):
+class CompiledKernel(NamedTuple):
     """A kernel compiled for arguments of one type, as Numba's dispatcher asks for it.
 
     Attributes:
@@ -86,7 +86,7 @@ class EntryLibrary(JITCodeLibrary):
             passes.run(self._final_module, builder)
 
 
-def entry_of(part: CompileResult, *, release_gil: bool, vectorize: bool) -> Entry:
+def entry_of(part: CompileResult, *, release_gil: bool, vectorize: bool) -> CompiledKernel:
     """Make machine code of a kernel.
 
     Args:
@@ -100,10 +100,10 @@ def entry_of(part: CompileResult, *, release_gil: bool, vectorize: bool) -> Entr
     )
     library.add_linking_library(part.library)
     called = context.get_executable(library, part.fndesc, part.environment)
-    return Entry(part.signature, called, library, part.fndesc, part.environment)
+    return CompiledKernel(part.signature, called, library, part.fndesc, part.environment)
 
 
-def packed(entry: Entry) -> bytes | None:
+def packed(entry: CompiledKernel) -> bytes | None:
     """An entry to be kept; None of one that holds addresses of this process."""
     if entry.library.has_dynamic_globals:
         return None
@@ -114,7 +114,7 @@ def packed(entry: Entry) -> bytes | None:
     return dumps((entry.library.object_code, descriptor, entry.environment, entry.signature))
 
 
-def unpacked(data: bytes, context: Any) -> Entry:
+def unpacked(data: bytes, context: Any) -> CompiledKernel:
     """The entry that was kept.
 
     Args:
@@ -124,4 +124,4 @@ def unpacked(data: bytes, context: Any) -> Entry:
     library = EntryLibrary(context.codegen(), descriptor.qualname)
     library.load(object_code)
     called = context.get_executable(library, descriptor, environment)
-    return Entry(signature, called, library, descriptor, environment)
+    return CompiledKernel(signature, called, library, descriptor, environment)

@@ -45,7 +45,7 @@ class PartLibrary(JITCodeLibrary):
         raise NotImplementedError
 
     def _get_module_for_linking(self) -> Any:
-        """The function with all that it calls, for a function that is compiled in Numba's way."""
+        """The function with all that it calls, for a function that is compiled as Numba does."""
         if self._shared_module is None:
             module = self._final_module.clone()
             link([self], module)

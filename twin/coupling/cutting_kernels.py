@@ -1,4 +1,4 @@
-"""The machine stepped while its tool cuts a height map: one loop over setpoints, without a way back to Python."""
+"""The machine stepped while its tool cuts a height map: one loop over setpoints, without a call of Python."""
 
 import math
 from typing import NamedTuple
@@ -31,7 +31,7 @@ from twin.nc.canonical import FloatArray
 from twin.units import MM
 
 
-class Place(NamedTuple):
+class PartTransform(NamedTuple):
     """From machine coordinates to the part's frame (``twin.toolpath.part_frame.PartFrame``).
 
     Attributes:
@@ -53,7 +53,7 @@ class Cut(NamedTuple):
     material: Material
     cells: Cells
     tool: TurningTool
-    place: Place
+    place: PartTransform
 
 
 class Swept(NamedTuple):
@@ -94,7 +94,7 @@ def follow_cutting(
     mean over the angle that they turn in a period.
 
     Args:
-        controls: What the drives are commanded on the way to each setpoint, shape (n, nu).
+        controls: What the drives are commanded during the step to each setpoint, shape (n, nu).
         states: Set to the states there, shape (n, width).
         commanded: Speed that the spindle is commanded, shape (n,) [turns/s]; NaN: nothing is known of it.
         memory: Carried on.
@@ -177,7 +177,7 @@ def _look(period: float, cut: Cut, memory: Memory, swept: Swept) -> None:
 
 
 @kernel
-def _load_axes(place: Place, memory: Memory, cosine: float, sine: float) -> None:
+def _load_axes(place: PartTransform, memory: Memory, cosine: float, sine: float) -> None:
     """What the force on the tool pushes the axes with."""
     force, load, tip = memory.force, memory.load, memory.rigid
     load[0] = cosine * force[0] + sine * force[1]

@@ -47,7 +47,7 @@ class ToolBreak:
         return Alarm("tool-broken", self.line, self.time_s, "", message)
 
 
-class Turning(NamedTuple):
+class SpindleTurning(NamedTuple):
     """What is in the spindle during some setpoints, and how fast it shall turn.
 
     Attributes:
@@ -69,7 +69,7 @@ class Operation(Protocol):
         """How fast the spindle turns when the machine begins to move [1/min], signed."""
         ...
 
-    def turnings(self, setpoints: Setpoints) -> Iterator[Turning]:
+    def turnings(self, setpoints: Setpoints) -> Iterator[SpindleTurning]:
         """Split setpoints where the tool changes."""
         ...
 
@@ -78,7 +78,7 @@ class Rows(NamedTuple):
     """What the machine is commanded in n periods, and what is set by them.
 
     Attributes:
-        controls: What the drives are commanded on the way to each setpoint, shape (n, nu).
+        controls: What the drives are commanded during the step to each setpoint, shape (n, nu).
         states: Set to the states there, shape (n, width).
     """
 
@@ -126,7 +126,9 @@ class CuttingProcess(abc.ABC):
         self._overloaded_s = 0.0
 
     @abc.abstractmethod
-    def _cut_along(self, physics: Physics, turning: Turning, tool: TurningTool, rows: Rows) -> None:
+    def _cut_along(
+        self, physics: Physics, turning: SpindleTurning, tool: TurningTool, rows: Rows
+    ) -> None:
         """Step the machine from setpoint to setpoint while one tool cuts."""
 
     def begin(self, position: FloatArray) -> None:
@@ -142,7 +144,7 @@ class CuttingProcess(abc.ABC):
             self._tool = None
 
     def lift(self) -> None:
-        """Take the tool off what it cut: what comes next is no way of it."""
+        """Take the tool off what it cut: what comes next is no travel of it."""
         memory = self._memory
         memory.numbers[CutNumber.FRESH] = 1.0
         for column in (memory.load, memory.bend, memory.looked, memory.scratch.figures):

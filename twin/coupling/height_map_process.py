@@ -1,7 +1,7 @@
 """Teeth in a height map: the cut of a machine that turns the part about Z at most."""
 
-from twin.coupling.cutting_kernels import Cut, Place, follow_cutting, nothing_swept
-from twin.coupling.cutting_process import CutSetting, CuttingProcess, Rows, Turning
+from twin.coupling.cutting_kernels import Cut, PartTransform, follow_cutting, nothing_swept
+from twin.coupling.cutting_process import CutSetting, CuttingProcess, Rows, SpindleTurning
 from twin.coupling.turning_tool import TurningTool
 from twin.cutting.heights.height_map import HeightMap, raw_walls
 from twin.cutting.kernels.walls import Material
@@ -25,14 +25,16 @@ class HeightMapProcess(CuttingProcess):
         self._swept = nothing_swept()
         frame = setting.part_frame
         rotary = -1 if frame.rotary is None else frame.rotary
-        self._place = Place(rotary, frame.center, frame.turn_zero, 0.0)
+        self._place = PartTransform(rotary, frame.center, frame.turn_zero, 0.0)
 
     def begin(self, position: FloatArray) -> None:
         """Begin with the machine at rest; see ``Process``."""
         super().begin(position)
         self._swept = nothing_swept()
 
-    def _cut_along(self, physics: Physics, turning: Turning, tool: TurningTool, rows: Rows) -> None:
+    def _cut_along(
+        self, physics: Physics, turning: SpindleTurning, tool: TurningTool, rows: Rows
+    ) -> None:
         cells = self.material.cells
         material = Material(cells.heights, cells.grid, self.walls)
         place = self._place._replace(length_difference=turning.length_difference)

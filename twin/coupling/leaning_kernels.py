@@ -36,10 +36,10 @@ from twin.units import DEGREE, MM
 _ALONG = 0.9
 """Cosine to the tool's axis from which machine X is no direction across it."""
 _SINGULAR = 1e-6
-"""Volume that the ways by X, Y and Z span below which they leave the tip a direction short."""
+"""Volume that the displacements by X, Y and Z span below which they leave the tip a direction short."""
 
 
-class Chain(NamedTuple):
+class JointChain(NamedTuple):
     """The joints between tool and part, and what they count from (``twin.toolpath.part_frame.PartFrame``).
 
     Attributes:
@@ -67,7 +67,7 @@ class LeaningCut(NamedTuple):
     number: int
     longest: float
     tool: TurningTool
-    chain: Chain
+    chain: JointChain
 
 
 class Pose(NamedTuple):
@@ -75,7 +75,7 @@ class Pose(NamedTuple):
 
     Attributes:
         frame: Directions of its X, Y and Z in the part's frame, as rows, shape (3, 3).
-        ways: Way of its tip in the part's frame by each axis, shape (k, 3) [mm per mm or rad].
+        jacobian: Displacement of its tip in the part's frame by each axis, shape (k, 3) [mm per mm or rad].
         lean_speed: What its axis turns by in the mean of a tooth, in its frame, shape (3,) [1/s].
         lean: That in the time between two teeth, shape (3,).
         bend: Deflection of its tip in the part's frame, shape (3,) [mm].
@@ -85,7 +85,7 @@ class Pose(NamedTuple):
     """
 
     frame: FloatArray
-    ways: FloatArray
+    jacobian: FloatArray
     lean_speed: FloatArray
     lean: FloatArray
     bend: FloatArray
@@ -147,8 +147,8 @@ def _go_to(
     """Move the rigid tool to where the axes are."""
     drives, numbers, frame = physics.drives, memory.numbers, pose.frame
     before, axis_before = memory.rigid.copy(), frame[2].copy()
-    for k in range(len(pose.ways)):
-        pose.ways[k, 0] = axis_place(drives, state, k) - cut.chain.zero[k]
+    for k in range(len(pose.jacobian)):
+        pose.jacobian[k, 0] = axis_place(drives, state, k) - cut.chain.zero[k]
     _carry(cut.chain, memory.rigid, pose)
     if numbers[CutNumber.FRESH] > 0.0:
         memory.speed[:] = 0.0
@@ -158,22 +158,22 @@ def _go_to(
         numbers[CutNumber.FRESH] = 0.0
         return
     share = share_of_tooth(cut.tool, memory, drives.period)
-    way, turned = memory.rigid - before, frame[2] - axis_before
+    travel, turned = memory.rigid - before, frame[2] - axis_before
     for k in range(3):
-        now, lean = _dot(frame[k], way) / drives.period, _dot(frame[k], turned) / drives.period
+        now, lean = _dot(frame[k], travel) / drives.period, _dot(frame[k], turned) / drives.period
         memory.speed[k] += share * (now - memory.speed[k])
         pose.lean_speed[k] += share * (lean - pose.lean_speed[k])
 
 
 @array_kernel
-def _carry(chain: Chain, tip: FloatArray, pose: Pose) -> None:
+def _carry(chain: JointChain, tip: FloatArray, pose: Pose) -> None:
     """Carry a tool from joint to joint: tip, frame, and the displacement of the tip by each axis.
 
     Args:
         tip: Set to where the tip is.
-        pose: In the first column of ``ways`` are the axes' coordinates, which are replaced.
+        pose: In the first column of ``jacobian`` are the axes' coordinates, which are replaced.
     """
-    joints, frame, ways = chain.joints, pose.frame, pose.ways
+    joints, frame, jacobian = chain.joints, pose.frame, pose.jacobian
     tip[:] = -chain.length_difference * joints.tool
     frame[:] = 0.0
     frame[0, 1 if abs(joints.tool[0]) > _ALONG else 0] = 1.0
@@ -182,21 +182,21 @@ def _carry(chain: Chain, tip: FloatArray, pose: Pose) -> None:
     frame[2] = joints.tool
     for j in range(len(joints.column)):
         axis, column = joints.axis[j], joints.column[j]
-        value = ways[column, 0]
+        value = jacobian[column, 0]
         if not joints.rotary[j]:
             tip += value * axis
-            ways[column] = axis
+            jacobian[column] = axis
             continue
         angle, anchor = value * DEGREE, joints.anchor[j]
         cosine, sine = math.cos(angle), math.sin(angle)
         tip -= anchor
         _turn(tip, axis, cosine, sine)
-        _cross(axis, tip, ways[column])
+        _cross(axis, tip, jacobian[column])
         tip += anchor
         _turn(frame[0], axis, cosine, sine)
         _turn(frame[2], axis, cosine, sine)
         for earlier in range(j):
-            _turn(ways[joints.column[earlier]], axis, cosine, sine)
+            _turn(jacobian[joints.column[earlier]], axis, cosine, sine)
     _cross(frame[2], frame[0], frame[1])
 
 
@@ -233,9 +233,9 @@ def _look(period: float, cut: LeaningCut, memory: Memory, pose: Pose) -> bool:
     pose.lean[:] = time * pose.lean_speed
     _bend_in_part(memory, pose)
     tip = memory.rigid + pose.bend
-    way = tip - cut_to.tip[1]
-    top = way + cut.tool.cutter.flute * (frame[2] - cut_to.axis[1])
-    moved = max(_dot(way, way), _dot(top, top))
+    travel = tip - cut_to.tip[1]
+    top = travel + cut.tool.cutter.flute * (frame[2] - cut_to.axis[1])
+    moved = max(_dot(travel, travel), _dot(top, top))
     near = LOOK_CELLS * cut.lattice.cell
     if moved < near * near and not changed:
         return True
@@ -266,12 +266,12 @@ def _bend_in_part(memory: Memory, pose: Pose) -> None:
 
 
 @array_kernel
-def _sweep(cut: LeaningCut, pose: Pose, way: float) -> bool:
+def _sweep(cut: LeaningCut, pose: Pose, travel: float) -> bool:
     """Cut between two poses, in short steps; False: memory ran out."""
     pose.sums[:] = 0.0
     step, begin, end = pose.step, pose.cut_to.tip[0], pose.cut_to.tip[1]
     axis, last = pose.cut_to.axis[0], pose.cut_to.axis[1]
-    parts = max(math.ceil(way / cut.longest), 1)
+    parts = max(math.ceil(travel / cut.longest), 1)
     step.tip[1], step.axis[1] = begin, axis
     for part in range(parts):
         share = (part + 1.0) / parts
@@ -295,18 +295,18 @@ def _load_axes(chain: Kinematics, memory: Memory, pose: Pose) -> None:
         column, work = chain.column[j], 0.0
         for i in range(3):
             along = force[0] * frame[0, i] + force[1] * frame[1, i] + force[2] * frame[2, i]
-            work += pose.ways[column, i] * along
+            work += pose.jacobian[column, i] * along
         memory.load[column] = MM * work if chain.rotary[j] else work
 
 
 @array_kernel
 def _along_axes(memory: Memory, pose: Pose) -> tuple[float, float, float]:
-    """How far X, Y and Z would have to go for what the tool gives way [mm]; zero where they do not span space."""
+    """How far X, Y and Z would have to go for the deflection of the tool [mm]; zero where they do not span space."""
     _bend_in_part(memory, pose)
-    bend, ways, across = pose.bend, pose.ways, np.zeros((3, 3))
+    bend, jacobian, across = pose.bend, pose.jacobian, np.zeros((3, 3))
     for k in range(3):
-        _cross(ways[(k + 1) % 3], ways[(k + 2) % 3], across[k])
-    volume = _dot(ways[0], across[0])
+        _cross(jacobian[(k + 1) % 3], jacobian[(k + 2) % 3], across[k])
+    volume = _dot(jacobian[0], across[0])
     if abs(volume) < _SINGULAR:
         return 0.0, 0.0, 0.0
     x, y, z = _dot(across[0], bend), _dot(across[1], bend), _dot(across[2], bend)

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from twin.coupling.cutting_process import CutSetting, CuttingProcess, Rows, Turning
-from twin.coupling.leaning_kernels import Chain, LeaningCut, follow_leaning, nowhere
+from twin.coupling.cutting_process import CutSetting, CuttingProcess, Rows, SpindleTurning
+from twin.coupling.leaning_kernels import JointChain, LeaningCut, follow_leaning, nowhere
 from twin.coupling.turning_tool import ToolLoads, TurningTool
 from twin.cutting.tools import profile
 from twin.cutting.tridexel.dexels import TriDexel
@@ -25,7 +25,7 @@ class LeaningProcess(CuttingProcess):
         assert frame.chain is not None
         assert frame.zero is not None
         self.material = material
-        self._chain = Chain(frame.chain, frame.zero, 0.0)
+        self._chain = JointChain(frame.chain, frame.zero, 0.0)
         self._pose = nowhere(len(frame.zero))
 
     def begin(self, position: FloatArray) -> None:
@@ -33,7 +33,9 @@ class LeaningProcess(CuttingProcess):
         super().begin(position)
         self._pose = nowhere(len(position))
 
-    def _cut_along(self, physics: Physics, turning: Turning, tool: TurningTool, rows: Rows) -> None:
+    def _cut_along(
+        self, physics: Physics, turning: SpindleTurning, tool: TurningTool, rows: Rows
+    ) -> None:
         job, stock = turning.tool, self.material
         solids = cutting_edge(profile(job), job.flute)
         number = min(max(job.number, 1), MOST_TOOLS)

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from twin.coupling.cutting_process import CutSetting, CuttingProcess, Operation, Turning
+from twin.coupling.cutting_process import CutSetting, CuttingProcess, Operation, SpindleTurning
 from twin.coupling.height_map_process import HeightMapProcess
 from twin.coupling.leaning_process import LeaningProcess
 from twin.cutting.forces.materials import kienzle
@@ -39,14 +39,14 @@ class ProgramOperation:
         parts = [turning.speed for turning in self.turnings(setpoints)]
         return np.concatenate(parts) if parts else np.zeros(0)
 
-    def turnings(self, setpoints: Setpoints) -> Iterator[Turning]:
+    def turnings(self, setpoints: Setpoints) -> Iterator[SpindleTurning]:
         """Split setpoints where the tool changes; see ``Operation``."""
         # At the end of a move's path the spindle has received what comes before the next one.
         place = np.maximum(setpoints.move + np.clip(setpoints.fraction, 0.0, 1.0), 0.0)
         speed = self._speed[np.searchsorted(self._first_move, place, side="right") - 1]
         for rows, tool in self._tools.runs(setpoints.move):
             told = np.full(rows.stop - rows.start, _known(tool.speed))
-            yield Turning(
+            yield SpindleTurning(
                 rows,
                 tool,
                 self._tools.length_difference(tool),
@@ -72,11 +72,11 @@ class OperatorOperation:
         """The speed as last set."""
         return self.speed or 0.0
 
-    def turnings(self, setpoints: Setpoints) -> Iterator[Turning]:
+    def turnings(self, setpoints: Setpoints) -> Iterator[SpindleTurning]:
         """All setpoints at once; see ``Operation``."""
         if len(setpoints):
             told = np.full(len(setpoints), _known(self.speed))
-            yield Turning(slice(0, len(setpoints)), self.tool, self.length_difference, told)
+            yield SpindleTurning(slice(0, len(setpoints)), self.tool, self.length_difference, told)
 
 
 def _known(speed: float | None) -> float:

@@ -214,12 +214,12 @@ def _break(memory: Memory, why: Edge, value: float) -> None:
 def time_of_tooth(period: float, tool: TurningTool, memory: Memory) -> float:
     """Time between two teeth, or since the tool met the material [s]: the first tooth cuts no more than that."""
     numbers = memory.numbers
-    pace = math.sqrt(memory.speed[0] ** 2 + memory.speed[1] ** 2 + memory.speed[2] ** 2)
+    speed = math.sqrt(memory.speed[0] ** 2 + memory.speed[1] ** 2 + memory.speed[2] ** 2)
     if numbers[CutNumber.MET] <= 0.0:
         numbers[CutNumber.CONTACT] = 0.0
-    numbers[CutNumber.CONTACT] += pace * period
+    numbers[CutNumber.CONTACT] += speed * period
     teeth = max(abs(numbers[CutNumber.SPEED]) * tool.cutter.teeth, _STILL)
-    return min(1.0 / teeth, numbers[CutNumber.CONTACT] / max(pace, _STILL))
+    return min(1.0 / teeth, numbers[CutNumber.CONTACT] / max(speed, _STILL))
 
 
 @kernel
@@ -256,7 +256,7 @@ def note_load(
 
     Args:
         row: In this row.
-        bend: How far the tip gives way along X, Y and Z of the machine [mm].
+        bend: Deflection of the tip along X, Y and Z of the machine [mm].
     """
     numbers = memory.numbers
     met = numbers[CutNumber.MET] > 0.0

@@ -1,4 +1,4 @@
-"""The cutting force as a load on the axes, reckoned ahead of the motion along the setpoints."""
+"""The cutting force as a load on the axes, computed ahead of the motion along the setpoints."""
 
 import numpy as np
 
@@ -41,7 +41,7 @@ class AxisLoad:
 
         Raises:
             ConfigError: The stock's material or any spindle speed is missing, so that no force can
-                be reckoned.
+                be computed.
         """
         if kienzle(stock) is None:
             raise ConfigError(
@@ -96,7 +96,7 @@ class AxisLoad:
         for column, rotary in zip(chain.column, chain.rotary, strict=True):
             step = np.zeros(place.shape[1])
             step[column] = _STEP
-            way = frame.position(place + step, lower) - frame.position(place - step, lower)
+            displacement = frame.position(place + step, lower) - frame.position(place - step, lower)
             per_unit = MM / DEGREE if rotary else 1.0
-            load[:, column] = per_unit * (way * force).sum(axis=1) / (2.0 * _STEP)
+            load[:, column] = per_unit * (displacement * force).sum(axis=1) / (2.0 * _STEP)
         return load

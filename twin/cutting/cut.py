@@ -302,7 +302,7 @@ class Cutter:
     def _take_off(
         self, points: Points, cutter: Profile, suspect: BoolArray, *, edge: bool
     ) -> tuple[Removal, dict[str, FloatArray]]:
-        """Take off what lies in the way, up to where something meets that must not, if that halts.
+        """Take off what the tool meets, up to where something meets that must not, if that halts.
 
         Args:
             points: Ends of n stretches.
@@ -339,11 +339,11 @@ class Cutter:
     def _sweep(
         self, points: Points, cutter: Profile, removal: Removal, mark: FloatArray, part: slice
     ) -> None:
-        """Take off what lies in the way of some of the stretches."""
+        """Take off what some of the stretches meet."""
         if part.start >= part.stop:
             return
-        way = points[part.start : part.stop + 1]
-        found = self.material.take_off(way, self.tool, cutter, mark[part], stood=part.start > 0)
+        path = points[part.start : part.stop + 1]
+        found = self.material.take_off(path, self.tool, cutter, mark[part], stood=part.start > 0)
         for column, swept in zip(removal, found, strict=True):
             column[part] = swept
 
@@ -361,7 +361,7 @@ class Cutter:
         return latest
 
     def _note(self, stretches: Stretches, duration: FloatArray) -> FloatArray:
-        """Enter air and removal, and the force where it can be reckoned.
+        """Enter air and removal, and the force where it can be computed.
 
         Returns:
             Mean force on the tool along each stretch, shape (n, 3) [N]; 0 where it is not known.

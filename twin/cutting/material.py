@@ -187,7 +187,7 @@ class Material(Protocol):
         """Cut what a tool meets on n stretches.
 
         Args:
-            travelled: Way of all tools up to the end of each, shape (n,) [mm].
+            travelled: Distance of all tools up to the end of each, shape (n,) [mm].
             stood: Whether the tool has been at the first point, and has cut what it meets there.
         """
         ...

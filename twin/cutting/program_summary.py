@@ -193,8 +193,8 @@ class SummaryBuilder:
         if not len(moves):
             return
         if self._part is not None and not self._tilts:
-            way = moves.end - moves.start
-            self._tilts = any(self._part.tilts(moves.start + share * way) for share in _WITHIN)
+            travel = moves.end - moves.start
+            self._tilts = any(self._part.tilts(moves.start + share * travel) for share in _WITHIN)
         self._note_screen(moves, before)
 
     def _note_screen(self, moves: Moves, before: int) -> None:

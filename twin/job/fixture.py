@@ -31,7 +31,7 @@ class Weight(NamedTuple):
 
     def moved(self, by: Triple) -> "Weight":
         """The same body elsewhere [mm]."""
-        x, y, z = (here + way for here, way in zip(self.center, by, strict=True))
+        x, y, z = (here + shift for here, shift in zip(self.center, by, strict=True))
         return self._replace(center=(x, y, z))
 
     def turned(self, rotation: npt.NDArray[np.float64]) -> "Weight":

@@ -42,7 +42,7 @@ class StockTable(Table):
     """Grid of the height map [mm]; none: a tenth of the smallest tool's radius, or a fortieth of the
     stock's shorter side where that is less, 0.1 at the finest."""
     material: str | None = None
-    """What it is made of, for the cutting force and its weight; none: no force is reckoned."""
+    """What it is made of, for the cutting force and its weight; none: no force is computed."""
     specific_force: Positive | None = None
     """Its own kc1.1: force on a chip 1 mm wide and 1 mm thick [N/mm²]; with ``exponent``."""
     exponent: Annotated[float, Field(ge=0, lt=1)] | None = None
@@ -152,7 +152,7 @@ class ToolTable(Table):
     helix: Annotated[float, Field(ge=0, le=60)] | None = None
     """Helix angle of the edges, for the cutting force [deg]; none: 30, of drills and chamfer cutters 0."""
     speed: Positive | None = None
-    """Spindle speed for the cutting force [1/min]; none: no force is reckoned."""
+    """Spindle speed for the cutting force [1/min]; none: no force is computed."""
     hand: Literal["right", "left"] = "right"
     """Which way it cuts, seen from the spindle: ``right`` clockwise (M3)."""
     center_cutting: bool | None = None
@@ -300,7 +300,7 @@ class JobFile(Table):
     cutting_force: Literal["teeth", "mean", "none"] = "teeth"
     """Of a stock whose material is known: ``teeth``, the force of every tooth acts while it is cut, the tool
     bends and may break; ``mean``, the mean force is reported, and with ``cutting_load`` computed ahead, but it
-    bends and breaks no tool: contour errors come out several times too small where a tool gives way, and the
+    bends and breaks no tool: contour errors come out several times too small where a tool deflects, and the
     part does not show it; ``none``, the mean force is only reported. The page of ``twin/coupling`` has one
     job by both methods."""
     offsets: dict[str, dict[str, Coordinate]] = Field(default_factory=dict)

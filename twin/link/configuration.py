@@ -24,7 +24,6 @@ class Settings:
 
     Attributes:
         display: The command line of LinuxCNC's screen.
-        port: UDP port of the twin.
         programs: Folder in which LinuxCNC looks for programs and subprograms.
         opened: The program that its screen opens with; None: its own.
         following_error_limit: LinuxCNC's own limit [mm or deg]; None: the machine's.

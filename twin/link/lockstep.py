@@ -147,7 +147,6 @@ class LockstepMotion(MachineMotion):
     Attributes:
         alarm: What stopped the machine, None while nothing did.
         port: UDP port on this computer at which the twin answers.
-        answered: How many questions were answered.
         missed: How many questions never came, by their numbers.
         greatest_disagreement: Largest difference between the following error that the control saw
             and the one that is recorded for the same instant [mm or deg].

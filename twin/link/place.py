@@ -25,7 +25,6 @@ class Places:
         """Take a program.
 
         Args:
-            moves: All of it, n moves, part coordinates.
             control_line: Line of LinuxCNC's program that each of them comes from, shape (n,).
         """
         self._moves = moves
@@ -119,8 +118,8 @@ def _fractions(moves: Moves, move: int, position: FloatArray, before: float) -> 
         share = np.rad2deg(angle) / moves.sweep[move]
         turn = _FULL_TURN / abs(moves.sweep[move])
         return np.clip(share + turn * np.rint((before - share[0]) / turn), 0.0, 1.0)
-    way = end - start
-    spatial = way[:3] if np.any(way[:3]) else way
+    displacement = end - start
+    spatial = displacement[:3] if np.any(displacement[:3]) else displacement
     moved = position[:, : len(spatial)] - start[: len(spatial)]
     square = float(spatial @ spatial)
     return np.clip(moved @ spatial / square, 0.0, 1.0) if square > 0.0 else np.ones(len(position))

@@ -19,7 +19,7 @@ from twin.nc.canonical import FloatArray
 Positive = Annotated[float, Field(gt=0)]
 
 
-class Turning(enum.IntEnum):
+class CircleSense(enum.IntEnum):
     """Sense of a circle, seen along the normal of its plane."""
 
     COUNTER_CLOCKWISE = 1
@@ -72,7 +72,7 @@ class BallBarLog(NamedTuple):
     radius: float
     speed: float
     angle: FloatArray
-    turns: Mapping[Turning, FloatArray]
+    turns: Mapping[CircleSense, FloatArray]
 
 
 def read_ball_bar(path: Path, columns: Path | None) -> BallBarLog:
@@ -104,7 +104,7 @@ def read_ball_bar(path: Path, columns: Path | None) -> BallBarLog:
         return (channel.numbers(path) * column.scale + column.offset) * scale
 
     angle = np.deg2rad(numbers("angle", table.angle, angle=True))
-    roles = {Turning.COUNTER_CLOCKWISE: "counter_clockwise", Turning.CLOCKWISE: "clockwise"}
+    roles = {CircleSense.COUNTER_CLOCKWISE: "counter_clockwise", CircleSense.CLOCKWISE: "clockwise"}
     turns = {
         sense: numbers(role, column)
         for sense, role in roles.items()

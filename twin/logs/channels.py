@@ -58,7 +58,6 @@ class RawLog:
     """A file as it was read, before anybody says what its columns mean.
 
     Attributes:
-        channels: In the order of the file.
         period_s: Between the samples, where the file states it without a time column [s].
     """
 

@@ -64,7 +64,6 @@ class MachineLog:
 
     Attributes:
         time: As logged, which may jump, shape (n,) [s].
-        axes: By name.
         line: Program line of every sample, 0 where none is known, shape (n,).
         missing: Rows that were left out, because a cell of them is missing, counted from 1.
     """

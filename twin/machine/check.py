@@ -272,11 +272,11 @@ def _run(machine: Machine, position: FloatArray) -> FloatArray:
     run = simulate(machine, MachineModel(machine), [points])
     joints = np.concatenate([samples.joint_position for samples in run])
     if run.alarm is not None:
-        raise SimulationError(str(run.alarm) + _way_out(machine, run.alarm))
+        raise SimulationError(str(run.alarm) + _remedy(machine, run.alarm))
     return joints
 
 
-def _way_out(machine: Machine, alarm: Alarm) -> str:
+def _remedy(machine: Machine, alarm: Alarm) -> str:
     """What lets two bodies overlap that do so wherever the axes are, such as a head and its guides."""
     model = build_spec(machine)
     geoms = {geom.name: geom for geom in model.geoms if geom.name}

@@ -1,4 +1,4 @@
-"""Corners that are tried: what is slower than a simpler way through them is driven that way.
+"""Corners that are tried: what is slower than a simpler passage is replaced by that.
 
 The estimates by which a continuous corner is chosen (``twin.motion.blocks``) know the bounds of an arc, not the
 time law that its run gets, and take a rounding as driven at one velocity, which it is not where the
@@ -26,7 +26,7 @@ from twin.nc.canonical import Chunk, Corner, FloatArray, IntArray
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class _Candidate:
-    """Another way through some blocks, from a stop to a stop.
+    """Another passage through some blocks, from a stop to a stop.
 
     Attributes:
         begin: First of a span's pieces that was cut from them.

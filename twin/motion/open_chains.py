@@ -1,6 +1,6 @@
 """Continuous paths that go on beyond the blocks that are cut together: where the exact path is faster, it is kept.
 
-Of the blocks at hand both ways are planned, with what is known on either side. What is chosen holds for what goes on
+Of the blocks at hand both are planned, with what is known on either side. What is chosen holds for what goes on
 into the next blocks, and so does what that has gained: as long as the exact path could not make up for it, it is not
 tried again. So the path is no slower than the exact one however long it is, and is known as far as ever.
 """

@@ -48,8 +48,6 @@ def travel_time(distance: float, u: float, w: float, limits: RampLimits) -> floa
 
     Args:
         distance: [mm or deg]
-        u: Velocity at the begin.
-        w: Velocity at the end.
         limits: The velocity is not below u and w.
     """
     velocity, acceleration, deceleration, jerk = limits

@@ -1,7 +1,7 @@
-"""A seal at the end of a file: a check sum of all that lies before it.
+"""A checksum trailer: the last bytes of a file, computed from all that lies before them.
 
-HDF5 sums up only parts of its files, and may search a damaged one for ever. A file without a seal
-was cut short or changed by another program, or comes from an earlier version: ``recording_trial``
+HDF5 sums up only parts of its files, and may search a damaged one for ever. A file without a
+trailer was cut short or changed by another program, or comes from an earlier version: ``recording_trial``
 finds out whether it can be read.
 """
 
@@ -10,24 +10,24 @@ from pathlib import Path
 
 _MARK = b"\nseal "
 LENGTH = len(_MARK) + 8
-"""Of a seal [bytes]."""
+"""Of the trailer [bytes]."""
 _PIECE = 1 << 22
 
 
 def write_checksum(path: Path) -> None:
-    """Put a seal at the end of a complete file."""
+    """Append the trailer to a complete file."""
     with path.open("rb+") as file:
         file.seek(0, 2)
         file.write(_checksum_of(path, file.tell()))
 
 
 def has_checksum(path: Path) -> bool:
-    """Whether there is a seal at the end of a file, be it whole or broken."""
+    """Whether a file ends with a trailer, right or wrong."""
     return _end_of(path).startswith(_MARK)
 
 
 def checksum_is_wrong(path: Path) -> bool:
-    """Whether a sealed file is not what it was when the seal was put on it."""
+    """Whether a file with a trailer has changed since that was written."""
     found = _end_of(path)
     return found.startswith(_MARK) and found != _checksum_of(path, path.stat().st_size - LENGTH)
 

@@ -46,7 +46,7 @@ class Samples(Columns):
         joint_position: Shape (n, k) [mm or deg], machine coordinates.
         joint_velocity: Shape (n, k) [mm/s or deg/s].
         drive_force: Shape (n, k) [N or N m].
-        tool: What the tool felt; None where the force of the cut was not simulated.
+        tool: Force and torque on the tool; None where the force of the cut was not simulated.
         growth: How far the warm machine has shifted the tool along X, Y, Z, shape (n, 3) [mm]; None: it
             does not grow.
         contour_um: Contour error, shape (n,) [µm]; None: nobody has compared.

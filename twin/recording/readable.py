@@ -1,7 +1,7 @@
 """Whether HDF5 comes to an end with a recording: a process of its own tries it.
 
 A damaged file can make HDF5 search for ever or crash, which no exception reports. Recordings carry
-a seal against that; one that lost its seal, because it was cut short or because another program
+a checksum trailer against that; one that lost it, because it was cut short or because another program
 added to it, is read here first.
 """
 

@@ -11,7 +11,7 @@ from twin.render.drawing.canvas import Pixels, quality_named
 from twin.render.encoder import video_writer
 from twin.render.frames import deal, frame_ends
 from twin.render.gauge import Gauge
-from twin.render.hud import Reading
+from twin.render.hud import HudValues
 from twin.render.scene.scene import Scene
 from twin.render.scene.stage import Stage, stage
 
@@ -29,7 +29,6 @@ def film(scene: Scene, *, video: VideoTable, out: Path, progress: Progress | Non
         scene: What is to be seen; the simulated joints move, and the stock is cut as it goes on.
         video: Cameras, length, quality, frame rate and size; odd sizes are made even.
         out: The film, complete or not at all; ``.mp4``, ``.gif`` or ``.webp``.
-        progress: Called after every frame.
 
     Returns:
         ``out``.
@@ -70,13 +69,13 @@ def film(scene: Scene, *, video: VideoTable, out: Path, progress: Progress | Non
 
 def _frames(
     play: Stage, gauge: Gauge, video: VideoTable, recording: Recording, ends: IntArray
-) -> Iterator[tuple[Pixels, Reading]]:
+) -> Iterator[tuple[Pixels, HudValues]]:
     """Draw a film's frames, with what there is to read off; each is drawn while the next one is cut.
 
     Args:
         ends: How many samples lie behind each frame.
     """
-    begun: tuple[Callable[[], Pixels], Reading] | None = None
+    begun: tuple[Callable[[], Pixels], HudValues] | None = None
     number = 0
     for samples, due in deal(recording, ends):
         play.advance(samples)

@@ -9,7 +9,7 @@ from twin.cutting.forces.tool_strength import tool_strength
 from twin.job.job_file import ToolTable
 from twin.recording.form import ToolLoad
 from twin.recording.reader import Samples
-from twin.render.hud import Display, LoadBar, Reading
+from twin.render.hud import Display, HudValues, LoadBar
 from twin.render.scene.scene import Scene
 from twin.units import SECONDS_PER_MINUTE, UM_PER_MM
 
@@ -46,7 +46,7 @@ class Gauge:
             self._last = samples[-1:]
             self._count += len(samples)
 
-    def reading(self, warning: Callable[[int], str]) -> Reading:
+    def reading(self, warning: Callable[[int], str]) -> HudValues:
         """What there is to read after the last sample.
 
         Args:
@@ -63,7 +63,7 @@ class Gauge:
         only_turns = float(np.linalg.norm(velocity[:3])) < 1.0 < turning
         feed = SECONDS_PER_MINUTE * self._tip_speed(summary.tools.length_difference(tool))
         raised = [text for since, text in self._alarms if since <= time]
-        return Reading(
+        return HudValues(
             line=line,
             position=summary.shown(move, last.joint_position[0] - header.part_zero),
             feed=turning if only_turns else feed,
@@ -83,9 +83,9 @@ class Gauge:
         they turn alone every control counts degrees.
         """
         assert self._last is not None
-        here, way = self._last.joint_position, _INSTANT_S * self._last.joint_velocity
+        here, displacement = self._last.joint_position, _INSTANT_S * self._last.joint_velocity
         tips = self._scene.recording.header.part_frame.position(
-            np.concatenate([here - way, here + way]), length_difference
+            np.concatenate([here - displacement, here + displacement]), length_difference
         )
         return float(np.linalg.norm(tips[1] - tips[0])) / (2.0 * _INSTANT_S)
 

@@ -52,7 +52,7 @@ class LoadBar(NamedTuple):
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
-class Reading:
+class HudValues:
     """What the display shows in one frame."""
 
     line: int
@@ -102,7 +102,6 @@ class Display:
         """Lay the panels out.
 
         Args:
-            source: Lines of the program.
             size: Width and height of the frames [px].
             speed: How much faster than in reality the film runs; None for a still.
             error_scale_um: Error that has the trail's last colour [µm]; None: no error colours it.
@@ -122,7 +121,7 @@ class Display:
     def _px(self, value: float) -> int:
         return max(1, round(value * self._scale))
 
-    def draw(self, frame: Pixels, reading: Reading) -> Pixels:
+    def draw(self, frame: Pixels, reading: HudValues) -> Pixels:
         """A copy of a frame with the display on it.
 
         Args:
@@ -190,7 +189,7 @@ class Display:
             draw.text(place, text, font=self._mono, fill=ink, anchor="lm")
         return panel
 
-    def _axes_panel(self, reading: Reading) -> Image.Image:
+    def _axes_panel(self, reading: HudValues) -> Image.Image:
         panel = self._axes_form.copy()
         draw = ImageDraw.Draw(panel)
         right = panel.width - self._px(14)

@@ -31,7 +31,6 @@ def inspection_still(
     """Draw the part at the end of a run, coloured by what measuring it found.
 
     Args:
-        scene: The run; it must have a stock.
         part: The measured part of that stock; the tolerance has the last colours.
         out: The picture (PNG), complete or not at all.
         size: Width and height [px].

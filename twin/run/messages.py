@@ -99,7 +99,6 @@ class Notice:
     Attributes:
         code: Its name in ``twin explain``.
         line: Source line of the program; 0 where it concerns the whole program.
-        message: What was found, in one sentence.
     """
 
     code: str

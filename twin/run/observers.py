@@ -67,7 +67,6 @@ class Reached(Observer):
     """How far the run has come and where the axes are, in program coordinates.
 
     Attributes:
-        samples: How many there were.
         time_s: The last one's [s].
         last_motion_s: When an axis was last to move [s].
         commanded: Where the axes should be, shape (k,) [mm or deg].

@@ -61,7 +61,7 @@ class Forces(NamedTuple):
 
 
 class PlannedMoves:
-    """Moves on their way from the planner, which is ahead, to who compares what the machine makes of them."""
+    """Moves in transit from the planner, which is ahead, to who compares what the machine makes of them."""
 
     def __init__(self, expect: Callable[[Moves], None]) -> None:
         """Remember none.
@@ -110,7 +110,6 @@ class ProgramMotion(MachineMotion):
 
         Args:
             setpoints: As planned, machine coordinates, in chunks.
-            summary: Which tool is in the spindle during which move.
             moves: Those that are planned; None: nobody asks for them.
 
         Raises:

@@ -43,7 +43,6 @@ class Run:
     """A prepared job laid out on its machine, its program interpreted; ``execute`` runs it.
 
     Attributes:
-        dry_run: What its program does.
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
         part_frame: How the part turns under the tool.
         model: The machine's, with the blank on its table and the job's first tool in the spindle.

@@ -50,7 +50,6 @@ def run_folder(folder: Path, results: Iterable[str]) -> Iterator[None]:
     carries the lock, so that nothing stays behind when the holder is killed.
 
     Args:
-        folder: The folder; made when missing.
         results: Names of the files that a run may leave.
 
     Raises:

@@ -6,7 +6,7 @@ from types import MappingProxyType
 from typing import Literal
 
 from twin.nc.canonical import Axes
-from twin.serve.motions import Motion
+from twin.serve.motions import AxisMotion
 
 Category = Literal["SAMPLE", "EVENT", "CONDITION"]
 UNAVAILABLE = "UNAVAILABLE"
@@ -51,7 +51,7 @@ class Component:
     name: str
     items: tuple[DataItem, ...] = ()
     components: tuple["Component", ...] = ()
-    motion: Motion | None = None
+    motion: AxisMotion | None = None
 
     def walk(self) -> Iterator["Component"]:
         """This component and all that it consists of, outermost first."""
@@ -61,7 +61,7 @@ class Component:
 
 
 def device_of(
-    name: str, axes: Axes, motions: Mapping[str, Motion] = MappingProxyType({})
+    name: str, axes: Axes, motions: Mapping[str, AxisMotion] = MappingProxyType({})
 ) -> Component:
     """The device that a machine is to a monitor.
 
@@ -70,7 +70,6 @@ def device_of(
     program only runs behind a closed one.
 
     Args:
-        axes: Its axes, in order.
         motions: How they move, by their names.
     """
     kinds = zip(axes.names, axes.kinds, strict=True)
@@ -133,7 +132,7 @@ def device_of(
     )
 
 
-def _axis(name: str, kind: str, motion: Motion | None) -> Component:
+def _axis(name: str, kind: str, motion: AxisMotion | None) -> Component:
     linear = kind == "linear"
     what, units = ("POSITION", "MILLIMETER") if linear else ("ANGLE", "DEGREE")
     return Component(

@@ -35,7 +35,7 @@ _WHOLE_NUMBERS = frozenset(
 )  # fmt: skip
 
 
-class Form(NamedTuple):
+class DocumentFormat(NamedTuple):
     """How documents are written.
 
     Attributes:
@@ -46,7 +46,7 @@ class Form(NamedTuple):
     written: Callable[[ET.Element], bytes]
 
 
-def accepted_form(accept: str) -> Form:
+def accepted_form(accept: str) -> DocumentFormat:
     """The form that a client asks for; XML where it has no wish, or likes both alike.
 
     Args:
@@ -132,5 +132,5 @@ def _number(text: str) -> float | str:
     return number if math.isfinite(number) else text
 
 
-XML = Form("text/xml", _xml)
-JSON = Form("application/json", _json)
+XML = DocumentFormat("text/xml", _xml)
+JSON = DocumentFormat("application/json", _json)

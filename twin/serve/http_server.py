@@ -18,7 +18,7 @@ from starlette.responses import Response, StreamingResponse
 from starlette.routing import Route
 
 from twin.serve.agent import LEAST_INTERVAL_MS, REQUESTS, Agent, Query, RequestError
-from twin.serve.forms import Form, accepted_form
+from twin.serve.forms import DocumentFormat, accepted_form
 from twin.web.origin_check import LOCAL_NAMES
 
 _CODES = {404: "INVALID_URI", 405: "UNSUPPORTED"}
@@ -119,7 +119,7 @@ def _name(host: str) -> str:
         return ""
 
 
-def _form(request: Request) -> Form:
+def _form(request: Request) -> DocumentFormat:
     return accepted_form(request.headers.get("accept", ""))
 
 
@@ -131,7 +131,7 @@ def _response(request: Request, document: ET.Element, status: int = 200) -> Resp
 class _Writer(NamedTuple):
     """How the documents of a stream are written."""
 
-    form: Form
+    form: DocumentFormat
     boundary: str
 
     def part(self, document: ET.Element) -> bytes:
@@ -156,10 +156,10 @@ async def _parts(
     yield writer.part(document)
     interval = max(query.interval_ms or 0, LEAST_INTERVAL_MS) / MS_PER_S
     heartbeat = query.heartbeat_ms / MS_PER_S
-    quiet = 0.0
+    idle = 0.0
     while True:
         await asyncio.sleep(interval)
-        quiet += interval
+        idle += interval
         if query.request == "sample":
             query = dataclasses.replace(query, first=following)
         try:
@@ -168,6 +168,6 @@ async def _parts(
             yield writer.part(agent.error(error))
             yield writer.end()
             return
-        if any_observed or quiet >= heartbeat:
-            quiet = 0.0
+        if any_observed or idle >= heartbeat:
+            idle = 0.0
             yield writer.part(document)

@@ -1,4 +1,4 @@
-"""How the axes of a machine move and carry each other, after ``Motion`` of MTConnect Part 2."""
+"""How the axes of a machine move and carry each other, after ``AxisMotion`` of MTConnect Part 2."""
 
 import dataclasses
 from collections.abc import Collection
@@ -12,7 +12,7 @@ _DIGITS = 6
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Motion:
+class AxisMotion:
     """What a positive position of an axis does to the part of the machine that it moves.
 
     Attributes:
@@ -28,7 +28,7 @@ class Motion:
     origin: tuple[float, ...] | None
 
 
-def motions_of(axes: Axes, chain: Kinematics, endless: Collection[str]) -> dict[str, Motion]:
+def motions_of(axes: Axes, chain: Kinematics, endless: Collection[str]) -> dict[str, AxisMotion]:
     """The motion of every axis by its name.
 
     A joint that carries the part moves against the coordinates that count it (ISO 841), so its direction is
@@ -45,7 +45,7 @@ def motions_of(axes: Axes, chain: Kinematics, endless: Collection[str]) -> dict[
         carrier = joint + 1 if on_tool else joint - 1
         carried = 0 <= carrier < count and bool(chain.on_tool[carrier]) is on_tool
         kind = ("CONTINUOUS" if name in endless else "REVOLUTE") if chain.rotary[joint] else None
-        found[name] = Motion(
+        found[name] = AxisMotion(
             kind or "PRISMATIC",
             names[carrier] if carried else "",
             _plain(chain.axis[joint] if on_tool else -chain.axis[joint]),

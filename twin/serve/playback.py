@@ -43,7 +43,6 @@ class Production(NamedTuple):
     """What is made, and how a run of it went.
 
     Attributes:
-        source: Its lines.
         summary: What is in the spindle when, and how fast it turns.
         recording: Of the run; None where nothing moved.
         alarms: Of the run, in order.
@@ -200,9 +199,9 @@ def _path_feed(samples: Samples, frame: PartFrame, before: Samples | None) -> Fl
     """How fast the tool moves over the part, from tick to tick, shape (n,) [mm/s]."""
     first = samples[slice(0, 1)] if before is None else before
     point = np.concatenate([frame.position(each.joint_position) for each in (first, samples)])
-    way = np.linalg.norm(np.diff(point, axis=0), axis=1)
+    distance = np.linalg.norm(np.diff(point, axis=0), axis=1)
     time = np.diff(samples.setpoint.time, prepend=first.setpoint.time)
-    return np.divide(way, time, out=np.zeros(len(way)), where=time > 0.0)
+    return np.divide(distance, time, out=np.zeros(len(distance)), where=time > 0.0)
 
 
 async def feed(agent: Agent, machine: Iterator[Tick], playhead: Playhead | None = None) -> None:

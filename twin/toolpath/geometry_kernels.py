@@ -37,7 +37,6 @@ def bend_of(bend: FloatArray, move: int, axis: int, u: float, order: int) -> flo
 
     Args:
         bend: As in ``Geometry``.
-        axis: Column of the axis.
         order: Of the derivative, 0 for the position, 3 at most.
     """
     total = 0.0

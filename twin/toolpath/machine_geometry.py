@@ -24,7 +24,6 @@ class ErrorTerm:
     """One error that depends on one axis, read off a table by straight lines, constant beyond its ends.
 
     Attributes:
-        name: What it is called in a verdict.
         axis: Column of the axis whose motion brings it.
         toward: Column of the coordinate that it shifts.
         at: Positions of the axis, rising [mm or deg].

@@ -217,7 +217,6 @@ def nearest_between(path, low, high, guess, x, y, z, tie):
     """Nearest place between two places of the path, ends included.
 
     Args:
-        path: The moves.
         low: Move and fraction where the search begins.
         high: Move and fraction where it ends, not before the beginning.
         guess: Move and fraction about which it may lie; what is found does not depend on it.

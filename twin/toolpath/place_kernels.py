@@ -60,7 +60,6 @@ def _carried(path, move, u, x, y, z):
     """Where a chain of joints carries the tip: point, first and second derivative, nine numbers [mm].
 
     Args:
-        path: The moves.
         move: One that a chain turns.
         u: Fraction of it.
         x: Coordinate of X with its first and second derivative [mm].
@@ -151,7 +150,7 @@ def speed_at(path, move, u):
 
 
 @kernel
-def walk(path, move, u, distance):
+def moved_along(path, move, u, distance):
     """The place a signed path length away, or the end of the path.
 
     On curves whose speed changes, the length is measured with the speed where a move is entered:

@@ -12,12 +12,7 @@ from twin.nc.canonical import FloatArray, IntArray
 
 
 class ToolChange(NamedTuple):
-    """A tool that comes into the spindle.
-
-    Attributes:
-        move: Number of the next move.
-        line: Source line of the change.
-    """
+    """A tool that comes into the spindle."""
 
     move: int
     line: int

@@ -16,7 +16,7 @@ from twin.run.preparing.preparation import Preparation
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Moment:
+class MachineMoment:
     """Where a machine is.
 
     Attributes:
@@ -33,7 +33,7 @@ class Moment:
 class LiveRun:
     """A run that goes on; its stock is shown as the blank, with the job's first tool in the spindle."""
 
-    def __init__(self, preparation: Preparation, moment: Callable[[], Moment]) -> None:
+    def __init__(self, preparation: Preparation, moment: Callable[[], MachineMoment]) -> None:
         """Take a prepared job.
 
         Args:

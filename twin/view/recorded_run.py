@@ -180,11 +180,13 @@ class RecordedRun:
 
 def _feeds(time: FloatArray, tool: IntArray, tips: FloatArray) -> FloatArray:
     """How fast the tip goes over the part [mm/min]; tips of shape (3, n) [mm]."""
-    way = np.linalg.norm(np.diff(tips, prepend=tips[:, :1]), axis=0)
+    distance = np.linalg.norm(np.diff(tips, prepend=tips[:, :1]), axis=0)
     # Another tool's tip is elsewhere at once.
-    way[tool != np.append(tool[:1], tool[:-1])] = 0.0
+    distance[tool != np.append(tool[:1], tool[:-1])] = 0.0
     step = np.diff(time, prepend=time[:1])
-    return SECONDS_PER_MINUTE * np.divide(way, step, out=np.zeros_like(way), where=step > 0)
+    return SECONDS_PER_MINUTE * np.divide(
+        distance, step, out=np.zeros_like(distance), where=step > 0
+    )
 
 
 def _timed(time_s: float, patch: bytes) -> bytes:

@@ -30,7 +30,7 @@ FIRST_REQUEST_S = 5.0
 LINE_S = 30.0
 """Longest that a line lasts which is no stream."""
 MOST_WAITING = 64
-"""Lines that may be open without having said what they want; of more the oldest is hung up."""
+"""Connections that may be open without a request; of more the oldest is closed."""
 LONGEST_MESSAGE = 262_144
 """Of a page [bytes]: a program of 60,000 letters."""
 

@@ -4,14 +4,14 @@ import pytest
 from tests.compare.paths import UP, arc, line, moves_of
 from tests.compare.runs import compare, setpoints
 from twin.compare.circular.arcs import POLAR_ARCS, plane_axes
-from twin.compare.circular.circle import BINS_PER_TURN, CirclePath, circle_figures, hysteresis_um
+from twin.compare.circular.circle import BINS_PER_TURN, ActualCircle, circle_figures, hysteresis_um
 from twin.nc.canonical import FloatArray
 
 RADIUS = 25.0
 
 
-def path_of(deviation: FloatArray, angle: FloatArray, center: tuple[float, float]) -> CirclePath:
-    path = CirclePath(RADIUS)
+def path_of(deviation: FloatArray, angle: FloatArray, center: tuple[float, float]) -> ActualCircle:
+    path = ActualCircle(RADIUS)
     distance = RADIUS + deviation
     path.add(center + distance[:, None] * np.column_stack([np.cos(angle), np.sin(angle)]))
     return path
@@ -35,7 +35,7 @@ def test_an_ellipse_has_the_difference_of_its_half_axes():
 
 
 def test_a_narrow_peak_is_not_lost_however_long_the_path():
-    path = CirclePath(RADIUS)
+    path = ActualCircle(RADIUS)
     for _ in range(10):
         path.add(RADIUS * np.column_stack([np.cos(TURN), np.sin(TURN)]))
     path.add(np.array([[0.0, RADIUS + 0.007]]))
@@ -86,7 +86,7 @@ def test_hysteresis_sees_a_peak_narrower_than_a_degree(apex_deg: float, count: i
     peak = 0.015 * np.maximum(0.0, 1.0 - beside / 0.5)
     paths = []
     for deviation in (peak, np.zeros(count)):
-        path = CirclePath(50.0)
+        path = ActualCircle(50.0)
         radius = 50.0 + deviation
         path.add(np.column_stack([radius * np.cos(angle), radius * np.sin(angle)]))
         paths.append(path)
@@ -100,7 +100,7 @@ def test_nothing_has_no_figures():
     with pytest.raises(ValueError, match="points"):
         circle_figures()
     with pytest.raises(ValueError, match="points"):
-        circle_figures(CirclePath(RADIUS))
+        circle_figures(ActualCircle(RADIUS))
 
 
 START = np.array([RADIUS, 0.0, 0.0, 0.0])
@@ -199,7 +199,7 @@ def test_angles_are_the_planes_own(normal: FloatArray):
 
 @pytest.mark.parametrize("rows", [1000, 7000, 15_000])
 def test_a_turn_is_full_however_its_points_come(rows: int):
-    path, points = CirclePath(RADIUS), RADIUS * np.column_stack([np.cos(TURN), np.sin(TURN)])
+    path, points = ActualCircle(RADIUS), RADIUS * np.column_stack([np.cos(TURN), np.sin(TURN)])
     for first in range(0, len(points), rows):
         path.add(points[first : first + rows])
     assert path.covers_full_turn()

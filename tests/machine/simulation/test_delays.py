@@ -13,7 +13,7 @@ from twin.errors import ConfigError
 from twin.machine.description.config import Machine
 from twin.machine.description.machine_file import AxisTable
 from twin.machine.model.model import build_spec, drives, physics_model
-from twin.machine.simulation.drive_kernels import Points
+from twin.machine.simulation.drive_kernels import DriveSetpoints
 from twin.machine.simulation.live import LiveMachine
 from twin.machine.simulation.setpoint_filter import SetpointFilter
 from twin.machine.simulation.simulate import simulate
@@ -115,7 +115,7 @@ def test_a_filter_lags_as_its_closed_form_says_however_it_is_fed(
 ) -> None:
     rate = 2 * np.pi / per_turn / PERIOD
     angle = 2 * np.pi * np.arange(turns * per_turn + 1) / per_turn
-    points = Points(
+    points = DriveSetpoints(
         (1.0 - np.cos(angle))[:, None], rate * np.sin(angle)[:, None],
         rate**2 * np.cos(angle)[:, None],
     )  # fmt: skip
@@ -126,8 +126,8 @@ def test_a_filter_lags_as_its_closed_form_says_however_it_is_fed(
     settling = (1.0 / (1.0 + x**2) - 1.0) * np.exp(-angle / rate / time_constant)
     assert whole.position[:, 0] == pytest.approx(1.0 - wave + settling, abs=2e-6)
     pieces = SetpointFilter(np.array([time_constant]), PERIOD)
-    first = pieces.follow(Points(*(column[: start + 1] for column in points)))
-    rest = pieces.follow(Points(*(column[start:] for column in points)))
+    first = pieces.follow(DriveSetpoints(*(column[: start + 1] for column in points)))
+    rest = pieces.follow(DriveSetpoints(*(column[start:] for column in points)))
     for name in ("position", "velocity", "acceleration"):
         both = np.concatenate([getattr(first, name), getattr(rest, name)[1:]])
         assert np.array_equal(both, getattr(whole, name))
@@ -181,7 +181,7 @@ def test_zero_is_ideal_and_costs_nothing() -> None:
     zero = shipped_machine(loop_delay_s=0.0, velocity_filter_s=0.0, command_filter_s=0.0)
     plain, model = (physics_model(one, build_spec(one)) for one in (machine, zero))
     assert (model.nu, model.na, model.opt.timestep) == (plain.nu, plain.na, PERIOD)
-    points = Points(*(np.ones((5, 4)) for _ in range(3)))
+    points = DriveSetpoints(*(np.ones((5, 4)) for _ in range(3)))
     assert SetpointFilter(np.zeros(4), PERIOD).follow(points) is points
 
 

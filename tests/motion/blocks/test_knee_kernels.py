@@ -15,7 +15,7 @@ from twin.motion.blocks.knee_kernels import (
     MOST_TOGETHER,
     SHORTEST_SPAN,
     SPANS,
-    Chain,
+    BlockRun,
     slow_bending_chords,
     slow_dense_knees,
 )
@@ -39,7 +39,7 @@ def knees_of_circle(radius: float, chord: float, turn: float = 270.0) -> FloatAr
     joined = np.ones(count, np.bool_)
     joined[0] = False
     velocity = np.full(count, 1e3)
-    slow_bending_chords(velocity, Chain(place, point, joined), np.full(4, STEP), np.full(4, 5e4))
+    slow_bending_chords(velocity, BlockRun(place, point, joined), np.full(4, STEP), np.full(4, 5e4))
     return velocity[1:]
 
 
@@ -69,7 +69,7 @@ def test_a_straight_chain_and_a_lone_corner_are_not_slowed() -> None:
         velocity[200] = STEP
         joined = np.ones(400, np.bool_)
         slow_bending_chords(
-            velocity, Chain(place, point, joined), np.full(4, STEP), np.full(4, 5e4)
+            velocity, BlockRun(place, point, joined), np.full(4, STEP), np.full(4, 5e4)
         )
         assert np.all(velocity[np.arange(400) != 200] == 100.0)
         assert velocity[200] == STEP

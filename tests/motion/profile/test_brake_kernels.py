@@ -17,7 +17,7 @@ from twin.motion.profile.brake_kernels import brake_distance_from, time_to
 from twin.motion.profile.brake_margin_kernels import brake_margin
 from twin.motion.profile.phase_kernels import PhaseRows, write_brake
 from twin.motion.profile.segment_kernels import find_segments, merge_limits, place_phases
-from twin.motion.profile.state import Brake, Course, State
+from twin.motion.profile.state import Brake, PathAhead, State
 from twin.motion.ramp_kernels import brake_distance, brake_time
 from twin.nc.canonical import FloatArray
 
@@ -123,7 +123,7 @@ def test_a_brake_has_room_where_it_keeps_the_limits_on_its_way(
          [deceleration] * 4, [jerk] * 4]
     )  # fmt: skip
     entry = np.array([math.inf, *(cap * v for cap in caps[:3]), 0.0])
-    course, brake = Course(limits, entry, entry), Brake(4, w, deceleration, jerk)
+    course, brake = PathAhead(limits, entry, entry), Brake(4, w, deceleration, jerk)
     room = brake_margin(course, State(0, 0.0, v, a), brake, 1.0)
     borders = np.append(0.0, np.cumsum(limits[0]))
 
@@ -238,7 +238,7 @@ def test_reach_is_safe_and_nearly_the_most_that_is(case: tuple[FloatArray, Float
         stop = brake_distance(slower, 0.0, limits[3, i:end].min(), limits[4, i:end].min())
         # Slower is as safe, unless it is so slow that it would stop before that brake's last segment.
         if stop > limits[0, i : end - 1].sum():
-            course = Course(limits, entry, controllable)
+            course = PathAhead(limits, entry, controllable)
             assert find_brake(course, State(i, 0.0, slower, 0.0), 1e-9) > i
 
 
@@ -259,7 +259,9 @@ def test_transition_ends_where_its_brake_does(
     controllable = backward_pass(wanted, entry, np.zeros((4, 0)))[0]
     x, v = place * limits[0, 0], share * limits[1, 0]
     a = rising * (limits[2, 0] if rising > 0.0 else limits[3, 0])
-    brake, x_end = find_transition(limits, Course(wanted, entry, controllable), State(0, x, v, a))
+    brake, x_end = find_transition(
+        limits, PathAhead(wanted, entry, controllable), State(0, x, v, a)
+    )
     border, w, deceleration, jerk = brake
     if border >= 0:
         end = border - 1
@@ -281,7 +283,7 @@ def test_transition_to_a_third_of_the_velocity(then: float) -> None:
     controllable = backward_pass(wanted, entry, np.zeros((4, 0)))[0]
     here = State(0, 0.0, v, 0.0)
     (border, w, deceleration, j), x_end = find_transition(
-        limits, Course(wanted, entry, controllable), here
+        limits, PathAhead(wanted, entry, controllable), here
     )
     end = border - 1
     way = limits[0, :end].sum() + x_end

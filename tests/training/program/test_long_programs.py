@@ -5,7 +5,7 @@ import pytest
 
 from tests.training.session.commanding import do
 from twin.motion import corner_candidates
-from twin.training.program.block_walk import FORGOTTEN_AT_ONCE
+from twin.training.program.block_tracker import FORGOTTEN_AT_ONCE
 from twin.training.program.program_run import MOVES_AT_ONCE, PLANNED_AT_REST
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.session.session import Session
@@ -33,7 +33,9 @@ def contour():
         speeds.append(60.0 * float(np.hypot(*velocity.T).min()))
         run, move = session.room.slot.run, int(session.room.machine.setpoint.move[0])
         if run is not None and move > 5900:
-            remembered.append((len(run.reader.walk.blocks), sum(map(len, run.reader.moves._moves))))
+            remembered.append(
+                (len(run.reader.tracker.blocks), sum(map(len, run.reader.moves._moves)))
+            )
             state, target = run.modal(move), run.reader.moves.target(move)
             assert state is not None
             assert target is not None

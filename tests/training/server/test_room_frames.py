@@ -9,7 +9,7 @@ import numpy as np
 
 from twin.cutting.heights.patches import LEVELS
 from twin.training.room.run_settings import path_to_come
-from twin.training.room.setup.live_cut import Loads
+from twin.training.room.setup.live_cut import SliceLoads
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.server.app import RoomApp
 from twin.training.server.attempts import CELLS_ACROSS
@@ -86,7 +86,7 @@ def test_words_are_sent_when_they_change():
     driver.ask({"do": "mode", "mode": "jog"}, "operator", 1)
     driver._step(0.01)
     assert changes.since_last(as_texts(panel_words(driver.look))) == '{"mode":"jog"}'
-    assert len(state_message(driver.look, cutting=False)) == 8 + 8 * (7 + 5 * 4 + len(Loads()))
+    assert len(state_message(driver.look, cutting=False)) == 8 + 8 * (7 + 5 * 4 + len(SliceLoads()))
 
 
 def test_a_typing_error_in_mdi_is_told_in_every_language():

@@ -79,11 +79,7 @@ class Core:
         return [name for name in self.extras if name in solution.free]
 
     def unset_where(self, free: Sequence[str]) -> dict[str, float]:
-        """Values of what some structures have, and not the one that fits these.
-
-        Args:
-            free: Names that are fitted.
-        """
+        """Values of what some structures have, and not the one that fits these."""
         optional = [*self.extras, *({VISCOUS} - set(self.names))]
         return {name: getattr(self.unset, name) for name in optional if name not in free}
 
@@ -130,8 +126,10 @@ def _linear(problem: Problem, best: Solution, core: Core) -> "_Linear":
         if start == best.parameters:
             columns.append(slope(problem, start, name, here))
         else:
-            way = problem.coordinates[name]
-            step = way.inside(getattr(start, name)) - way.inside(getattr(best.parameters, name))
+            coordinate = problem.coordinates[name]
+            step = coordinate.inside(getattr(start, name)) - coordinate.inside(
+                getattr(best.parameters, name)
+            )
             columns.append((problem.residuals(start) - here) / step)
     triangle = np.linalg.qr(np.column_stack([*columns, here]), mode="r")
     return _Linear(problem, best, core, names, np.asarray(triangle, np.float64), len(here))
@@ -152,13 +150,13 @@ class _Linear(NamedTuple):
     def of(self, extras: tuple[str, ...]) -> Promise | None:
         """What a structure promises; None where its optimum is one of a structure with less."""
         free = self.core.free(extras)
-        ways, parameters = self.problem.coordinates, self.best.parameters
-        now = np.array([ways[name].inside(getattr(parameters, name)) for name in self.names])
+        coordinates, parameters = self.problem.coordinates, self.best.parameters
+        now = np.array([coordinates[name].inside(getattr(parameters, name)) for name in self.names])
         moved = np.array([name in free for name in self.names])
         step = np.zeros(len(self.names))
         for name, value in self.core.unset_where(free).items():
             index = self.names.index(name)
-            step[index] = ways[name].inside(value) - now[index]
+            step[index] = coordinates[name].inside(value) - now[index]
         columns, rest = self.triangle[:, :-1], self.triangle[:, -1] + self.triangle[:, :-1] @ step
         size = np.maximum(np.sqrt(np.sum(columns[:, moved] ** 2, axis=0)), 1e-12)
         found, *_ = np.linalg.lstsq(columns[:, moved] / size, -rest, rcond=1e-10)
@@ -166,8 +164,8 @@ class _Linear(NamedTuple):
         cost = float(np.sqrt(np.sum((rest + columns[:, moved] @ step[moved]) ** 2) / self.rows))
         values = dict[str, float]()
         for name, end in zip(self.names, now + step, strict=True):
-            low, high = ways[name].bounds
+            low, high = coordinates[name].bounds
             if name in extras and not low < end < high:
                 return None
-            values[name] = ways[name].outside(float(np.clip(end, low, high)))
+            values[name] = coordinates[name].outside(float(np.clip(end, low, high)))
         return Promise(extras, cost, dataclasses.replace(parameters, **values))

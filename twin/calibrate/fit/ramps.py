@@ -2,7 +2,7 @@
 
 A log of ten samples a second hits a ramp of ten milliseconds now and then. Its columns of commanded
 velocity and acceleration then say how far into the ramp the sample was taken, as a planner that
-accelerates at a constant rate from one speed to another leaves few ways in which both numbers come
+accelerates at a constant rate from one speed to another leaves few combinations of which both numbers come
 about. The control forms them as differences over its cycle, which is seen from the numbers too.
 """
 
@@ -11,7 +11,7 @@ import dataclasses
 import numpy as np
 
 from twin.calibrate.fit.parameters import Parameters
-from twin.calibrate.fit.simulation import Command, seen_at, simulate_axis
+from twin.calibrate.fit.simulation import AxisCommand, seen_at, simulate_axis
 from twin.logs.machine_log import AxisLog, MachineLog
 from twin.nc.canonical import FloatArray
 
@@ -48,7 +48,7 @@ class Ramp:
     """
 
     row: int
-    command: Command
+    command: AxisCommand
     place: int
     window: int
     lag: float
@@ -127,7 +127,7 @@ def _likeliest(axis: AxisLog, row: int, rate: float, cycle_s: float) -> tuple[fl
     tells = max(alike) - min(alike) <= _TELLING * max(map(abs, alike))
     change = np.gradient(best, _STEP_S)
     position = np.concatenate([[0.0], np.cumsum((best[1:] + best[:-1]) / 2) * _STEP_S])
-    command = Command(
+    command = AxisCommand(
         axis.kind, _STEP_S, np.arange(len(best), dtype=np.float64), np.column_stack([position, best, change]), np.zeros(len(best)),
         (0.0, float(best[0])),
     )  # fmt: skip

@@ -37,7 +37,7 @@ _START_S = 0.01
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Command:
+class AxisCommand:
     """What an axis was commanded, at even steps of the simulation.
 
     Attributes:
@@ -92,7 +92,7 @@ def command_of(
     actual: FloatArray,
     push: FloatArray | None = None,
     knots: BoolArray | None = None,
-) -> Command:
+) -> AxisCommand:
     """A logged command as inputs of the simulation.
 
     Args:
@@ -116,10 +116,10 @@ def command_of(
     spline = CubicSpline(places[own] * step, command[own])
     position = np.column_stack([spline(fine), spline(fine, 1), spline(fine, 2)])
     pushed = np.zeros(len(fine)) if push is None else np.interp(fine, since, push)
-    return Command(kind, step, places, position, pushed, _start(since, actual, position[0]))
+    return AxisCommand(kind, step, places, position, pushed, _start(since, actual, position[0]))
 
 
-def drawn_otherwise(command: Command, asked: FloatArray, knots: BoolArray) -> Command:
+def drawn_otherwise(command: AxisCommand, asked: FloatArray, knots: BoolArray) -> AxisCommand:
     """A copy of the command, drawn between its samples by another rule (monotone cubics).
 
     Args:
@@ -142,7 +142,7 @@ def _start(since: FloatArray, actual: FloatArray, first: FloatArray) -> tuple[fl
     return float(origin), float(slope)
 
 
-def simulate_axis(parameters: Parameters, command: Command) -> Response:
+def simulate_axis(parameters: Parameters, command: AxisCommand) -> Response:
     """Run an axis along a command."""
     inertia = parameters.mass * to_si(command.kind)
     system = _system(parameters, inertia)
@@ -315,7 +315,9 @@ def _discrete(
     return transition, now, then
 
 
-def seen_at(values: FloatArray, rates: FloatArray, command: Command, delay_s: float) -> FloatArray:
+def seen_at(
+    values: FloatArray, rates: FloatArray, command: AxisCommand, delay_s: float
+) -> FloatArray:
     """Values of the simulation at the logged samples, as seen through a delay.
 
     Args:

@@ -218,9 +218,9 @@ def _fit_friction(
         viscous_friction=max(0.0, float(found[1] * scale)), current_at_rest=float(found[3]),
     )  # fmt: skip
     batch = (np.arange(len(shown)) * BATCHES // len(shown)).astype(np.int64)
-    ways = coordinates(kind, max(start.dry_friction, 1.0))
+    by_name = coordinates(kind, max(start.dry_friction, 1.0))
     free = ["dry_friction", "current_at_rest", *["viscous_friction"] * viscous]
-    solution = solve(Problem(residuals, batch, ways), start, free)
+    solution = solve(Problem(residuals, batch, by_name), start, free)
     stands_on = ("current_scale",)
     return solution.parameters, {
         name: (interval, stands_on) for name, interval in solution.intervals.items()

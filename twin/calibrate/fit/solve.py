@@ -27,7 +27,7 @@ on_one_thread: Any = ThreadpoolController().wrap(limits=1, user_api="blas")
 _NOTHING = 1e-12
 _MOST_EVALUATIONS = 40
 _FIRST = 0.05
-"""Share of a way by which its tangent is taken."""
+"""Share of a coordinate's step over which a tangent is taken."""
 _CURVED = 2.0
 """A path is followed until what is left has changed by so many times what its tangent says of the whole."""
 EXACT, ROUGH = 1e-8, 1e-5
@@ -61,10 +61,8 @@ class Solution:
     """An optimum.
 
     Attributes:
-        free: Names of those that were fitted.
         cost: Root mean square of the weighted residuals.
         squares: Their sum over each of the stretches of time, shape (batches,).
-        intervals: By name of the fitted.
         covariance: Of the coordinates, shape (p, p), in the order of ``free``.
     """
 
@@ -111,18 +109,22 @@ def solve(
 
     Args:
         start: Where the search begins; the others stay so.
-        free: Names of those that are fitted.
         until: ``EXACT`` or ``ROUGH``.
     """
-    ways = [problem.coordinates[name] for name in free]
-    low, high = np.array([way.bounds for way in ways]).reshape(-1, 2).T
+    coordinates = [problem.coordinates[name] for name in free]
+    low, high = np.array([coordinate.bounds for coordinate in coordinates]).reshape(-1, 2).T
     begin = _inside(problem, start, free)
-    scale = np.array([1.0 if way.logarithmic else max(1e3 * way.step, _NOTHING) for way in ways])
+    scale = np.array(
+        [
+            1.0 if coordinate.logarithmic else max(1e3 * coordinate.step, _NOTHING)
+            for coordinate in coordinates
+        ]
+    )
 
     def at(point: FloatArray) -> Parameters:
         values = {
-            name: way.outside(float(value))
-            for name, way, value in zip(free, ways, point, strict=True)
+            name: coordinate.outside(float(value))
+            for name, coordinate, value in zip(free, coordinates, point, strict=True)
         }
         return dataclasses.replace(start, **values)
 
@@ -135,8 +137,12 @@ def solve(
     def jacobian(point: FloatArray) -> FloatArray:
         known = [rest for place, rest in last if place == point.tobytes()]
         here, columns = known[0] if known else residuals(point), []
-        for index, way in enumerate(ways):
-            step = way.step if point[index] + way.step <= high[index] else -way.step
+        for index, coordinate in enumerate(coordinates):
+            step = (
+                coordinate.step
+                if point[index] + coordinate.step <= high[index]
+                else -coordinate.step
+            )
             there = point.copy()
             there[index] += step
             columns.append((problem.residuals(at(there)) - here) / step)
@@ -156,7 +162,7 @@ def solve(
         tuple(free),
         float(np.sqrt(np.mean(rest**2))),
         np.asarray(np.bincount(problem.batch, rest**2), np.float64),
-        _intervals(free, ways, point, covariance, _reach(problem.batch)),
+        _intervals(free, coordinates, point, covariance, _reach(problem.batch)),
         covariance,
     )
 
@@ -194,15 +200,17 @@ def movers(problem: Problem, best: Solution, names: Sequence[str]) -> list[str]:
     own = reach * np.sqrt(np.diag(_covariance(known, here, problem.batch)))
     found = []
     for name in names:
-        way = problem.coordinates[name]
+        coordinate = problem.coordinates[name]
         tangent = slope(problem, best.parameters, name, here)
         both = np.column_stack([known, tangent])
         spread = float(np.sqrt(_covariance(both, here, problem.batch)[-1, -1]))
         if not np.isfinite(spread):
             continue
         step, *_ = np.linalg.lstsq(both, -here, rcond=1e-10)
-        now = way.inside(getattr(best.parameters, name))
-        ends = np.clip(now + step[-1] + np.array([-reach, reach]) * spread, *way.bounds) - now
+        now = coordinate.inside(getattr(best.parameters, name))
+        ends = (
+            np.clip(now + step[-1] + np.array([-reach, reach]) * spread, *coordinate.bounds) - now
+        )
         moved, *_ = np.linalg.lstsq(known, -tangent, rcond=1e-10)
         if np.any(np.abs(ends).max() * np.abs(moved) > own):
             found.append(name)
@@ -232,8 +240,8 @@ def intervals_beside(problem: Problem, solution: Solution, name: str) -> dict[st
     lows, highs = point + shifts.min(axis=1) - own, point + shifts.max(axis=1) + own
     found = {}
     for other, low, high in zip(solution.free, lows, highs, strict=True):
-        way = problem.coordinates[other]
-        both = (_end(way, float(low)), _end(way, float(high)))
+        coordinate = problem.coordinates[other]
+        both = (_end(coordinate, float(low)), _end(coordinate, float(high)))
         found[other] = Interval(solution.intervals[other].value, min(both), max(both))
     return found
 
@@ -251,16 +259,18 @@ def _as_far_as_straight(
         name: Of the one that leads.
     """
     point = _inside(problem, solution.parameters, solution.free)
-    index, way = solution.free.index(name), problem.coordinates[name]
-    end = float(np.clip(point[index] + shift[index], *way.bounds))
+    index, coordinate = solution.free.index(name), problem.coordinates[name]
+    end = float(np.clip(point[index] + shift[index], *coordinate.bounds))
     share = (end - point[index]) / shift[index]
-    ways = [problem.coordinates[other] for other in solution.free]
+    coordinates = [problem.coordinates[other] for other in solution.free]
     here = problem.residuals(solution.parameters)
 
     def changed(part: float) -> float:
         values = {
             other: one.outside(float(np.clip(value, *one.bounds)))
-            for other, one, value in zip(solution.free, ways, point + part * shift, strict=True)
+            for other, one, value in zip(
+                solution.free, coordinates, point + part * shift, strict=True
+            )
         }
         rest = problem.residuals(dataclasses.replace(solution.parameters, **values)) - here
         return float(np.sqrt(rest @ rest))
@@ -272,9 +282,12 @@ def _as_far_as_straight(
 
 
 def _inside(problem: Problem, parameters: Parameters, names: Sequence[str]) -> FloatArray:
-    ways = [problem.coordinates[name] for name in names]
+    coordinates = [problem.coordinates[name] for name in names]
     return np.array(
-        [way.inside(getattr(parameters, name)) for name, way in zip(names, ways, strict=True)]
+        [
+            coordinate.inside(getattr(parameters, name))
+            for name, coordinate in zip(names, coordinates, strict=True)
+        ]
     )
 
 
@@ -286,10 +299,10 @@ def slope(problem: Problem, at: Parameters, name: str, here: FloatArray) -> Floa
         name: Of the parameter that is moved.
         here: The residuals there, shape (n,).
     """
-    way = problem.coordinates[name]
-    value = way.inside(getattr(at, name))
-    step = way.step if value + way.step < way.bounds[1] else -way.step
-    there = dataclasses.replace(at, **{name: way.outside(value + step)})
+    coordinate = problem.coordinates[name]
+    value = coordinate.inside(getattr(at, name))
+    step = coordinate.step if value + coordinate.step < coordinate.bounds[1] else -coordinate.step
+    there = dataclasses.replace(at, **{name: coordinate.outside(value + step)})
     return (problem.residuals(there) - here) / step
 
 
@@ -324,21 +337,21 @@ def _covariance(jacobian: FloatArray, rest: FloatArray, batch: IntArray) -> Floa
 
 
 def _intervals(
-    free: Sequence[str], ways: Sequence[Coordinate], point: FloatArray, covariance: FloatArray,
+    free: Sequence[str], coordinates: Sequence[Coordinate], point: FloatArray, covariance: FloatArray,
     reach: float,
 ) -> dict[str, Interval]:  # fmt: skip
     found = {}
-    for index, (name, way) in enumerate(zip(free, ways, strict=True)):
+    for index, (name, coordinate) in enumerate(zip(free, coordinates, strict=True)):
         half = reach * float(np.sqrt(covariance[index, index]))
         value = float(point[index])
-        ends = [_end(way, value + side * half) for side in (-1.0, 1.0)]
-        found[name] = Interval(way.outside(value), min(ends), max(ends))
+        ends = [_end(coordinate, value + side * half) for side in (-1.0, 1.0)]
+        found[name] = Interval(coordinate.outside(value), min(ends), max(ends))
     return found
 
 
-def _end(way: Coordinate, coordinate: float) -> float:
+def _end(coordinate: Coordinate, value: float) -> float:
     """Value at the end of an interval; open where a rate may be none."""
-    low, high = way.bounds
-    if way.reciprocal and coordinate <= 0.0:
+    low, high = coordinate.bounds
+    if coordinate.reciprocal and value <= 0.0:
         return float("inf")
-    return way.outside(min(max(coordinate, low), high))
+    return coordinate.outside(min(max(value, low), high))

@@ -20,7 +20,7 @@ from twin.calibrate.fit.solve import (
     solve,
 )
 from twin.calibrate.fit.stretch import Stretch, predict
-from twin.calibrate.fit.structure import Choice, Tried, choose_structure, leaves_less
+from twin.calibrate.fit.structure import StructureChoice, Tried, choose_structure, leaves_less
 from twin.nc.canonical import FloatArray, IntArray
 from twin.units import AxisKind, kv_per_second, to_si
 
@@ -88,7 +88,7 @@ def fit_axis(
     cores = _core_fits(problem, start, names, forced=forced)
     problem = _weighted(kind, stretches, cores[0][0].parameters)
     again = [(solve(problem, one.parameters, one.free), core) for one, core in cores]
-    choice = Choice(again[0][0])
+    choice = StructureChoice(again[0][0])
     if _share_left(stretches, choice.best.parameters) > _ENOUGH:
         choice = choose_structure(problem, again)
         best = solve(problem, choice.best.parameters, choice.best.free)
@@ -140,7 +140,7 @@ def _core_fits(
     return both if rigid.cost < kept.cost else [(kept, base), *both]
 
 
-def _allowing_for_others(problem: Problem, choice: Choice) -> dict[str, Interval]:
+def _allowing_for_others(problem: Problem, choice: StructureChoice) -> dict[str, Interval]:
     """Intervals that hold what rivals have, and what comes of parameters that were not taken in."""
     best, freed = choice.best, dict(choice.larger)
     others = [name for name in EXTRAS if name not in best.free and name not in freed]
@@ -308,7 +308,7 @@ def _without_undetermined(
 
 def _width(problem: Problem, name: str, interval: Interval) -> float:
     """How far an interval reaches, as a share of what would matter."""
-    way = problem.coordinates[name]
+    coordinate = problem.coordinates[name]
     reach = max(interval.high - interval.value, interval.value - interval.low)
     if name in ("delay", "force_delay", "measuring_filter"):
         return reach / max(abs(interval.value), 2e-3)
@@ -316,9 +316,9 @@ def _width(problem: Problem, name: str, interval: Interval) -> float:
         return reach
     if name == "current_at_rest":
         return 0.0
-    if way.logarithmic:
+    if coordinate.logarithmic:
         return reach / interval.value
-    return reach / max(abs(interval.value), 1e2 * way.step)
+    return reach / max(abs(interval.value), 1e2 * coordinate.step)
 
 
 def _why(best: Solution, name: str, interval: Interval, unit: str) -> str:

@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 
 from twin.calibrate.fit.parameters import Parameters
-from twin.calibrate.fit.simulation import Command, command_of, seen_at, simulate_axis
+from twin.calibrate.fit.simulation import AxisCommand, command_of, seen_at, simulate_axis
 from twin.logs.machine_log import AxisLog
 from twin.nc.canonical import BoolArray, FloatArray
 
@@ -53,7 +53,7 @@ class Stretch:
     """
 
     time: FloatArray
-    command: Command
+    command: AxisCommand
     asked: FloatArray
     actual: FloatArray
     force: FloatArray | None

@@ -38,7 +38,7 @@ class Tried:
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Choice:
+class StructureChoice:
     """A structure that was chosen.
 
     Attributes:
@@ -61,7 +61,7 @@ def leaves_less(one: Solution, other: Solution) -> bool:
     return one.cost < (_WORTH if sure else _PLAIN) * other.cost
 
 
-def choose_structure(problem: Problem, cores: Sequence[tuple[Solution, Core]]) -> Choice:
+def choose_structure(problem: Problem, cores: Sequence[tuple[Solution, Core]]) -> StructureChoice:
     """Take in what else a log asks for, and give up what it then does not ask for.
 
     Args:
@@ -84,7 +84,7 @@ def _is_white(rest: FloatArray) -> bool:
     return abs(float(rest[1:] @ rest[:-1])) < _WHITE * float(rest @ rest)
 
 
-def _grown(problem: Problem, start: Solution, core: Core) -> Choice:
+def _grown(problem: Problem, start: Solution, core: Core) -> StructureChoice:
     """What becomes of a core."""
     best, known = start, dict[frozenset[str], Solution]()
     while True:
@@ -105,7 +105,7 @@ def _grown(problem: Problem, start: Solution, core: Core) -> Choice:
     }
     tried = [Tried(tuple(core.extras_of(each)), each.cost) for each in (best, start)]
     tried += [Tried(tuple(sorted(extras)), each.cost) for extras, each in known.items()]
-    return Choice(best, _rivals(best, list(known.values()), core), larger, tuple(tried))
+    return StructureChoice(best, _rivals(best, list(known.values()), core), larger, tuple(tried))
 
 
 def _searched(problem: Problem, best: Solution, promise: Promise, core: Core) -> Solution:

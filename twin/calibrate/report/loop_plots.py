@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from twin.calibrate.fit.parameters import Parameters
 from twin.calibrate.report.plots import drawn
-from twin.calibrate.result import Course, LogFigures
+from twin.calibrate.result import LogFigures, TimeSeries
 from twin.compare.report.plot_style import BLUE, INK, LIMIT, new_figure, styled
 from twin.nc.canonical import FloatArray
 from twin.units import AxisKind, kv_per_second
@@ -35,7 +35,7 @@ class Margins(NamedTuple):
     phase_deg: float
 
 
-def autocorrelation(course: Course) -> FloatArray:
+def autocorrelation(course: TimeSeries) -> FloatArray:
     """Of what is left, at shifts from 1 on, shape (_LAGS,); empty where it is too short."""
     left = course.logged - course.predicted
     if len(left) < 4 * _LAGS:
@@ -47,7 +47,7 @@ def autocorrelation(course: Course) -> FloatArray:
     return np.array([float(left[shift:] @ left[:-shift]) / power for shift in range(1, _LAGS + 1)])
 
 
-def whiteness(course: Course) -> str:
+def whiteness(course: TimeSeries) -> str:
     """Whether what is left is noise, in a sentence."""
     found = autocorrelation(course)
     if course.slow or not len(found):

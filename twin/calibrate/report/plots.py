@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib.figure import Figure
 
-from twin.calibrate.result import Course, LogFigures
+from twin.calibrate.result import LogFigures, TimeSeries
 from twin.compare.report.plot_style import BLUE, INK, LIMIT, finish, new_figure, styled
 from twin.nc.canonical import FloatArray
 
@@ -114,7 +114,7 @@ def correlation_plot(names: tuple[str, ...], correlations: FloatArray) -> str:
     return drawn(figure)
 
 
-def has_spectrum(course: Course) -> bool:
+def has_spectrum(course: TimeSeries) -> bool:
     """Whether a course is even and long enough for a spectrum."""
     return not course.slow and len(course.time) >= 16 * _SEGMENTS
 

@@ -28,10 +28,7 @@ class Record(NamedTuple):
     """What a page is made of.
 
     Attributes:
-        date: When it was made, UTC.
-        machine_file: The base machine's file, as it was named.
         map_text: The map of columns; empty where the headings told.
-        logs: What was fitted, and what it was judged by.
     """
 
     date: str

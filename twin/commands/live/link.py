@@ -60,8 +60,6 @@ def link_linuxcnc(
     Args:
         headless: NC program or job file to run without a screen.
         opened: The same, which LinuxCNC's screen opens with; neither: it opens without one.
-        machine: Overrides the job's machine.
-        dialect: Overrides the job's dialect.
         period_us: Servo period of both [µs].
         following_error_limit: LinuxCNC's own limit [mm or deg]; None: the machine's.
         view: Whether a page shows the machine meanwhile.
@@ -123,9 +121,9 @@ def _say(text: str) -> None:
 def _shown(run: Run, motion: "LockstepMotion") -> Iterator[None]:
     """Show a machine that a control drives on the page of ``twin view``."""
     from twin.view.app import open_view
-    from twin.view.live_run import LiveRun, Moment
+    from twin.view.live_run import LiveRun, MachineMoment
 
-    live = LiveRun(run.preparation, lambda: Moment(*motion.moment))
+    live = LiveRun(run.preparation, lambda: MachineMoment(*motion.moment))
     with open_view(live, now=live.now) as address:
         _say(f"open {address} in a browser")
         yield

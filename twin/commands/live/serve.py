@@ -35,14 +35,12 @@ _WAIT_S = 0.2
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
-class Source:
+class Reported:
     """What is reported, and where.
 
     Attributes:
         port: 0: the first free one of ``PORTS``.
         speed: Seconds of the twin for each second of the day.
-        dialect: Overrides the job's dialect.
-        machine: Overrides the job's machine.
         opcua_port: Port of OPC UA, which reports in addition to MTConnect; None: it does not.
         opcua_trust: Folder of the certificates of OPC UA's clients.
         grbl: Port at which a machine takes programs from Grbl's senders, or ``pty``; None: it takes none.
@@ -61,7 +59,7 @@ class Source:
     view: bool = False
 
 
-def serve_job(path: Path, source: Source) -> ExitCode:
+def serve_job(path: Path, source: Reported) -> ExitCode:
     """Simulate a job once, then report it as if the machine made part after part.
 
     Raises:
@@ -103,7 +101,7 @@ def serve_job(path: Path, source: Source) -> ExitCode:
     return ExitCode.OK
 
 
-def serve_scene(name: str, source: Source) -> ExitCode:
+def serve_scene(name: str, source: Reported) -> ExitCode:
     """Open a training room, and tell monitors of its machine; they only read.
 
     Args:
@@ -128,7 +126,7 @@ def serve_scene(name: str, source: Source) -> ExitCode:
     return ExitCode.OK
 
 
-def serve_grbl(job: Path | None, source: Source) -> ExitCode:
+def serve_grbl(job: Path | None, source: Reported) -> ExitCode:
     """Let Grbl's senders stream programs to the machine of a job, and tell monitors of it.
 
     Args:
@@ -157,7 +155,7 @@ def serve_grbl(job: Path | None, source: Source) -> ExitCode:
 
 
 @contextlib.contextmanager
-def _grbl_line(source: Source) -> "Iterator[socket.socket | int]":
+def _grbl_line(source: Reported) -> "Iterator[socket.socket | int]":
     """Where senders come in: a socket, or the twin's end of a pseudo-terminal."""
     from twin.serve.grbl.server import PSEUDO_TERMINAL, pseudo_terminal
     from twin.web.origin_check import LOCAL_NAMES
@@ -181,7 +179,7 @@ def _grbl_line(source: Source) -> "Iterator[socket.socket | int]":
 
 
 def _serve_room(
-    scene: "Scene", source: Source, listener: socket.socket, description: str,
+    scene: "Scene", source: Reported, listener: socket.socket, description: str,
     line: "socket.socket | int | None" = None,
 ) -> None:  # fmt: skip
     """Open a room, tell monitors of its machine, and let senders drive it where there is a line for them."""
@@ -252,7 +250,7 @@ def _tools(job: "JobFile") -> dict[int, str]:
     return {tool.number: f"{tool.kind} {tool.diameter:g} mm" for tool in job.tools}
 
 
-def _check_opcua(source: Source) -> None:
+def _check_opcua(source: Reported) -> None:
     """Refuse an OPC UA server that cannot be, before anything is simulated."""
     if source.opcua_port is None:
         if source.opcua_trust is not None:
@@ -271,7 +269,7 @@ def _say(text: str) -> None:
 
 
 async def _with_opcua(
-    observe: Coroutine[Any, Any, None], agent: "Agent", source: Source,
+    observe: Coroutine[Any, Any, None], agent: "Agent", source: Reported,
     named: tuple["Machine", str, dict[int, str]],
 ) -> None:  # fmt: skip
     """Observe a machine, and tell it in OPC UA too where that is asked for."""

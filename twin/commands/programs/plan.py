@@ -34,8 +34,6 @@ def plan_and_print(
 
     Args:
         out: Folder for ``plan.png``; ``out/<program>`` by default.
-        dialect: Overrides the job's dialect.
-        machine: Overrides the job's machine.
         form: ``text`` or ``json``.
 
     Raises:

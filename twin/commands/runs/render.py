@@ -72,8 +72,6 @@ def render_and_print(
     Args:
         path: ``recording.h5``, an NC program or a job file.
         out: Folder for the pictures; beside the recording by default, ``out/<program>`` for a job.
-        dialect: Overrides the job's dialect.
-        machine: Overrides the job's machine.
 
     Raises:
         TwinError: Something is missing or wrong; see each error's exit code.

@@ -32,8 +32,6 @@ def run_and_print(
 
     Args:
         out: Folder for the results; ``out/<program>`` by default.
-        dialect: Overrides the job's dialect.
-        machine: Overrides the job's machine.
         video: Film the run too.
         save_job: Where the job is kept that is assumed for a raw program.
 

@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 
 from twin.compare.circular.bidirectional import DirectedCircle, PairCollector, directed_circle
-from twin.compare.circular.circle import CirclePath, circle_figures
+from twin.compare.circular.circle import ActualCircle, circle_figures
 from twin.compare.circular.circle_kernels import into_planes
 from twin.compare.figures import ArcFigures, BidirectionalFigures
 from twin.nc.canonical import BoolArray, FloatArray, IntArray, Moves, Shape
@@ -57,7 +57,7 @@ class _OpenArc:
     directed: DirectedCircle
 
     @property
-    def path(self) -> CirclePath:
+    def path(self) -> ActualCircle:
         return self.directed.path
 
 
@@ -67,7 +67,7 @@ class ArcCollector:
     def __init__(self) -> None:
         self._open: dict[int, _OpenArc] = {}
         self._done: dict[int, ArcFigures] = {}
-        self._worst: list[tuple[float, int, CirclePath]] = []
+        self._worst: list[tuple[float, int, ActualCircle]] = []
         self._pairs = PairCollector()
 
     def add(
@@ -186,7 +186,7 @@ def _evaluate(arc: _OpenArc) -> ArcFigures:
     )
 
 
-def _polar(path: CirclePath) -> FloatArray:
+def _polar(path: ActualCircle) -> FloatArray:
     mean = path.by_angle().mean
     thin = mean[:: max(1, len(mean) // _POLAR_POINTS)]
     return np.column_stack([np.rad2deg(thin[:, 0]), thin[:, 1] * UM_PER_MM])

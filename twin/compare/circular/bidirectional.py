@@ -4,7 +4,7 @@ import dataclasses
 
 import numpy as np
 
-from twin.compare.circular.circle import CirclePath, circle_figures, hysteresis_um
+from twin.compare.circular.circle import ActualCircle, circle_figures, hysteresis_um
 from twin.compare.figures import BidirectionalFigures
 from twin.nc.canonical import Moves
 
@@ -20,13 +20,12 @@ class DirectedCircle:
 
     Attributes:
         circle: Centre, plane and radius, to a micrometre: equal for both directions.
-        counter_clockwise: Seen from the positive side of the plane.
     """
 
     line: int
     circle: tuple[float, ...]
     counter_clockwise: bool
-    path: CirclePath
+    path: ActualCircle
 
 
 def directed_circle(moves: Moves, row: int) -> DirectedCircle:
@@ -39,7 +38,7 @@ def directed_circle(moves: Moves, row: int) -> DirectedCircle:
         line=int(moves.line[row]),
         circle=tuple(round(float(value), 3) + 0.0 for value in values),
         counter_clockwise=bool(sign * moves.sweep[row] > 0.0),
-        path=CirclePath(radius),
+        path=ActualCircle(radius),
     )
 
 

@@ -38,7 +38,7 @@ FULL_TURN_GAP = 5.0
 """A path without a gap wider than this covers the full turn [deg]."""
 
 
-class CirclePath:
+class ActualCircle:
     """An actual path around a nominal circle, in bounded memory.
 
     A short path is kept point by point, a longer one by angle: of every bin the points with the
@@ -135,7 +135,7 @@ class CircleFigures:
     mean_radius_error_um: float
 
 
-def circle_figures(*paths: CirclePath) -> CircleFigures:
+def circle_figures(*paths: ActualCircle) -> CircleFigures:
     """Evaluate one path, or the clockwise and the counter-clockwise path together.
 
     Raises:
@@ -161,7 +161,7 @@ def circle_figures(*paths: CirclePath) -> CircleFigures:
     )
 
 
-def hysteresis_um(one: CirclePath, other: CirclePath) -> float:
+def hysteresis_um(one: ActualCircle, other: ActualCircle) -> float:
     """H: greatest difference between the two directions at the same angle [µm].
 
     Either path is a chain of straight pieces over the angle. The difference of two such chains is

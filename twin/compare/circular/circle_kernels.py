@@ -73,7 +73,6 @@ def look_by_angle(bins, radius, found):
     """Evaluate every bin that has points.
 
     Args:
-        bins: The points.
         radius: Of the circle [mm].
         found: Set.
     """

@@ -7,7 +7,7 @@ from twin.compilation.compilable import inlined
 from twin.compilation.kernel import kernel
 from twin.nc.canonical import FloatArray, IntArray
 from twin.toolpath.nearest_kernels import nearest_between
-from twin.toolpath.place_kernels import derivatives, distance_at, speed_at, walk
+from twin.toolpath.place_kernels import derivatives, distance_at, moved_along, speed_at
 
 _TIE_MM = 1e-7
 """Of places equally near within this, the last up to the command is taken: a path that goes back
@@ -39,7 +39,7 @@ class Commanded(NamedTuple):
     fraction: FloatArray
 
 
-class Followed(NamedTuple):
+class NearestPlaces(NamedTuple):
     """The nearest places on the path of n points.
 
     Attributes:
@@ -98,8 +98,8 @@ def follow(path, first, point, commanded, reach_s, state, found):
             high_move, high_u = move, u
         if move != corner:
             corner, acute = move, _begins_acutely(path, move)
-        around = _way_around(path, move, u, step + error) if acute else 0.0
-        low_move, low_u = walk(path, low_move, low_u, -margin - around)
+        around = _around_corner(path, move, u, step + error) if acute else 0.0
+        low_move, low_u = moved_along(path, low_move, low_u, -margin - around)
         back_move, back_u = _place(commanded, late, first)
         if low_move < back_move or (low_move == back_move and low_u < back_u):
             low_move, low_u = back_move, back_u
@@ -109,7 +109,7 @@ def follow(path, first, point, commanded, reach_s, state, found):
         # Within the margin ahead of the command nothing is nearer than the command less the margin.
         asked = distance_at(path, now_move, now_u, x, y, z)
         if was_ahead or asked - margin < error:
-            high_move, high_u = walk(path, high_move, high_u, margin)
+            high_move, high_u = moved_along(path, high_move, high_u, margin)
             ahead, ahead_move, ahead_u = nearest_between(
                 path, (now_move, now_u), (high_move, high_u), (now_move, now_u), x, y, z, _TIE_MM
             )
@@ -143,19 +143,18 @@ def _begins_acutely(path, move):
 
 
 @kernel
-def _way_around(path, move, u, error):
+def _around_corner(path, move, u, error):
     """How far back a place may leap around the acute corner where its move begins [mm].
 
-    Both legs of a corner are equally near to a tool between them, at equal ways from its point.
+    Both legs of a corner are equally near to a tool between them, at equal distances from its point.
 
     Args:
-        path: The moves.
         move: Where the place is.
         u: Where the place is.
         error: Of the tool, with what it may change by in a sample [mm].
     """
     beyond = u * speed_at(path, move, u)
     x, y, z, _, _, _, _, _, _ = derivatives(path, move, u)
-    other_move, other_u = walk(path, move - 1, 1.0, -beyond)
+    other_move, other_u = moved_along(path, move - 1, 1.0, -beyond)
     apart = distance_at(path, other_move, other_u, x, y, z)
     return 2.0 * beyond if apart < _GAP * error else 0.0

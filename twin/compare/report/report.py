@@ -266,7 +266,7 @@ def _fixed(value: float | None, digits: int = 1) -> str:
 
 
 def _cut_figures(cut: Mapping[str, Any]) -> list[tuple[str, str]]:
-    """Name and value of every figure that was reckoned."""
+    """Name and value of every figure that was computed."""
     return [(name, text(cut[key])) for key, name, text in _CUT_FIGURES if cut.get(key) is not None]
 
 

@@ -38,10 +38,10 @@ def tool_force(
     Returns:
         Shape (n, 3) [N].
     """
-    way = stretches.way
-    length = np.maximum(np.linalg.norm(way, axis=1), 1e-30)
-    level = np.hypot(way[:, 0], way[:, 1])
-    ahead = way[:, :2] / np.maximum(level, 1e-30)[:, None]
+    travel = stretches.travel
+    length = np.maximum(np.linalg.norm(travel, axis=1), 1e-30)
+    level = np.hypot(travel[:, 0], travel[:, 1])
+    ahead = travel[:, :2] / np.maximum(level, 1e-30)[:, None]
     left = np.stack([-ahead[:, 1], ahead[:, 0]], axis=1)
     radius = 0.5 * tool.diameter
     half = 0.5 * cutting_width(stretches, tool.diameter)
@@ -54,7 +54,7 @@ def tool_force(
     cosine, sine = (weight * np.cos(angle)).sum(axis=1), (weight * np.sin(angle)).sum(axis=1)
     forwards = -sine - RADIAL_SHARE * cosine
     sideways = cosine - RADIAL_SHARE * sine
-    plunging = np.clip(-way[:, 2] / length, 0.0, 1.0)
+    plunging = np.clip(-travel[:, 2] / length, 0.0, 1.0)
     point = tool.point_angle or 180.0
     upwards = plunging * math.sin(math.radians(0.5 * point))
     pushed = forwards[:, None] * ahead + sideways[:, None] * left

@@ -14,7 +14,7 @@ from twin.units import SECONDS_PER_MINUTE
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Load:
+class SpindleLoad:
     """What each of n stretches asks of the spindle.
 
     Attributes:
@@ -28,7 +28,7 @@ class Load:
 
 def cutting_load(
     stretches: Stretches, duration: FloatArray, tool: ToolTable, material: Kienzle
-) -> Load:
+) -> SpindleLoad:
     """Mean cutting force and power.
 
     The width of cut ae is what was removed over path and depth. The engagement angle is
@@ -51,7 +51,7 @@ def cutting_load(
     chip = np.maximum(2.0 * share * per_tooth / engaged, THINNEST_CHIP_MM)
     power = 1e-3 * material.kc * chip**-material.mc * stretches.removed / seconds
     speed = 1e-3 * math.pi * tool.diameter * turns_per_second
-    return Load(power / speed, power)
+    return SpindleLoad(power / speed, power)
 
 
 def cutting_width(stretches: Stretches, diameter: float) -> FloatArray:

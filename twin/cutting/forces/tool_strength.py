@@ -22,7 +22,7 @@ times the feed per tooth that tool makers recommend."""
 
 
 class ToolStrength(NamedTuple):
-    """What a tool gives way to.
+    """What a tool deflects and breaks under.
 
     Attributes:
         compliance: Deflection of the tip per force across it [mm/N].
@@ -42,7 +42,7 @@ class ToolStrength(NamedTuple):
 
 
 def tool_strength(tool: ToolTable) -> ToolStrength:
-    """What a tool of the job gives way to.
+    """What a tool of the job deflects and breaks under.
 
     A force F at the tip bends a stepped cantilever by the sum of F (b³ - a³) / (3 E I) over its parts,
     a and b their ends' distances from the tip, I = pi d⁴/64; the greatest stress 32 F b / (pi d³) is

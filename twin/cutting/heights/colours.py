@@ -1,4 +1,4 @@
-"""Colours of the part: raw skin, machined surface, deviation."""
+"""Colours of the part: raw surface, machined surface, deviation."""
 
 import numpy as np
 import numpy.typing as npt
@@ -7,7 +7,7 @@ from twin.cutting.heights.height_map import HeightMap
 from twin.nc.canonical import FloatArray
 
 RAW_RGB = (112, 118, 126)
-"""The blank's own skin, dark as rolled steel: what was machined stands out."""
+"""The blank's own surface, dark as rolled steel: what was machined stands out."""
 MACHINED_RGB = (196, 200, 206)
 """Where a tool went."""
 UNMEASURED_RGB = (170, 170, 170)

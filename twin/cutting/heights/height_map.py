@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from twin.cutting.heights.outline import BoolArray, Outline, outline
+from twin.cutting.heights.outline import BlankOutline, BoolArray, outline
 from twin.cutting.kernels.covered_cells import Cells, Grid
 from twin.cutting.kernels.rasterize import rasterize
 from twin.cutting.kernels.wall_distance import KNOWN, WallDistance, no_walls_known, share_before
@@ -46,7 +46,7 @@ class HeightMap:
     bottom: float
     heights: FloatArray
     top: float
-    outline: Outline
+    outline: BlankOutline
     uncut: FloatArray
     behind: WallDistance
 

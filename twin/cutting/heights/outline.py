@@ -12,7 +12,7 @@ BoolArray = npt.NDArray[np.bool_]
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Outline:
+class BlankOutline:
     """A rectangle along X and Y, or a circle, perhaps with a hole in its middle.
 
     Attributes:
@@ -74,9 +74,9 @@ class Outline:
         return self.center[0] + across, self.center[1] + along
 
 
-def outline(stock: StockTable, center: tuple[float, float]) -> Outline:
+def outline(stock: StockTable, center: tuple[float, float]) -> BlankOutline:
     """The outline of a blank whose top face has its middle at ``center`` [mm]."""
     width, depth, _ = stock.extent
-    return Outline(
+    return BlankOutline(
         center, (0.5 * width, 0.5 * depth), stock.diameter is not None, 0.5 * (stock.bore or 0.0)
     )

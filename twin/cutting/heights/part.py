@@ -101,7 +101,6 @@ def write_glb(height_map: HeightMap, path: Path, colours: Colours | None = None)
     Lengths are metres and Y points up, as glTF has it.
 
     Args:
-        path: The file, complete or not at all.
         colours: One for each cell, shape (ny, nx, 3); None: raw and machined surfaces differ.
 
     Raises:

@@ -1,4 +1,4 @@
-"""A net of vertices over a height map, with a rim that lies exactly on the blank's edge.
+"""A mesh of vertices over a height map, with a rim that lies exactly on the blank's edge.
 
 Cells are cut as a whole, by their middles. A cutter that leaves less than a cell beside the blank's
 edge takes some cells of the rim and leaves others, so that a rim drawn by its cells alone would be a
@@ -34,7 +34,7 @@ class SurfaceMesh:
         y: Shape (my, mx) [mm].
         cell: The cell, counted through the map's heights, that gives each vertex its height,
             shape (my, mx); -1 for vertices that do not belong to the blank.
-        rim: Vertices on the blank's edge, counted through the net, shape (n,).
+        rim: Vertices on the blank's edge, counted through the mesh, shape (n,).
         band: Cells near the blank's edge, counted through the map's heights, shape (m,).
         patches: Which squares between four vertices belong to the blank, shape (my-1, mx-1).
         spacing: Between vertices, except towards the rim [mm].
@@ -74,7 +74,7 @@ class SurfaceMesh:
 
 
 def surface_mesh(height_map: HeightMap, step: int = 1) -> SurfaceMesh:
-    """The net of a height map.
+    """The mesh of a height map.
 
     Args:
         step: Take every ``step``-th cell.

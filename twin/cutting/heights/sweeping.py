@@ -46,7 +46,7 @@ def sweep_lines(
     stood: bool = False,
     cores: int | None = None,
 ) -> Swept:
-    """Cut the material that a tool meets on its way from point to point.
+    """Cut the material that a tool meets along its path from point to point.
 
     Two threads take every other row of the map each, and each row's share of what a line took off
     is added up in one order: the result does not depend on how many cores there are.

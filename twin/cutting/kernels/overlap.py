@@ -123,9 +123,9 @@ def box_overlap(
         overlap.depth[i] = 0.0
         if min(points[i, 2], points[i + 1, 2]) >= grid.top:
             continue
-        way = math.hypot(points[i + 1, 0] - points[i, 0], points[i + 1, 1] - points[i, 1])
-        way += around * math.hypot(turn[i + 1, 0] - turn[i, 0], turn[i + 1, 1] - turn[i, 1])
-        steps = max(1, math.ceil(way / (0.5 * cell)))
+        distance = math.hypot(points[i + 1, 0] - points[i, 0], points[i + 1, 1] - points[i, 1])
+        distance += around * math.hypot(turn[i + 1, 0] - turn[i, 0], turn[i + 1, 1] - turn[i, 1])
+        steps = max(1, math.ceil(distance / (0.5 * cell)))
         for step in range(1, steps + 1):
             t = step / steps
             x, y, z = points[i] + t * (points[i + 1] - points[i])

@@ -1,6 +1,6 @@
 """How low a tool that moves straight comes over a run of cells, several cells at a time.
 
-``tool_height.lowest_height`` has the rule for one place. Here each loop is for one kind of way and
+``tool_height.lowest_height`` has the rule for one place. Here each loop is for one kind of path and
 one shape of tool, without a branch, so that the compiler takes several cells in one instruction.
 """
 
@@ -59,7 +59,7 @@ def _level_ball(
     b: FloatArray,
     radius: float,
 ) -> None:
-    dx, dy, inverse = _way(a, b)
+    dx, dy, inverse = _seen_from_above(a, b)
     center, reach = min(a[2], b[2]) + radius, radius * radius
     for k in range(len(lowest)):
         squared = _squared_distance(place[0] + k * cell - a[0], place[1] - a[1], dx, dy, inverse)
@@ -77,7 +77,7 @@ def _level_corner(
     profile: Profile,
 ) -> None:
     radius, flat, corner, _ = profile
-    dx, dy, inverse = _way(a, b)
+    dx, dy, inverse = _seen_from_above(a, b)
     center = min(a[2], b[2]) + corner
     for k in range(len(lowest)):
         squared = _squared_distance(place[0] + k * cell - a[0], place[1] - a[1], dx, dy, inverse)
@@ -96,7 +96,7 @@ def _level_cone(
     profile: Profile,
 ) -> None:
     radius, flat, _, slope = profile
-    dx, dy, inverse = _way(a, b)
+    dx, dy, inverse = _seen_from_above(a, b)
     tip = min(a[2], b[2])
     for k in range(len(lowest)):
         squared = _squared_distance(place[0] + k * cell - a[0], place[1] - a[1], dx, dy, inverse)
@@ -105,8 +105,8 @@ def _level_cone(
 
 
 @arithmetic_kernel
-def _way(a: FloatArray, b: FloatArray) -> tuple[float, float, float]:
-    """A way seen from above, and one over its squared length; 0 where there is none."""
+def _seen_from_above(a: FloatArray, b: FloatArray) -> tuple[float, float, float]:
+    """A displacement seen from above, and one over its squared length; 0 where there is none."""
     dx, dy = b[0] - a[0], b[1] - a[1]
     squared = dx * dx + dy * dy
     return dx, dy, 1.0 / squared if squared > 0.0 else 0.0
@@ -114,7 +114,7 @@ def _way(a: FloatArray, b: FloatArray) -> tuple[float, float, float]:
 
 @arithmetic_kernel
 def _squared_distance(px: float, py: float, dx: float, dy: float, inverse: float) -> float:
-    """Squared distance of a place from a way that begins at zero, seen from above [mm²]."""
+    """Squared distance of a place from a path that begins at zero, seen from above [mm²]."""
     t = min(max((px * dx + py * dy) * inverse, 0.0), 1.0)
     qx, qy = px - t * dx, py - t * dy
     return qx * qx + qy * qy
@@ -129,7 +129,7 @@ def _inclined_ball(
     b: FloatArray,
     radius: float,
 ) -> None:
-    dx, dy, inverse = _way(a, b)
+    dx, dy, inverse = _seen_from_above(a, b)
     dz = b[2] - a[2]
     length, reach = dx * dx + dy * dy, radius * radius
     steepest = dz * math.sqrt(inverse / (length + dz * dz))
@@ -157,7 +157,7 @@ def _inclined_cone(
     profile: Profile,
 ) -> None:
     radius, flat, _, slope = profile
-    dx, dy, inverse = _way(a, b)
+    dx, dy, inverse = _seen_from_above(a, b)
     dz = b[2] - a[2]
     length, reach = dx * dx + dy * dy, radius * radius
     for k in range(len(lowest)):

@@ -48,14 +48,14 @@ def simplify(
 
 @array_kernel
 def _straight(points: FloatArray, first: int, last: int, tolerance: float, longest: float) -> bool:
-    for way in points:
-        ax, ay, az = way[first]
-        dx, dy, dz = way[last, 0] - ax, way[last, 1] - ay, way[last, 2] - az
+    for path in points:
+        ax, ay, az = path[first]
+        dx, dy, dz = path[last, 0] - ax, path[last, 1] - ay, path[last, 2] - az
         squared = dx * dx + dy * dy + dz * dz
         if squared > longest * longest:
             return False
         for between in range(first + 1, last):
-            px, py, pz = way[between, 0] - ax, way[between, 1] - ay, way[between, 2] - az
+            px, py, pz = path[between, 0] - ax, path[between, 1] - ay, path[between, 2] - az
             share = 0.0
             if squared > 0.0:
                 share = min(1.0, max(0.0, (px * dx + py * dy + pz * dz) / squared))

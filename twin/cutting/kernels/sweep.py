@@ -69,7 +69,7 @@ def sweep(
     stood: bool,
     rows: tuple[int, int],
 ) -> tuple[int, int, int, int]:
-    """Cut the material that the tool meets on its way from point to point.
+    """Cut the material that the tool meets along its path from point to point.
 
     Every cell's new height is exact for the straight sweep: the lowest height over its middle
     that the tool's profile has anywhere along the line.

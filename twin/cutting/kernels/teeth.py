@@ -27,7 +27,6 @@ class CutterForm(NamedTuple):
     Attributes:
         side_from: Height above the tip at which its side begins [mm].
         flute: Height above the tip at which its edges end [mm].
-        teeth: Number of edges, evenly spaced.
         rise: Height over which a helical edge falls back by one bin [mm]; infinite: it is straight.
         radius: Of each ring of the lower end, shape (m,) [mm]; so on.
         height: Above the tip of its lower edge [mm].

@@ -104,16 +104,16 @@ def cone_turning_point(
     """Where the height of a swept cone over a place stops falling.
 
     Outside of its flat the height rises by slope squared s / sqrt(offset + squared s²) + dz, which
-    is zero at one s, or nowhere if the way is steeper than the cone; a flat ends where it does.
+    is zero at one s, or nowhere if the path is steeper than the cone; a flat ends where it does.
 
     Args:
-        squared: Level length of the way, squared [mm²].
-        offset: Squared distance of the place from the way's line [mm²].
-        dz: How much the way rises [mm].
+        squared: Level length of the path, squared [mm²].
+        offset: Squared distance of the place from the path's line [mm²].
+        dz: How much the path rises [mm].
         flat: Radius of the cone's flat [mm].
 
     Returns:
-        From where the way is nearest to the place, as a share of it; may be infinite.
+        From where the path is nearest to the place, as a share of it; may be infinite.
     """
     rest = slope * slope * squared - dz * dz
     beyond = max(dz * dz * offset / rest if rest > 0.0 else math.inf, flat * flat - offset)

@@ -62,13 +62,13 @@ class Advance(NamedTuple):
 
     Attributes:
         tip: Where its tip is, shape (3,) [mm].
-        way: Unit vector of its way.
+        direction: Unit vector of its travel.
         per_tooth: How far it goes in the time between two teeth [mm].
         sense: 1: it turns clockwise, seen from above; -1: counter-clockwise.
     """
 
     tip: FloatArray
-    way: tuple[float, float, float]
+    direction: tuple[float, float, float]
     per_tooth: float
     sense: float
 
@@ -87,7 +87,7 @@ def tooth_forces(
 
     Args:
         tip: Tool tip, shape (3,) [mm].
-        feed: Way of the tip in the time between two teeth, shape (3,) [mm].
+        feed: Travel of the tip in the time between two teeth, shape (3,) [mm].
         sense: 1: it turns clockwise, seen from above; -1: counter-clockwise.
         scratch: Set to what was found.
 
@@ -99,8 +99,8 @@ def tooth_forces(
     scratch.figures[:] = 0.0
     if per_tooth < _LEAST:
         return False
-    way = (feed[0] / per_tooth, feed[1] / per_tooth, feed[2] / per_tooth)
-    advance = Advance(tip, way, per_tooth, sense)
+    direction = (feed[0] / per_tooth, feed[1] / per_tooth, feed[2] / per_tooth)
+    advance = Advance(tip, direction, per_tooth, sense)
     met = _meet_side(material, advance, cutter, law, scratch)
     for j in range(ANGLE_BINS):
         for k in range(3):
@@ -117,11 +117,11 @@ def _meet_side(
 ) -> bool:
     """Depth and force of the side in all directions."""
     scratch.depth[:] = 0.0
-    way = advance.way
-    if math.hypot(way[0], way[1]) <= _LEAST:
+    direction = advance.direction
+    if math.hypot(direction[0], direction[1]) <= _LEAST:
         return False
     met, edge, begun, deepest = False, 0.0, 0.0, 0.0
-    ahead = math.floor(math.atan2(way[1], way[0]) / (2.0 * math.pi) * ANGLE_BINS)
+    ahead = math.floor(math.atan2(direction[1], direction[0]) / (2.0 * math.pi) * ANGLE_BINS)
     last = 0.0
     # Behind the cutter there is nothing to meet.
     for turned in range(ahead - ANGLE_BINS // 4 - 1, ahead + ANGLE_BINS // 4 + 2):
@@ -186,7 +186,7 @@ def _edge_force(
         x, y = 0.0, 0.0
         for number in range(_SLICES):
             cosine, sine = bin_direction(first + within * (number + 0.5) / _SLICES)
-            chip = advance.way[0] * cosine + advance.way[1] * sine
+            chip = advance.direction[0] * cosine + advance.direction[1] * sine
             force = height * push(law, advance.per_tooth, max(chip, 0.0))
             x += force * (-sense * sine - law.radial * cosine)
             y += force * (sense * cosine - law.radial * sine)
@@ -223,12 +223,12 @@ def _enter_side(
     if engaged.share < 1.0:
         cosine, sine = bin_direction(j + engaged.middle)
         ends, other = bin_direction(j + engaged.begin), bin_direction(j + engaged.end)
-    chip = advance.way[0] * cosine + advance.way[1] * sine
+    chip = advance.direction[0] * cosine + advance.direction[1] * sine
     if chip <= _LEAST:
         return False
     thickest = max(
-        advance.way[0] * ends[0] + advance.way[1] * ends[1],
-        advance.way[0] * other[0] + advance.way[1] * other[1],
+        advance.direction[0] * ends[0] + advance.direction[1] * ends[1],
+        advance.direction[0] * other[0] + advance.direction[1] * other[1],
         chip,
     )
     force = push(law, advance.per_tooth, chip) * engaged.share
@@ -267,14 +267,14 @@ def _side_depth(
     material: Material, advance: Advance, cutter: CutterForm, cosine: float, sine: float
 ) -> float:
     """How deep the side is in the material in a direction [mm]."""
-    tip, way, radius = advance.tip, advance.way, cutter.profile.radius
+    tip, direction, radius = advance.tip, advance.direction, cutter.profile.radius
     clear = _CLEAR * material.grid.cell
-    level = math.hypot(way[0], way[1])
-    if way[0] * cosine + way[1] * sine <= 0.0:
+    level = math.hypot(direction[0], direction[1])
+    if direction[0] * cosine + direction[1] * sine <= 0.0:
         return 0.0
     x, y = tip[0] + radius * cosine, tip[1] + radius * sine
     # The walls beside the cutter are its own: they are looked at where it has not come to yet.
-    x_before, y_before = x + clear * way[0] / level, y + clear * way[1] / level
+    x_before, y_before = x + clear * direction[0] / level, y + clear * direction[1] / level
     lowest = max(tip[2] + cutter.side_from, material.grid.bottom)
     place = x + _AHEAD * (x_before - x), y + _AHEAD * (y_before - y)
     height = height_by_wall(material, x_before, y_before, place, lowest)
@@ -293,11 +293,11 @@ def _meet_end(
     scratch: ToothScratch,
 ) -> bool:
     """Force of the rings of the lower end in one direction."""
-    met, way, sense = False, advance.way, advance.sense
+    met, direction, sense = False, advance.direction, advance.sense
     cosine, sine = _COSINE[j], _SINE[j]
-    outwards = way[0] * cosine + way[1] * sine
+    outwards = direction[0] * cosine + direction[1] * sine
     for i in range(len(cutter.radius)):
-        chip = outwards * cutter.outwards[i] - way[2] * cutter.downwards[i]
+        chip = outwards * cutter.outwards[i] - direction[2] * cutter.downwards[i]
         if chip <= _LEAST:
             continue
         share = _ring_share(material, advance, cutter, i, j, chip)
@@ -326,27 +326,30 @@ def _ring_share(
     chip: float,
 ) -> float:
     """How much of a ring is in the material in one direction, 0 to 1."""
-    tip, way, grid = advance.tip, advance.way, material.grid
+    tip, direction, grid = advance.tip, advance.direction, material.grid
     clear = grid.cell * min(_CLEAR / chip, _FARTHEST)
     row = cell_number(
-        tip[1] + cutter.radius[i] * _SINE[j] + clear * way[1], grid.origin[1], grid.cell
+        tip[1] + cutter.radius[i] * _SINE[j] + clear * direction[1], grid.origin[1], grid.cell
     )
     column = cell_number(
-        tip[0] + cutter.radius[i] * _COSINE[j] + clear * way[0], grid.origin[0], grid.cell
+        tip[0] + cutter.radius[i] * _COSINE[j] + clear * direction[0], grid.origin[0], grid.cell
     )
     top = height_of(material, row, column) - tip[2]
     low, span = cutter.height[i], cutter.span[i]
-    if top <= low + min(0.0, clear * way[2]):
+    if top <= low + min(0.0, clear * direction[2]):
         return 0.0
     x = grid.origin[0] + column * grid.cell - tip[0]
     y = grid.origin[1] + row * grid.cell - tip[1]
     radius, flat, corner, slope = cutter.profile
-    level = math.hypot(way[0], way[1])
-    if level > abs(way[2]):
+    level = math.hypot(direction[0], direction[1])
+    if level > abs(direction[2]):
         # A wall that the cutter has left, or will pass at the height that it has, is not cut.
-        aside, ahead = abs(x * way[1] - y * way[0]) / level, (x * way[0] + y * way[1]) / level
+        aside, ahead = (
+            abs(x * direction[1] - y * direction[0]) / level,
+            (x * direction[0] + y * direction[1]) / level,
+        )
         lowest = profile_height(aside, radius, flat, corner, slope)
-        if top <= lowest + min(0.0, way[2]) / level * max(0.0, ahead) + _LEAST:
+        if top <= lowest + min(0.0, direction[2]) / level * max(0.0, ahead) + _LEAST:
             return 0.0
     if abs(top - profile_height(math.hypot(x, y), radius, flat, corner, slope)) <= _LEAST:
         # The cutter stands on what it has cut itself, and goes on into it.

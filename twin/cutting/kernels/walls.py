@@ -34,7 +34,7 @@ _EQUAL = 1e-9
 
 
 class _Trace(enum.IntEnum):
-    """Where a tool was and which way it came: columns of ``no_trace``."""
+    """Where a tool was and from which direction it came: columns of ``no_trace``."""
 
     X = 0
     Y = 1
@@ -75,7 +75,7 @@ def no_trace() -> FloatArray:
 
 @kernel
 def lose_trace(trace: FloatArray) -> None:
-    """Forget where a tool was: it leaves no wall on its way to where it is next."""
+    """Forget where a tool was: it leaves no wall on its path to where it is next."""
     trace[_Trace.KNOWN] = 0.0
 
 
@@ -83,11 +83,11 @@ def lose_trace(trace: FloatArray) -> None:
 def leave_walls(
     material: Material, trace: FloatArray, tip: FloatArray, radius: float, side_from: float
 ) -> None:
-    """Keep the walls that a tool leaves on its way.
+    """Keep the walls that a tool leaves along its path.
 
     Args:
         material: It has been cut up to ``tip``.
-        trace: Where the tool was and which way it came, carried from call to call.
+        trace: Where the tool was and from which direction it came, carried from call to call.
         tip: Where its tip is, shape (3,) [mm].
         radius: Of the tool [mm].
         side_from: Height above the tip at which its side begins [mm].
@@ -150,7 +150,7 @@ def _leave_sides(material: Material, begin: FloatArray, end: FloatArray, tool: _
 def _leave_turn(
     material: Material, trace: FloatArray, ahead_x: float, ahead_y: float, tool: _Tool
 ) -> None:
-    """The wall around a place at which a tool turns, begins (no way before) or ends (none ahead)."""
+    """The wall around a place at which a tool turns, begins (no path before) or ends (none ahead)."""
     came_x, came_y = trace[_Trace.AHEAD_X], trace[_Trace.AHEAD_Y]
     came, goes = came_x != 0.0 or came_y != 0.0, ahead_x != 0.0 or ahead_y != 0.0
     quarter = 0.5 * math.pi

@@ -30,7 +30,7 @@ class Inspection:
 
     deviation_mm: FloatArray
     """Distance of the part's surface from the nominal one over each cell, shape (ny, nx) [mm]; over a
-    cell beside a wall the greater of those of wall and top. NaN on the blank's own skin, and where the
+    cell beside a wall the greater of those of wall and top. NaN on the blank's own surface, and where the
     place of a wall is not known and no cell differs."""
     bound_mm: float
     """How much farther the part's surface may be from the nominal one than was measured [mm]: a cell,

@@ -20,7 +20,7 @@ from twin.nc.canonical import BoolArray, FloatArray, IntArray
 EXACT_MM = 2e-3
 """What the places of two plane surfaces are off by at most: bends of the sweep, samples that count as on a line [mm]."""
 RAW_MM = 5e-3
-"""A surface that is so near to the blank's own skin is that skin [mm]."""
+"""A surface that is so near to the blank's own is that [mm]."""
 NEAR_CELLS = 4
 """Around a point, in which most surfaces lie."""
 FAR_CELLS = 64
@@ -132,7 +132,7 @@ def _gaps(stock: TriDexel, points: FloatArray, farthest: int) -> Gaps:
 
 
 def deviations(nominal: TriDexel, found: Surface) -> FloatArray:
-    """How far the vertices of a part's surface stand out of the nominal one, shape (n,) [mm]; NaN on the blank's own skin."""
+    """How far the vertices of a part's surface stand out of the nominal one, shape (n,) [mm]; NaN on the blank's own surface."""
     result, cut = np.full(len(found.points), np.nan), tools(found.facet) != OWN
     result[cut] = gaps(nominal, found.points[cut]).away
     return result
@@ -142,7 +142,7 @@ def inspect_stock(part: TriDexel, nominal: TriDexel, tolerance_um: float) -> Ins
     """Measure a part against its nominal shape.
 
     Where a tool went the part's surface is held against the nominal one, and the nominal surface against the part's where
-    that is not the blank's own skin. Where two surfaces are not parallel, their distance is known to how far the nearest
+    that is not the blank's own surface. Where two surfaces are not parallel, their distance is known to how far the nearest
     crossing lies beside a point, times the sine of the angle between them; the greatest of these is the bound.
 
     Args:

@@ -12,7 +12,7 @@ from twin.cutting.tridexel.solids.moving_solid import Poses
 from twin.nc.canonical import FloatArray, IntArray
 
 STEP_CELLS = 2.0
-"""Between the places on its way at which a box is held against the stock, at its corners [cells]."""
+"""Between the places on its path at which a box is held against the stock, at its corners [cells]."""
 
 
 _LEVEL = 1e-12
@@ -37,7 +37,7 @@ def boxes_met(stock: TriDexel, poses: Poses, along_x: FloatArray, box: Box) -> F
     """How deep a box is in the material during each of n steps, shape (n,) [mm]; 0: nowhere.
 
     As for ``engagement.met`` the longest line of material within it is taken in each direction, and the shortest of these.
-    It is looked at in places on its way that lie no farther from each other than ``STEP_CELLS``.
+    It is looked at in places on its path that lie no farther from each other than ``STEP_CELLS``.
 
     Args:
         along_x: Direction of machine X on the tool, seen from the part, shape (n + 1, 3).
@@ -45,13 +45,15 @@ def boxes_met(stock: TriDexel, poses: Poses, along_x: FloatArray, box: Box) -> F
     depth = np.zeros(len(poses.tip) - 1)
     if len(depth):
         low, high = np.array(box.low), np.array(box.high)
-        way = _corner_way(poses, along_x, low, high)
-        steps = np.maximum(1, np.ceil(way / (STEP_CELLS * stock.cell))).astype(np.int64)
+        travel = _corner_travel(poses, along_x, low, high)
+        steps = np.maximum(1, np.ceil(travel / (STEP_CELLS * stock.cell))).astype(np.int64)
         hold_box(stock.dexels, stock.lattice, poses, along_x, np.stack([low, high]), steps, depth)
     return depth
 
 
-def _corner_way(poses: Poses, along_x: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
+def _corner_travel(
+    poses: Poses, along_x: FloatArray, low: FloatArray, high: FloatArray
+) -> FloatArray:
     """How far a corner of a box goes in each step at most, shape (n,) [mm]."""
     farthest = float(np.linalg.norm(np.maximum(np.abs(low), np.abs(high))))
     turned = np.linalg.norm(np.diff(poses.axis, axis=0), axis=1)
@@ -69,7 +71,7 @@ def hold_box(
     steps: IntArray,
     depth: FloatArray,
 ) -> None:
-    """Hold a box on its way against the lines of a stock.
+    """Hold a moving box against the lines of a stock.
 
     Args:
         poses: Ends of n steps.

@@ -1,4 +1,4 @@
-"""Bring a tool along its way through a tri-dexel stock: what each step took off, and what it met."""
+"""Move a tool along its path through a tri-dexel stock: what each step took off, and what it met."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -37,11 +37,11 @@ def in_short_steps(poses: Poses, solids: Sequence[Solid]) -> tuple[Poses, IntArr
     """
     tip, axis = poses
     longest = longest_step(solids)
-    way = np.zeros(len(tip) - 1)
+    travel = np.zeros(len(tip) - 1)
     for height in (solids[0].low, max(solid.high for solid in solids)):
-        way = np.maximum(way, np.linalg.norm(np.diff(tip + height * axis, axis=0), axis=1))
+        travel = np.maximum(travel, np.linalg.norm(np.diff(tip + height * axis, axis=0), axis=1))
     turn = np.linalg.norm(np.diff(axis, axis=0), axis=1) / np.deg2rad(STEP_DEGREES)
-    parts = np.maximum(np.ceil(np.maximum(way / longest, turn)), 1.0).astype(np.int64)
+    parts = np.maximum(np.ceil(np.maximum(travel / longest, turn)), 1.0).astype(np.int64)
     if (parts == 1).all():
         return poses, np.arange(len(parts))
     step = np.repeat(np.arange(len(parts)), parts)

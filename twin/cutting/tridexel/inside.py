@@ -56,7 +56,7 @@ def inside(dexels: Dexels, lattice: Lattice, cutter: Standing, edge: EdgePoint) 
     Of the twelve lines around the point the crossing that is nearest to it says on which side of the surface it is, by
     the plane of its normal. At an edge of the part a second face has its say: of two planes that
     are convex to each other the point must be below both, of two that are concave below one. Where a cutter's end
-    bends within two cells, at the point of a drill, what it has just left itself says nothing if it looks another way.
+    bends within two cells, at the point of a drill, what it has just left itself says nothing if it faces elsewhere.
 
     Args:
         edge: The point, and the normal of the edge there.

@@ -92,9 +92,9 @@ class TriDexelMaterial:
         number = min(max(tool.number, 1), MOST_TOOLS)
         found = cut(self.stock, poses, cutting_edge(edge, tool.flute), number)
         self.changed = self.changed or bool(found.touched.any())
-        way = np.diff(poses.tip, axis=0)
+        travel = np.diff(poses.tip, axis=0)
         axis = poses.axis[1:]
-        left = np.cross(axis, way)
+        left = np.cross(axis, travel)
         length = np.linalg.norm(left, axis=1)
         middle = found.middle - 0.5 * (poses.tip[1:] + poses.tip[:-1])
         aside = (middle * left).sum(axis=1) / np.where(length > 0.0, length, 1.0)

@@ -56,7 +56,7 @@ _LEVEL = 1e-9
 
 
 class Step(NamedTuple):
-    """A step of the tool: its poses, and which columns of the tally it writes."""
+    """A step of the tool: its poses, and which columns of the result it writes."""
 
     number: int
     tool: int
@@ -114,11 +114,11 @@ def _bend(poses: Poses, solid: Solid, number: int) -> float:
     a, b = number, number + 1
     longest = 0.0
     for height in (solid.low, solid.high):
-        way = 0.0
+        squared = 0.0
         for i in range(3):
             here = poses.tip[a, i] + height * poses.axis[a, i]
-            way += (poses.tip[b, i] + height * poses.axis[b, i] - here) ** 2
-        longest = max(longest, way)
+            squared += (poses.tip[b, i] + height * poses.axis[b, i] - here) ** 2
+        longest = max(longest, squared)
     return longest / (8.0 * greatest_radius(solid))
 
 
@@ -230,7 +230,7 @@ def _ahead(
 ) -> tuple[float, float]:
     """The part of a row in which a ball takes off more than it does at the beginning of a straight path.
 
-    A line whose nearest place to the way, as a share of it, lies so far before its beginning that both
+    A line whose nearest place to the path, as a share of it, lies so far before its beginning that both
     ends within the ball (``within_swept_ball``) are those at the beginning, is left out.
     """
     dx, dy, dz = b[0] - a[0], b[1] - a[1], b[2] - a[2]

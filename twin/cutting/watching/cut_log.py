@@ -35,7 +35,7 @@ class BlockCut:
     Attributes:
         path_mm: Path of the tool in the part, cutting.
         width_mm: Greatest width of cut of a stretch, each stretch's mean.
-        force_n: Greatest mean cutting force; None where it is not reckoned.
+        force_n: Greatest mean cutting force; None where it is not computed.
     """
 
     removed_mm3: float = 0.0
@@ -157,7 +157,7 @@ class CutLog:
         Args:
             stretches: n stretches.
             width: Their widths of cut, shape (n,) [mm].
-            force: Their cutting forces, shape (n,) [N]; None where it is not reckoned.
+            force: Their cutting forces, shape (n,) [N]; None where it is not computed.
         """
         cutting = stretches.removed > 0
         if not cutting.any():

@@ -60,13 +60,13 @@ class CutWatch:
         cuts = cuts & ~stretches.rapid
         if not cuts.any():
             return
-        way = stretches.way
-        advance = np.hypot(way[:, 0], way[:, 1])
+        travel = stretches.travel
+        advance = np.hypot(travel[:, 0], travel[:, 1])
         if tool.kind == "drill":
             self._watch_drill(stretches, cuts, advance, tool)
         else:
             whole = np.pi * (0.5 * tool.diameter) ** 2
-            down = -way[:, 2]
+            down = -travel[:, 2]
             full = stretches.removed > FULL_SHARE * whole * np.maximum(down, 1e-9)
             self._note("plunge", stretches, cuts & full & (down > STEEP * advance), tool)
 
@@ -85,7 +85,7 @@ class CutWatch:
             self.slips[CutSlip(what, int(line), tool.number)] = None
 
     def _remember(self, time: FloatArray, path: FloatArray, cuts: np.ndarray) -> None:
-        """Keep this chunk and as much of the way before it as tells whether the tool is in the cut."""
+        """Keep this chunk and as much of the path before it as tells whether the tool is in the cut."""
         # By where each stretch ends: the last one may be longer than that.
         tail = np.cumsum(self._path[::-1])[::-1] - self._path <= 2.0 * ENGAGED_MM
         self._time = np.concatenate([self._time[tail], time])

@@ -48,7 +48,7 @@ class Stretches:
         rapid: Which belong to rapids, shape (n,).
         removed: Material taken off, shape (n,) [mm³].
         depth: Greatest depth of it, shape (n,) [mm].
-        aside: How far left of the way it lay in the mean, shape (n,) [mm].
+        aside: How far left of the path it lay in the mean, shape (n,) [mm].
         axis: Direction from the tool's tip to the spindle at the end of each, shape (n, 3); None: +Z.
     """
 
@@ -62,10 +62,10 @@ class Stretches:
     axis: FloatArray | None = None
 
     @property
-    def way(self) -> FloatArray:
+    def travel(self) -> FloatArray:
         """From begin to end of each, in the tool's own frame, whose Z is its axis, shape (n, 3) [mm]."""
-        way = np.diff(self.points, axis=0)
-        return way if self.axis is None else in_tool_frame(way, self.axis)
+        travel = np.diff(self.points, axis=0)
+        return travel if self.axis is None else in_tool_frame(travel, self.axis)
 
     def lowest(self, index: int) -> float:
         """The lower of both places of the tip of one, along the tool's axis [mm]."""
@@ -179,7 +179,7 @@ class StockWatch:
 
         Returns:
             Number of the run that each stretch belongs to, from 1; 0 where it may cut, and on the
-            first way of a run, shape (n,).
+            first displacement of a run, shape (n,).
         """
         if not len(forbidden):
             return np.zeros(0, np.int64)
@@ -188,14 +188,14 @@ class StockWatch:
         latest = np.maximum.accumulate(np.where(begins, np.arange(len(forbidden)), -1))
         start = np.where(latest[:, None] < 0, self._start, points[latest])
         tail = np.where(latest < 0, self._tail, TAIL_MM + lag[latest])
-        way = points[1:] - start
+        travel = points[1:] - start
         turning = np.zeros(len(forbidden))
         if axis is not None:
-            way = in_tool_frame(way, axis[1:])
+            travel = in_tool_frame(travel, axis[1:])
             before = np.where(latest[:, None] < 0, self._start_axis, axis[latest])
             self._start_axis = before[-1].copy()
             turning = reach * np.linalg.norm(axis[1:] - before, axis=1)
-        advance = np.hypot(way[:, 0], way[:, 1]) + np.maximum(0.0, -way[:, 2]) + turning
+        advance = np.hypot(travel[:, 0], travel[:, 1]) + np.maximum(0.0, -travel[:, 2]) + turning
         self._runs, self._running = int(run[-1]), bool(forbidden[-1])
         self._start, self._tail = start[-1].copy(), float(tail[-1])
         return np.where(forbidden & (advance > tail), run, 0)

@@ -14,8 +14,8 @@ from twin.job.job_file import ToolTable
 from twin.nc.canonical import BoolArray
 
 BRUSH_MM = 0.03
-"""How far a cutter may reach into a wall beside it without being said to meet it [mm]: its way back
-along a wall is off the way there by what the force bent, and cells of the wall go."""
+"""How far a cutter may reach into a wall beside it without being said to meet it [mm]: its path back
+along a wall is off the path there by what the force bent, and cells of the wall go."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -84,8 +84,8 @@ class StockContact:
         if suspect.any() and points.tip[:, 2].min() < material.top:
             overlap = Overlap(*np.zeros((2, count)))
             for run in runs_of(suspect):
-                way = points.tip[run.start : run.stop + 1]
-                round_overlap(stood, way, self._edge, 0.0, overlap.part(run))
+                tips = points.tip[run.start : run.stop + 1]
+                round_overlap(stood, tips, self._edge, 0.0, overlap.part(run))
             found[EDGE] = overlap
         for name, overlap in found.items():
             overlap.depth[overlap.reach <= self._most[name]] = 0.0

@@ -67,11 +67,7 @@ class CircularTest:
     quadrant_names: tuple[str, str, str, str]
 
     def as_contract(self, plot: str | None = None) -> dict[str, object]:
-        """The figures as ``twin machine circle --format json`` prints them.
-
-        Args:
-            plot: Name of the picture, where one was written.
-        """
+        """The figures as ``twin machine circle --format json`` prints them."""
         largest, smallest = self.radial_deviation_um
         return {
             "machine": self.machine,

@@ -24,12 +24,12 @@ def set_measured_masses(spec: mujoco.MjSpec, machine: Machine) -> None:
     for name in sorted(measured, key=lambda name: -_depth(spec, machine.axis(name).joint)):
         axis = machine.axis(name)
         joint = spec.joint(axis.joint)
-        felt = _felt(spec, axis.joint)
+        apparent = _apparent_inertia(spec, axis.joint)
         armature = float(np.ravel(joint.armature)[0])
         mass, inertia = float(joint.parent.mass), np.array(joint.parent.inertia)
         _scale(joint, mass, inertia, armature, factor=0.5)
-        own = 2.0 * (felt - _felt(spec, axis.joint))
-        carried = felt - own
+        own = 2.0 * (apparent - _apparent_inertia(spec, axis.joint))
+        carried = apparent - own
         if axis.mass <= carried:
             raise ConfigError(
                 f"{machine.path}: axes.{name}.mass = {axis.mass:g} is less than the {carried:.3g} "
@@ -54,7 +54,7 @@ def _depth(spec: mujoco.MjSpec, joint: str) -> int:
     return depth
 
 
-def _felt(spec: mujoco.MjSpec, joint: str) -> float:
+def _apparent_inertia(spec: mujoco.MjSpec, joint: str) -> float:
     """Mass or inertia at a joint [kg or kg m²]."""
     model = spec.compile()
     data = mujoco.MjData(model)

@@ -52,7 +52,7 @@ def convex_parts(path: Path) -> tuple[FloatArray, ...]:
         if halves is None or len(done) + len(waiting) + 2 > MOST_PARTS:
             x, y, z = place
             raise ConfigError(
-                f"{path}: is hollow at {x:.2f} {y:.2f} {z:.2f} in a way that {MOST_PARTS} convex parts do not "
+                f"{path}: is hollow at {x:.2f} {y:.2f} {z:.2f} and {MOST_PARTS} convex parts do not "
                 f"follow within {STANDS_OUT:g} mm: leave out bores and curved hollows, or make it of several files"
             )
         waiting += halves

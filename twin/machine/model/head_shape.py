@@ -109,7 +109,6 @@ class _View(NamedTuple):
     """A compiled model with all axes at zero, seen along the machine's axes.
 
     Attributes:
-        model: The model.
         data: Where all of it is.
         frame: Directions of machine X, Y and Z in the world as rows, shape (3, 3).
     """

@@ -44,7 +44,6 @@ def supply(spec: mujoco.MjSpec, machine: Machine) -> list[str]:
 
     Args:
         spec: The model with the sites of spindle and table; it is changed.
-        machine: The machine file.
 
     Returns:
         What was supplied, in words.

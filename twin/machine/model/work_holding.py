@@ -41,6 +41,6 @@ def supports(size: tuple[float, float, float], gap: float, *, box: bool) -> tupl
         return (Support(POST, (x, x, z), 0.0, round=True),)
     aside = size[1] * (0.5 - INSET - _WIDTH)
     return tuple(
-        Support(name, (x, y, z), way * aside, round=False)
-        for name, way in zip(PARALLELS, (-1.0, 1.0), strict=True)
+        Support(name, (x, y, z), side * aside, round=False)
+        for name, side in zip(PARALLELS, (-1.0, 1.0), strict=True)
     )

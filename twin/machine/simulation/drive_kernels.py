@@ -61,7 +61,7 @@ class Drives(NamedTuple):
     integral: IntArray
 
 
-class Points(NamedTuple):
+class DriveSetpoints(NamedTuple):
     """Setpoints, as far as drives receive them: shape (n, k) each."""
 
     position: FloatArray
@@ -70,7 +70,7 @@ class Points(NamedTuple):
 
 
 @kernel
-def all_finite(points: Points) -> bool:
+def all_finite(points: DriveSetpoints) -> bool:
     """Whether all of them are finite numbers."""
     for row in range(points.position.shape[0]):
         for axis in range(points.position.shape[1]):
@@ -82,8 +82,10 @@ def all_finite(points: Points) -> bool:
 
 
 @array_kernel
-def hold_controls(drives: Drives, past: Points, points: Points, width: int) -> FloatArray:
-    """Controls to hold on the way to each setpoint.
+def hold_controls(
+    drives: Drives, past: DriveSetpoints, points: DriveSetpoints, width: int
+) -> FloatArray:
+    """Controls to hold during the step to each setpoint.
 
     Args:
         past: Setpoints that went before, of which the last counts.
@@ -152,7 +154,7 @@ def hold_push(drives: Drives, load: FloatArray, pushed: FloatArray) -> None:
 
 @array_kernel
 def read_states(
-    drives: Drives, points: Points, states: FloatArray
+    drives: Drives, points: DriveSetpoints, states: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """The axes in states of the model.
 

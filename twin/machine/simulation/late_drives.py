@@ -8,7 +8,7 @@ import numpy as np
 from twin.machine.description.config import Machine
 from twin.machine.model.drive_actuators import LagActuator, lag_actuator
 from twin.machine.model.drives import Drive, lag_name
-from twin.machine.simulation.drive_kernels import Drives, Points, read_states
+from twin.machine.simulation.drive_kernels import Drives, DriveSetpoints, read_states
 from twin.machine.simulation.sampling import held_acceleration, held_velocity, polyline_node
 from twin.machine.simulation.setpoint_filter import SetpointFilter
 from twin.nc.canonical import FloatArray
@@ -17,9 +17,9 @@ from twin.nc.canonical import FloatArray
 class Told(NamedTuple):
     """What drives see of setpoints, n + 1 rows: the last of what went before, and n that follow."""
 
-    points: Points
+    points: DriveSetpoints
     """Behind the filter of the command."""
-    late: Points
+    late: DriveSetpoints
     """Behind half of the dead time as well."""
 
 
@@ -67,13 +67,13 @@ class LateDrives:
             for name, lag in zip(_lag_names(machine, index, loop), loop.lags, strict=True)
         ]
 
-    def follow(self, past: Points, points: Points) -> Told:
+    def follow(self, past: DriveSetpoints, points: DriveSetpoints) -> Told:
         """Setpoints as the drives see them.
 
         Args:
             past: What was followed last, or is at the first.
         """
-        rows = Points(
+        rows = DriveSetpoints(
             *(
                 np.concatenate([before[-1:], after])
                 for before, after in zip(past, points, strict=True)
@@ -126,7 +126,7 @@ class LateDrives:
             force[:, lag.axis] -= lag.gain * lagging
         return force
 
-    def _held(self, points: Points) -> tuple[FloatArray, FloatArray]:
+    def _held(self, points: DriveSetpoints) -> tuple[FloatArray, FloatArray]:
         period = self._drives.period
         rows: Any = points  # the rules of sampling hold for numbers and for columns of them
         node: Any = polyline_node(rows.position, rows.acceleration, period)
@@ -153,12 +153,14 @@ class LateDrives:
         """Position, velocity and force of the axes in states.
 
         Args:
-            told: What the drives saw on the way there; the last rows of it belong to the states.
+            told: What the drives saw until then; the last rows of it belong to the states.
             states: Shape (n, width).
             first_act: Column of the first actuator's state.
         """
         drives = self._drives
-        seen = Told(*(Points(*(column[-len(states) :] for column in part)) for part in told))
+        seen = Told(
+            *(DriveSetpoints(*(column[-len(states) :] for column in part)) for part in told)
+        )
         unlimited = drives._replace(limit=np.full(len(drives.scale), np.inf))
         position, velocity, force = read_states(unlimited, seen.points, states)
         speed = states[:, drives.qvel] / drives.scale

@@ -259,16 +259,16 @@ class LiveMachine:
         last = self.setpoint
         limit = np.array([self.machine.axis(name).acceleration for name in self.machine.axes.names])
         time = self.machine.file.servo_period_s * np.arange(1, ticks + 1)[:, None]
-        speed, way = np.abs(last.velocity), np.sign(last.velocity)
+        speed, sense = np.abs(last.velocity), np.sign(last.velocity)
         slowing = np.minimum(time, speed / limit)
         return Setpoints(
             last.time + time[:, 0],
             np.repeat(last.line, ticks),
             np.repeat(last.move, ticks),
             np.repeat(last.fraction, ticks),
-            last.position + way * (speed - limit * slowing / 2.0) * slowing,
-            way * (speed - limit * slowing),
-            np.where(time < speed / limit, -way * limit, 0.0),
+            last.position + sense * (speed - limit * slowing / 2.0) * slowing,
+            sense * (speed - limit * slowing),
+            np.where(time < speed / limit, -sense * limit, 0.0),
         )
 
 

@@ -52,7 +52,7 @@ class Process(Protocol):
         Args:
             physics: The machine, in the state that it has come to.
             setpoints: n setpoints.
-            controls: What the drives are commanded on the way to each, shape (n, nu).
+            controls: What the drives are commanded during the step to each, shape (n, nu).
             states: Set to the states there, shape (n, width).
 
         Returns:

@@ -14,7 +14,7 @@ from twin.machine.model.timers import switch_off_timers
 from twin.machine.model.transmission import give_stiffness
 from twin.machine.simulation.drive_columns import actuators, drive_columns
 from twin.machine.simulation.drive_kernels import (
-    Points,
+    DriveSetpoints,
     all_finite,
     hold_controls,
     hold_pushes,
@@ -129,8 +129,8 @@ class Servo:
             if self.process is not None:
                 self.process.begin(chunk.position[0])
                 loads = [self.process.at_rest(1)]
-            past = Points(*(column[:1] for column in points))
-            ahead = Points(*(column[1:] for column in points))
+            past = DriveSetpoints(*(column[:1] for column in points))
+            ahead = DriveSetpoints(*(column[1:] for column in points))
             load = None if load is None else load[1:]
         else:
             past = _points(self._chunk)
@@ -168,7 +168,7 @@ class Servo:
         self._warmstart = self._solver[None].copy()
 
     def _read(
-        self, points: Points, told: Told | None, states: FloatArray
+        self, points: DriveSetpoints, told: Told | None, states: FloatArray
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Position, velocity and force of the axes in states."""
         if self._late is None or told is None:
@@ -331,8 +331,8 @@ class Servo:
 
     def _roll(
         self,
-        past: Points,
-        points: Points,
+        past: DriveSetpoints,
+        points: DriveSetpoints,
         told: Told | None,
         load: FloatArray | None,
         setpoints: Setpoints,
@@ -378,11 +378,15 @@ class Servo:
             )  # fmt: skip
         return rolled[0] if steps == 1 else rolled[0][steps - 1 :: steps]
 
-    def _controls(self, past: Points, points: Points, told: Told | None) -> FloatArray:
-        """Controls to hold on the way to each setpoint, shape (n, nu), SI."""
+    def _controls(
+        self, past: DriveSetpoints, points: DriveSetpoints, told: Told | None
+    ) -> FloatArray:
+        """Controls to hold during the step to each setpoint, shape (n, nu), SI."""
         if self._late is None or told is None:
             return hold_controls(self._drives, past, points, self.model.nu)
-        before, after = (Points(*(column[part] for column in told.points)) for part in _PARTS)
+        before, after = (
+            DriveSetpoints(*(column[part] for column in told.points)) for part in _PARTS
+        )
         controls = hold_controls(self._drives, before, after, self.model.nu)
         controls[:, self._drives.force_input] += self._late.held_force(told)
         return controls
@@ -394,6 +398,6 @@ class Servo:
         raise SimulationError(f"MuJoCo warned during the simulation: {names}")
 
 
-def _points(setpoints: Setpoints) -> Points:
+def _points(setpoints: Setpoints) -> DriveSetpoints:
     """What the drives receive of setpoints."""
-    return Points(setpoints.position, setpoints.velocity, setpoints.acceleration)
+    return DriveSetpoints(setpoints.position, setpoints.velocity, setpoints.acceleration)

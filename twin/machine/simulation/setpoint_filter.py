@@ -12,7 +12,7 @@ leaves a fraction (W h)⁴/720 of a sine's trail.
 import numpy as np
 
 from twin.compilation.kernel import array_kernel
-from twin.machine.simulation.drive_kernels import Points
+from twin.machine.simulation.drive_kernels import DriveSetpoints
 from twin.nc.canonical import FloatArray
 
 
@@ -51,7 +51,7 @@ def relax(start, keep, goal):
     Args:
         start: Before the first row, shape (m,).
         keep: Share of the distance that is left after a step, shape (m,).
-        goal: Where they tend to on the way to each row, shape (n, m).
+        goal: Where they tend to during the step to each row, shape (n, m).
 
     Returns:
         Shape (n, m).
@@ -94,7 +94,7 @@ class SetpointFilter:
         """Whether any axis has a lag."""
         return len(self._time) > 0
 
-    def follow(self, points: Points) -> Points:
+    def follow(self, points: DriveSetpoints) -> DriveSetpoints:
         """Setpoints behind the lags.
 
         Args:
@@ -109,7 +109,7 @@ class SetpointFilter:
         self.go_to(-1)
         rate = self._trails / self._time
         behind = (position - self._trails, rate, (velocity - rate) / self._time)
-        filtered = Points(*(column.copy() for column in points))
+        filtered = DriveSetpoints(*(column.copy() for column in points))
         for column, values in zip(filtered, behind, strict=True):
             column[:, self._lags] = values
         return filtered

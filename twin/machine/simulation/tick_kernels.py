@@ -1,6 +1,6 @@
 """Few servo periods at once, with a single call from Python: what a control asks for that reacts to each.
 
-The rules are those of ``drive_kernels``; what is saved is the way in and out of compiled code, which for
+The rules are those of ``drive_kernels``; what is saved are the calls into compiled code, which for
 every array that is handed over costs a good part of a step.
 """
 
@@ -11,7 +11,7 @@ import numpy as np
 from twin.compilation.kernel import array_kernel
 from twin.machine.simulation.drive_kernels import (
     Drives,
-    Points,
+    DriveSetpoints,
     all_finite,
     hold_controls,
     hold_pushes,
@@ -44,7 +44,7 @@ class Loop(NamedTuple):
     pushed: FloatArray
 
 
-class Followed(NamedTuple):
+class SteppedSamples(NamedTuple):
     """What came of n setpoints; no rows where one of them is not finite.
 
     Attributes:
@@ -77,25 +77,25 @@ def loop_of(
 
 @array_kernel
 def follow_setpoints(
-    loop: Loop, state: FloatArray, past: Points, points: Points, load: FloatArray
-) -> Followed:
+    loop: Loop, state: FloatArray, past: DriveSetpoints, points: DriveSetpoints, load: FloatArray
+) -> SteppedSamples:
     """Step from setpoint to setpoint, to the last bit as ``mujoco.rollout`` does.
 
     Args:
         state: Where it has come to, shape (width,).
         past: Setpoints that went before, of which the last counts.
         points: n setpoints.
-        load: What pushes the axes from outside on the way to each, shape (n, k) [N or N m].
+        load: What pushes the axes from outside during the step to each, shape (n, k) [N or N m].
     """
     drives = _drives(loop)
     if not all_finite(points):
         none = np.zeros((0, len(drives.scale)))
-        return Followed(np.zeros((0, len(state))), none, none, none)
+        return SteppedSamples(np.zeros((0, len(state))), none, none, none)
     controls = hold_controls(drives, past, points, len(loop.control))
     pushes = hold_pushes(drives, load, len(loop.pushed))
     states = step_held(loop, state, controls, pushes)
     position, velocity, force = read_states(drives, points, states)
-    return Followed(states, position, velocity, force)
+    return SteppedSamples(states, position, velocity, force)
 
 
 @array_kernel

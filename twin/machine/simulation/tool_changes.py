@@ -24,7 +24,6 @@ class ToolClearances:
 
         Args:
             model: The machine with a tool in its spindle.
-            tools: Which tool is in the spindle during which move.
         """
         self._first = model
         self._tools = tools

@@ -47,7 +47,6 @@ class Alarm:
         line: Source line of the program, 0 before the first.
         time_s: When, from the start of the program [s]; 0 for what is seen before motion starts.
         axis: Name of the axis, empty where it concerns the whole machine.
-        message: What happened, in one sentence with numbers.
         between: Names of the two bodies that met; empty: none did.
     """
 
@@ -70,7 +69,6 @@ class NearMiss:
     Attributes:
         clearance_mm: Between the two [mm].
         time_s: When, from the start of the program [s].
-        between: Names of the two.
     """
 
     clearance_mm: float

@@ -13,7 +13,7 @@ sample to sample. Only where it no longer decides is the distance measured again
 the next plane; where neither the plane before nor the plane behind separates the two all the way between two samples,
 the path is halved until they do, or until it is shorter than ``SHORTEST_WAY``.
 
-So an overlap of more than ``TOUCH`` is found wherever two samples see it, and a thinner way through a corner
+So an overlap of more than ``TOUCH`` is found wherever two samples see it, and a thinner overlap at a corner
 between two samples where it is longer than ``SHORTEST_WAY``, whatever the speed.
 """
 
@@ -211,26 +211,26 @@ class Clearance:
         tracks, suspects = follow_suspects(self._watched, position, known, -TOUCH)
         if not len(suspects):
             return None
-        way = _Way(samples, position, tracks, known)
+        chunk = _Chunk(samples, position, tracks, known)
         for start in range(known, len(position), _BLOCK):
             block = slice(start, min(start + _BLOCK, len(position)))
             near = find_suspects(
                 self._planes.columns, suspects, tracks, block.start, block.stop, -TOUCH
             )
             close = near.tolist()
-            met = [(found, pair) for pair in close if (found := self._along(pair, way, block))]
+            met = [(found, pair) for pair in close if (found := self._along(pair, chunk, block))]
             if met:
                 (row, depth), pair = min(met, key=lambda each: (each[0][0], -each[0][1]))
-                return self._alarm(way, row, depth, pair)
+                return self._alarm(chunk, row, depth, pair)
         return None
 
-    def _along(self, pair: int, way: "_Way", block: slice) -> tuple[int, float] | None:
+    def _along(self, pair: int, chunk: "_Chunk", block: slice) -> tuple[int, float] | None:
         """Follow a pair along a block of samples.
 
         Returns:
             The first row at which the two meet, and how deep [mm]; None where they do not.
         """
-        track, row = way.tracks[self._planes.track[pair]], block.start
+        track, row = chunk.tracks[self._planes.track[pair]], block.start
         while row < block.stop:
             limit = least_clearance(self._near[pair], self._threshold[pair], -TOUCH)
             close = self._planes[pair].bound(track[:, row : block.stop]) < limit
@@ -238,12 +238,12 @@ class Clearance:
             if not close[ahead]:
                 return None
             row += ahead
-            clearance = self._pass(pair, way.position, track, row)
+            clearance = self._pass(pair, chunk.position, track, row)
             if clearance < self._threshold[pair]:
                 return row, -clearance
             if clearance < self._near[pair]:
                 self._near[pair] = clearance - NEAR_STEP
-                self._remember(way, row, max(clearance, 0.0), pair)
+                self._remember(chunk, row, max(clearance, 0.0), pair)
             if clearance > 0.0:
                 self._threshold[pair] = -TOUCH
             row += 1
@@ -270,8 +270,8 @@ class Clearance:
             track: Where the geom is at both, shape (w, 2).
             position: Where the axes are at both, shape (2, k).
         """
-        way = np.abs(track[:, 1] - track[:, 0])
-        length = float(np.linalg.norm(way[:3])) + before.reach * float(way[3:].sum())
+        chunk = np.abs(track[:, 1] - track[:, 0])
+        length = float(np.linalg.norm(chunk[:3])) + before.reach * float(chunk[3:].sum())
         if length < SHORTEST_WAY or _is_certain(before, behind, track, self._threshold[pair]):
             return np.inf
         stand, there = position.mean(axis=0), track.mean(axis=1)
@@ -318,17 +318,17 @@ class Clearance:
         one, two = (fixture_of(self._model.geom(geom).name) for geom in self._pairs[pair])
         return CUTTER if one in CUTTING_PARTS else one, two
 
-    def _remember(self, way: "_Way", row: int, clearance: float, pair: int) -> None:
+    def _remember(self, chunk: "_Chunk", row: int, clearance: float, pair: int) -> None:
         if self.near_miss is None or clearance < self.near_miss.clearance_mm:
-            self.near_miss = NearMiss(clearance, *way.moment(row), self._names(pair))
+            self.near_miss = NearMiss(clearance, *chunk.moment(row), self._names(pair))
 
-    def _alarm(self, way: "_Way", row: int, depth: float, pair: int) -> Alarm:
+    def _alarm(self, chunk: "_Chunk", row: int, depth: float, pair: int) -> Alarm:
         one, two = self._names(pair)
         message = f"the {one} meets the {two} ({depth:.2f} mm deep)"
-        return Alarm("collision", *way.moment(row), "", message, (one, two))
+        return Alarm("collision", *chunk.moment(row), "", message, (one, two))
 
 
-class _Way(NamedTuple):
+class _Chunk(NamedTuple):
     """A chunk of samples with the one before it.
 
     Attributes:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from twin.compilation.kernel import array_kernel, kernel
-from twin.machine.watching.track_kernels import Chain, Followed, follow_tracks
+from twin.machine.watching.track_kernels import BodyChain, TrackedPoints, follow_tracks
 from twin.nc.canonical import FloatArray, IntArray
 
 
@@ -46,7 +46,7 @@ def least_clearance(near: float, threshold: float, touch: float) -> float:
     return math.inf if threshold < touch else max(near, threshold)
 
 
-class Watched(NamedTuple):
+class PlaneWatch(NamedTuple):
     """All that a look takes, in as few arrays as hold it: to hand one over takes half a microsecond.
 
     Attributes:
@@ -60,7 +60,7 @@ class Watched(NamedTuple):
     places: IntArray
 
 
-def watched(planes: PlaneColumns, chain: Chain, followed: Followed) -> Watched:
+def watched(planes: PlaneColumns, chain: BodyChain, followed: TrackedPoints) -> PlaneWatch:
     """Lay the columns one after the other, in the order in which ``view_columns`` takes them."""
     clearance, normal, place, reach, slack, track, near, threshold = planes
     numbers = (
@@ -74,14 +74,14 @@ def watched(planes: PlaneColumns, chain: Chain, followed: Followed) -> Watched:
     sizes = (
         len(track), *followed.turning.shape, len(chain.parent), len(chain.axis), len(chain.scale)
     )  # fmt: skip
-    return Watched(
+    return PlaneWatch(
         sizes,
         np.concatenate([column.ravel() for column in numbers]),
         np.concatenate([column.ravel() for column in places]).astype(np.int64),
     )
 
 
-def view_columns(watched: Watched) -> tuple[PlaneColumns, Chain, Followed]:
+def view_columns(watched: PlaneWatch) -> tuple[PlaneColumns, BodyChain, TrackedPoints]:
     """The columns as views: what is written into them is written into ``watched``."""
     pairs, tracks, rotary, bodies, joints, axes = watched.sizes
     width, many, few = 3 + rotary, watched.numbers, watched.places
@@ -102,8 +102,8 @@ def view_columns(watched: Watched) -> tuple[PlaneColumns, Chain, Followed]:
     frame, body, few = few[:tracks], few[tracks : 2 * tracks], few[2 * tracks :]
     return (
         PlaneColumns(clearance, normal, place, reach, slack, track, near, threshold),
-        Chain(parent, stand, turn, first, axis, hinge, along, anchor, rest, scale),
-        Followed(frame, body, point, few.reshape((tracks, rotary))),
+        BodyChain(parent, stand, turn, first, axis, hinge, along, anchor, rest, scale),
+        TrackedPoints(frame, body, point, few.reshape((tracks, rotary))),
     )
 
 
@@ -113,7 +113,7 @@ _columns_of = array_kernel(view_columns)
 
 @array_kernel
 def follow_suspects(
-    watched: Watched, position: FloatArray, known: int, touch: float
+    watched: PlaneWatch, position: FloatArray, known: int, touch: float
 ) -> tuple[FloatArray, IntArray]:
     """The tracks along samples, and the pairs that are not cleared of the box around all of them.
 

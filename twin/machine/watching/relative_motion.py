@@ -10,7 +10,7 @@ import itertools
 import mujoco
 import numpy as np
 
-from twin.machine.watching.track_kernels import Chain, Followed
+from twin.machine.watching.track_kernels import BodyChain, TrackedPoints
 from twin.nc.canonical import FloatArray
 from twin.units import MM
 
@@ -102,10 +102,10 @@ class RelativeMotion:
             body = int(self._model.body_parentid[body])
         return frozenset(found)
 
-    def followed(self) -> Followed:
+    def followed(self) -> TrackedPoints:
         """What is followed, as columns."""
         rotary = [axis for axis, hinge in enumerate(self._hinge) if hinge]
-        return Followed(
+        return TrackedPoints(
             np.array([seen.frame for seen in self.seen], np.int64),
             np.array([seen.body for seen in self.seen], np.int64),
             np.array([seen.point for seen in self.seen], float).reshape(-1, 3),
@@ -115,7 +115,7 @@ class RelativeMotion:
             ).reshape(len(self.seen), len(rotary)),
         )
 
-    def _carriers(self, scale: FloatArray) -> Chain:
+    def _carriers(self, scale: FloatArray) -> BodyChain:
         """The bodies of the model with the joints of the axes."""
         model = self._model
         of_body = [
@@ -124,7 +124,7 @@ class RelativeMotion:
         ]
         axes = list(itertools.chain(*of_body))
         joints = [self._joints[axis] for axis in axes]
-        return Chain(
+        return BodyChain(
             model.body_parentid.astype(np.int64),
             model.body_pos.copy(),
             np.array([_matrix(quaternion) for quaternion in model.body_quat]),

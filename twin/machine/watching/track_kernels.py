@@ -10,7 +10,7 @@ from twin.nc.canonical import FloatArray, IntArray
 from twin.units import MM
 
 
-class Chain(NamedTuple):
+class BodyChain(NamedTuple):
     """b bodies, each after the one that carries it, the world first; they turn and slide on j joints.
 
     Attributes:
@@ -38,7 +38,7 @@ class Chain(NamedTuple):
     scale: FloatArray
 
 
-class Followed(NamedTuple):
+class TrackedPoints(NamedTuple):
     """t points, each as seen from a body.
 
     Attributes:
@@ -56,7 +56,7 @@ class Followed(NamedTuple):
 
 
 @array_kernel
-def follow_tracks(chain: Chain, followed: Followed, position: FloatArray) -> FloatArray:
+def follow_tracks(chain: BodyChain, followed: TrackedPoints, position: FloatArray) -> FloatArray:
     """Follow points along samples.
 
     Args:
@@ -95,7 +95,7 @@ def follow_tracks(chain: Chain, followed: Followed, position: FloatArray) -> Flo
 
 @kernel
 def _place_body(
-    chain: Chain, joint: FloatArray, body: int, place: FloatArray, turn: FloatArray,
+    chain: BodyChain, joint: FloatArray, body: int, place: FloatArray, turn: FloatArray,
     scratch: FloatArray,
 ) -> None:  # fmt: skip
     """Write place and orientation of a body whose carrier has its own.

@@ -5,7 +5,7 @@ import numpy as np
 from twin.machine.description.config import Machine
 from twin.machine.description.machine_file import AxisTable
 from twin.machine.watching.alarms import Alarm, AlarmCode
-from twin.machine.watching.watch_kernels import Raised, Watched, find_raised
+from twin.machine.watching.watch_kernels import AxisWatch, Raised, find_raised
 from twin.nc.canonical import FloatArray
 from twin.recording.reader import Samples
 
@@ -30,7 +30,7 @@ class Watch:
         patience = [round(axis.saturation_time_s / machine.file.servo_period_s) for axis in axes]
         switches = np.array([limit_switches(axis) for axis in axes]).T.copy()
         self._force_limit = force_limit
-        self._watched = Watched(
+        self._watched = AxisWatch(
             lag=np.array([axis.following_error_limit or np.inf for axis in axes]),
             force=force_limit * _AT_LIMIT,
             patience=np.array(patience),

@@ -16,7 +16,7 @@ class Raised(enum.IntEnum):
     SATURATION = 2
 
 
-class Watched(NamedTuple):
+class AxisWatch(NamedTuple):
     """What k axes may do, and what they have done so far.
 
     Attributes:
@@ -38,7 +38,7 @@ class Watched(NamedTuple):
 
 @kernel
 def find_raised(
-    watched: Watched, setpoint: FloatArray, position: FloatArray, force: FloatArray
+    watched: AxisWatch, setpoint: FloatArray, position: FloatArray, force: FloatArray
 ) -> tuple[int, int, int]:
     """The first sample that raises an alarm.
 

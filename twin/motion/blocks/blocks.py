@@ -157,7 +157,6 @@ def _of_moves(
     """The blocks of moves, and the corner and tolerance at their end.
 
     Args:
-        first: Number of the first.
         corner: At its begin.
         within_rapid: The move before it is a part of the same rapid.
     """

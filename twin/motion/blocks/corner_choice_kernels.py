@@ -2,7 +2,7 @@
 
 A rounding must be driven slowly where it is narrow. At a stop the next move may begin before the
 one before it has ended: both are then at most a tolerance away from the corner, so that the sum of
-the two is within it too. Of a chain of corners that leave a choice that way is taken which is the
+the two is within it too. Of a chain of corners that leave a choice that passage is taken which is the
 fastest as a whole. What is chosen at a corner must not depend on how far the program is known: at
 every ``ANCHOR``-th move the choice is made for itself, from the corners nearby, and the chains
 between are chosen to fit.
@@ -65,11 +65,11 @@ SEEN = 8
 """Borders to either side that such a choice looks at."""
 
 
-class Ways(NamedTuple):
+class Choices(NamedTuple):
     """How the borders before n blocks can be passed.
 
     Attributes:
-        way: A ``Passage``, shape (n,).
+        passage: A ``Passage``, shape (n,).
         velocity: Without a stop, shape (n,).
         away: How far from a stop the moves may overlap, shape (n,).
         gain: How long they then do [s], shape (n,).
@@ -78,7 +78,7 @@ class Ways(NamedTuple):
             lines; shape (n,).
     """
 
-    way: IntArray
+    passage: IntArray
     velocity: FloatArray
     away: FloatArray
     gain: FloatArray
@@ -92,103 +92,103 @@ def choose_stops(
 ) -> tuple[BoolArray, FloatArray]:
     """Choose the corners at which the path had better stop.
 
-    Args:
-        corners: The borders before them.
-
     Returns:
         Whether to stop, shape (n,); how far from there the moves may overlap, shape (n,).
     """
     count = len(blocks.length)
-    ways = _find_ways(blocks, corners, machine)
-    chosen, scratch = ways.way.copy(), ways.way.copy()
+    choices = _find_choices(blocks, corners, machine)
+    chosen, scratch = choices.passage.copy(), choices.passage.copy()
     back = np.zeros((count, 2), np.int64)
     for i in range(count):
-        if ways.way[i] == Passage.FREE and blocks.move[i] % ANCHOR == 0:
+        if choices.passage[i] == Passage.FREE and blocks.move[i] % ANCHOR == 0:
             first, last = max(0, i - SEEN), min(count - 1, i + SEEN)
-            scratch[first : last + 1] = ways.way[first : last + 1]
-            _choose_between(blocks, corners, ways, first, last, scratch, back)
+            scratch[first : last + 1] = choices.passage[first : last + 1]
+            _choose_between(blocks, corners, choices, first, last, scratch, back)
             chosen[i] = scratch[i]
     first = 0
     for i in range(1, count):
         if chosen[i] != Passage.FREE or i == count - 1:
             if i > first + 1 or chosen[i] == Passage.FREE:
-                _choose_between(blocks, corners, ways, first, i, chosen, back)
+                _choose_between(blocks, corners, choices, first, i, chosen, back)
             first = i
     stops = np.zeros(count, np.bool_)
     for i in range(1, count):
         stops[i] = corners.rounded[i] and chosen[i] == Passage.STOPPED
         if not stops[i]:
-            ways.away[i] = 0.0
-    return stops, ways.away
+            choices.away[i] = 0.0
+    return stops, choices.away
 
 
 @array_arithmetic_kernel
-def _find_ways(blocks: BlockMotion, corners: Corners, machine: MachineLimits) -> Ways:
-    """The ways through each border, and what is needed to choose among them."""
+def _find_choices(blocks: BlockMotion, corners: Corners, machine: MachineLimits) -> Choices:
+    """The passages of each border, and what is needed to choose among them."""
     count = len(blocks.length)
-    ways = Ways(
+    choices = Choices(
         np.full(count, Passage.PASSED.value), np.full(count, math.inf), np.zeros(count), np.zeros(count),
         np.zeros((count, 4)), np.ones(count),
     )  # fmt: skip
     known, after = -1, RampLimits(0.0, 0.0, 0.0, 0.0)
     for i in range(count):
         if i == 0 or not corners.rounded[i]:
-            ways.way[i] = Passage.STOPPED.value
+            choices.passage[i] = Passage.STOPPED.value
             continue
         if blocks.length[i] == 0.0 or blocks.length[i - 1] == 0.0:
             continue
         if not np.any(corners.tangent_step[i]) and not np.any(corners.curvature_step[i]):
             continue
         if corners.width[i] > 0.0:
-            ways.velocity[i] = rounding_velocity(corners, i, machine)
-            if ways.velocity[i] >= min(blocks.velocity[i - 1], blocks.velocity[i]):
+            choices.velocity[i] = rounding_velocity(corners, i, machine)
+            if choices.velocity[i] >= min(blocks.velocity[i - 1], blocks.velocity[i]):
                 continue
         before = after if known == i - 1 else block_limits(blocks, i - 1, machine)
         known, after = i, block_limits(blocks, i, machine)
         for block, limits in ((i - 1, before), (i, after)):
-            ways.ramps[block, :] = limits
-            ways.unevenness[block] = unevenness(blocks, block, machine)
-        ways.away[i] = overlap_distance(blocks, corners, i, before, after, machine)
+            choices.ramps[block, :] = limits
+            choices.unevenness[block] = unevenness(blocks, block, machine)
+        choices.away[i] = overlap_distance(blocks, corners, i, before, after, machine)
         lengths = blocks.length[i - 1], blocks.length[i]
-        ways.gain[i] = overlap_time(ways.away[i], lengths[0], lengths[1], before, after)
+        choices.gain[i] = overlap_time(choices.away[i], lengths[0], lengths[1], before, after)
         if corners.width[i] == 0.0:
-            ways.way[i] = Passage.STOPPED.value
-        elif ways.velocity[i] < min(before.velocity, after.velocity):
-            ways.way[i] = Passage.FREE.value
-    return ways
+            choices.passage[i] = Passage.STOPPED.value
+        elif choices.velocity[i] < min(before.velocity, after.velocity):
+            choices.passage[i] = Passage.FREE.value
+    return choices
 
 
 @array_arithmetic_kernel
 def _choose_between(
-    blocks: BlockMotion, corners: Corners, ways: Ways, first: int, last: int,
+    blocks: BlockMotion, corners: Corners, choices: Choices, first: int, last: int,
     chosen: IntArray, back: IntArray,
 ) -> None:  # fmt: skip
-    """Choose the fastest way through consecutive borders, in place.
+    """Choose the fastest passage of consecutive borders, in place.
 
     Args:
-        corners: The borders before them.
         chosen: How each is passed, where it is known; the others are written.
         back: Scratch, shape (n, 2).
     """
     passed = 0.0 if chosen[first] != Passage.STOPPED else math.inf
-    stopped = -ways.gain[first] if chosen[first] != Passage.PASSED else math.inf
+    stopped = -choices.gain[first] if chosen[first] != Passage.PASSED else math.inf
     for i in range(first + 1, last + 1):
         best = math.inf, math.inf
-        for way in _CHOICES:
-            if chosen[i] == 1 - way:
+        for passage in _CHOICES:
+            if chosen[i] == 1 - passage:
                 continue
             least = math.inf
             for before in _CHOICES:
                 time = passed if before == Passage.PASSED else stopped
                 if time < math.inf:
-                    time += _time_of_block(blocks, corners, ways, i - 1, before, way)
+                    time += _time_of_block(blocks, corners, choices, i - 1, before, passage)
                     if time < least:
-                        least, back[i, way] = time, before
-            best = (least, best[1]) if way == Passage.PASSED else (best[0], least - ways.gain[i])
+                        least, back[i, passage] = time, before
+            best = (
+                (least, best[1])
+                if passage == Passage.PASSED
+                else (best[0], least - choices.gain[i])
+            )
         passed, stopped = best
     if last + 1 == len(chosen):
-        passed += _time_of_block(blocks, corners, ways, last, Passage.PASSED, Passage.STOPPED)
-        stopped += _time_of_block(blocks, corners, ways, last, Passage.STOPPED, Passage.STOPPED)
+        passed += _time_of_block(blocks, corners, choices, last, Passage.PASSED, Passage.STOPPED)
+        stopped += _time_of_block(blocks, corners, choices, last, Passage.STOPPED, Passage.STOPPED)
     chosen[last] = Passage.STOPPED.value if stopped < passed else Passage.PASSED.value
     for i in range(last, first, -1):
         chosen[i - 1] = back[i, chosen[i]]
@@ -196,19 +196,21 @@ def _choose_between(
 
 @array_arithmetic_kernel
 def _time_of_block(
-    blocks: BlockMotion, corners: Corners, ways: Ways, i: int, before: int, after: int
+    blocks: BlockMotion, corners: Corners, choices: Choices, i: int, before: int, after: int
 ) -> float:
-    """About how long a block takes that is entered and left in certain ways [s].
+    """About how long a block takes that is entered and left by certain passages [s].
 
     Where no border beside it is free, it does not matter: 0.
     """
-    limits = RampLimits(ways.ramps[i, 0], ways.ramps[i, 1], ways.ramps[i, 2], ways.ramps[i, 3])
+    limits = RampLimits(
+        choices.ramps[i, 0], choices.ramps[i, 1], choices.ramps[i, 2], choices.ramps[i, 3]
+    )
     if limits.velocity == 0.0:
         return 0.0
     length = blocks.length[i]
-    slower = 1.0 + CERTAINTY * ways.unevenness[i]
-    u, width = _end_of_block(corners, ways, i, before, after, length)
-    v, next_width = _end_of_block(corners, ways, i + 1, after, before, length)
+    slower = 1.0 + CERTAINTY * choices.unevenness[i]
+    u, width = _end_of_block(corners, choices, i, before, after, length)
+    v, next_width = _end_of_block(corners, choices, i + 1, after, before, length)
     u, v = min(u, limits.velocity), min(v, limits.velocity)
     rounded = width + next_width
     if rounded > length:
@@ -230,7 +232,7 @@ def _time_of_block(
 
 @array_arithmetic_kernel
 def _end_of_block(
-    corners: Corners, ways: Ways, border: int, way: int, other: int, length: float
+    corners: Corners, choices: Choices, border: int, passage: int, other: int, length: float
 ) -> tuple[float, float]:
     """Velocity at an end of a block, and how far its rounding reaches.
 
@@ -238,9 +240,9 @@ def _end_of_block(
         border: At this end.
         other: How that at the other end is passed.
     """
-    if way == Passage.STOPPED:
+    if passage == Passage.STOPPED:
         return 0.0, 0.0
-    speed, width = ways.velocity[border], corners.width[border]
+    speed, width = choices.velocity[border], corners.width[border]
     if other == Passage.STOPPED and width > BESIDE_STOP * length:
         # A rounding beside a stop is made narrower, and is driven more slowly.
         narrower = BESIDE_STOP * length / width

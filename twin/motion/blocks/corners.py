@@ -22,7 +22,7 @@ from twin.motion.blocks.corner_kernels import MAX_NEIGHBOURS, find_widths
 from twin.motion.blocks.corner_limit_kernels import BlockMotion, Corners
 from twin.motion.blocks.knee_kernels import (
     LONGEST_VIEW,
-    Chain,
+    BlockRun,
     slow_bending_chords,
     slow_dense_knees,
 )
@@ -114,7 +114,7 @@ def _slow_close_knees(
     joined = straight & (entry > 0.0) & (width == 0.0)
     joined[1:] &= straight[:-1]
     place = np.append(0.0, np.cumsum(blocks.length))
-    chain = Chain(place, np.vstack([shapes.base, shapes.end[-1:]]), joined)
+    chain = BlockRun(place, np.vstack([shapes.base, shapes.end[-1:]]), joined)
     slow_bending_chords(entry, chain, step, limits.jerk)
 
 

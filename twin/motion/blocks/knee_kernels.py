@@ -53,12 +53,12 @@ def slow_dense_knees(
     for i in range(1, count):
         if not 0.0 < velocity[i] < math.inf or next_rough[i] > i + MOST_TOGETHER:
             continue
-        way, slowest = 0.0, velocity[i]
+        distance, slowest = 0.0, velocity[i]
         sums[:] = tangent_step[i]
         for j in range(i + 1, min(count, i + MOST_TOGETHER + 1)):
             if angle[j - 1] != 0.0 or velocity[j] == 0.0:
                 break
-            way += length[j - 1]
+            distance += length[j - 1]
             sums += tangent_step[j]
             if velocity[j] == math.inf:
                 continue
@@ -67,13 +67,15 @@ def slow_dense_knees(
             per_fastest = 1.0 / fastest
             for axis in range(axes):
                 turn, step = abs(sums[axis]), velocity_step[axis]
-                gain = acceleration[axis] * way
+                gain = acceleration[axis] * distance
                 # The root waits for what it lowers.
                 if turn > 0.0 and turn * fastest > step + gain * per_fastest:
                     lowest = min(lowest, _highest_together(turn, step, gain))
             if slowest < MUCH_SLOWER * lowest < math.inf:
                 knees = velocity[i : j + 1], tangent_step[i : j + 1]
-                lowest = _highest_beside_corners(knees, way, velocity_step, acceleration, fastest)
+                lowest = _highest_beside_corners(
+                    knees, distance, velocity_step, acceleration, fastest
+                )
             velocity[i], velocity[j] = min(velocity[i], lowest), min(velocity[j], lowest)
 
 
@@ -113,14 +115,14 @@ def _highest_together(turn: float, step: float, gain: float) -> float:
 
 @kernel
 def _highest_beside_corners(
-    knees: tuple[FloatArray, FloatArray], way: float, velocity_step: FloatArray,
+    knees: tuple[FloatArray, FloatArray], distance: float, velocity_step: FloatArray,
     acceleration: FloatArray, fastest: float,
 ) -> float:  # fmt: skip
     """The highest velocity along a stretch where knees that must be passed more slowly count at their own.
 
     Args:
         knees: The velocities at the stretch's borders, and the steps of their tangents.
-        way: Length of the stretch [mm or deg].
+        distance: Length of the stretch [mm or deg].
         velocity_step: As in ``slow_dense_knees``.
         acceleration: As in ``slow_dense_knees``.
         fastest: Where the search begins, from above.
@@ -132,7 +134,7 @@ def _highest_beside_corners(
             gained = 0.0
             for k in range(len(velocity)):
                 gained += tangent_step[k, axis] * min(fastest, velocity[k])
-            step, gain = velocity_step[axis], acceleration[axis] * way
+            step, gain = velocity_step[axis], acceleration[axis] * distance
             if abs(gained) > (step + gain / fastest) * (1.0 + NEARLY):
                 lowest = min(lowest, _highest_together(abs(gained) / fastest, step, gain))
         if lowest == fastest:
@@ -148,7 +150,7 @@ LONGEST_VIEW = 3.0 * SHORTEST_SPAN * 2.0 ** (SPANS - 1)
 """How far along the path the velocity at a knee can depend on other knees [mm or deg]."""
 
 
-class Chain(NamedTuple):
+class BlockRun(NamedTuple):
     """n consecutive blocks, and where they lie along the path.
 
     Attributes:
@@ -165,7 +167,7 @@ class Chain(NamedTuple):
 
 @array_kernel
 def slow_bending_chords(
-    velocity: FloatArray, chain: Chain, velocity_step: FloatArray, jerk: FloatArray
+    velocity: FloatArray, chain: BlockRun, velocity_step: FloatArray, jerk: FloatArray
 ) -> None:
     """Lower the velocities of knees where the curve that they are chords of bends too quickly, in place.
 
@@ -198,7 +200,7 @@ def slow_bending_chords(
 
 @kernel
 def _slow_run(
-    velocity: FloatArray, alone: FloatArray, chain: Chain, run: tuple[int, int], span: float,
+    velocity: FloatArray, alone: FloatArray, chain: BlockRun, run: tuple[int, int], span: float,
     velocity_step: FloatArray, jerk: FloatArray, slowest: IntArray,
 ) -> None:  # fmt: skip
     """Lower the velocities of knees within a run by one span.

@@ -57,8 +57,6 @@ class OpenRuns:
         Args:
             more: What follows on those before.
             pieces: Under the plan, as far as runs are looked for.
-            machine: Limits of the axes and the path.
-            override: Factor of the programmed feed.
             at_end: Whether no run goes on beyond them.
         """
         known = more if self.waiting is None else joined([self.waiting, more])
@@ -86,34 +84,33 @@ class OpenRuns:
         """Phases that come back from a retimed run to its reference as soon as they can.
 
         Args:
-            machine: Limits of the axes and the path.
             override: Factor of the programmed feed that it was planned for.
             time: From when on they may change [s].
 
         Returns:
-            The phases; as they were outside any such run, or where there is no way.
+            The phases; as they were outside any such run, or where nothing leads back.
         """
         for number, run in enumerate(self._retimed):
             if run.begin < time < run.phases.end:
-                way = _back(run, pieces, machine, override, time)
-                if way is None:
+                rejoin = _back(run, pieces, machine, override, time)
+                if rejoin is None:
                     break
                 after = phases.rows[:, 0] >= run.phases.end - 1e-9
                 before = phases.rows[:, 0] < time
-                later = way.end - run.phases.end
+                later = rejoin.end - run.phases.end
                 del self._retimed[number:]
                 kept = PhaseTable(phases.rows[before], phases.rows_pieces[before])
                 kept.rows[-1, 1] = time - kept.rows[-1, 0]
                 rest = PhaseTable(phases.rows[after], phases.rows_pieces[after]).shifted(later)
                 self.time_saved -= later
-                return joined([kept, way, rest])
+                return joined([kept, rejoin, rest])
         return phases
 
 
 def _back(
     run: Retimed, pieces: RunPieces, machine: MachineLimits, override: float, time: float
 ) -> PhaseTable | None:
-    """From a time within a run to its reference, and on along that; None: there is no way."""
+    """From a time within a run to its reference, and on along that; None: nothing leads back."""
     rows = run.phases.rows
     row = int(np.searchsorted(rows[:, 0], time, "right")) - 1
     here = run.phases[row:]
@@ -138,8 +135,8 @@ def _back(
         target = float(v[at]), float(a[at])
         peak = max(left.begin[0], target[0])
         ends = left._replace(distance=float(ahead[at]), end=target, peak=peak)
-        way = drive_run(ends, pieces, machine, override, time, WHOLE_SHARE)
-        if way is not None:
+        rejoin = drive_run(ends, pieces, machine, override, time, WHOLE_SHARE)
+        if rejoin is not None:
             rest = reference[at:]
-            return joined([way, rest.shifted(way.end - float(rest.rows[0, 0]))])
+            return joined([rejoin, rest.shifted(rejoin.end - float(rest.rows[0, 0]))])
     return None

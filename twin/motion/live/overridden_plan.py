@@ -15,7 +15,7 @@ from twin.motion.profile.backward_pass_kernels import ROUNDING, SLOWEST, backwar
 from twin.motion.profile.forward_pass_kernels import STATE_AT_REST, SegmentTimes, forward_pass
 from twin.motion.profile.phase_kernels import PhaseRows, write_brake
 from twin.motion.profile.phases import Phases, brakes_from, no_phases, phases_of
-from twin.motion.profile.state import Course, State
+from twin.motion.profile.state import PathAhead, State
 from twin.motion.profile.windows import LOOK_AHEAD, Window, Windows
 from twin.motion.retiming.retiming import PhaseTable, pieces_for_runs
 from twin.motion.setpoints.sampling_kernels import OVERLAPPING, state_at
@@ -36,7 +36,7 @@ class Overrides:
     """Factor of the velocity of rapids."""
 
     held: bool = False
-    """Stop, wherever it be."""
+    """Stop at the current position."""
 
     single_block: bool = False
     """Stop at the end of the block."""
@@ -71,7 +71,6 @@ class OverriddenPlan:
 
     Args:
         parts: The program's pieces, in order.
-        machine: Limits of the axes and the path.
         look_ahead: Blocks that are planned at a time, and seen at least beyond these.
 
     Attributes:
@@ -176,7 +175,7 @@ class OverriddenPlan:
             return False
         segment, x, v, a, pause = place
         window, drive = _drive(self._window, overrides, segment, x)
-        course = Course(drive.limits, drive.entry, drive.brakes[0])
+        course = PathAhead(drive.limits, drive.entry, drive.brakes[0])
         here = State(segment, x, v, a)
         brake, x_end = None, 0.0
         if a < 0.0 or find_brake(course, here, ROUNDING) < 0:

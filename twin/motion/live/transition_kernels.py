@@ -6,7 +6,7 @@ from twin.compilation.kernel import array_kernel
 from twin.motion.profile.backward_pass_kernels import BISECTIONS, ROUNDING, SLOWEST, find_brake
 from twin.motion.profile.brake_kernels import brake_distance_from
 from twin.motion.profile.brake_margin_kernels import brake_margin
-from twin.motion.profile.state import Brake, Course, State
+from twin.motion.profile.state import Brake, PathAhead, State
 from twin.nc.canonical import FloatArray
 
 
@@ -28,14 +28,14 @@ def _slowest_within(
 
 
 @array_kernel
-def find_transition(limits: FloatArray, wanted: Course, state: State) -> tuple[Brake, float]:
+def find_transition(limits: FloatArray, wanted: PathAhead, state: State) -> tuple[Brake, float]:
     """The brake that begins at once and ends in a state that is safe under the wanted ceilings.
 
     Of all segments the nearest one in which such a brake can end is taken, and in it the highest
     velocity. The brake keeps the limits of all segments that it passes.
 
     Args:
-        limits: Of a ``Course``, with the velocities that must not be passed.
+        limits: Of a ``PathAhead``, with the velocities that must not be passed.
         wanted: The path with the velocities that are wanted.
         state: Where the brake begins; its acceleration may have either sign.
 
@@ -47,7 +47,7 @@ def find_transition(limits: FloatArray, wanted: Course, state: State) -> tuple[B
     if a > limits[2, i] * (1.0 + ROUNDING):
         # As in a run with a time law of its own: the jerk of a brake allows for no more than that.
         return Brake(-1, 0.0, 0.0, 0.0), 0.0
-    allowed = Course(limits, wanted.entry, wanted.controllable)
+    allowed = PathAhead(limits, wanted.entry, wanted.controllable)
     before = -x
     deceleration, jerk, softest = math.inf, math.inf, math.inf
     for p in range(i, limits.shape[1]):
@@ -72,7 +72,7 @@ def find_transition(limits: FloatArray, wanted: Course, state: State) -> tuple[B
             for step in range(BISECTIONS):
                 need = brake_distance_from(v, a, w, deceleration, jerk)
                 end = min(max(0.0, need - before), limits[0, p])
-                # Between a stop and a third of the velocity the way grows with w.
+                # Between a stop and a third of the velocity the distance grows with w.
                 fits = need <= after
                 safe = fits and find_brake(wanted, State(p, end, w, 0.0), 0.0) >= 0
                 if safe and -slack <= brake_margin(

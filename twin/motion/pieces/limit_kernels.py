@@ -85,8 +85,8 @@ def _share_of_turns(turns: float) -> float:
     before, share = CURVE_JERK_SHARES[0]
     for at, to in CURVE_JERK_SHARES:
         if turns <= at:
-            way = (turns - before) / (at - before) if turns > before else 0.0
-            return share + (to - share) * way
+            fraction = (turns - before) / (at - before) if turns > before else 0.0
+            return share + (to - share) * fraction
         before, share = at, to
     return share
 
@@ -102,7 +102,6 @@ def piece_limits(
         owner: Block of each of n pieces, shape (n,).
         length: Of the pieces, 0 for dwells, shape (n,).
         ceilings: Highest v at the borders of the pieces, shape (n + 1,).
-        machine: Limits of the axes and the path.
         share: Of an axis's jerk that each block may use at constant velocity, shape (m,).
 
     Returns:

@@ -74,15 +74,15 @@ def lower_to_reachable(
                 slow[direction, i], gone[direction, i] = ceiling, distance
             if start >= border[wanted]:
                 continue
-            way = length[i] * readiness[i]
-            highest = start + way * along[i]
+            travel = length[i] * readiness[i]
+            highest = start + travel * along[i]
             for axis in range(axes):
                 slope = bounds[i, 0, axis]
                 if slope > 0.0:
                     curve = bounds[i, 1, axis] if against[i, direction, axis] else 0.0
                     # The division does not wait for the piece before.
-                    share = 1.0 / (slope + 2.0 * way * curve)
-                    top = (slope * start + way * axis_acceleration[axis]) * share
+                    share = 1.0 / (slope + 2.0 * travel * curve)
+                    top = (slope * start + travel * axis_acceleration[axis]) * share
                     highest = min(highest, top)
             highest = _ramped(slow[direction, i], gone[direction, i], limits[3, i], highest)
             border[wanted] = min(border[wanted], max(highest, start))

@@ -19,7 +19,7 @@ from twin.motion.profile.brake_margin_kernels import (
     crossing,
     narrowed,
 )
-from twin.motion.profile.state import Brake, Course, State
+from twin.motion.profile.state import Brake, PathAhead, State
 from twin.motion.ramp_kernels import brake_distance
 from twin.nc.canonical import FloatArray
 
@@ -50,7 +50,7 @@ FAILED_BRAKES = 4
 
 
 @kernel
-def find_brake(course: Course, state: State, slack: float) -> int:
+def find_brake(course: PathAhead, state: State, slack: float) -> int:
     """The border to which a safe state can brake; -1 if none is found.
 
     Args:
@@ -124,7 +124,7 @@ def _fastest_start(distance: float, w: float, deceleration: float, jerk: float) 
 
 @kernel
 def _faster_start(
-    course: Course, i: int, brake: Brake, distance: float, best: float, highest: float
+    course: PathAhead, i: int, brake: Brake, distance: float, best: float, highest: float
 ) -> tuple[float, bool]:
     """The highest v up to ``highest`` from which a brake is possible.
 
@@ -160,7 +160,7 @@ def _faster_start(
 
 
 @kernel
-def _margin_from(course: Course, i: int, v: float, brake: Brake) -> float:
+def _margin_from(course: PathAhead, i: int, v: float, brake: Brake) -> float:
     """``brake_margin`` from border i with a = 0, to the brake's velocity or v if that is lower."""
     k, w, deceleration, jerk = brake
     return brake_margin(course, State(i, 0.0, v, 0.0), Brake(k, min(w, v), deceleration, jerk), 1.0)
@@ -171,8 +171,8 @@ def backward_pass(limits: FloatArray, entry: FloatArray, known: FloatArray) -> F
     """The highest safe velocity at every border with a = 0, and the brake that makes it safe.
 
     Args:
-        limits: Of a ``Course``.
-        entry: Of a ``Course``; the last must be 0.
+        limits: Of a ``PathAhead``.
+        entry: Of a ``PathAhead``; the last must be 0.
         known: The result of a window that ended earlier, for the first borders of this one,
             shape (4, m <= n + 1).
 
@@ -183,7 +183,7 @@ def backward_pass(limits: FloatArray, entry: FloatArray, known: FloatArray) -> F
     count = limits.shape[1]
     out = np.zeros((4, count + 1))
     controllable = out[0]
-    course = Course(limits, entry, controllable)
+    course = PathAhead(limits, entry, controllable)
     for i in range(count + 1):
         out[1, i] = out[3, i] = min(i + 1, count)
     news = known.shape[1]

@@ -1,4 +1,4 @@
-"""How much room a brake has: before the border where it is to end, and below the limits on the way.
+"""How much margin a brake has: before the border where it is to end, and below the limits on the way.
 
 The velocity along a brake rises to its peak (while a > 0 falls to zero) and then only falls, so a
 limit of the velocity at a place is kept if the brake comes down to it before that place. Where it
@@ -8,7 +8,7 @@ does has a closed form, which the velocity at a place has not.
 import math
 
 from twin.compilation.kernel import kernel
-from twin.motion.profile.state import Brake, Course, State
+from twin.motion.profile.state import Brake, PathAhead, State
 
 MAX_CHORDS = 16
 """Steps along chords, which are usually enough; the interval is halved from then on."""
@@ -18,7 +18,7 @@ MAX_STEPS = 64
 
 
 @kernel
-def brake_margin(course: Course, state: State, brake: Brake, wide: float) -> float:
+def brake_margin(course: PathAhead, state: State, brake: Brake, wide: float) -> float:
     """By how much of the distance the brake that is shortest of room has any to spare.
 
     Args:

@@ -14,7 +14,7 @@ from twin.motion.profile.backward_pass_kernels import ROUNDING, SLOWEST, find_br
 from twin.motion.profile.brake_kernels import after_jerk, brake_limits
 from twin.motion.profile.next_phase_kernels import SAME, ease_off, next_phase
 from twin.motion.profile.phase_kernels import PhaseRows, write_brake, write_phase
-from twin.motion.profile.state import Brake, Course, State
+from twin.motion.profile.state import Brake, PathAhead, State
 from twin.motion.ramp_kernels import brake_distance
 from twin.nc.canonical import FloatArray, IntArray
 
@@ -42,7 +42,7 @@ class SegmentTimes(NamedTuple):
     pause: FloatArray
 
 
-class Drive(NamedTuple):
+class ForwardPass(NamedTuple):
     """How far the forward pass has come.
 
     Attributes:
@@ -76,8 +76,8 @@ def forward_pass(
     state goes the brake that makes it safe, so that there is always something left to do.
 
     Args:
-        limits: Of a ``Course``.
-        entry: Of a ``Course``.
+        limits: Of a ``PathAhead``.
+        entry: Of a ``PathAhead``.
         brakes: From ``backward_pass``.
         until: Time at which to end [s].
         state: As ``STATE_AT_REST``; overwritten by the state at the end, shape (9,).
@@ -86,10 +86,10 @@ def forward_pass(
         Rows begin [s], duration [s], x, v, a, j, and the first and last segment of each phase.
     """
     count = limits.shape[1]
-    course = Course(limits, entry, brakes[0])
+    course = PathAhead(limits, entry, brakes[0])
     rows = PhaseRows(np.zeros((256, 6)), np.zeros((256, 2), np.int64))
     here = State(int(state[0]), state[1], state[2], state[3])
-    drive = Drive(here, state[4], int(state[5]), state[6], state[7], state[8], 0)
+    drive = ForwardPass(here, state[4], int(state[5]), state[6], state[7], state[8], 0)
     phases_here, last_segment = 0, drive.state.segment
     while drive.state.segment < stop and drive.state.segment < count:
         i = drive.state.segment
@@ -110,14 +110,14 @@ def forward_pass(
         if v < SLOWEST and limits[0, i] - x <= ROUNDING * limits[0, i]:
             # All but arrived; what is left is too little to speed up for.
             arrived = State(i + 1, 0.0, min(v, brakes[0, i + 1]), 0.0)
-            drive = Drive(
+            drive = ForwardPass(
                 arrived, drive.now, -1, drive.velocity, drive.last_jerk, drive.last_duration,
                 drive.rows,
             )  # fmt: skip
             continue
         if drive.border <= i:
             k, w = _known_brake(course, brakes, drive.state)
-            drive = Drive(
+            drive = ForwardPass(
                 drive.state, drive.now, k, w, drive.last_jerk, drive.last_duration, drive.rows
             )
         if v <= 0.0 or phases_here < MAX_PHASES:
@@ -133,16 +133,16 @@ def forward_pass(
 
 
 @array_kernel
-def _wait(rows: PhaseRows, drive: Drive, pause: float) -> Drive:
+def _wait(rows: PhaseRows, drive: ForwardPass, pause: float) -> ForwardPass:
     """Wait at a dwell."""
     i = drive.state.segment
     write_phase(rows, drive.rows, i, drive.now, pause, State(i, 0.0, 0.0, 0.0), 0.0)
     after = State(i + 1, 0.0, 0.0, 0.0)
-    return Drive(after, drive.now + pause, -1, drive.velocity, 0.0, 0.0, drive.rows + 1)
+    return ForwardPass(after, drive.now + pause, -1, drive.velocity, 0.0, 0.0, drive.rows + 1)
 
 
 @array_kernel
-def _known_brake(course: Course, brakes: FloatArray, state: State) -> tuple[int, float]:
+def _known_brake(course: PathAhead, brakes: FloatArray, state: State) -> tuple[int, float]:
     """Border to which a state can brake, and the velocity there."""
     k = find_brake(course, state, ROUNDING)
     if k >= 0:
@@ -152,7 +152,7 @@ def _known_brake(course: Course, brakes: FloatArray, state: State) -> tuple[int,
 
 
 @array_kernel
-def _extend(course: Course, rows: PhaseRows, drive: Drive, away: float) -> Drive:
+def _extend(course: PathAhead, rows: PhaseRows, drive: ForwardPass, away: float) -> ForwardPass:
     """Jerk up or hold for as long as there is a brake; nothing where there is none.
 
     Args:
@@ -169,7 +169,7 @@ def _extend(course: Course, rows: PhaseRows, drive: Drive, away: float) -> Drive
     if at_border:
         new = State(i + 1, 0.0, new.v, new.a)
     w = course.controllable[k] if k >= 0 else drive.velocity
-    return Drive(new, begin + duration, k, w, 0.0, 0.0, drive.rows + 1)
+    return ForwardPass(new, begin + duration, k, w, 0.0, 0.0, drive.rows + 1)
 
 
 @kernel
@@ -190,7 +190,7 @@ def _overlap(
 
 
 @array_kernel
-def _brake_on(course: Course, rows: PhaseRows, drive: Drive) -> Drive:
+def _brake_on(course: PathAhead, rows: PhaseRows, drive: ForwardPass) -> ForwardPass:
     """Carry the known brake out: ease off while a > 0, else brake, after what is left before it."""
     (i, x, v, a), now, k, w, _, _, used = drive
     lengths = course.limits[0]
@@ -202,11 +202,13 @@ def _brake_on(course: Course, rows: PhaseRows, drive: Drive) -> Drive:
         write_phase(rows, used, i, now, duration, drive.state, -jerk)
         if at_border and (i + 1 == k or new.a <= 0.0):
             new = State(i + 1, new.x, new.v, 0.0)
-        return Drive(new, now + duration, k, w, 0.0, 0.0, used + 1)
+        return ForwardPass(new, now + duration, k, w, 0.0, 0.0, used + 1)
     if v <= w * (1.0 + SAME):
         # Only rounding has kept the state from going on as it is.
         write_phase(rows, used, i, now, rest / v, State(i, x, v, 0.0), 0.0)
-        return Drive(State(i + 1, 0.0, min(v, w), a), now + rest / v, k, w, 0.0, 0.0, used + 1)
+        return ForwardPass(
+            State(i + 1, 0.0, min(v, w), a), now + rest / v, k, w, 0.0, 0.0, used + 1
+        )
     spare = distance - brake_distance(v, w, deceleration, jerk)
     to_border = spare <= ROUNDING * distance
     if to_border and spare > 0.0:
@@ -225,5 +227,5 @@ def _brake_on(course: Course, rows: PhaseRows, drive: Drive) -> Drive:
     if w == 0.0 and rows.phases[used - 1, 5] > 0.0:
         last_jerk, last_duration = jerk, rows.phases[used - 1, 1]
     if to_border:
-        return Drive(State(k, 0.0, w, 0.0), now, -1, w, last_jerk, last_duration, used)
-    return Drive(State(i, x, w, 0.0), now, k, w, last_jerk, last_duration, used)
+        return ForwardPass(State(k, 0.0, w, 0.0), now, -1, w, last_jerk, last_duration, used)
+    return ForwardPass(State(i, x, w, 0.0), now, k, w, last_jerk, last_duration, used)

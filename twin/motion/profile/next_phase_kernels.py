@@ -17,7 +17,7 @@ from twin.motion.profile.brake_margin_kernels import (
     crossing,
     narrowed,
 )
-from twin.motion.profile.state import Brake, Course, State
+from twin.motion.profile.state import Brake, PathAhead, State
 from twin.motion.ramp_kernels import brake_time
 from twin.nc.canonical import FloatArray
 
@@ -49,7 +49,7 @@ TIME_PRECISION = 1e-14
 
 
 @kernel
-def _brake_after(course: Course, state: State, j: float, t: float, to_border: bool) -> int:
+def _brake_after(course: PathAhead, state: State, j: float, t: float, to_border: bool) -> int:
     """Border to which the state after t of jerk j can brake, -1: none.
 
     Args:
@@ -71,7 +71,7 @@ def _brake_after(course: Course, state: State, j: float, t: float, to_border: bo
 
 @kernel
 def _longest_phase(
-    course: Course, state: State, j: float, latest: float, border: int
+    course: PathAhead, state: State, j: float, latest: float, border: int
 ) -> tuple[float, bool, int]:
     """How long jerk j may last, at most ``latest`` or to the segment's end.
 
@@ -113,7 +113,7 @@ def _longest_phase(
 
 
 @kernel
-def next_phase(course: Course, state: State, border: int) -> tuple[float, float, bool, int]:
+def next_phase(course: PathAhead, state: State, border: int) -> tuple[float, float, bool, int]:
     """Jerk up, or else hold, for as long as there is a brake.
 
     Args:
@@ -153,7 +153,7 @@ def ease_off(limits: FloatArray, state: State, jerk: float) -> tuple[float, bool
     """Down to a = 0, or to the next border: there may be something better to do then.
 
     Args:
-        limits: Of a ``Course``.
+        limits: Of a ``PathAhead``.
         state: Its acceleration is above 0.
         jerk: Of the brake that begins.
 
@@ -177,7 +177,9 @@ def ease_off(limits: FloatArray, state: State, jerk: float) -> tuple[float, bool
 
 
 @kernel
-def _latest_brake(course: Course, state: State, j: float, k: int, low: float, high: float) -> float:
+def _latest_brake(
+    course: PathAhead, state: State, j: float, k: int, low: float, high: float
+) -> float:
     """How long jerk j may last, from ``low`` to ``high``, for the brake to border k to be possible.
 
     Args:
@@ -205,7 +207,7 @@ def _latest_brake(course: Course, state: State, j: float, k: int, low: float, hi
 
 
 @kernel
-def _time_to_border(course: Course, state: State, j: float, t: float, k: int) -> float:
+def _time_to_border(course: PathAhead, state: State, j: float, t: float, k: int) -> float:
     """Time to border k with jerk j for t and then the brake; the rest of the distance is crept."""
     limits = course.limits
     deceleration, jerk, behind = brake_limits(limits, state.segment, k)
@@ -220,7 +222,7 @@ def _time_to_border(course: Course, state: State, j: float, t: float, k: int) ->
 
 
 @kernel
-def _time_between(course: Course, k: int, other: int) -> float:
+def _time_between(course: PathAhead, k: int, other: int) -> float:
     """About how long it takes from border k to another, negative if that lies before it."""
     time = 0.0
     for segment in range(min(k, other), max(k, other)):

@@ -28,7 +28,6 @@ def write_phase(
     """Write one row.
 
     Args:
-        row: Number of the row.
         last: Segment in which the phase ends.
         now: When it begins [s].
         duration: [s]
@@ -47,7 +46,6 @@ def write_brake(
 
     Args:
         row: Number of the first row.
-        lengths: Of the segments.
         now: When it begins [s].
         brake: Its rows end in the segment before its border.
 

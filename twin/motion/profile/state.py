@@ -5,7 +5,7 @@ from typing import NamedTuple
 from twin.nc.canonical import FloatArray
 
 
-class Course(NamedTuple):
+class PathAhead(NamedTuple):
     """n segments of the path ahead.
 
     Attributes:

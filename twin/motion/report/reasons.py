@@ -29,10 +29,7 @@ class Reasons:
     """What bounds n pieces, in words.
 
     Attributes:
-        velocity: What bounds the velocity along each, n.
         entry: What bounds the velocity at the border before each; empty: nothing but the piece.
-        acceleration: What bounds the acceleration along each.
-        jerk: What bounds the jerk along each.
     """
 
     velocity: list[str]
@@ -42,11 +39,7 @@ class Reasons:
 
 
 def reasons(pieces: Pieces, limits: MotionLimits, names: tuple[str, ...]) -> Reasons:
-    """Name the strictest bound of each piece, by the rules of ``twin.motion.pieces.pieces``.
-
-    Args:
-        names: Of the axes.
-    """
+    """Name the strictest bound of each piece, by the rules of ``twin.motion.pieces.pieces``."""
     bounds, curvature, _ = bound_derivatives(
         pieces.geometry.table.curves(), pieces.geometry.row, pieces.begin,
         pieces.fraction_per_length, pieces.length, pieces.rounding,

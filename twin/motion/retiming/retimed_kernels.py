@@ -39,12 +39,12 @@ def retimed_phases(
     v0, a0 = _state(nodes, coefficients, 0, 0)
     for i in range(count):
         v1, a1 = _state(nodes, coefficients, i, 1)
-        way, gain = nodes.distance[i], a1 - a0
-        # With both halves as long, way = (v0 + v1) t / 2 - (a1 - a0) t² / 12.
+        distance, gain = nodes.distance[i], a1 - a0
+        # With both halves as long, distance = (v0 + v1) t / 2 - (a1 - a0) t² / 12.
         mean = 0.5 * (v0 + v1)
-        square = mean * mean - gain * way / 3.0
+        square = mean * mean - gain * distance / 3.0
         # Where no time serves both its ends, the phases are not a number, as uses_of_limits finds.
-        t = 2.0 * way / (mean + math.sqrt(square)) if square >= 0.0 else math.nan
+        t = 2.0 * distance / (mean + math.sqrt(square)) if square >= 0.0 else math.nan
         both = 2.0 * gain / t
         first = 4.0 * (v1 - v0 - a0 * t) / (t * t) - 0.5 * both
         half = 0.5 * t
@@ -85,8 +85,6 @@ def uses_of_limits(
     Args:
         phases: From ``retimed_phases``.
         phase_pieces: From ``retimed_phases``.
-        machine: Limits of the axes and the path.
-        override: Factor of the programmed feed.
 
     Returns:
         Shares of the three limits, the largest along each of n intervals, shape (n, 3); infinite where

@@ -25,7 +25,7 @@ SHORT_JERK_SHARE = 0.99
 """Of the jerk limits that a run of less than ``LEAST_TURN`` uses: its end is near."""
 
 WHOLE_SHARE = 0.999
-"""Of the jerk limits that a way out of a run uses: between nodes a little more is used."""
+"""Of the jerk limits that a transition out of a run uses: between nodes a little more is used."""
 
 ATTEMPTS = 4
 """At a time law that keeps all limits between the nodes too."""
@@ -117,8 +117,6 @@ def retime(
 
     Args:
         pieces: Under them, None where none is an arc; phases that go beyond these stay as they are.
-        machine: Limits of the axes and the path.
-        override: Factor of the programmed feed.
         time_saved: Time that the plan is ahead of the phases already [s].
 
     Returns:
@@ -153,8 +151,6 @@ def drive_run(
     """The fastest phases of a run that are found; None if none keep the limits.
 
     Args:
-        machine: Limits of the axes and the path.
-        override: Factor of the programmed feed.
         begin: Of the run [s].
         share: Of the jerk limits to use.
     """

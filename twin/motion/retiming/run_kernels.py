@@ -72,7 +72,6 @@ def find_runs(
         phases: Rows begin [s], duration [s], x, v, a, j, shape (p, 6).
         phase_pieces: First and last piece of each phase, shape (p, 2).
         pieces: Of the plan; phases that go beyond them are in no run.
-        override: Factor of the programmed feed.
 
     Returns:
         Shape (m, 3).

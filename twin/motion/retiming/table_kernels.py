@@ -66,8 +66,6 @@ def _ramp_times(
 
     Args:
         turn: What the path turns by [rad/mm].
-        jerk: Highest of the path.
-        acceleration: Highest of the path.
     """
     v0, v1, peak = ends.begin[0], ends.end[0], ends.peak
     least = min(LEAST_RAMP / turn, 0.5 * ends.distance)
@@ -89,9 +87,6 @@ def cut_run(ends: RunEnds, pieces: RunPieces, machine: MachineLimits) -> RunNode
     """A run with a smooth change of velocity to its peak and another from it, as intervals of time.
 
     The velocity of a change is a cosine's, which begins at rest as a constant jerk does.
-
-    Args:
-        machine: Limits of the axes and the path.
     """
     piece, x, distance, (v0, _), (v1, _), peak = ends
     turn = pieces.fraction_per_length[piece] * abs(pieces.curves.angle[pieces.move[piece]])
@@ -132,15 +127,15 @@ def cut_run(ends: RunEnds, pieces: RunPieces, machine: MachineLimits) -> RunNode
             # Of the last change the time counts backwards.
             gone = t if part < 2 else times[2] - t
             wave, sign = rate * gone, 1.0 if part < 2 else -1.0
-            way = (low + rise) * gone - rise / rate * math.sin(wave)
+            covered = (low + rise) * gone - rise / rate * math.sin(wave)
             v, a, j = (
                 low + rise * (1.0 - math.cos(wave)),
                 sign * rise * rate * math.sin(wave),
                 rise * rate * rate * math.cos(wave),
             )
             if part == 1:
-                way, v, a, j = peak * gone, peak, 0.0, 0.0
-            here = place + way if part < 2 else distance - way
+                covered, v, a, j = peak * gone, peak, 0.0, 0.0
+            here = place + covered if part < 2 else distance - covered
             if k > 0:
                 nodes.distance[node] = here - before
                 nodes.jerk[node, 1] = j
@@ -200,12 +195,7 @@ def derivatives_at(
 def run_table(
     nodes: RunNodes, pieces: RunPieces, machine: MachineLimits, override: float
 ) -> RunTable:
-    """What limits a change of a run's time law.
-
-    Args:
-        machine: Limits of the axes and the path.
-        override: Factor of the programmed feed.
-    """
+    """What limits a change of a run's time law."""
     count, axes = len(nodes.step), len(machine.jerk)
     moving = np.zeros(axes, np.int64)
     used = 0

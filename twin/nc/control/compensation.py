@@ -69,22 +69,22 @@ def change_radius(control: Control, radius: float, word: Word | None) -> None:
 
 
 def change_side(
-    control: Control, side: float, radius: float, word: Word | None, way: SideChange
+    control: Control, side: float, radius: float, word: Word | None, change: SideChange
 ) -> None:
     """Compensation that is in force goes on on another side, or on the same with another radius [mm]."""
     same = side == side_in_force(control)
-    _change(control, side, radius, word, None if same else way)
+    _change(control, side, radius, word, None if same else change)
 
 
 def _change(
-    control: Control, side: float, radius: float, word: Word | None, way: SideChange | None
+    control: Control, side: float, radius: float, word: Word | None, change: SideChange | None
 ) -> None:
     if not radius > 0.0:
         message = f"compensation that is in force cannot take the radius {radius:g}"
         control.fail("compensation-change", message, word, "end it by G40")
     control.path.flush()
     signed = side * radius * handedness(control.motion.frame.matrix)
-    control.path.compensation.change(signed, way)
+    control.path.compensation.change(signed, change)
 
 
 def compensate(control: Control, side: float, radius: float, *, led: bool = False) -> None:

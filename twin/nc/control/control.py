@@ -95,9 +95,7 @@ class Control:
     """One control while it runs one program.
 
     Attributes:
-        memory: What only this dialect remembers.
         frame: From programmed to part coordinates.
-        axis_index: Columns of the axes by name.
         cycle_values: What the cycle in force remembers, by name.
         words: Its words that nothing has taken yet.
         series: Its words for switch points, in order.
@@ -314,7 +312,6 @@ class Control:
             deepest: Parts that may call each other.
             values: Of its own variables by name; None: it has the caller's.
             restores: Its end puts back into force what is in force now.
-            times: How often it runs.
             last: Its last block; None: a word ends it.
 
         Raises:

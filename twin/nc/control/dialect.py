@@ -37,7 +37,6 @@ class Dialect:
     """One control's language, as data and a few own rules.
 
     Attributes:
-        name: As given on the command line.
         code_page: Legacy code page of its programs, such as ``cp1252``.
         units: Units of lengths and feeds, for people.
         suffixes: Ends of the names of files that hold its programs alone, lower case.

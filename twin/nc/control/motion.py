@@ -243,8 +243,10 @@ class MotionState:
 
     def _feed_by_rule(self, rate: float, end: list[float], length: float, arc: Arc | None) -> float:
         """The feed rate of a move whose F counts another length than that of its path [mm/min or deg/min]."""
-        ways = (new - old for new, old in zip(end, self.part, strict=True))
-        turned = math.hypot(*(way for way, line in zip(ways, self.linear, strict=True) if not line))
+        travel = (new - old for new, old in zip(end, self.part, strict=True))
+        turned = math.hypot(
+            *(distance for distance, line in zip(travel, self.linear, strict=True) if not line)
+        )
         if arc is None:
             move = Displacement(length, turned, only_turns(self.part, end, self.linear))
         else:

@@ -1,4 +1,4 @@
-"""Which block comes next: straight on, jumps, calls, and a guard against programs without an end."""
+"""Which block comes next: straight on, jumps, calls, and a limit for programs without an end."""
 
 import dataclasses
 import re

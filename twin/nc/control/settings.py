@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Literal, TypeVar
 
 from twin.nc.canonical import Axes
-from twin.nc.path.tool_center.tool_center import Setup
+from twin.nc.path.tool_center.tool_center import PartOnMachine
 from twin.nc.text.blocks import Block
 
 V = TypeVar("V")
@@ -101,7 +101,7 @@ class ControlSettings:
     offsets: Mapping[str, Mapping[str, float]] = dataclasses.field(default_factory=dict)
     """Work offsets by name (``G54``), each by axis, from part zero [mm or deg]."""
 
-    setup: Setup | None = None
+    setup: PartOnMachine | None = None
     """The part on the machine, for tool centre point control and tilted planes; None: not known."""
 
     offset_rows: Mapping[int, int] = dataclasses.field(default_factory=dict)

@@ -167,7 +167,6 @@ def codes_that_count(codes: Codes, *, last_of_group: bool) -> list[tuple[Word, G
     """G codes without those that another one of their modal group overrules.
 
     Args:
-        codes: As they are written.
         last_of_group: The last one overrules all others; else each overrules those that are weak.
     """
     strong = {code.group for _, code in codes if not code.weak}

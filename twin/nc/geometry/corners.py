@@ -68,7 +68,7 @@ def side_change(before: Before, behind: Behind, *, extended: bool) -> Point | No
         extended: The parallels go on beyond the corner.
 
     Returns:
-        Where they cross, nearest to the corner, the first of two that are as near; None: nowhere on the way of both.
+        Where they cross, nearest to the corner, the first of two that are as near; None: on no part of both.
     """
     contour, parallel, begin = before
     beside = behind[1]
@@ -138,7 +138,9 @@ def distance_to(curve: Curve, point: Point) -> float:
     return min(distance(point, start), distance(point, end))
 
 
-def way_around(start: Point, end: Point, corner: Point, signed_offset: float) -> tuple[bool, Curve]:
+def around_corner(
+    start: Point, end: Point, corner: Point, signed_offset: float
+) -> tuple[bool, Curve]:
     """Whether there is an arc as ``leads.around`` has it, and that arc."""
     none = (False, start, end, corner, 0.0)
     radius, far = abs(signed_offset), distance(start, corner)

@@ -111,23 +111,23 @@ def last_along(curve: Curve, point: Point) -> float:
 
 
 def point_of(straight: Curve, share: float) -> Point:
-    """The point of a line at a share of its way."""
+    """The point of a line at a share of its length."""
     start, end = straight[1], straight[2]
     return (start[0] + share * (end[0] - start[0]), start[1] + share * (end[1] - start[1]))
 
 
 def point_at(curve: Curve, share: float) -> Point:
-    """The point of a line or an arc at a share of its way."""
+    """The point of a line or an arc at a share of its length."""
     return turned(curve[1], curve[3], curve[4] * share) if curve[0] else point_of(curve, share)
 
 
 def head_of(curve: Curve, share: float) -> Curve:
-    """The part from its start to a share of its way."""
+    """The part from its start to a share of its length."""
     return (curve[0], curve[1], point_at(curve, share), curve[3], curve[4] * share)
 
 
 def tangent_at(curve: Curve, share: float) -> Point:
-    """Unit direction of travel at a share of its way."""
+    """Unit direction of travel at a share of its length."""
     is_arc, start, end, center, sweep = curve
     return tangent_of(
         (is_arc, start, point_at(curve, share) if is_arc else end, center, sweep), True

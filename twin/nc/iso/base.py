@@ -60,7 +60,7 @@ POSITIONING, LINEAR = straight(
 CLOCKWISE, COUNTER_CLOCKWISE = both_senses(iso_arc, ArcRule(bounds=BOUNDS))
 
 
-# Nothing is given back once it is taken (``++``): else dots could be shared out in endless ways.
+# Nothing is given back once it is taken (``++``): else dots could be shared out without end.
 _ELLIPSIS = re.compile(
     r"[ \t]*+(?:N[ \t]*+[0-9]++)?(?:[ \t]*+(?:[A-Z][ \t]*+)?\.{3,}+)+[ \t]*+(?:[$\"].*)?",
     re.IGNORECASE,

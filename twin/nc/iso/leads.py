@@ -1,6 +1,6 @@
-"""Ways to a contour and away from it: straight or on an arc, as the tool's centre goes.
+"""Approach to a contour and retraction from it: straight or on an arc, as the tool's centre goes.
 
-The way to a contour is made when its first element is known. Its auxiliary point is reached in the working plane first,
+The approach to a contour is made when its first element is known. Its auxiliary point is reached in the working plane first,
 then in the axis across it.
 """
 
@@ -12,7 +12,7 @@ from twin.nc.control.compensation import compensate
 from twin.nc.control.control import Control
 from twin.nc.geometry.arcs import SAME_POINT, Point, distance, sweep_between, turned
 from twin.nc.geometry.matrices import applied
-from twin.nc.iso.plane_moves import go, go_to_height, turn
+from twin.nc.iso.cycle_moves import go, go_to_height, turn
 from twin.nc.path.move_columns import Segment
 from twin.nc.path.segments import direction_of
 from twin.nc.text.blocks import Block
@@ -40,8 +40,8 @@ class Lead:
         angle: Of an arc [deg].
         side: Of the tool beside the contour: 1 left, -1 right, 0 on it.
         offset: How far beside it the tool's centre goes, part coordinates [mm].
-        feed_before: Feed on the way to the auxiliary point, or from it.
-        rapid: The way to the auxiliary point, or from it, is as fast as the machine can.
+        feed_before: Feed to the auxiliary point, or from it.
+        rapid: The move to the auxiliary point, or from it, is as fast as the machine can.
         above: How far the auxiliary point lies above the contour [mm].
         spatial: The lead itself falls or rises by that; else the tool does so over the auxiliary point.
         feed_down: Feed of that fall or rise; None: the lead's.
@@ -66,7 +66,7 @@ class Lead:
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Touch:
+class ContourEnd:
     """Where the tool's centre begins or ends a contour, in the plane.
 
     Attributes:
@@ -84,18 +84,18 @@ class Touch:
         return (x + along * u + aside * m, y + along * v + aside * n)
 
 
-def touch_of(control: Control, point: Point, ahead: Point, lead: Lead) -> Touch:
+def touch_of(control: Control, point: Point, ahead: Point, lead: Lead) -> ContourEnd:
     """Where the centre touches a contour that goes through a point in a direction."""
     size = math.hypot(*ahead)
     along = (ahead[0] / size, ahead[1] / size)
     sense = lead.side or 1.0
     aside = (-along[1] * sense, along[0] * sense)
     offset = lead.offset / math.hypot(*applied(control.frame.matrix, (1.0, 0.0, 0.0)))
-    return Touch((point[0] + offset * aside[0], point[1] + offset * aside[1]), along, aside)
+    return ContourEnd((point[0] + offset * aside[0], point[1] + offset * aside[1]), along, aside)
 
 
 def auxiliary_point(
-    control: Control, touch: Touch, lead: Lead, other: Point, *, arrives: bool
+    control: Control, touch: ContourEnd, lead: Lead, other: Point, *, arrives: bool
 ) -> tuple[Point | None, Point]:
     """Centre of a lead's arc, if it has one, and its auxiliary point.
 

@@ -15,7 +15,7 @@ from twin.nc.iso.offsets import machine_zero
 from twin.nc.path.tool_center.tool_center import ToolCenter
 
 
-class PartFrame(NamedTuple):
+class SuspendedFrame(NamedTuple):
     """The frame that machine coordinates have put aside.
 
     Attributes:
@@ -30,11 +30,11 @@ class PartFrame(NamedTuple):
 
 def enter_machine_frame(
     control: Control, code: str, zero: Mapping[str, float] | None = None
-) -> PartFrame:
+) -> SuspendedFrame:
     """Let programmed coordinates count from machine zero, or from another zero of the builder's; ``code`` asks for it."""
     zero, frame = machine_zero(control, code) if zero is None else zero, control.frame
     center, names = control.path.tool_center, control.settings.axes.names
-    kept = PartFrame(frame.shifts, frame.matrix, center)
+    kept = SuspendedFrame(frame.shifts, frame.matrix, center)
     control.motion.on_screen = _screen_of(kept)
     if center is not None:
         control.motion.lead_tip(None)
@@ -45,7 +45,7 @@ def enter_machine_frame(
     return kept
 
 
-def _screen_of(kept: PartFrame) -> Callable[[list[float]], list[float]]:
+def _screen_of(kept: SuspendedFrame) -> Callable[[list[float]], list[float]]:
     """Programmed coordinates of a place of the axes: the screen goes on showing them."""
     frame, center = Frame(len(kept.shifts[0])), kept.tool_center
     frame.set_shifts(kept.shifts)
@@ -57,7 +57,7 @@ def _screen_of(kept: PartFrame) -> Callable[[list[float]], list[float]]:
     return shown
 
 
-def leave_machine_frame(control: Control, kept: PartFrame) -> None:
+def leave_machine_frame(control: Control, kept: SuspendedFrame) -> None:
     """Let programmed coordinates be what they were."""
     control.motion.on_screen = None
     control.frame.set_shifts(kept.shifts)

@@ -54,7 +54,7 @@ from twin.nc.text.line_reader import LARGEST_LABEL
 from twin.units import LARGEST_COORDINATE
 
 NO_MOTION, RAPID_LINE, FEED_LINE, CLOCKWISE, COUNTER_CLOCKWISE = -1, 0, 1, 2, 3
-"""How a line moves; other ways to move are ``NO_MOTION``."""
+"""How a line moves; other motions are ``NO_MOTION``."""
 _RAPID, _FEED, _STOP = int(Motion.RAPID), int(Motion.FEED), int(RAPIDS_END)
 _ARC_WORDS = (1 << AXIS) - (1 << RADIUS)
 _DOUBTFUL = -1.0

@@ -40,7 +40,7 @@ class Curve(NamedTuple):
     Attributes:
         coefficients: What is added to the start, by powers 1 to 5 of the path fraction, shape (k, 5)
             [mm or deg].
-        length: Of the tip's way in the part [mm]; where it rests, of the rotary axes' [deg].
+        length: Of the tip's path in the part [mm]; where it rests, of the rotary axes' [deg].
         turning: The tip rests: F counts degrees.
     """
 
@@ -95,10 +95,6 @@ class Refused(NamedTuple):
     """A block that was refused while it ran: whatever it did is not to happen.
 
     What it let go of earlier blocks, which were waiting for it, stays.
-
-    Attributes:
-        moves: How many moves there were before it.
-        events: How many events there were before it.
     """
 
     moves: int

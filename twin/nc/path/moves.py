@@ -32,25 +32,25 @@ def line_length(start: Position, end: Position) -> float:
     Args:
         start: Shape (k,).
         end: Shape (k,); what goes less far than ``SMALLEST_MOVE`` ends where it starts, since what a
-            frame has rounded is no way.
+            frame has rounded is no distance.
 
     Returns:
         0 where nothing moves.
     """
     x, y, z = end[0] - start[0], end[1] - start[1], end[2] - start[2]
-    way = math.sqrt(x * x + y * y + z * z)
-    if way < SMALLEST_MOVE:
+    distance = math.sqrt(x * x + y * y + z * z)
+    if distance < SMALLEST_MOVE:
         end[0], end[1], end[2] = start[0], start[1], start[2]
-        way = 0.0
+        distance = 0.0
         for axis in range(3, len(start)):
             other = end[axis] - start[axis]
-            way += other * other
-        way = math.sqrt(way)
-        if way < SMALLEST_MOVE:
+            distance += other * other
+        distance = math.sqrt(distance)
+        if distance < SMALLEST_MOVE:
             for axis in range(3, len(start)):
                 end[axis] = start[axis]
-            way = 0.0
-    return way
+            distance = 0.0
+    return distance
 
 
 @inlined

@@ -67,10 +67,10 @@ class SynchronousAxes:
         if total == 0.0:
             return
         first, last = moves[0][1].start[axis], moves[-1][1].end[axis]
-        way, here = 0.0, first
+        distance, here = 0.0, first
         for row, move in moves:
-            way += spatial_length(move)
-            there = last if way == total else first + (last - first) * way / total
+            distance += spatial_length(move)
+            there = last if distance == total else first + (last - first) * distance / total
             self._held[row] = dataclasses.replace(
                 move,
                 start=_with(move.start, axis, here),

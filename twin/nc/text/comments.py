@@ -68,7 +68,7 @@ def closed_comment(marks: CommentMarks) -> str:
     Comments that can only begin their line are not among them.
     """
     controls = [chr(each) for each in range(_CONTROL) if is_control(each)]
-    ways, others = ["(?!)"], ""
+    branches, others = ["(?!)"], ""
     for opening, closing, whole_line, holds_opening in zip(*marks, strict=True):
         begin, end = ([chr(each) for each in mark if each] for mark in (opening, closing))
         without = [*controls, *end[:1], *([] if holds_opening or not end else begin[:1])]
@@ -76,9 +76,9 @@ def closed_comment(marks: CommentMarks) -> str:
         if end[1:]:
             within = f"(?:{within}|(?!{_escaped(end)}){_escaped(end[:1])})"
         if not whole_line:
-            ways.append(f"{others}{_escaped(begin)}{within}*{_escaped(end) or _LINE_END}")
+            branches.append(f"{others}{_escaped(begin)}{within}*{_escaped(end) or _LINE_END}")
         others += f"(?!{_escaped(begin)})"
-    return f"(?:{'|'.join(ways)})"
+    return f"(?:{'|'.join(branches)})"
 
 
 def _escaped(characters: Sequence[str]) -> str:
@@ -91,7 +91,6 @@ def comment_end(line: Characters, begin: int, at: int, end: int, marks: CommentM
 
     Args:
         line: Holds the line, a byte for each character or as UTF-8: what marks comments is ASCII.
-        begin: Where it begins.
         end: Behind its last character.
 
     Returns:

@@ -46,17 +46,17 @@ def _repeated(stage: int) -> str:
 def _onward(stage: int) -> str:
     """Regular expression of what leads on, up to the end of the word."""
     steps = {kind: to for kind, to in _STEPS[stage].items() if to != stage}
-    ways: list[str] = []
+    branches: list[str] = []
     for kind, to in steps.items():
         one = f"[{_CHARACTERS[kind]}]"
         rest = {other: behind for other, behind in steps.items() if other != kind}
         if rest and rest == _STEPS[to]:  # may be left out
             return f"{one}?{_onward(to)}"
         several = _repeated(to)
-        ways.append((f"{one}+" if several == f"{one}*" else one + several) + _onward(to))
-    if stage in _ENDS and ways:
-        return f"(?:{'|'.join(ways)})?"
-    return f"(?:{'|'.join(ways)})" if len(ways) > 1 else "".join(ways)
+        branches.append((f"{one}+" if several == f"{one}*" else one + several) + _onward(to))
+    if stage in _ENDS and branches:
+        return f"(?:{'|'.join(branches)})?"
+    return f"(?:{'|'.join(branches)})" if len(branches) > 1 else "".join(branches)
 
 
 BLANKS, BLANKS_BETWEEN = _repeated(BEGIN), _repeated(ADDRESS)

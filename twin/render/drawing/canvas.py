@@ -150,7 +150,6 @@ class Canvas(abc.ABC):
 
         Args:
             data: Positions of everything (after ``mj_forward`` or the like).
-            camera: Number of the camera in the model.
             size: Width and height, at most those of the canvas [px]; None: all of it.
             focus: Where shadows fall; None: as the model says.
             spray: Chips in the air; they cast no shadows.
@@ -249,8 +248,8 @@ class Canvas(abc.ABC):
             aside = np.cross(straight, np.eye(3)[np.argmin(np.abs(straight))])
             aside /= np.linalg.norm(aside)
             upwards = np.cross(aside, straight)
-            way = straight + reach * (math.cos(turn) * aside + math.sin(turn) * upwards)
-            data.light_xdir[light] = way / np.linalg.norm(way)
+            direction = straight + reach * (math.cos(turn) * aside + math.sin(turn) * upwards)
+            data.light_xdir[light] = direction / np.linalg.norm(direction)
             if focus is not None:
                 self._limit_shadows(focus.radius)
                 data.light_xpos[light] = (

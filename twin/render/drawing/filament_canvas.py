@@ -104,7 +104,7 @@ class FilamentCanvas(Canvas):
         self._targets: dict[tuple[int, int], Any] = {}
         self._chips: list[Any] = []
         self._flying = 0
-        self._on_the_way: list[Any] = []
+        self._in_transfer: list[Any] = []
         # Its own thread works on, and may report something, until a frame was waited for.
         self._context.wait_for_frame(self._context.render([], []))
 
@@ -112,7 +112,7 @@ class FilamentCanvas(Canvas):
         """Give back what Filament holds, users before what they use."""
         self._chips.clear()
         self._targets.clear()
-        self._on_the_way.clear()
+        self._in_transfer.clear()
         del self._bodies, self._lights
         self._meshes.clear()
         del self._resources, self._stage, self._context
@@ -141,7 +141,7 @@ class FilamentCanvas(Canvas):
     def _send_mesh(self, mesh: int) -> None:
         if mesh not in self._meshes:
             self._meshes[mesh] = self._own_mesh(mesh)
-        self._on_the_way.append(self._meshes[mesh].send())
+        self._in_transfer.append(self._meshes[mesh].send())
 
     def _send_texture(self, texture: int) -> None:
         model = self._model
@@ -155,7 +155,7 @@ class FilamentCanvas(Canvas):
         data.set_image(model.tex_data[first : first + int(size)].tobytes())
         # Filament has each texture of the model once: that of one geom is that of all.
         self._body(int(geoms[0])).get_material().color_texture.upload(data)
-        self._on_the_way.append(data)
+        self._in_transfer.append(data)
 
     def _own_mesh(self, mesh: int) -> FilamentMesh:
         """A mesh that can change, in the place of the one that Filament made of the model's."""
@@ -245,9 +245,9 @@ class FilamentCanvas(Canvas):
         read.set_buffer(pixels)
         with self._mute():
             self._context.wait_for_frame(self._context.render([request], [read]))
-        for sent in self._on_the_way:
+        for sent in self._in_transfer:
             sent.free()
-        self._on_the_way.clear()
+        self._in_transfer.clear()
         return pixels
 
     def _eye(self) -> Any:

@@ -20,7 +20,7 @@ BACKENDS = ("egl", "osmesa")
 """In the order in which they are tried: EGL also draws on a GPU."""
 
 FILAMENT = "filament"
-"""Not OpenGL, but tried in the same way."""
+"""Not OpenGL, but tried likewise."""
 
 PACKAGES = {"egl": "libegl1 libgl1-mesa-dri", "osmesa": "libosmesa6"}
 """What Debian and Ubuntu call them."""

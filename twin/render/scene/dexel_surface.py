@@ -18,7 +18,7 @@ from twin.render.scene.stock_texture import MATERIAL
 
 MESH = "stock_from_all_sides"
 RAW, MACHINED = 0, 1
-"""Texels of the two kinds of skin."""
+"""Texels of raw and machined surface."""
 _SKIN = np.array([RAW_RGB, MACHINED_RGB], np.uint8)
 _ROWS = 2
 """Of the texture, all alike."""
@@ -28,7 +28,7 @@ _DEVIATIONS = np.linspace(-1.0, 1.0, 255)
 Deviations = Callable[[Surface], FloatArray]
 """How far the vertices of a surface are off, as shares of a scale, shape (n,); NaN: as metal looks."""
 _ROOM_TO_GROW = 0.6
-"""Share of the crossings that the blank may take up: cuts add to them, and a net that becomes coarser is seen."""
+"""Share of the crossings that the blank may take up: cuts add to them, and a mesh that becomes coarser is seen."""
 
 
 class DexelSurface:

@@ -16,7 +16,7 @@ _ROUNDED = 9
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Frame:
+class FrameOnBody:
     """The part's frame, seen from a body of the machine.
 
     Attributes:
@@ -40,7 +40,7 @@ class Frame:
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Placement(Frame):
+class Placement(FrameOnBody):
     """The part's frame, seen from the body that carries the part and turns with it.
 
     Attributes:
@@ -49,7 +49,7 @@ class Placement(Frame):
         up: Direction upwards in the room, seen from the part's frame there, shape (3,).
     """
 
-    at_rest: Frame
+    at_rest: FrameOnBody
     up: FloatArray
 
 
@@ -88,12 +88,12 @@ def place(
 
     def frame(body: int) -> tuple[FloatArray, FloatArray]:
         origin = tip_from(body, np.zeros(3))
-        ways = [(tip_from(body, direction) - origin) / MM for direction in np.eye(3)]
-        return origin, np.stack(ways, axis=1)
+        columns = [(tip_from(body, direction) - origin) / MM for direction in np.eye(3)]
+        return origin, np.stack(columns, axis=1)
 
     table = part_carrier(model)
     carrier = int(model.body_parentid[table])
-    at_rest = Frame(*frame(carrier))
+    at_rest = FrameOnBody(*frame(carrier))
     up = data.xmat[carrier].reshape(3, 3) @ at_rest.rotation
     return Placement(*frame(table), at_rest, np.round(up[2], _ROUNDED))
 

@@ -22,9 +22,9 @@ def corner_normals(
     """Normals for every corner of every face of a tile.
 
     Args:
-        heights: Of the whole net, shape (my, mx) [mm].
-        rows: The tile's rows of the net.
-        columns: The tile's columns of the net.
+        heights: Of the whole mesh, shape (my, mx) [mm].
+        rows: The tile's rows of the mesh.
+        columns: The tile's columns of the mesh.
         spacing: Between vertices [mm].
         corner: Corners of the tile's faces, shape (m, 3, 3) [mm].
         corners: Their numbers within the tile, shape (m, 3).
@@ -70,7 +70,7 @@ def blurred(values: FloatArray, radius: int) -> FloatArray:
 
 
 def _wall_directions(heights: FloatArray, rows: slice, columns: slice) -> FloatArray:
-    """Where the ground falls to around each vertex of a tile, unit vectors in X and Y, (n, 2)."""
+    """Where the surface falls to around each vertex of a tile, unit vectors in X and Y, (n, 2)."""
     margin = WALL_RADIUS + 1
     first_row, first_column = max(0, rows.start - margin), max(0, columns.start - margin)
     around = heights[first_row : rows.stop + margin, first_column : columns.stop + margin]

@@ -183,7 +183,7 @@ class Stage:
         return frame.position(self._position[None], length_difference(self._tool))[0]
 
     def _spray(self) -> Chips:
-        """Chips of what was removed of late; out of a slot of a height map they fly from its upper edge."""
+        """Chips of what was removed last; out of a slot of a height map they fly from its upper edge."""
         tip = tip_position(self.model, self.data, self._tool.length)
         if self._cutter is not None and not self._cutter.tilts:
             tip[2] += MM * max(0.0, self._cutter.map.top - self._tip[2])
@@ -227,7 +227,6 @@ def stage(
         size: Width and height of the pictures [px].
         paint: Colours of the stock's cells, shape (ny, nx, 4), as metal looks where the fourth is 0; or, of one
             that is cut from several sides, what colours its surface; None: all looks like metal.
-        trail: Whether the path of the tool is seen.
 
     Raises:
         RenderError: The renderer does not work here.
@@ -271,13 +270,13 @@ def _build_props(
     points = trail_points(scene.recording, scene.summary)
     seen = framed(points.position if cutter is None else cutter.material.corners)
     add_part_cameras(spec, placement, *seen)
-    way = Trail(
+    tool_trail = Trail(
         points if trail else points[_NO_POINTS], _trail_radius(points.position), scene.error_scale
     )
-    way.add_to(spec)
+    tool_trail.add_to(spec)
     tools = ToolBodies(scene.summary.tools, scene.machine.file.spindle.flange_diameter)
     tools.add_to(spec)
-    return _Props(placement, cutter, surface, way, tools, seen)
+    return _Props(placement, cutter, surface, tool_trail, tools, seen)
 
 
 def _stock_surface(

@@ -31,11 +31,11 @@ FLAT_FACES = np.array([[0, 1, 2], [0, 2, 3]])
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class _Tile:
-    """A rectangle of the net, drawn by one of two geoms.
+    """A rectangle of the mesh, drawn by one of two geoms.
 
     Attributes:
-        rows: Rows of the net, borders included.
-        columns: Columns of the net, borders included.
+        rows: Rows of the mesh, borders included.
+        columns: Columns of the mesh, borders included.
         corners: Vertices of the faces, numbered within the tile, shape (n, 3).
         whole: Whether every square of it belongs to the blank.
     """
@@ -67,7 +67,7 @@ class StockSurface:
     """
 
     def __init__(self, material: HeightMapMaterial, texture: StockTexture, step: int) -> None:
-        """Lay the drawn net.
+        """Make the drawn mesh.
 
         Args:
             material: The stock before it is cut.

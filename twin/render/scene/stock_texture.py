@@ -1,4 +1,4 @@
-"""The stock's texture: raw skin, machined surface with the cutter's marks, shade in the depths."""
+"""The stock's texture: raw surface, machined surface with the cutter's marks, shade in the depths."""
 
 import mujoco
 import numpy as np
@@ -21,7 +21,7 @@ MARK_DEPTH = 0.045
 """Share of the brightness that the marks take or add."""
 
 GRAIN = 0.02
-"""Unevenness of the raw skin, as a share of its brightness."""
+"""Unevenness of the raw surface, as a share of its brightness."""
 
 SHADE_MM = 5.0
 """How far around a place the surface is looked at to see how deep it lies [mm]."""
@@ -30,11 +30,11 @@ SHADE_DEPTH = 0.5
 
 
 STEEP = 1.0
-"""Slope from which a square of the drawn net is a wall."""
+"""Slope from which a square of the drawn mesh is a wall."""
 
 
 def _texel_step(cells: int, mesh_step: int) -> int:
-    """Cells from one texel to the next: a divisor of the net's step, so that vertices have one."""
+    """Cells from one texel to the next: a divisor of the mesh's step, so that vertices have one."""
     fewest = max(1, -(-cells // MOST_TEXELS))
     return min(
         step
@@ -52,7 +52,7 @@ class StockTexture:
         """Choose the texture's size.
 
         Args:
-            mesh_step: Cells from one vertex of the drawn net to the next.
+            mesh_step: Cells from one vertex of the drawn mesh to the next.
             marks: Path of the tool at the last cut, shape (ny, nx) [mm]; of no size: no marks.
             paint: Colours to use instead where the fourth channel is not 0, shape (ny, nx, 4).
         """
@@ -131,7 +131,7 @@ class StockTexture:
         """Let walls fade from top to bottom, wherever between two vertices the step really is.
 
         A wall is drawn as one slope from vertex to vertex; the texels between them would paint
-        its edge at another height in every square of the net.
+        its edge at another height in every square of the mesh.
         """
         between = self._between
         if between == 1:
@@ -160,6 +160,6 @@ class StockTexture:
         """Brightness that the cutter's marks give a machined surface."""
         if not self._marks.size:
             return np.ones_like(self._grain[rows, columns])
-        way = self._marks[:: self._step, :: self._step][rows, columns]
+        travel = self._marks[:: self._step, :: self._step][rows, columns]
         pitch = MARK_TEXELS * self._step * self._map.cell
-        return 1.0 + MARK_DEPTH * np.sin(2 * np.pi * way / pitch)
+        return 1.0 + MARK_DEPTH * np.sin(2 * np.pi * travel / pitch)

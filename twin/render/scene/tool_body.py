@@ -95,15 +95,15 @@ class ToolBodies:
         self._rest = model.body_quat.copy()
         self.show(self._first, 1.0)
 
-    def show(self, tool: ToolTable, way: float) -> None:
+    def show(self, tool: ToolTable, sense: float) -> None:
         """Show one tool, a little turned on since the last picture.
 
         Args:
             tool: The one in the spindle.
-            way: 1 where the spindle turns clockwise seen from above, -1 the other way, 0 not at all.
+            sense: 1 where the spindle turns clockwise seen from above, -1 the other way, 0 not at all.
         """
         model = self._model
-        self._angle -= way * np.deg2rad(SPIN_DEG)
+        self._angle -= sense * np.deg2rad(SPIN_DEG)
         spin = np.array([np.cos(0.5 * self._angle), 0.0, 0.0, np.sin(0.5 * self._angle)])
         for number in self._tools:
             body = int(model.body(f"{PREFIX}{number}").id)

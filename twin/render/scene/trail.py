@@ -198,8 +198,8 @@ class Trail:
         growing = max(0, shown - first)
         tubes[growing:] = tubes[0, 0]
         if tip is not None and shown >= first and growing < len(tubes):
-            way = np.stack([self._points.position[shown], tip + self._lift])
-            tubes[growing] = _tube_vertices(way, self._radius)[0]
+            direction = np.stack([self._points.position[shown], tip + self._lift])
+            tubes[growing] = _tube_vertices(direction, self._radius)[0]
         axis = tubes.mean(axis=2, keepdims=True)
         outwards = tubes - axis
         corner = _tube_faces(len(tubes))
@@ -214,13 +214,13 @@ def _tube_vertices(points: FloatArray, radius: float) -> FloatArray:
     """Rings around both ends of every stretch, shape (n - 1, 2, SIDES, 3) [mm]."""
     if len(points) < 2:
         return np.zeros((0, 2, SIDES, 3))
-    way = np.diff(points, axis=0)
-    length = np.linalg.norm(way, axis=1, keepdims=True)
-    way = np.where(length > 0, way / np.maximum(length, 1e-30), [1.0, 0.0, 0.0])
-    upright = np.abs(way[:, 2:]) > 0.9
-    aside = np.cross(way, np.where(upright, [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]))
+    direction = np.diff(points, axis=0)
+    length = np.linalg.norm(direction, axis=1, keepdims=True)
+    direction = np.where(length > 0, direction / np.maximum(length, 1e-30), [1.0, 0.0, 0.0])
+    upright = np.abs(direction[:, 2:]) > 0.9
+    aside = np.cross(direction, np.where(upright, [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]))
     aside /= np.linalg.norm(aside, axis=1, keepdims=True)
-    up = np.cross(aside, way)
+    up = np.cross(aside, direction)
     angle = np.pi / 2 + 2 * np.pi * np.arange(SIDES) / SIDES
     ring = radius * (
         np.cos(angle)[None, :, None] * aside[:, None] + np.sin(angle)[None, :, None] * up[:, None]

@@ -33,7 +33,6 @@ class InterpretedProgram:
     """The moves and events that a program makes.
 
     Attributes:
-        moves: How many moves there are.
         start: Where the axes are at the program's start, program coordinates, shape (k,) [mm or deg]. The
             job says it, or the program itself before its first move (G92 of ``codesys``).
     """

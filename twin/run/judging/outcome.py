@@ -29,7 +29,7 @@ from twin.run.judging.cut_notices import (
     tooth_feed_notices,
     unjudged_limit_notices,
 )
-from twin.run.judging.scope import Scope, Unwatched, nothing_judged, scope_of
+from twin.run.judging.scope import Unwatched, VerdictScope, nothing_judged, scope_of
 from twin.run.machining import Machining
 from twin.run.messages import Notice, shown
 from twin.run.observers import (
@@ -52,12 +52,10 @@ class Outcome:
     """What a run came to.
 
     Attributes:
-        verdict: Pass, fail or alarm, with the reasons.
         cut: What was cut; None without a stock.
         gouge: The deepest cut into the nominal part, beyond what the job allows.
         inspection: How far the part is from the nominal one; None without one.
         loads: The greatest of what the tools bore.
-        alarms: Alarms of the machine, in order.
         near_miss: The closest that the tool's side and the part's came, below the machine's limit.
         warnings: Those of the interpreter, of the program and of the cut.
         trace: The run thinned for plots.
@@ -79,7 +77,7 @@ class Outcome:
     alarms: tuple[Alarm, ...]
     near_miss: NearMiss | None
     warnings: tuple[Diagnostic, ...]
-    scope: Scope
+    scope: VerdictScope
     trace: Trace
     tools: tuple[ToolUse, ...] = ()
     part: bytes = b""
@@ -116,7 +114,6 @@ def outcome_of(
 
     Args:
         motion: What moved the machine; None: nothing did.
-        alarms: Alarms of the machine, in order.
         floats: Why nothing carries the stock; None where something does.
     """
     job, reached, machining = preparation.job, followers.reached, followers.machining

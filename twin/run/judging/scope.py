@@ -27,18 +27,14 @@ WALLS = "cuts into the nominal part"
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Unwatched:
-    """Something that the verdict does not cover.
-
-    Attributes:
-        why: The reason, and what would have it watched.
-    """
+    """Something that the verdict does not cover."""
 
     what: str
     why: str
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
-class Scope:
+class VerdictScope:
     """What a verdict looked at.
 
     Attributes:
@@ -108,7 +104,7 @@ def scope_of(
     unjudged: Sequence[Unwatched],
     alarms: Sequence[Alarm],
     inspection: Inspection | None,
-) -> Scope:
+) -> VerdictScope:
     """Put the scope of a run together.
 
     Args:
@@ -138,7 +134,7 @@ def scope_of(
     )
     unused = (tool.number for tool in file.tools if tool.number not in watch.tools_used)
     listed = "tools" in file.model_fields_set
-    return Scope(
+    return VerdictScope(
         watched=tuple(watched),
         not_watched=blind,
         stock=None if cut is None else cut.stock,

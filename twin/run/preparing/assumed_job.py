@@ -91,9 +91,6 @@ def with_assumptions(
 
     What a ``twin.toml`` above it sets replaces what would be assumed.
 
-    Args:
-        machine: Overrides the job's machine.
-
     Raises:
         ProgramError: The program is wrong.
     """

@@ -9,7 +9,7 @@ from twin.machine.description.config import Machine
 from twin.nc.control.dialect import JobKey
 from twin.nc.control.settings import Consulted, ControlSettings, MachineFunction, ToolData
 from twin.nc.dialects import DIALECTS, Dialect
-from twin.nc.path.tool_center.tool_center import Setup
+from twin.nc.path.tool_center.tool_center import PartOnMachine
 from twin.run.preparing.layout import Layout, require_axes
 
 
@@ -109,12 +109,14 @@ def says_itself(job: Job, key: str) -> bool:
     return not job.layers or layer_of(job.layers, key) in (VARIED, job.path)
 
 
-def _setup(job: Job, machine: Machine, layout: Layout) -> Setup | None:
+def _setup(job: Job, machine: Machine, layout: Layout) -> PartOnMachine | None:
     """The part on the machine; None where no axis turns."""
     if "rotary" not in machine.axes.kinds:
         return None
     travels = [machine.axis(name).travel or (-np.inf, np.inf) for name in machine.axes.names]
-    return Setup(machine.kinematics, layout.part_zero, job.file.tools[0].length, np.array(travels))
+    return PartOnMachine(
+        machine.kinematics, layout.part_zero, job.file.tools[0].length, np.array(travels)
+    )
 
 
 def _block_skip_levels(file: JobFile) -> frozenset[int]:

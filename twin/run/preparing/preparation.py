@@ -44,9 +44,6 @@ class Preparation:
     """A job made concrete.
 
     Attributes:
-        job: The job file and where it lies.
-        layout: Where the job lies on its machine.
-        dialect: The language that the program is written in.
         settings: What the interpreter has to know of machine and job.
         dialect_reason: What showed the dialect of a program whose job names none; empty: the job does.
         reading: What was assumed of how a raw program is read.
@@ -89,7 +86,6 @@ def prepare(
     """Read a job, or a program with its job beside it, and all that it names.
 
     Args:
-        dialect: Overrides the job's dialect.
         machine: Overrides the job's machine; a path is relative to the working folder.
         changes: Values of the job (``job.``) and the machine file (``machine.``) to change.
         assuming: How a program without a job is read may be assumed; the caller reports what was.

@@ -49,7 +49,7 @@ _NUMBERED = ("fanuc", "haas")
 
 
 @dataclasses.dataclass(frozen=True)
-class Choice:
+class DialectChoice:
     """A dialect, and why it was taken.
 
     Attributes:
@@ -81,7 +81,9 @@ class _Trial:
         return float(np.nanmin(self.moves.feed, initial=math.inf))
 
 
-def chosen_dialect(path: Path, settings: ControlSettings, source: Source | None = None) -> Choice:
+def chosen_dialect(
+    path: Path, settings: ControlSettings, source: Source | None = None
+) -> DialectChoice:
     """Tell the dialect of a raw program.
 
     Args:
@@ -98,7 +100,7 @@ def chosen_dialect(path: Path, settings: ControlSettings, source: Source | None 
     reading = reading_of(source)
     candidates = sorted(reading.candidates, key=_rank)
     if len(candidates) == 1:
-        return Choice(DIALECTS[candidates[0]], reading.reason)
+        return DialectChoice(DIALECTS[candidates[0]], reading.reason)
     if len(source.lines) > _MOST_LINES:
         raise UsageError(f"{source.name}: could be {_either(candidates)}; {_type(candidates)}")
     if settings.machine_zero is None:  # the dialect does not depend on where that lies
@@ -122,7 +124,7 @@ def chosen_dialect(path: Path, settings: ControlSettings, source: Source | None 
     if not good and _ROUTERS in rare and not numbered:
         router = _tried(path, DIALECTS[_ROUTERS], settings)
         if router.error is None:
-            return Choice(DIALECTS[_ROUTERS], f"it alone reads it; {_first_refusal(trials)}")
+            return DialectChoice(DIALECTS[_ROUTERS], f"it alone reads it; {_first_refusal(trials)}")
     if not good:
         further = [_tried(path, DIALECTS[name], settings) for name in rare] if common else []
         raise _refused(trials, [trial.name for trial in further if trial.error is None])
@@ -189,7 +191,7 @@ def _dropped(good: Sequence[_Trial], quick: Sequence[_Trial], meant: Sequence[_T
     return "; ".join(reasons)
 
 
-def _choice(name: str, meant: Sequence[_Trial], why: str) -> Choice:
+def _choice(name: str, meant: Sequence[_Trial], why: str) -> DialectChoice:
     """The dialect that is taken of those that may be meant."""
     slightly = ""
     for other in meant[1:]:
@@ -204,11 +206,11 @@ def _choice(name: str, meant: Sequence[_Trial], why: str) -> Choice:
             )
     names = [trial.name for trial in meant]
     if len(names) == 1:
-        return Choice(DIALECTS[names[0]], why or "no other reads it without an error")
+        return DialectChoice(DIALECTS[names[0]], why or "no other reads it without an error")
     same = f"{_either(names, 'and')} make the same moves of it"
     if slightly:
         same += f", but {slightly}; {_type(names[1:])}"
-    return Choice(DIALECTS[names[0]], f"{same}; {why}" if why else same)
+    return DialectChoice(DIALECTS[names[0]], f"{same}; {why}" if why else same)
 
 
 def _rank(name: str) -> int:
@@ -270,9 +272,9 @@ def _paths_apart(one: _Trial, other: _Trial) -> str:
     apart &= ~_pecks_apart(a, b, count)
     turned = np.abs(a.sweep[:count] - b.sweep[:count]) > _SAME
     kinds = (a.motion[:count] != b.motion[:count]) | (a.line[:count] != b.line[:count])
-    ways = np.flatnonzero(apart | turned | kinds)
-    if len(ways) or len(a) != len(b):
-        row = int(ways[0]) if len(ways) else count
+    differing = np.flatnonzero(apart | turned | kinds)
+    if len(differing) or len(a) != len(b):
+        row = int(differing[0]) if len(differing) else count
         longer = a if len(a) > row else b
         goals = " and ".join(
             f"{trial.name} goes to {_place(trial.moves, row)}"

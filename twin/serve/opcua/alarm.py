@@ -16,7 +16,7 @@ _SEVERITIES = {"Fault": 800, "Warning": 400, "Normal": 1}
 """Of 1 to 1000: an alarm stops the machine, a warning does not."""
 
 
-class Alarm:
+class ConditionNode:
     """One condition, which is active while a fault or a warning is there.
 
     Nobody has to acknowledge it: like a read-only monitor of a control, the server takes no orders.

@@ -15,7 +15,7 @@ from asyncua.server.server import Server
 from twin.machine.description.config import Machine
 from twin.serve.buffer import Condition, Observation
 from twin.serve.device import UNAVAILABLE
-from twin.serve.opcua.alarm import Alarm
+from twin.serve.opcua.alarm import ConditionNode
 from twin.serve.opcua.node_sets import DI, MACHINE_TOOL, MACHINERY
 
 ua: Any = asyncua.ua
@@ -92,7 +92,7 @@ class MachineTool:
         self._states: dict[str, Any] = {}
         self._programs: list[tuple[Node, Node]] = []
         self._channel_state: Node | None = None
-        self._alarm = Alarm(server)
+        self._alarm = ConditionNode(server)
         self._rotating: Node | None = None
 
     async def build(self, program: str, tools: Mapping[int, str]) -> None:

@@ -15,6 +15,8 @@ from asyncua.crypto.cert_gen import setup_self_signed_certificate
 from asyncua.crypto.permission_rules import User, UserRole
 from asyncua.crypto.truststore import TrustStore
 from asyncua.crypto.validator import CertificateValidator, CertificateValidatorOptions
+from asyncua.server import monitored_item_service
+from asyncua.server.monitored_item_service import WhereClauseEvaluator
 from asyncua.server.server import Server
 from asyncua.server.user_managers import UserManager
 from cryptography.x509.oid import ExtendedKeyUsageOID
@@ -22,7 +24,6 @@ from cryptography.x509.oid import ExtendedKeyUsageOID
 from twin.errors import UsageError
 from twin.machine.description.config import Machine
 from twin.serve.agent import Agent
-from twin.serve.opcua.event_filter import filter_by_subtypes
 from twin.serve.opcua.machine_tool import MachineTool
 from twin.serve.opcua.node_sets import import_node_sets
 
@@ -113,7 +114,7 @@ async def opcua_server(place: Place, content: Content) -> AsyncIterator[MachineT
     server = Server(user_manager=_Readers())
     # Clients that come later ask for what does not turn (ConditionRefresh).
     server.iserver.bind_condition_methods = 1
-    filter_by_subtypes()
+    _filter_by_subtypes()
     await server.init()
     server.iserver.max_connections = _MOST_CONNECTIONS
     server.iserver.max_pending_activation_seconds = _PATIENCE_S
@@ -169,3 +170,36 @@ async def mirror(
                 await tool.update(observation)
             told = max((one.sequence for one in found), default=told)
             await asyncio.sleep(_PERIOD_S)
+
+
+class _SubtypeEvaluator(WhereClauseEvaluator):
+    """The library's evaluator, for which a type holds its subtypes.
+
+    OPC UA 10000-4, 7.7.3 has ``OfType`` so; ``asyncua`` compares the event's own type alone, and clients that ask for all
+    alarms by ``AlarmConditionType`` or ``AcknowledgeableConditionType`` would receive none.
+    """
+
+    def _eval_el(self, index: int, event: Any) -> Any:
+        element: Any = self.elements[index]
+        if element.FilterOperator != ua.FilterOperator.OfType:
+            return super()._eval_el(index, event)
+        wanted, kind = self._eval_op(element.FilterOperands[0], event), event.EventType
+        while kind is not None and kind != wanted:
+            kind = self._supertype(kind)
+        return kind is not None
+
+    def _supertype(self, kind: Any) -> Any:
+        has_subtype = ua.NodeId(ua.ObjectIds.HasSubtype)
+        return next(
+            (
+                reference.NodeId
+                for reference in self._aspace[kind].references
+                if reference.ReferenceTypeId == has_subtype and not reference.IsForward
+            ),
+            None,
+        )
+
+
+def _filter_by_subtypes() -> None:
+    """Let servers of this process evaluate filters so."""
+    monitored_item_service.WhereClauseEvaluator = _SubtypeEvaluator

@@ -281,8 +281,8 @@ async def _splice(page: WebSocket, door: Door, path: str) -> None:
                 else:
                     await page.send_text(message)
 
-        ways = [asyncio.create_task(up()), asyncio.create_task(down())]
-        _, left = await asyncio.wait(ways, return_when=asyncio.FIRST_COMPLETED)
-        for way in left:
-            way.cancel()
-        await asyncio.gather(*ways, return_exceptions=True)
+        directions = [asyncio.create_task(up()), asyncio.create_task(down())]
+        _, left = await asyncio.wait(directions, return_when=asyncio.FIRST_COMPLETED)
+        for direction in left:
+            direction.cancel()
+        await asyncio.gather(*directions, return_exceptions=True)

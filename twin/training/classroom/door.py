@@ -56,7 +56,7 @@ class _Connection(http.client.HTTPConnection):
 
 
 def opened_by(secret: str, app: ASGIApp) -> ASGIApp:
-    """An application that only answers who sends a secret in the header ``HEADER``; others are hung up."""
+    """An application that only answers who sends a secret in the header ``HEADER``; others are disconnected."""
 
     async def guarded(scope: Scope, receive: Receive, send: Send) -> None:
         given = dict(scope.get("headers", ())).get(HEADER.encode(), b"")

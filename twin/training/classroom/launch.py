@@ -20,11 +20,7 @@ from twin.web.server import LOOPBACK, WebServer, require_three
 
 
 class OpenClass(NamedTuple):
-    """A class that is open.
-
-    Attributes:
-        pupils: Name and address of each pupil.
-    """
+    """A class that is open."""
 
     teacher: str
     pupils: tuple[tuple[str, str], ...]

@@ -70,11 +70,7 @@ class Seat:
 
 
 class Rooms:
-    """Begins and ends rooms; of its methods all but ``close`` belong to the server's event loop.
-
-    Attributes:
-        seats: By key, in the roster's order.
-    """
+    """Begins and ends rooms; of its methods all but ``close`` belong to the server's event loop."""
 
     def __init__(
         self,

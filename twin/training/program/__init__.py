@@ -1,1 +1,1 @@
-"""A program on its way to the machine: read in parts, planned, and stepped block by block."""
+"""A program as it reaches the machine: read in parts, planned, and stepped block by block."""

@@ -20,7 +20,7 @@ from twin.nc.path.move_columns import NAN, MoveColumns, Segment
 
 Z = 2
 SHORTEST = 1e-6
-"""A leg that is shorter is left out [mm or deg]."""
+"""A jog move that is shorter is left out [mm or deg]."""
 
 
 def approach(control: Control, stand: FloatArray, line: int, clearance: float) -> Moves:

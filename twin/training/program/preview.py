@@ -47,7 +47,6 @@ class Preview:
         points: The tip's path in the part's frame, shape (n, 3) [mm].
         origin: Where program zero lies there, as the control has it, shape (3,) [mm].
         rapid: Whether the line that leads to each point is a rapid, shape (n,).
-        moves: How many moves it has.
         complete: The program has no more.
         message: Why the path ends early, or is not drawn; empty: it does not.
         finding: What the interpreter found, where that is the reason.

@@ -25,7 +25,7 @@ from twin.nc.text.diagnostics.diagnostics import Diagnostic, ProgramError
 from twin.nc.text.source import Source
 from twin.run.dry_run.spindle_dwells import SpindleDwells
 from twin.training.program.block_search import BlockSearch
-from twin.training.program.block_walk import BlockWalk, ModalState
+from twin.training.program.block_tracker import BlockTracker, ModalState
 from twin.training.program.run_options import Inherited, RunOptions
 
 MOVES_KEPT_BEHIND = 2
@@ -89,7 +89,7 @@ class ProgramReader:
     """Interprets a program, a bounded number of blocks at a time.
 
     Attributes:
-        walk: The blocks of the present part.
+        tracker: The blocks of the present part.
         waiting: Groups of them that nobody has taken yet.
         start: Where the part begins, machine coordinates, shape (k,) [mm or deg].
         zero: Machine coordinates of program zero, shape (k,) [mm or deg].
@@ -138,7 +138,7 @@ class ProgramReader:
         self._clear_part()
 
     def _clear_part(self) -> None:
-        self.walk = BlockWalk()
+        self.tracker = BlockTracker()
         self.moves = MoveWindow()
         self.waiting: deque[Chunk] = deque()
 
@@ -291,7 +291,7 @@ class ProgramReader:
         happen = [one for one in chunk.events if changes or not _is_tool_change(one)]
         chunk = Chunk(chunk.moves, tuple(self._spindle_dwells.among(happen)))
         for event in chunk.events:
-            self.walk.note_event(self.moves.count, event)
+            self.tracker.note_event(self.moves.count, event)
         self.moves.add(chunk.moves)
         self.waiting.append(chunk)
 
@@ -302,7 +302,7 @@ class ProgramReader:
             self._active, self._codes = active, tuple(map(self._executor.dialect.code_name, active))
         factor = FEED_FACTORS.get(control.modal.feed_mode)
         feed, tool = control.motion.feed, control.tools.spindle
-        self.walk.note(mark, ModalState(block.line, self._codes, feed, tool, factor))
+        self.tracker.note(mark, ModalState(block.line, self._codes, feed, tool, factor))
 
     def _look_for_stop(self, block: Block) -> None:
         words = [f"M{word.value:g}" for word in block.words if word.address == "M"

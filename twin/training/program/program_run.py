@@ -1,4 +1,4 @@
-"""A program, or an MDI block, on its way to the machine: parts between stops, each with its moves.
+"""A program, or an MDI block, as it reaches the machine: parts between stops, each with its moves.
 
 It is interpreted ahead of the axes, a bounded number of blocks in each slice of time, so that a program
 that loops for ever keeps nobody waiting: where the axes have caught up with it, they come to rest until there are
@@ -19,7 +19,7 @@ from twin.nc.control.dialect import Dialect
 from twin.nc.control.settings import ControlSettings
 from twin.nc.functions import SpindleState
 from twin.nc.text.source import Source
-from twin.training.program.block_walk import ModalState
+from twin.training.program.block_tracker import ModalState
 from twin.training.program.program_reader import (
     MOVES_AT_ONCE,
     MOVES_KEPT_BEHIND,
@@ -82,19 +82,19 @@ class ProgramRun:
     @property
     def held(self) -> bool:
         """Whether cycle start is waited for."""
-        return self._motion is not None and (self._motion.held or self.reader.walk.paused)
+        return self._motion is not None and (self._motion.held or self.reader.tracker.paused)
 
     @property
     def finished(self) -> bool:
         """Whether the present part has come to its end, or to rest after ``drop``."""
         if self._motion is None or self.dropped:
             return self.dropped and (self._motion is None or self._motion.finished)
-        return self._motion.finished and not self.reader.walk.paused
+        return self._motion.finished and not self.reader.tracker.paused
 
     @property
     def singly(self) -> set[int]:
         """Source lines of the present part that were run in single block, from stop to stop."""
-        return self.reader.walk.singly
+        return self.reader.tracker.singly
 
     def begin(
         self,
@@ -118,13 +118,7 @@ class ProgramRun:
         self._look_ahead()
 
     def drive(self, count: int, feed: float, rapid: float, *, single: bool) -> Setpoints | None:
-        """The next setpoints; None while the first moves are being interpreted.
-
-        Args:
-            feed: Factor of the feed override.
-            rapid: Factor of the rapid override.
-            single: Whether to stop at the end of every block.
-        """
+        """The next setpoints; None while the first moves are being interpreted."""
         self._look_ahead()
         motion = self._motion
         if motion is None:
@@ -140,8 +134,8 @@ class ProgramRun:
             self._move = int(setpoints.move[-1])
             # A program may be endless: what the axes are past is dropped.
             self.reader.moves.forget_behind(int(setpoints.move[0]))
-            self.reader.walk.forget(int(setpoints.move[0]) - MOVES_KEPT_BEHIND)
-        if single and not self.dropped and not self.reader.walk.paused:
+            self.reader.tracker.forget(int(setpoints.move[0]) - MOVES_KEPT_BEHIND)
+        if single and not self.dropped and not self.reader.tracker.paused:
             self._stop_behind_block(motion, setpoints)
         return setpoints
 
@@ -149,19 +143,19 @@ class ProgramRun:
         """The first block of a part: it may move nothing, or wait for start."""
         assert self._motion is not None
         if self._begin_paused:
-            self.reader.walk.pause_before_all()
+            self.reader.tracker.pause_before_all()
         elif self._single and self._moves_next():
-            self.reader.walk.run_next()
+            self.reader.tracker.run_next()
         elif self._single:
-            self.reader.walk.pass_one()
-        if self.reader.walk.paused:
+            self.reader.tracker.pass_one()
+        if self.reader.tracker.paused:
             self._motion.hold()
 
     def _moves_next(self) -> bool:
         """Whether the block that comes next moves the axes, or is the last one of the part."""
-        line = self.reader.walk.next_line()
+        line = self.reader.tracker.next_line()
         after = self.reader.moves.line(self._last_move + 1)
-        if self.reader.ending is not None and self.reader.walk.next_is_last:
+        if self.reader.ending is not None and self.reader.tracker.next_is_last:
             return True
         return after == line
 
@@ -173,8 +167,8 @@ class ProgramRun:
         if motion.finished:
             self._last_move = self.reader.moves.count - 1
         stopped = motion.held and motion.standing and not self._hold_asked
-        if motion.finished and self.reader.walk.at_last:
-            self.reader.walk.go_freely()
+        if motion.finished and self.reader.tracker.at_last:
+            self.reader.tracker.go_freely()
             return
         if not (stopped or motion.finished):
             return
@@ -185,9 +179,9 @@ class ProgramRun:
         self._stopped_behind = self._last_move
         line = self.reader.moves.line(self._last_move)
         if line is not None:
-            self.reader.walk.stop_behind(self._last_move, line)
-        if motion.finished and self.reader.walk.at_last:
-            self.reader.walk.end_singly()
+            self.reader.tracker.stop_behind(self._last_move, line)
+        if motion.finished and self.reader.tracker.at_last:
+            self.reader.tracker.end_singly()
 
     def hold(self) -> None:
         """Stop on the path until ``start``."""
@@ -200,19 +194,19 @@ class ProgramRun:
         if self._motion is None:
             return
         held, self._hold_asked = self._hold_asked, False
-        if self.reader.walk.paused and self._single and not held and not self._moves_next():
-            self.reader.walk.pass_one()
+        if self.reader.tracker.paused and self._single and not held and not self._moves_next():
+            self.reader.tracker.pass_one()
             return
-        if self.reader.walk.paused and self._single:
-            self.reader.walk.run_next()
+        if self.reader.tracker.paused and self._single:
+            self.reader.tracker.run_next()
         elif not self._single:
-            self.reader.walk.go_freely()
+            self.reader.tracker.go_freely()
         self._motion.start()
 
     def drop(self) -> None:
         """Come to rest on the path, and forget the rest."""
         self.dropped = True
-        self.reader.walk.end_singly()
+        self.reader.tracker.end_singly()
         if self._motion is not None:
             self._motion.reset()
 
@@ -298,21 +292,21 @@ class ProgramRun:
         if self._motion is None or self.dropped:
             return []
         if self.finished:
-            return self.reader.walk.due(math.inf, 0)
+            return self.reader.tracker.due(math.inf, 0)
         found: list[Function] = []
         for row in _changes(setpoints):
             # What comes before the first move begins with the wait for it.
             place = max(int(setpoints.move[row]) + float(setpoints.fraction[row]), 0.0)
-            found += self.reader.walk.due(place, int(setpoints.line[row]))
+            found += self.reader.tracker.due(place, int(setpoints.line[row]))
         return found
 
     def modal(self, move: int) -> ModalState | None:
         """What is in force during a move of the part."""
-        return self.reader.walk.state(move)
+        return self.reader.tracker.state(move)
 
     def line(self, line: int) -> int:
         """Source line of the block that runs, or behind which single block has stopped."""
-        return self.reader.walk.line if self.reader.walk.paused else line
+        return self.reader.tracker.line if self.reader.tracker.paused else line
 
 
 def _changes(setpoints: Setpoints) -> list[int]:

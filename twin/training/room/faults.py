@@ -4,7 +4,7 @@ from typing import Any
 
 from twin.errors import ConfigError
 from twin.machine.description.machine_file import AxisTable
-from twin.training.room.observed import Notice, Observed
+from twin.training.room.observed import Observed, RoomAlarm
 from twin.training.scene.fault_table import FaultTable
 
 
@@ -26,7 +26,7 @@ class Faults:
         """
         axes = room.machine.machine.axes
         if fault.kind == "alarm":
-            room.raise_alarm(Notice("external", "the machine's own safety circuit has tripped"))
+            room.raise_alarm(RoomAlarm("external", "the machine's own safety circuit has tripped"))
             return
         if fault.axis not in axes.names:
             known = ", ".join(axes.names)

@@ -20,13 +20,12 @@ from twin.training.scene.scene_file import Scene
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Notice:
+class RoomAlarm:
     """An alarm.
 
     Attributes:
         code: Stable, searchable name of its kind: those of ``twin.machine.watching.alarms``, and
             ``program`` (the interpreter refused a block), ``external`` (a safety circuit).
-        axis: Name of the axis, or empty.
         line: Source line of the program, 0 where none.
         time_s: When, in machine time [s].
         finding: What the interpreter found, where that is the cause.
@@ -97,10 +96,10 @@ class Observed(Protocol):
         ...
 
     @property
-    def alarm(self) -> Notice | None:
+    def alarm(self) -> RoomAlarm | None:
         """The alarm that has not been cleared."""
         ...
 
-    def raise_alarm(self, notice: Notice) -> None:
+    def raise_alarm(self, notice: RoomAlarm) -> None:
         """The control stops everything and gives the reason."""
         ...

@@ -28,7 +28,7 @@ from twin.training.room.faults import Faults
 from twin.training.room.judging.alarm_log import AlarmLog
 from twin.training.room.judging.inspection import Inspection, inspect_part, moment_of
 from twin.training.room.judging.judge import Judge
-from twin.training.room.observed import Notice
+from twin.training.room.observed import RoomAlarm
 from twin.training.room.rest import Rest
 from twin.training.room.run_settings import run_settings
 from twin.training.room.setup.setup import Setup, scene_tables
@@ -43,14 +43,9 @@ class Room:
     """The machine of a scene while it runs; each of its parts changes by its own methods alone.
 
     Attributes:
-        setup: Blank, tool and tables.
-        program: The program in the control's memory.
-        manual: Moves by hand.
         alarms: Alarms and broken tools.
-        judge: Looks after the tasks.
         rest: Whether the machine rests, and need not be computed.
         tick: Servo periods since the beginning.
-        samples: The last slice.
         handed_in: The part as it was when the scene was judged; None: it has not been.
     """
 
@@ -97,7 +92,7 @@ class Room:
         return SLICE * self.machine.machine.file.servo_period_s
 
     @property
-    def alarm(self) -> Notice | None:
+    def alarm(self) -> RoomAlarm | None:
         """The alarm that has not been cleared."""
         return self.alarms.active
 
@@ -120,7 +115,7 @@ class Room:
             self.rest.look(self, self.slice_s)
             self.judge.look(self)
             if self.judge.over and self.handed_in is None:
-                last = moment_of(self, Notice("", "", time_s=self.time_s))
+                last = moment_of(self, RoomAlarm("", "", time_s=self.time_s))
                 self.handed_in = inspect_part(self, last)
 
     def _step(self, count: int) -> None:
@@ -146,7 +141,7 @@ class Room:
             self.alarms.note_broken(self.setup.finder.number)
         for found in self.setup.cut.new_breaks():
             line = found.alarm.line if self.slot.running == "program" else 0
-            notice = Notice(found.alarm.code, found.alarm.message, line=line)
+            notice = RoomAlarm(found.alarm.code, found.alarm.message, line=line)
             self.alarms.note_break(self, found.tool, notice)
         self._end_of_part()
 
@@ -166,7 +161,7 @@ class Room:
         """Change what the spindle is commanded; a speed that is limited is a warning, and stops nothing."""
         limit = state.limit_of(state.speed)
         if limit and state.speed != self.auxiliaries.spindle.speed:
-            self.alarms.warn(self, Notice(SPINDLE_LIMITED, limit, line=line))
+            self.alarms.warn(self, RoomAlarm(SPINDLE_LIMITED, limit, line=line))
         self.auxiliaries.turn(state)
 
     def _latch(self, alarm: Alarm | None) -> None:
@@ -175,10 +170,10 @@ class Room:
             # A move by hand is a block of its own, which nobody has written.
             line = 0 if self.slot.running == "jog" else alarm.line
             self.raise_alarm(
-                Notice(alarm.code, alarm.message, alarm.axis, line, between=alarm.between)
+                RoomAlarm(alarm.code, alarm.message, alarm.axis, line, between=alarm.between)
             )
 
-    def raise_alarm(self, notice: Notice) -> None:
+    def raise_alarm(self, notice: RoomAlarm) -> None:
         """The control stops everything and gives the reason; the first alarm counts."""
         self.alarms.activate(self, notice)
         self.give_up()
@@ -211,7 +206,7 @@ class Room:
         else:
             assert ending is not None
             line, finding = reader.ending_line, reader.finding
-            self.raise_alarm(Notice(ending, reader.message, line=line, finding=finding))
+            self.raise_alarm(RoomAlarm(ending, reader.message, line=line, finding=finding))
 
     def _end_of_run(self, run: ProgramRun) -> None:
         """A program, an MDI block or a move by hand is over."""
@@ -247,9 +242,9 @@ class Room:
         except ProgramError as error:
             found = error.diagnostic
             message = f"{found.code}: {found.message}"
-            self.raise_alarm(Notice("program", message, line=found.line, finding=found))
+            self.raise_alarm(RoomAlarm("program", message, line=found.line, finding=found))
         except TwinError as error:
-            self.raise_alarm(Notice("program", str(error)))
+            self.raise_alarm(RoomAlarm("program", str(error)))
 
     def go_on(self, *, paused: bool = False) -> None:
         """Drive the part of the program that comes next; ``paused``: start is waited for."""
@@ -330,7 +325,7 @@ class Room:
     def fail(self, message: str) -> None:
         """Something went wrong within the program that simulates: the axes brake, nothing ends."""
         self.machine.raise_alarm("emergency-stop", message)
-        self.raise_alarm(Notice("internal", message))
+        self.raise_alarm(RoomAlarm("internal", message))
 
 
 def _halt(machine: LiveMachine, alarm: Alarm | None) -> None:

@@ -12,7 +12,7 @@ from typing import Any
 import jinja2
 
 from twin.files.atomic import write_text
-from twin.training.room.judging.inspection import Inspection, Moment
+from twin.training.room.judging.inspection import AlarmMoment, Inspection
 from twin.training.scene.phrases import finding_in, translated
 from twin.training.scene.scene_file import Scene
 from twin.training.scene.vocabulary import Words, in_language
@@ -77,7 +77,7 @@ def score_sheet(session: Session, words: Words, date: str = "") -> dict[str, Any
     }
 
 
-def _wrong(moment: Moment, words: Words) -> dict[str, Any]:
+def _wrong(moment: AlarmMoment, words: Words) -> dict[str, Any]:
     """What went wrong: at which block, why it matters, and what would have been right."""
     alarm, told = moment.alarm, words.alarm(moment.alarm.code)
     finding = alarm.finding

@@ -35,7 +35,7 @@ from twin.training.scene.scene_file import (
 )
 from twin.training.scene.vocabulary import LANGUAGES, Words
 from twin.training.server.attempts import Attempt, Attempts, next_scene
-from twin.training.server.connections import Connections, Page
+from twin.training.server.connections import Connections, OpenPage
 from twin.training.server.driver import Driver, Look
 from twin.training.server.frames import (
     Changes,
@@ -61,7 +61,7 @@ PICTURES_PER_S = 30.0
 LONGEST_SEND_S = 10.0
 """Time for a page to read what it was sent."""
 _EXAMPLE = (10.0, 600.0)
-"""Way [mm] and feed [mm/min] of the block that the empty MDI line shows."""
+"""Travel [mm] and feed [mm/min] of the block that the empty MDI line shows."""
 
 
 async def _panel(_request: Request) -> Response:
@@ -80,17 +80,11 @@ class RoomApp:
     """What the pages of a room are served.
 
     Attributes:
-        connections: Open pages, and which has the panel.
-        bytes_sent: Through all streams so far.
-        messages: Heard from all pages so far.
+        messages: Received from all pages so far.
     """
 
     def __init__(self, driver: Driver, attempts: Attempts, attempt: Attempt) -> None:
-        """Prepare it.
-
-        Args:
-            attempt: The first one.
-        """
+        """Prepare it."""
         self._driver = driver
         self._attempts = attempts
         self.attempt = attempt
@@ -174,7 +168,7 @@ class RoomApp:
         page = await anyio.to_thread.run_sync(self.attempt.writer.page, words)
         return HTMLResponse(page)
 
-    def _begin_again(self, page: Page, name: str) -> None:
+    def _begin_again(self, page: OpenPage, name: str) -> None:
         """Begin the scene again, or the next one, for who has handed in; for a trainer always."""
         over = self._driver.session.room.judge.over
         acts = page.role == "trainer" or (over and self.connections.allows(page, None))
@@ -273,7 +267,7 @@ class RoomApp:
             self.connections.close(page)
             self._driver.leave(page.number)
 
-    async def _hear(self, socket: WebSocket, page: Page) -> None:
+    async def _hear(self, socket: WebSocket, page: OpenPage) -> None:
         """Do what a page asks for, until it goes or says too much."""
         while True:
             text = await socket.receive_text()
@@ -300,7 +294,7 @@ class RoomApp:
                 who = "trainer" if page.role == "trainer" else "operator"
                 self._driver.ask(said, who, page.number)
 
-    async def _make_scene(self, socket: WebSocket, page: Page, given: Any) -> None:
+    async def _make_scene(self, socket: WebSocket, page: OpenPage, given: Any) -> None:
         """Write the room down as a scene, for a trainer, and say where it lies."""
         folder, language = self._attempts.scenes, self._attempts.language
         if page.role != "trainer" or folder is None or not isinstance(given, dict):
@@ -317,7 +311,7 @@ class RoomApp:
             made = {"path": str(path)}
         await socket.send_text(json.dumps({"made": made}))
 
-    async def _tell_until_gone(self, socket: WebSocket, page: Page) -> None:
+    async def _tell_until_gone(self, socket: WebSocket, page: OpenPage) -> None:
         """Show a page the machine until it is gone, or reads no more."""
         try:
             await self._tell(socket, page)
@@ -332,7 +326,7 @@ class RoomApp:
                 await socket.close(1011)
             raise
 
-    async def _tell(self, socket: WebSocket, page: Page) -> None:
+    async def _tell(self, socket: WebSocket, page: OpenPage) -> None:
         """Show a page the machine, no faster than it reads."""
         changes = Changes()
         epoch = version = mesh_version = -1

@@ -65,7 +65,6 @@ class Attempts:
         """Begin the next attempt.
 
         Args:
-            attempt: The present one.
             name: Of a shipped scene; empty: the same scene again.
 
         Raises:

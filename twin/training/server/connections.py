@@ -14,7 +14,7 @@ MESSAGES, MESSAGES_PER_S = 150.0, 75.0
 
 
 @dataclasses.dataclass
-class Page:
+class OpenPage:
     """An open page.
 
     Attributes:
@@ -40,22 +40,22 @@ class Connections:
 
     def __init__(self) -> None:
         self._numbers = itertools.count(1)
-        self._pages: dict[int, Page] = {}
+        self._pages: dict[int, OpenPage] = {}
         self._holder: int | None = None
         self._asking: list[int] = []
 
-    def open(self, role: str) -> Page | None:
+    def open(self, role: str) -> OpenPage | None:
         """A page is opened; None where there are too many."""
         most = MOST_PAGES - (KEPT_FREE if role == "watcher" else 0)
         if len(self._pages) >= most:
             return None
-        page = Page(next(self._numbers), role)
+        page = OpenPage(next(self._numbers), role)
         self._pages[page.number] = page
         if role == "operator" and self._holder is None:
             self._holder = page.number
         return page
 
-    def close(self, page: Page) -> None:
+    def close(self, page: OpenPage) -> None:
         """A page is closed; the panel goes to who asked for it first, else to any operator."""
         self._pages.pop(page.number, None)
         self._asking = [number for number in self._asking if number != page.number]
@@ -63,14 +63,14 @@ class Connections:
             operators = [one.number for one in self._pages.values() if one.role == "operator"]
             self._give(next(iter(self._asking or operators), None))
 
-    def allows(self, page: Page, command: Any) -> bool:
+    def allows(self, page: OpenPage, command: Any) -> bool:
         """Whether a page may give a command: the emergency stop may be pressed by all who act."""
         if page.role == "trainer" or page.number == self._holder:
             return True
         stop = isinstance(command, dict) and command.get("do") == "emergency_stop"
         return page.role == "operator" and stop and command.get("pressed", True) is True
 
-    def hand_over(self, page: Page, what: str) -> None:
+    def hand_over(self, page: OpenPage, what: str) -> None:
         """Ask for the panel, give it to who asks, or keep it."""
         if page.role != "operator":
             return
@@ -91,7 +91,7 @@ class Connections:
         """How many pages of a role are open."""
         return sum(page.role == role for page in tuple(self._pages.values()))
 
-    def words(self, page: Page) -> dict[str, Any]:
+    def words(self, page: OpenPage) -> dict[str, Any]:
         """What a page shows of the connections."""
         roles = [one.role for one in self._pages.values()]
         return {

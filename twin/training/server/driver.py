@@ -226,10 +226,10 @@ class Driver:
         """Dead man's key: what moves while a key is held stops when its page falls silent."""
         if self._holder is None:
             return
-        heard = self._beats.get(self._holder, -1.0)
+        last_beat = self._beats.get(self._holder, -1.0)
         if self.session.room.slot.running != "jog":
             self._holder = None
-        elif time.perf_counter() - heard > HELD_S:
+        elif time.perf_counter() - last_beat > HELD_S:
             self._holder = None
             self.session.submit({"do": "jog_stop"})
             self._changed()

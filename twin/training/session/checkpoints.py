@@ -17,7 +17,7 @@ from pydantic import BaseModel
 
 from twin.copies import copied
 from twin.cutting.heights.height_map import HeightMap
-from twin.cutting.heights.outline import Outline
+from twin.cutting.heights.outline import BlankOutline
 from twin.machine.description.config import Machine
 from twin.machine.model.head_shape import HeadShape
 from twin.machine.watching.relative_motion import RelativeMotion
@@ -46,7 +46,7 @@ _SHARED = (
     mujoco.MjModel,
     HeadShape,
     RelativeMotion,
-    Outline,
+    BlankOutline,
     Grammar,
     Lines,
     FoundInText,
@@ -143,11 +143,7 @@ class Checkpoints:
         self._apart = SLICE * round(APART_S / room.slice_s)
 
     def note(self, room: Room, done: int) -> None:
-        """Take a copy where the last one is old enough.
-
-        Args:
-            done: How many commands have been given to it.
-        """
+        """Take a copy where the last one is old enough."""
         if room.tick - self._kept[-1].tick >= self._apart:
             self._kept.append(checkpoint(room, done, self._kept[-1].maps))
             self._thin_out()
@@ -174,7 +170,6 @@ def checkpoint(room: Room, done: int, before: tuple[KeptMap, ...]) -> Checkpoint
     """A copy of a room.
 
     Args:
-        done: How many commands have been given to it.
         before: What the copy before kept of the stock.
     """
     memo: dict[int, Any] = {}

@@ -12,7 +12,7 @@ Who = Literal["operator", "trainer"]
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Entry:
+class LogEntry:
     """A line of the log.
 
     Attributes:
@@ -34,13 +34,11 @@ class Replay:
         over: It has come to where the session had come to.
     """
 
-    def __init__(self, room: Room, entries: Sequence[Entry], tick: int) -> None:
+    def __init__(self, room: Room, entries: Sequence[LogEntry], tick: int) -> None:
         """Go back.
 
         Args:
             room: The machine as it was at the beginning, or later.
-            entries: What was done to the machine since then.
-            tick: How far to go.
         """
         self.room = room
         self._entries = [entry for entry in entries if entry.tick <= tick]
@@ -65,13 +63,11 @@ class Replay:
         room.advance((goal - room.tick) // SLICE)
 
 
-def relive(room: Room, entries: Sequence[Entry], tick: int) -> Room:
+def relive(room: Room, entries: Sequence[LogEntry], tick: int) -> Room:
     """Live a session again.
 
     Args:
         room: The machine as it was at the beginning, or later.
-        entries: What was done to the machine since then.
-        tick: How far to go.
     """
     replay = Replay(room, entries, tick)
     while not replay.over:

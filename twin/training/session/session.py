@@ -29,7 +29,7 @@ from twin.training.session.commands import (
     command_data,
     command_from,
 )
-from twin.training.session.log import Entry, Replay, Who, relive
+from twin.training.session.log import LogEntry, Replay, Who, relive
 from twin.training.session.snapshot import Snapshot, take_snapshot
 
 LIVED_AGAIN_S = 4.0
@@ -40,11 +40,8 @@ class Session:
     """A scene that is being played.
 
     Attributes:
-        log: Everything that was asked for, in order.
-        frozen: Time stands still.
         replay: What is being shown again; None: the machine itself is seen.
         refusal: Why the last command was refused, empty when it was not.
-        refusals: How many commands have been refused.
         signature: Who is at the panel, as far as somebody has said.
     """
 
@@ -56,13 +53,13 @@ class Session:
         """
         self.scene = scene
         self.room = Room(scene)
-        self.log: list[Entry] = []
+        self.log: list[LogEntry] = []
         self.frozen = False
         self.replay: Replay | None = None
         self.refusal = ""
         self.refusals = 0
         self.signature = ""
-        self._done: list[Entry] = []
+        self._done: list[LogEntry] = []
         self._checkpoints = Checkpoints(self.room)
 
     def submit(self, data: Any, who: Who = "operator") -> bool:
@@ -94,7 +91,7 @@ class Session:
             self.refusal = str(error)
             self.refusals += 1
         if plain:
-            entry = Entry(tick, who, plain, self.refusal)
+            entry = LogEntry(tick, who, plain, self.refusal)
             self.log.append(entry)
             if not isinstance(command, get_args(SessionCommand)):
                 self._done.append(entry)

@@ -6,11 +6,11 @@ import numpy as np
 
 from twin.nc.canonical import FloatArray
 from twin.nc.functions import SpindleState
-from twin.training.program.block_walk import ModalState
+from twin.training.program.block_tracker import ModalState
 from twin.training.room.judging.judge import TaskState
-from twin.training.room.observed import Notice
+from twin.training.room.observed import RoomAlarm
 from twin.training.room.room import Room
-from twin.training.room.setup.live_cut import Loads
+from twin.training.room.setup.live_cut import SliceLoads
 from twin.training.scene.fault_table import FaultTable
 from twin.training.scene.scene_file import Mode
 from twin.units import SECONDS_PER_MINUTE
@@ -44,10 +44,10 @@ class Snapshot:
     """``program``, ``mdi``, ``jog`` or nothing."""
     held: bool
     moving: bool
-    alarm: Notice | None
-    broken: Notice | None
+    alarm: RoomAlarm | None
+    broken: RoomAlarm | None
     """What was said of the tool in the spindle when it lost its edge."""
-    loads: Loads
+    loads: SliceLoads
     pressed: bool
     position: Row
     """As the control's screen shows it."""
@@ -77,7 +77,7 @@ class Snapshot:
     """A program is held, and the axes can be jogged."""
     changed: bool
     """The program has been changed."""
-    alarms: tuple[Notice, ...]
+    alarms: tuple[RoomAlarm, ...]
     """Those that came, the newest last."""
     offsets: tuple[tuple[str, Row], ...]
     """Work offsets by name."""
@@ -112,7 +112,7 @@ class Snapshot:
     signature: str = ""
     """Who is at the panel."""
     speed: float = 1.0
-    """Machine time per time on the wall, as it has been of late."""
+    """Machine time per wall-clock time, of the last seconds."""
 
 
 def take_snapshot(room: Room) -> Snapshot:

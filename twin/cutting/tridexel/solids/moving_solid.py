@@ -1,4 +1,4 @@
-"""A solid on its way from pose to pose: where a line is within it, and which way its surface looks."""
+"""A solid moving from pose to pose: where a line is within it, and the normal of its surface."""
 
 import math
 from typing import NamedTuple

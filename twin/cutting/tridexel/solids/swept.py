@@ -21,7 +21,7 @@ def within_swept_ball(
     """Where a line is within a ball on a straight path, and at which shares of it.
 
     The ends are where c(s) -+ sqrt(R² - q(s)) is least and greatest, c being the centre's place along the
-    line and q its squared distance from it, a parabola in the share s of the way.
+    line and q its squared distance from it, a parabola in the share s of the path.
     """
     u, v = (d + 1) % 3, (d + 2) % 3
     height, radius = solid.low + solid.rounding, solid.rounding

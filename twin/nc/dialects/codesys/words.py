@@ -59,7 +59,7 @@ def prepare(control: Control) -> None:
 def before_motion(control: Control, _rapid: bool) -> None:
     """What holds for every motion block: slopes, and the shortest way of modulo axes."""
     _refuse_slopes(control)
-    take_shortest_way(control)
+    turn_shortest(control)
     if any(memory_of(control).length_ramp):
         lead_into_length(control)
 
@@ -128,7 +128,7 @@ def refuse_profile(control: Control, word: Word) -> None:
         control.fail("unsupported-word", message, word)
 
 
-def take_shortest_way(control: Control) -> None:
+def turn_shortest(control: Control) -> None:
     """Axes with a period go the shorter path around: the start is relabelled by whole periods."""
     if control.modal.incremental:
         return

@@ -11,7 +11,7 @@ from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.frame import chained
 from twin.nc.geometry.matrices import IDENTITY, Matrix
 from twin.nc.geometry.planes import Vector
-from twin.nc.iso.machine_coordinates import PartFrame
+from twin.nc.iso.machine_coordinates import SuspendedFrame
 from twin.nc.text.blocks import Statement
 
 OFFSETS_BY_NUMBER = 20
@@ -76,7 +76,7 @@ class FagorMemory:
     main: int | None = None
     structure: Structure | None = None
     modal_call: ModalCall | None = None
-    part_frame: PartFrame | None = None
+    part_frame: SuspendedFrame | None = None
     offset_on: bool = True
     polar_origin: Point = (0.0, 0.0)
     polar_radius: float = math.nan

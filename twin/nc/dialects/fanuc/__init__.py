@@ -8,11 +8,10 @@ from twin.nc.control.control import Control, Rules
 from twin.nc.control.dialect import Dialect, JobKey
 from twin.nc.dialects.fanuc import (
     codes,
-    corners,
     decimal_point,
-    feeds,
     haas,
     macro_calls,
+    motion,
     programs,
 )
 from twin.nc.dialects.fanuc.cycles.canned_cycles import OVERRULED_CYCLE, as_read
@@ -35,7 +34,7 @@ def prepare(control: Control) -> None:
     programs.begin(control)
     memory.overrules_cycles = holds_any(lines, OVERRULED_CYCLE)
     offsets.put_into_force(control)
-    corners.prepare(control)
+    motion.prepare_corners(control)
 
 
 def before_motion(control: Control, rapid: bool) -> None:
@@ -73,7 +72,7 @@ def _before_motion(control: Control, rapid: bool) -> None:
 
 def after_motion(control: Control) -> None:
     """A block has moved."""
-    corners.blend_after_motion(control)
+    motion.blend_corner(control)
     macro_calls.call_after_motion(control)
 
 
@@ -171,7 +170,7 @@ FANUC = Dialect(
         without_point=decimal_point.addresses_without_point,
         increment=decimal_point.increment_of_plain_move,
         count=as_read,
-        feed_rule=feeds.fanuc_rule,
+        feed_rule=motion.fanuc_rule,
         length_by_code=True,
     ),
     units='mm, inches (G20), degrees; numbers without a point count 0.001 mm, 0.0001 inch or 0.001 degree, unless decimal_point = "calculator"; F in mm/min',
@@ -228,7 +227,7 @@ HAAS = dataclasses.replace(
         FANUC.rules,
         memory=lambda: FanucMemory(HAAS_VARIANT),
         before_motion=before_motion,
-        feed_rule=feeds.haas_rule,
+        feed_rule=motion.haas_rule,
     ),
     units=FANUC.units.replace("F in mm/min", "F in mm/min, without a point 0.001 mm/min"),
     job_keys=frozenset({JobKey.DECIMAL_POINT, JobKey.OFFSET_ROWS}),

@@ -133,7 +133,7 @@ _OWN: Mapping[float, GCode] = {
     ),
     **{number: _offset(number) for number in range(110, 130)},
     **refused("engraving", "the shapes of its letters are the control's own", 47),
-    **refused("general pocket", "it clears any outline by a way that is the control's own", 150),
+    **refused("general pocket", "it clears any outline by a path that is the control's own", 150),
     **{number: bolt_holes(number) for number in (70, 71)},
     **refused("bolt holes on a line", _FIRST_HOLE, 72),
     **refused("probing", NO_PROBE, 35, 36, 136),

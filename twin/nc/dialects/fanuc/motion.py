@@ -1,16 +1,26 @@
-"""How blocks of a Fanuc control move: lines, arcs, and polar coordinates (G16).
+"""How blocks of a Fanuc control move: lines, arcs, polar coordinates (G16), blended corners, and what F counts.
 
 With G16 the plane's first axis is a radius and its second an angle. In G90 the radius counts from the
 origin and the angle from the first axis; in G91 the radius counts from where the tool is, and the
 angle from the last one.
+
+What F counts. Fanuc, feed per minute and per revolution: a line counts all its axes together, a degree as much as 1 mm, or as
+1 inch in G20 (operator's manual, linear interpolation: ``G91 G1 X20. C40. F300.`` takes 0.149 min); an arc counts
+the circle in its plane, unless parameter 1403 #5 (HTG) lets it count the path of all axes. Inverse time (G93): F of
+an arc is its speed by its radius, since the manual computes it of the radius and not of the distance.
+
+Haas: rotary axes count by the surface whose diameter setting 34 holds; F of a helix counts the helix; F of G93 is
+strokes per minute in every move (manual, G2, G93 and settings).
 """
 
 import math
+import re
 from collections.abc import Callable
 from typing import TypeVar
 
 from twin.nc.control.control import Control
 from twin.nc.control.modal import ArcRule
+from twin.nc.control.settings import ControlSettings
 from twin.nc.dialects.fanuc.frames import cylinder
 from twin.nc.dialects.fanuc.frames.transformations import refuse_uneven_arc
 from twin.nc.dialects.fanuc.memory import Variant, memory_of
@@ -18,6 +28,8 @@ from twin.nc.geometry.arcs import direction
 from twin.nc.iso import base
 from twin.nc.iso.circular import BOUNDS, arc_center, both_senses, plane_center_letters, sweep_arc
 from twin.nc.iso.drilling.drilling import Holes, repeats_of
+from twin.nc.path.blends import Blend, BlendKind
+from twin.nc.path.feed_rates import FeedRule
 
 _Kind = TypeVar("_Kind")
 _CALLS = (97.0, 98.0)
@@ -107,3 +119,51 @@ def _arc(control: Control, rule: ArcRule) -> None:
 
 POSITIONING, LINEAR = base.straight(_as_often_as_l(_line))
 CLOCKWISE, COUNTER_CLOCKWISE = both_senses(_as_often_as_l(_arc), ArcRule(bounds=BOUNDS))
+
+
+_CORNER_WORDS = re.compile(rb",[CR]", re.IGNORECASE)
+_CORNERS = {",R": BlendKind.FILLET, ",C": BlendKind.CHAMFER}
+
+
+def prepare_corners(control: Control) -> None:
+    """Hold moves until their successor is known, where the program blends corners at all."""
+    if control.program_counter.lines.any_holds(_CORNER_WORDS):
+        control.path.hold_for_blends()
+
+
+def blend_corner(control: Control) -> None:
+    """,R rounds and ,C chamfers the corner between the block's move and the next."""
+    words = [control.words.pop(address) for address in _CORNERS if address in control.words]
+    if not words:
+        return
+    if len(words) > 1:
+        control.fail("blend", "a corner is rounded or chamfered, not both", words[1])
+    (word,) = words
+    size = control.length(word)
+    if size <= 0.0:
+        control.fail("blend", f"{word.text} is no size of a corner", word)
+    scale = memory_of(control).scale
+    if scale is not None:
+        size *= abs(scale[0][control.modal.plane.axes[0]])
+    blend = Blend(_CORNERS[word.address], size, control.motion.part_plane)
+    if not control.path.hold_for_blends().blend_next(blend, control.block.line):
+        message = f"{word.text} is for the end of a move with G1, G2 or G3, which this block lacks"
+        control.fail("blend", message, word)
+
+
+DEGREE_AS_LENGTH = 1.0
+"""What a degree counts together with linear axes, in programmed units of length (Fanuc's manual). Decision: of a Haas
+where nobody gave the diameter of setting 34 as well, which is the surface of 114.6 mm diameter."""
+
+
+def fanuc_rule(settings: ControlSettings) -> FeedRule:
+    """What F counts by the parameters of a Fanuc control."""
+    along_path = settings.helical_feed == "path"
+    return FeedRule(DEGREE_AS_LENGTH, helix_by_arc=not along_path, arc_by_radius=True)
+
+
+def haas_rule(settings: ControlSettings) -> FeedRule:
+    """What F counts by the settings of a Haas mill."""
+    if settings.rotary_diameter is None:
+        return FeedRule(DEGREE_AS_LENGTH)
+    return FeedRule(math.radians(settings.rotary_diameter / 2.0), surface=True)

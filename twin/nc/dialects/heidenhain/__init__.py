@@ -6,7 +6,7 @@ from twin.nc.control.dialect import Dialect
 from twin.nc.dialects.heidenhain import feeds, flow, parameters
 from twin.nc.dialects.heidenhain.cycles.planes import enter_plane
 from twin.nc.dialects.heidenhain.decisions import DECISIONS
-from twin.nc.dialects.heidenhain.functions import FUNCTIONS, reduce_rotary, take_shortest_way
+from twin.nc.dialects.heidenhain.functions import FUNCTIONS, reduce_rotary, turn_shortest
 from twin.nc.dialects.heidenhain.memory import KlartextMemory, acts_on_lines, memory_of
 from twin.nc.dialects.heidenhain.page import TABLES
 from twin.nc.dialects.heidenhain.paths import corners, paths
@@ -35,7 +35,7 @@ def _prepare(control: Control) -> None:
 
 def _before_motion(control: Control, _rapid: bool) -> None:
     take_spatial_angles(control)
-    take_shortest_way(control)
+    turn_shortest(control)
     enter_plane(control)
 
 

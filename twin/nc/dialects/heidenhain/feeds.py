@@ -1,8 +1,7 @@
 """Feeds: F, FU, F AUTO, FMAX."""
 
 from twin.nc.control.control import Control
-from twin.nc.dialects.heidenhain.cycle_values import INCH_FEEDS
-from twin.nc.dialects.heidenhain.memory import memory_of
+from twin.nc.dialects.heidenhain.memory import INCH_FEEDS, memory_of
 from twin.nc.iso import base
 from twin.nc.path.feed_rates import FeedMode
 from twin.nc.text.blocks import Word

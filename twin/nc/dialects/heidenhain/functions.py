@@ -82,8 +82,8 @@ def _go_shortest(shortest: bool) -> Action:
     return action
 
 
-def take_shortest_way(control: Control) -> None:
-    """With M126 the start of each rotary axis is relabelled by whole turns, so that its way is the shorter one."""
+def turn_shortest(control: Control) -> None:
+    """With M126 the start of each rotary axis is relabelled by whole turns, so that it turns by the shorter angle."""
     if not memory_of(control).shortest:
         return
     for index, _, target in absolute_targets(control):
@@ -108,7 +108,7 @@ def _retract(control: Control) -> None:
     own = any(each.address == "F" for each in control.block.words)
     if most is None and word is None:
         hint = "write M140 MB 50 or M140 MB MAX"
-        control.fail("missing-words", "M140 needs its way MB", hint=hint)
+        control.fail("missing-words", "M140 needs its distance MB", hint=hint)
     if control.path.compensation.in_force or control.path.leads is not None:
         message = "the tool does not retract while radius compensation is in force"
         control.fail("compensation-change", message, hint="end it by R0 before")

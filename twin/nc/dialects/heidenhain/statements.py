@@ -8,7 +8,7 @@ from twin.nc.control.control import Control
 from twin.nc.dialects.heidenhain import flow, parameters, tool_tip, tools
 from twin.nc.dialects.heidenhain.cycles import calls, definitions, patterns, planes
 from twin.nc.dialects.heidenhain.cycles.transformations import (
-    Step,
+    DefinitionStep,
     apply_transformations,
     shift_datum,
 )
@@ -71,7 +71,7 @@ def transform(control: Control, statement: Statement) -> None:
         message = "TRANS is followed with DATUM AXIS and DATUM RESET alone"
         control.fail("unsupported-statement", message, statement, "TRANS DATUM AXIS X+10 Y+20")
     if match[2]:
-        step = Step(7, 1, match[2], statement.text_column + match.start(2))
+        step = DefinitionStep(7, 1, match[2], statement.text_column + match.start(2))
         shift_datum(control, step)
         return
     memory = memory_of(control)

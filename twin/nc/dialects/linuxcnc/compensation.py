@@ -1,4 +1,4 @@
-"""Tool radius compensation of LinuxCNC: its own way of leads and corners.
+"""Tool radius compensation of LinuxCNC: its own leads and corners.
 
 The entry ends beside the programmed point, square to the entry itself. At a convex corner the tool
 turns around the contour's point; at a concave one the move before ends where the two offset paths meet,
@@ -56,7 +56,7 @@ class Held:
     feed: float | None
 
 
-class Compensation:
+class ActiveCompensation:
     """Compensation in force.
 
     Attributes:
@@ -328,10 +328,10 @@ class Compensation:
         self._control.fail("compensation-gouge", message, hint=hint)
 
 
-def in_force(control: Control) -> Compensation | None:
+def in_force(control: Control) -> ActiveCompensation | None:
     """Compensation, where it is in force."""
     compensation = memory_of(control).compensation
-    assert compensation is None or isinstance(compensation, Compensation)
+    assert compensation is None or isinstance(compensation, ActiveCompensation)
     return compensation
 
 
@@ -380,7 +380,7 @@ def _begin(control: Control, side: float, radius: float) -> None:
         side, radius = -side, -radius
     memory = memory_of(control)
     memory.leading_out = False
-    compensation = Compensation(control, side, radius)
+    compensation = ActiveCompensation(control, side, radius)
     memory.compensation = compensation
     control.path.defer = compensation.take_event
 

@@ -12,6 +12,7 @@ from twin.nc.control.control import Control
 from twin.nc.dialects.linuxcnc.memory import memory_of
 from twin.nc.dialects.linuxcnc.motion import check_feed, target
 from twin.nc.dialects.linuxcnc.offsets import refuse_in_compensation
+from twin.nc.iso.cycle_moves import go_to_height
 from twin.nc.iso.drilling.drilling import (
     Cycle,
     Pecking,
@@ -22,7 +23,6 @@ from twin.nc.iso.drilling.drilling import (
     take_words,
 )
 from twin.nc.iso.drilling.hole import Retract, drill, turn_spindle
-from twin.nc.iso.plane_moves import go_to_height
 from twin.nc.path.feed_rates import FeedMode
 
 CLEARANCE = 0.254

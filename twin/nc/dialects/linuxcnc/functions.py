@@ -12,7 +12,7 @@ from twin.nc.iso.tool_change import go_to_change_height
 from twin.nc.text.blocks import Word
 
 TIMES_OUT = (0.0, 1.0, 2.0, 3.0, 4.0)
-"""Ways in which M66 waits."""
+"""How M66 waits, by L."""
 
 
 def set_feed(control: Control, word: Word) -> None:
@@ -20,7 +20,9 @@ def set_feed(control: Control, word: Word) -> None:
     feed = control.number(word)
     if feed < 0.0:
         message = f"the feed {word.text} is negative"
-        control.fail("feed-range", message, word, "the way says the direction, F how fast")
+        control.fail(
+            "feed-range", message, word, "the sign of the distance says the direction, F how fast"
+        )
     control.motion.feed = feed or None
     memory_of(control).converted_feed = None
 
@@ -85,10 +87,10 @@ def orient_spindle(control: Control) -> None:
     if angle is not None and not 0.0 <= control.number(angle) <= 360.0:
         message = f"{angle.text} is no angle of one turn"
         control.fail("code-words", message, angle, "0 to 360 degrees")
-    way, seconds = control.take("P"), control.take("Q")
-    if way is not None and control.number(way) not in (0.0, 1.0, 2.0):
+    turning, seconds = control.take("P"), control.take("Q")
+    if turning is not None and control.number(turning) not in (0.0, 1.0, 2.0):
         message = "P of M19 is 0 (the shorter way), 1 (clockwise) or 2 (counter-clockwise)"
-        control.fail("code-words", message, way)
+        control.fail("code-words", message, turning)
     if seconds is not None and control.number(seconds) <= 0.0:
         control.fail("code-words", "Q of M19, its seconds, must be above 0", seconds)
 

@@ -267,8 +267,8 @@ def _set_origin_here(
     preset, matrix = _preset_of(memory_of(control)), turned(system)
     length = control.frame.shift("length")
     place = [value - shift for value, shift in zip(control.motion.part, length, strict=True)]
-    way = [a - b for a, b in zip(place, system.origin, strict=True)]
-    there = _applied(transposed(matrix), way)
+    relative = [a - b for a, b in zip(place, system.origin, strict=True)]
+    there = _applied(transposed(matrix), relative)
     for index, word in axes:
         there[index] = control.axis_value(index, word) + preset[index]
     turned_there = _applied(matrix, there)

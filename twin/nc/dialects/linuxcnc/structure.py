@@ -64,7 +64,7 @@ class OWord(NamedTuple):
 
 
 def name_of_label(label: str) -> str:
-    """One spelling for all ways to write a label."""
+    """One spelling for all forms of a label."""
     label = re.sub(r"\s", "", label).lower()
     return label[1:-1] if label.startswith("<") else str(int(label.partition(".")[0]))
 

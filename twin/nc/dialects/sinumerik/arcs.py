@@ -185,10 +185,10 @@ def _plane_through(
 ) -> Plane | None:
     """The plane of three points: the working plane where they lie parallel to it; None: they are on a line."""
 
-    def way(place: list[float]) -> Vector:
+    def displacement(place: list[float]) -> Vector:
         return (place[0] - start[0], place[1] - start[1], place[2] - start[2])
 
-    first, second = way(via), way(end)
+    first, second = displacement(via), displacement(end)
     normal = cross(first, second)
     length, chord = math.hypot(*normal), math.hypot(*first)
     if length < SAME_POINT * max(chord, math.hypot(*second), SAME_POINT):

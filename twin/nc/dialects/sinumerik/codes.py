@@ -1,12 +1,14 @@
 """G codes of the SINUMERIK, those with a number and those with a name."""
 
+import tomllib
+from collections.abc import Mapping
 from functools import partial
+from pathlib import Path
 
 from twin.nc.canonical import Corner
 from twin.nc.control.codes import Action, GCode
 from twin.nc.control.control import Control
 from twin.nc.dialects.sinumerik import arcs, frames, orientation, words
-from twin.nc.dialects.sinumerik.known import PASSED_CODES, REFUSED_CODES
 from twin.nc.dialects.sinumerik.leads import LEADS
 from twin.nc.dialects.sinumerik.targets import forget_polar, set_pole
 from twin.nc.geometry.planes import XY, YZ, ZX
@@ -14,6 +16,22 @@ from twin.nc.iso.declared import modal, motion_code, plane_code, refused, replac
 from twin.nc.iso.machine_coordinates import machine_frame
 from twin.nc.iso.tool_compensation import LEFT, RIGHT
 from twin.nc.path.feed_rates import FeedMode
+
+_DATA: Mapping[str, Mapping[str, str]] = tomllib.loads(
+    Path(__file__).with_name("known.toml").read_text(encoding="utf-8")
+)
+
+
+def _each(of_names: Mapping[str, str]) -> dict[str, str]:
+    """What is said of every name, given that of names with commas between them."""
+    return {name: said for names, said in of_names.items() for name in names.split(", ")}
+
+
+PASSED_CODES, REFUSED_CODES = _DATA["passed_codes"], _DATA["refused_codes"]
+"""What is said of codes that the twin passes over or refuses, by their names with commas between them."""
+PASSED_STATEMENTS = _each(_DATA["passed_statements"])
+REFUSED_STATEMENTS = _each(_DATA["refused_statements"])
+"""What is said of statements, by each name."""
 
 
 def to_reference(number: int) -> Action:

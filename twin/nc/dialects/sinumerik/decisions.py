@@ -86,7 +86,7 @@ DECISIONS = (
     ),
     Decision(
         "What does a rotary axis make of an absolute target?",
-        "It goes there as commanded, any number of turns; DC, ACP and ACN find the way within a turn.",
+        "It goes there as commanded, any number of turns; DC, ACP and ACN find the direction within a turn.",
         "Whether the axis is a modulo axis is a machine datum.",
         example="rotary_axis",
     ),

@@ -9,9 +9,9 @@ from twin.nc.control.codes import Action, GCode
 from twin.nc.control.control import Control
 from twin.nc.dialects.sinumerik.memory import memory_of
 from twin.nc.dialects.sinumerik.targets import POLAR_WORDS, take_target
+from twin.nc.iso.cycle_moves import go_to_height
 from twin.nc.iso.declared import replacement
 from twin.nc.iso.leads import Lead, LeadKind, approach, depart, stand_at_height
-from twin.nc.iso.plane_moves import go_to_height
 from twin.nc.iso.tool_compensation import radius_in_spindle
 from twin.nc.path.move_columns import RAPID
 

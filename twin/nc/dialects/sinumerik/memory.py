@@ -9,7 +9,7 @@ from twin.nc.control.control import Control
 from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.matrices import IDENTITY, Matrix
 from twin.nc.geometry.planes import Vector
-from twin.nc.iso.machine_coordinates import PartFrame
+from twin.nc.iso.machine_coordinates import SuspendedFrame
 from twin.nc.text.blocks import Statement
 from twin.nc.text.expressions.arithmetic import nearest_whole_away
 
@@ -125,7 +125,6 @@ class SinumerikMemory:
         rounding: RNDM [mm].
         ends_rounding: RNDM=0: it ends behind the next move.
         modal_feed: F that an FB of the block has put aside, or None.
-        subprograms: By name.
         main: Lines of the main program.
         calls: What belongs to each call, the main program's first.
         structure: Which keywords belong together; None before it was asked for.
@@ -144,7 +143,7 @@ class SinumerikMemory:
     offset: str = ""
     offsets: dict[str, dict[str, float]] = dataclasses.field(default_factory=dict)
     machine_pending: bool = False
-    part_frame: PartFrame | None = None
+    part_frame: SuspendedFrame | None = None
     carried: list[float] | None = None
     pole: Point = (0.0, 0.0)
     polar_radius: float = math.nan

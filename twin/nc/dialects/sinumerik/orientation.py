@@ -10,7 +10,7 @@ from twin.nc.control.codes import Action
 from twin.nc.control.control import Control
 from twin.nc.dialects.sinumerik.frames import put_programmable
 from twin.nc.dialects.sinumerik.memory import memory_of
-from twin.nc.dialects.sinumerik.values import bracketed, split_values
+from twin.nc.dialects.sinumerik.variables.expressions import bracketed, split_values
 from twin.nc.geometry.arcs import direction
 from twin.nc.geometry.frame import chained
 from twin.nc.geometry.matrices import IDENTITY, Matrix, product

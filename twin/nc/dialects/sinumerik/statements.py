@@ -5,14 +5,13 @@ import re
 from twin.nc.control.codes import StatementAction
 from twin.nc.control.control import Control
 from twin.nc.dialects.sinumerik import orientation
-from twin.nc.dialects.sinumerik.codes import NUMBERS
+from twin.nc.dialects.sinumerik.codes import NUMBERS, PASSED_STATEMENTS, REFUSED_STATEMENTS
 from twin.nc.dialects.sinumerik.cycles import CYCLES, call_cycle
 from twin.nc.dialects.sinumerik.cycles.calls import CycleCall, CycleForm, read_call
 from twin.nc.dialects.sinumerik.flow import calls, structures
 from twin.nc.dialects.sinumerik.flow.repeats import repeat_blocks
-from twin.nc.dialects.sinumerik.known import PASSED_STATEMENTS, REFUSED_STATEMENTS
-from twin.nc.dialects.sinumerik.values import bracketed
 from twin.nc.dialects.sinumerik.variables.assignments import assign, define
+from twin.nc.dialects.sinumerik.variables.expressions import bracketed
 from twin.nc.functions import BLANK
 from twin.nc.text.blocks import Statement
 

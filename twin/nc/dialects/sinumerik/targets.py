@@ -1,4 +1,4 @@
-"""Where a block of the SINUMERIK goes: Cartesian or polar, each word by its own way to count.
+"""Where a block of the SINUMERIK goes: Cartesian or polar, each word as it counts.
 
 ``X=IC(5)`` counts from where the tool is, ``X=AC(5)`` from zero, ``C=DC(90)`` goes there the shorter way,
 ``C=ACP(90)`` and ``C=ACN(90)`` in one direction. A frame that has changed is made up for by the next
@@ -57,7 +57,7 @@ def take_target(control: Control) -> list[float]:
         ):
             target[index] += memory.carried[index]
         if word.mark in _WAYS:
-            target[index] = _by_way(control, index, word)
+            target[index] = _as_word_counts(control, index, word)
     if words and memory.carried is not None:
         for word in words:
             memory.carried[control.axis_index[word.address]] = 0.0
@@ -68,7 +68,7 @@ def take_target(control: Control) -> list[float]:
     return target
 
 
-def _by_way(control: Control, index: int, word: Word) -> float:
+def _as_word_counts(control: Control, index: int, word: Word) -> float:
     """Target of a rotary axis that is reached within a turn."""
     value = control.number(word)
     if control.motion.linear[index]:

@@ -5,7 +5,7 @@ import math
 from typing import NamedTuple
 
 from twin.nc.control.control import Control
-from twin.nc.iso.plane_moves import at_feed, go_to_height
+from twin.nc.iso.cycle_moves import at_feed, go_to_height
 
 CHIP_CLEARANCE = 0.5
 """Deep drilling stops its rapid return this far above where it was [mm]."""
@@ -152,8 +152,8 @@ def _leave(control: Control, hole: Hole) -> None:
     elif hole.retract is Retract.STOPPED:
         control.function("M5", {})
     elif hole.retract is not Retract.RAPID:
-        all_the_way = hole.retract is Retract.FEED_ALL
-        _come_back(control, hole, hole.back if all_the_way else hole.reference)
+        fed_back = hole.retract is Retract.FEED_ALL
+        _come_back(control, hole, hole.back if fed_back else hole.reference)
     go_to_height(control, hole.back)
     if hole.retract is Retract.STOPPED:
         turn_spindle(control, "M3")

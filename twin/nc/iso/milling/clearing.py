@@ -9,8 +9,8 @@ import math
 
 from twin.nc.control.control import Control
 from twin.nc.geometry.arcs import Point
+from twin.nc.iso.cycle_moves import at_feed, go, go_to_height, turn
 from twin.nc.iso.milling.outlines import Outline
-from twin.nc.iso.plane_moves import at_feed, go, go_to_height, turn
 
 DIAGONAL = 1.7
 """Rings of a pocket lie at most this many radii apart, so that nothing stays between their corners.

@@ -5,7 +5,7 @@ import math
 
 from twin.nc.control.control import Control
 from twin.nc.geometry.arcs import Point, turned
-from twin.nc.iso.plane_moves import at_feed, go, go_to_height
+from twin.nc.iso.cycle_moves import at_feed, go, go_to_height
 
 MOST_STRIPS = 10_000
 """Strips of one face: more is a slip of the pen."""
@@ -23,7 +23,7 @@ class Face:
         angle: Of the face about its corner [deg].
         step: Width of a strip at most [mm].
         beyond: How far the tool's centre goes beyond both ends of a strip [mm].
-        one_way: Every strip goes the same way; else to and fro.
+        one_direction: Every strip goes the same direction; else to and fro.
         levels: Heights of the passes [mm].
         safe: Over which the tool moves rapidly [mm].
         back: Height to which it returns [mm].
@@ -36,7 +36,7 @@ class Face:
     angle: float
     step: float
     beyond: float
-    one_way: bool
+    one_direction: bool
     levels: tuple[float, ...]
     safe: float
     back: float
@@ -61,9 +61,9 @@ def mill_face(control: Control, face: Face) -> None:
         height = control.motion.programmed[control.modal.plane.axes[2]]
         go_to_height(control, max(face.safe, height))
         for strip in range(face.strips):
-            begin, end = reversed(ends) if strip % 2 and not face.one_way else ends
+            begin, end = reversed(ends) if strip % 2 and not face.one_direction else ends
             sideways = face.across * (strip + 0.5) / face.strips
-            if strip == 0 or face.one_way:
+            if strip == 0 or face.one_direction:
                 if strip:
                     go_to_height(control, face.safe)
                 go(control, face.at(begin, sideways), rapid=True)

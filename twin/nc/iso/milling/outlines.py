@@ -1,4 +1,4 @@
-"""Outlines of pockets, slots and studs, and the ways around them."""
+"""Outlines of pockets, slots and studs, and the paths around them."""
 
 import dataclasses
 import enum
@@ -7,7 +7,7 @@ from typing import Protocol
 
 from twin.nc.control.control import Control
 from twin.nc.geometry.arcs import Point, turned
-from twin.nc.iso.plane_moves import go, turn
+from twin.nc.iso.cycle_moves import go, turn
 
 
 class Outline(Protocol):
@@ -37,7 +37,7 @@ class CornerKind(enum.IntEnum):
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Corner:
+class RectangleCorner:
     """The corners of a rectangle.
 
     Attributes:
@@ -97,7 +97,7 @@ class Rectangle:
     width: float
     angle: float
     clockwise: bool
-    corner: Corner
+    corner: RectangleCorner
 
     @property
     def room(self) -> float:

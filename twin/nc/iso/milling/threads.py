@@ -9,8 +9,7 @@ import math
 
 from twin.nc.control.control import Control
 from twin.nc.geometry.arcs import Point
-from twin.nc.iso.places import along
-from twin.nc.iso.plane_moves import at_feed, go, go_to_height, turn
+from twin.nc.iso.cycle_moves import along, at_feed, go, go_to_height, turn
 
 MOST_TURNS = 10_000
 """Turns of one helix: more is a slip of the pen."""
@@ -72,7 +71,7 @@ def mill_thread(control: Control, thread: Thread) -> None:
 
 
 def _mill_helix(control: Control, thread: Thread, low: float, turns: int) -> None:
-    """One helix from or to a height, with the ways to it and from it."""
+    """One helix from or to a height, with its approach and retraction."""
     sweep = -360.0 * turns if thread.clockwise else 360.0 * turns
     rise = turns * thread.pitch if thread.upwards else -turns * thread.pitch
     start = low if thread.upwards else low + turns * thread.pitch

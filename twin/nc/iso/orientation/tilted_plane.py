@@ -186,7 +186,6 @@ def count_in_plane(control: Control, name: str, hint: str) -> None:
     """From the first block on that moves X, Y or Z in a tilted plane the length of the tool acts along it.
 
     Args:
-        control: The control.
         name: As for ``point_tool``.
         hint: What sets the tool across the plane.
 

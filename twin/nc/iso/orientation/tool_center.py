@@ -85,7 +85,6 @@ def aim_words(control: Control, axes: list[float], at: Word) -> None:
     """Let the block's words of rotary axes lead to a programmed position, shape (k,), as absolute ones.
 
     Args:
-        control: The control.
         axes: The position; X, Y and Z are not looked at.
         at: Which word says it.
     """

@@ -212,7 +212,7 @@ class Compensation:
             self._passed.clear()
         self._signed_offset, self._next_offset = offset, None
 
-    def _change_side(self, move: Segment, curve: Curve, offset: float, way: SideChange) -> None:
+    def _change_side(self, move: Segment, curve: Curve, offset: float, change: SideChange) -> None:
         """The contour's next element, along which the tool goes on the other side."""
         if self.stage is not FOLLOWING:
             message = "the side cannot change in the move behind the one that leads in"
@@ -222,7 +222,7 @@ class Compensation:
             self._parallel,
             self._parallel_of(move, curve, offset),
         )
-        extended = way is SideChange.EXTENDED
+        extended = change is SideChange.EXTENDED
         crossing = corners.side_change(
             (held, before, self._start), (curve, element), extended=extended
         )
@@ -336,7 +336,9 @@ class Compensation:
         """Lead in to the contour's first element, and hold that."""
         touch, turns, arc, held = element[1], False, curve, self._held[0]
         if self._indirect:
-            turns, arc = corners.way_around(self._start, element[1], curve[1], self._signed_offset)
+            turns, arc = corners.around_corner(
+                self._start, element[1], curve[1], self._signed_offset
+            )
             if turns:
                 touch = arc[1]
         lead = (False, self._start, touch, (0.0, 0.0), 0.0)
@@ -356,7 +358,7 @@ class Compensation:
         start, end = point_of(plane, vector_of(move.start)), point_of(plane, vector_of(move.end))
         leads, turns, arc = distance(start, end) >= SAME_POINT, False, contour
         if leads and self._indirect:
-            turns, arc = corners.way_around(end, here, contour[2], -self._signed_offset)
+            turns, arc = corners.around_corner(end, here, contour[2], -self._signed_offset)
         if leads:
             lead = (False, arc[1] if turns else here, end, (0.0, 0.0), 0.0)
             self._warn_of_cut(move, "from", lead, contour)
@@ -388,9 +390,9 @@ class Compensation:
         message = f"the tool's radius {abs(self.signed_offset):g} does not fit {where}; the control does not see so far ahead and cuts into the contour"
         self._report.warn(self._held[0], "compensation-neck", message)
 
-    def _warn_of_cut(self, move: Segment, way: str, lead: Curve, element: Curve) -> None:
+    def _warn_of_cut(self, move: Segment, direction: str, lead: Curve, element: Curve) -> None:
         """Warn of a lead that cuts into an element of the contour."""
         depth = corners.depth_of(lead, element, abs(self._signed_offset))
         if depth > 0.0:
-            message = f"on its way {way} the contour the tool cuts {depth:.3f} mm into it"
+            message = f"on its way {direction} the contour the tool cuts {depth:.3f} mm into it"
             self._report.warn(move, "compensation-lead", message)

@@ -56,7 +56,7 @@ class GreatCircle(NamedTuple):
         return turned(np.tile(self.start, (len(fraction), 1)), self.axis, angles)
 
 
-class Turning(NamedTuple):
+class RotaryTurn(NamedTuple):
     """How the rotary axes go in a part of a move.
 
     Attributes:
@@ -99,7 +99,7 @@ class TwoAxes:
         self._along = (self._inner - self._cosine * self._outer) / share
         self._aside = np.cross(self._outer, self._inner) / share
 
-    def turnings(self, start: FloatArray, end: FloatArray) -> list[Turning]:
+    def turnings(self, start: FloatArray, end: FloatArray) -> list[RotaryTurn]:
         """How the axes turn the tool from where it points to where it would point at the end of a move.
 
         Args:
@@ -114,9 +114,9 @@ class TwoAxes:
         across = np.cross(first, last)
         angle = math.atan2(float(np.linalg.norm(across)), float(first @ last))
         if angle < _OPPOSITE and self._is_pole(first) and self._is_pole(last):
-            return [Turning(0.0, 1.0, np.stack([here, end[self.columns]]))]
+            return [RotaryTurn(0.0, 1.0, np.stack([here, end[self.columns]]))]
         if angle < _STILL:
-            return [Turning(0.0, 1.0, np.stack([here, here]))]
+            return [RotaryTurn(0.0, 1.0, np.stack([here, here]))]
         if math.pi - angle < _OPPOSITE:
             raise ValueError("the tool would turn to the opposite direction, which names no plane")
         circle = GreatCircle(first, across / np.linalg.norm(across), angle)
@@ -125,7 +125,7 @@ class TwoAxes:
             return self._through(circle, pole, here)
         return [self._followed(circle, here, self._side_of(first, here))]
 
-    def motion(self, turning: Turning, fraction: FloatArray) -> PathMotion:
+    def motion(self, turning: RotaryTurn, fraction: FloatArray) -> PathMotion:
         """Angles of both axes at n fractions of a turning, with their derivatives, shape (n, 2) each [deg].
 
         Args:
@@ -133,9 +133,9 @@ class TwoAxes:
         """
         circle = turning.circle
         if circle is None:
-            way = turning.angles[1] - turning.angles[0]
-            value = turning.angles[0] + fraction[:, None] * way
-            rate = np.tile(way, (len(fraction), 1))
+            travel = turning.angles[1] - turning.angles[0]
+            value = turning.angles[0] + fraction[:, None] * travel
+            rate = np.tile(travel, (len(fraction), 1))
             return PathMotion(value, rate, np.zeros_like(rate))
         directions = circle.at(fraction)
         value = self._solved(directions, turning.side)
@@ -169,13 +169,13 @@ class TwoAxes:
 
         return min((1.0, -1.0), key=far)
 
-    def _followed(self, circle: GreatCircle, here: FloatArray, side: float) -> Turning:
+    def _followed(self, circle: GreatCircle, here: FloatArray, side: float) -> RotaryTurn:
         """The axes along a circle that does not meet the pole."""
         ends = self._solved(circle.at(np.array([0.0, 1.0])), side)
         ends += _TURN * np.round((here - ends[0]) / _TURN)
         angles = np.unwrap(ends, period=_TURN, axis=0)
         self._require_travel(angles[1])
-        return Turning(0.0, 1.0, np.stack([here, angles[1]]), circle, side)
+        return RotaryTurn(0.0, 1.0, np.stack([here, angles[1]]), circle, side)
 
     # --- the pole
 
@@ -196,18 +196,18 @@ class TwoAxes:
                 return 1.0 if at > circle.angle - POLE else at / circle.angle
         return None
 
-    def _through(self, circle: GreatCircle, at: float, here: FloatArray) -> list[Turning]:
+    def _through(self, circle: GreatCircle, at: float, here: FloatArray) -> list[RotaryTurn]:
         """The axes along a circle that goes through the pole at a fraction of it."""
         pole = (
             self._outer if float(circle.at(np.array([at]))[0] @ self._outer) > 0.0 else -self._outer
         )
-        found: list[Turning] = []
+        found: list[RotaryTurn] = []
         if at > 0.0:
             side = self._side_of(circle.start, here)
             to = _between(circle.start, pole)
             there = self._nearest(self._at_pole(pole, np.cross(to.axis, pole), side, 1.0), here)
             self._require_travel(there)
-            found.append(Turning(0.0, at, np.stack([here, there]), to, side))
+            found.append(RotaryTurn(0.0, at, np.stack([here, there]), to, side))
             here = there
         if at == 1.0:
             return found
@@ -217,7 +217,7 @@ class TwoAxes:
 
     def _away(
         self, circle: GreatCircle, pole: FloatArray, at: float, here: FloatArray
-    ) -> list[Turning]:
+    ) -> list[RotaryTurn]:
         """The turn at the pole, where the axes need one, and what leads away: by the solution that they turn to least."""
         tangent = np.cross(circle.axis, pole)
         choices = [
@@ -227,21 +227,23 @@ class TwoAxes:
             for side in (1.0, -1.0)
         ]
 
-        def cost(turning: Turning) -> tuple[bool, float, float]:
-            way = round(float(np.abs(turning.angles[0] - here).sum()), _DIGITS)
-            return (not self._within_travel(turning.angles), way, -float(turning.angles[1, 0]))
+        def cost(turning: RotaryTurn) -> tuple[bool, float, float]:
+            travel = round(float(np.abs(turning.angles[0] - here).sum()), _DIGITS)
+            return (not self._within_travel(turning.angles), travel, -float(turning.angles[1, 0]))
 
         best = min(choices, key=cost)
         self._require_travel(best.angles)
-        turn = Turning(at, at, np.stack([here, best.angles[0]]))
+        turn = RotaryTurn(at, at, np.stack([here, best.angles[0]]))
         still = np.abs(best.angles[0] - here).max() < _SAME_ANGLE
         return [best._replace(angles=np.stack([here, best.angles[1]]))] if still else [turn, best]
 
-    def _led_away(self, circle: GreatCircle, here: FloatArray, side: float, at: float) -> Turning:
+    def _led_away(
+        self, circle: GreatCircle, here: FloatArray, side: float, at: float
+    ) -> RotaryTurn:
         ends = self._solved(circle.at(np.array([1.0])), side)[0]
         # From the pole on the axis next to the part turns by less than a quarter.
         ends += _TURN * np.round((here - ends) / _TURN)
-        return Turning(at, 1.0, np.stack([here, ends]), circle, side)
+        return RotaryTurn(at, 1.0, np.stack([here, ends]), circle, side)
 
     def _at_pole(
         self, pole: FloatArray, tangent: FloatArray, side: float, ahead: float

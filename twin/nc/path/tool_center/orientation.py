@@ -72,9 +72,9 @@ def rotary_axes_for(
     carrier = int(chain.column[heads[-1]]) if heads else first
 
     def cost(row: FloatArray) -> tuple[bool, float, float, float]:
-        way = round(float(np.abs(row - here).sum()) / _SAME_ANGLE)
+        travel = round(float(np.abs(row - here).sum()) / _SAME_ANGLE)
         off = round(main * abs(math.remainder(float(row[carrier]), 360.0)) / _SAME_ANGLE)
-        return (float(row[first]) * sense < -_SAME_ANGLE, off, way, -float(row[first]))
+        return (float(row[first]) * sense < -_SAME_ANGLE, off, travel, -float(row[first]))
 
     return min(found, key=cost)
 

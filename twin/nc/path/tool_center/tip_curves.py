@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from twin.nc.canonical import Corner, FloatArray
 from twin.nc.path.move_columns import Curve, Segment
-from twin.nc.path.tool_center.great_circle import Turning, TwoAxes
+from twin.nc.path.tool_center.great_circle import RotaryTurn, TwoAxes
 from twin.nc.path.tool_center.tip_kinematics import TipKinematics
 from twin.nc.path.tool_center.tip_path import (
     PathMotion,
@@ -90,7 +90,7 @@ class TipCurves(NamedTuple):
                 yield from self._along_circle(part, rates, axes, turning)
 
     def _along_circle(
-        self, move: Segment, rates: FloatArray, axes: TwoAxes, turning: Turning
+        self, move: Segment, rates: FloatArray, axes: TwoAxes, turning: RotaryTurn
     ) -> Iterator[Segment]:
         """The rotary axes follow a great circle; parts are halved until they lead tip and direction closely enough."""
         fraction = np.linspace(0.0, 1.0, self._parts(move, rates) + 1)
@@ -117,7 +117,7 @@ class TipCurves(NamedTuple):
     def _loose(
         self,
         move: Segment,
-        turning: Turning,
+        turning: RotaryTurn,
         fraction: FloatArray,
         places: FloatArray,
         coefficients: FloatArray,

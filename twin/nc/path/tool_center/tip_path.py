@@ -26,9 +26,9 @@ def tip_motion(move: Segment, fraction: FloatArray) -> PathMotion:
     start, end = np.array(move.start[:3]), np.array(move.end[:3])
     u = fraction[:, None]
     if move.center is None:
-        way = end - start
-        value = start + u * way
-        return PathMotion(value, np.tile(way, (len(u), 1)), np.zeros_like(value))
+        displacement = end - start
+        value = start + u * displacement
+        return PathMotion(value, np.tile(displacement, (len(u), 1)), np.zeros_like(value))
     center, normal, sweep = np.array(move.center), np.array(move.normal), math.radians(move.sweep)
     arm, lead = start - center, advance_of(move) * normal
     cosine, sine = np.cos(sweep * u), np.sin(sweep * u)
@@ -100,7 +100,7 @@ def advance_of(move: Segment) -> float:
 
 
 def length_of(move: Segment) -> float:
-    """Of the tip's way in the part [mm]."""
+    """Of the tip's path in the part [mm]."""
     if move.center is None:
         return line_length(move.start[:3], list(move.end[:3]))
     return arc_length(move.start, move.end, move.center, move.normal, move.sweep)

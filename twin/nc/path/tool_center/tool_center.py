@@ -23,7 +23,7 @@ FARTHEST_TURN = 36_000.0
 _SQUARE = 1e-12
 
 
-class Setup(NamedTuple):
+class PartOnMachine(NamedTuple):
     """A part on a machine.
 
     Attributes:
@@ -47,7 +47,7 @@ class ToolCenter:
 
     def __init__(
         self,
-        setup: Setup,
+        setup: PartOnMachine,
         length_difference: float,
         rotary_zero: list[float],
         *,

@@ -15,7 +15,6 @@ class Diagnostic:
     Attributes:
         severity: ``error`` stops the program, ``warning`` does not.
         code: Stable, searchable name of the finding, such as ``unknown-word``.
-        file: Name of the program as the user gave it.
         line: Source line, from 1.
         column: Column of the first character in question, from 1.
         width: How many characters are in question.

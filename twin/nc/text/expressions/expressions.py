@@ -101,7 +101,6 @@ class ExpressionSyntax:
     """How a dialect writes expressions.
 
     Attributes:
-        operators: By symbol or word.
         functions: By name; a function's arguments are in ``brackets``.
         variable: Regular expression of a variable's name.
         indexed: Names that may be followed by an index in brackets, such as ``P``.
@@ -110,7 +109,7 @@ class ExpressionSyntax:
         joined: Two such indices as one number.
         existence: Functions that tell whether their value is defined.
         prefixes: Operators before one value, besides + and -.
-        spelled: One spelling for all ways to write a variable's name.
+        spelled: One spelling for all forms of a variable's name.
         indirect: Character before a value that is a variable's number, such as ``#[#1+2]``; empty:
             there is none.
         quotients: Functions of two values, each in brackets, with a slash between them.

@@ -10,7 +10,6 @@ class Auxiliaries:
     """What M functions switch; other files read it and call its methods.
 
     Attributes:
-        spindle: Whether the spindle turns, and how fast.
         running_down: The spindle, stopped by a reset, still turns while the axes brake.
     """
 

@@ -30,11 +30,7 @@ class JogMove(NamedTuple):
 
 
 class ManualMotion:
-    """Moves by hand: the first is running, the others follow; other files read it and call its methods.
-
-    Attributes:
-        moves: Those that are not done yet.
-    """
+    """Moves by hand: the first is running, the others follow; other files read it and call its methods."""
 
     def __init__(self) -> None:
         self.moves: deque[JogMove] = deque()

@@ -16,14 +16,11 @@ class Panel:
     """What is set at the panel; other files read it and call its methods.
 
     Attributes:
-        mode: Where the mode switch is set.
         feed_override: Feed override dial [%].
         rapid_override: Rapid override dial [%].
         spindle_override: Spindle override dial [%].
         optional_stop: M1 stops.
-        block_skip: Blocks that begin with a slash are left out.
         dry_run: All feeds are replaced by that of the dry run.
-        stop_pressed: The emergency stop button is pressed.
     """
 
     mode: Mode

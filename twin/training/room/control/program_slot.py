@@ -7,7 +7,7 @@ import numpy as np
 from twin.errors import UsageError
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray, Function
-from twin.training.program.block_walk import ModalState
+from twin.training.program.block_tracker import ModalState
 from twin.training.program.program_run import ProgramRun
 from twin.training.program.run_options import Inherited
 from twin.training.room.control.panel import Panel

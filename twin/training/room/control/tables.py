@@ -24,7 +24,6 @@ class Tables:
         lengths: Tool lengths in the control's table, by number [mm].
         radii: Tool radii in the control's table, by number [mm].
         offsets: Work offsets by name, each by axis, from part zero [mm or deg].
-        tools: The tools as they are, by number.
         first: Number of the tool that the job begins with.
         finder: Number of the edge finder; None: the magazine has none.
     """

@@ -3,8 +3,8 @@
 import dataclasses
 from collections import deque
 
-from twin.training.room.judging.inspection import Moment, moment_of
-from twin.training.room.observed import Notice, Observed, block_number
+from twin.training.room.judging.inspection import AlarmMoment, moment_of
+from twin.training.room.observed import Observed, RoomAlarm, block_number
 
 ALARMS_KEPT = 50
 """Alarms that the history shows."""
@@ -25,20 +25,20 @@ class AlarmLog:
     """
 
     def __init__(self) -> None:
-        self.active: Notice | None = None
-        self.history: deque[Notice] = deque(maxlen=ALARMS_KEPT)
-        self.moments: deque[Moment] = deque(maxlen=MOMENTS_KEPT)
-        self.broken: dict[int, Notice] = {}
+        self.active: RoomAlarm | None = None
+        self.history: deque[RoomAlarm] = deque(maxlen=ALARMS_KEPT)
+        self.moments: deque[AlarmMoment] = deque(maxlen=MOMENTS_KEPT)
+        self.broken: dict[int, RoomAlarm] = {}
 
-    def begin_with(self, code: str) -> Notice:
+    def begin_with(self, code: str) -> RoomAlarm:
         """The last shift has left the machine with an alarm."""
         on_switch = code == "hard-limit"
         message = "an axis is on its limit switch" if on_switch else LEFT_IN_ALARM
-        self.active = Notice(code, message)
+        self.active = RoomAlarm(code, message)
         self.history.append(self.active)
         return self.active
 
-    def enter(self, room: Observed, notice: Notice) -> Notice:
+    def enter(self, room: Observed, notice: RoomAlarm) -> RoomAlarm:
         """Enter what went wrong into the history, for score sheet and judge too.
 
         Returns:
@@ -52,16 +52,16 @@ class AlarmLog:
         room.judge.note_alarm(notice.code)
         return notice
 
-    def activate(self, room: Observed, notice: Notice) -> None:
+    def activate(self, room: Observed, notice: RoomAlarm) -> None:
         """An alarm that has to be cleared; the first one counts."""
         if self.active is None:
             self.active = self.enter(room, notice)
 
-    def warn(self, room: Observed, notice: Notice) -> None:
+    def warn(self, room: Observed, notice: RoomAlarm) -> None:
         """Enter what stops nothing."""
         self.history.append(_located(room, notice))
 
-    def note_break(self, room: Observed, tool: int, notice: Notice) -> None:
+    def note_break(self, room: Observed, tool: int, notice: RoomAlarm) -> None:
         """A tool has lost its edge: the machine does not measure it, and goes on without."""
         self.broken[tool] = self.enter(room, notice)
 
@@ -79,7 +79,7 @@ class AlarmLog:
         self.active = None
 
 
-def _located(room: Observed, notice: Notice) -> Notice:
+def _located(room: Observed, notice: RoomAlarm) -> RoomAlarm:
     """A notice with the time and the block at which it comes."""
     running = room.slot.running
     of_program = running == "program" or (running == "" and notice.line > 0)

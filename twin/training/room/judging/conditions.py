@@ -17,8 +17,6 @@ class Evidence:
     """What has happened that tasks ask for.
 
     Attributes:
-        alarms: Codes of the alarms that came.
-        cleared: Codes of those that were cleared.
         ended_well: The program has run to its end without an alarm, and the part is what it should be.
         single: Lines that were run in single block, from one stop to the next.
         held: Lines in which the axes were held to a stand.

@@ -10,7 +10,7 @@ from PIL import Image, ImageDraw
 
 from twin.job.job_file import ToolTable
 from twin.nc.canonical import FloatArray
-from twin.training.room.observed import Notice, Observed
+from twin.training.room.observed import Observed, RoomAlarm
 
 FINEST = 240
 """Cells along a side of the kept stock, at most."""
@@ -20,7 +20,7 @@ _STEEL, _CUT, _TOOL, _PAPER = (176, 187, 197), (84, 131, 166), (214, 50, 47), (2
 
 
 @dataclasses.dataclass(frozen=True)
-class Moment:
+class AlarmMoment:
     """An alarm with what there was to see.
 
     Attributes:
@@ -32,7 +32,7 @@ class Moment:
         ends: Underside and top of the blank [mm].
     """
 
-    alarm: Notice
+    alarm: RoomAlarm
     text: str
     tip: FloatArray
     tool: ToolTable
@@ -87,18 +87,20 @@ class Moment:
         draw.rectangle((x - radius, top, x + radius, tip), outline=_TOOL, width=3)
 
 
-def moment_of(room: Observed, alarm: Notice) -> Moment:
+def moment_of(room: Observed, alarm: RoomAlarm) -> AlarmMoment:
     """How the tool is in the part, in so few cells that it costs the machine nothing."""
     setup, lines = room.setup, room.program.lines
     running = room.slot.run is not None and room.slot.running == "program"
     text = lines[alarm.line - 1].strip() if running and 0 < alarm.line <= len(lines) else ""
     tool = setup.tables.tool
     if setup.work is None:
-        return Moment(alarm, text, setup.tip, tool, np.zeros((0, 0)), (0.0, 0.0), 1.0, (0.0, 0.0))
+        return AlarmMoment(
+            alarm, text, setup.tip, tool, np.zeros((0, 0)), (0.0, 0.0), 1.0, (0.0, 0.0)
+        )
     heights, origin, cell = setup.work.view_from_above()
     every = max(1, -(-max(heights.shape) // FINEST))
     kept = heights[::every, ::every].copy()
-    return Moment(alarm, text, setup.tip, tool, kept, origin, cell * every, setup.work.ends)
+    return AlarmMoment(alarm, text, setup.tip, tool, kept, origin, cell * every, setup.work.ends)
 
 
 class MeasuredPlace(NamedTuple):
@@ -128,7 +130,7 @@ class Inspection(NamedTuple):
         wanted_removed: Least and most that the scene asks for [mm³]; None: it does not ask.
     """
 
-    moment: Moment
+    moment: AlarmMoment
     places: tuple[MeasuredPlace, ...] = ()
     removed: float | None = None
     wanted_removed: tuple[float, float] | None = None
@@ -157,7 +159,7 @@ def measured_places(room: Observed) -> tuple[MeasuredPlace, ...]:
     return tuple(found)
 
 
-def inspect_part(room: Observed, moment: Moment) -> Inspection:
+def inspect_part(room: Observed, moment: AlarmMoment) -> Inspection:
     """Measure what is handed in."""
     part, work = room.scene.file.part, room.setup.work
     if part is None or work is None:

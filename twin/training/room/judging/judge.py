@@ -27,7 +27,6 @@ class Judge:
 
     Attributes:
         verdicts: How each task stands, in the order of the scene.
-        hints: How many hints have been asked for.
         over: The scene has been handed in, or its time is up.
         evidence: What has happened that tasks ask for.
     """

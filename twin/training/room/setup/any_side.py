@@ -29,9 +29,9 @@ def touch_any_side(stock: TriDexel, tip: FloatArray, axis: FloatArray, tool: Too
     if depth <= 0.0:
         return Touch(FAR_MM)
     low, high = stock.corners[:, :2]
-    way = tip[:2] - np.clip(tip[:2], low, high)
-    length = float(np.linalg.norm(way))
-    away = (float(way[0]) / length, float(way[1]) / length) if length else (0.0, 0.0)
+    gap = tip[:2] - np.clip(tip[:2], low, high)
+    length = float(np.linalg.norm(gap))
+    away = (float(gap[0]) / length, float(gap[1]) / length) if length else (0.0, 0.0)
     return Touch(CONTACT_MM - depth, away)
 
 

@@ -11,7 +11,7 @@ FIRST_NUMBER = 99
 TIP_MM, TIP_HEIGHT_MM, BODY_MM, LENGTH_MM, BELOW_HOLDER_MM = 10.0, 16.0, 20.0, 100.0, 60.0
 """Of a usual electronic edge finder: tip, body, whole length, and what stands out of the holder [mm]."""
 OVERTRAVEL_MM = 2.0
-"""How far its tip gives way [mm]; the makers of such finders name 1 to 3."""
+"""How far its tip yields [mm]; the makers of such finders name 1 to 3."""
 
 
 def edge_finder(taken: Iterable[int]) -> ToolTable:

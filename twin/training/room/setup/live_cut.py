@@ -17,14 +17,14 @@ from twin.recording.form import ToolLoad
 from twin.toolpath.part_frame import PartFrame
 
 
-class Loads(NamedTuple):
+class SliceLoads(NamedTuple):
     """What tool and spindle bear, the greatest of a slice; NaN where it is not simulated.
 
     Attributes:
         spindle_speed: As the drive turns, without its sense [1/min].
         spindle: Torque as a share of what the spindle gives for long.
         force: Level, on the tool [N].
-        bend: How far its tip gives way [mm].
+        bend: Deflection of its tip [mm].
         chip: Thickest chip [mm].
         chip_share: Of what breaks an edge.
     """
@@ -108,13 +108,13 @@ class LiveCut:
         speed = self._operation.speed
         return np.full(len(setpoints), np.nan if speed is None else speed)
 
-    def loads(self, loads: ToolLoad | None) -> Loads:
+    def loads(self, loads: ToolLoad | None) -> SliceLoads:
         """What there is to show of the tool's loads."""
         if loads is None or not len(loads):
-            return Loads()
+            return SliceLoads()
         strength = tool_strength(self._operation.tool)
         force, chip = float(loads.peak_force.max()), float(loads.chip.max())
-        return Loads(
+        return SliceLoads(
             spindle_speed=abs(float(loads.spindle_speed[-1])),
             spindle=float(loads.spindle_load.max()),
             force=force,

@@ -30,7 +30,6 @@ class Setup:
     Attributes:
         tables: Part zero and tools, as the control has them and as they are.
         part_frame: How the part turns under the tool.
-        work: The stock, if there is one.
         finder: The edge finder in the magazine; None: there is nothing to be found with it.
     """
 

@@ -56,14 +56,14 @@ def touch(stock: HeightMap, tip: FloatArray, diameter: float) -> Touch:
         return Touch(FAR_MM)
     side = float(distance[near].min()) - radius
     if side - slack <= beside:
-        side, way = beside, np.array([x, y]) - edge
+        side, gap = beside, np.array([x, y]) - edge
     else:
-        side, way = side - 0.5 * stock.cell, -np.array([across[near].mean(), along[near].mean()])
+        side, gap = side - 0.5 * stock.cell, -np.array([across[near].mean(), along[near].mean()])
     top = z - float(cells[near].max())
-    length = math.hypot(*way)
+    length = math.hypot(*gap)
     if top >= side or not length:
         return Touch(max(top, side))
-    return Touch(side, (float(way[0]) / length, float(way[1]) / length))
+    return Touch(side, (float(gap[0]) / length, float(gap[1]) / length))
 
 
 def _around(

@@ -14,7 +14,7 @@ import math
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.polar import take_goal
 from twin.nc.iso.milling.clearing import Clearing, clear_pocket
-from twin.nc.iso.milling.outlines import Circle, Corner, CornerKind, Outline, Rectangle
+from twin.nc.iso.milling.outlines import Circle, CornerKind, Outline, Rectangle, RectangleCorner
 
 _DEFAULT_WIDTH = 0.75
 """Width of a pass where C is missing, of the tool's diameter (manual)."""
@@ -44,7 +44,7 @@ def call_pocket(control: Control, words: str, lengths: str) -> None:
         values["bottom"] = control.length(depth) + (values["Z"] if relative else 0.0)
 
 
-def _corner(control: Control, name: str, radius: float) -> Corner:
+def _corner(control: Control, name: str, radius: float) -> RectangleCorner:
     """Corners by M and Q."""
     values = control.cycle_values
     kind, size = values.get("M", 0.0), values.get("Q", 0.0)
@@ -56,7 +56,7 @@ def _corner(control: Control, name: str, radius: float) -> Corner:
     if kind != CornerKind.SQUARE and not 0.0 < size <= largest:
         message = f"{name} needs the size of its corners in Q, above 0 and up to {largest:g}"
         control.fail("cycle-size", message)
-    return Corner(CornerKind(int(kind)), size, radius)
+    return RectangleCorner(CornerKind(int(kind)), size, radius)
 
 
 def mill_pocket(control: Control, name: str, *, circular: bool) -> None:

@@ -11,9 +11,9 @@ from twin.nc.control.control import Control
 from twin.nc.dialects.fanuc.frames.transformations import refuse_scaled_pecks
 from twin.nc.dialects.fanuc.memory import Variant, memory_of
 from twin.nc.dialects.fanuc.motion import holes_of, target
+from twin.nc.iso.cycle_moves import go_to_height
 from twin.nc.iso.drilling.drilling import Cycle, cycle_code, require_words, take_words
 from twin.nc.iso.drilling.hole import turn_spindle
-from twin.nc.iso.plane_moves import go_to_height
 
 _WORDS = {"R": "reference", "P": "dwell", "Q": "peck"}
 _NEEDED = ("reference", "bottom", "peck")
@@ -51,8 +51,8 @@ def _bore(control: Control, cycle: Cycle, hole: list[float], *, back: bool) -> N
         control.fail("cycle-depth", f"{name} needs a shift Q not below 0")
     upwards = bottom > reference
     if upwards != back:
-        way = "upwards" if back else "downwards"
-        message = f"{name} must bore {way}, not from {reference:g} to {bottom:g}"
+        direction = "upwards" if back else "downwards"
+        message = f"{name} must bore {direction}, not from {reference:g} to {bottom:g}"
         control.fail("cycle-depth", message)
     if back and to_reference:
         message = "G87 returns to the height of its call: its plane R lies under the part"
@@ -82,7 +82,7 @@ def _orient(control: Control, shift: float) -> None:
     _shift(control, shift)
 
 
-def _shift(control: Control, way: float) -> None:
+def _shift(control: Control, direction: float) -> None:
     there = list(control.motion.programmed)
-    there[control.modal.plane.axes[0]] += way
+    there[control.modal.plane.axes[0]] += direction
     control.line_to(there, rapid=True)

@@ -152,8 +152,8 @@ def compensation_code(number: int, side: float) -> Action:
         elif row_number == 0:
             control.path.end_compensation()
         else:
-            way = memory_of(control).variant.side_change
-            change_side(control, side, radius, control.code_word(number), way)
+            change = memory_of(control).variant.side_change
+            change_side(control, side, radius, control.code_word(number), change)
 
     return begin
 

@@ -2,10 +2,9 @@
 
 from twin.nc.control.codes import Interpolation
 from twin.nc.control.control import Control
-from twin.nc.dialects.heidenhain.cycle_values import Parameters
-from twin.nc.dialects.heidenhain.memory import memory_of
+from twin.nc.dialects.heidenhain.memory import Parameters, memory_of
 from twin.nc.dialects.heidenhain.paths.paths import LINE
-from twin.nc.iso.plane_moves import go_to_height
+from twin.nc.iso.cycle_moves import go_to_height
 from twin.nc.text.blocks import Statement
 
 HEIGHT = 2

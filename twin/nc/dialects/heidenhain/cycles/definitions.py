@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from twin.nc.control.control import Control
-from twin.nc.dialects.heidenhain.cycle_values import Parameters
 from twin.nc.dialects.heidenhain.cycles import (
     holes,
     patterns,
@@ -18,8 +17,8 @@ from twin.nc.dialects.heidenhain.cycles import (
 )
 from twin.nc.dialects.heidenhain.cycles import transformations as frames
 from twin.nc.dialects.heidenhain.cycles.parameters import take_parameters
-from twin.nc.dialects.heidenhain.cycles.transformations import Step
-from twin.nc.dialects.heidenhain.memory import memory_of
+from twin.nc.dialects.heidenhain.cycles.transformations import DefinitionStep
+from twin.nc.dialects.heidenhain.memory import Parameters, memory_of
 from twin.nc.text.blocks import Statement, Word
 
 Perform = Callable[[Control, Parameters], None]
@@ -80,7 +79,7 @@ REFUSED: Mapping[int, str] = {
     int(number): said for numbers, said in _DATA["refused"].items() for number in numbers.split(",")
 }
 """Cycles that the control knows and the twin does not follow."""
-STEPS: Mapping[int, Callable[[Control, Step], None]] = {
+STEPS: Mapping[int, Callable[[Control, DefinitionStep], None]] = {
     7: frames.shift_datum,
     8: frames.mirror,
     9: frames.dwell,
@@ -111,7 +110,7 @@ def define(control: Control, statement: Statement) -> None:
         control.report.fail("unsupported-cycle", message, statement.text_column, match.end())
     if number in STEPS:
         step = 0 if match[2] is None else int(match[2])
-        STEPS[number](control, Step(number, step, text.rstrip("~ \t"), column))
+        STEPS[number](control, DefinitionStep(number, step, text.rstrip("~ \t"), column))
         return
     definition = DEFINITIONS.get(number)
     if number != 247 and definition is None:

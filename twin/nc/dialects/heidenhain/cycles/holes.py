@@ -5,7 +5,8 @@ Decisions, since the manuals leave them open or the twin does not follow them: t
 """
 
 from twin.nc.control.control import Control
-from twin.nc.dialects.heidenhain.cycle_values import Parameters
+from twin.nc.dialects.heidenhain.memory import Parameters
+from twin.nc.iso.cycle_moves import at_feed, descend, go, go_to_height
 from twin.nc.iso.drilling.hole import (
     MOST_PECKS,
     Hole,
@@ -14,7 +15,6 @@ from twin.nc.iso.drilling.hole import (
     drill,
     turn_spindle,
 )
-from twin.nc.iso.plane_moves import at_feed, descend, go, go_to_height
 
 ADVANCE = 0.2
 """How far above its last depth a rapid return ends [mm]."""
@@ -145,8 +145,8 @@ def _break_chips(control: Control, given: Parameters, hole: Hole, breaking: floa
 
 def boring(control: Control, given: Parameters) -> None:
     """202: at the bottom the spindle is stopped, the tool leaves the wall by Q214, and comes back with Q208."""
-    way = _ASIDE.get(int(given.number(214)))
-    if way is None:
+    direction = _ASIDE.get(int(given.number(214)))
+    if direction is None:
         control.fail("cycle-word", f"Q214 is 0 to 4, not {given.number(214):g}")
     _, reference, bottom, back = heights(control, given)
     x, y = control.modal.plane.point(control.motion.programmed)
@@ -157,7 +157,7 @@ def boring(control: Control, given: Parameters) -> None:
         control.dwell(seconds)
     control.function("M5", {})
     with at_feed(control, down):
-        go(control, (x + ADVANCE * way[0], y + ADVANCE * way[1]))
+        go(control, (x + ADVANCE * direction[0], y + ADVANCE * direction[1]))
     descend(control, reference, up if up is None else up or down)
     go_to_height(control, back)
     turn_spindle(control, "M3")
@@ -170,14 +170,23 @@ def back_boring(control: Control, given: Parameters) -> None:
     Its tooth lies Q252 above its tip and reaches Q251 beyond its shank. Decision: it comes out of the counterbore with
     the feed of positioning, Q253.
     """
-    way, thickness, deep = _ASIDE.get(int(given.number(214))), given.length(250), given.length(249)
-    if not way or way == _ASIDE[0] or not 0.0 < deep <= thickness or given.length(200) < 0.0:
+    direction, thickness, deep = (
+        _ASIDE.get(int(given.number(214))),
+        given.length(250),
+        given.length(249),
+    )
+    if (
+        not direction
+        or direction == _ASIDE[0]
+        or not 0.0 < deep <= thickness
+        or given.length(200) < 0.0
+    ):
         message = "cycle 204 needs Q214 1 to 4, and a depth Q249 above 0, in the thickness Q250"
         control.fail("cycle-word", message)
     surface, clearance, offset = given.length(203), given.length(200), given.length(251)
     reference, under = surface + clearance, surface - thickness - given.length(252)
     x, y = control.modal.plane.point(control.motion.programmed)
-    beside = (x + offset * way[0], y + offset * way[1])
+    beside = (x + offset * direction[0], y + offset * direction[1])
     positioning, stands = given.feed(253), {"R": given.number(336)}
     go_to_height(control, reference)
     control.function("M19", stands)

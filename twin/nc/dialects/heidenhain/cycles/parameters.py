@@ -4,8 +4,7 @@ import re
 from collections.abc import Iterator, Mapping
 
 from twin.nc.control.control import Control
-from twin.nc.dialects.heidenhain.cycle_values import RAPID, Parameters
-from twin.nc.dialects.heidenhain.memory import memory_of
+from twin.nc.dialects.heidenhain.memory import RAPID, Parameters, memory_of
 from twin.nc.text.blocks import Location, Statement
 
 _PARAMETER = re.compile(

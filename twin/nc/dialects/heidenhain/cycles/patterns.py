@@ -3,7 +3,6 @@
 import re
 
 from twin.nc.control.control import Control
-from twin.nc.dialects.heidenhain.cycle_values import Parameters
 from twin.nc.dialects.heidenhain.cycles.calls import (
     CLEARANCE,
     SECOND_CLEARANCE,
@@ -13,9 +12,9 @@ from twin.nc.dialects.heidenhain.cycles.calls import (
     run_raised,
 )
 from twin.nc.dialects.heidenhain.cycles.parameters import continued
-from twin.nc.dialects.heidenhain.memory import memory_of
+from twin.nc.dialects.heidenhain.memory import Parameters, memory_of
 from twin.nc.geometry.arcs import Point
-from twin.nc.iso.places import circle, grid, row
+from twin.nc.iso.cycle_moves import circle, grid, row
 from twin.nc.text.blocks import Statement
 
 MOST_PLACES = 10_000

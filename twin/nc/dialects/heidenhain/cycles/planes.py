@@ -13,13 +13,14 @@ import re
 from twin.nc.control.control import Control
 from twin.nc.dialects.heidenhain.cycles.plane_directions import MATRICES, PlaneWords, spatial
 from twin.nc.dialects.heidenhain.cycles.transformations import (
-    Step,
+    DefinitionStep,
     apply_transformations,
     axis_values,
 )
 from twin.nc.dialects.heidenhain.memory import memory_of
 from twin.nc.dialects.heidenhain.values import refuse_rest, value_at
 from twin.nc.geometry.matrices import IDENTITY, Matrix
+from twin.nc.iso.cycle_moves import at_feed
 from twin.nc.iso.machine_coordinates import machine_frame
 from twin.nc.iso.orientation.tilted_plane import (
     count_in_plane,
@@ -28,7 +29,6 @@ from twin.nc.iso.orientation.tilted_plane import (
     turned_with_plane,
 )
 from twin.nc.iso.orientation.tool_center import begin_tool_center, end_tool_center
-from twin.nc.iso.plane_moves import at_feed
 from twin.nc.text.blocks import Statement
 
 _WORD = re.compile(
@@ -69,7 +69,7 @@ def plane(control: Control, statement: Statement) -> None:
     _turn(control, statement, words)
 
 
-def define_plane(control: Control, step: Step) -> None:
+def define_plane(control: Control, step: DefinitionStep) -> None:
     """19: the working plane by spatial angles; the program turns the rotary axes to Q120 to Q122 itself."""
     if step.step == 0:
         return
@@ -82,11 +82,11 @@ def define_plane(control: Control, step: Step) -> None:
     _write_angles(control, rotary_axes_across(control, "cycle 19"))
 
 
-def retract(control: Control, way: float | None, *, rapid: bool = True) -> None:
-    """Away from the part along Z by a way [mm]; None: to machine zero of that axis."""
-    if way is not None:
+def retract(control: Control, distance: float | None, *, rapid: bool = True) -> None:
+    """Away from the part along Z by a distance [mm]; None: to machine zero of that axis."""
+    if distance is not None:
         target = list(control.motion.programmed)
-        target[_HEIGHT] += way
+        target[_HEIGHT] += distance
         control.line_to(target, rapid=rapid)
         return
     with machine_frame(control, "MB MAX"):

@@ -7,13 +7,20 @@ X, and cleared inwards.
 """
 
 from twin.nc.control.control import Control
-from twin.nc.dialects.heidenhain.cycle_values import Parameters
 from twin.nc.dialects.heidenhain.cycles.holes import heights
+from twin.nc.dialects.heidenhain.memory import Parameters
 from twin.nc.dialects.heidenhain.tools import compensation_radius
 from twin.nc.geometry.arcs import Point, turned
+from twin.nc.iso.cycle_moves import along
 from twin.nc.iso.milling.clearing import Clearing, clear_around, clear_pocket
-from twin.nc.iso.milling.outlines import Circle, Corner, CornerKind, CurvedSlot, Outline, Rectangle
-from twin.nc.iso.places import along
+from twin.nc.iso.milling.outlines import (
+    Circle,
+    CornerKind,
+    CurvedSlot,
+    Outline,
+    Rectangle,
+    RectangleCorner,
+)
 
 _BESIDE = 2.0
 """Between the blank of a stud and the tool that plunges beside it (TNC 640 cycle programming, 5.6) [mm]."""
@@ -36,11 +43,11 @@ def _choice(control: Control, given: Parameters, parameter: int, known: dict[int
     return chosen
 
 
-def _middle(control: Control, given: Parameters, halves: Point, ways: dict[int, Point]) -> Point:
+def _middle(control: Control, given: Parameters, halves: Point, corners: dict[int, Point]) -> Point:
     """The middle of what is milled, turned with it about the place of the call."""
-    way = _choice(control, given, 367, ways)
+    corner = _choice(control, given, 367, corners)
     here = _here(control)
-    there = (here[0] + way[0] * halves[0], here[1] + way[1] * halves[1])
+    there = (here[0] + corner[0] * halves[0], here[1] + corner[1] * halves[1])
     return turned(there, here, given.number(224) + given.number(374))
 
 
@@ -97,7 +104,7 @@ def rectangular_pocket(control: Control, given: Parameters) -> None:
     length, width, corner = given.length(218) / 2.0, given.length(219) / 2.0, given.length(220)
     if corner > min(length, width):
         control.fail("cycle-size", f"the corner Q220 does not fit into the pocket of {given.name}")
-    shape = Corner(CornerKind.ROUNDED, max(corner, radius), radius)
+    shape = RectangleCorner(CornerKind.ROUNDED, max(corner, radius), radius)
     middle, angle = _middle(control, given, (length, width), _CORNERS), given.number(224)
     sides = (length - radius, width - radius)
     _clear(control, given, Rectangle(middle, *sides, angle, _clockwise(given), shape))
@@ -117,7 +124,10 @@ def slot(control: Control, given: Parameters) -> None:
         control.fail("cycle-size", "a slot is at least as long (Q218) as it is wide (Q219)")
     to_end = length - width if given.number(367) in (2.0, 3.0) else length
     middle, angle = _middle(control, given, (to_end, 0.0), _ENDS), given.number(374)
-    shape, sides = Corner(CornerKind.ROUNDED, width, radius), (length - radius, width - radius)
+    shape, sides = (
+        RectangleCorner(CornerKind.ROUNDED, width, radius),
+        (length - radius, width - radius),
+    )
     _clear(control, given, Rectangle(middle, *sides, angle, _clockwise(given), shape))
 
 
@@ -158,7 +168,7 @@ def rectangular_stud(control: Control, given: Parameters) -> None:
     length, width = given.length(218) / 2.0, given.length(219) / 2.0
     if given.length(220) < 0.0:
         control.fail("cycle-size", "Q220 below 0 asks for chamfers, which the twin does not mill")
-    corner = Corner(CornerKind.ROUNDED, given.length(220), -radius)
+    corner = RectangleCorner(CornerKind.ROUNDED, given.length(220), -radius)
     middle, angle = _middle(control, given, (length, width), _CORNERS), given.number(224)
     sides = (length + radius, width + radius)
     outline = Rectangle(middle, *sides, angle, not _clockwise(given), corner)

@@ -6,10 +6,9 @@ They count from where the tool is when they are called, which is the set-up clea
 import re
 
 from twin.nc.control.control import Control
-from twin.nc.dialects.heidenhain.cycle_values import Parameters
 from twin.nc.dialects.heidenhain.cycles import holes, pockets
-from twin.nc.dialects.heidenhain.cycles.transformations import Step
-from twin.nc.dialects.heidenhain.memory import memory_of
+from twin.nc.dialects.heidenhain.cycles.transformations import DefinitionStep
+from twin.nc.dialects.heidenhain.memory import Parameters, memory_of
 
 _VALUES = re.compile(r"[-+]?[ \t]*(?:[0-9]*\.?[0-9]+|Q[LR]?[0-9]+)(?=[ \t]|$|[A-Z])", re.IGNORECASE)
 _STEPS: dict[int, tuple[tuple[int, ...], ...]] = {
@@ -28,7 +27,7 @@ _NEWER = {
 _DIAMETER, _CLIMB, _SURFACE, _CLEARANCE = 223, 351, 203, 200
 
 
-def take(control: Control, step: Step) -> None:
+def take(control: Control, step: DefinitionStep) -> None:
     """A step of an old cycle; its last one defines it."""
     memory, steps = memory_of(control), _STEPS[step.cycle]
     if step.step == 0:

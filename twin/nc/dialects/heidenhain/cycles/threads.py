@@ -6,9 +6,10 @@ Decision: 263 with a clearance Q357 beside the wall is refused, since the core d
 """
 
 from twin.nc.control.control import Control
-from twin.nc.dialects.heidenhain.cycle_values import Parameters
 from twin.nc.dialects.heidenhain.cycles.holes import heights, universal_pecking
+from twin.nc.dialects.heidenhain.memory import Parameters
 from twin.nc.dialects.heidenhain.tools import compensation_radius
+from twin.nc.iso.cycle_moves import at_feed, descend, go_to_height, turn
 from twin.nc.iso.milling.threads import (
     MOST_TURNS,
     Thread,
@@ -16,7 +17,6 @@ from twin.nc.iso.milling.threads import (
     mill_thread,
     right_handed_goes_up,
 )
-from twin.nc.iso.plane_moves import at_feed, descend, go_to_height, turn
 
 
 def bore_milling(control: Control, given: Parameters) -> None:

@@ -36,7 +36,7 @@ _OWN_ROWS = (0, 1)
 """Presets of 247, and rows of the datum table, that are part zero where the job gives them no values (decision)."""
 
 
-class Step(NamedTuple):
+class DefinitionStep(NamedTuple):
     """One block of a definition in steps, such as ``7.1 X+60``.
 
     Attributes:
@@ -55,7 +55,7 @@ class Step(NamedTuple):
         control.report.fail(code, message, begin, width, hint)
 
 
-def _last_value(control: Control, step: Step) -> tuple[float, bool]:
+def _last_value(control: Control, step: DefinitionStep) -> tuple[float, bool]:
     """The value at the end of a step, and whether it is incremental."""
     match = _LAST.fullmatch(step.text.strip())
     if match is None:
@@ -66,7 +66,7 @@ def _last_value(control: Control, step: Step) -> tuple[float, bool]:
     return control.compute(value, column + match.start(2)), match[1].upper() == "I"
 
 
-def shift_datum(control: Control, step: Step) -> None:
+def shift_datum(control: Control, step: DefinitionStep) -> None:
     """7: the datum lies so far from part zero; incremental values count from the datum in force."""
     memory = memory_of(control)
     if step.step == 0:
@@ -92,7 +92,7 @@ def shift_datum(control: Control, step: Step) -> None:
     _enter(control, "shift", any(memory.shift.values()))
 
 
-def _shift_by_row(control: Control, step: Step, row: re.Match[str]) -> None:
+def _shift_by_row(control: Control, step: DefinitionStep, row: re.Match[str]) -> None:
     """7.1 #2: the shift is the row ``DATUM2`` of the job; 0 and 1 shift nothing where the job does not give them."""
     value, _ = control.statements.operand(step.text, row.start(1), step.column)
     number = control.compute(value, step.column + row.start(1))
@@ -110,7 +110,7 @@ def _values_of_row(control: Control, name: str, number: float, word: Word) -> Ma
     return offset_of_job(control, name, word)
 
 
-def mirror(control: Control, step: Step) -> None:
+def mirror(control: Control, step: DefinitionStep) -> None:
     """8: the axes that it names are mirrored; none ends it."""
     if step.step == 0:
         return
@@ -122,7 +122,7 @@ def mirror(control: Control, step: Step) -> None:
     _enter(control, "mirror", bool(names))
 
 
-def rotate(control: Control, step: Step) -> None:
+def rotate(control: Control, step: DefinitionStep) -> None:
     """10: about the datum, by an angle from the abscissa; incremental ones are added."""
     if step.step == 0:
         return
@@ -131,7 +131,7 @@ def rotate(control: Control, step: Step) -> None:
     _enter(control, "rotation", memory.rotation != 0.0)
 
 
-def scale(control: Control, step: Step) -> None:
+def scale(control: Control, step: DefinitionStep) -> None:
     """11: all coordinates by a factor."""
     if step.step == 0:
         return
@@ -184,7 +184,7 @@ def _matrix_of(control: Control, kind: str) -> Matrix:
     return matrix
 
 
-def dwell(control: Control, step: Step) -> None:
+def dwell(control: Control, step: DefinitionStep) -> None:
     """9: wait so many seconds."""
     if step.step == 0:
         return
@@ -194,13 +194,13 @@ def dwell(control: Control, step: Step) -> None:
     control.dwell(value)
 
 
-def orient_spindle(control: Control, step: Step) -> None:
+def orient_spindle(control: Control, step: DefinitionStep) -> None:
     """13: the spindle is at an angle, as M19."""
     if step.step > 0:
         control.function("M19", {"R": _last_value(control, step)[0]})
 
 
-def axis_values(control: Control, step: Step, names: str) -> dict[str, float]:
+def axis_values(control: Control, step: DefinitionStep, names: str) -> dict[str, float]:
     """The values of axes in a block of a definition, by their names."""
     found = {}
     for match in _AXIS.finditer(step.text):
@@ -210,7 +210,7 @@ def axis_values(control: Control, step: Step, names: str) -> dict[str, float]:
     return found
 
 
-def set_tolerance(control: Control, step: Step) -> None:
+def set_tolerance(control: Control, step: DefinitionStep) -> None:
     """32: how far corners may be cut; without a value as before."""
     if step.step == 0 or step.step == 2:
         return

@@ -3,8 +3,7 @@
 import re
 
 from twin.nc.control.control import Control
-from twin.nc.dialects.heidenhain.cycle_values import INCH_FEEDS
-from twin.nc.dialects.heidenhain.memory import memory_of
+from twin.nc.dialects.heidenhain.memory import INCH_FEEDS, memory_of
 from twin.nc.dialects.heidenhain.values import computed_words, value_at
 from twin.nc.path.blends import Blend, BlendKind
 from twin.nc.text.blocks import Statement, Word

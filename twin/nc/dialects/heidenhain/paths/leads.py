@@ -64,8 +64,8 @@ _MOVES = Word("DR+", math.nan, 0, 1)
 
 def _keyword(name: str) -> StatementAction:
     """APPR or DEP with its kind, such as ``APPR PLCT``."""
-    way, shape = name.split()
-    arrives, polar = way == "APPR", shape.startswith("P")
+    keyword, shape = name.split()
+    arrives, polar = keyword == "APPR", shape.startswith("P")
     kind = _KINDS[shape.removeprefix("P")]
 
     def action(control: Control, statement: Statement) -> None:

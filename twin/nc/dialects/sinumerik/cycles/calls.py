@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from typing import NamedTuple, NoReturn
 
 from twin.nc.control.control import Control
-from twin.nc.dialects.sinumerik.values import bracketed, split_values
+from twin.nc.dialects.sinumerik.variables.expressions import bracketed, split_values
 from twin.nc.geometry.arcs import Point
 from twin.nc.text.blocks import Statement
 

@@ -12,9 +12,9 @@ from twin.nc.dialects.sinumerik.cycles.calls import CycleCall, CycleForm
 from twin.nc.dialects.sinumerik.cycles.drilling import MODES, Heights, heights_of
 from twin.nc.dialects.sinumerik.flow.calls import call_subprogram
 from twin.nc.dialects.sinumerik.flow.repeats import call_part
+from twin.nc.iso.cycle_moves import go_to_height
 from twin.nc.iso.leads import Lead, LeadKind, approach, depart, stand_at_height
 from twin.nc.iso.milling.clearing import MOST_PASSES, levels_between
-from twin.nc.iso.plane_moves import go_to_height
 from twin.nc.iso.tool_compensation import radius_in_spindle
 from twin.nc.text.blocks import Block
 
@@ -39,7 +39,7 @@ class _Milling:
     Attributes:
         heights: Of the surface, the bottom and around them [mm].
         levels: Heights of the passes that are to come [mm].
-        leads: The ways to the contour and away from it.
+        leads: The approach to the contour and the retraction.
         rises: How far behind each pass.
         feed: That was in force before.
     """
@@ -111,12 +111,12 @@ def _mill_contour(call: CycleCall) -> None:
 
 
 def _lead(call: CycleCall, shape: str, size: str, kind: float) -> Lead:
-    """The way to the contour or away from it."""
+    """The approach to the contour or the retraction."""
     control, side = call.control, _SIDES.get(call.get("RL"))
     chosen = _SHAPES.get(call.get(shape))
     if side is None or chosen is None or (side == 0.0 and chosen[0] is not LeadKind.TANGENT):
-        ways = "1 straight, 2 a quarter or 3 half a circle; with RL 40 only 1"
-        call.refuse("cycle-word", f"takes RL 40, 41 or 42, and {shape} {ways}")
+        shapes = "1 straight, 2 a quarter or 3 half a circle; with RL 40 only 1"
+        call.refuse("cycle-word", f"takes RL 40, 41 or 42, and {shape} {shapes}")
     length, allowance = abs(call.length(size)), abs(call.length("FAL")) if kind == 1.0 else 0.0
     offset = radius_in_spindle(control) + allowance if side else 0.0
     if chosen[0] is LeadKind.TANGENT:

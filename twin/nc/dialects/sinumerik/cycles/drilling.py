@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 from twin.nc.control.control import Control
 from twin.nc.dialects.sinumerik.cycles.calls import CycleCall, CycleForm, require_no_compensation
+from twin.nc.iso.cycle_moves import at_feed, go_to_height
 from twin.nc.iso.drilling.hole import turn_spindle
-from twin.nc.iso.plane_moves import at_feed, go_to_height
 
 _HEIGHTS = "RTP RFP SDIS DP DPR"
 MODES = "GMODE DMODE AMODE"
@@ -222,7 +222,7 @@ def _end_spindle(call: CycleCall) -> None:
 
 
 def _tap_in_chuck(call: CycleCall) -> None:
-    """CYCLE840: tapping in a chuck that gives way; the feed follows from pitch and speed, else F counts."""
+    """CYCLE840: tapping in a compensating chuck; the feed follows from pitch and speed, else F counts."""
     control = call.control
     gives_pitch = bool(call.get("MPIT") or call.get("PIT"))
     if not control.motion.spindle:

@@ -8,12 +8,18 @@ milled in strips to and fro.
 from twin.nc.dialects.sinumerik.cycles.calls import CycleCall, CycleForm
 from twin.nc.dialects.sinumerik.cycles.drilling import MODES, Heights, heights_of
 from twin.nc.geometry.arcs import Point
+from twin.nc.iso.cycle_moves import along, at_feed, go, go_to_height
 from twin.nc.iso.milling.clearing import Clearing, clear_pocket, levels_between
 from twin.nc.iso.milling.facing import MOST_STRIPS, Face, mill_face
-from twin.nc.iso.milling.outlines import Circle, Corner, CornerKind, CurvedSlot, Outline, Rectangle
+from twin.nc.iso.milling.outlines import (
+    Circle,
+    CornerKind,
+    CurvedSlot,
+    Outline,
+    Rectangle,
+    RectangleCorner,
+)
 from twin.nc.iso.milling.threads import MOST_TURNS, Thread, mill_thread
-from twin.nc.iso.places import along
-from twin.nc.iso.plane_moves import at_feed, go, go_to_height
 from twin.nc.iso.tool_compensation import radius_in_spindle
 
 _WIDTH = 0.8
@@ -82,7 +88,7 @@ def _rectangle(call: CycleCall) -> None:
         call.refuse("unsupported-word", "is measured from its middle: LENG and WID above 0")
     if corner > min(length, width):
         call.refuse("cycle-size", f"has corners of {corner:g} that do not fit into it")
-    shape = Corner(CornerKind.ROUNDED, max(corner, radius), radius)
+    shape = RectangleCorner(CornerKind.ROUNDED, max(corner, radius), radius)
     sides, angle = (length - radius, width - radius), call.get("STA")
     _clear(call, Rectangle(call.point("PA", "PO"), *sides, angle, _clockwise(call), shape))
 
@@ -106,7 +112,10 @@ def _slots(call: CycleCall) -> None:
     call.need("LENG", "WID")
     radius, center = radius_in_spindle(call.control), call.point("CPA", "CPO")
     length, width = call.length("LENG") / 2.0, call.length("WID") / 2.0
-    shape, sides = Corner(CornerKind.ROUNDED, width, radius), (length - radius, width - radius)
+    shape, sides = (
+        RectangleCorner(CornerKind.ROUNDED, width, radius),
+        (length - radius, width - radius),
+    )
     middles = ((along(center, a, call.length("RAD") + length), a) for a in _angles(call))
     _clear(call, *(Rectangle(at, *sides, a, _clockwise(call), shape) for at, a in middles))
 
@@ -158,14 +167,14 @@ def _face(call: CycleCall) -> None:
     call.need("PA", "PO", "LENG", "WID", "MIDA")
     radius, heights = radius_in_spindle(call.control), heights_of(call)
     length, width, step = call.length("LENG"), call.length("WID"), abs(call.length("MIDA"))
-    way, kind = int(call.get("VARI") // 10.0 % 10.0), call.get("VARI") % 10.0
-    if way not in (1, 2, 3, 4) or kind not in (1.0, 2.0):
-        ways = "1 rough or 2 finish, in tens 1 to 4 the direction of the strips"
-        call.refuse("cycle-word", f"takes VARI 11 to 42: {ways}")
+    strips, kind = int(call.get("VARI") // 10.0 % 10.0), call.get("VARI") % 10.0
+    if strips not in (1, 2, 3, 4) or kind not in (1.0, 2.0):
+        choices = "1 rough or 2 finish, in tens 1 to 4 the direction of the strips"
+        call.refuse("cycle-word", f"takes VARI 11 to 42: {choices}")
     if not 0.0 < step <= 2.0 * radius or not (length and width):
         widest = f"the tool's diameter, {2.0 * radius:g}"
         call.refuse("cycle-size", f"needs a face and strips MIDA up to {widest}")
-    along_ordinate = way in (2, 4)
+    along_ordinate = strips in (2, 4)
     rest = 0.0 if kind == 2.0 else abs(call.length("FALD"))
     depth = abs(call.length("MID")) or heights.surface - heights.bottom
     face = Face(
@@ -176,7 +185,7 @@ def _face(call: CycleCall) -> None:
         angle=call.get("STA"),
         step=step,
         beyond=radius + (abs(call.length("FDP1")) or abs(call.length("SDIS"))),
-        one_way=way in (1, 2),
+        one_direction=strips in (1, 2),
         levels=levels_between(heights.surface, heights.bottom + rest, depth),
         safe=heights.safe,
         back=heights.back,

@@ -6,8 +6,7 @@ from twin.nc.dialects.sinumerik.cycles.calls import CycleCall, CycleForm
 from twin.nc.dialects.sinumerik.flow.calls import call_after_motion
 from twin.nc.dialects.sinumerik.memory import memory_of
 from twin.nc.geometry.arcs import Point
-from twin.nc.iso.places import along, circle, grid, row
-from twin.nc.iso.plane_moves import go
+from twin.nc.iso.cycle_moves import along, circle, go, grid, row
 
 
 def _visit(call: CycleCall, places: list[Point]) -> None:

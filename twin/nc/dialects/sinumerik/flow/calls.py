@@ -1,4 +1,4 @@
-"""Calls of subprograms: L.., by name, with parameters, CALL, PCALL, EXTCALL, MCALL, and the way back."""
+"""Calls of subprograms: L.., by name, with parameters, CALL, PCALL, EXTCALL, MCALL, and the return."""
 
 import re
 from collections.abc import Sequence
@@ -17,8 +17,7 @@ from twin.nc.dialects.sinumerik.memory import (
     VariableType,
     memory_of,
 )
-from twin.nc.dialects.sinumerik.values import bracketed, split_values
-from twin.nc.dialects.sinumerik.variables.expressions import NAME
+from twin.nc.dialects.sinumerik.variables.expressions import NAME, bracketed, split_values
 from twin.nc.dialects.sinumerik.variables.variables import axis_of_value, text_named, write_variable
 from twin.nc.text.blocks import Block, Location, Statement
 from twin.nc.text.diagnostics.slips import near, slip_at

@@ -232,9 +232,9 @@ def _refuse_label(
     keyword, shown = statement.keyword, f"N{label}" if isinstance(label, int) else label
     hint = "a label ends with a colon: LABEL:"
     if elsewhere:
-        way = "behind this block" if keyword == "GOTOF" else "before this block"
+        where = "behind this block" if keyword == "GOTOF" else "before this block"
         other = "GOTOB" if keyword == "GOTOF" else "GOTOF"
-        hint = f"it is not {way}; {other} or GOTO leads there"
+        hint = f"it is not {where}; {other} or GOTO leads there"
     control.fail(
         "unknown-label", f"{keyword} names {shown}, and no block has it there", statement, hint
     )

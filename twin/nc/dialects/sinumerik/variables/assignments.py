@@ -5,8 +5,7 @@ import re
 
 from twin.nc.control.control import Control
 from twin.nc.dialects.sinumerik.memory import TEXTS, CallFrame, VariableType, memory_of
-from twin.nc.dialects.sinumerik.values import bracketed, split_values
-from twin.nc.dialects.sinumerik.variables.expressions import NAME, SECOND
+from twin.nc.dialects.sinumerik.variables.expressions import NAME, SECOND, bracketed, split_values
 from twin.nc.dialects.sinumerik.variables.variables import axis_at, write_variable
 from twin.nc.text.blocks import Statement
 from twin.nc.text.expressions.expressions import (

@@ -38,7 +38,7 @@ class ModalState:
     per_minute: float | None = 1.0
 
 
-class BlockWalk(Forkable):
+class BlockTracker(Forkable):
     """What single block knows of a part.
 
     Attributes:
@@ -100,7 +100,7 @@ class BlockWalk(Forkable):
 
     @property
     def line(self) -> int:
-        """Source line of the block that the walk has come to; 0: none."""
+        """Source line of the block that was reached last; 0: none."""
         return self.blocks[self._current].line if 0 <= self._current < len(self.blocks) else 0
 
     @property
