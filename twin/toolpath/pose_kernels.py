@@ -24,13 +24,9 @@ def tool_poses(
         length: From what the chain calls the spindle nose to the tip, one or shape (n,) [mm].
     """
     count = len(joints)
-    poses = ToolPoses(
-        np.broadcast_to(length, count)[:, None] * -chain.tool,
-        np.tile([1.0, 0.0, 0.0], (count, 1)),
-        np.tile(chain.tool, (count, 1)),
-    )
-    values = np.ascontiguousarray(joints, np.float64)
-    carry(chain.column, chain.rotary, chain.axis, chain.anchor, values, poses)
+    poses = ToolPoses(np.empty((count, 3)), np.empty((count, 3)), np.empty((count, 3)))
+    values, lengths = np.ascontiguousarray(joints, np.float64), np.full(count, length, np.float64)
+    carry(chain.column, chain.rotary, chain.axis, chain.anchor, chain.tool, values, lengths, poses)
     return poses
 
 
@@ -51,20 +47,23 @@ def carry(
     rotary: BoolArray,
     axis: FloatArray,
     anchor: FloatArray,
+    tool: FloatArray,
     joints: FloatArray,
+    lengths: FloatArray,
     poses: ToolPoses,
 ) -> None:
-    """Carry tools from joint to joint; the first four are columns of ``Kinematics``.
+    """Carry tools from joint to joint; the first five are columns of ``Kinematics``.
 
     Args:
         joints: Shape (n, k) [mm or deg].
-        poses: Of n tools before the first joint; they become those beyond the last.
+        lengths: Of the tools, shape (n,) [mm].
+        poses: Set to theirs.
     """
     tip, along_x, direction = poses
     for n in range(len(joints)):
-        px, py, pz = tip[n, 0], tip[n, 1], tip[n, 2]
-        ux, uy, uz = along_x[n, 0], along_x[n, 1], along_x[n, 2]
-        wx, wy, wz = direction[n, 0], direction[n, 1], direction[n, 2]
+        wx, wy, wz = tool[0], tool[1], tool[2]
+        px, py, pz = -lengths[n] * wx, -lengths[n] * wy, -lengths[n] * wz
+        ux, uy, uz = 1.0, 0.0, 0.0
         for joint in range(len(column)):
             value = joints[n, column[joint]]
             ax, ay, az = axis[joint, 0], axis[joint, 1], axis[joint, 2]
