@@ -17,7 +17,7 @@ from twin.columns import join
 from twin.motion.blocks.blocks import Blocks, BoolArray, Surroundings
 from twin.motion.blocks.corners import Borders, find_borders
 from twin.motion.limits import MotionLimits
-from twin.motion.open_chains import OpenChains, first_pieces
+from twin.motion.open_chains import OpenChains, first_pieces, slow_arcs
 from twin.motion.phases_of_pieces import seconds_alone
 from twin.motion.pieces.pieces import BATCH, Pieces, blocks_to_cut, cut
 from twin.motion.steps import Step
@@ -59,20 +59,29 @@ class _Spans(Step[Surroundings, _Span]):
     """
 
     def __init__(
-        self, parts: Iterable[Surroundings], limits: MotionLimits, largest_override: float
+        self,
+        parts: Iterable[Surroundings],
+        limits: MotionLimits,
+        largest_override: float,
+        most_slow_arcs: float,
     ) -> None:
         super().__init__(parts)
-        self._largest_override = largest_override
-        self._chains = OpenChains(limits, largest_override)
+        self._largest_override, self._most_slow_arcs = largest_override, most_slow_arcs
+        self._chains = OpenChains(limits, largest_override, most_slow_arcs)
 
     def take(self, part: Surroundings) -> Iterator[_Span]:
         """The pieces of some blocks."""
         part, borders, pieces = self._chains.choose(part)
         begins = first_pieces(pieces)
-        stopping = _worth_stopping(part, borders)
+        slow = np.append(0, np.cumsum(slow_arcs(pieces, self._largest_override)))
+
+        def affordable(first: int, last: int) -> bool:
+            return bool(slow[last - part.first] - slow[first - part.first] <= self._most_slow_arcs)
+
+        stopping = [span for span in _worth_stopping(part, borders) if affordable(*span)]
         whole = set[tuple[int, int]]()
         if self._chains.has_knees and np.any(part.blocks.corner == Corner.CONTINUOUS):
-            whole |= set(_continuous(part, borders))
+            whole |= {span for span in _continuous(part, borders) if affordable(*span)}
         waiting, done = deque(stopping), 0
         for first, last in _outermost(whole, stopping):
             begin, end = begins[[first - part.first, last - part.first]].tolist()
@@ -101,6 +110,8 @@ class PiecesOfChunks(Step[_Span, Pieces]):
         start: Where the axes are before, part coordinates, shape (k,) [mm or deg].
         largest_override: Of the feed that the limits of a piece must leave room for.
         batch: How many blocks are cut together.
+        most_slow_arcs: In a path for which another passage is tried: arcs that are slower than the feed get a time law of
+            their own, which takes most of a plan.
 
     Raises:
         ValueError: When pulled: a move does not begin where the one before it ended.
@@ -113,8 +124,10 @@ class PiecesOfChunks(Step[_Span, Pieces]):
         start: FloatArray,
         largest_override: float = 1.0,
         batch: int = BATCH,
+        most_slow_arcs: float = np.inf,
     ) -> None:
-        super().__init__(_Spans(blocks_to_cut(chunks, start, batch), limits, largest_override))
+        parts = blocks_to_cut(chunks, start, batch)
+        super().__init__(_Spans(parts, limits, largest_override, most_slow_arcs))
         self._limits, self._largest_override = limits, largest_override
 
     def take(self, part: _Span) -> Iterator[Pieces]:

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from twin.columns import join
-from twin.motion.blocks.blocks import Surroundings
+from twin.motion.blocks.blocks import BoolArray, Surroundings
 from twin.motion.blocks.corners import CONTEXT, Borders, find_borders
 from twin.motion.limits import MotionLimits
 from twin.motion.phases_of_pieces import seconds_alone
@@ -43,12 +43,18 @@ class CutBlocks(NamedTuple):
 class OpenChains:
     """Chooses how paths are passed that go on over the ends of the blocks that are cut together.
 
+    Args:
+        most_slow_arcs: As for ``PiecesOfChunks``.
+
     Attributes:
         has_knees: Whether the exact path may step anywhere.
     """
 
-    def __init__(self, limits: MotionLimits, largest_override: float) -> None:
+    def __init__(
+        self, limits: MotionLimits, largest_override: float, most_slow_arcs: float
+    ) -> None:
         self._limits, self._largest_override = limits, largest_override
+        self._most_slow_arcs = most_slow_arcs
         steps = limits.junction_velocity_step, limits.junction_acceleration_step
         self.has_knees = any(np.any(np.asarray(step) > 0.0) for step in steps)
         self._exact = self._stays = self._longest = 0
@@ -131,6 +137,9 @@ class OpenChains:
         one, other = first_pieces(here.pieces)[[look[0] - begin, look[1] - begin]].tolist()
         if not _is_slowed(here.pieces[one:other], self._largest_override):
             return None
+        slow = slow_arcs(here.pieces[one:other], self._largest_override)
+        if np.count_nonzero(slow) > self._most_slow_arcs:
+            return None
         there = self._cut(_kept(here.part, *exact))
         rounded = here
         if own + CONTEXT < look[1]:
@@ -150,6 +159,15 @@ class OpenChains:
         )
         slack = WAY_BACK if begins_rounding else 0.0
         return there if seconds[1] < seconds[0] * (1.0 + slack) else None
+
+
+def slow_arcs(pieces: Pieces, largest_override: float) -> BoolArray:
+    """Which blocks are arcs that are driven more slowly than is asked: each gets a time law of its own."""
+    wanted = pieces.feed * np.where(pieces.rapid, 1.0, largest_override)
+    slow = (pieces.velocity < AT_FEED * wanted) & (
+        pieces.geometry.table.angle[pieces.geometry.row] != 0.0
+    )
+    return np.logical_or.reduceat(slow, first_pieces(pieces)[:-1])
 
 
 def first_pieces(pieces: Pieces) -> IntArray:

@@ -13,8 +13,8 @@ acceleration is as high at 10 % as at 100 %: it is the feed that is overridden, 
 Where the path itself leaves no room for the change (within a brake into a corner), the old plan
 goes on for a servo period and the change is tried again. The limits of curved pieces leave room
 for ``largest_override``, so that any override up to it can be taken anywhere; with
-``largest_override=1`` and nothing touched the setpoints are those of ``plan``, to the last bit. How
-many setpoints are asked for at a time changes nothing.
+``largest_override=1`` and nothing touched the setpoints are those of ``plan``, to the last bit, but where
+more arcs than ``MOST_SLOW_ARCS`` follow each other. How many setpoints are asked for at a time changes nothing.
 """
 
 import dataclasses
@@ -36,6 +36,9 @@ from twin.nc.canonical import Chunk, FloatArray
 
 LARGEST_OVERRIDE = 1.5
 """What the feed override of a panel usually goes up to."""
+
+MOST_SLOW_ARCS = 128
+"""For which ``PiecesOfChunks`` tries another passage: of more, the axes would stand while it is planned."""
 
 
 class LiveMotion:
@@ -86,7 +89,12 @@ class LiveMotion:
         self._program = WatchedEnd(chunks, start, part_zero)
         self._plan = OverriddenPlan(
             PiecesOfChunks(
-                self._program, limits, start - part_zero, largest_override, min(BATCH, look_ahead)
+                self._program,
+                limits,
+                start - part_zero,
+                largest_override,
+                min(BATCH, look_ahead),
+                MOST_SLOW_ARCS,
             ),
             limits.arrays(),
             look_ahead,

@@ -381,11 +381,8 @@ def _tool_table(
         if tool and tool.diameter
         else "diameter is a guess"
     )
-    said += (
-        ""
-        if length <= USUAL_LENGTH or length_from != "a guess"
-        else f"; {length:g} mm long, a guess: so far it must reach"
-    )
+    if length > USUAL_LENGTH and length_from == "a guess":
+        said += f"; {length:g} mm long, a guess: so far it must reach"
     said += "; D holds its wear alone, the contours are the path of its centre" if worn else ""
     return lines, said, diameter
 
