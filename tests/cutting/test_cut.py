@@ -284,6 +284,25 @@ def test_a_slot_is_as_exact_along_the_grid_as_across_it(
     assert cutter.result().removed_mm3 == pytest.approx(exact, rel=2e-3)
 
 
+@pytest.mark.parametrize("slice_of", [30, 500])
+def test_turns_below_each_other_share_their_walls(samples: Motion, slice_of: int) -> None:
+    turns = np.linspace(0.0, 4.0, 4189)
+    angle = 2.0 * np.pi * turns
+    motion = path(10.0 * np.cos(angle), 10.0 * np.sin(angle), -2.0 * turns)
+    cutter = Cutter(plate(0.4), ToolTable(number=1, diameter=8.0, flute=10.0), FRAME, ZERO)
+    removed = 0.0
+    for begin in range(0, len(motion) - 1, slice_of):
+        part = motion[begin : begin + slice_of + 1]
+        removed += cutter.add(samples(part, start=begin * 1e-3), np.zeros(len(part), np.bool_))
+
+    # A place is as deep as the tool was when its rim left it, or 8 mm where it covers it in the end.
+    radius = np.linspace(6.0, 14.0, 20_001)
+    covers = np.arccos(np.minimum((radius**2 + 84.0) / (20.0 * radius), 1.0))
+    left = 2.0 * (np.pi - covers)
+    around = 8.0 * 2.0 * covers + (6.0 + (np.pi + covers) / np.pi) * left
+    assert removed == pytest.approx(np.trapezoid(around * radius, radius), rel=1e-3)
+
+
 @pytest.mark.parametrize("diameter", [6.0, 8.0, 12.0])
 @pytest.mark.parametrize("width", [0.1, 1.0, 2.64])
 def test_a_shoulder_is_as_wide_as_it_is_cut(samples: Motion, diameter: float, width: float) -> None:

@@ -23,7 +23,8 @@ from twin.nc.canonical import FloatArray, IntArray
 WallDistance = npt.NDArray[np.float32]
 """By cell: distance of its middle from the nearest tool that passed [cells], plus ``KNOWN``, and the
 lowest that one of these was [mm], 0: none has passed. Then which share of the column is cut off by the nearest, how deep it
-has passed [mm], and which share is cut off by others below that. Shape (ny, nx, 5)."""
+has passed [mm], which share is cut off by others below that, and the distance from the nearest of those that passed lowest, as
+the first. Shape (ny, nx, 6)."""
 
 KNOWN = 1.0
 """Added to distances, so that 0 can say that none is known [cells]."""
@@ -43,7 +44,7 @@ EQUAL_MM = 1e-3
 
 def no_walls_known(heights: FloatArray) -> WallDistance:
     """Of a height map that no tool has cut."""
-    return np.zeros((*heights.shape, 5), np.float32)
+    return np.zeros((*heights.shape, 6), np.float32)
 
 
 @inlined
@@ -224,9 +225,16 @@ def _note_cut(cells, place, level, wall):
     elif KNOWN + off < told[0] + _SAME_SHARE:
         # The same wall again: what the machine is off is no chip.
         told[3] = min(foot, down_to)
-    elif foot < lowest:
-        below = told[4] * (down_to - lowest) + share * (lowest - foot)
-        told[4] = below / (down_to - foot)
+    elif foot < down_to:
+        nearer = KNOWN + off < told[5]
+        if nearer:
+            # What came towards the cell comes by it now.
+            below = share * (down_to - foot) + told[4] * max(foot - lowest, 0.0)
+        else:
+            below = told[4] * (down_to - lowest) + share * max(lowest - foot, 0.0)
+        told[4] = below / (down_to - min(foot, lowest))
+        if nearer or foot < lowest:
+            told[5] = KNOWN + off
     note_wall(cells.heights, cells.behind, place[0], place[1], level, max(off, 0.0))
     return cut_before(told, height) - before
 
