@@ -13,7 +13,7 @@ from twin.cutting.height_map_material import HeightMapMaterial
 from twin.cutting.heights.height_map import BoolArray, HeightMap, blank
 from twin.cutting.heights.sweeping import Rectangle
 from twin.cutting.kernels.sweep import Removal
-from twin.cutting.material import AIR_MM, EDGE, Head, Material, Points
+from twin.cutting.material import EDGE, Head, Material, Points
 from twin.cutting.tool_motion import ToolMotion, by_edge, tool_motion
 from twin.cutting.tools import Profile, default_cell, profile
 from twin.cutting.tridexel import blanks
@@ -104,7 +104,7 @@ class Cutter:
         self._carriers = {each.beyond for each in above_edge(self.tool, head) if each.beyond}
         self.halted: CutEvent | None = None
         self._cut_log = CutLog()
-        self.watch = CutWatch(AIR_MM * self.material.cell**2)
+        self.watch = CutWatch(self.material.cell)
         self.start_depth = 0.0
 
     def add(self, samples: Samples, rapid: BoolArray, standing: BoolArray | None = None) -> float:
@@ -367,7 +367,7 @@ class Cutter:
             Mean force on the tool along each stretch, shape (n, 3) [N]; 0 where it is not known.
         """
         path = stretches.path
-        air = stretches.removed < AIR_MM * self.material.cell**2
+        air = stretches.in_air(self.material.cell)
         self.watch.add(stretches, self.tool)
         self._feed_path += float(path[~stretches.rapid].sum())
         self._air_path += float(path[~stretches.rapid & air].sum())

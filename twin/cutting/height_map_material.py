@@ -11,7 +11,7 @@ from twin.cutting.kernels.covered_cells import Marks
 from twin.cutting.kernels.simplify import simplify
 from twin.cutting.kernels.sweep import Removal
 from twin.cutting.kernels.tool_height import profile_height
-from twin.cutting.kernels.wall_distance import note_walls, settle_volumes
+from twin.cutting.kernels.wall_distance import add_walls, note_walls
 from twin.cutting.material import (
     LONGEST_SHARE,
     MOST_JOINED,
@@ -84,8 +84,9 @@ class HeightMapMaterial:
         off = min(WALL_SHARE * material.cell, WALL_MM)
         rows = simplify(way[None], np.zeros(len(way), np.int64), off, edge.radius, WALL_JOINED)
         side, volume = profile_height(edge.radius, *edge), found.removal.volume
-        note_walls(material.cells, way, rows, edge.radius, edge.flat, side, volume)
-        self._owed = settle_volumes(volume, self._owed)
+        walls, path = np.zeros(len(volume)), np.linalg.norm(np.diff(way, axis=0), axis=1)
+        note_walls(material.cells, way, rows, edge.radius, edge.flat, side, walls)
+        self._owed = add_walls(volume, walls, path, edge.radius, self._owed)
         return found.removal
 
     def write_stl(self, path: Path, zero: FloatArray) -> None:

@@ -113,7 +113,7 @@ def note_walls(
         radius: Of the tool [mm].
         flat: Radius of the level part of its lower end [mm].
         side: How far above its tip its side begins [mm].
-        volume: What it took off on each of the n stretches by whole cells; what walls are off these is added [mm³].
+        volume: What walls are off whole cells is added to that of each of the n stretches [mm³].
     """
     (heights, behind, grid), cell = cells, cells.grid.cell
     outer = radius + FARTHEST * cell
@@ -150,16 +150,45 @@ def note_walls(
 
 
 @kernel
-def settle_volumes(volume: FloatArray, owed: float) -> float:
-    """Let stretches that took off less than nothing have it from those that follow.
+def add_walls(
+    volume: FloatArray, walls: FloatArray, path: FloatArray, reach: float, owed: float
+) -> float:
+    """Add what walls are off whole cells to what stretches took off by these.
+
+    A wall is looked at while the tool comes towards it, comes by it and goes on: that it was taken for farther away at first
+    is no chip, so each part of it is spread over what was cut within reach. Stretches that took off less than nothing have it
+    from those that follow.
 
     Args:
-        volume: Of n stretches that follow each other [mm³]; changed.
-        owed: What stretches before them could not settle, not above 0 [mm³].
+        volume: Of n stretches that follow each other, by whole cells [mm³]; changed.
+        walls: From ``note_walls``, shape (n,) [mm³].
+        path: Length of each, shape (n,) [mm].
+        reach: How far before and behind its place a part is spread [mm].
+        owed: What stretches before them could not have, not above 0 [mm³].
 
     Returns:
         What these could not.
     """
+    for i in range(len(walls)):
+        if walls[i] == 0.0:
+            continue
+        first, last, before, behind = i, i, 0.5 * path[i], 0.5 * path[i]
+        while first > 0 and before < reach:
+            first -= 1
+            before += path[first]
+        while last < len(walls) - 1 and behind < reach:
+            last += 1
+            behind += path[last]
+        length = 0.0
+        for k in range(first, last + 1):
+            if volume[k] != 0.0 or walls[k] != 0.0:
+                length += path[k]
+        if length == 0.0:
+            volume[i] += walls[i]
+            continue
+        for k in range(first, last + 1):
+            if volume[k] != 0.0 or walls[k] != 0.0:
+                volume[k] += walls[i] * path[k] / length
     for i in range(len(volume)):
         owed += volume[i]
         volume[i] = max(owed, 0.0)

@@ -38,14 +38,14 @@ class CutWatch:
         slips: What was found, once for each kind, line and tool.
     """
 
-    def __init__(self, least_mm3: float) -> None:
+    def __init__(self, cell: float) -> None:
         """Begin in the air.
 
         Args:
-            least_mm3: A stretch that takes less off than this cuts air [mm³].
+            cell: Side of the material's cells [mm].
         """
         self.slips: dict[CutSlip, None] = {}
-        self._least = least_mm3
+        self._cell = cell
         self._time = np.zeros(0)
         self._path = np.zeros(0)
         self._cuts = np.zeros(0, np.bool_)
@@ -54,7 +54,7 @@ class CutWatch:
 
     def add(self, stretches: Stretches, tool: ToolTable) -> None:
         """Look at the stretches that one tool has just made."""
-        cuts = stretches.removed > self._least
+        cuts = ~stretches.in_air(self._cell)
         self._remember(stretches.time, stretches.path, cuts)
         # What the lag lets a rapid take off belongs to the feed before it.
         cuts = cuts & ~stretches.rapid

@@ -6,6 +6,7 @@ from collections.abc import Hashable
 import numpy as np
 
 from twin.cutting.heights.height_map import BoolArray
+from twin.cutting.material import AIR_MM
 from twin.nc.canonical import FloatArray, IntArray
 
 TAIL_MM = 0.2
@@ -15,6 +16,10 @@ as the lag at its beginning, and so much more. The same holds for a feed after t
 
 SCRAPE_MM = 0.01
 """Depth below which a removal is the grid's doing [mm]."""
+
+SHAVED_MM2 = 0.02
+"""Cross-section below which no chip is seen, where no cell is lost [mm²]: some µm that a machine is off its path, beside a wall
+of a few mm that it has cut before."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -60,6 +65,15 @@ class Stretches:
     depth: FloatArray
     aside: FloatArray
     axis: FloatArray | None = None
+
+    def in_air(self, cell: float) -> BoolArray:
+        """Which take off no material worth the name, shape (n,).
+
+        Args:
+            cell: Side of the material's cells [mm].
+        """
+        shaved = (self.depth == 0.0) & (self.removed < SHAVED_MM2 * self.path)
+        return shaved | (self.removed < AIR_MM * cell**2)
 
     @property
     def travel(self) -> FloatArray:
