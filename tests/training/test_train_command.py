@@ -35,10 +35,18 @@ def test_the_list_names_every_scene_in_the_language_asked_for() -> None:
     [
         (["nope"], "no scene 'nope': shipped scenes are codesys_arc_or_line"),
         (["--language", "de"], "the panel speaks en, ru, it, cs"),
-        (["--host", "192.0.2.1"], "give --certificate and --key"),
-        (["--host", "::"], "give --certificate and --key"),
-        (["--certificate", "nowhere.pem"], "no certificate with its key"),
-        (["--key", "nowhere.pem"], "belongs to a --certificate"),
+        pytest.param(
+            ["--host", "192.0.2.1"], "give --certificate and --key", marks=pytest.mark.three_js
+        ),
+        pytest.param(["--host", "::"], "give --certificate and --key", marks=pytest.mark.three_js),
+        pytest.param(
+            ["--certificate", "nowhere.pem"],
+            "no certificate with its key",
+            marks=pytest.mark.three_js,
+        ),
+        pytest.param(
+            ["--key", "nowhere.pem"], "belongs to a --certificate", marks=pytest.mark.three_js
+        ),
         (["--port", "99999"], ""),
         (["--out", __file__], "that is a file"),
         (["--out", f"{__file__}/results"], f"{__file__} is a file"),

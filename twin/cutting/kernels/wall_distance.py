@@ -245,7 +245,7 @@ def _note_cut(cells, place, level, wall):
     before, lowest, down_to = cut_before(told, height), told[1], told[3]
     if told[0] == 0.0 or lowest >= height:
         before = 0.0
-        told[2], told[3], told[4] = share, foot, 0.0
+        told[2], told[3], told[4], told[5] = share, foot, 0.0, 0.0
     elif KNOWN + off < told[0] and abs(share - told[2]) > _SAME_SHARE:
         if foot > down_to:
             below = told[2] * (foot - down_to) + told[4] * (down_to - lowest)

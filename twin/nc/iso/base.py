@@ -17,6 +17,7 @@ from twin.nc.iso.drilling.fixed_cycles import CYCLES
 from twin.nc.iso.offsets import OFFSETS, PRESET
 from twin.nc.iso.tool_change import change_tool_at
 from twin.nc.iso.tool_compensation import COMPENSATION, LENGTH
+from twin.nc.path.blends import Blend, BlendKind
 from twin.nc.path.feed_rates import FeedMode, feed_per_minute, needs_own_feed
 from twin.nc.path.splines import MOST_CHORDS
 from twin.nc.text.blocks import Statement, Word
@@ -344,3 +345,18 @@ DECISIONS = (
         example="dwell_in_seconds",
     ),
 )
+
+
+def blend_corner_behind(control: Control, kind: BlendKind, size: float, word: Word) -> None:
+    """Round or chamfer the corner between the block's own feed move and the next.
+
+    Args:
+        size: Radius or length [mm].
+        word: That asks for it.
+    """
+    blend = Blend(kind, size, control.motion.part_plane)
+    if not control.path.hold_for_blends().blend_next(blend, control.block.line):
+        message = (
+            f"{word.address} is for the end of a move with G1, G2 or G3, which this block lacks"
+        )
+        control.fail("blend", message, word)

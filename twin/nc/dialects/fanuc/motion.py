@@ -28,7 +28,7 @@ from twin.nc.geometry.arcs import direction
 from twin.nc.iso import base
 from twin.nc.iso.circular import BOUNDS, arc_center, both_senses, plane_center_letters, sweep_arc
 from twin.nc.iso.drilling.drilling import Holes, repeats_of
-from twin.nc.path.blends import Blend, BlendKind
+from twin.nc.path.blends import BlendKind
 from twin.nc.path.feed_rates import FeedRule
 
 _Kind = TypeVar("_Kind")
@@ -145,10 +145,7 @@ def blend_corner(control: Control) -> None:
     scale = memory_of(control).scale
     if scale is not None:
         size *= abs(scale[0][control.modal.plane.axes[0]])
-    blend = Blend(_CORNERS[word.address], size, control.motion.part_plane)
-    if not control.path.hold_for_blends().blend_next(blend, control.block.line):
-        message = f"{word.text} is for the end of a move with G1, G2 or G3, which this block lacks"
-        control.fail("blend", message, word)
+    base.blend_corner_behind(control, _CORNERS[word.address], size, word)
 
 
 DEGREE_AS_LENGTH = 1.0

@@ -275,9 +275,4 @@ def _blend(control: Control) -> None:
     size, kind = control.length(words[0]), _BLENDS[words[0].address]
     if not size > 0.0:
         control.fail("blend", f"the size of the corner {words[0].text} is not above 0", words[0])
-    blend = Blend(kind, size, control.motion.part_plane)
-    if not control.path.hold_for_blends().blend_next(blend, control.block.line):
-        message = (
-            f"{words[0].address} is for the end of a move with G1, G2 or G3, which this block lacks"
-        )
-        control.fail("blend", message, words[0])
+    base.blend_corner_behind(control, kind, size, words[0])
