@@ -83,7 +83,7 @@ SWALLOWED = """
 import os, signal, sys
 import twin.__main__, twin.cli
 
-def run():
+def run(stopped):
     import swallows
     for _ in range(1000):
         signal.pause()
