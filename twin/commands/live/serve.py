@@ -206,8 +206,8 @@ def _serve_room(
             seen = observe_room(agent, observer, lambda: room.driver.look.now)
             program = scene.preparation.source.name
             tools = _tools(scene.preparation.job.file)
-            told = _with_opcua(seen, agent, source, (machine, program, tools))
-            return told if line is None else _beside(GrblLine(room.driver).serve(line), told)
+            serving = _with_opcua(seen, agent, source, (machine, program, tools))
+            return serving if line is None else _beside(GrblLine(room.driver).serve(line), serving)
 
         with (
             _served(agent, observe, listener, stop, room.stop),

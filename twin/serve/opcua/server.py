@@ -163,12 +163,12 @@ async def mirror(
     items = [item.id for part in agent.device.walk() for item in part.items]
     async with opcua_server(place, content) as tool:
         ready(f"opc.tcp://{place.host}:{place.port}")
-        told = 0
+        newest = 0
         while True:
-            found = [one for one in agent.buffer.current(items) if one.sequence > told]
+            found = [one for one in agent.buffer.current(items) if one.sequence > newest]
             for observation in found:
                 await tool.update(observation)
-            told = max((one.sequence for one in found), default=told)
+            newest = max((one.sequence for one in found), default=newest)
             await asyncio.sleep(_PERIOD_S)
 
 
