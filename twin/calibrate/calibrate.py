@@ -8,7 +8,7 @@ import numpy as np
 from twin.calibrate.figures import figures_of
 from twin.calibrate.findings import LogFinding
 from twin.calibrate.fit.ball_bar import BallBarFit, fit_ball_bar
-from twin.calibrate.fit.parameters import Parameters, of_base
+from twin.calibrate.fit.parameters import AxisParameters, of_base
 from twin.calibrate.fit.slow import fit_slow
 from twin.calibrate.fit.solve import on_one_thread
 from twin.calibrate.fit.stages import OF_THE_LOG, AxisFit, fit_axis
@@ -21,7 +21,7 @@ from twin.calibrate.transmission import as_built, units_of, with_ball_bars, with
 from twin.errors import UsageError
 from twin.logs.ball_bar import BallBarLog
 from twin.logs.machine_log import MachineLog
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.description.machine_file import AxisTable
 from twin.machine.model.model import build_spec, compiled, drives
 from twin.units import AxisKind
@@ -31,7 +31,7 @@ _NO_LOG = "no log of the axis's positions was given"
 
 @on_one_thread
 def calibrate(
-    machine: Machine,
+    machine: MachineConfig,
     logs: Sequence[MachineLog],
     hold_out: Sequence[MachineLog] = (),
     axes: Sequence[str] = (),
@@ -84,7 +84,7 @@ def calibrate(
 
 
 def _axes(
-    machine: Machine,
+    machine: MachineConfig,
     logs: Sequence[PreparedLog],
     wanted: Sequence[str],
     circles: Sequence[BallBarFit],
@@ -102,13 +102,13 @@ def _axes(
     return [name for name in machine.axes.names if name in (wanted or logged)]
 
 
-def _masses(machine: Machine) -> dict[str, float]:
+def _masses(machine: MachineConfig) -> dict[str, float]:
     found = drives(machine, compiled(build_spec(machine), machine))
     return {name: drive.moved for name, drive in zip(machine.axes.names, found, strict=True)}
 
 
 def _axis_findings(
-    machine: Machine, item: PreparedLog, names: Sequence[str]
+    machine: MachineConfig, item: PreparedLog, names: Sequence[str]
 ) -> tuple[LogFinding, ...]:
     """Refuse what cannot be, tell what is poor."""
     found: list[LogFinding] = []
@@ -138,7 +138,7 @@ def _axis_findings(
 
 
 def _fit(
-    kind: AxisKind, name: str, logs: Sequence[PreparedLog], base: Parameters, fastest: float
+    kind: AxisKind, name: str, logs: Sequence[PreparedLog], base: AxisParameters, fastest: float
 ) -> AxisFit:
     fast = [item for item in logs if not item.is_slow]
     if not logs:

@@ -4,7 +4,7 @@ import dataclasses
 import math
 from collections.abc import Iterator
 
-from twin.calibrate.fit.parameters import Parameters
+from twin.calibrate.fit.parameters import AxisParameters
 from twin.calibrate.fit.solve import Interval
 from twin.calibrate.fit.stages import OF_THE_LOG
 from twin.calibrate.result import AxisResult, Calibration
@@ -50,7 +50,7 @@ def _axis_lines(axis: AxisResult) -> Iterator[str]:
     give = list(_give_lines(axis))
     gives = any(not line.startswith("#") for line in give)
     known = set(AxisTable.model_fields)
-    for field in dataclasses.fields(Parameters):
+    for field in dataclasses.fields(AxisParameters):
         name, value = field.name, getattr(fit.parameters, field.name)
         if name == "mass" and name in fit.fitted and gives:
             yield _motor_line(axis)

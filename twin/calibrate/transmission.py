@@ -9,7 +9,7 @@ from twin.calibrate.fit.parameters import coordinates
 from twin.calibrate.fit.solve import Interval
 from twin.calibrate.fit.stages import AxisFit
 from twin.calibrate.prepared import PreparedLog
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.description.machine_file import AxisTable
 from twin.machine.model.drives import reflected_inertia
 from twin.units import AxisKind
@@ -27,7 +27,7 @@ def units_of(kind: AxisKind) -> dict[str, str]:
 
 
 def with_give(
-    machine: Machine, name: str, fit: AxisFit, logs: Sequence[PreparedLog], moved: float
+    machine: MachineConfig, name: str, fit: AxisFit, logs: Sequence[PreparedLog], moved: float
 ) -> AxisFit:
     """A fit with backlash and stiffness, where a second encoder tells them.
 

@@ -13,7 +13,7 @@ from twin.cutting.program_summary import ProgramSummary
 from twin.cutting.tools import default_cell
 from twin.cutting.tridexel import blanks
 from twin.job.job_file import JobFile, StockTable, ToolTable
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
 from twin.toolpath.part_frame import PartFrame
@@ -91,7 +91,7 @@ def speeds_are_known(summary: ProgramSummary) -> bool:
 
 def program_process(
     job: JobFile,
-    machine: Machine,
+    machine: MachineConfig,
     summary: ProgramSummary,
     part_frame: PartFrame,
     part_zero: FloatArray,
@@ -125,7 +125,7 @@ def cutting_process(
     stock: StockTable,
     cell: float,
     operation: Operation,
-    machine: Machine,
+    machine: MachineConfig,
     part_frame: PartFrame,
     part_zero: FloatArray,
     laid: HeightMap | None = None,
@@ -157,7 +157,7 @@ def height_map_process(
     stock: StockTable,
     cell: float,
     operation: Operation,
-    machine: Machine,
+    machine: MachineConfig,
     part_frame: PartFrame,
     part_zero: FloatArray,
     laid: HeightMap | None = None,

@@ -287,7 +287,9 @@ class Cutter:
         self._removed[self.tool.number] = so_far + float(found.volume.sum())
         time, line = motion.time[sample], motion.line[sample]
         axis = None if points.axis is None else points.axis[1:]
-        stretches = Stretches(points.tip, time, line, rapid[:count], *found, motion.off[sample], axis)
+        stretches = Stretches(
+            points.tip, time, line, rapid[:count], *found, motion.off[sample], axis
+        )
         latest = self._note_contacts(stretches, met)
         reached = met.pop(EDGE, np.zeros(count))
         hits = reached > 0.0

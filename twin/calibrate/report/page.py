@@ -9,7 +9,7 @@ import jinja2
 import markupsafe
 
 from twin.calibrate.fit.ball_bar import circle_line
-from twin.calibrate.fit.parameters import Parameters
+from twin.calibrate.fit.parameters import AxisParameters
 from twin.calibrate.fit.solve import Interval
 from twin.calibrate.fit.structure import Tried
 from twin.calibrate.report.loop_plots import (
@@ -157,7 +157,7 @@ def _judged_force(figures: LogFigures) -> str:
     return f"{name}: {100 * share:.0f} % of the logged force are left: mass and friction are not to be relied upon."
 
 
-def _log(figures: LogFigures, found: Parameters) -> dict[str, Any]:
+def _log(figures: LogFigures, found: AxisParameters) -> dict[str, Any]:
     course = figures.course
     drawn = len(course.time) > 1
     points = friction_points(figures, found.mass)[0]

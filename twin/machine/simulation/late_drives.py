@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import mujoco
 import numpy as np
 
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.model.drive_actuators import LagActuator, lag_actuator
 from twin.machine.model.drives import Drive, lag_name
 from twin.machine.simulation.drive_kernels import Drives, DriveSetpoints, read_states
@@ -43,7 +43,7 @@ class LateDrives:
     """
 
     def __init__(
-        self, machine: Machine, loops: tuple[Drive, ...], drives: Drives, places: dict[str, int],
+        self, machine: MachineConfig, loops: tuple[Drive, ...], drives: Drives, places: dict[str, int],
         step: float,
     ) -> None:  # fmt: skip
         """Begin at rest.
@@ -168,18 +168,18 @@ class LateDrives:
         return position, velocity, np.clip(force, -drives.limit, drives.limit)
 
 
-def is_late(machine: Machine, loops: tuple[Drive, ...]) -> bool:
+def is_late(machine: MachineConfig, loops: tuple[Drive, ...]) -> bool:
     """Whether anything of a machine's drives is late."""
     filters = any(machine.axis(name).command_filter_s for name in machine.axes.names)
     return filters or any(loop.lags for loop in loops)
 
 
-def _lag_names(machine: Machine, index: int, loop: Drive) -> list[str]:
+def _lag_names(machine: MachineConfig, index: int, loop: Drive) -> list[str]:
     return [lag_name(machine.axes.names[index], number) for number in range(len(loop.lags))]
 
 
 def late_drives(
-    machine: Machine, model: mujoco.MjModel, loops: tuple[Drive, ...], drives: Drives
+    machine: MachineConfig, model: mujoco.MjModel, loops: tuple[Drive, ...], drives: Drives
 ) -> LateDrives | None:
     """What is late in the drives; None where nothing is.
 

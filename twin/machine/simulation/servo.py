@@ -8,7 +8,7 @@ import numpy as np
 from mujoco.rollout import Rollout
 
 from twin.columns import join
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.model.model import drives
 from twin.machine.model.timers import switch_off_timers
 from twin.machine.model.transmission import give_stiffness
@@ -70,7 +70,7 @@ class Servo:
         process: What the tool does, which pushes the axes while they are stepped; None: nothing.
     """
 
-    def __init__(self, machine: Machine, model: mujoco.MjModel) -> None:
+    def __init__(self, machine: MachineConfig, model: mujoco.MjModel) -> None:
         switch_off_timers()
         self.model, self._period = model, machine.file.servo_period_s
         self._data = mujoco.MjData(model)

@@ -13,7 +13,7 @@ import numpy as np
 from twin.files.shipped import machine_file, machine_names, variant_names
 from twin.job.job_file import JobFile, StockTable
 from twin.job.load import ASSUMED, Job, Layer
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.nc.canonical import Chunk, FloatArray, Function, Motion, Moves, concatenate
 from twin.nc.dialects.recognition import comments_of, without_comments
 from twin.nc.functions import SPINDLE_SPEED, SPINDLE_STARTS, TOOL_CHANGE
@@ -200,7 +200,7 @@ def _speed_is_set_by_hand(functions: Iterable[Function]) -> bool:
     return bool(started) and not speeds
 
 
-def _least_length(machine: Machine, moves: Moves) -> float:
+def _least_length(machine: MachineConfig, moves: Moves) -> float:
     """How long a tool must be to reach a part on a table that turns about a level axis; 0 where it does not [mm]."""
     frame, travel = machine.part_frame, machine.axis("Z").travel
     if frame.chain is None or frame.table_about(2) is not None or travel is None or not len(moves):
@@ -355,7 +355,7 @@ def _zero_line(
     return [f"part_zero = {{ {values} }}  # mm in machine coordinates"]
 
 
-def _machine_name(machine: Machine) -> str:
+def _machine_name(machine: MachineConfig) -> str:
     """As a job beside the program may call it: a shipped machine by its name, another by its path."""
     for name in (*machine_names(), *variant_names()):
         if machine_file(name) == machine.path:
@@ -363,7 +363,7 @@ def _machine_name(machine: Machine) -> str:
     return machine.path.resolve().as_posix()
 
 
-def _height(file: JobFile, machine: Machine) -> float:
+def _height(file: JobFile, machine: MachineConfig) -> float:
     return float(lay_out(file, machine).part_zero[machine.axes.index("Z")])
 
 

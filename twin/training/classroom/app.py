@@ -23,10 +23,16 @@ from twin.errors import TwinError
 from twin.files.toml import Table
 from twin.training.classroom.door import HEADER, Door
 from twin.training.classroom.hosts import RoomError
-from twin.training.classroom.marks import MADE_SCENES, ClassFile, Mark, as_csv, as_statements
+from twin.training.classroom.marks import (
+    MADE_SCENES,
+    AttemptResult,
+    ClassFile,
+    as_csv,
+    as_statements,
+)
 from twin.training.classroom.rooms import Rooms, Seat
 from twin.training.scene.scene_file import read_scene, scene_names, scene_path
-from twin.training.scene.vocabulary import LANGUAGES, Language, Words
+from twin.training.scene.vocabulary import LANGUAGES, Language, Vocabulary
 from twin.training.server.app import PAGE, static_routes
 
 TEACHER = "teacher"
@@ -138,7 +144,7 @@ class ClassApp:
         language = request.path_params["language"]
         if language not in LANGUAGES:
             return Response(status_code=404)
-        return JSONResponse(Words(language, "").as_data())
+        return JSONResponse(Vocabulary(language, "").as_data())
 
     async def _class(self, _request: Request) -> Response:
         scenes = await anyio.to_thread.run_sync(self._scenes)
@@ -206,10 +212,10 @@ class ClassApp:
                     await page.send_text(now)
                 await asyncio.sleep(TOLD_EVERY_S)
 
-    def _seen(self, marks: list[Mark]) -> list[dict[str, Any]]:
+    def _seen(self, marks: list[AttemptResult]) -> list[dict[str, Any]]:
         """The class as the page shows it."""
         attempts = Counter((mark.pupil, mark.scene) for mark in marks)
-        best: dict[tuple[str, str], Mark] = {}
+        best: dict[tuple[str, str], AttemptResult] = {}
         for mark in sorted(marks, key=lambda mark: mark.points):
             if mark.handed_in:
                 best[mark.pupil, mark.scene] = mark
