@@ -37,7 +37,7 @@ class Cells(NamedTuple):
 
     Attributes:
         heights: Of the material over each cell, shape (ny, nx) [mm].
-        behind: How far the middles of cells are behind walls, shape (ny, nx, 6); see ``wall_distance``.
+        behind: How far the middles of cells are behind walls, shape (ny, nx, 7); see ``wall_distance``.
     """
 
     heights: FloatArray

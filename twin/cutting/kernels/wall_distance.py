@@ -25,7 +25,7 @@ WallDistance = npt.NDArray[np.float32]
 """By cell: distance of its middle from the nearest tool that passed [cells], plus ``KNOWN``, and the
 lowest that one of these was [mm], 0: none has passed. Then which share of the column is cut off by the nearest, how deep it
 has passed [mm], which share is cut off by others below that, and the distance from the nearest of those that passed lowest, as
-the first. Shape (ny, nx, 6)."""
+the first; then from the nearest of all that passed below the second of these depths. Shape (ny, nx, 7)."""
 
 KNOWN = 1.0
 """Added to distances, so that 0 can say that none is known [cells]."""
@@ -45,7 +45,7 @@ EQUAL_MM = 1e-3
 
 def no_walls_known(heights: FloatArray) -> WallDistance:
     """Of a height map that no tool has cut."""
-    return np.zeros((*heights.shape, 6), np.float32)
+    return np.zeros((*heights.shape, 7), np.float32)
 
 
 @inlined
@@ -64,9 +64,20 @@ def share_before(off, widest):
 
 @inlined
 def cut_of_column(behind, row, column, height, lower):
-    """What a column loses that is cut from a height to a lower one, as of a whole column [mm]."""
+    """What a column loses that is cut from a height to a lower one, as of a whole column [mm].
+
+    With what the nearest wall has passed gone, the walls below it are the nearest, if there are any.
+    """
     told = behind[row, column]
-    return height - lower - (cut_before(told, height) - cut_before(told, lower))
+    gone = height - lower - (cut_before(told, height) - cut_before(told, lower))
+    if lower < height and told[0] > 0.0:
+        if lower <= told[1]:
+            told[0], told[1], told[2], told[3] = 0.0, 0.0, 0.0, 0.0
+            told[4], told[5], told[6] = 0.0, 0.0, 0.0
+        elif told[6] > 0.0 and lower <= told[3]:
+            told[0], told[2], told[3] = told[6], told[4], told[1]
+            told[4], told[5], told[6] = 0.0, 0.0, 0.0
+    return gone
 
 
 @inlined
@@ -127,8 +138,15 @@ def note_walls(
     side = profile_height(radius, radius, flat, corner, slope)
     highest = max(begin[2], end[2]) + side + EQUAL_MM
     passing = _Passing(begin, end, radius, side, level, highest, done)
+    middle_x, middle_y = 0.5 * (begin[0] + end[0]), 0.5 * (begin[1] + end[1])
+    around = (outer + 0.5 * way) ** 2
     for row in range(low, min(high, heights.shape[0] - 1) + 1):
-        left, right = chord(begin[0], begin[1], end[0], end[1], outer, grid.origin[1] + row * cell)
+        y = grid.origin[1] + row * cell
+        if way > cell:
+            left, right = chord(begin[0], begin[1], end[0], end[1], outer, y)
+        else:
+            half = math.sqrt(max(around - (y - middle_y) ** 2, 0.0))
+            left, right = middle_x - half, middle_x + half
         first = max(0, math.ceil((left - grid.origin[0]) / cell))
         last = min(heights.shape[1] - 1, math.floor((right - grid.origin[0]) / cell))
         # From either side up to what the tool covers.
@@ -137,8 +155,13 @@ def note_walls(
         while first <= last and _pass_by(cells, row, last, passing, sums):
             last -= 1
         if slopes:
+            dx, before = end[0] - begin[0], (y - begin[1]) * (end[1] - begin[1])
             for column in range(first, last + 1):
-                note_wall(heights, behind, row, column, level, 0.0)
+                along = (grid.origin[0] + column * cell - begin[0]) * dx + before
+                if along > 0.0 or not done:
+                    note_wall(heights, behind, row, column, level, 0.0)
+                    if behind[row, column, 6] > 0.0:
+                        behind[row, column, 6] = KNOWN
 
 
 @inlined
@@ -153,14 +176,17 @@ def _pass_by(cells, row, column, passing, sums):
     dx, dy = b[0] - a[0], b[1] - a[1]
     squared, along, t, tip = dx * dx + dy * dy, x * dx + y * dy, 0.0, min(a[2], b[2])
     if squared > 0.0:
-        t = min(1.0, max(0.0, along / squared))
+        t = 0.0 if along <= 0.0 else 1.0 if along >= squared else along / squared
         tip = a[2] + t * (b[2] - a[2])
     x, y = x - t * dx, y - t * dy
-    apart = math.sqrt(x * x + y * y)
-    off = (apart - passing.radius) / grid.cell
-    if off <= -_DOUBT:
+    apart, covered = x * x + y * y, passing.radius - _DOUBT * grid.cell
+    if apart <= covered * covered:
         return False
     if (passing.done and along <= 0.0) or cells.heights[row, column] <= passing.lowest:
+        return True
+    apart = math.sqrt(apart)
+    off = (apart - passing.radius) / grid.cell
+    if off > FARTHEST:
         return True
     widest = max(abs(x), abs(y)) / apart
     first = off <= widest - _DOUBT
@@ -174,6 +200,9 @@ def _pass_by(cells, row, column, passing, sums):
     share = share_before(off, widest) if first else 0.0
     foot = max(tip, grid.bottom) + EQUAL_MM + passing.side
     gone, depth = _note_cut(cells, (row, column), passing.lowest, (off, share, foot))
+    if passing.lowest < foot - passing.side - EQUAL_MM:
+        # It goes down, or has come up.
+        _note_below(cells.behind[row, column], KNOWN + max(off, 0.0))
     sums[Sum.LOST] += gone
     sums[Sum.COLUMNS] += gone * column
     sums[Sum.ROWS] += gone * row
@@ -198,17 +227,20 @@ def _note_cut(cells, place, level, wall):
     below = height
     if told[0] == 0.0 or lowest >= height:
         before = 0.0
-        told[2], told[3], told[4], told[5] = share, foot, 0.0, 0.0
+        told[2], told[3], told[4], told[5], told[6] = share, foot, 0.0, 0.0, 0.0
     elif KNOWN + off < told[0] and abs(share - told[2]) > _SAME_SHARE:
         if foot > down_to:
             cut = told[2] * (foot - down_to) + told[4] * (down_to - lowest)
             told[4] = cut / (foot - lowest)
+            if foot > down_to + EQUAL_MM:
+                _note_below(told, told[0])
         told[2], told[3] = share, foot
     elif KNOWN + off < told[0] + _SAME_SHARE:
         # The same wall again: what the machine is off is no chip.
         told[3], below = min(foot, down_to), min(height, down_to)
     elif foot < down_to:
         nearer, below = KNOWN + off < told[5], min(height, down_to)
+        _note_below(told, KNOWN + off)
         if nearer:
             # What came towards the cell comes by it now.
             cut = share * (down_to - foot) + told[4] * max(foot - lowest, 0.0)
@@ -219,6 +251,12 @@ def _note_cut(cells, place, level, wall):
             told[5] = KNOWN + off
     note_wall(cells.heights, cells.behind, place[0], place[1], level, max(off, 0.0))
     return cut_before(told, height) - before, below - foot
+
+
+@inlined
+def _note_below(told, distance):
+    """Note the distance of one that has passed below the nearest wall's foot."""
+    told[6] = distance if told[6] == 0.0 else min(told[6], distance)
 
 
 @inlined

@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from twin.cutting.material import STRAIGHT_MM
 from twin.cutting.heights.height_map import HeightMap
 from twin.cutting.kernels.surface_distance import FoundBy, Surface, surface_distances
 from twin.cutting.kernels.wall_distance import KNOWN, WallDistance
+from twin.cutting.material import STRAIGHT_MM
 from twin.errors import ConfigError
 from twin.nc.canonical import BoolArray, FloatArray
 from twin.units import UM_PER_MM
