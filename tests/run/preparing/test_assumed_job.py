@@ -13,7 +13,8 @@ from twin.nc.text.diagnostics.diagnostics import ProgramError
 from twin.run.preparing.assumed_job import AssumedJob, text_beside, with_assumptions
 from twin.run.preparing.preparation import Preparation, prepare
 from twin.run.progress import no_progress
-from twin.run.reading.assumed_tools import SPEED_BY_HAND, numbered_tool, tool_of_comment
+from twin.run.reading.assumed_tools import SPEED_BY_HAND
+from twin.run.reading.tool_comments import numbered_tool, tool_of_comment
 from twin.run.run import Run
 
 CONTOUR = """%

@@ -34,6 +34,7 @@ from twin.run.reading.assumed_reading import (
     UNKNOWN_FUNCTION,
     AssumedReading,
     assumed_reading,
+    functions_of,
     unknown_functions,
 )
 from twin.run.reading.dialect_choice import chosen_dialect
@@ -185,7 +186,8 @@ def _with_keys(job: Job, keys: Mapping[str, object]) -> Job:
 def _with_functions(made: Preparation, reading: AssumedReading) -> Preparation:
     """A raw program whose M codes that nobody knows do nothing."""
     reading = reading.as_read_by(made.dialect, made.settings)
-    unknown = unknown_functions(made.source, made.dialect, frozenset(made.settings.m_functions))
+    declared_functions = frozenset(made.settings.m_functions)
+    unknown = unknown_functions(functions_of(made.source), made.dialect, declared_functions)
     if not unknown:
         return dataclasses.replace(made, reading=reading)
     meanings = {number: acts(number) or UNKNOWN_FUNCTION for number in unknown}
