@@ -223,9 +223,8 @@ def test_tools_that_are_called_by_names_have_the_radius_of_their_comment(tmp_pat
 
 
 def test_open_brackets_of_a_set_up_sheet_tell_the_radius() -> None:
-    assert comments_of("(     T01 TC1: KL+087.000 KR020.000 NZ06") == [
-        "T01 TC1: KL+087.000 KR020.000 NZ06"
-    ]
+    source = source_from_text("G90\n(     T01 TC1: KL+087.000 KR020.000 NZ06")
+    assert raw_text(source).comments == ((2, "T01 TC1: KL+087.000 KR020.000 NZ06"),)
     assert tool_of_comment("TC1: KL+087.000 KR020.000 NZ06", inches=False).diameter == 40.0
 
 

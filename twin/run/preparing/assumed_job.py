@@ -38,6 +38,12 @@ from twin.run.reading.tool_comments import named_tools
 
 _MACHINE_ZERO_UNKNOWN = "no-machine-zero"
 """The finding of a program that counts from machine zero, where no job says where that lies."""
+_OFFSET_UNKNOWN = "no-offset"
+"""The finding of a program that is fed in several work offsets, where no job says how they lie."""
+_PLACE_OF_OFFSETS = (
+    "it feeds in several work offsets, and how they lie to each other no program says: "
+    "write it into a twin.toml beside it, such as [offsets.G55] and under that X = 100.0"
+)
 _RELIEF = 1.0
 """So much deeper than the path it is free below a stock that the path goes through [mm]."""
 _RAPID_TOLERANCE_UM = 200.0
@@ -99,7 +105,9 @@ def with_assumptions(
         ProgramError: The program is wrong.
         UsageError: The diameter of a tool is a guess, and ``strict`` runs none.
     """
-    assumed, found = assumed_job(preparation), preparation.job
+    leniently = dataclasses.replace(preparation.settings, strict=False)
+    assumed = assumed_job(dataclasses.replace(preparation, settings=leniently))
+    found = preparation.job
     if strict and assumed.guessed_tools and "tools" not in found.file.model_fields_set:
         guessed = ", ".join(f"T{number}" for number in assumed.guessed_tools)
         raise UsageError(
@@ -366,7 +374,8 @@ def read_as(error: ProgramError, preparation: Preparation) -> ProgramError:
         return error
     finding = error.diagnostic
     said = f"{_reading_line(preparation)}; another control: --dialect NAME"
-    hint = f"{finding.hint}; {said}" if finding.hint else said
+    place = _PLACE_OF_OFFSETS if finding.code == _OFFSET_UNKNOWN else None
+    hint = "; ".join(filter(None, (place or finding.hint, said)))
     return ProgramError(dataclasses.replace(finding, hint=hint))
 
 

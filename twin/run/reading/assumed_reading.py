@@ -1,6 +1,7 @@
 """How a raw program is read: what its job would say, as far as the program's text shows it."""
 
 import dataclasses
+import json
 import re
 from collections.abc import Callable, Mapping, Set
 from types import MappingProxyType
@@ -11,6 +12,7 @@ from twin.nc.control.settings import ControlSettings, ToolData
 from twin.nc.dialects.recognition import lines_with, raw_text
 from twin.nc.geometry.arcs import TURN
 from twin.nc.text.source import Source
+from twin.run.reading.assumed_offsets import named_offsets
 from twin.run.reading.assumed_tools import USUAL_LENGTH
 from twin.run.reading.tool_comments import ToolComment, listed_tools, tool_of_call
 
@@ -19,9 +21,6 @@ _LENGTH = re.compile(
 )
 _WITH_POINT_AT_END = re.compile(
     r"(?<![A-Z#\[])[XYZABCIJKRF][ \t]*[-+]?[0-9]+\.(?![0-9])", re.IGNORECASE
-)
-_OFFSET = re.compile(
-    r"(?<![A-Z0-9.])G[ \t]*(5[4-9](?:\.[1-3])?)(?![0-9.])(?![ \t]*P)", re.IGNORECASE
 )
 _FUNCTION = re.compile(r"(?<![A-Z_#\[])M[ \t]*([0-9]{1,4})(?![0-9.\[#])", re.IGNORECASE)
 _TOOL = re.compile(r"(?<![A-Z#\[])T[ \t]*([0-9]{1,4})(?![0-9.])", re.IGNORECASE)
@@ -49,7 +48,6 @@ _ANGLE = re.compile(r"(?<![A-Z#\[])([ABC])[ \t]*([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]
 _MOTION = re.compile(r"(?<![A-Z0-9.])G[ \t]*0?([0-3])(?![0-9.])", re.IGNORECASE)
 _NEARLY_A_TURN = 350.0
 """What no axis turns back by in a cut, whose neighbours are some degrees apart [deg]."""
-_USUAL_OFFSET = "G54"
 UNKNOWN_FUNCTION = "not known here: taken to do nothing"
 
 
@@ -97,11 +95,9 @@ def assumed_reading(source: Source) -> AssumedReading:
             f"{bare} counts whole units: the program never writes a whole number with a point"
         )
     blocks = raw_text(source).blocks
-    offsets = {f"G{found[1]}" for found in _OFFSET.finditer(blocks)}
-    if len(offsets) == 1 and _USUAL_OFFSET not in offsets:
-        (offset,) = offsets
-        keys["offsets"] = {offset: {}}
-        notes.append(f"{offset} lies at program zero: the program names no other work offset")
+    offsets = named_offsets(blocks)
+    if offsets:
+        keys["offsets"] = {offset: {} for offset in offsets}
     tool = _tool_in_inches(source)
     if tool:
         keys["units"] = "inch"
@@ -141,7 +137,7 @@ def table_lines(reading: AssumedReading) -> list[str]:
     offsets, functions = reading.keys.get("offsets"), reading.keys.get("m_functions")
     rows = reading.keys.get("offset_rows")
     if isinstance(offsets, dict):
-        lines += [line for name in offsets for line in (f"[offsets.{name}]", "")]
+        lines += [line for name in offsets for line in (f"[offsets.{json.dumps(name)}]", "")]
     if isinstance(rows, dict):
         lines += ["[offset_rows]", *(f"{row} = {tool}" for row, tool in rows.items()), ""]
     if isinstance(functions, dict):

@@ -104,6 +104,7 @@ def chosen_dialect(
         return DialectChoice(DIALECTS[candidates[0]], reading.reason)
     if len(source.lines) > _MOST_LINES:
         raise UsageError(f"{source.name}: could be {_either(candidates)}; {_type(candidates)}")
+    settings = dataclasses.replace(settings, strict=False)
     if settings.machine_zero is None:  # the dialect does not depend on where that lies
         zero = dict.fromkeys(settings.axes.names, 0.0)
         settings = dataclasses.replace(settings, machine_zero=zero)
