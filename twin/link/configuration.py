@@ -10,7 +10,7 @@ from twin.job.job_file import JobFile
 from twin.link.component import templates
 from twin.link.packet import JOINTS
 from twin.link.tables import LETTERS, offsets_text, tools_text
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.nc.canonical import FloatArray
 
 NO_LIMIT = 1e9
@@ -40,7 +40,7 @@ class Settings:
     job: JobFile
 
 
-def write_configuration(folder: Path, machine: Machine, settings: Settings) -> Path:
+def write_configuration(folder: Path, machine: MachineConfig, settings: Settings) -> Path:
     """Write all that LinuxCNC reads.
 
     Args:
@@ -72,7 +72,7 @@ def write_configuration(folder: Path, machine: Machine, settings: Settings) -> P
     return folder / "linuxcnc.ini"
 
 
-def _axis(machine: Machine, name: str, settings: Settings) -> dict[str, Any]:
+def _axis(machine: MachineConfig, name: str, settings: Settings) -> dict[str, Any]:
     axis = machine.axis(name)
     lowest, highest = axis.travel or (-NO_LIMIT, NO_LIMIT)
     limit = settings.following_error_limit or axis.following_error_limit or NO_LIMIT
@@ -87,7 +87,7 @@ def _axis(machine: Machine, name: str, settings: Settings) -> dict[str, Any]:
     }
 
 
-def _require_axes(machine: Machine) -> None:
+def _require_axes(machine: MachineConfig) -> None:
     strange = [name for name in machine.axes.names if name not in LETTERS]
     if strange:
         raise ConfigError(f"LinuxCNC has no axis {strange[0]}: it knows {', '.join(LETTERS)}")

@@ -31,7 +31,7 @@ def work(count):
         total += np.sin(number)
     return Sums(np.zeros(2) + total, count)
 
-def command():
+def command(stopped):
     work(10)
     threading.Timer(0.2, os.kill, (os.getpid(), signal.{name})).start()
     work(60_000_000)

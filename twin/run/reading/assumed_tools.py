@@ -235,7 +235,7 @@ def tool_lines(
     numbers = [number for number in called if number or _feeds(0, calls, moves)] or [1]
     listed = listed_tools((comment for _, comment in comments), numbers, inches=inches)
     lines: list[str] = []
-    told: list[str] = []
+    notes: list[str] = []
     largest = 0.0
     for number in numbers:
         own = declared.get(number)
@@ -254,9 +254,9 @@ def tool_lines(
             (number, tool), moves, rows, top=top, least_length=least_length, worn=number in worn
         )
         lines += [*more, *([_SPEED_LINE] if by_hand else []), ""]
-        told.append(said)
+        notes.append(said)
         largest = max(largest, diameter)
-    return lines, told, largest
+    return lines, notes, largest
 
 
 def listed_tools(
@@ -347,8 +347,8 @@ def _tool_table(
     """A tool's lines, how it came about, and its diameter [mm]."""
     number, tool = called
     feeds = [row for row in rows if moves.motion[row] == Motion.FEED]
-    ways = moves.end[feeds, :2] - moves.start[feeds, :2]
-    drills = bool(feeds) and bool((np.abs(ways) < BELOW).all() and not moves.sweep[feeds].any())
+    travel = moves.end[feeds, :2] - moves.start[feeds, :2]
+    drills = bool(feeds) and bool((np.abs(travel) < BELOW).all() and not moves.sweep[feeds].any())
     depth = max(0.0, top - float(moves.end[feeds, 2].min())) if feeds else 0.0
     kind = (tool.kind if tool else "") or ("drill" if drills else "flat")
     diameter = (tool.diameter if tool else None) or _USUAL_DIAMETER

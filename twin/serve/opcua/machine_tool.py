@@ -12,7 +12,7 @@ import asyncua.ua
 from asyncua.common.node import Node
 from asyncua.server.server import Server
 
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.serve.buffer import Condition, Observation
 from twin.serve.device import UNAVAILABLE
 from twin.serve.opcua.alarm import ConditionNode
@@ -81,7 +81,7 @@ def _number_in(table: Mapping[str, int]) -> Callable[[str], Any]:
 class MachineTool:
     """A machine in a server's address space."""
 
-    def __init__(self, server: Server, machine: Machine) -> None:
+    def __init__(self, server: Server, machine: MachineConfig) -> None:
         """Begin with nothing; ``build`` makes the nodes.
 
         Args:

@@ -33,7 +33,7 @@ from twin.training.scene.scene_file import (
     RAPID_OVERRIDES,
     SPINDLE_OVERRIDES,
 )
-from twin.training.scene.vocabulary import LANGUAGES, Words
+from twin.training.scene.vocabulary import LANGUAGES, Vocabulary
 from twin.training.server.attempts import Attempt, Attempts, next_scene
 from twin.training.server.connections import Connections, OpenPage
 from twin.training.server.driver import Driver, Look
@@ -156,7 +156,7 @@ class RoomApp:
         language = request.path_params["language"]
         if language not in LANGUAGES:
             return Response(status_code=404)
-        words = Words(language, self._driver.session.scene.preparation.dialect.name)
+        words = Vocabulary(language, self._driver.session.scene.preparation.dialect.name)
         return JSONResponse(words.as_data())
 
     async def _sheet(self, request: Request) -> Response:
@@ -164,7 +164,7 @@ class RoomApp:
         language = request.query_params.get("language", "")
         if language not in LANGUAGES or not self._driver.session.room.judge.over:
             return Response(status_code=404)
-        words = Words(language, self._driver.session.scene.preparation.dialect.name)
+        words = Vocabulary(language, self._driver.session.scene.preparation.dialect.name)
         page = await anyio.to_thread.run_sync(self.attempt.writer.page, words)
         return HTMLResponse(page)
 
