@@ -14,7 +14,7 @@ from twin.errors import UsageError
 from twin.files.shipped import machine_file, machine_names, variant_names
 from twin.job.job_file import JobFile, StockTable
 from twin.job.load import ASSUMED, Job, Layer
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.nc.canonical import Chunk, FloatArray, Function, Motion, Moves, concatenate
 from twin.nc.dialects.recognition import block_pages, raw_text
 from twin.nc.functions import SPINDLE_SPEED, SPINDLE_STARTS, TOOL_CHANGE
@@ -195,15 +195,15 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
         ),
         *_tolerance_lines(moves, preparation.job.file.tolerance.contour_um),
     ]
-    told = tools.told
+    notes = tools.notes
     if written:
         place = " ".join(f"{axis}{value:g}" for axis, value in written.items())
-        told.append(f"the zero that the program writes ({place}) lies at part zero")
+        notes.append(f"the zero that the program writes ({place}) lies at part zero")
     left_out = tuple(f"{word} stays at 0: the machine has no such axis" for word in lacking)
     rapids = f"rapids may leave their path by {_RAPID_TOLERANCE_UM:g} µm"
-    told += [rapids] if (moves.motion == Motion.RAPID).any() else []
+    notes += [rapids] if (moves.motion == Motion.RAPID).any() else []
     rounding = _rounding_um(moves)
-    told += (
+    notes += (
         [
             f"feeds may leave their path by {rounding:g} µm more: so far the program lets corners be rounded"
         ]
@@ -211,9 +211,9 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
         else []
     )
     speed = f"the spindle turns at {SPEED_BY_HAND:g} /min, set by hand, where the program starts it: it holds no S"
-    told += [speed] if by_hand else []
-    notes = (*preparation.reading.notes, said, *told, *left_out)
-    return AssumedJob("\n".join(lines), notes, tools.guessed)
+    notes += [speed] if by_hand else []
+    assumptions = (*preparation.reading.notes, said, *notes, *left_out)
+    return AssumedJob("\n".join(lines), assumptions, tools.guessed)
 
 
 def _speed_is_set_by_hand(functions: Iterable[Function]) -> bool:
@@ -223,7 +223,7 @@ def _speed_is_set_by_hand(functions: Iterable[Function]) -> bool:
     return bool(started) and not speeds
 
 
-def _least_length(machine: Machine, moves: Moves) -> float:
+def _least_length(machine: MachineConfig, moves: Moves) -> float:
     """How long a tool must be to reach a part on a table that turns about a level axis; 0 where it does not [mm]."""
     frame, travel = machine.part_frame, machine.axis("Z").travel
     if frame.chain is None or frame.table_about(2) is not None or travel is None or not len(moves):
@@ -269,9 +269,9 @@ def _tolerance_lines(moves: Moves, contour_um: float) -> list[str]:
     """The tolerances, those alone that some move of the program is held to."""
     rapid = moves.motion == Motion.RAPID
     rounding = _rounding_um(moves)
-    told = f"  # {rounding:g} of it the program lets corners be rounded by" if rounding else ""
+    comment = f"  # {rounding:g} of it the program lets corners be rounded by" if rounding else ""
     total = round(contour_um + rounding, 3)
-    feeds = [f"contour_um = {total}{told}"] if (~rapid).any() or not rapid.any() else []
+    feeds = [f"contour_um = {total}{comment}"] if (~rapid).any() or not rapid.any() else []
     rapids = [f"rapid_contour_um = {_RAPID_TOLERANCE_UM}  # a guess"] if rapid.any() else []
     return ["[tolerance]", *feeds, *rapids, ""]
 
@@ -343,7 +343,7 @@ def _zero_line(
     return [f"part_zero = {{ {values} }}  # mm in machine coordinates"]
 
 
-def _machine_name(machine: Machine) -> str:
+def _machine_name(machine: MachineConfig) -> str:
     """As a job beside the program may call it: a shipped machine by its name, another by its path."""
     for name in (*machine_names(), *variant_names()):
         if machine_file(name) == machine.path:
@@ -351,7 +351,7 @@ def _machine_name(machine: Machine) -> str:
     return machine.path.resolve().as_posix()
 
 
-def _height(file: JobFile, machine: Machine) -> float:
+def _height(file: JobFile, machine: MachineConfig) -> float:
     return float(lay_out(file, machine).part_zero[machine.axes.index("Z")])
 
 

@@ -12,7 +12,7 @@ from twin.errors import RecordingError
 from twin.files.toml import Change
 from twin.job.job_file import JobFile
 from twin.job.load import Job, load_job
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.load import load_machine
 from twin.nc.control.settings import Consulted, ControlSettings, MachineFunction, ToolData
 from twin.nc.dialects import Dialect, dialect_named
@@ -53,7 +53,7 @@ class Preparation:
     """
 
     job: Job
-    machine: Machine
+    machine: MachineConfig
     layout: Layout
     source: Source
     dialect: Dialect

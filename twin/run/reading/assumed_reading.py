@@ -105,8 +105,8 @@ def assumed_reading(source: Source) -> AssumedReading:
     rows = _offset_rows(source)
     if rows:
         keys["offset_rows"] = rows
-        told = ", ".join(f"{row} that of tool {tool}" for row, tool in rows.items())
-        notes.append(f"{_ROWS_TOLD}{told}, which was in the spindle then")
+        listed = ", ".join(f"{row} that of tool {tool}" for row, tool in rows.items())
+        notes.append(f"{_ROWS_TOLD}{listed}, which was in the spindle then")
     turn = _turn_within_a_cut(source)
     if turn:
         keys["rollover"] = "shorter"

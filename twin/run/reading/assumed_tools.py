@@ -26,13 +26,13 @@ class ToolLines(NamedTuple):
 
     Attributes:
         lines: Of the job file.
-        told: How each came about, for people.
+        notes: How each came about, for people.
         largest: The largest diameter [mm].
         guessed: Numbers of those whose diameter nothing tells.
     """
 
     lines: list[str]
-    told: list[str]
+    notes: list[str]
     largest: float
     guessed: tuple[int, ...]
 
@@ -64,7 +64,7 @@ def tool_lines(
     numbers = [number for number in called if number or _feeds(0, calls, moves)] or [1]
     listed = listed_tools((comment for _, comment in comments), numbers, inches=inches)
     lines: list[str] = []
-    told: list[str] = []
+    notes: list[str] = []
     guessed: list[int] = []
     largest = 0.0
     for number in numbers:
@@ -84,10 +84,10 @@ def tool_lines(
             (number, tool), moves, rows, top=top, least_length=least_length, worn=number in worn
         )
         lines += [*more, *([_SPEED_LINE] if by_hand else []), ""]
-        told.append(said)
+        notes.append(said)
         guessed += [] if tool and tool.diameter else [number]
         largest = max(largest, diameter)
-    return ToolLines(lines, told, largest, tuple(guessed))
+    return ToolLines(lines, notes, largest, tuple(guessed))
 
 
 def _rows_of(number: int, calls: list[tuple[int, int, int]], count: int) -> list[int]:
@@ -120,8 +120,10 @@ def _tool_table(
     number, tool = called
     at = np.array(rows, np.int64)
     feeds = at[moves.motion[at] == Motion.FEED]
-    ways = moves.end[feeds, :2] - moves.start[feeds, :2]
-    drills = len(feeds) > 0 and bool((np.abs(ways) < BELOW).all() and not moves.sweep[feeds].any())
+    travel = moves.end[feeds, :2] - moves.start[feeds, :2]
+    drills = len(feeds) > 0 and bool(
+        (np.abs(travel) < BELOW).all() and not moves.sweep[feeds].any()
+    )
     depth = max(0.0, top - float(moves.end[feeds, 2].min())) if len(feeds) else 0.0
     kind = (tool.kind if tool else "") or ("drill" if drills else "flat")
     diameter = (tool.diameter if tool else None) or _USUAL_DIAMETER

@@ -26,7 +26,7 @@ class DeclaredStock(NamedTuple):
 
     lines: list[str]
     top: FloatArray
-    told: str
+    description: str
 
 
 def declared_stock(functions: Iterable[Function]) -> DeclaredStock | None:

@@ -12,7 +12,7 @@ from twin.training.server.app import ROLES, RoomApp
 from twin.training.server.attempts import Attempts
 from twin.training.server.driver import Driver
 from twin.training.session.log import Who
-from twin.training.session.session import Session
+from twin.training.session.session import SceneSession
 from twin.web.authentication import Authentication, new_tokens
 from twin.web.origin_check import OriginCheck
 from twin.web.server import LOOPBACK, server_of_views
@@ -69,7 +69,7 @@ class OpenRoom:
         self.addresses = addresses
 
     @property
-    def session(self) -> Session:
+    def session(self) -> SceneSession:
         """What is played now."""
         return self.driver.session
 
@@ -151,7 +151,7 @@ def prompt_threads() -> Iterator[None]:
 
 def warm_up(scene: Scene) -> None:
     """Work a machine that nobody sees, so that nothing is compiled or loaded when a key is pressed."""
-    session = Session(scene)
+    session = SceneSession(scene)
     middle = len(session.room.program.lines) // 2
     search: tuple[Who, dict[str, object]] = ("operator", {"do": "search", "line": middle})
     session.submit({"do": "mode", "mode": "auto"})
