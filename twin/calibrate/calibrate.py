@@ -71,8 +71,8 @@ def calibrate(
             masses[name], machine.file.servo_period_s,
         )  # fmt: skip
         for item in (item for item in own if not item.is_slow):
-            told = look_at_fit(name, fit.fitted, masses[name], filtered=item.is_filtered(name))
-            findings[item.log.name] += tuple(told)
+            noted = look_at_fit(name, fit.fitted, masses[name], filtered=item.is_filtered(name))
+            findings[item.log.name] += tuple(noted)
         figures += [
             figures_of(item, name, fit.parameters)
             for item in fitted + held
@@ -132,8 +132,8 @@ def _axis_findings(
         found += look_at_axis(name, axis, item.health)
         rows = sum(end - begin for begin, end in item.rows(name))
         if not item.is_slow and item.role == FIT and rows > MOST_FITTED:
-            told = f"{name}: of {rows} samples the {MOST_FITTED} in which it moves most are fitted; all are judged"
-            found.append(LogFinding("long", told))
+            message = f"{name}: of {rows} samples the {MOST_FITTED} in which it moves most are fitted; all are judged"
+            found.append(LogFinding("long", message))
     return tuple(found)
 
 

@@ -59,8 +59,8 @@ def _axis_lines(axis: AxisResult) -> Iterator[str]:
         elif name in fit.conditional and name in known:
             interval, given = fit.conditional[name]
             stands_on = " and ".join(given)
-            told = _span(interval, axis.units[name])
-            yield f"{name} = {_number(value)}    # {told}, given the {stands_on}"
+            span = _span(interval, axis.units[name])
+            yield f"{name} = {_number(value)}    # {span}, given the {stands_on}"
             if "current_scale" in given and name == "dry_friction":
                 scale = _number(fit.parameters.current_scale)
                 yield f"current_scale = {scale}    # not determined: what the friction stands on"
@@ -86,13 +86,13 @@ def _axis_lines(axis: AxisResult) -> Iterator[str]:
 
 def _give_lines(axis: AxisResult) -> Iterator[str]:
     """Backlash and stiffness, as far as they are there and can be simulated."""
-    told = axis.fit.fitted | {name: pair[0] for name, pair in axis.fit.conditional.items()}
-    if "backlash" in told:
-        interval = told["backlash"]
+    known = axis.fit.fitted | {name: pair[0] for name, pair in axis.fit.conditional.items()}
+    if "backlash" in known:
+        interval = known["backlash"]
         span = _span(interval, axis.units["backlash"])
         yield f"backlash = {_number(interval.value)}    # {span}"
-    if "stiffness" in told:
-        interval = told["stiffness"]
+    if "stiffness" in known:
+        interval = known["stiffness"]
         span = _span(interval, axis.units["stiffness"])
         if interval.value < stiffest(axis.base, axis.moved, axis.period_s):
             yield f"stiffness = {_number(interval.value)}    # {span}"

@@ -125,11 +125,11 @@ def as_built(axis: AxisTable, fit: AxisFit) -> AxisFit:
     """A fit without what an axis cannot have that has no screw; it is named."""
     if axis.lead:
         return fit
-    told = {name: interval for name, (interval, _) in fit.conditional.items()} | fit.fitted
+    known = {name: interval for name, (interval, _) in fit.conditional.items()} | fit.fitted
     undetermined = dict(fit.undetermined)
-    for name in {"backlash", "stiffness"} & set(told):
+    for name in {"backlash", "stiffness"} & set(known):
         undetermined[name] = (
-            f"the log has {told[name].value:.4g} {units_of(axis.kind)[name]}, but the base's axis has no "
+            f"the log has {known[name].value:.4g} {units_of(axis.kind)[name]}, but the base's axis has no "
             "'lead', and nothing gives in an axis without a screw"
         )
     gone = ("backlash", "stiffness")

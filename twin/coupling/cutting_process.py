@@ -211,7 +211,12 @@ class CuttingProcess(abc.ABC):
         self.breaks.append(ToolBreak(tool.number, line, time, reason))
 
     def _watch_spindle(
-        self, setpoints: Setpoints, told: FloatArray, loads: ToolLoads, rows: slice, period: float
+        self,
+        setpoints: Setpoints,
+        commanded: FloatArray,
+        loads: ToolLoads,
+        rows: slice,
+        period: float,
     ) -> None:
         """Raise the alarm of a spindle that stalls, or that gives too much for too long."""
         load, speed = loads.spindle_load[rows], np.abs(loads.spindle_speed[rows])
@@ -222,7 +227,7 @@ class CuttingProcess(abc.ABC):
             self._overloaded_s = self._overloaded_s + period if over else 0.0
             place = int(setpoints.line[row]), float(setpoints.time[row])
             asked = f"it asks for {100.0 * load[row]:.0f} % of its torque"
-            if over and speed[row] < STALLED_SHARE * abs(told[row]):
+            if over and speed[row] < STALLED_SHARE * abs(commanded[row]):
                 self.alarm = Alarm(
                     "spindle-stall", *place, "", f"the cut stalled the spindle: {asked}"
                 )

@@ -45,12 +45,12 @@ class ProgramOperation:
         place = np.maximum(setpoints.move + np.clip(setpoints.fraction, 0.0, 1.0), 0.0)
         speed = self._speed[np.searchsorted(self._first_move, place, side="right") - 1]
         for rows, tool in self._tools.runs(setpoints.move):
-            told = np.full(rows.stop - rows.start, _known(tool.speed))
+            commanded = np.full(rows.stop - rows.start, _known(tool.speed))
             yield SpindleTurning(
                 rows,
                 tool,
                 self._tools.length_difference(tool),
-                told if self._silent else speed[rows],
+                commanded if self._silent else speed[rows],
             )
 
 
@@ -75,8 +75,10 @@ class OperatorOperation:
     def turnings(self, setpoints: Setpoints) -> Iterator[SpindleTurning]:
         """All setpoints at once; see ``Operation``."""
         if len(setpoints):
-            told = np.full(len(setpoints), _known(self.speed))
-            yield SpindleTurning(slice(0, len(setpoints)), self.tool, self.length_difference, told)
+            commanded = np.full(len(setpoints), _known(self.speed))
+            yield SpindleTurning(
+                slice(0, len(setpoints)), self.tool, self.length_difference, commanded
+            )
 
 
 def _known(speed: float | None) -> float:

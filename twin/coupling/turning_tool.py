@@ -169,9 +169,9 @@ def turn_spindle(period: float, commanded: float, tool: TurningTool, memory: Mem
     """
     numbers = memory.numbers
     torque = memory.scratch.figures[1] * MM if numbers[CutNumber.MET] > 0.0 else 0.0
-    told = 0.0 if math.isnan(commanded) else commanded
+    speed = 0.0 if math.isnan(commanded) else commanded
     numbers[CutNumber.SPEED] = next_speed(
-        tool.spindle, numbers[CutNumber.SPEED], told, torque, period
+        tool.spindle, numbers[CutNumber.SPEED], speed, torque, period
     )
     memory.force[:] = 0.0
     if math.isnan(commanded) or numbers[CutNumber.EDGE] != EdgeState.WHOLE.value:

@@ -107,8 +107,8 @@ class LinuxcncClient:
 
     def _look(self) -> None:
         """Log what LinuxCNC says."""
-        while (told := self._errors.poll()) is not None:
-            kind, text = told
+        while (report := self._errors.poll()) is not None:
+            kind, text = report
             wrong = kind in (self._linuxcnc.NML_ERROR, self._linuxcnc.OPERATOR_ERROR)
             self.tell("error" if wrong else "message", text.strip())
             self._failed = self._failed or wrong

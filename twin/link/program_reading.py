@@ -20,7 +20,7 @@ import numpy as np
 
 from twin.errors import ExitCode, TwinError, UsageError
 from twin.job.job_file import JobFile
-from twin.link.tables import LETTERS, offsets_text, tools_text
+from twin.link.configuration import LETTERS, offsets_text, tools_text
 from twin.nc.canonical import Axes, FloatArray
 from twin.nc.text.diagnostics.diagnostics import Diagnostic
 
@@ -157,8 +157,8 @@ def _numbered(lines: Sequence[str]) -> list[str]:
     ]
 
 
-def _refused(listing: Listing, told: str) -> LinuxcncProgramError:
-    said = [line for line in told.splitlines() if line.strip() and line.strip() != "executing"]
+def _refused(listing: Listing, output: str) -> LinuxcncProgramError:
+    said = [line for line in output.splitlines() if line.strip() and line.strip() != "executing"]
     message = said[0] if said else "it does not say why"
     number = next((int(found[1]) for line in said[1:] if (found := _N_WORD.match(line))), 1)
     return listing.error(number, message)

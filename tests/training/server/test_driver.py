@@ -264,7 +264,9 @@ def test_what_is_asked_interrupts_catching_up(driver):
 def test_a_machine_that_loses_time_gives_its_precedence_back(driver, monkeypatch):
     given = []
     monkeypatch.setattr("twin.training.server.driver.take_precedence", lambda: True)
-    monkeypatch.setattr("twin.training.server.driver.give_way", lambda: given.append(driver.lost_s))
+    monkeypatch.setattr(
+        "twin.training.server.driver.release_precedence", lambda: given.append(driver.lost_s)
+    )
     turns = iter(range(100))
 
     def step(_passed):

@@ -54,13 +54,13 @@ def whiteness(course: TimeSeries) -> str:
         return "Too few samples in a row tell whether what is left is noise."
     band = _SURE / np.sqrt(len(course.time))
     outside = int(np.count_nonzero(np.abs(found) > band))
-    told = (
+    text = (
         f"Neighbours in what is left correlate by {found[0]:.2f}; {outside} of {_LAGS} shifts lie outside "
         f"the 95 % band of ±{band:.3f} (2 would by chance)"
     )
     if outside <= _LAGS // 10:
-        return f"{told}: it is as good as noise."
-    return f"{told}: something is left that the model does not have, however small."
+        return f"{text}: it is as good as noise."
+    return f"{text}: something is left that the model does not have, however small."
 
 
 @styled

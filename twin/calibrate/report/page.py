@@ -84,19 +84,19 @@ def _unexplained(logs: tuple[LogFigures, ...]) -> list[str]:
     def places(bad: Sequence[LogFigures]) -> str:
         return "; ".join(f"{Path(one.log).name}, {one.axis}" for one in bad)
 
-    told = []
+    warnings = []
     if lags := [one for one in logs if one.lag_is_unexplained]:
-        told.append(
+        warnings.append(
             f"More than half of the logged lag is left unexplained ({places(lags)}): what was fitted is "
             "not to be relied upon. What the log lacks is listed below."
         )
     if forces := [one for one in logs if one.force_is_unexplained]:
-        told.append(
+        warnings.append(
             f"More than half of the logged force is left unexplained ({places(forces)}): mass and "
             "friction are not to be relied upon. Is the column this axis's force, is its unit right, is "
             "something injected that the map does not name (external_force)?"
         )
-    return told
+    return warnings
 
 
 def _axis(name: str, axis: AxisResult, logs: tuple[LogFigures, ...]) -> dict[str, Any]:

@@ -177,7 +177,7 @@ class LiveMachine:
         """
         if self.alarm is not None:
             raise AlarmStandsError(f"{self.alarm.code} has not been cleared")
-        self._servo.begin_anew()
+        self._servo.restart()
         self._stand = self._servo.follow(_standing(position))
         self._watch.acknowledge(self.position)
         return self._stand

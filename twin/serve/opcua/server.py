@@ -24,8 +24,7 @@ from cryptography.x509.oid import ExtendedKeyUsageOID
 from twin.errors import UsageError
 from twin.machine.description.config import MachineConfig
 from twin.serve.agent import Agent
-from twin.serve.opcua.machine_tool import MachineTool
-from twin.serve.opcua.node_sets import import_node_sets
+from twin.serve.opcua.machine_tool import MachineTool, import_node_sets
 
 ua: Any = asyncua.ua
 _URI = "urn:mill-twin:server"
@@ -163,12 +162,12 @@ async def mirror(
     items = [item.id for part in agent.device.walk() for item in part.items]
     async with opcua_server(place, content) as tool:
         ready(f"opc.tcp://{place.host}:{place.port}")
-        told = 0
+        newest = 0
         while True:
-            found = [one for one in agent.buffer.current(items) if one.sequence > told]
+            found = [one for one in agent.buffer.current(items) if one.sequence > newest]
             for observation in found:
                 await tool.update(observation)
-            told = max((one.sequence for one in found), default=told)
+            newest = max((one.sequence for one in found), default=newest)
             await asyncio.sleep(_PERIOD_S)
 
 

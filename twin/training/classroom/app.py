@@ -36,7 +36,7 @@ from twin.training.scene.vocabulary import LANGUAGES, Language, Vocabulary
 from twin.training.server.app import PAGE, static_routes
 
 TEACHER = "teacher"
-TOLD_EVERY_S = 0.5
+REPORT_EVERY_S = 0.5
 """Between two looks at the class for the teacher's page [s]."""
 ALARM_S, IDLE_S = 60.0, 180.0
 """A pupil is stuck when an alarm has stood for so long, or when so long nothing was done while nothing ran
@@ -202,15 +202,15 @@ class ClassApp:
 
     async def _tell(self, page: WebSocket) -> None:
         """Tell the teacher's page of the class, where it has changed."""
-        told = ""
+        sent = ""
         with contextlib.suppress(WebSocketDisconnect, RuntimeError):
             while True:
                 marks = await anyio.to_thread.run_sync(self._file.marks)
                 now = json.dumps({"seats": self._seen(marks)})
-                if now != told:
-                    told = now
+                if now != sent:
+                    sent = now
                     await page.send_text(now)
-                await asyncio.sleep(TOLD_EVERY_S)
+                await asyncio.sleep(REPORT_EVERY_S)
 
     def _seen(self, marks: list[AttemptResult]) -> list[dict[str, Any]]:
         """The class as the page shows it."""

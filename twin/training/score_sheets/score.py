@@ -79,7 +79,7 @@ def score_sheet(session: SceneSession, words: Vocabulary, date: str = "") -> dic
 
 def _wrong(moment: AlarmMoment, words: Vocabulary) -> dict[str, Any]:
     """What went wrong: at which block, why it matters, and what would have been right."""
-    alarm, told = moment.alarm, words.alarm(moment.alarm.code)
+    alarm, wording = moment.alarm, words.alarm(moment.alarm.code)
     finding = alarm.finding
     said = (
         finding_in(finding, words.language)
@@ -88,14 +88,14 @@ def _wrong(moment: AlarmMoment, words: Vocabulary) -> dict[str, Any]:
     )
     return {
         "code": alarm.code,
-        "name": told.name,
+        "name": wording.name,
         "time_s": round(alarm.time_s, 3),
         "line": alarm.line,
         "block": alarm.block,
         "text": moment.text,
         "message": said,
-        "why": told.why,
-        "right": told.advice,
+        "why": wording.why,
+        "right": wording.advice,
     }
 
 

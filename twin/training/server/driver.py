@@ -11,7 +11,7 @@ from concurrent.futures import Future
 from typing import Any, TypeVar
 
 from twin.errors import TwinError
-from twin.processor import give_way, take_precedence
+from twin.processor import release_precedence, take_precedence
 from twin.training.room.room import Room
 from twin.training.session.log import Who
 from twin.training.session.session import SceneSession
@@ -159,12 +159,12 @@ class Driver:
             self._step(passed)
             if precedes and self.lost_s > 0.0:
                 precedes = False
-                give_way()
+                release_precedence()
             due = self.session.room.slice_s - self._owed_s - (time.perf_counter() - now)
             self._wake.wait(RESTING_S if self._rests else max(due / self.speed, SHORTEST_REST_S))
             self._wake.clear()
         if precedes:
-            give_way()
+            release_precedence()
 
     @property
     def _rests(self) -> bool:
