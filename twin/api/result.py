@@ -15,9 +15,9 @@ import numpy.typing as npt
 
 from twin.errors import ExitCode, RecordingError, UsageError
 from twin.extras import require_extra
-from twin.machine.watching.alarms import Alarm
 from twin.nc.canonical import FloatArray
 from twin.nc.text.diagnostics.diagnostics import Diagnostic
+from twin.recording.alarms import Alarm
 from twin.recording.form import COLUMNS, GROWTH, JOINT_COLUMNS, TOOL_COLUMNS
 from twin.recording.reader import open_recording
 from twin.run.judging.outcome import Outcome

@@ -10,9 +10,9 @@ from twin.compare.comparison import Comparison
 from twin.compare.figures import Figures
 from twin.coupling.operations import program_process
 from twin.machine.simulation.live import LiveMachine
-from twin.machine.watching.alarms import Alarm
 from twin.motion.live.live_motion import LARGEST_OVERRIDE, LiveMotion
 from twin.nc.canonical import Chunk, FloatArray
+from twin.recording.alarms import Alarm
 from twin.recording.form import Samples
 from twin.run.run import Run
 

@@ -16,9 +16,9 @@ from twin.cutting.forces.tool_strength import ToolStrength, tool_strength
 from twin.job.job_file import ToolTable
 from twin.machine.description.machine_file import SpindleTable
 from twin.machine.simulation.process import Physics
-from twin.machine.watching.alarms import Alarm
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
+from twin.recording.alarms import Alarm
 from twin.recording.form import ToolLoad
 from twin.toolpath.part_frame import PartFrame
 from twin.units import SECONDS_PER_MINUTE

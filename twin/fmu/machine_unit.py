@@ -10,9 +10,9 @@ import numpy as np
 
 from twin.machine.description.config import MachineConfig
 from twin.machine.simulation.live import LiveMachine
-from twin.machine.watching.alarms import SimulationError
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
+from twin.recording.alarms import SimulationError
 
 _SAME_STEP = 1e-6
 """How far a step may differ from the servo period, as a share of it."""

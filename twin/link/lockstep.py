@@ -30,9 +30,9 @@ from twin.link.packet import (
 )
 from twin.link.place import Places
 from twin.machine.simulation.live import LiveMachine
-from twin.machine.watching.alarms import Alarm, AlarmStandsError, NearMiss
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
+from twin.recording.alarms import Alarm, AlarmStandsError, NearMiss
 from twin.recording.form import STEPS, Samples
 from twin.run.pipeline import MachineMotion
 

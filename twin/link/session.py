@@ -27,8 +27,8 @@ from twin.link.lockstep import LockstepMotion
 from twin.link.place import Places
 from twin.link.program_reading import Listing
 from twin.machine.simulation.live import LiveMachine
-from twin.machine.watching.alarms import Alarm, AlarmCode, AlarmStandsError
 from twin.nc.canonical import FloatArray, concatenate
+from twin.recording.alarms import Alarm, AlarmCode, AlarmStandsError
 from twin.run.dry_run.dry_run import InterpretedProgram
 from twin.run.judging.outcome import Outcome
 from twin.run.preparing.preparation import Preparation

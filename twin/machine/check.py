@@ -20,9 +20,9 @@ from twin.machine.model.drives import reflected_inertia
 from twin.machine.model.model import MachineModel, build_spec, compiled, drives, physics_model
 from twin.machine.model.supplied import supply
 from twin.machine.simulation.simulate import simulate
-from twin.machine.watching.alarms import Alarm, SimulationError
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
+from twin.recording.alarms import Alarm, SimulationError
 
 SECTIONS = (
     "compiler", "option", "default", "asset", "worldbody", "contact", "equality", "actuator",

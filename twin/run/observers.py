@@ -14,8 +14,8 @@ from twin.compare.trace import Trace
 from twin.cutting.forces.load_log import LoadLog
 from twin.cutting.watching.cut_log import CutResult
 from twin.job.job_file import ToolTable
-from twin.machine.watching.alarms import Alarm
 from twin.nc.canonical import FloatArray
+from twin.recording.alarms import Alarm
 from twin.recording.reader import RecordingWriter, Samples
 from twin.run.progress import StageClock
 from twin.toolpath.tool_plan import ToolPlan

@@ -10,11 +10,11 @@ from twin.machine.description.config import Blank, MachineConfig
 from twin.machine.model.model import MachineModel
 from twin.machine.simulation.process import Process
 from twin.machine.simulation.servo import Servo
-from twin.machine.watching.alarms import Alarm, AlarmCode, AlarmStandsError, NearMiss
 from twin.machine.watching.clearance import Clearance
 from twin.machine.watching.watch import Watch, limit_switches
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
+from twin.recording.alarms import Alarm, AlarmCode, AlarmStandsError, NearMiss
 from twin.recording.reader import Samples
 
 STANDSTILL = 0.01

@@ -25,9 +25,9 @@ from twin.machine.simulation.process import Physics, Process
 from twin.machine.simulation.sampling import polyline_node
 from twin.machine.simulation.stepping import stepper
 from twin.machine.simulation.tick_kernels import follow_setpoints, loop_of, step_held
-from twin.machine.watching.alarms import SimulationError
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray, IntArray
+from twin.recording.alarms import SimulationError
 from twin.recording.form import Samples, ToolLoad
 from twin.units import to_si
 

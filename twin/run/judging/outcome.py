@@ -15,9 +15,9 @@ from twin.cutting.watching.cut_log import CutResult
 from twin.errors import ConfigError
 from twin.job.job_file import JobFile
 from twin.job.tolerance import ToleranceTable
-from twin.machine.watching.alarms import Alarm, NearMiss
 from twin.nc.canonical import FloatArray
 from twin.nc.text.diagnostics.diagnostics import Diagnostic
+from twin.recording.alarms import Alarm, NearMiss
 from twin.recording.reader import RecordingWriter
 from twin.run.dry_run.dry_run import DryRun
 from twin.run.dry_run.program_watch import ProgramWatch

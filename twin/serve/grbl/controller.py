@@ -7,11 +7,11 @@ become program runs of the room (``GrblStream``); everything else is done here.
 import time
 
 from twin.errors import TwinError
-from twin.machine.watching.alarms import AlarmStandsError
 from twin.nc.control.executor import Executor
 from twin.nc.dialects.grbl.memory import GrblMemory, memory_of
 from twin.nc.text.diagnostics.diagnostics import ProgramError
 from twin.nc.text.source import source_from_text
+from twin.recording.alarms import AlarmStandsError
 from twin.serve.grbl import realtime
 from twin.serve.grbl.codes import Error, alarm_of
 from twin.serve.grbl.reports import BUILD, HELP, WELCOME, ParserState, ReportWriter, parser_state
