@@ -1,4 +1,4 @@
-"""What a calibration came to: by axis what was fitted, by log how well it is predicted."""
+"""The result of a calibration: by axis what was fitted, by log how well it is predicted."""
 
 import dataclasses
 import math

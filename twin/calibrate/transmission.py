@@ -1,4 +1,4 @@
-"""What gives between motor and axis, as logs of a second encoder or ball-bars tell it."""
+"""Backlash and stiffness from logs of a second encoder or of ball-bars."""
 
 import dataclasses
 from collections.abc import Sequence

@@ -1,8 +1,8 @@
 """Which jobs and programs have to do with files that a commit changes.
 
 What a run reads is what it depends on: its job with all that it shares settings with, its machine with what that is
-based on, the files that these name, its program, and the files beside it that the program calls. Where that cannot
-be told without running it, it counts as dependent.
+based on, the files that these name, its program, and the files beside it that the program calls. Where that is not
+known without running it, it counts as dependent.
 """
 
 import re

@@ -93,7 +93,7 @@ def calibrate(
         typer.Option("--programs", help="Write test programs for the real machine there."),
     ] = None,
 ) -> None:
-    """Fit a machine's drives to logs of a real one, and say what the logs do not tell."""
+    """Fit a machine's drives to logs of a real one, and report what the logs do not determine."""
     from twin.commands.calibrate import CalibrationRequest, calibrate_and_print
 
     request = CalibrationRequest(

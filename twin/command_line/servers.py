@@ -1,4 +1,4 @@
-"""What goes on until it is interrupted: ``twin train``, ``twin view``, ``twin serve`` and ``twin link``."""
+"""Commands that run until they are interrupted: ``twin train``, ``view``, ``serve`` and ``link``."""
 
 from pathlib import Path
 from typing import Annotated
@@ -96,7 +96,7 @@ def view(
         int, typer.Option("--port", min=0, max=65535, help="0: the first free from 8080.")
     ] = 0,
 ) -> None:
-    """Look at a run in a browser: play, scrub, by line, with its contour error and its part."""
+    """Show a run in a browser: play, scrub, jump by line, with its contour error and its part."""
     from twin.commands.live.view import view as show
 
     raise typer.Exit(show(recording, port))
@@ -148,7 +148,7 @@ def serve(
     dialect: DialectOption = None,
     machine: MachineOption = None,
 ) -> None:
-    """Tell monitors over MTConnect of a machine that runs a job again and again, or of a room."""
+    """Serve a machine over MTConnect: one that repeats a job, or that of a training room."""
     from twin.commands.live import serve as agent
 
     source = agent.Reported(

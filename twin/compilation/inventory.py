@@ -1,4 +1,4 @@
-"""Whether the kernels are compiled already, for those who ask before they run anything."""
+"""Whether all kernels are compiled already."""
 
 import hashlib
 import os

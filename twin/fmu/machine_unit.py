@@ -1,4 +1,4 @@
-"""A machine that another simulator steps: a setpoint of every axis in, a servo period, joints and loads out.
+"""A machine that another simulator steps by servo periods: setpoints in, joints and loads out.
 
 What happens in a period is what ``twin run`` does with the same setpoint, to the last bit (``LiveMachine``). An alarm
 is latched, and brakes the axes; what the setpoints ask for counts no more then.

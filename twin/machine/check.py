@@ -162,7 +162,7 @@ def _compiles(machine: MachineConfig) -> list[str]:
 
 
 def _carries_tool_and_part(machine: MachineConfig) -> list[str]:
-    """Axes on the way neither to tool nor to part, and second spindles; a model that is no mill raises."""
+    """Axes that carry neither tool nor part, and second spindles; a model that is no mill raises."""
     carried = {machine.axes.names[column] for column in machine.kinematics.column}
     idle = [name for name in machine.axes.names if name not in carried]
     return [f"axis {name} moves neither tool nor part" for name in idle] + [

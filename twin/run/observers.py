@@ -42,13 +42,13 @@ class Observer(abc.ABC):
 
     @abc.abstractmethod
     def result(self) -> object:
-        """What it has come to."""
+        """The result so far."""
 
 
 def observed(
     motion: Iterable[Samples], observers: Sequence[Observer], clock: StageClock
 ) -> Iterator[Samples]:
-    """Let a motion be followed until one of the observers stops it.
+    """Pass the samples of a motion to observers until one of them stops it.
 
     Args:
         observers: In the order in which they see each chunk.

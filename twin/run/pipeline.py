@@ -95,7 +95,7 @@ class ProgramMotion(MachineMotion):
     """Setpoints of a program, held at their end and followed by the simulated drives.
 
     The machine is stepped one chunk ahead of those who look at it, on another core where there is one. What it has come to
-    is told with the chunk that it belongs to, so that an alarm finds all as it was then.
+    is reported with the chunk that it belongs to, so that an alarm finds all as it was then.
     """
 
     def __init__(

@@ -1,4 +1,4 @@
-"""What the agent answers: requests after MTConnect Part 1, without the network around them."""
+"""The agent's answers to requests after MTConnect Part 1, without the network."""
 
 import dataclasses
 import datetime as dt
@@ -112,7 +112,6 @@ class Agent:
         size: int = BUFFER_SIZE,
         tools: Iterable[ToolTable] = (),
     ) -> None:
-        """Start with nothing observed."""
         self.device = device
         self.clock = clock
         self.observed_s = 0.0

@@ -1,4 +1,4 @@
-"""The server: uvicorn on a thread of its own, on one port, with bounds on whoever comes."""
+"""The server: uvicorn on a thread of its own, on one port, with limits on clients."""
 
 import asyncio
 import collections
@@ -36,7 +36,7 @@ LONGEST_MESSAGE = 262_144
 
 
 class BoundedProtocol(H11Protocol):
-    """HTTP with an end to lines that say nothing, or only little by little."""
+    """HTTP with a timeout for connections that send nothing, or too slowly."""
 
     _waiting: ClassVar["collections.OrderedDict[BoundedProtocol, None]"] = collections.OrderedDict()
 
@@ -100,7 +100,7 @@ class SocketServer:
         """Serve an application until ``stop``.
 
         Args:
-            promptly: Whether to ask the system for precedence, as what is told must not wait.
+            promptly: Whether to ask the system for precedence, as messages must not wait.
         """
         config = uvicorn.Config(
             app,

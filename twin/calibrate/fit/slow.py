@@ -37,7 +37,7 @@ class SlowLog:
     Attributes:
         rows: First and last row, exclusive, of each stretch.
         ramps: Its samples that fell into ramps.
-        speed: Commanded, of every row, 0 where it is not told [mm/s or deg/s].
+        speed: Commanded, of every row, 0 where it is not logged [mm/s or deg/s].
         known: Rows whose speed is known.
     """
 

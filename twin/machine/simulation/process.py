@@ -1,4 +1,4 @@
-"""What goes on between tool and part while the machine is stepped, as far as the drives must know."""
+"""The interface of a cutting process with which the drives are stepped."""
 
 from typing import NamedTuple, Protocol
 

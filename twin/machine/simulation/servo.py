@@ -229,7 +229,7 @@ class Servo:
         return copied
 
     def take_over(self, other: "Servo") -> None:
-        """Go on where a servo of the same axes, tuned or built otherwise, has come to.
+        """Take over the state of a servo of the same axes, tuned or built otherwise.
 
         The axes stand and move as they did; where the transmission gave and no longer does, the
         motor goes with the axis.

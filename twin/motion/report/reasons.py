@@ -1,4 +1,4 @@
-"""What bounds the velocity of pieces, and what their borders are passed at: for people to read."""
+"""What bounds the velocity of pieces and of their borders, in words."""
 
 import dataclasses
 

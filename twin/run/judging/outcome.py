@@ -1,4 +1,4 @@
-"""What a run came to, judged: what result.json, the report and the exit code are made of."""
+"""The outcome of a run, from which result.json, the report and the exit code are made."""
 
 import dataclasses
 from collections.abc import Iterator, Sequence
@@ -49,7 +49,7 @@ from twin.units import UM_PER_MM
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Outcome:
-    """What a run came to.
+    """The outcome of a run.
 
     Attributes:
         cut: What was cut; None without a stock.
@@ -172,7 +172,7 @@ def outcome_of(
 
 
 def refuse_unjudged_loads(tolerance: ToleranceTable) -> None:
-    """A tolerance on what nobody simulates would pass unseen.
+    """Refuse tolerances on loads that are not simulated: they would always pass.
 
     Raises:
         ConfigError: There is one.

@@ -61,7 +61,7 @@ class DialectChoice:
 
 
 @dataclasses.dataclass(frozen=True)
-class _Candidate:
+class _DialectReading:
     """What one dialect makes of a program."""
 
     name: str
@@ -148,7 +148,7 @@ def chosen_dialect(
 _ROLLS = "it alone of those that may be meant has rotary axes that roll over"
 
 
-def _crawls(one: _Candidate, other: _Candidate) -> bool:
+def _crawls(one: _DialectReading, other: _DialectReading) -> bool:
     """Whether a dialect counts feeds of which another makes at least two hundred times as much."""
     slow, fast = one.moves.feed, other.moves.feed
     if len(slow) != len(fast):
@@ -156,18 +156,18 @@ def _crawls(one: _Candidate, other: _Candidate) -> bool:
     return bool(((slow < _CRAWLS * _INCH) & (slow < fast * _TOO_SLOW)).any())
 
 
-def _farthest(tried: Sequence[_Candidate]) -> _Candidate:
+def _farthest(tried: Sequence[_DialectReading]) -> _DialectReading:
     """The one that reads a program farthest before it refuses it."""
     return max(tried, key=lambda each: each.error.line if each.error else 0)
 
 
-def _first_refusal(tried: Sequence[_Candidate]) -> str:
+def _first_refusal(tried: Sequence[_DialectReading]) -> str:
     farthest = _farthest(tried)
     assert farthest.error is not None
     return f"{farthest.name}, which reads it farthest of others, refuses line {farthest.error.line}: {farthest.error.message}"
 
 
-def _refused(tried: Sequence[_Candidate], others: Sequence[str]) -> ProgramError:
+def _refused(tried: Sequence[_DialectReading], others: Sequence[str]) -> ProgramError:
     """The error of the dialect that reads a program farthest, and what else may be tried."""
     farthest, name = _farthest(tried).error, _farthest(tried).name
     assert farthest is not None
@@ -181,7 +181,9 @@ def _refused(tried: Sequence[_Candidate], others: Sequence[str]) -> ProgramError
 
 
 def _dropped(
-    good: Sequence[_Candidate], quick: Sequence[_Candidate], meant: Sequence[_Candidate]
+    good: Sequence[_DialectReading],
+    quick: Sequence[_DialectReading],
+    meant: Sequence[_DialectReading],
 ) -> str:
     """Why some of the dialects that read a program are not the one that was meant; empty: all may be."""
     slow = [each for each in good if each not in quick]
@@ -193,7 +195,7 @@ def _dropped(
     return "; ".join(reasons)
 
 
-def _choice(name: str, meant: Sequence[_Candidate], why: str) -> DialectChoice:
+def _choice(name: str, meant: Sequence[_DialectReading], why: str) -> DialectChoice:
     """The dialect that is taken of those that may be meant."""
     slightly = ""
     for other in meant[1:]:
@@ -227,7 +229,7 @@ def _type(names: Sequence[str]) -> str:
     return f"type {_either([f'--dialect {name}' for name in names])}"
 
 
-def _tried(path: Path, dialect: Dialect, settings: ControlSettings) -> _Candidate:
+def _tried(path: Path, dialect: Dialect, settings: ControlSettings) -> _DialectReading:
     """What a dialect makes of a program."""
     source = read_source(path, dialect)
     unknown = unknown_functions(source, dialect, frozenset(settings.m_functions))
@@ -249,10 +251,10 @@ def _tried(path: Path, dialect: Dialect, settings: ControlSettings) -> _Candidat
         if isinstance(event, Function)
     ]
     moves = concatenate((chunk.moves for chunk in chunks), settings.axes)
-    return _Candidate(dialect.name, moves, functions, unknown, error)
+    return _DialectReading(dialect.name, moves, functions, unknown, error)
 
 
-def _difference(one: _Candidate, other: _Candidate) -> str:
+def _difference(one: _DialectReading, other: _DialectReading) -> str:
     """The first thing that two dialects make differently; empty: none."""
     paths = _paths_apart(one, other)
     if paths:
@@ -266,7 +268,7 @@ def _difference(one: _Candidate, other: _Candidate) -> str:
     return ""
 
 
-def _paths_apart(one: _Candidate, other: _Candidate) -> str:
+def _paths_apart(one: _DialectReading, other: _DialectReading) -> str:
     """The first move that two dialects make differently; empty: none."""
     a, b = one.moves, other.moves
     count = min(len(a), len(b))
@@ -296,7 +298,7 @@ def _pecks_apart(a: Moves, b: Moves, count: int) -> BoolArray:
     return rapid & others & (off[:, 2] > _SAME) & (off[:, 2] < _CLEARANCE)
 
 
-def _slight_difference(one: _Candidate, other: _Candidate) -> str:
+def _slight_difference(one: _DialectReading, other: _DialectReading) -> str:
     """What two dialects make differently that asks nobody; empty: nothing."""
     a, b = one.moves, other.moves
     pecks = np.flatnonzero(_pecks_apart(a, b, min(len(a), len(b))))
@@ -307,7 +309,7 @@ def _slight_difference(one: _Candidate, other: _Candidate) -> str:
     return _feeds_apart(one, other)
 
 
-def _feeds_apart(one: _Candidate, other: _Candidate, share: float = _SAME) -> str:
+def _feeds_apart(one: _DialectReading, other: _DialectReading, share: float = _SAME) -> str:
     """The first feed that two dialects make differently; empty: none."""
     a, b = one.moves, other.moves
     apart = np.flatnonzero(~np.isclose(a.feed, b.feed, rtol=share, equal_nan=True))

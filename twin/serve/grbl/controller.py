@@ -35,7 +35,6 @@ class GrblController:
     """One control; one sender talks to it."""
 
     def __init__(self, room: Room) -> None:
-        """Switch it on."""
         self.serial = SerialBuffer()
         self.settings = GrblSettings(room.machine.machine)
         self._reporter = ReportWriter(self.settings)
@@ -63,7 +62,7 @@ class GrblController:
         self._reporter.refresh()
 
     def work(self, room: Room, data: bytes = b"") -> bytes:
-        """Take bytes from the line, do what they ask for as far as the machine is ready; what is to be sent."""
+        """Take bytes from the line and carry out what the machine is ready for; the bytes to send."""
         if data and self._stream is not None:
             self._stream.last_received = time.monotonic()
         for command in self.serial.receive(data):

@@ -1,4 +1,4 @@
-"""What the judge and the faults see of a room, so that they depend on no room."""
+"""What the judge and the faults see of a room, so that they do not import it."""
 
 import dataclasses
 from typing import Protocol
