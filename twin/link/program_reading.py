@@ -20,7 +20,7 @@ import numpy as np
 
 from twin.errors import ExitCode, TwinError, UsageError
 from twin.job.job_file import JobFile
-from twin.link.tables import LETTERS, offsets_text, tools_text
+from twin.link.configuration import LETTERS, offsets_text, tools_text
 from twin.nc.canonical import Axes, FloatArray
 from twin.nc.text.diagnostics.diagnostics import Diagnostic
 

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from twin.errors import ConfigError
+from twin.files.looked_at import look_at
 from twin.files.shipped import machine_file
 from twin.files.toml import Change, Data, changed, checked, load_toml, merged
 from twin.job.fixture import FixtureTable
@@ -54,7 +55,7 @@ def read_machine(
         if twice:
             raise ConfigError(f"fixture '{twice[0]}' is named twice")
     machine = MachineConfig(path, file)
-    if not machine.model_path.is_file():
+    if not look_at(machine.model_path).is_file():
         raise ConfigError(f"{path}: model '{machine.file.model}' does not exist")
     return machine
 

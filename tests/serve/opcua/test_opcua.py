@@ -18,8 +18,7 @@ from twin.machine.load import read_machine
 from twin.serve.agent import Agent, Clock
 from twin.serve.buffer import NORMAL, Condition
 from twin.serve.device import device_of
-from twin.serve.opcua.machine_tool import NAMESPACE
-from twin.serve.opcua.node_sets import FOLDER, MACHINE_TOOL, MACHINERY
+from twin.serve.opcua.machine_tool import FOLDER, MACHINE_TOOL, MACHINERY, NAMESPACE
 from twin.serve.opcua.server import Content, Endpoint, check_place, mirror
 
 pytestmark = [

@@ -257,7 +257,7 @@ def _check_opcua(source: Reported) -> None:
             raise UsageError("--opcua-trust is for --opcua PORT")
         return
     require_extra("opcua", "twin serve --opcua")
-    from twin.serve.opcua.node_sets import require_node_sets
+    from twin.serve.opcua.machine_tool import require_node_sets
     from twin.serve.opcua.server import Endpoint, check_place
 
     require_node_sets()
@@ -358,8 +358,7 @@ def _device(machine: "MachineConfig") -> "Component":
     Raises:
         ConfigError: Its model is no mill.
     """
-    from twin.serve.device import device_of
-    from twin.serve.motions import motions_of
+    from twin.serve.device import device_of, motions_of
 
     endless = {name for name in machine.axes.names if machine.axis(name).periodic}
     motions = motions_of(machine.axes, machine.kinematics, endless)

@@ -24,8 +24,7 @@ from cryptography.x509.oid import ExtendedKeyUsageOID
 from twin.errors import UsageError
 from twin.machine.description.config import MachineConfig
 from twin.serve.agent import Agent
-from twin.serve.opcua.machine_tool import MachineTool
-from twin.serve.opcua.node_sets import import_node_sets
+from twin.serve.opcua.machine_tool import MachineTool, import_node_sets
 
 ua: Any = asyncua.ua
 _URI = "urn:mill-twin:server"

@@ -25,9 +25,9 @@ from twin.render.machine_glb import DrawnMachine, drawn_machine
 from twin.training.program.preview import Preview
 from twin.training.room.run_settings import path_to_come
 from twin.training.room.setup.edge_finder import BODY_MM
-from twin.training.scene.fault_table import FAULT_DEFAULTS
 from twin.training.scene.phrases import finding_in, translated
 from twin.training.scene.scene_file import (
+    FAULT_DEFAULTS,
     FEED_OVERRIDES,
     MODES,
     RAPID_OVERRIDES,

@@ -12,11 +12,11 @@ from pydantic import Field
 
 from twin.errors import UsageError
 from twin.files.toml import Table
-from twin.training.scene.fault_table import FaultTable
 from twin.training.scene.scene_file import (
     FEED_OVERRIDES,
     RAPID_OVERRIDES,
     SPINDLE_OVERRIDES,
+    FaultTable,
     Mode,
 )
 
