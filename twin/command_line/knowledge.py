@@ -32,7 +32,7 @@ def doctor(
     compile_now: Annotated[
         bool,
         typer.Option(
-            "--compile", help="Compile all kernels first: into the installation, for images."
+            "--compile", help="Compile all kernels into the installation first, as for images."
         ),
     ] = False,
 ) -> None:

@@ -52,7 +52,7 @@ def run(
     strict: StrictOption = False,
     save_job: Annotated[
         Path | None,
-        typer.Option("--save-job", help="Keep the job that is assumed for a raw program."),
+        typer.Option("--save-job", help="Write the job that is assumed for a raw program."),
     ] = None,
 ) -> None:
     """Interpret, plan, simulate, compare and cut; write the results and print the verdict."""

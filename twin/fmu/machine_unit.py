@@ -80,7 +80,7 @@ class MachineUnit:
             raise SimulationError("the machine is not switched on")
         if not math.isclose(step_s, self.period_s, rel_tol=_SAME_STEP):
             raise SimulationError(
-                f"a step of {step_s:g} s: this machine goes on by its servo period, {self.period_s:g} s"
+                f"a step of {step_s:g} s: this machine steps by its servo period, {self.period_s:g} s"
             )
         self._tick += 1
         samples = live.brake(1) if live.alarm is not None else live.follow(self._setpoint())

@@ -75,7 +75,7 @@ class MachineSlave(fmi.Fmi3Slave):
         self.register_variable(
             fmi.String(
                 "alarm", causality=causality.output, variability=variability.discrete,
-                description="code of the alarm that stands; empty: none",
+                description="code of the active alarm; empty: none",
                 getter=lambda: self.unit.alarm,
             ),
             nested=False,

@@ -90,7 +90,7 @@ class LinuxcncClient:
         line = status.current_line
         self.tell(
             "message",
-            f"after line {line} the program stops (M0, M1 or M60); nobody is here, it goes on",
+            f"after line {line} the program stops (M0, M1 or M60); there is no operator, so it continues",
         )
         self._command.auto(linuxcnc.AUTO_RESUME)
         self._wait("go on", lambda: status.interp_state != linuxcnc.INTERP_PAUSED)

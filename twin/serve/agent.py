@@ -187,9 +187,7 @@ class Agent:
         heartbeat = _number(parameters, "heartbeat", 1, LONGEST_PAUSE_MS)
         count = _number(parameters, "count")
         if interval is not None and count is not None and count < 0:
-            raise RequestError(
-                "INVALID_REQUEST", "a stream ('interval') goes on: 'count' is above 0"
-            )
+            raise RequestError("INVALID_REQUEST", "a stream ('interval') needs a 'count' above 0")
         return Query(
             request=request,
             wanted=self._wanted(parameters.get("path")),

@@ -190,8 +190,8 @@ def _require_certificate(
             raise UsageError("--key belongs to a --certificate, and there is none")
         if not local:
             raise UsageError(
-                f"--host {host} lets other computers in: give --certificate and --key, without "
-                "which tokens would be readable on the way; or lead them here through ssh -L"
+                f"--host {host} is reachable from other computers: give --certificate and --key, without "
+                "which tokens are sent unencrypted; or forward the port with ssh -L"
             )
         return
     try:

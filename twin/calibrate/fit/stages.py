@@ -363,7 +363,7 @@ def _explained(
             if name in fitted:
                 conditional[name] = (fitted.pop(name), ("mass",))
                 reasons[name] = (
-                    f"only its ratio to the mass is told; {conditional[name][0].value:.4g} holds "
+                    f"only its ratio to the mass is determined; {conditional[name][0].value:.4g} holds "
                     f"for the base's {mass:.5g}"
                 )
         if not known and "viscous_friction" not in best.free:

@@ -167,7 +167,7 @@ def _grbl_line(source: Reported) -> "Iterator[socket.socket | int]":
         return
     if source.host not in LOCAL_NAMES:
         raise UsageError(
-            f"Grbl's protocol knows no passwords: --grbl listens at this computer alone, not at {source.host}"
+            f"Grbl's protocol has no passwords: --grbl listens on this computer only, not at {source.host}"
         )
     if source.grbl is None or not source.grbl.isdecimal() or not 0 < int(source.grbl) < 1 << 16:
         raise UsageError(f"--grbl {source.grbl}: give a port from 1 to 65535, or {PSEUDO_TERMINAL}")

@@ -124,7 +124,9 @@ def chosen_dialect(
     if not good and _ROUTERS in rare and not numbered:
         router = _tried(path, DIALECTS[_ROUTERS], settings)
         if router.error is None:
-            return DialectChoice(DIALECTS[_ROUTERS], f"it alone reads it; {_first_refusal(tried)}")
+            return DialectChoice(
+                DIALECTS[_ROUTERS], f"no other control reads it; {_first_refusal(tried)}"
+            )
     if not good:
         further = [_tried(path, DIALECTS[name], settings) for name in rare] if common else []
         raise _refused(tried, [each.name for each in further if each.error is None])
@@ -145,7 +147,7 @@ def chosen_dialect(
     return _choice(source.name, meant, why or (_ROLLS if rolls else ""))
 
 
-_ROLLS = "it alone of those that may be meant has rotary axes that roll over"
+_ROLLS = "it is the only one of the possible controls whose rotary axes roll over"
 
 
 def _crawls(one: _DialectReading, other: _DialectReading) -> bool:
