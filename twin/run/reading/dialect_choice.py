@@ -17,9 +17,10 @@ from twin.nc.dialects import DIALECTS
 from twin.nc.dialects.foreign import require_program
 from twin.nc.dialects.recognition import head_of, reading_of
 from twin.nc.interpreter import Interpretation
+from twin.nc.line_kernel.plain_state import LineKernel, usual_kernel
 from twin.nc.text.diagnostics.diagnostics import Diagnostic, ProgramError
 from twin.nc.text.source import Source, read_source
-from twin.run.reading.assumed_reading import UNKNOWN_FUNCTION, unknown_functions
+from twin.run.reading.assumed_reading import UNKNOWN_FUNCTION, functions_of, unknown_functions
 
 BoolArray = npt.NDArray[np.bool_]
 _PREFERENCE = ("fanuc", "haas", "linuxcnc")
@@ -103,6 +104,7 @@ def chosen_dialect(
         return DialectChoice(DIALECTS[candidates[0]], reading.reason)
     if len(source.lines) > _MOST_LINES:
         raise UsageError(f"{source.name}: could be {_either(candidates)}; {_type(candidates)}")
+    settings = dataclasses.replace(settings, strict=False)
     if settings.machine_zero is None:  # the dialect does not depend on where that lies
         zero = dict.fromkeys(settings.axes.names, 0.0)
         settings = dataclasses.replace(settings, machine_zero=zero)
@@ -115,20 +117,21 @@ def chosen_dialect(
     candidates = rolling if rolls else candidates
     common = [name for name in candidates if name in _PREFERENCE]
     rare = [name for name in candidates if name not in _PREFERENCE]
-    tried = [_tried(path, DIALECTS[name], settings) for name in (common or rare)]
+    trying = _Trying(path, settings, functions_of(source), len(common or rare))
+    tried = [trying.read_as(DIALECTS[name]) for name in (common or rare)]
     good = [each for each in tried if each.error is None]
     refusing = [each for each in tried if each.error is not None]
     if refusing and all(0.0 < each.fastest < _CRAWLS for each in good):
         good, tried = [], refusing
     numbered = any(map(_PROGRAM_NUMBER.match, source.lines))
     if not good and _ROUTERS in rare and not numbered:
-        router = _tried(path, DIALECTS[_ROUTERS], settings)
+        router = trying.read_as(DIALECTS[_ROUTERS])
         if router.error is None:
             return DialectChoice(
                 DIALECTS[_ROUTERS], f"no other control reads it; {_first_refusal(tried)}"
             )
     if not good:
-        further = [_tried(path, DIALECTS[name], settings) for name in rare] if common else []
+        further = [trying.read_as(DIALECTS[name]) for name in rare] if common else []
         raise _refused(tried, [each.name for each in further if each.error is None])
     quick = [each for each in good if not any(_crawls(each, other) for other in good)]
     least = min(len(each.unknown) for each in quick)
@@ -231,29 +234,47 @@ def _type(names: Sequence[str]) -> str:
     return f"type {_either([f'--dialect {name}' for name in names])}"
 
 
-def _tried(path: Path, dialect: Dialect, settings: ControlSettings) -> _DialectReading:
-    """What a dialect makes of a program."""
-    source = read_source(path, dialect)
-    unknown = unknown_functions(source, dialect, frozenset(settings.m_functions))
-    functions_of_the_builder = dict.fromkeys(unknown, MachineFunction(UNKNOWN_FUNCTION))
-    settings = dataclasses.replace(
-        settings, m_functions={**settings.m_functions, **functions_of_the_builder}
-    )
-    chunks, error = [], None
-    try:
-        if dialect.library is not None:
-            source = dialect.library(source, path.parent, dialect)
-        chunks.extend(Interpretation(source, dialect, settings).chunks())
-    except ProgramError as raised:
-        error = raised.diagnostic
-    functions = [
-        (event.line, f"{event.word} {sorted(event.arguments.items())}")
-        for chunk in chunks
-        for event in chunk.events
-        if isinstance(event, Function)
-    ]
-    moves = concatenate((chunk.moves for chunk in chunks), settings.axes)
-    return _DialectReading(dialect.name, moves, functions, unknown, error)
+@dataclasses.dataclass(frozen=True)
+class _Trying:
+    """A program that several dialects read.
+
+    Attributes:
+        functions: Its M codes.
+        times: How many read it.
+    """
+
+    path: Path
+    settings: ControlSettings
+    functions: set[int]
+    times: int
+
+    def read_as(self, dialect: Dialect) -> _DialectReading:
+        """What a dialect makes of it."""
+        source, declared = read_source(self.path, dialect), self.settings.m_functions
+        unknown = unknown_functions(self.functions, dialect, frozenset(declared))
+        functions_of_the_builder = dict.fromkeys(unknown, MachineFunction(UNKNOWN_FUNCTION))
+        settings = dataclasses.replace(
+            self.settings, m_functions={**declared, **functions_of_the_builder}
+        )
+        chunks, error = [], None
+        try:
+            if dialect.library is not None:
+                source = dialect.library(source, self.path.parent, dialect)
+            chunks.extend(Interpretation(source, dialect, settings, kernel=self._kernel).chunks())
+        except ProgramError as raised:
+            error = raised.diagnostic
+        functions = [
+            (event.line, f"{event.word} {sorted(event.arguments.items())}")
+            for chunk in chunks
+            for event in chunk.events
+            if isinstance(event, Function)
+        ]
+        moves = concatenate((chunk.moves for chunk in chunks), settings.axes)
+        return _DialectReading(dialect.name, moves, functions, unknown, error)
+
+    def _kernel(self, lines: int) -> LineKernel | None:
+        """What runs its plain lines: the compiler pays as for a program that is as long as all of the readings."""
+        return usual_kernel(lines * self.times)
 
 
 def _difference(one: _DialectReading, other: _DialectReading) -> str:
