@@ -1,4 +1,4 @@
-"""``twin`` and ``python -m twin``: the command line, and what an early end of it says.
+"""``twin`` and ``python -m twin``: the command line, interrupted at any time.
 
 A signal may come while the libraries are still being loaded: even then a sentence is said.
 """
@@ -126,7 +126,7 @@ def _run(stopped: list[int]) -> None:
         logging.getLogger("matplotlib").setLevel(logging.ERROR)
         from twin.cli import main as run
 
-        run()
+        run(stopped)
     except (KeyboardInterrupt, ImportError):
         # A library that is interrupted while it is being loaded says that it cannot be.
         if not stopped:

@@ -1,4 +1,4 @@
-"""Rows of a slow log at which positions jump as no axis moves: there is no speed to be had there."""
+"""Rows of a slow log at which positions jump faster than any axis moves: they give no speed."""
 
 import numpy as np
 
@@ -45,7 +45,7 @@ def _fastest(axis: AxisLog) -> float:
 
 
 def look_at_jumps(log: MachineLog, jumps: BoolArray) -> list[LogFinding]:
-    """Tell of them, where there are any."""
+    """Report jumps, where there are any."""
     if not jumps.any():
         return []
     first = int(np.flatnonzero(jumps)[0])
@@ -55,9 +55,9 @@ def look_at_jumps(log: MachineLog, jumps: BoolArray) -> list[LogFinding]:
     }
     name = max(sizes, key=lambda one: abs(sizes[one]))
     unit = "mm" if log.axes[name].kind == "linear" else "deg"
-    told = (
+    message = (
         f"positions jump {np.count_nonzero(jumps)} times as no axis moves, first from row {first + 1} to "
         f"{first + 2} ({name} by {sizes[name]:+.4g} {unit} in one sample): the logger repeated other rows "
         "or lost some; speeds are not taken from positions there"
     )
-    return [LogFinding("jump", told)]
+    return [LogFinding("jump", message)]

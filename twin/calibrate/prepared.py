@@ -80,7 +80,7 @@ class PreparedLog:
             yield from stretches_of(self.log.axes[name], self.log.time, (part,), sound)
 
     def fitted(self, name: str) -> list[Stretch]:
-        """What a fit of an axis runs along: of a long log the parts in which it is told the most."""
+        """What a fit of an axis runs along: of a long log the parts in which it moves most."""
         rows, period = self.rows(name), self.health.period_s
         if sum(end - begin for begin, end in rows) <= MOST_FITTED:
             return self.stretches(name)
@@ -148,8 +148,8 @@ def prepared(log: MachineLog, role: str) -> PreparedLog:
     if health.period_s > SLOW_S:
         cycle = find_cycle(log, health.stretches) if axes_with_ramps(log) else 0.0
         jumps = look_at_jumps(log, jumps_of(log, health.period_s))
-        told = dataclasses.replace(health, findings=(*health.findings, *jumps))
-        return PreparedLog(log, role, told, cycle, {})
+        extended = dataclasses.replace(health, findings=(*health.findings, *jumps))
+        return PreparedLog(log, role, extended, cycle, {})
     defects = {
         name: find_defects(name, axis, log.time, health.stretches)
         for name, axis in log.axes.items()

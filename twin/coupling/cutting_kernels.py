@@ -22,8 +22,8 @@ from twin.coupling.turning_tool import (
     time_of_tooth,
     turn_spindle,
 )
-from twin.cutting.kernels.covered_cells import Cells, Marks
-from twin.cutting.kernels.sweep import ALL_ROWS, sweep
+from twin.cutting.kernels.covered_cells import Cells, Marks, Sum
+from twin.cutting.kernels.sweep import sweep
 from twin.cutting.kernels.tooth_forces import tooth_forces
 from twin.cutting.kernels.walls import Material, leave_walls, lose_trace, no_trace
 from twin.machine.simulation.process import Physics
@@ -56,13 +56,13 @@ class Cut(NamedTuple):
     place: PartTransform
 
 
-class Swept(NamedTuple):
+class CutProgress(NamedTuple):
     """How far the height map is cut; carried from one period to the next.
 
     Attributes:
         tips: Where it was cut up to, shape (2, 3); the second row is the later [mm].
         trace: Where it has left walls up to, of ``leave_walls``.
-        sums: What ``sweep`` adds to, shape (1, 2, 4).
+        sums: What ``sweep`` adds to, shape (1, 4).
     """
 
     tips: FloatArray
@@ -71,10 +71,10 @@ class Swept(NamedTuple):
     marks: Marks
 
 
-def nothing_swept() -> Swept:
+def nothing_swept() -> CutProgress:
     """Of a tool that has been nowhere."""
     marks = Marks(np.zeros((0, 0)), np.zeros(1))
-    return Swept(np.zeros((2, 3)), no_trace(), np.zeros((1, 2, 4)), marks)
+    return CutProgress(np.zeros((2, 3)), no_trace(), np.zeros((1, len(Sum))), marks)
 
 
 @threaded_kernel
@@ -85,7 +85,7 @@ def follow_cutting(
     commanded: FloatArray,
     cut: Cut,
     memory: Memory,
-    swept: Swept,
+    swept: CutProgress,
     loads: ToolLoads,
 ) -> None:
     """Step the machine from setpoint to setpoint while its tool cuts.
@@ -118,7 +118,7 @@ def follow_cutting(
 
 @kernel
 def _go_to(
-    physics: Physics, state: FloatArray, cut: Cut, memory: Memory, swept: Swept
+    physics: Physics, state: FloatArray, cut: Cut, memory: Memory, swept: CutProgress
 ) -> tuple[float, float]:
     """Move the rigid tool's tip to where the axes are; cosine and sine of the part's turn."""
     drives, numbers, place = physics.drives, memory.numbers, cut.place
@@ -147,7 +147,7 @@ def _go_to(
 
 
 @array_kernel
-def _look(period: float, cut: Cut, memory: Memory, swept: Swept) -> None:
+def _look(period: float, cut: Cut, memory: Memory, swept: CutProgress) -> None:
     """Cut up to where the tool is and look at what is before it, where it has gone far enough."""
     numbers, tips, feed = memory.numbers, swept.tips, memory.feed
     changed, moved = feed_changed(time_of_tooth(period, cut.tool, memory), memory), 0.0
@@ -167,7 +167,7 @@ def _look(period: float, cut: Cut, memory: Memory, swept: Swept) -> None:
     material, cutter = cut.material, cut.tool.cutter
     sweep(
         cut.cells, tips, cutter.profile,
-        swept.sums, swept.marks, numbers[CutNumber.STOOD] > 0.0, ALL_ROWS,
+        swept.sums, swept.marks, numbers[CutNumber.STOOD] > 0.0, False,
     )  # fmt: skip
     numbers[CutNumber.STOOD] = 1.0
     leave_walls(material, swept.trace, tips[1], cutter.profile.radius, cutter.side_from)

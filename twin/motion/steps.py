@@ -1,4 +1,4 @@
-"""Steps of planning that pull parts of a program: each remembers as an object where it is.
+"""Stages of planning that pull parts of a program; each keeps its state in an object.
 
 A generator could not be copied, and a plan under an operator's hands is: a training room goes back to
 copies of it.
@@ -13,8 +13,8 @@ Taken = TypeVar("Taken")
 Made = TypeVar("Made")
 
 
-class Step(abc.ABC, Generic[Taken, Made]):
-    """Takes parts one by one, as they are asked for, and gives what it makes of them.
+class PipelineStage(abc.ABC, Generic[Taken, Made]):
+    """A stage: takes parts one by one, on demand, and gives what it makes of them.
 
     Args:
         parts: What it takes, in order.
@@ -42,7 +42,7 @@ class Step(abc.ABC, Generic[Taken, Made]):
             Whether the next result is there, or none comes any more.
         """
         if not self._made and not self._over:
-            if isinstance(self._parts, Step) and not self._parts.work():
+            if isinstance(self._parts, PipelineStage) and not self._parts.work():
                 return False
             self._take_next()
         return bool(self._made) or self._over

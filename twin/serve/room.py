@@ -1,4 +1,4 @@
-"""An open training room as a machine for the agent to observe; nobody who reads can touch it."""
+"""An open training room as a machine for the agent to observe, read-only."""
 
 import asyncio
 import math
@@ -8,7 +8,7 @@ from typing import Literal
 from twin.serve.agent import Agent
 from twin.serve.buffer import NORMAL, Condition, Value
 from twin.serve.device import DOOR_CLOSED
-from twin.training.scene.fault_table import FaultTable
+from twin.training.scene.scene_file import FaultTable
 from twin.training.session.snapshot import Snapshot
 from twin.units import SECONDS_PER_MINUTE
 
@@ -28,7 +28,6 @@ class RoomObserver:
     """Turns looks at the room into values of data items, and counts the parts."""
 
     def __init__(self, program: str) -> None:
-        """Begin with no part made."""
         self._program = program
         self._parts = 0
         self._was_running = False

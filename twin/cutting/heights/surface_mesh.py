@@ -67,9 +67,10 @@ class SurfaceMesh:
         """Height of every vertex, shape (my, mx) [mm]; a rim before which a wall was cut is as low as its foot."""
         result = np.where(self.cell < 0, height_map.bottom, height_map.heights.ravel()[self.cell])
         cells = self.cell.ravel()[self.rim]
-        told, inside = height_map.behind.reshape(-1, 6)[cells], self.inside.ravel()[cells]
+        behind = height_map.behind
+        told, inside = behind.reshape(-1, behind.shape[-1])[cells], self.inside.ravel()[cells]
         off, own = told[:, 0] - KNOWN, result.ravel()[self.rim]
-        cut = (off >= 0.0) & (inside - off > NEARER_CELLS) & (told[:, 1] < own)
+        cut = (off > 0.0) & (inside - off > NEARER_CELLS) & (told[:, 1] < own)
         result.ravel()[self.rim] = np.where(cut, np.minimum(told[:, 3] - EQUAL_MM, own), own)
         return result
 

@@ -25,7 +25,7 @@ SMALL = 0.2
 part: a centimetre is a tenth of what it should be, an inch a twenty-fifth."""
 
 OUTSIDE = 1e-3
-"""Share of a nominal part outside its blank from which on it is told of: less is the grid's doing."""
+"""Share of a nominal part outside its blank from which it is reported: less is due to the grid."""
 
 Nominal = HeightMap | TriDexel
 """What a part should be, on the grid of the part."""
@@ -206,6 +206,6 @@ def _misfit(nominal: FloatArray, blank: FloatArray, allowed: float) -> str | Non
         return f"the nominal part reaches {beyond.max():.3g} mm out of the stock along {axis}"
     size, whole = (np.diff(corners, axis=0)[0] for corners in (nominal, blank))
     if (size < SMALL * whole).all():
-        told = (" x ".join(f"{side:.3g}" for side in sides) for sides in (size, whole))
-        return "the nominal part has {} mm in a stock of {} mm".format(*told)
+        sizes = (" x ".join(f"{side:.3g}" for side in sides) for sides in (size, whole))
+        return "the nominal part has {} mm in a stock of {} mm".format(*sizes)
     return None

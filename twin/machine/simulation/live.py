@@ -6,15 +6,15 @@ import numpy as np
 
 from twin.errors import ConfigError
 from twin.job.job_file import ToolTable
-from twin.machine.description.config import Blank, Machine
+from twin.machine.description.config import Blank, MachineConfig
 from twin.machine.model.model import MachineModel
 from twin.machine.simulation.process import Process
 from twin.machine.simulation.servo import Servo
-from twin.machine.watching.alarms import Alarm, AlarmCode, AlarmStandsError, NearMiss
 from twin.machine.watching.clearance import Clearance
 from twin.machine.watching.watch import Watch, limit_switches
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
+from twin.recording.alarms import Alarm, AlarmCode, AlarmStandsError, NearMiss
 from twin.recording.reader import Samples
 
 STANDSTILL = 0.01
@@ -54,7 +54,7 @@ class LiveMachine:
 
     def __init__(
         self,
-        machine: Machine,
+        machine: MachineConfig,
         tool: ToolTable | None = None,
         position: FloatArray | None = None,
         blank: Blank | None = None,
@@ -145,13 +145,13 @@ class LiveMachine:
         return samples[:end]
 
     def step_with(self, process: Process | None) -> None:
-        """Let the axes be pushed by what the tool does from now on; None: by nothing."""
+        """Let a process push the axes from now on; None: no process."""
         if process is not None:
             process.begin(self.position)
         self._servo.process = process
 
     def hold(self, ticks: int) -> Samples:
-        """Step without being asked for anything: the axes come to rest where they are, and stay.
+        """Step without setpoints: the axes come to rest where they are, and stay.
 
         This is no feed hold: that keeps to the path, and is the planner's.
 
@@ -164,7 +164,7 @@ class LiveMachine:
         return self.follow(self._ramp(ticks))
 
     def stand_at(self, position: FloatArray) -> Samples:
-        """Stand at rest somewhere, as when the machine was switched on there.
+        """Put the axes at rest at a position, as when the machine was switched on there.
 
         Args:
             position: Machine coordinates, shape (k,) [mm or deg].
@@ -177,7 +177,7 @@ class LiveMachine:
         """
         if self.alarm is not None:
             raise AlarmStandsError(f"{self.alarm.code} has not been cleared")
-        self._servo.begin_anew()
+        self._servo.restart()
         self._stand = self._servo.follow(_standing(position))
         self._watch.acknowledge(self.position)
         return self._stand
@@ -241,7 +241,7 @@ class LiveMachine:
         model = MachineModel(self.machine, tool, self._blank)
         self._clearance = Clearance(self.machine, model.solids)
 
-    def _rebuild(self, machine: Machine) -> None:
+    def _rebuild(self, machine: MachineConfig) -> None:
         servo = Servo(machine, MachineModel(machine, None, self._blank).physics)
         servo.take_over(self._servo)
         self.machine, self._servo = machine, servo

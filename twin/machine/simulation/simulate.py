@@ -5,16 +5,16 @@ from collections.abc import Callable, Iterable, Iterator
 import mujoco
 import numpy as np
 
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.model.model import MachineModel
 from twin.machine.simulation.process import Process
 from twin.machine.simulation.servo import Servo
 from twin.machine.simulation.tool_changes import ToolClearances
-from twin.machine.watching.alarms import Alarm, NearMiss
 from twin.machine.watching.clearance import Clearance
 from twin.machine.watching.watch import Watch
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
+from twin.recording.alarms import Alarm, NearMiss
 from twin.recording.reader import Samples
 from twin.toolpath.tool_plan import ToolPlan
 
@@ -34,7 +34,7 @@ class Simulation:
 
     def __init__(
         self,
-        machine: Machine,
+        machine: MachineConfig,
         model: mujoco.MjModel,
         clearance: Clearance | ToolClearances | None,
         setpoints: Iterable[Setpoints],
@@ -90,7 +90,7 @@ class Simulation:
 
 
 def simulate(
-    machine: Machine,
+    machine: MachineConfig,
     model: MachineModel | mujoco.MjModel,
     setpoints: Iterable[Setpoints],
     tools: ToolPlan | None = None,

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from twin.machine.description.config import Machine
-from twin.machine.watching.alarms import Alarm
+from twin.machine.description.config import MachineConfig
 from twin.nc.canonical import FloatArray, Moves, Shape
+from twin.recording.alarms import Alarm
 
 ROUNDING = 1e-6
 """What an axis may exceed its travel by before it counts [mm or deg]: far below any control's
@@ -103,7 +103,7 @@ def _extreme_points(arcs: Moves) -> FloatArray:
     return np.array(points)
 
 
-def soft_limit_alarm(machine: Machine, moves: Moves, part_zero: FloatArray) -> Alarm | None:
+def soft_limit_alarm(machine: MachineConfig, moves: Moves, part_zero: FloatArray) -> Alarm | None:
     """Find the first move of a chunk that leaves the travel.
 
     Args:

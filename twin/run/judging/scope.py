@@ -10,9 +10,9 @@ from twin.cutting.measuring.inspection import Inspection
 from twin.cutting.watching.cut_log import TRI_DEXEL, CutResult
 from twin.job.job_file import JobFile
 from twin.job.load import DEFAULT
-from twin.machine.description.config import Machine
-from twin.machine.watching.alarms import Alarm
+from twin.machine.description.config import MachineConfig
 from twin.nc.control.settings import ControlSettings
+from twin.recording.alarms import Alarm
 from twin.run.dry_run.dry_run import DryRun
 from twin.run.dry_run.program_watch import ProgramWatch
 from twin.run.preparing.preparation import Preparation
@@ -153,7 +153,7 @@ def scope_of(
     )
 
 
-def _without_limits(machine: Machine, *, forces: bool) -> Iterator[Unwatched]:
+def _without_limits(machine: MachineConfig, *, forces: bool) -> Iterator[Unwatched]:
     """Limits that the machine file does not give, so that nothing is held to them."""
     axes = {name: machine.axis(name) for name in machine.axes.names}
     for what, key in (("following error", "following_error_limit"), ("force", "force_limit")):

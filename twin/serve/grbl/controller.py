@@ -7,14 +7,14 @@ become program runs of the room (``GrblStream``); everything else is done here.
 import time
 
 from twin.errors import TwinError
-from twin.machine.watching.alarms import AlarmStandsError
 from twin.nc.control.executor import Executor
 from twin.nc.dialects.grbl.memory import GrblMemory, memory_of
 from twin.nc.text.diagnostics.diagnostics import ProgramError
 from twin.nc.text.source import source_from_text
+from twin.recording.alarms import AlarmStandsError
 from twin.serve.grbl import realtime
 from twin.serve.grbl.codes import Error, alarm_of
-from twin.serve.grbl.reports import BUILD, HELP, WELCOME, ParserState, Reporter, parser_state
+from twin.serve.grbl.reports import BUILD, HELP, WELCOME, ParserState, ReportWriter, parser_state
 from twin.serve.grbl.serial_buffer import SerialBuffer, cleaned
 from twin.serve.grbl.settings import GrblSettings
 from twin.serve.grbl.stream import MOST_AHEAD, GrblStream
@@ -35,10 +35,9 @@ class GrblController:
     """One control; one sender talks to it."""
 
     def __init__(self, room: Room) -> None:
-        """Switch it on."""
         self.serial = SerialBuffer()
         self.settings = GrblSettings(room.machine.machine)
-        self._reporter = Reporter(self.settings)
+        self._reporter = ReportWriter(self.settings)
         self._out: list[str] = []
         self._stream: GrblStream | None = None
         self._run: ProgramRun | None = None
@@ -63,7 +62,7 @@ class GrblController:
         self._reporter.refresh()
 
     def work(self, room: Room, data: bytes = b"") -> bytes:
-        """Take bytes from the line, do what they ask for as far as the machine is ready; what is to be sent."""
+        """Take bytes from the line and carry out what the machine is ready for; the bytes to send."""
         if data and self._stream is not None:
             self._stream.last_received = time.monotonic()
         for command in self.serial.receive(data):

@@ -1,4 +1,4 @@
-"""Lets the machine's time go on with the wall's, on a thread that nothing ends but the room's end."""
+"""Keeps the machine's time with the wall clock, on a thread that lives as long as the room."""
 
 import contextlib
 import dataclasses
@@ -11,10 +11,10 @@ from concurrent.futures import Future
 from typing import Any, TypeVar
 
 from twin.errors import TwinError
-from twin.processor import give_way, take_precedence
+from twin.processor import release_precedence, take_precedence
 from twin.training.room.room import Room
 from twin.training.session.log import Who
-from twin.training.session.session import Session
+from twin.training.session.session import SceneSession
 from twin.training.session.snapshot import Snapshot
 
 ResultT = TypeVar("ResultT")
@@ -40,7 +40,7 @@ class Look:
     """The machine as the pages show it.
 
     Attributes:
-        lost_s: Time on the wall that the machine did not keep up with so far [s].
+        lost_s: Wall-clock time by which the machine is behind so far [s].
         trouble: What went wrong outside the machine, as with the results' folder.
     """
 
@@ -53,24 +53,24 @@ class Driver:
     """Steps a session and does what the pages ask for.
 
     Attributes:
-        speed: Machine time per time on the wall.
-        lost_s: Time on the wall that the machine did not keep up with so far [s].
-        trouble: Says what is wrong outside the machine.
-        noted: Told of the session before each look at it; says what is wrong with what it keeps.
+        speed: Machine time per wall-clock time.
+        lost_s: Wall-clock time by which the machine is behind so far [s].
+        trouble: Reports what is wrong outside the machine; empty: nothing.
+        noted: Called with the session before each look at it; reports what is wrong with what it keeps.
         look: The last look at the machine.
     """
 
-    def __init__(self, session: Session, changed: Callable[[], None] = lambda: None) -> None:
+    def __init__(self, session: SceneSession, changed: Callable[[], None] = lambda: None) -> None:
         """Prepare a session.
 
         Args:
-            changed: Told after everything that was asked for.
+            changed: Called after each request.
         """
         self.session = session
         self.speed = 1.0
         self.lost_s = 0.0
         self.trouble: Callable[[], str] = str
-        self.noted: Callable[[Session], str] = lambda _session: ""
+        self.noted: Callable[[SceneSession], str] = lambda _session: ""
         self._changed = changed
         self._questions: queue.SimpleQueue[tuple[Callable[[Room], Any], Future[Any]]] = (
             queue.SimpleQueue()
@@ -114,7 +114,7 @@ class Driver:
         return answer
 
     def change(
-        self, session: Session, changed: Callable[[], None], trouble: Callable[[], str]
+        self, session: SceneSession, changed: Callable[[], None], trouble: Callable[[], str]
     ) -> "Future[None]":
         """Play another session from the next slice on, from any thread.
 
@@ -130,11 +130,11 @@ class Driver:
         return self.inquire(take_over)
 
     def beat(self, page: int) -> None:
-        """A page says that its key is still held."""
+        """Note that a page's key is still held."""
         self._beats[page] = time.perf_counter()
 
     def leave(self, page: int) -> None:
-        """A page is gone, and its key with it."""
+        """Release the key of a page that is gone."""
         self._beats.pop(page, None)
         self._wake.set()
 
@@ -159,12 +159,12 @@ class Driver:
             self._step(passed)
             if precedes and self.lost_s > 0.0:
                 precedes = False
-                give_way()
+                release_precedence()
             due = self.session.room.slice_s - self._owed_s - (time.perf_counter() - now)
             self._wake.wait(RESTING_S if self._rests else max(due / self.speed, SHORTEST_REST_S))
             self._wake.clear()
         if precedes:
-            give_way()
+            release_precedence()
 
     @property
     def _rests(self) -> bool:
