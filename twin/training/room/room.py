@@ -286,7 +286,8 @@ class Room:
             move, distance = found
             block = jog_block(self.scene.preparation.dialect, move.axis, distance, move.feed)
             # A jog is kept within the travel by itself, and leads back into it.
-            self.start_run(source_from_text(block, "jog"), "jog", RunOptions(soft_limits=False))
+            options = RunOptions(soft_limits=False, typed=True)
+            self.start_run(source_from_text(block, "jog"), "jog", options)
 
     def mount(self, number: int | None) -> None:
         """Put a tool of the scene into the spindle.

@@ -72,7 +72,7 @@ def _cycle_start(room: Room, _command: c.CycleStart) -> None:
     elif mode == "mdi":
         if not room.panel.entered.strip():
             raise UsageError("the MDI line is empty")
-        options = RunOptions(inherited=slot.inherited)
+        options = RunOptions(inherited=slot.inherited, typed=True)
         room.start_run(source_from_text(room.panel.entered, "MDI"), "mdi", options)
     else:
         _start_program(room)
