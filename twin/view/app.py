@@ -20,7 +20,7 @@ from twin.view.live_run import LiveRun
 from twin.view.recorded_run import RecordedRun
 from twin.web.authentication import Authentication, new_tokens
 from twin.web.origin_check import ASSETS, OriginCheck
-from twin.web.server import WebServer, require_three
+from twin.web.server import server_of_views
 
 ROLE = "viewer"
 PAGE = Path(__file__).resolve().parent / "page"
@@ -38,7 +38,7 @@ def view_app(
     report: Path | None = None,
     now: Callable[[], dict[str, Any]] | None = None,
 ) -> Starlette:
-    """What the page of a run is served; everything is made once, when it is asked for.
+    """The application that serves the page of a run; each response is made once, on demand.
 
     Args:
         report: Its report, to be read beside it; None: there is none.
@@ -132,8 +132,7 @@ def open_view(
     Raises:
         UsageError: The port is taken, or the view's library is missing.
     """
-    require_three()
-    server = WebServer(port=port)
+    server = server_of_views(port=port)
     authentication = Authentication(new_tokens((ROLE,)), server.port)
     server.start(
         OriginCheck(view_app(run, report, now), authentication, local=server.local, framed=framed)

@@ -1,6 +1,7 @@
 """The stock that is assumed for a raw program: of a comment in its head, or of its path."""
 
 import re
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -48,7 +49,7 @@ _ROUND = re.compile(
 
 
 def assumed_stock(
-    cuts: Cuts, comments: list[tuple[int, str]], radius: float, *, inches: bool
+    cuts: Cuts, comments: Sequence[tuple[int, str]], radius: float, *, inches: bool
 ) -> tuple[list[str], FloatArray | None, str]:
     """Lines of the stock, the centre of its top face, and how it came about."""
     moves = cuts.moves
@@ -94,7 +95,7 @@ class _StatedStock(NamedTuple):
     axis: int | None = None
 
 
-def _stated(comments: list[tuple[int, str]], *, inches: bool) -> _StatedStock | None:
+def _stated(comments: Sequence[tuple[int, str]], *, inches: bool) -> _StatedStock | None:
     """What comments in the program's head say of the blank."""
     unit = 25.4 if inches else 1.0
     head = "\n".join(text for line, text in comments if line <= HEAD_LINES).upper()
@@ -214,8 +215,8 @@ def _clipped(
     fed: dict[tuple[float, float], float] = {}
     rapid, drop = moves.motion == Motion.RAPID, moves.start[:, 2] - moves.end[:, 2]
     retracts = (drop < 0.0) & ~aside(moves)
-    for row in np.flatnonzero(moves.end[:, 2] < top - BELOW):
-        x, y, z = moves.end[row, :3].round(3).tolist()
+    deep = np.flatnonzero(moves.end[:, 2] < top - BELOW)
+    for row, (x, y, z) in zip(deep, moves.end[deep, :3].round(3).tolist(), strict=True):
         if not rapid[row]:
             fed[x, y] = min(z, fed.get((x, y), z))
             continue

@@ -8,7 +8,7 @@ import numpy as np
 from twin.errors import UsageError
 from twin.nc.canonical import FloatArray, Function
 from twin.nc.functions import BLANK
-from twin.run.reading.assumed_tools import ToolComment
+from twin.run.reading.tool_comments import ToolComment
 
 _RADIUS = "R"
 
@@ -115,6 +115,6 @@ def _require_lengths(lengths: Mapping[int, float], called: Iterable[int]) -> Non
         if number not in lengths:
             one = next(iter(lengths))
             raise UsageError(
-                f"the program writes the length of tool {one} and calls it, and not that of tool {number}: how much "
-                f"longer that is nobody knows; write it too, or {hint}"
+                f"the program writes the length of tool {one} and calls it, and not that of tool {number}: its "
+                f"length is not known; write it too, or {hint}"
             )

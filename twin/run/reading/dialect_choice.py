@@ -17,9 +17,10 @@ from twin.nc.dialects import DIALECTS
 from twin.nc.dialects.foreign import require_program
 from twin.nc.dialects.recognition import head_of, reading_of
 from twin.nc.interpreter import Interpretation
+from twin.nc.line_kernel.plain_state import LineKernel, usual_kernel
 from twin.nc.text.diagnostics.diagnostics import Diagnostic, ProgramError
 from twin.nc.text.source import Source, read_source
-from twin.run.reading.assumed_reading import UNKNOWN_FUNCTION, unknown_functions
+from twin.run.reading.assumed_reading import UNKNOWN_FUNCTION, functions_of, unknown_functions
 
 BoolArray = npt.NDArray[np.bool_]
 _PREFERENCE = ("fanuc", "haas", "linuxcnc")
@@ -61,7 +62,7 @@ class DialectChoice:
 
 
 @dataclasses.dataclass(frozen=True)
-class _Candidate:
+class _DialectReading:
     """What one dialect makes of a program."""
 
     name: str
@@ -103,6 +104,7 @@ def chosen_dialect(
         return DialectChoice(DIALECTS[candidates[0]], reading.reason)
     if len(source.lines) > _MOST_LINES:
         raise UsageError(f"{source.name}: could be {_either(candidates)}; {_type(candidates)}")
+    settings = dataclasses.replace(settings, strict=False)
     if settings.machine_zero is None:  # the dialect does not depend on where that lies
         zero = dict.fromkeys(settings.axes.names, 0.0)
         settings = dataclasses.replace(settings, machine_zero=zero)
@@ -115,18 +117,21 @@ def chosen_dialect(
     candidates = rolling if rolls else candidates
     common = [name for name in candidates if name in _PREFERENCE]
     rare = [name for name in candidates if name not in _PREFERENCE]
-    tried = [_tried(path, DIALECTS[name], settings) for name in (common or rare)]
+    trying = _Trying(path, settings, functions_of(source), len(common or rare))
+    tried = [trying.read_as(DIALECTS[name]) for name in (common or rare)]
     good = [each for each in tried if each.error is None]
     refusing = [each for each in tried if each.error is not None]
     if refusing and all(0.0 < each.fastest < _CRAWLS for each in good):
         good, tried = [], refusing
     numbered = any(map(_PROGRAM_NUMBER.match, source.lines))
     if not good and _ROUTERS in rare and not numbered:
-        router = _tried(path, DIALECTS[_ROUTERS], settings)
+        router = trying.read_as(DIALECTS[_ROUTERS])
         if router.error is None:
-            return DialectChoice(DIALECTS[_ROUTERS], f"it alone reads it; {_first_refusal(tried)}")
+            return DialectChoice(
+                DIALECTS[_ROUTERS], f"no other control reads it; {_first_refusal(tried)}"
+            )
     if not good:
-        further = [_tried(path, DIALECTS[name], settings) for name in rare] if common else []
+        further = [trying.read_as(DIALECTS[name]) for name in rare] if common else []
         raise _refused(tried, [each.name for each in further if each.error is None])
     quick = [each for each in good if not any(_crawls(each, other) for other in good)]
     least = min(len(each.unknown) for each in quick)
@@ -145,10 +150,10 @@ def chosen_dialect(
     return _choice(source.name, meant, why or (_ROLLS if rolls else ""))
 
 
-_ROLLS = "it alone of those that may be meant has rotary axes that roll over"
+_ROLLS = "it is the only one of the possible controls whose rotary axes roll over"
 
 
-def _crawls(one: _Candidate, other: _Candidate) -> bool:
+def _crawls(one: _DialectReading, other: _DialectReading) -> bool:
     """Whether a dialect counts feeds of which another makes at least two hundred times as much."""
     slow, fast = one.moves.feed, other.moves.feed
     if len(slow) != len(fast):
@@ -156,18 +161,18 @@ def _crawls(one: _Candidate, other: _Candidate) -> bool:
     return bool(((slow < _CRAWLS * _INCH) & (slow < fast * _TOO_SLOW)).any())
 
 
-def _farthest(tried: Sequence[_Candidate]) -> _Candidate:
+def _farthest(tried: Sequence[_DialectReading]) -> _DialectReading:
     """The one that reads a program farthest before it refuses it."""
     return max(tried, key=lambda each: each.error.line if each.error else 0)
 
 
-def _first_refusal(tried: Sequence[_Candidate]) -> str:
+def _first_refusal(tried: Sequence[_DialectReading]) -> str:
     farthest = _farthest(tried)
     assert farthest.error is not None
     return f"{farthest.name}, which reads it farthest of others, refuses line {farthest.error.line}: {farthest.error.message}"
 
 
-def _refused(tried: Sequence[_Candidate], others: Sequence[str]) -> ProgramError:
+def _refused(tried: Sequence[_DialectReading], others: Sequence[str]) -> ProgramError:
     """The error of the dialect that reads a program farthest, and what else may be tried."""
     farthest, name = _farthest(tried).error, _farthest(tried).name
     assert farthest is not None
@@ -181,7 +186,9 @@ def _refused(tried: Sequence[_Candidate], others: Sequence[str]) -> ProgramError
 
 
 def _dropped(
-    good: Sequence[_Candidate], quick: Sequence[_Candidate], meant: Sequence[_Candidate]
+    good: Sequence[_DialectReading],
+    quick: Sequence[_DialectReading],
+    meant: Sequence[_DialectReading],
 ) -> str:
     """Why some of the dialects that read a program are not the one that was meant; empty: all may be."""
     slow = [each for each in good if each not in quick]
@@ -193,7 +200,7 @@ def _dropped(
     return "; ".join(reasons)
 
 
-def _choice(name: str, meant: Sequence[_Candidate], why: str) -> DialectChoice:
+def _choice(name: str, meant: Sequence[_DialectReading], why: str) -> DialectChoice:
     """The dialect that is taken of those that may be meant."""
     slightly = ""
     for other in meant[1:]:
@@ -227,32 +234,50 @@ def _type(names: Sequence[str]) -> str:
     return f"type {_either([f'--dialect {name}' for name in names])}"
 
 
-def _tried(path: Path, dialect: Dialect, settings: ControlSettings) -> _Candidate:
-    """What a dialect makes of a program."""
-    source = read_source(path, dialect)
-    unknown = unknown_functions(source, dialect, frozenset(settings.m_functions))
-    functions_of_the_builder = dict.fromkeys(unknown, MachineFunction(UNKNOWN_FUNCTION))
-    settings = dataclasses.replace(
-        settings, m_functions={**settings.m_functions, **functions_of_the_builder}
-    )
-    chunks, error = [], None
-    try:
-        if dialect.library is not None:
-            source = dialect.library(source, path.parent, dialect)
-        chunks.extend(Interpretation(source, dialect, settings).chunks())
-    except ProgramError as raised:
-        error = raised.diagnostic
-    functions = [
-        (event.line, f"{event.word} {sorted(event.arguments.items())}")
-        for chunk in chunks
-        for event in chunk.events
-        if isinstance(event, Function)
-    ]
-    moves = concatenate((chunk.moves for chunk in chunks), settings.axes)
-    return _Candidate(dialect.name, moves, functions, unknown, error)
+@dataclasses.dataclass(frozen=True)
+class _Trying:
+    """A program that several dialects read.
+
+    Attributes:
+        functions: Its M codes.
+        times: How many read it.
+    """
+
+    path: Path
+    settings: ControlSettings
+    functions: set[int]
+    times: int
+
+    def read_as(self, dialect: Dialect) -> _DialectReading:
+        """What a dialect makes of it."""
+        source, declared = read_source(self.path, dialect), self.settings.m_functions
+        unknown = unknown_functions(self.functions, dialect, frozenset(declared))
+        functions_of_the_builder = dict.fromkeys(unknown, MachineFunction(UNKNOWN_FUNCTION))
+        settings = dataclasses.replace(
+            self.settings, m_functions={**declared, **functions_of_the_builder}
+        )
+        chunks, error = [], None
+        try:
+            if dialect.library is not None:
+                source = dialect.library(source, self.path.parent, dialect)
+            chunks.extend(Interpretation(source, dialect, settings, kernel=self._kernel).chunks())
+        except ProgramError as raised:
+            error = raised.diagnostic
+        functions = [
+            (event.line, f"{event.word} {sorted(event.arguments.items())}")
+            for chunk in chunks
+            for event in chunk.events
+            if isinstance(event, Function)
+        ]
+        moves = concatenate((chunk.moves for chunk in chunks), settings.axes)
+        return _DialectReading(dialect.name, moves, functions, unknown, error)
+
+    def _kernel(self, lines: int) -> LineKernel | None:
+        """What runs its plain lines: the compiler pays as for a program that is as long as all of the readings."""
+        return usual_kernel(lines * self.times)
 
 
-def _difference(one: _Candidate, other: _Candidate) -> str:
+def _difference(one: _DialectReading, other: _DialectReading) -> str:
     """The first thing that two dialects make differently; empty: none."""
     paths = _paths_apart(one, other)
     if paths:
@@ -266,7 +291,7 @@ def _difference(one: _Candidate, other: _Candidate) -> str:
     return ""
 
 
-def _paths_apart(one: _Candidate, other: _Candidate) -> str:
+def _paths_apart(one: _DialectReading, other: _DialectReading) -> str:
     """The first move that two dialects make differently; empty: none."""
     a, b = one.moves, other.moves
     count = min(len(a), len(b))
@@ -296,7 +321,7 @@ def _pecks_apart(a: Moves, b: Moves, count: int) -> BoolArray:
     return rapid & others & (off[:, 2] > _SAME) & (off[:, 2] < _CLEARANCE)
 
 
-def _slight_difference(one: _Candidate, other: _Candidate) -> str:
+def _slight_difference(one: _DialectReading, other: _DialectReading) -> str:
     """What two dialects make differently that asks nobody; empty: nothing."""
     a, b = one.moves, other.moves
     pecks = np.flatnonzero(_pecks_apart(a, b, min(len(a), len(b))))
@@ -307,7 +332,7 @@ def _slight_difference(one: _Candidate, other: _Candidate) -> str:
     return _feeds_apart(one, other)
 
 
-def _feeds_apart(one: _Candidate, other: _Candidate, share: float = _SAME) -> str:
+def _feeds_apart(one: _DialectReading, other: _DialectReading, share: float = _SAME) -> str:
     """The first feed that two dialects make differently; empty: none."""
     a, b = one.moves, other.moves
     apart = np.flatnonzero(~np.isclose(a.feed, b.feed, rtol=share, equal_nan=True))

@@ -15,7 +15,7 @@ from twin.training.session.log import Who
 from twin.training.session.session import SceneSession
 from twin.web.authentication import Authentication, new_tokens
 from twin.web.origin_check import OriginCheck
-from twin.web.server import LOOPBACK, WebServer, require_three
+from twin.web.server import LOOPBACK, server_of_views
 
 TURNS_S = 0.0005
 """How long a thread keeps the interpreter while another waits for it [s]: a press must not wait."""
@@ -110,8 +110,7 @@ def open_room(
     Raises:
         TwinError: The scene does not fit its machine, the port is taken.
     """
-    require_three()
-    server = WebServer(host, port, certificate, key)
+    server = server_of_views(host, port, certificate, key)
     spoken = language or scene.file.language
     attempts = Attempts(spoken, out)
     warm_up(attempts.prepared(scene))
