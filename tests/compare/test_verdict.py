@@ -29,6 +29,10 @@ class Alarm:
     time_s: float = 1.5
     message: str = "X leaves its travel"
 
+    @property
+    def stops(self) -> bool:
+        return True
+
 
 def figures(contour: float = 12.0, lag: float = 150.0, turn: float = 30.0) -> Figures:
     return Figures(

@@ -77,5 +77,16 @@ def test_an_alarm_finds_nothing_of_what_was_stepped_beyond_it(tmp_path, monkeypa
 
 
 @pytest.mark.seconds("runs a job of two chunks")
+def test_an_alarm_knows_nothing_of_what_was_stepped_behind_it_in_its_own_chunk(
+    tmp_path, monkeypatch
+):
+    monkeypatch.setitem(globals(), "PROGRAM", PROGRAM.replace("F100\n", "F6000\n"))
+    assert outcome(tmp_path, "N40 G01 X-130 F6000", 1, monkeypatch).near_miss is not None
+    stopped = outcome(tmp_path, "N40 G00 X-80\nN45 G00 X-130", 1, monkeypatch)
+    assert [alarm.code for alarm in stopped.alarms] == ["rapid-into-stock"]
+    assert stopped.near_miss is None
+
+
+@pytest.mark.seconds("runs a job of two chunks")
 def test_what_comes_later_is_seen_when_its_time_comes(tmp_path, monkeypatch):
     assert outcome(tmp_path, "N40 G01 X-130 F100", 2, monkeypatch).near_miss is not None
