@@ -88,7 +88,6 @@ class _Stepped(NamedTuple):
     samples: Samples
     moves: list[Moves]
     planned_s: float | None
-    near_miss: NearMiss | None
 
 
 class ProgramMotion(MachineMotion):
@@ -119,7 +118,6 @@ class ProgramMotion(MachineMotion):
         self._setpoints = setpoints
         self._moves = moves
         self._planned_until_s: float | None = None
-        self._near_miss: NearMiss | None = None
         period_s = model.machine.file.servo_period_s
         self._simulation = simulate(
             model.machine,
@@ -133,7 +131,7 @@ class ProgramMotion(MachineMotion):
     @property
     def near_miss(self) -> NearMiss | None:
         """The closest that the tool's side and the part's came without touching."""
-        return self._near_miss
+        return self._simulation.near_miss
 
     def __iter__(self) -> Iterator[Samples]:
         """Yield chunks of samples, the last one that of an alarm if there is one.
@@ -141,19 +139,22 @@ class ProgramMotion(MachineMotion):
         Raises:
             SimulationError: The simulation failed.
         """
+        yield from self._simulation.watched(self._arriving())
+        self.alarm = self._simulation.alarm
+
+    def _arriving(self) -> Iterator[Samples]:
+        """Samples, with what was planned for them."""
         for stepped in made_ahead(self._stepped()):
-            self.planned_s, self._near_miss = stepped.planned_s, stepped.near_miss
+            self.planned_s = stepped.planned_s
             if self._moves is not None:
                 for moves in stepped.moves:
                     self._moves.expect(moves)
             yield stepped.samples
-        self.alarm, self._near_miss = self._simulation.alarm, self._simulation.near_miss
 
     def _stepped(self) -> Iterator[_Stepped]:
-        simulation = self._simulation
-        for samples in simulation:
+        for samples in self._simulation.stepped():
             moves = [] if self._moves is None else self._moves.take()
-            yield _Stepped(samples, moves, self._planned_until_s, simulation.near_miss)
+            yield _Stepped(samples, moves, self._planned_until_s)
 
     def _noted(self) -> Iterator[Setpoints]:
         for chunk in self._setpoints:

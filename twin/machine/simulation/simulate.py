@@ -64,10 +64,26 @@ class Simulation:
         Raises:
             SimulationError: MuJoCo warned, or a setpoint or a state is not finite.
         """
+        return self.watched(self.stepped())
+
+    def stepped(self) -> Iterator[Samples]:
+        """Step the machine along the setpoints, watched by nobody.
+
+        Raises:
+            SimulationError: MuJoCo warned, or a setpoint or a state is not finite.
+        """
         for chunk in self._setpoints:
-            if not len(chunk):
-                continue
-            samples = self._servo.follow(chunk, None if self._load is None else self._load(chunk))
+            if len(chunk):
+                load = None if self._load is None else self._load(chunk)
+                yield self._servo.follow(chunk, load)
+
+    def watched(self, stepped: Iterable[Samples]) -> Iterator[Samples]:
+        """Pass samples on up to an alarm.
+
+        Args:
+            stepped: What ``stepped`` yields, which may be ahead of what is looked at.
+        """
+        for samples in stepped:
             self.alarm = self._look(samples)
             if self.alarm is None:
                 yield samples
@@ -86,7 +102,9 @@ class Simulation:
             self._watch.look(samples),
             None if process is None else process.alarm,
         )
-        return min(filter(None, found), key=lambda alarm: alarm.time_s, default=None)
+        first = min(filter(None, found), key=lambda alarm: alarm.time_s, default=None)
+        # The process may have been stepped on to an alarm behind these samples.
+        return None if first is None or first.time_s > samples.setpoint.time[-1] else first
 
 
 def simulate(
