@@ -15,7 +15,7 @@ from tests.nc import fuzz
 from twin.files.shipped import machine_file, machine_names
 from twin.files.stl import read_stl
 from twin.job.load import load_job
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.load import read_machine
 from twin.machine.model.model import build_spec, physics_model
 from twin.motion.setpoints.setpoints import Setpoints
@@ -169,7 +169,7 @@ def _machines() -> list[bytes]:
     return found
 
 
-def _read_machine(data: bytes, folder: Path) -> Machine:
+def _read_machine(data: bytes, folder: Path) -> MachineConfig:
     path = folder / "machine.toml"
     path.write_bytes(data)
     return read_machine(path)

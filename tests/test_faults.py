@@ -45,7 +45,7 @@ def test_a_run_that_is_stopped_leaves_nothing_torn(tmp_path: Path, stop: signal.
     _, said = run.communicate(timeout=60)
     assert complaints(tmp_path) == []
     if stop is not signal.SIGKILL and run.returncode != 0:
-        assert run.returncode == 130
+        assert run.returncode == 130, said
         assert "interrupted" in said
         assert list(tmp_path.glob(".*")) == []
 
@@ -54,7 +54,7 @@ THROUGH_AN_EXEC = """
 import os, signal, sys
 import twin.__main__, twin.cli
 
-def interrupted():
+def interrupted(stopped):
     try:
         exec("os.kill(os.getpid(), signal.SIGINT)")
     except KeyboardInterrupt:
@@ -75,11 +75,35 @@ def test_an_interruption_within_an_exec_ends_with_the_code_too(tmp_path: Path) -
     assert done.returncode == 130
 
 
+WITHIN_A_LIBRARY = """
+import os, signal
+import twin.__main__, twin.cli
+
+def library():
+    try:
+        os.kill(os.getpid(), signal.SIGTERM)
+    except KeyboardInterrupt as stop:
+        raise SystemError("a callback returned a result with an exception set") from stop
+
+twin.cli.app = library
+twin.__main__.main()
+"""
+
+
+def test_an_interruption_that_a_library_makes_another_error_of_is_one() -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", WITHIN_A_LIBRARY],
+        cwd=Path(__file__).parents[1], capture_output=True, text=True, check=False, timeout=60,
+    )  # fmt: skip
+    assert done.returncode == 130
+    assert done.stderr == "interrupted: what was complete is kept, nothing is torn\n"
+
+
 WHILE_PYTHON_LEAVES = """
 import atexit, os, signal
 import twin.__main__, twin.cli
 
-def done():
+def done(stopped):
     raise SystemExit(1)
 
 atexit.register(lambda: os.kill(os.getpid(), signal.SIGINT))

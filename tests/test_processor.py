@@ -7,7 +7,7 @@ import threading
 import pytest
 
 from twin import processor
-from twin.processor import give_way, made_ahead, take_precedence
+from twin.processor import made_ahead, release_precedence, take_precedence
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="only Linux is asked")
 
@@ -31,7 +31,7 @@ def test_who_is_granted_precedence_has_it_alone_and_gives_it_back(monkeypatch):
     def asked():
         granted = take_precedence()
         mine, childs = policy(), on_a_thread(policy)
-        give_way()
+        release_precedence()
         return granted, mine, childs, policy()
 
     granted, mine, childs, after = on_a_thread(asked)

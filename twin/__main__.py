@@ -126,7 +126,7 @@ def _run(stopped: list[int]) -> None:
         logging.getLogger("matplotlib").setLevel(logging.ERROR)
         from twin.cli import main as run
 
-        run()
+        run(stopped)
     except (KeyboardInterrupt, ImportError):
         # A library that is interrupted while it is being loaded says that it cannot be.
         if not stopped:

@@ -1,6 +1,7 @@
 """``twin``: the commands together, and what is said when one of them fails."""
 
 import traceback
+from collections.abc import Sequence
 from typing import Annotated, NoReturn
 
 import typer
@@ -14,6 +15,15 @@ from twin.command_line.servers import link_app, serve, train, view
 from twin.command_line.verdicts import check, compare, export, sweep
 from twin.errors import ExitCode, TwinError
 from twin.version import __version__
+
+INTERRUPTED = "interrupted: what was complete is kept, nothing is torn"
+NO_MEMORY = (
+    "not enough memory: a coarser stock.cell, smaller pictures or the draft quality need less"
+)
+DEFECT = (
+    f"twin {__version__} has met a defect of its own, which says nothing about the program: "
+    "please report the lines above"
+)
 
 app = typer.Typer(
     name="twin",
@@ -66,30 +76,35 @@ app.add_typer(machine_app, name="machine")
 app.add_typer(link_app, name="link")
 
 
-def main() -> None:
-    """Run the command line and exit with the code that the contract promises."""
+def main(stopped: Sequence[int] = ()) -> None:
+    """Run the command line and exit with the code that the contract promises.
+
+    Args:
+        stopped: The signals that have asked the process to end; it may grow while the command runs.
+    """
     try:
         app()
-    except TwinError as error:
-        _leave(str(error), error.exit_code)
-    except MemoryError:
-        _leave(
-            "not enough memory: a coarser stock.cell, smaller pictures or the draft quality need less",
-            ExitCode.USAGE,
-        )
-    except OSError as error:
-        _leave(f"{error.filename or 'a file'}: {error.strerror or error}", ExitCode.USAGE)
-    except Exception:  # noqa: BLE001 - whatever else it is, it is a defect, and says so
-        traceback.print_exc()
-        _leave(
-            f"twin {__version__} has met a defect of its own, which says nothing about the program: "
-            "please report the lines above",
-            ExitCode.CRASH,
-        )
     except SystemExit as leaving:
         if leaving.code == ExitCode.INTERRUPTED:
-            _leave("interrupted: what was complete is kept, nothing is torn", ExitCode.INTERRUPTED)
+            _leave(INTERRUPTED, ExitCode.INTERRUPTED)
         raise
+    except Exception as error:  # noqa: BLE001 - whatever it is, it becomes a sentence and a code
+        if stopped:
+            # Libraries that an interruption passes through may make another error of it.
+            _leave(INTERRUPTED, ExitCode.INTERRUPTED)
+        _leave(*_sentence(error))
+
+
+def _sentence(error: Exception) -> tuple[str, ExitCode]:
+    """What is said of an error that ends the command, and the code that says it to a program."""
+    if isinstance(error, TwinError):
+        return str(error), error.exit_code
+    if isinstance(error, MemoryError):
+        return NO_MEMORY, ExitCode.USAGE
+    if isinstance(error, OSError):
+        return f"{error.filename or 'a file'}: {error.strerror or error}", ExitCode.USAGE
+    traceback.print_exception(error)
+    return DEFECT, ExitCode.CRASH
 
 
 def _leave(message: str, code: ExitCode) -> NoReturn:

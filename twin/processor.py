@@ -37,7 +37,7 @@ def take_precedence() -> bool:
     return True
 
 
-def give_way() -> None:
+def release_precedence() -> None:
     """End what ``take_precedence`` was granted to this thread."""
     if sys.platform == "linux":
         os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))

@@ -21,7 +21,7 @@ from twin.job.job_file import StockTable, ToolTable, VideoTable
 from twin.nc.canonical import FloatArray
 from twin.recording.reader import open_recording
 from twin.render.film import film
-from twin.render.scene.stage import Scene
+from twin.render.scene.stage import RenderScene
 from twin.run.preparing.preparation import prepare
 from twin.run.progress import no_progress
 from twin.run.replay import scene_of
@@ -119,7 +119,7 @@ def tri_dexel_moves_per_second(cell: float, tilt: float, size: float = 60.0) -> 
     return (len(middle) - 1) / median_cpu_seconds(cut)
 
 
-def _film(scene: Scene, video: VideoTable, out: Path) -> Iterator[Row]:
+def _film(scene: RenderScene, video: VideoTable, out: Path) -> Iterator[Row]:
     """Frames per second at 720p behind the first one, and processor time of a frame."""
     for quality, frames in FRAMES.items():
         asked = {"size": (1280, 720), "seconds": frames / video.fps, "quality": quality}

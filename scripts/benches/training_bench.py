@@ -18,7 +18,7 @@ from panel_player import browser, without_view
 
 from tests.training.server.measured_room import SCENE, MeasuredRoom, RoomProcess, room_process
 from twin.training.scene.scene_file import read_scene, scene_path
-from twin.training.session.session import Session
+from twin.training.session.session import SceneSession
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -108,7 +108,7 @@ def _pictures(page: "Page") -> int:
 
 
 def _headless() -> float:
-    session = Session(read_scene(scene_path(SCENE)))
+    session = SceneSession(read_scene(scene_path(SCENE)))
     session.submit({"do": "cycle_start"})
     session.advance(200)
     figures = []

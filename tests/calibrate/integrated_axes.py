@@ -23,7 +23,7 @@ from twin.errors import UsageError
 from twin.files.shipped import machine_file
 from twin.logs.column_map import AxisColumns, ColumnTable, ExternalForceTable
 from twin.logs.machine_log import AxisLog, MachineLog
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.load import read_machine
 
 Numbers = npt.NDArray[np.float64]
@@ -226,7 +226,7 @@ def logged(axis: Axis) -> MachineLog:
     )  # fmt: skip
 
 
-def base() -> Machine:
+def base() -> MachineConfig:
     """``mill4`` without integral action on X."""
     return read_machine(machine_file("mill4")).changed("X", reset_time_s=0.0)
 

@@ -9,7 +9,7 @@ import pytest
 from twin.files.shipped import machine_file
 from twin.logs.column_map import AxisColumns, ColumnTable
 from twin.logs.machine_log import AxisLog, MachineLog
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.load import read_machine
 from twin.machine.model.model import build_spec, physics_model
 from twin.machine.simulation.simulate import simulate
@@ -34,7 +34,7 @@ _ANY = ColumnTable(column="a", unit="mm")
 COLUMNS = AxisColumns(command=_ANY, actual=_ANY)
 
 
-def mill(**changes: float) -> Machine:
+def mill(**changes: float) -> MachineConfig:
     """``mill4`` without integral action on X, and with fields of X changed."""
     machine = read_machine(machine_file("mill4"))
     return machine.changed("X", **{"reset_time_s": 0.0} | changes)
@@ -64,7 +64,7 @@ def strokes(seconds: float = 5.0, period: float = PERIOD) -> FloatArray:
     return np.column_stack([position, velocity, acceleration])
 
 
-def logged(machine: Machine, course: FloatArray | None = None) -> MachineLog:
+def logged(machine: MachineConfig, course: FloatArray | None = None) -> MachineLog:
     """What a perfect log of X of a machine holds, its force included."""
     course = strokes() if course is None else course
     columns = [np.zeros((len(course), 4)) for _ in range(3)]

@@ -20,7 +20,7 @@ from pathlib import Path
 
 import numpy as np
 
-from twin.calibrate.fit.parameters import Parameters, of_base
+from twin.calibrate.fit.parameters import AxisParameters, of_base
 from twin.calibrate.fit.simulation import command_of, seen_at, simulate_axis
 from twin.calibrate.fit.solve import Interval
 from twin.calibrate.fit.stages import OF_THE_LOG, AxisFit, fit_axis
@@ -54,7 +54,7 @@ _EXTRAS = {
 class Drawn:
     """A machine and its log."""
 
-    truth: Parameters
+    truth: AxisParameters
     log: AxisLog
     rate: int
     kind: str
@@ -117,8 +117,8 @@ def extras_of(drawn: Drawn) -> list[str]:
     return [name for name in _EXTRAS if getattr(drawn.truth, name)]
 
 
-def _axis_with(truth: Parameters) -> AxisTable:
-    names = set(AxisTable.model_fields) & set(Parameters.__dataclass_fields__)
+def _axis_with(truth: AxisParameters) -> AxisTable:
+    names = set(AxisTable.model_fields) & set(AxisParameters.__dataclass_fields__)
     changes = {name: getattr(truth, name) for name in names}
     return _shipped_axis().model_copy(update=changes)
 
@@ -190,7 +190,7 @@ def unnamed(drawn: Drawn, found: AxisFit) -> list[str]:
     silent = set(OF_THE_LOG) | (
         {"current_scale", "current_at_rest"} if "current" not in drawn.log.more else set()
     )
-    every = {field.name for field in dataclasses.fields(Parameters)}
+    every = {field.name for field in dataclasses.fields(AxisParameters)}
     needed = hidden[drawn.kind] | (every - silent - set(intervals(found)))
     return sorted(needed - set(found.undetermined))
 

@@ -12,7 +12,7 @@ from twin.calibrate.calibrate import calibrate
 from twin.calibrate.fit.ball_bar import ONE_DIRECTION, fit_ball_bar
 from twin.logs.ball_bar import BallBarLog, CircleSense
 from twin.machine.circle.circular_test import circular_test
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.nc.canonical import FloatArray
 
 pytestmark = pytest.mark.seconds("a machine is simulated, and fitted to its log")
@@ -99,7 +99,7 @@ def test_a_circle_without_a_gap_leaves_the_backlash_undetermined(log: BallBarLog
     assert "no log of the axis's positions" in fit.undetermined["kv"]
 
 
-def with_faults() -> Machine:
+def with_faults() -> MachineConfig:
     """Gaps that a little friction lets the axes lose, no integrators, and different gains."""
     machine = mill(backlash=0.02, dry_friction=20.0, kv=7.3)
     return machine.changed("Y", backlash=0.01, dry_friction=20.0, reset_time_s=0.0)

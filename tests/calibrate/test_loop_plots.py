@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from twin.calibrate.fit.parameters import Parameters, of_base
+from twin.calibrate.fit.parameters import AxisParameters, of_base
 from twin.calibrate.report.loop_plots import autocorrelation, margins, open_loop, whiteness
 from twin.calibrate.result import TimeSeries
 from twin.files.shipped import machine_file
@@ -14,7 +14,7 @@ from twin.machine.load import read_machine
 NONE = np.zeros(0)
 
 
-def loop(**changes: float) -> Parameters:
+def loop(**changes: float) -> AxisParameters:
     base = of_base(read_machine(machine_file("mill4")).axis("X"), 350.0)
     plain = {
         "reset_time_s": 0.0,

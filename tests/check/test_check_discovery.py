@@ -159,9 +159,26 @@ def test_a_job_is_checked_where_its_machine_or_a_solid_has_changed_or_is_gone(
     (tmp_path / "one.nc").write_text("G0 X1\n")
     (tmp_path / "one.toml").write_text(
         'program = "one.nc"\nmachine = "shop/own.toml"\n[nominal]\nfile = "part.stl"\n'
+        '[stock]\nshape = "box"\nsize = [9.0, 9.0, 9.0]\n'
+        '[[fixtures]]\nname = "jaw"\nfile = "jaw.stl"\n'
     )
     (tmp_path / "two.nc").write_text("G0 X1\n")
-    for changed in ("shop/below.toml", "shop/own.toml", "part.stl", "one.nc"):
+    for changed in ("shop/below.toml", "shop/own.toml", "part.stl", "jaw.stl", "one.nc"):
         (tmp_path / changed).unlink(missing_ok=True)
         assert names(tmp_path, dependents([tmp_path / changed], tmp_path)) == ["one.toml"]
     assert dependents([tmp_path / "README.md"], tmp_path / "shop") == []
+
+
+def test_a_job_that_cannot_be_loaded_is_checked_where_what_loading_looks_at_has_changed(
+    tmp_path: Path,
+) -> None:
+    (tmp_path / "one.nc").write_text("G0 X1\n")
+    (tmp_path / "one.toml").write_text('program = "one.nc"\nextends = "base.toml"\n')
+    (tmp_path / "base.toml").write_text("wrong = true\n")
+    for changed in ("base.toml", "twin.toml"):
+        assert names(tmp_path, dependents([tmp_path / changed], tmp_path)) == ["one.toml"]
+    (tmp_path / "base.toml").write_text('machine = "none.toml"\n')
+    assert names(tmp_path, dependents([tmp_path / "none.toml"], tmp_path)) == ["one.toml"]
+    (tmp_path / "base.toml").write_text("wrong =\n")
+    assert names(tmp_path, dependents([tmp_path / "base.toml"], tmp_path)) == ["one.toml"]
+    assert dependents([tmp_path / "none.toml"], tmp_path) == []

@@ -12,7 +12,7 @@ from twin.coupling.operations import OperatorOperation, cutting_process
 from twin.cutting.cut import Cutter
 from twin.cutting.forces.tool_strength import tool_strength
 from twin.job.job_file import StockTable, ToolTable
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.model.model import build_spec, drives, physics_model
 from twin.machine.simulation.live import LiveMachine
 from twin.machine.simulation.simulate import simulate
@@ -29,7 +29,7 @@ WAY = line(axis=0, speed=16.0, seconds=1.5)
 
 
 def process(
-    machine: Machine, tool: ToolTable = TOOL, stock: StockTable = STOCK, speed: float = SPEED
+    machine: MachineConfig, tool: ToolTable = TOOL, stock: StockTable = STOCK, speed: float = SPEED
 ) -> CuttingProcess:
     operation = OperatorOperation(tool)
     operation.speed = speed
@@ -40,7 +40,7 @@ def process(
 
 
 def run(
-    chunks: list[Setpoints], cut: CuttingProcess | None, machine: Machine | None = None
+    chunks: list[Setpoints], cut: CuttingProcess | None, machine: MachineConfig | None = None
 ) -> Samples:
     machine = machine or shipped_machine()
     model = physics_model(machine, build_spec(machine))
@@ -98,7 +98,7 @@ def test_the_tool_bends_by_the_mean_force_over_its_stiffness() -> None:
 
 def test_halving_the_step_changes_little() -> None:
     machine = shipped_machine()
-    finer = Machine(machine.path, machine.file.model_copy(update={"servo_period_s": 0.5e-3}))
+    finer = MachineConfig(machine.path, machine.file.model_copy(update={"servo_period_s": 0.5e-3}))
     twice = np.repeat(np.arange(len(WAY)), 2)[:-1]
     between = twice.copy()
     between[1::2] += 1

@@ -11,12 +11,12 @@ from tests.machine.machine_fixtures import shipped_machine
 from twin.coupling.cutting_process import CuttingProcess
 from twin.coupling.leaning_process import LeaningProcess
 from twin.coupling.operations import OperatorOperation, cutting_process
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 
 CELL = 0.2
 
 
-def processes(machine: Machine) -> Iterator[CuttingProcess | None]:
+def processes(machine: MachineConfig) -> Iterator[CuttingProcess | None]:
     """One slot of two processes: on the machine as a turntable, and on the same machine as a chain of joints."""
     turntable, zero = machine.part_frame, np.zeros(4)
     chain = dataclasses.replace(turntable, rotary=None, chain=machine.kinematics, zero=zero)

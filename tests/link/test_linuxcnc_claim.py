@@ -13,7 +13,7 @@ import pytest
 from twin.commands.live.link import _explain_blending
 from twin.errors import UsageError
 from twin.link import linuxcnc
-from twin.link.headless_screen import FailedError, Operator
+from twin.link.headless_screen import FailedError, LinuxcncClient
 from twin.link.program_reading import Listing
 
 
@@ -56,7 +56,7 @@ def test_the_operator_leaves_as_soon_as_the_twin_has_gone():
         STATE_ESTOP_RESET=2,
     )  # fmt: skip
     log = io.StringIO()
-    operator = Operator(module, log, gone.pid)
+    operator = LinuxcncClient(module, log, gone.pid)
     with pytest.raises(FailedError, match="the twin has gone"):
         operator.switch_on(1)
     operator.tell("failed", "the twin has gone")

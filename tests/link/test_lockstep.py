@@ -13,7 +13,7 @@ from twin.columns import join
 from twin.link.lockstep import SETTLING_S, LockstepMotion
 from twin.link.packet import JOINTS, MAGIC, REQUEST_LAYOUT, REQUEST_STATES, VERSION
 from twin.link.place import Places
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.model.model import MachineModel
 from twin.machine.simulation.live import LiveMachine
 from twin.machine.simulation.simulate import simulate
@@ -28,7 +28,7 @@ PROGRAM = Program(*START).line(60.0, 5.0, -100.0, 0.0, feed=600.0).moves
 STANDING = 5
 
 
-def motion_of(machine: Machine) -> LockstepMotion:
+def motion_of(machine: MachineConfig) -> LockstepMotion:
     places = Places(PROGRAM, np.array([1]))
     return LockstepMotion(LiveMachine(machine, position=START), places, np.zeros(4))
 
@@ -40,7 +40,7 @@ def commanded(speed: float, seconds: float) -> FloatArray:
 
 
 def driven(
-    machine: Machine, positions: FloatArray, *noise: bytes
+    machine: MachineConfig, positions: FloatArray, *noise: bytes
 ) -> tuple[Samples, FakeControl, LockstepMotion]:
     with motion_of(machine) as motion:
         control = FakeControl(motion, noise)

@@ -9,7 +9,7 @@ import numpy as np
 
 from twin.files.shipped import machine_file, resource_root
 from twin.job.fixture import FixtureTable
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.description.machine_file import MachineFile
 from twin.machine.load import read_machine
 from twin.motion.setpoints.setpoints import Setpoints
@@ -18,7 +18,7 @@ from twin.nc.canonical import FloatArray
 PERIOD = 0.001
 
 
-def shipped_machine(**axis_changes: Any) -> Machine:
+def shipped_machine(**axis_changes: Any) -> MachineConfig:
     """``mill4`` without integral action, with the given fields changed on every axis.
 
     Its loops are of second order then, and what they do has closed forms.
@@ -27,13 +27,13 @@ def shipped_machine(**axis_changes: Any) -> Machine:
     data = tomllib.loads(path.read_text(encoding="utf-8"))
     for axis in data["axes"].values():
         axis.update({"reset_time_s": 0.0} | axis_changes)
-    return Machine(path, MachineFile.model_validate(data))
+    return MachineConfig(path, MachineFile.model_validate(data))
 
 
-def with_fixtures(machine: Machine, *fixtures: FixtureTable) -> Machine:
+def with_fixtures(machine: MachineConfig, *fixtures: FixtureTable) -> MachineConfig:
     """A machine with more on its table."""
     both = (*machine.file.fixtures, *fixtures)
-    return Machine(machine.path, machine.file.model_copy(update={"fixtures": both}))
+    return MachineConfig(machine.path, machine.file.model_copy(update={"fixtures": both}))
 
 
 def setpoints(position: FloatArray, velocity: FloatArray, acceleration: FloatArray) -> Setpoints:
@@ -90,7 +90,7 @@ def write_machine(folder: Path, text: str) -> Path:
     return path
 
 
-def three_axis_machine(folder: Path) -> Machine:
+def three_axis_machine(folder: Path) -> MachineConfig:
     """``mill4`` without its rotary table's axis, written into a folder."""
     folder_of_mill4 = machine_file("mill4").parent
     model = (folder_of_mill4 / "mill4.xml").read_text(encoding="utf-8")

@@ -10,13 +10,13 @@ import pytest
 
 from twin.cutting.program_summary import ProgramSummary
 from twin.job.job_file import StockTable, ToolTable
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.load import read_machine
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
 from twin.recording.reader import Recording, RecordingHeader, Samples, open_recording, record
 from twin.render.drawing.gl import BACKENDS, probe
-from twin.render.scene.scene import Scene
+from twin.render.scene.scene import RenderScene
 from twin.toolpath.tool_plan import ToolPlan
 
 MODEL = """
@@ -78,7 +78,7 @@ def opengl() -> None:
 
 
 @pytest.fixture(scope="session")
-def machine(tmp_path_factory: pytest.TempPathFactory) -> Machine:
+def machine(tmp_path_factory: pytest.TempPathFactory) -> MachineConfig:
     folder = tmp_path_factory.mktemp("boxes")
     (folder / "boxes.xml").write_text(MODEL)
     axes = "".join(
@@ -91,7 +91,7 @@ def machine(tmp_path_factory: pytest.TempPathFactory) -> Machine:
 
 
 @pytest.fixture
-def spec(machine: Machine) -> mujoco.MjSpec:
+def spec(machine: MachineConfig) -> mujoco.MjSpec:
     return mujoco.MjSpec.from_file(str(machine.model_path))
 
 
@@ -112,7 +112,7 @@ Record = Callable[..., Path]
 
 
 @pytest.fixture
-def make_recording(tmp_path: Path, machine: Machine) -> Record:
+def make_recording(tmp_path: Path, machine: MachineConfig) -> Record:
     """Writes the program's recording, with contour errors and alarms if wanted."""
 
     def make(
@@ -135,13 +135,13 @@ def recording(make_recording: Record) -> Iterator[Recording]:
 
 
 @pytest.fixture
-def scene(recording: Recording, spec: mujoco.MjSpec, machine: Machine) -> Scene:
-    return Scene(
+def scene(recording: Recording, spec: mujoco.MjSpec, machine: MachineConfig) -> RenderScene:
+    return RenderScene(
         recording=recording, spec=spec, machine=machine, summary=SUMMARY, source=SOURCE, stock=STOCK
     )
 
 
-def slot(machine: Machine) -> tuple[RecordingHeader, Samples]:
+def slot(machine: MachineConfig) -> tuple[RecordingHeader, Samples]:
     """The header and the samples of the program's recording; the joints are off a little."""
     position, line = program()
     position = position + ZERO

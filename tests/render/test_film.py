@@ -12,12 +12,12 @@ from PIL import Image
 from twin.errors import RenderError
 from twin.job.job_file import VideoTable
 from twin.render.film import film
-from twin.render.scene.scene import Scene
+from twin.render.scene.scene import RenderScene
 
 VIDEO = VideoTable(cameras=("overview", "top"), seconds=2.0, fps=10, size=(321, 181))
 
 
-def test_film_plays_everywhere_and_has_the_asked_length(scene: Scene, tmp_path: Path) -> None:
+def test_film_plays_everywhere_and_has_the_asked_length(scene: RenderScene, tmp_path: Path) -> None:
     seen = []
     out = film(
         scene,
@@ -43,13 +43,13 @@ def test_film_plays_everywhere_and_has_the_asked_length(scene: Scene, tmp_path: 
     assert all(frame.std() > 20 for frame in frames)
 
 
-def test_tiny_films_of_long_programs_do_not_fail(scene: Scene, tmp_path: Path) -> None:
+def test_tiny_films_of_long_programs_do_not_fail(scene: RenderScene, tmp_path: Path) -> None:
     long = dataclasses.replace(scene, source=["\tG1 X1\x07 " + "Ž" * 500] * 5000)
     small = VideoTable(seconds=0.1, fps=10, size=(64, 64))
     assert film(long, video=small, out=tmp_path / "tiny.mp4").is_file()
 
 
-def test_a_run_without_stock_is_filmed_too(scene: Scene, tmp_path: Path) -> None:
+def test_a_run_without_stock_is_filmed_too(scene: RenderScene, tmp_path: Path) -> None:
     bare = dataclasses.replace(scene, stock=None)
     assert film(bare, video=VIDEO, out=tmp_path / "air.mp4").is_file()
 
@@ -65,7 +65,7 @@ def test_a_run_without_stock_is_filmed_too(scene: Scene, tmp_path: Path) -> None
     ],
 )
 def test_what_cannot_be_filmed_is_refused(
-    scene: Scene, tmp_path: Path, change: dict[str, object], message: str
+    scene: RenderScene, tmp_path: Path, change: dict[str, object], message: str
 ) -> None:
     before = sorted(tmp_path.iterdir())
     with pytest.raises(RenderError, match=message):
@@ -74,7 +74,7 @@ def test_what_cannot_be_filmed_is_refused(
 
 
 @pytest.mark.parametrize("suffix", [".gif", ".webp"])
-def test_moving_pictures_for_a_page(scene: Scene, tmp_path: Path, suffix: str) -> None:
+def test_moving_pictures_for_a_page(scene: RenderScene, tmp_path: Path, suffix: str) -> None:
     out = film(scene, video=VIDEO, out=tmp_path / f"run{suffix}")
     with Image.open(out) as pictures:
         assert getattr(pictures, "n_frames", 1) == 20
@@ -87,12 +87,12 @@ def test_moving_pictures_for_a_page(scene: Scene, tmp_path: Path, suffix: str) -
     assert np.abs(last - first).mean() > 5
 
 
-def test_unknown_format_names_the_known(scene: Scene, tmp_path: Path) -> None:
+def test_unknown_format_names_the_known(scene: RenderScene, tmp_path: Path) -> None:
     with pytest.raises(RenderError, match=r"\.mp4, \.gif, \.webp"):
         film(scene, video=VIDEO, out=tmp_path / "run.avi")
 
 
-def test_split_picture_shows_all_cameras_at_once(scene: Scene, tmp_path: Path) -> None:
+def test_split_picture_shows_all_cameras_at_once(scene: RenderScene, tmp_path: Path) -> None:
     video = VIDEO.model_copy(update={"layout": "split", "speed": 1.0})
     out = film(scene, video=video, out=tmp_path / "run.mp4")
     with av.open(str(out)) as container:
@@ -105,7 +105,7 @@ def test_split_picture_shows_all_cameras_at_once(scene: Scene, tmp_path: Path) -
     assert frames[5][60:120, 159].mean() > 180, "a line parts the fields"
 
 
-def test_unwritable_place_is_said(scene: Scene, tmp_path: Path) -> None:
+def test_unwritable_place_is_said(scene: RenderScene, tmp_path: Path) -> None:
     (tmp_path / "taken").write_text("a file")
     with pytest.raises(RenderError, match=r"cannot be written"):
         film(scene, video=VIDEO, out=tmp_path / "taken" / "run.mp4")
@@ -116,7 +116,7 @@ def interrupt(done: int, _: int) -> None:
         raise KeyboardInterrupt
 
 
-def test_interrupted_film_leaves_nothing(scene: Scene, tmp_path: Path) -> None:
+def test_interrupted_film_leaves_nothing(scene: RenderScene, tmp_path: Path) -> None:
     before = sorted(tmp_path.iterdir())
     with pytest.raises(KeyboardInterrupt):
         film(scene, video=VIDEO, out=tmp_path / "run.mp4", progress=interrupt)
@@ -124,7 +124,7 @@ def test_interrupted_film_leaves_nothing(scene: Scene, tmp_path: Path) -> None:
 
 
 def test_full_disk_is_said_and_leaves_nothing(
-    scene: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    scene: RenderScene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def full(*_: object) -> None:
         raise OSError(errno.ENOSPC, "No space left on device")
@@ -136,7 +136,7 @@ def test_full_disk_is_said_and_leaves_nothing(
     assert sorted(tmp_path.iterdir()) == before
 
 
-def test_the_display_can_be_left_out(scene: Scene, tmp_path: Path) -> None:
+def test_the_display_can_be_left_out(scene: RenderScene, tmp_path: Path) -> None:
     frames = []
     for display in (True, False):
         video = VIDEO.model_copy(update={"seconds": 0.2, "display": display})

@@ -9,10 +9,10 @@ from twin.cutting.recut import COMMANDED, inspect_recorded
 from twin.errors import RenderError
 from twin.recording.form import STEPS
 from twin.render.inspection_still import inspection_still
-from twin.render.scene.scene import Scene
+from twin.render.scene.scene import RenderScene
 
 
-def test_a_slot_cut_too_deep_is_blue(scene: Scene, tmp_path: Path) -> None:
+def test_a_slot_cut_too_deep_is_blue(scene: RenderScene, tmp_path: Path) -> None:
     # The joints of the recording stand 4 µm below the setpoints.
     pictures = []
     for tolerance in (4.0, 400.0):
@@ -32,7 +32,7 @@ def test_a_slot_cut_too_deep_is_blue(scene: Scene, tmp_path: Path) -> None:
     assert pictures[0] > pictures[1] + 200, "blue is too deep, and a wide scale hides it"
 
 
-def test_unknown_camera_is_refused(scene: Scene, tmp_path: Path) -> None:
+def test_unknown_camera_is_refused(scene: RenderScene, tmp_path: Path) -> None:
     part = inspect_recorded(scene.recording, SUMMARY, STOCK, COMMANDED, 1.0)
     with pytest.raises(RenderError, match="has overview, top, part, riding"):
         inspection_still(scene, part, out=tmp_path / "part.png", camera="side")

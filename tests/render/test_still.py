@@ -13,23 +13,25 @@ from twin.cutting.forces.tool_strength import tool_strength
 from twin.cutting.program_summary import Screen, Steps
 from twin.errors import RenderError
 from twin.job.job_file import ToolTable
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.recording.form import STEPS, ToolLoad
 from twin.recording.reader import open_recording
 from twin.render.frames import deal
 from twin.render.gauge import Gauge, load_bars
 from twin.render.hud import LoadBar
-from twin.render.scene.scene import Scene
+from twin.render.scene.scene import RenderScene
 from twin.render.still import Shot, moment, stills
 
 
-def take(scene: Scene, out: Path, end: int, **more: Any) -> np.ndarray[Any, Any]:
+def take(scene: RenderScene, out: Path, end: int, **more: Any) -> np.ndarray[Any, Any]:
     stills(scene, [Shot(out, end)], **{"quality": "draft", **more})
     return np.asarray(Image.open(out)).astype(int)
 
 
 @pytest.mark.seconds("a run is drawn at several moments")
-def test_one_pass_draws_all_moments_with_the_running_block(scene: Scene, tmp_path: Path) -> None:
+def test_one_pass_draws_all_moments_with_the_running_block(
+    scene: RenderScene, tmp_path: Path
+) -> None:
     shots = [Shot(tmp_path / f"{line}.png", moment(scene.recording, line=line)) for line in (3, 2)]
     stills(scene, shots)
     pictures = [np.asarray(Image.open(tmp_path / f"{line}.png")).astype(int) for line in (2, 3)]
@@ -41,12 +43,12 @@ def test_one_pass_draws_all_moments_with_the_running_block(scene: Scene, tmp_pat
     assert np.abs(plain[560:, 20:300] - pictures[1][560:, 20:300]).mean() > 20
 
 
-def test_odd_sizes_and_programs_that_are_not_there(scene: Scene, tmp_path: Path) -> None:
+def test_odd_sizes_and_programs_that_are_not_there(scene: RenderScene, tmp_path: Path) -> None:
     bare = dataclasses.replace(scene, source=())
     assert take(bare, tmp_path / "s.png", 500, size=(65, 67)).shape == (67, 65, 3)
 
 
-def test_unwritable_place_is_said(scene: Scene, tmp_path: Path) -> None:
+def test_unwritable_place_is_said(scene: RenderScene, tmp_path: Path) -> None:
     (tmp_path / "taken").write_text("a file")
     with pytest.raises(RenderError, match=r"cannot be written"):
         take(scene, tmp_path / "taken" / "run.png", 500, size=(64, 64))
@@ -57,13 +59,13 @@ def test_unwritable_place_is_said(scene: Scene, tmp_path: Path) -> None:
     [({"line": 9}, "line 9 of the program moved nothing"), ({"time_s": 2.0}, "it ends at 1 s")],
 )
 def test_moments_that_never_were_are_refused(
-    scene: Scene, wanted: dict[str, Any], message: str
+    scene: RenderScene, wanted: dict[str, Any], message: str
 ) -> None:
     with pytest.raises(RenderError, match=message):
         moment(scene.recording, **wanted)
 
 
-def gauge_at(scene: Scene, end: int) -> Gauge:
+def gauge_at(scene: RenderScene, end: int) -> Gauge:
     gauge = Gauge(scene)
     for samples, _ in deal(scene.recording, np.array([end])):
         gauge.add(samples)
@@ -74,7 +76,7 @@ def no_warning(_: int) -> str:
     return ""
 
 
-def test_display_reads_the_lag_where_nobody_compared(scene: Scene) -> None:
+def test_display_reads_the_lag_where_nobody_compared(scene: RenderScene) -> None:
     reading = gauge_at(scene, 601).reading(no_warning)
     # Two recorded positions, each rounded to its step.
     assert reading.error_um == pytest.approx(5.0, abs=1e3 * STEPS["joint/position"])
@@ -84,7 +86,7 @@ def test_display_reads_the_lag_where_nobody_compared(scene: Scene) -> None:
 
 
 def test_display_reads_contour_spindle_tool_and_the_screens_own_position(
-    make_recording: Record, spec: mujoco.MjSpec, machine: Machine
+    make_recording: Record, spec: mujoco.MjSpec, machine: MachineConfig
 ) -> None:
     summary = dataclasses.replace(
         SUMMARY,
@@ -95,7 +97,7 @@ def test_display_reads_contour_spindle_tool_and_the_screens_own_position(
         ),
     )
     with open_recording(make_recording(np.arange(1001.0))) as recording:
-        scene = Scene(
+        scene = RenderScene(
             recording=recording,
             spec=spec,
             machine=machine,
@@ -118,16 +120,18 @@ def red(picture: np.ndarray[Any, Any]) -> int:
 
 
 def test_alarms_are_shown_from_their_moment_on(
-    make_recording: Record, spec: mujoco.MjSpec, machine: Machine, tmp_path: Path
+    make_recording: Record, spec: mujoco.MjSpec, machine: MachineConfig, tmp_path: Path
 ) -> None:
     alarms: Sequence[tuple[float, str]] = [(0.5, "following error of X")]
     with open_recording(make_recording(alarms=alarms)) as recording:
-        scene = Scene(recording=recording, spec=spec, machine=machine, summary=SUMMARY, stock=STOCK)
+        scene = RenderScene(
+            recording=recording, spec=spec, machine=machine, summary=SUMMARY, stock=STOCK
+        )
         assert red(take(scene, tmp_path / "before.png", 401)) == 0
         assert red(take(scene, tmp_path / "after.png", 601)) > 1000
 
 
-def test_a_block_that_spoils_the_part_is_warned_of(scene: Scene, tmp_path: Path) -> None:
+def test_a_block_that_spoils_the_part_is_warned_of(scene: RenderScene, tmp_path: Path) -> None:
     spoiled = dataclasses.replace(
         scene, summary=dataclasses.replace(SUMMARY, rapid=np.ones(4, np.bool_))
     )
@@ -156,7 +160,7 @@ def test_load_bars_are_shares_of_what_tool_and_spindle_bear() -> None:
     assert bending.text.endswith(" µm")
 
 
-def test_load_bars_move_and_are_shown_only_where_force_was_simulated(scene: Scene) -> None:
+def test_load_bars_move_and_are_shown_only_where_force_was_simulated(scene: RenderScene) -> None:
     gauge = gauge_at(scene, 601)
     display, reading = gauge.display((1280, 720), None), gauge.reading(no_warning)
     assert reading.loads == ()
@@ -176,7 +180,7 @@ def test_load_bars_move_and_are_shown_only_where_force_was_simulated(scene: Scen
     assert [sum(row) for row in filled[1:]] == [green, amber, red_]
 
 
-def test_what_a_frame_shows_is_not_left_on_the_next(scene: Scene) -> None:
+def test_what_a_frame_shows_is_not_left_on_the_next(scene: RenderScene) -> None:
     gauge = gauge_at(scene, 601)
     display, reading = gauge.display((1280, 720), 2.0), gauge.reading(no_warning)
     other = dataclasses.replace(reading, position=reading.position + 123.4, tool=7, time_s=77.7)

@@ -9,15 +9,15 @@ from twin.serve.buffer import NORMAL, Condition
 from twin.serve.device import device_of
 from twin.serve.room import RoomObserver, observe_room
 from twin.training.scene.scene_file import read_scene, scene_path
-from twin.training.session.session import Session
+from twin.training.session.session import SceneSession
 
 
 @pytest.fixture
-def session() -> Session:
-    return Session(read_scene(scene_path("fagor_first_steps")))
+def session() -> SceneSession:
+    return SceneSession(read_scene(scene_path("fagor_first_steps")))
 
 
-def test_every_value_has_a_data_item(session: Session):
+def test_every_value_has_a_data_item(session: SceneSession):
     axes = session.room.machine.machine.axes
     items = {item.id for component in device_of("mill", axes).walk() for item in component.items}
     values = RoomObserver("part.nc").values(session.snapshot())
@@ -26,7 +26,7 @@ def test_every_value_has_a_data_item(session: Session):
     assert (values["execution"], values["system"], values["part_count"]) == ("READY", NORMAL, "0")
 
 
-def test_the_emergency_stop_is_a_fault_and_its_reset_ends_it(session: Session):
+def test_the_emergency_stop_is_a_fault_and_its_reset_ends_it(session: SceneSession):
     observer = RoomObserver("part.nc")
     session.submit({"do": "emergency_stop"})
     session.advance(5)
@@ -37,7 +37,7 @@ def test_the_emergency_stop_is_a_fault_and_its_reset_ends_it(session: Session):
     assert (values["system"].level, values["system"].code) == ("Fault", "emergency-stop")
 
 
-def test_a_trainers_fault_is_a_warning(session: Session):
+def test_a_trainers_fault_is_a_warning(session: SceneSession):
     fault = {"kind": "friction", "axis": "X", "value": 900.0}
     assert session.submit({"do": "inject", "fault": fault}, "trainer"), session.refusal
     told = RoomObserver("part.nc").values(session.snapshot())["system"]
@@ -46,8 +46,8 @@ def test_a_trainers_fault_is_a_warning(session: Session):
     assert "X" in told.text
 
 
-def test_reading_changes_nothing_of_the_motion(session: Session):
-    alone = Session(session.scene)
+def test_reading_changes_nothing_of_the_motion(session: SceneSession):
+    alone = SceneSession(session.scene)
     observer = RoomObserver("part.nc")
     agent = Agent(device_of("mill", session.room.machine.machine.axes), Clock(), "made up")
     for each in (session, alone):
@@ -61,7 +61,7 @@ def test_reading_changes_nothing_of_the_motion(session: Session):
     assert len(found) > 2
 
 
-def test_the_agent_looks_until_it_is_cancelled(session: Session):
+def test_the_agent_looks_until_it_is_cancelled(session: SceneSession):
     agent = Agent(device_of("mill", session.room.machine.machine.axes), Clock(), "made up")
 
     async def for_a_while() -> None:

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from twin.files.shipped import machine_file
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.load import read_machine
 from twin.toolpath.machine_geometry import geometry_from_text
 from twin.toolpath.part_frame import PartFrame
@@ -22,7 +22,7 @@ place = st.tuples(
 def frame_of(**geometry: object) -> PartFrame:
     shipped = read_machine(machine_file("mill4"))
     data = shipped.file.model_dump(by_alias=True) | {"geometry": geometry}
-    machine = Machine(shipped.path, type(shipped.file).model_validate(data))
+    machine = MachineConfig(shipped.path, type(shipped.file).model_validate(data))
     return machine.part_frame.at(ZERO, 0.0)
 
 

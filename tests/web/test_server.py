@@ -7,8 +7,9 @@ import time
 import pytest
 from starlette.responses import PlainTextResponse
 
+from twin.errors import UsageError
 from twin.web import server as server_module
-from twin.web.server import WebServer
+from twin.web.server import WebServer, server_of_views
 
 
 @pytest.fixture
@@ -74,3 +75,11 @@ def test_noise_does_not_stop_the_server(server, noise):
 def test_nobody_listens_on_any_other_address(server):
     with pytest.raises(OSError, match=r"refused|unreachable|timed out"):
         socket.create_connection(("127.0.0.2", server.port), timeout=2)
+
+
+def test_arguments_are_looked_at_before_the_view_s_library(tmp_path, monkeypatch):
+    monkeypatch.setattr(server_module, "THREE", tmp_path)
+    with pytest.raises(UsageError, match="certificate"):
+        server_of_views("0.0.0.0")  # noqa: S104 (that it is refused is the test)
+    with pytest.raises(UsageError, match="three"):
+        server_of_views()

@@ -267,10 +267,10 @@ class Result:
             yield "warning", f"{warning.code} (line {warning.line}): {warning.message}"
 
     def __repr__(self) -> str:
-        told = ", ".join(
+        listed = ", ".join(
             value if name == "verdict" else f"{name} {value}" for name, value in self._head()
         )
-        return f"<Result {self._name}: {told}>"
+        return f"<Result {self._name}: {listed}>"
 
     def _repr_html_(self) -> str:
         rows = [*self._head(), *(("", line) for line in self.outcome.scope.lines())]

@@ -56,10 +56,10 @@ def sweep(
     check = functools.partial(check_variant, settings=settings)
     outcomes: dict[tuple[object, ...], CheckOutcome] = {}
     with shown_progress() as shown:
-        told = shown if progress else no_progress
+        report = shown if progress else no_progress
         for outcome in run_tasks(tasks, check, jobs=jobs, cluster=cluster):
             outcomes[outcome.changes] = outcome
-            told("sweep", len(outcomes) / len(tasks))
+            report("sweep", len(outcomes) / len(tasks))
     return pd.DataFrame([_row(outcomes[task.changes]) for task in tasks])
 
 

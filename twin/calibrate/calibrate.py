@@ -8,7 +8,7 @@ import numpy as np
 from twin.calibrate.figures import figures_of
 from twin.calibrate.findings import LogFinding
 from twin.calibrate.fit.ball_bar import BallBarFit, fit_ball_bar
-from twin.calibrate.fit.parameters import Parameters, of_base
+from twin.calibrate.fit.parameters import AxisParameters, of_base
 from twin.calibrate.fit.slow import fit_slow
 from twin.calibrate.fit.solve import on_one_thread
 from twin.calibrate.fit.stages import OF_THE_LOG, AxisFit, fit_axis
@@ -21,7 +21,7 @@ from twin.calibrate.transmission import as_built, units_of, with_ball_bars, with
 from twin.errors import UsageError
 from twin.logs.ball_bar import BallBarLog
 from twin.logs.machine_log import MachineLog
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.description.machine_file import AxisTable
 from twin.machine.model.model import build_spec, compiled, drives
 from twin.units import AxisKind
@@ -31,7 +31,7 @@ _NO_LOG = "no log of the axis's positions was given"
 
 @on_one_thread
 def calibrate(
-    machine: Machine,
+    machine: MachineConfig,
     logs: Sequence[MachineLog],
     hold_out: Sequence[MachineLog] = (),
     axes: Sequence[str] = (),
@@ -71,8 +71,8 @@ def calibrate(
             masses[name], machine.file.servo_period_s,
         )  # fmt: skip
         for item in (item for item in own if not item.is_slow):
-            told = look_at_fit(name, fit.fitted, masses[name], filtered=item.is_filtered(name))
-            findings[item.log.name] += tuple(told)
+            noted = look_at_fit(name, fit.fitted, masses[name], filtered=item.is_filtered(name))
+            findings[item.log.name] += tuple(noted)
         figures += [
             figures_of(item, name, fit.parameters)
             for item in fitted + held
@@ -84,7 +84,7 @@ def calibrate(
 
 
 def _axes(
-    machine: Machine,
+    machine: MachineConfig,
     logs: Sequence[PreparedLog],
     wanted: Sequence[str],
     circles: Sequence[BallBarFit],
@@ -102,13 +102,13 @@ def _axes(
     return [name for name in machine.axes.names if name in (wanted or logged)]
 
 
-def _masses(machine: Machine) -> dict[str, float]:
+def _masses(machine: MachineConfig) -> dict[str, float]:
     found = drives(machine, compiled(build_spec(machine), machine))
     return {name: drive.moved for name, drive in zip(machine.axes.names, found, strict=True)}
 
 
 def _axis_findings(
-    machine: Machine, item: PreparedLog, names: Sequence[str]
+    machine: MachineConfig, item: PreparedLog, names: Sequence[str]
 ) -> tuple[LogFinding, ...]:
     """Refuse what cannot be, tell what is poor."""
     found: list[LogFinding] = []
@@ -132,13 +132,13 @@ def _axis_findings(
         found += look_at_axis(name, axis, item.health)
         rows = sum(end - begin for begin, end in item.rows(name))
         if not item.is_slow and item.role == FIT and rows > MOST_FITTED:
-            told = f"{name}: of {rows} samples the {MOST_FITTED} in which it moves most are fitted; all are judged"
-            found.append(LogFinding("long", told))
+            message = f"{name}: of {rows} samples the {MOST_FITTED} in which it moves most are fitted; all are judged"
+            found.append(LogFinding("long", message))
     return tuple(found)
 
 
 def _fit(
-    kind: AxisKind, name: str, logs: Sequence[PreparedLog], base: Parameters, fastest: float
+    kind: AxisKind, name: str, logs: Sequence[PreparedLog], base: AxisParameters, fastest: float
 ) -> AxisFit:
     fast = [item for item in logs if not item.is_slow]
     if not logs:

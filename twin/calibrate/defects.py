@@ -83,8 +83,8 @@ def find_defects(
                 )
             )
     stale = {column: _stale(values, rows) for column, values in columns.items()}
-    held, told = _held(name, time, stale, sound)
-    findings += told
+    held, gaps = _held(name, time, stale, sound)
+    findings += gaps
     for role in ("force", "current"):
         if role in axis.more:
             findings += _cut_off(name, axis.more[role], units[role], time, sound)
@@ -164,14 +164,15 @@ def _held(
         if share > _HELD:
             held = True
             length = len(repeats) / max(1, np.count_nonzero(~repeats)) * period * 1e3
-            told = f"has a new value every {length:.3g} ms only, and repeats it between"
+            message = f"has a new value every {length:.3g} ms only, and repeats it between"
         else:
-            told = (
+            message = (
                 f"repeats the sample before in {np.count_nonzero(repeats)} rows, first row {first}"
             )
         findings.append(
             LogFinding(
-                "repeated", f"{name}: {column} {told}; repetitions are left out, as no measurements"
+                "repeated",
+                f"{name}: {column} {message}; repetitions are left out, as no measurements",
             )
         )
     return held, findings
@@ -228,12 +229,12 @@ def _one_reference(
     )
     unit = "mm" if axis.kind == "linear" else "deg"
     jumps = ", ".join(f"{size:+.4g} {unit} in row {row + 1}" for row, size in lost[:3])
-    told = (
+    message = (
         f"{name}: actual position loses its reference: it jumps by {jumps}"
         f"{f' and {len(lost) - 3} times more' if len(lost) > 3 else ''}, and stays there; rows "
         f"{begin + 1} to {end}, the longest that count from one zero, are fitted"
     )
-    return kept, [LogFinding("reference", told)]
+    return kept, [LogFinding("reference", message)]
 
 
 def _jumps(lag: FloatArray, first: int) -> list[tuple[int, float]]:

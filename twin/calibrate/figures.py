@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twin.calibrate.fit.parameters import Parameters
+from twin.calibrate.fit.parameters import AxisParameters
 from twin.calibrate.fit.ramps import predict_ramp
 from twin.calibrate.fit.slow import slow_force
 from twin.calibrate.fit.stretch import Stretch, predict
@@ -19,7 +19,7 @@ _SEEN_MOVING = 0.02
 _NOTHING = np.zeros(0)
 
 
-def figures_of(item: PreparedLog, name: str, parameters: Parameters) -> LogFigures:
+def figures_of(item: PreparedLog, name: str, parameters: AxisParameters) -> LogFigures:
     """Run the model along an axis of a log and compare."""
     if item.is_slow:
         return _slow_figures(item, name, parameters)
@@ -74,7 +74,7 @@ def _joined(parts: Iterable[_Judged], most: int) -> _Judged:
     return _Judged(*(column[:count] for column, count in zip(columns, filled, strict=True)))
 
 
-def _judged(parameters: Parameters, piece: Stretch) -> _Judged:
+def _judged(parameters: AxisParameters, piece: Stretch) -> _Judged:
     model, speed = predict(parameters, piece), piece.command.kinematics[:, 0]
     lag_model = (piece.asked - model.actual)[piece.seen]
     positions = (piece.time[piece.seen], piece.lag, lag_model, speed[piece.seen])
@@ -87,7 +87,7 @@ def _judged(parameters: Parameters, piece: Stretch) -> _Judged:
     )
 
 
-def _slow_figures(item: PreparedLog, name: str, parameters: Parameters) -> LogFigures:
+def _slow_figures(item: PreparedLog, name: str, parameters: AxisParameters) -> LogFigures:
     slow, axis = item.slow(name), item.log.axes[name]
     logged = np.array([ramp.lag for ramp in slow.ramps])
     model = np.array([predict_ramp(parameters, ramp).lag for ramp in slow.ramps])

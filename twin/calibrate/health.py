@@ -125,7 +125,7 @@ def look_at_clock(log: MachineLog) -> Health:
 
 def _slow(log: MachineLog, period: float) -> LogFinding:
     """What a slow log does not tell, and what else would have to be logged for it to tell more."""
-    told = (
+    message = (
         f"{1 / period:.3g} samples a second are too few for the dynamics of a drive; what can still be "
         "fitted: the lag as a whole, friction where a force is logged, and ramps where velocities are logged"
     )
@@ -134,8 +134,8 @@ def _slow(log: MachineLog, period: float) -> LogFinding:
     }
     without = "; ".join(f"{name} {', '.join(roles)}" for name, roles in lacking.items() if roles)
     if without:
-        told += f"; columns for ramps that the map lacks: {without}"
-    return LogFinding("slow", told)
+        message += f"; columns for ramps that the map lacks: {without}"
+    return LogFinding("slow", message)
 
 
 def _period(rising: FloatArray) -> float:

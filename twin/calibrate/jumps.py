@@ -55,9 +55,9 @@ def look_at_jumps(log: MachineLog, jumps: BoolArray) -> list[LogFinding]:
     }
     name = max(sizes, key=lambda one: abs(sizes[one]))
     unit = "mm" if log.axes[name].kind == "linear" else "deg"
-    told = (
+    message = (
         f"positions jump {np.count_nonzero(jumps)} times as no axis moves, first from row {first + 1} to "
         f"{first + 2} ({name} by {sizes[name]:+.4g} {unit} in one sample): the logger repeated other rows "
         "or lost some; speeds are not taken from positions there"
     )
-    return [LogFinding("jump", told)]
+    return [LogFinding("jump", message)]

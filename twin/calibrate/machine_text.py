@@ -4,7 +4,7 @@ import dataclasses
 import math
 from collections.abc import Iterator
 
-from twin.calibrate.fit.parameters import Parameters
+from twin.calibrate.fit.parameters import AxisParameters
 from twin.calibrate.fit.solve import Interval
 from twin.calibrate.fit.stages import OF_THE_LOG
 from twin.calibrate.result import AxisResult, Calibration
@@ -50,7 +50,7 @@ def _axis_lines(axis: AxisResult) -> Iterator[str]:
     give = list(_give_lines(axis))
     gives = any(not line.startswith("#") for line in give)
     known = set(AxisTable.model_fields)
-    for field in dataclasses.fields(Parameters):
+    for field in dataclasses.fields(AxisParameters):
         name, value = field.name, getattr(fit.parameters, field.name)
         if name == "mass" and name in fit.fitted and gives:
             yield _motor_line(axis)
@@ -59,8 +59,8 @@ def _axis_lines(axis: AxisResult) -> Iterator[str]:
         elif name in fit.conditional and name in known:
             interval, given = fit.conditional[name]
             stands_on = " and ".join(given)
-            told = _span(interval, axis.units[name])
-            yield f"{name} = {_number(value)}    # {told}, given the {stands_on}"
+            span = _span(interval, axis.units[name])
+            yield f"{name} = {_number(value)}    # {span}, given the {stands_on}"
             if "current_scale" in given and name == "dry_friction":
                 scale = _number(fit.parameters.current_scale)
                 yield f"current_scale = {scale}    # not determined: what the friction stands on"
@@ -86,13 +86,13 @@ def _axis_lines(axis: AxisResult) -> Iterator[str]:
 
 def _give_lines(axis: AxisResult) -> Iterator[str]:
     """Backlash and stiffness, as far as they are there and can be simulated."""
-    told = axis.fit.fitted | {name: pair[0] for name, pair in axis.fit.conditional.items()}
-    if "backlash" in told:
-        interval = told["backlash"]
+    known = axis.fit.fitted | {name: pair[0] for name, pair in axis.fit.conditional.items()}
+    if "backlash" in known:
+        interval = known["backlash"]
         span = _span(interval, axis.units["backlash"])
         yield f"backlash = {_number(interval.value)}    # {span}"
-    if "stiffness" in told:
-        interval = told["stiffness"]
+    if "stiffness" in known:
+        interval = known["stiffness"]
         span = _span(interval, axis.units["stiffness"])
         if interval.value < stiffest(axis.base, axis.moved, axis.period_s):
             yield f"stiffness = {_number(interval.value)}    # {span}"

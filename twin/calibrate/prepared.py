@@ -148,8 +148,8 @@ def prepared(log: MachineLog, role: str) -> PreparedLog:
     if health.period_s > SLOW_S:
         cycle = find_cycle(log, health.stretches) if axes_with_ramps(log) else 0.0
         jumps = look_at_jumps(log, jumps_of(log, health.period_s))
-        told = dataclasses.replace(health, findings=(*health.findings, *jumps))
-        return PreparedLog(log, role, told, cycle, {})
+        extended = dataclasses.replace(health, findings=(*health.findings, *jumps))
+        return PreparedLog(log, role, extended, cycle, {})
     defects = {
         name: find_defects(name, axis, log.time, health.stretches)
         for name, axis in log.axes.items()

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from twin.files.atomic import write_text
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.nc.canonical import SPATIAL_AXES
 from twin.units import SECONDS_PER_MINUTE
 
@@ -86,7 +86,7 @@ WORDINGS = {
 }
 
 
-def write_programs(machine: Machine, folder: Path, named: str = "") -> list[Path]:
+def write_programs(machine: MachineConfig, folder: Path, named: str = "") -> list[Path]:
     """Write the test programs of a machine, one in each dialect, each with its job file.
 
     Args:
@@ -106,7 +106,7 @@ def write_programs(machine: Machine, folder: Path, named: str = "") -> list[Path
     return written
 
 
-def _lines(machine: Machine, wording: Wording) -> Iterator[str]:
+def _lines(machine: MachineConfig, wording: Wording) -> Iterator[str]:
     yield from wording.first
     yield _comment(wording, "test motions in the air: no tool, nothing on the table")
     zero = " ".join(f"{axis}{_zero(machine, axis):g}" for axis in SPATIAL_AXES)
@@ -143,14 +143,14 @@ def _dwell(wording: Wording, seconds: float = _DWELL_S) -> str:
 
 
 def _feed(
-    wording: Wording, machine: Machine, feed: float, axes: Sequence[str] = SPATIAL_AXES
+    wording: Wording, machine: MachineConfig, feed: float, axes: Sequence[str] = SPATIAL_AXES
 ) -> float:
     slowest = min(machine.axis(name).velocity for name in axes) * SECONDS_PER_MINUTE
     value = min(feed, slowest)
     return value / SECONDS_PER_MINUTE if wording.per_second else value
 
 
-def _ends(machine: Machine, axis: str) -> tuple[float, float]:
+def _ends(machine: MachineConfig, axis: str) -> tuple[float, float]:
     """Where the strokes of an axis turn round, program coordinates [mm or deg]."""
     travel = machine.axis(axis).travel
     if axis not in SPATIAL_AXES:
@@ -170,7 +170,7 @@ def _turned(travel: tuple[float, float] | None) -> tuple[float, float]:
     return middle - half, middle + half
 
 
-def _zero(machine: Machine, axis: str) -> float:
+def _zero(machine: MachineConfig, axis: str) -> float:
     """Where part zero is to be set, machine coordinates [mm]."""
     travel = machine.axis(axis).travel
     if travel is None:
@@ -184,7 +184,7 @@ def _home(axis: str) -> float:
     return _CLEAR if axis == "Z" else 0.0
 
 
-def _strokes(machine: Machine, wording: Wording, axis: str) -> Iterator[str]:
+def _strokes(machine: MachineConfig, wording: Wording, axis: str) -> Iterator[str]:
     low, high = _ends(machine, axis)
     axes = SPATIAL_AXES if axis in SPATIAL_AXES else axis
     yield _comment(wording, f"strokes of {axis}")
@@ -205,7 +205,7 @@ def _strokes(machine: Machine, wording: Wording, axis: str) -> Iterator[str]:
     yield _dwell(wording)
 
 
-def _turns(machine: Machine, wording: Wording) -> Iterator[str]:
+def _turns(machine: MachineConfig, wording: Wording) -> Iterator[str]:
     """Strokes of the rotary axes, one after the other."""
     rotary = [name for name in machine.axes.names if name not in SPATIAL_AXES]
     if rotary:
@@ -216,7 +216,7 @@ def _turns(machine: Machine, wording: Wording) -> Iterator[str]:
         yield _line(wording, "G0", Z=_CLEAR)
 
 
-def _circles(machine: Machine, wording: Wording) -> Iterator[str]:
+def _circles(machine: MachineConfig, wording: Wording) -> Iterator[str]:
     radius = min(_ends(machine, "X")[1], _ends(machine, "Y")[1], 50.0)
     yield _comment(wording, "circles both ways")
     yield _line(wording, "G0", X=radius, Y=0.0)
@@ -227,7 +227,7 @@ def _circles(machine: Machine, wording: Wording) -> Iterator[str]:
             yield _dwell(wording)
 
 
-def _square(machine: Machine, wording: Wording) -> Iterator[str]:
+def _square(machine: MachineConfig, wording: Wording) -> Iterator[str]:
     half = min(_ends(machine, "X")[1], _ends(machine, "Y")[1], 25.0)
     yield _comment(wording, "a square with exact stops")
     yield _line(wording, "G0", X=-half, Y=-half)
@@ -241,7 +241,7 @@ def _square(machine: Machine, wording: Wording) -> Iterator[str]:
         yield wording.exact[1]
 
 
-def _rapids(machine: Machine, wording: Wording) -> Iterator[str]:
+def _rapids(machine: MachineConfig, wording: Wording) -> Iterator[str]:
     ends = {axis: _ends(machine, axis) for axis in SPATIAL_AXES}
     yield _comment(wording, "rapids of three axes")
     for _ in range(_RAPIDS):

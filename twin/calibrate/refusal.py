@@ -61,12 +61,12 @@ def refuse_wrong_log(
     _refuse_speed(place, axis, base, period_s, unit)
     ratio, lead, left = straight_law(axis, period_s)
     if abs(ratio - 1.0) > _RIGHT:
-        told = next(
+        wrong_unit = next(
             (what for known, what in _KNOWN_RATIOS.items() if abs(ratio / known - 1.0) < 0.03), None
         )
-        if told is not None and left < _FOLLOWS:
+        if wrong_unit is not None and left < _FOLLOWS:
             raise UsageError(
-                f"{place}: actual moves {ratio:.4g} times as far as command: one of them is in {told}; "
+                f"{place}: actual moves {ratio:.4g} times as far as command: one of them is in {wrong_unit}; "
                 "give it its own unit or scale in the map"
             )
     _refuse_jumps(place, axis, period_s, abs(ratio), unit)

@@ -123,7 +123,7 @@ class LogFigures:
     def as_contract(self) -> dict[str, object]:
         """As ``--json`` writes it."""
         unit = "um" if self.kind == "linear" else "mdeg"
-        told: dict[str, object] = {
+        data: dict[str, object] = {
             "log": self.log,
             "role": self.role,
             "axis": self.axis,
@@ -133,16 +133,16 @@ class LogFigures:
         }
         for name in ("force_share", "current_correlation"):
             if getattr(self, name) is not None:
-                told[name] = getattr(self, name)
+                data[name] = getattr(self, name)
         if self.ramps is not None:
             unit = "mm_per_s" if self.kind == "linear" else "deg_per_s"
-            told |= {
+            data |= {
                 f"velocity_logged_rms_{unit}": self.ramps.logged_rms,
                 f"velocity_left_rms_{unit}": self.ramps.left_rms,
                 "velocity_share": self.ramps.share,
                 "ramps": self.ramps.ramps,
             }
-        return told
+        return data
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -216,7 +216,7 @@ def _axis_contract(axis: AxisResult) -> dict[str, object]:
 
 
 def _ball_bar_contract(circle: BallBarFit) -> dict[str, object]:
-    told: dict[str, object] = {
+    data: dict[str, object] = {
         "log": circle.log,
         "plane": circle.plane,
         "lost_motion": {
@@ -226,8 +226,8 @@ def _ball_bar_contract(circle: BallBarFit) -> dict[str, object]:
         "left_rms_um": circle.left_rms * 1e3,
     }
     if circle.squareness is None or circle.lag is None:
-        return told | {"undetermined": dict.fromkeys(("squareness", "lag_mismatch"), ONE_DIRECTION)}
-    return told | {
+        return data | {"undetermined": dict.fromkeys(("squareness", "lag_mismatch"), ONE_DIRECTION)}
+    return data | {
         "squareness": _interval_contract(circle.squareness, "um/m"),
         "lag_mismatch": _interval_contract(circle.lag, "s"),
     }
@@ -254,8 +254,8 @@ def verdict_sentence(name: str, axis: AxisResult, logs: tuple[LogFigures, ...]) 
     ramps = sum(figures.ramps.ramps for figures in judged if figures.ramps is not None)
     what = f"lag of velocity in {ramps} ramps" if ramps else "lag"
     if not judged:
-        told = ", ".join(axis.fit.fitted) or "nothing"
-        return f"{name}: of a ball-bar alone, which tells {told}."
+        names = ", ".join(axis.fit.fitted) or "nothing"
+        return f"{name}: of a ball-bar alone, which tells {names}."
     shares = max((figures.judged_share for figures in judged), default=math.inf)
     seen = "of a log that it has not seen" if unseen else "of the fitted log"
     left = f"{100 * shares:.3g} %"
@@ -271,9 +271,9 @@ def verdict_sentence(name: str, axis: AxisResult, logs: tuple[LogFigures, ...]) 
             f", but leaves {100 * (forces[0].force_share or 0.0):.0f} % of the force unexplained"
         )
     open_ones = [
-        told
-        for told, why in axis.fit.undetermined.items()
-        if told not in axis.fit.conditional and why != NOT_ASKED
+        parameter
+        for parameter, why in axis.fit.undetermined.items()
+        if parameter not in axis.fit.conditional and why != NOT_ASKED
     ]
     if not open_ones:
         return f"{sentence}; nothing is undetermined."

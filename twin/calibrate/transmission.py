@@ -9,7 +9,7 @@ from twin.calibrate.fit.parameters import coordinates
 from twin.calibrate.fit.solve import Interval
 from twin.calibrate.fit.stages import AxisFit
 from twin.calibrate.prepared import PreparedLog
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.description.machine_file import AxisTable
 from twin.machine.model.drives import reflected_inertia
 from twin.units import AxisKind
@@ -27,7 +27,7 @@ def units_of(kind: AxisKind) -> dict[str, str]:
 
 
 def with_give(
-    machine: Machine, name: str, fit: AxisFit, logs: Sequence[PreparedLog], moved: float
+    machine: MachineConfig, name: str, fit: AxisFit, logs: Sequence[PreparedLog], moved: float
 ) -> AxisFit:
     """A fit with backlash and stiffness, where a second encoder tells them.
 
@@ -125,11 +125,11 @@ def as_built(axis: AxisTable, fit: AxisFit) -> AxisFit:
     """A fit without what an axis cannot have that has no screw; it is named."""
     if axis.lead:
         return fit
-    told = {name: interval for name, (interval, _) in fit.conditional.items()} | fit.fitted
+    known = {name: interval for name, (interval, _) in fit.conditional.items()} | fit.fitted
     undetermined = dict(fit.undetermined)
-    for name in {"backlash", "stiffness"} & set(told):
+    for name in {"backlash", "stiffness"} & set(known):
         undetermined[name] = (
-            f"the log has {told[name].value:.4g} {units_of(axis.kind)[name]}, but the base's axis has no "
+            f"the log has {known[name].value:.4g} {units_of(axis.kind)[name]}, but the base's axis has no "
             "'lead', and nothing gives in an axis without a screw"
         )
     gone = ("backlash", "stiffness")

@@ -1,26 +1,25 @@
 """Which jobs and programs have to do with files that a commit changes.
 
-What a run reads is what it depends on: its job with all that it shares settings with, its machine with what that is
-based on, the files that these name, its program, and the files beside it that the program calls. Where that cannot
-be told without running it, it counts as dependent.
+What a run reads is what it depends on: what the loaders of its job and its machine look at, the parts of the machine's
+model, its program, and the files beside it that the program calls. Where that cannot be told without running it, it
+counts as dependent.
 """
 
+import contextlib
 import re
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
-from typing import Any
 
 from twin.check.discovery import NC_SUFFIXES, is_program, program_of, programs_in
 from twin.errors import TwinError
-from twin.files.shipped import machine_file
-from twin.files.toml import load_toml
-from twin.job.load import SHARED_NAME
+from twin.files.looked_at import files_looked_at
+from twin.job.load import load_job
+from twin.machine.load import load_machine
 
 CALLED_SUFFIXES = NC_SUFFIXES | {"", ".prg", ".txt"}
 """What a file may end in that a program calls beside it."""
 MODEL_SUFFIXES = frozenset({".xml", ".mjcf", ".stl", ".obj", ".msh", ".png", ".hf"})
 """Of the files that an MJCF model is made of (MuJoCo, "XML reference", include, mesh, texture and hfield)."""
-LONGEST_PATH = 1000
 BASELINE_SUFFIX = ".baseline"
 _NUMBERED = re.compile(r"O?0*([0-9]{1,8})")
 _DECORATION = re.compile(r"^_N_|_[MS]PF$|\s")
@@ -102,55 +101,18 @@ def _mention(stem: str) -> Callable[[bytes], bool]:
     return lambda text: name.encode() in re.sub(rb"[ \t]", b"", text)
 
 
-# --- files that jobs and machines name
+# --- files that a run reads
 
 
-def _reads(path: Path, changed: Collection[Path], machine: str | None) -> bool:
+def _reads(path: Path, changed: set[Path], machine: str | None) -> bool:
     """Whether the run of a job, or of a program that has none, reads one of some files, there or gone.
 
-    A text in a TOML file that is the path of a file is one that is read, seen from the TOML file or from the job.
+    A job that cannot be loaded depends on what loading it has looked at, and on no more.
     """
-    folder = path.resolve().parent
-    shared = [place / SHARED_NAME for place in (folder, *folder.parents)]
-    waiting = [path.resolve(), *shared]
-    if machine is not None:
-        waiting += _machine_files(machine, Path())
-    read = set[Path]()
-    while waiting:
-        file = waiting.pop()
-        if file in changed:
-            return True
-        if file in read or file.suffix != ".toml" or not file.is_file():
-            continue
-        read.add(file)
-        try:
-            data = load_toml(file)
-        except TwinError:
-            return True
-        waiting += (place / text for text in _texts_in(data) for place in (file.parent, folder))
-        for name in (data.get("machine"), data.get("base")):
-            if isinstance(name, str):
-                waiting += _machine_files(name, file.parent)
-        if isinstance(data.get("model"), str):
-            model = (file.parent / data["model"]).resolve().parent
-            parts = [each for each in changed if each.suffix.lower() in MODEL_SUFFIXES]
-            if any(each.is_relative_to(model) for each in parts):
-                return True
-        waiting = [each.resolve() for each in waiting]
-    return False
-
-
-def _machine_files(name: str, folder: Path) -> list[Path]:
-    """Where a machine's file lies or lay."""
-    try:
-        return [machine_file(name, beside=folder).resolve()]
-    except TwinError:
-        return [(folder / name).resolve(), (folder / name / "machine.toml").resolve()]
-
-
-def _texts_in(value: Any) -> Iterator[str]:
-    if isinstance(value, dict | list):
-        for inner in value.values() if isinstance(value, dict) else value:
-            yield from _texts_in(inner)
-    elif isinstance(value, str) and len(value) <= LONGEST_PATH:
-        yield value
+    with files_looked_at() as files, contextlib.suppress(TwinError):
+        load_machine(load_job(path), machine)
+    models = [file.parent for file in files if file.suffix in MODEL_SUFFIXES]
+    parts = [each for each in changed if each.suffix.lower() in MODEL_SUFFIXES]
+    return not files.isdisjoint(changed) or any(
+        part.is_relative_to(model) for part in parts for model in models
+    )

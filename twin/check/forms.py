@@ -44,12 +44,12 @@ def summary_line(outcomes: Sequence[CheckOutcome]) -> str:
     for outcome in outcomes:
         counts[outcome.verdict] += 1
     expected = sum(outcome.expected is not None for outcome in outcomes)
-    told = ", ".join(f"{count} {name}" for name, count in counts.items() if count)
-    told += f" ({expected} of them fail as their jobs expect)" if expected else ""
+    listed = ", ".join(f"{count} {name}" for name, count in counts.items() if count)
+    listed += f" ({expected} of them fail as their jobs expect)" if expected else ""
     warnings = sum(len(outcome.warnings) for outcome in outcomes)
     noun = "program" if len(outcomes) == 1 else "programs"
     counted = f"; {warnings} {'warning' if warnings == 1 else 'warnings'}" if warnings else ""
-    return f"{len(outcomes)} {noun}: {told or 'none'}{counted}"
+    return f"{len(outcomes)} {noun}: {listed or 'none'}{counted}"
 
 
 def junit_xml(outcomes: Sequence[CheckOutcome]) -> str:
@@ -88,14 +88,14 @@ def _add_case(suite: ET.Element, outcome: CheckOutcome) -> None:
         about = {"type": first.code, "message": _printable(first.message)}
         problem = ET.SubElement(case, kind, about)
         problem.text = _printable("\n".join(str(finding) for finding in outcome.findings))
-    told = [*(f"{key}: {value}" for key, value in figures(outcome)), *outcome.scope]
-    told = (
-        told
+    listed = [*(f"{key}: {value}" for key, value in figures(outcome)), *outcome.scope]
+    listed = (
+        listed
         if outcome.expected is None
-        else [f"ended as its job expects: {outcome.expected}", *told]
+        else [f"ended as its job expects: {outcome.expected}", *listed]
     )
-    if told:
-        ET.SubElement(case, "system-out").text = _printable("\n".join(told))
+    if listed:
+        ET.SubElement(case, "system-out").text = _printable("\n".join(listed))
     if outcome.warnings:
         text = "\n".join(str(warning) for warning in outcome.warnings)
         ET.SubElement(case, "system-err").text = _printable(text)

@@ -72,7 +72,9 @@ def train(
         return
     if rehearse:
         raise typer.Exit(room.rehearse_and_print(scene))
-    place = room.Place(language=language, host=host, port=port, certificate=certificate, key=key)
+    place = room.PageAddress(
+        language=language, host=host, port=port, certificate=certificate, key=key
+    )
     if roster is not None or seats is not None:
         room.teach(scene, roster, seats, place, out, cluster)
         return

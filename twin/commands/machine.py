@@ -9,7 +9,7 @@ from twin.compilation.announcement import announce_compilation
 from twin.errors import ExitCode, UsageError
 from twin.files.shipped import machine_file
 from twin.machine.describe import MachineFacts, describe, shipped_machines
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.description.kinematics import in_words
 from twin.machine.load import read_machine
 
@@ -111,7 +111,7 @@ def print_circle(
     sys.stdout.write("\n".join([*_circle_lines(result), f"plot                 {plot}"]) + "\n")
 
 
-def _machine(name: str) -> Machine:
+def _machine(name: str) -> MachineConfig:
     return read_machine(machine_file(name))
 
 

@@ -104,5 +104,5 @@ def _plane(arc: BaselineEntry) -> str:
 
 
 def _turn(arc: BaselineEntry) -> str:
-    way = "counter-clockwise" if arc.value > 0.0 else "clockwise"
-    return f"{way} by {number(abs(arc.value))} degrees"
+    turning = "counter-clockwise" if arc.value > 0.0 else "clockwise"
+    return f"{turning} by {number(abs(arc.value))} degrees"

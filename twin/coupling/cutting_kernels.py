@@ -56,7 +56,7 @@ class Cut(NamedTuple):
     place: PartTransform
 
 
-class Swept(NamedTuple):
+class CutProgress(NamedTuple):
     """How far the height map is cut; carried from one period to the next.
 
     Attributes:
@@ -71,10 +71,10 @@ class Swept(NamedTuple):
     marks: Marks
 
 
-def nothing_swept() -> Swept:
+def nothing_swept() -> CutProgress:
     """Of a tool that has been nowhere."""
     marks = Marks(np.zeros((0, 0)), np.zeros(1))
-    return Swept(np.zeros((2, 3)), no_trace(), np.zeros((1, 2, 4)), marks)
+    return CutProgress(np.zeros((2, 3)), no_trace(), np.zeros((1, 2, 4)), marks)
 
 
 @threaded_kernel
@@ -85,7 +85,7 @@ def follow_cutting(
     commanded: FloatArray,
     cut: Cut,
     memory: Memory,
-    swept: Swept,
+    swept: CutProgress,
     loads: ToolLoads,
 ) -> None:
     """Step the machine from setpoint to setpoint while its tool cuts.
@@ -118,7 +118,7 @@ def follow_cutting(
 
 @kernel
 def _go_to(
-    physics: Physics, state: FloatArray, cut: Cut, memory: Memory, swept: Swept
+    physics: Physics, state: FloatArray, cut: Cut, memory: Memory, swept: CutProgress
 ) -> tuple[float, float]:
     """Move the rigid tool's tip to where the axes are; cosine and sine of the part's turn."""
     drives, numbers, place = physics.drives, memory.numbers, cut.place
@@ -147,7 +147,7 @@ def _go_to(
 
 
 @array_kernel
-def _look(period: float, cut: Cut, memory: Memory, swept: Swept) -> None:
+def _look(period: float, cut: Cut, memory: Memory, swept: CutProgress) -> None:
     """Cut up to where the tool is and look at what is before it, where it has gone far enough."""
     numbers, tips, feed = memory.numbers, swept.tips, memory.feed
     changed, moved = feed_changed(time_of_tooth(period, cut.tool, memory), memory), 0.0

@@ -9,7 +9,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from twin.coupling.spindle_kernels import SpindleDrive
-from twin.coupling.turning_tool import CutNumber, Edge, ToolLoads, TurningTool, new_memory
+from twin.coupling.turning_tool import CutNumber, EdgeState, ToolLoads, TurningTool, new_memory
 from twin.cutting.forces.cutter_form import cutter_form, force_law
 from twin.cutting.forces.materials import Kienzle
 from twin.cutting.forces.tool_strength import ToolStrength, tool_strength
@@ -179,29 +179,29 @@ class CuttingProcess(abc.ABC):
         self._tool = tool
         self.lift()
         broken = any(found.tool == tool.number for found in self.breaks)
-        self._memory.numbers[CutNumber.EDGE] = Edge.BY_FORCE if broken else Edge.WHOLE
+        self._memory.numbers[CutNumber.EDGE] = EdgeState.BY_FORCE if broken else EdgeState.WHOLE
 
     def _note_break(
         self, tool: ToolTable, strength: ToolStrength, setpoints: Setpoints, state: FloatArray
     ) -> None:
-        row = int(np.argmax(state != Edge.WHOLE)) if len(state) else 0
+        row = int(np.argmax(state != EdgeState.WHOLE)) if len(state) else 0
         known = any(found.tool == tool.number for found in self.breaks)
-        if not len(state) or state[row] == Edge.WHOLE or known:
+        if not len(state) or state[row] == EdgeState.WHOLE or known:
             return
         value, why = float(self._memory.numbers[CutNumber.VALUE]), int(state[row])
-        if why == Edge.BY_CHIP:
+        if why == EdgeState.BY_CHIP:
             reason = (
                 f"a chip of {value:.3g} mm was thicker than the {strength.chip:.3g} mm it bears"
             )
-        elif why == Edge.BY_FORCE:
+        elif why == EdgeState.BY_FORCE:
             reason = (
                 f"a force of {value:.0f} N was greater than the {strength.force:.0f} N it bears"
             )
-        elif why == Edge.BY_TORQUE:
+        elif why == EdgeState.BY_TORQUE:
             reason = (
                 f"a torque of {value:.3g} Nm was greater than the {strength.torque:.3g} Nm it bears"
             )
-        elif why == Edge.BY_THRUST:
+        elif why == EdgeState.BY_THRUST:
             reason = (
                 f"a thrust of {value:.0f} N was greater than the {strength.thrust:.0f} N it bears"
             )
@@ -211,7 +211,12 @@ class CuttingProcess(abc.ABC):
         self.breaks.append(ToolBreak(tool.number, line, time, reason))
 
     def _watch_spindle(
-        self, setpoints: Setpoints, told: FloatArray, loads: ToolLoads, rows: slice, period: float
+        self,
+        setpoints: Setpoints,
+        commanded: FloatArray,
+        loads: ToolLoads,
+        rows: slice,
+        period: float,
     ) -> None:
         """Raise the alarm of a spindle that stalls, or that gives too much for too long."""
         load, speed = loads.spindle_load[rows], np.abs(loads.spindle_speed[rows])
@@ -222,7 +227,7 @@ class CuttingProcess(abc.ABC):
             self._overloaded_s = self._overloaded_s + period if over else 0.0
             place = int(setpoints.line[row]), float(setpoints.time[row])
             asked = f"it asks for {100.0 * load[row]:.0f} % of its torque"
-            if over and speed[row] < STALLED_SHARE * abs(told[row]):
+            if over and speed[row] < STALLED_SHARE * abs(commanded[row]):
                 self.alarm = Alarm(
                     "spindle-stall", *place, "", f"the cut stalled the spindle: {asked}"
                 )
@@ -257,4 +262,4 @@ _SPATIAL = ("force", "deflection")
 
 
 def _load(loads: ToolLoads) -> ToolLoad:
-    return ToolLoad(**{**loads._asdict(), "broken": loads.broken != Edge.WHOLE})
+    return ToolLoad(**{**loads._asdict(), "broken": loads.broken != EdgeState.WHOLE})

@@ -13,7 +13,7 @@ from twin.cutting.program_summary import ProgramSummary
 from twin.cutting.tools import default_cell
 from twin.cutting.tridexel import blanks
 from twin.job.job_file import JobFile, StockTable, ToolTable
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
 from twin.toolpath.part_frame import PartFrame
@@ -45,12 +45,12 @@ class ProgramOperation:
         place = np.maximum(setpoints.move + np.clip(setpoints.fraction, 0.0, 1.0), 0.0)
         speed = self._speed[np.searchsorted(self._first_move, place, side="right") - 1]
         for rows, tool in self._tools.runs(setpoints.move):
-            told = np.full(rows.stop - rows.start, _known(tool.speed))
+            commanded = np.full(rows.stop - rows.start, _known(tool.speed))
             yield SpindleTurning(
                 rows,
                 tool,
                 self._tools.length_difference(tool),
-                told if self._silent else speed[rows],
+                commanded if self._silent else speed[rows],
             )
 
 
@@ -75,8 +75,10 @@ class OperatorOperation:
     def turnings(self, setpoints: Setpoints) -> Iterator[SpindleTurning]:
         """All setpoints at once; see ``Operation``."""
         if len(setpoints):
-            told = np.full(len(setpoints), _known(self.speed))
-            yield SpindleTurning(slice(0, len(setpoints)), self.tool, self.length_difference, told)
+            commanded = np.full(len(setpoints), _known(self.speed))
+            yield SpindleTurning(
+                slice(0, len(setpoints)), self.tool, self.length_difference, commanded
+            )
 
 
 def _known(speed: float | None) -> float:
@@ -91,7 +93,7 @@ def speeds_are_known(summary: ProgramSummary) -> bool:
 
 def program_process(
     job: JobFile,
-    machine: Machine,
+    machine: MachineConfig,
     summary: ProgramSummary,
     part_frame: PartFrame,
     part_zero: FloatArray,
@@ -125,7 +127,7 @@ def cutting_process(
     stock: StockTable,
     cell: float,
     operation: Operation,
-    machine: Machine,
+    machine: MachineConfig,
     part_frame: PartFrame,
     part_zero: FloatArray,
     laid: HeightMap | None = None,
@@ -157,7 +159,7 @@ def height_map_process(
     stock: StockTable,
     cell: float,
     operation: Operation,
-    machine: Machine,
+    machine: MachineConfig,
     part_frame: PartFrame,
     part_zero: FloatArray,
     laid: HeightMap | None = None,

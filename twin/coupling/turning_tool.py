@@ -34,7 +34,7 @@ _LONGEST_MEAN_S = 0.05
 _STILL = 1e-9
 
 
-class Edge(enum.IntEnum):
+class EdgeState(enum.IntEnum):
     """A tool's edge: whole, or why it has gone."""
 
     WHOLE = 0
@@ -55,7 +55,7 @@ class CutNumber(enum.IntEnum):
     CONTACT = 2
     """Path since the cutter met material [mm]."""
     EDGE = 3
-    """Its ``Edge``."""
+    """Its ``EdgeState``."""
     VALUE = 4
     """At which the edge went."""
     MET = 5
@@ -169,17 +169,17 @@ def turn_spindle(period: float, commanded: float, tool: TurningTool, memory: Mem
     """
     numbers = memory.numbers
     torque = memory.scratch.figures[1] * MM if numbers[CutNumber.MET] > 0.0 else 0.0
-    told = 0.0 if math.isnan(commanded) else commanded
+    speed = 0.0 if math.isnan(commanded) else commanded
     numbers[CutNumber.SPEED] = next_speed(
-        tool.spindle, numbers[CutNumber.SPEED], told, torque, period
+        tool.spindle, numbers[CutNumber.SPEED], speed, torque, period
     )
     memory.force[:] = 0.0
-    if math.isnan(commanded) or numbers[CutNumber.EDGE] != Edge.WHOLE.value:
+    if math.isnan(commanded) or numbers[CutNumber.EDGE] != EdgeState.WHOLE.value:
         # What cuts nothing goes where it will: the next cut begins where the tool is then.
         numbers[CutNumber.MET], numbers[CutNumber.FRESH] = 0.0, 1.0
         return False
     if abs(numbers[CutNumber.SPEED]) > tool.strength.speed / SECONDS_PER_MINUTE:
-        _break(memory, Edge.BY_SPEED, abs(numbers[CutNumber.SPEED]) * SECONDS_PER_MINUTE)
+        _break(memory, EdgeState.BY_SPEED, abs(numbers[CutNumber.SPEED]) * SECONDS_PER_MINUTE)
         return False
     return True
 
@@ -191,13 +191,13 @@ def feel_teeth(period: float, tool: TurningTool, memory: Memory) -> None:
     turned = numbers[CutNumber.SPEED] * period
     if numbers[CutNumber.MET] > 0.0:
         if scratch.figures[2] > strength.chip:
-            _break(memory, Edge.BY_CHIP, scratch.figures[2])
+            _break(memory, EdgeState.BY_CHIP, scratch.figures[2])
         elif scratch.figures[0] > strength.force:
-            _break(memory, Edge.BY_FORCE, scratch.figures[0])
+            _break(memory, EdgeState.BY_FORCE, scratch.figures[0])
         elif scratch.figures[1] * MM > strength.torque:
-            _break(memory, Edge.BY_TORQUE, scratch.figures[1] * MM)
+            _break(memory, EdgeState.BY_TORQUE, scratch.figures[1] * MM)
         elif scratch.mean[2] > strength.thrust:
-            _break(memory, Edge.BY_THRUST, scratch.mean[2])
+            _break(memory, EdgeState.BY_THRUST, scratch.mean[2])
         else:
             add_force_between(tool.cutter, scratch, numbers[CutNumber.ANGLE], -turned, memory.force)
     numbers[CutNumber.ANGLE] -= turned
@@ -205,7 +205,7 @@ def feel_teeth(period: float, tool: TurningTool, memory: Memory) -> None:
 
 
 @kernel
-def _break(memory: Memory, why: Edge, value: float) -> None:
+def _break(memory: Memory, why: EdgeState, value: float) -> None:
     memory.numbers[CutNumber.EDGE], memory.numbers[CutNumber.VALUE] = why.value, value
     memory.numbers[CutNumber.MET] = 0.0
 

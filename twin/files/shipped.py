@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from twin.errors import UsageError
+from twin.files.looked_at import look_at
 
 _PACKAGE = Path(__file__).resolve().parents[1]
 
@@ -81,9 +82,10 @@ def machine_file(name: str, *, beside: Path | None = None) -> Path:
     shipped = resource_root("models") / name / "machine.toml"
     if "/" not in name and shipped.is_file():
         return shipped
-    path = (beside or Path()) / name
+    path = look_at((beside or Path()) / name)
+    in_folder = look_at(path / "machine.toml")
     if path.is_dir():
-        path = path / "machine.toml"
+        path = in_folder
     if path.is_file():
         return path
     if name in variant_names():

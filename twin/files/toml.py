@@ -10,6 +10,7 @@ import pydantic
 from pydantic_core import ErrorDetails
 
 from twin.errors import ConfigError, UsageError
+from twin.files.looked_at import look_at
 
 
 class Table(pydantic.BaseModel):
@@ -103,7 +104,7 @@ def load_toml(path: Path) -> Data:
         ConfigError: The file is missing, is not TOML, or holds what no file here has a use for.
     """
     try:
-        data = tomllib.loads(path.read_text(encoding="utf-8"))
+        data = tomllib.loads(look_at(path).read_text(encoding="utf-8"))
     except OSError as error:
         raise ConfigError(f"{path}: cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:

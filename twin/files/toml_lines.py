@@ -9,7 +9,7 @@ _HEADER = re.compile(r"\s*\[\[?\s*([^\[\]]+?)\s*\]")
 _KEY = re.compile(r"\s*([A-Za-z0-9_.\"'-]+)\s*=\s*([^#]*)")
 
 
-class _Entry(NamedTuple):
+class _Key(NamedTuple):
     """A key of a file: its whole name, with the number of the table that it is in, if it has one."""
 
     name: str
@@ -41,17 +41,17 @@ def place_of_key(files: Sequence[Path], key: str) -> tuple[Path, int]:
     return files[0], 1
 
 
-def _entries(text: str) -> list[_Entry]:
+def _entries(text: str) -> list[_Key]:
     """Every key and every table, in their order."""
-    found: list[_Entry] = []
+    found: list[_Key] = []
     table, begins = "", 0
     for line, content in enumerate(text.splitlines(), 1):
         if header := _HEADER.match(content):
             table, begins = _plain(header[1]), len(found)
-            found.append(_Entry(table, line))
+            found.append(_Key(table, line))
         elif key := _KEY.match(content):
             name = _plain(key[1])
-            found.append(_Entry(f"{table}.{name}" if table else name, line))
+            found.append(_Key(f"{table}.{name}" if table else name, line))
             if name == "number" and table:
                 numbered = f"{table}.{key[2].strip()}"
                 found[begins:] = [
@@ -59,7 +59,7 @@ def _entries(text: str) -> list[_Entry]:
                     for each in found[begins:]
                 ]
                 # The list itself is where its first table begins.
-                found.insert(begins, _Entry(table, found[begins].line))
+                found.insert(begins, _Key(table, found[begins].line))
                 table = numbered
     return found
 

@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.simulation.live import LiveMachine
 from twin.machine.watching.alarms import SimulationError
 from twin.motion.setpoints.setpoints import Setpoints
@@ -32,7 +32,7 @@ class MachineUnit:
         force: Of the drives during it, shape (k,) [N or N m].
     """
 
-    def __init__(self, machine: Machine) -> None:
+    def __init__(self, machine: MachineConfig) -> None:
         count = len(machine.axes)
         self.machine = machine
         self.start = np.zeros(count)

@@ -8,6 +8,7 @@ import numpy.typing as npt
 import pydantic
 from pydantic import Field
 
+from twin.files.looked_at import look_at
 from twin.files.stl import read_stl
 from twin.files.toml import Table
 from twin.job.builder import Positive, Triple
@@ -96,7 +97,7 @@ class FixtureTable(Table):
         """This fixture with the whole path of its file."""
         if self.file is None:
             return self
-        return self.model_copy(update={"file": str((folder / self.file).absolute())})
+        return self.model_copy(update={"file": str(look_at(folder / self.file).absolute())})
 
     @property
     def box(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:

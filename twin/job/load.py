@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from twin.errors import ConfigError, UsageError
+from twin.files.looked_at import look_at
 from twin.files.shipped import is_shipped, shipped_program
 from twin.files.toml import Change, Data, changed, checked, load_toml, merged
 from twin.job.job_file import JobFile
@@ -93,7 +94,7 @@ def load_job(path: Path, changes: Sequence[Change] = ()) -> Job:
     path = _found(path)
     job_path: Path | None = path if path.suffix == ".toml" else path.with_suffix(".toml")
     data = None
-    if job_path == path or job_path.is_file():
+    if job_path == path or look_at(job_path).is_file():
         data = load_toml(job_path)
     if data is None or not (job_path == path or _runs(job_path, data, path)):
         job_path, data = None, {"program": path.name}
@@ -102,7 +103,7 @@ def load_job(path: Path, changes: Sequence[Change] = ()) -> Job:
         layers.insert(0, Layer(VARIED, varied))
     file = checked(_merged(layers), JobFile, partial(layer_of, layers))
     job = Job(path.parent, file, job_path, layers)
-    if not job.program.is_file():
+    if not look_at(job.program).is_file():
         raise ConfigError(f"{job.program}: no such NC program")
     return job
 
@@ -145,10 +146,10 @@ def _runs(job: Path, data: Data, program: Path) -> bool:
 
 def _with_absolute_paths(file: JobFile, folder: Path) -> JobFile:
     if file.stock is not None and file.stock.file is not None:
-        whole = str((folder / file.stock.file).absolute())
+        whole = str(look_at(folder / file.stock.file).absolute())
         file = file.model_copy(update={"stock": file.stock.model_copy(update={"file": whole})})
     if file.nominal is not None:
-        whole = str((folder / file.nominal.file).absolute())
+        whole = str(look_at(folder / file.nominal.file).absolute())
         file = file.model_copy(update={"nominal": file.nominal.model_copy(update={"file": whole})})
     if file.fixtures:
         fixtures = tuple(fixture.in_folder(folder) for fixture in file.fixtures)
@@ -182,8 +183,9 @@ def _shared(folder: Path) -> list[Layer]:
         return []
     found: list[Layer] = []
     for place in (folder.resolve(), *folder.resolve().parents):
-        if (place / SHARED_NAME).is_file():
-            found += _extended(place / SHARED_NAME, load_toml(place / SHARED_NAME))
+        shared = look_at(place / SHARED_NAME)
+        if shared.is_file():
+            found += _extended(shared, load_toml(shared))
     for layer in found:
         _refuse_program(layer)
     return found
@@ -232,7 +234,7 @@ def _with_found_files(data: Data, folder: Path, *, first: bool) -> Data:
             table[name] = dict(inner) if isinstance(inner, dict) else inner
             table = table[name] if isinstance(table[name], dict) else {}
         value = table.get(key)
-        if isinstance(value, str) and (folder / value).exists():
+        if isinstance(value, str) and look_at(folder / value).exists():
             table[key] = str((folder / value).resolve())
     for name in [name for name, value in made.items() if value is None]:
         del made[name]

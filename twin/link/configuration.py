@@ -6,12 +6,11 @@ from typing import Any
 
 from twin.errors import ConfigError
 from twin.files.atomic import write_text
-from twin.job.job_file import JobFile
+from twin.job.job_file import JobFile, ToolTable
 from twin.link.component import templates
 from twin.link.packet import JOINTS
-from twin.link.tables import LETTERS, offsets_text, tools_text
-from twin.machine.description.config import Machine
-from twin.nc.canonical import FloatArray
+from twin.machine.description.config import MachineConfig
+from twin.nc.canonical import Axes, FloatArray
 
 NO_LIMIT = 1e9
 """What is where a machine has no limit [mm or deg]."""
@@ -40,7 +39,7 @@ class Settings:
     job: JobFile
 
 
-def write_configuration(folder: Path, machine: Machine, settings: Settings) -> Path:
+def write_configuration(folder: Path, machine: MachineConfig, settings: Settings) -> Path:
     """Write all that LinuxCNC reads.
 
     Args:
@@ -72,7 +71,7 @@ def write_configuration(folder: Path, machine: Machine, settings: Settings) -> P
     return folder / "linuxcnc.ini"
 
 
-def _axis(machine: Machine, name: str, settings: Settings) -> dict[str, Any]:
+def _axis(machine: MachineConfig, name: str, settings: Settings) -> dict[str, Any]:
     axis = machine.axis(name)
     lowest, highest = axis.travel or (-NO_LIMIT, NO_LIMIT)
     limit = settings.following_error_limit or axis.following_error_limit or NO_LIMIT
@@ -87,7 +86,7 @@ def _axis(machine: Machine, name: str, settings: Settings) -> dict[str, Any]:
     }
 
 
-def _require_axes(machine: Machine) -> None:
+def _require_axes(machine: MachineConfig) -> None:
     strange = [name for name in machine.axes.names if name not in LETTERS]
     if strange:
         raise ConfigError(f"LinuxCNC has no axis {strange[0]}: it knows {', '.join(LETTERS)}")
@@ -100,3 +99,41 @@ def _require_axes(machine: Machine) -> None:
         raise ConfigError(f"LinuxCNC takes A, B and C for rotary axes and no other: {wrong[0]}")
     if len(machine.axes) > JOINTS:
         raise ConfigError(f"LinuxCNC can be linked to {JOINTS} axes at most")
+
+
+LETTERS = "XYZABCUVW"
+"""The axes that LinuxCNC knows, in the order of its offsets."""
+_FIRST_OFFSET = 5221
+"""LinuxCNC's parameter of G54's first axis."""
+_TOOLS = range(1, 100)
+"""What a job that lists no tools has in its magazine, as in its own dialects."""
+
+
+def offsets_text(axes: Axes, part_zero: FloatArray) -> str:
+    """The parameter file, in which G54 is program zero.
+
+    Args:
+        part_zero: Machine coordinates of program zero, shape (k,), in LinuxCNC's units.
+    """
+    zero = axes.named(part_zero)
+    rows = [
+        f"{_FIRST_OFFSET + number}\t{zero.get(letter, 0.0):.9f}"
+        for number, letter in enumerate(LETTERS)
+    ]
+    return "\n".join(["5220\t1", *rows]) + "\n"
+
+
+def tools_text(job: JobFile, unit_mm: float = 1.0) -> str:
+    """The tool table; lengths count against the job's first tool, as in the twin's dialects.
+
+    Args:
+        unit_mm: LinuxCNC's unit of length [mm].
+    """
+    tools = job.tools
+    if "tools" not in job.model_fields_set:
+        tools = tuple(ToolTable(number=number) for number in _TOOLS)
+    return "".join(
+        f"T{tool.number} P{tool.number} D{tool.diameter / unit_mm:.9f} "
+        f"Z{(tool.length - tools[0].length) / unit_mm:.9f} ;{tool.kind}\n"
+        for tool in tools
+    )

@@ -25,7 +25,7 @@ class FailedError(Exception):
     """LinuxCNC does not do what it is told, or stopped."""
 
 
-class Operator:
+class LinuxcncClient:
     """Works LinuxCNC through its own Python module."""
 
     def __init__(self, linuxcnc: Any, log: TextIO, twin: int) -> None:
@@ -107,8 +107,8 @@ class Operator:
 
     def _look(self) -> None:
         """Log what LinuxCNC says."""
-        while (told := self._errors.poll()) is not None:
-            kind, text = told
+        while (report := self._errors.poll()) is not None:
+            kind, text = report
             wrong = kind in (self._linuxcnc.NML_ERROR, self._linuxcnc.OPERATOR_ERROR)
             self.tell("error" if wrong else "message", text.strip())
             self._failed = self._failed or wrong
@@ -137,7 +137,7 @@ def main() -> int:
     parser.add_argument("--log", type=Path, required=True)
     given = parser.parse_args()
     with given.log.open("w", encoding="utf-8") as log:
-        operator = Operator(linuxcnc, log, given.twin)
+        operator = LinuxcncClient(linuxcnc, log, given.twin)
         try:
             operator.switch_on(given.joints)
             operator.run(given.program)

@@ -45,7 +45,7 @@ def linuxcnc_program(
     Raises:
         UsageError: LinuxCNC has no words for a move.
     """
-    writer = _Writer(axes, named)
+    writer = _ProgramWriter(axes, named)
     for chunk in chunks:
         events = list(chunk.events)
         for row in range(len(chunk.moves)):
@@ -57,7 +57,7 @@ def linuxcnc_program(
     return writer.finish()
 
 
-class _Writer:
+class _ProgramWriter:
     def __init__(self, axes: Axes, named: Callable[[int], str]) -> None:
         self._axes, self._named = axes, named
         self._lines = ["G90 G21 G17 G94 G91.1 G40 G49 G80 G54"]

@@ -20,7 +20,7 @@ import numpy as np
 
 from twin.errors import ExitCode, TwinError, UsageError
 from twin.job.job_file import JobFile
-from twin.link.tables import LETTERS, offsets_text, tools_text
+from twin.link.configuration import LETTERS, offsets_text, tools_text
 from twin.nc.canonical import Axes, FloatArray
 from twin.nc.text.diagnostics.diagnostics import Diagnostic
 
@@ -97,7 +97,7 @@ def read_program(
     found = shutil.which(_READER)
     if found is None:
         raise UsageError(f"{_READER} is missing: it comes with LinuxCNC")
-    writer = _Writer(axes, part_zero, listing)
+    writer = _CanonicalWriter(axes, part_zero, listing)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         # By itself rs274 takes the lengths of its files for inches.
@@ -123,7 +123,7 @@ def read_program(
     return writer.finish()
 
 
-def _run(command: Sequence[str], folder: Path, refusal: TextIO, writer: "_Writer") -> int:
+def _run(command: Sequence[str], folder: Path, refusal: TextIO, writer: "_CanonicalWriter") -> int:
     """Hand what the interpreter prints to the writer; returns its code, of a process killed where it never ends."""
     with subprocess.Popen(  # noqa: S603 - the program is the user's own
         command, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=refusal,
@@ -157,14 +157,14 @@ def _numbered(lines: Sequence[str]) -> list[str]:
     ]
 
 
-def _refused(listing: Listing, told: str) -> LinuxcncProgramError:
-    said = [line for line in told.splitlines() if line.strip() and line.strip() != "executing"]
+def _refused(listing: Listing, output: str) -> LinuxcncProgramError:
+    said = [line for line in output.splitlines() if line.strip() and line.strip() != "executing"]
     message = said[0] if said else "it does not say why"
     number = next((int(found[1]) for line in said[1:] if (found := _N_WORD.match(line))), 1)
     return listing.error(number, message)
 
 
-class _Writer:
+class _CanonicalWriter:
     """Follows canonical calls and writes what moves, and what else the twin needs to know."""
 
     def __init__(self, axes: Axes, part_zero: FloatArray, listing: Listing) -> None:
@@ -320,23 +320,23 @@ class _Writer:
 _CLOSED = 1e-7
 """Angle below which an arc ends where it starts [rad]."""
 _ACTIONS = {
-    "USE_LENGTH_UNITS": _Writer.unit,
-    "SET_G5X_OFFSET": _Writer.offset,
-    "SET_G92_OFFSET": _Writer.offset,
-    "USE_TOOL_LENGTH_OFFSET": _Writer.offset,
-    "SET_XY_ROTATION": _Writer.rotation,
-    "SELECT_PLANE": _Writer.plane,
-    "SET_FEED_RATE": _Writer.feed,
-    "SET_FEED_MODE": _Writer.feed_mode,
-    "SET_SPINDLE_SPEED": _Writer.speed,
-    "START_SPINDLE_CLOCKWISE": _Writer.spindle,
-    "START_SPINDLE_COUNTERCLOCKWISE": _Writer.spindle,
-    "STOP_SPINDLE_TURNING": _Writer.spindle_stop,
-    "CHANGE_TOOL": _Writer.tool,
-    "DWELL": _Writer.dwell,
-    "STRAIGHT_TRAVERSE": _Writer.straight,
-    "STRAIGHT_FEED": _Writer.straight,
-    "ARC_FEED": _Writer.arc,
+    "USE_LENGTH_UNITS": _CanonicalWriter.unit,
+    "SET_G5X_OFFSET": _CanonicalWriter.offset,
+    "SET_G92_OFFSET": _CanonicalWriter.offset,
+    "USE_TOOL_LENGTH_OFFSET": _CanonicalWriter.offset,
+    "SET_XY_ROTATION": _CanonicalWriter.rotation,
+    "SELECT_PLANE": _CanonicalWriter.plane,
+    "SET_FEED_RATE": _CanonicalWriter.feed,
+    "SET_FEED_MODE": _CanonicalWriter.feed_mode,
+    "SET_SPINDLE_SPEED": _CanonicalWriter.speed,
+    "START_SPINDLE_CLOCKWISE": _CanonicalWriter.spindle,
+    "START_SPINDLE_COUNTERCLOCKWISE": _CanonicalWriter.spindle,
+    "STOP_SPINDLE_TURNING": _CanonicalWriter.spindle_stop,
+    "CHANGE_TOOL": _CanonicalWriter.tool,
+    "DWELL": _CanonicalWriter.dwell,
+    "STRAIGHT_TRAVERSE": _CanonicalWriter.straight,
+    "STRAIGHT_FEED": _CanonicalWriter.straight,
+    "ARC_FEED": _CanonicalWriter.arc,
 }
 """What is done at each canonical call; the others mean nothing to the twin."""
 _WITH_NUMBERS = frozenset(_ACTIONS) - {"USE_LENGTH_UNITS", "SELECT_PLANE"}

@@ -190,8 +190,8 @@ def guessed_map(log: RawLog, *, units_needed: bool) -> ColumnMap:
             match = re.fullmatch(pattern, channel.name, re.IGNORECASE)
             if match is None:
                 continue
-            told = match[2] if match.re.groups > 1 else None
-            unit = told or channel.unit or ("" if units_needed else _default_unit(match[1]))
+            stated = match[2] if match.re.groups > 1 else None
+            unit = stated or channel.unit or ("" if units_needed else _default_unit(match[1]))
             unit = unit.lower() if unit.lower() in ("mm", "deg") else unit
             if not unit:
                 continue

@@ -29,8 +29,8 @@ def read_codesys_trace(path: Path, text: str, tick_s: float | None) -> RawLog:
         UsageError: The file does not say what its time stamps count, or holds no variable.
     """
     flags = re.search(r"^Flags; *(\d+)", text, re.MULTILINE)
-    told = {tick for bit, tick in _TICK_S.items() if flags and int(flags[1]) & bit}
-    tick = tick_s if tick_s is not None else told.pop() if len(told) == 1 else None
+    ticks = {tick for bit, tick in _TICK_S.items() if flags and int(flags[1]) & bit}
+    tick = tick_s if tick_s is not None else ticks.pop() if len(ticks) == 1 else None
     if tick is None:
         raise UsageError(
             f"{path}: its Flags do not say whether time stamps are milliseconds or microseconds; "

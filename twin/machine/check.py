@@ -14,7 +14,7 @@ import numpy as np
 
 from twin.errors import TwinError
 from twin.files.shipped import is_shipped
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.description.kinematics import SPINDLE_NOSE, TABLE_TOP
 from twin.machine.model.drives import reflected_inertia
 from twin.machine.model.model import MachineModel, build_spec, compiled, drives, physics_model
@@ -41,7 +41,7 @@ _ROUNDED = 0.01
 _NUMBERED_SPINDLE = re.compile(r"spindle[ _-]?(\d+|[a-z])", re.IGNORECASE)
 """Name of the body of one spindle among several."""
 
-_Points = tuple[tuple[str, Callable[[Machine], list[str]]], ...]
+_Points = tuple[tuple[str, Callable[[MachineConfig], list[str]]], ...]
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -58,7 +58,7 @@ class PointResult:
     notice: bool = False
 
 
-def check_machine(machine: Machine) -> tuple[PointResult, ...]:
+def check_machine(machine: MachineConfig) -> tuple[PointResult, ...]:
     """Check every point of the contract.
 
     Args:
@@ -87,14 +87,14 @@ def check_machine(machine: Machine) -> tuple[PointResult, ...]:
     )
 
 
-def _faults(look: Callable[[Machine], list[str]], machine: Machine) -> tuple[str, ...]:
+def _faults(look: Callable[[MachineConfig], list[str]], machine: MachineConfig) -> tuple[str, ...]:
     try:
         return tuple(look(machine))
     except (TwinError, OSError, ET.ParseError) as error:
         return (str(error),)
 
 
-def _folder(machine: Machine) -> list[str]:
+def _folder(machine: MachineConfig) -> list[str]:
     folder, name = machine.path.parent, machine.file.name
     wanted = ("README.md", "CHANGELOG.md", "LICENSE", f"{name}.xml", "scene.xml", f"{name}.png")
     faults = [f"{file} is missing" for file in wanted if not (folder / file).is_file()]
@@ -109,7 +109,7 @@ def _folder(machine: Machine) -> list[str]:
     return faults
 
 
-def _readme(machine: Machine) -> list[str]:
+def _readme(machine: MachineConfig) -> list[str]:
     readme = machine.path.parent / "README.md"
     if not readme.is_file():
         return ["there is no README.md"]
@@ -124,7 +124,7 @@ def _readme(machine: Machine) -> list[str]:
     ]
 
 
-def _layout(machine: Machine) -> list[str]:
+def _layout(machine: MachineConfig) -> list[str]:
     named = machine.path.parent / f"{machine.file.name}.xml"
     model = named if named.is_file() else machine.model_path
     root = ET.parse(model).getroot()  # noqa: S314 (a model that is about to be run)
@@ -137,7 +137,7 @@ def _layout(machine: Machine) -> list[str]:
     return faults + _weighed_by_shapes(machine)
 
 
-def _weighed_by_shapes(machine: Machine) -> list[str]:
+def _weighed_by_shapes(machine: MachineConfig) -> list[str]:
     """Moving bodies that weigh what their shapes make of them, where a model says it by ``<inertial>``."""
     spec = mujoco.MjSpec.from_file(str(machine.model_path))
     moving = [body for body in spec.bodies if body.joints and not body.explicitinertial]
@@ -152,16 +152,16 @@ def _weighed_by_shapes(machine: Machine) -> list[str]:
     ]
 
 
-def _supplied(machine: Machine) -> list[str]:
+def _supplied(machine: MachineConfig) -> list[str]:
     return supply(mujoco.MjSpec.from_file(str(machine.model_path)), machine)
 
 
-def _compiles(machine: Machine) -> list[str]:
+def _compiles(machine: MachineConfig) -> list[str]:
     compiled(build_spec(machine), machine)
     return _undriven(machine)
 
 
-def _carries_tool_and_part(machine: Machine) -> list[str]:
+def _carries_tool_and_part(machine: MachineConfig) -> list[str]:
     """Axes on the way neither to tool nor to part, and second spindles; a model that is no mill raises."""
     carried = {machine.axes.names[column] for column in machine.kinematics.column}
     idle = [name for name in machine.axes.names if name not in carried]
@@ -172,7 +172,7 @@ def _carries_tool_and_part(machine: Machine) -> list[str]:
     ]
 
 
-def _second_ones(machine: Machine) -> list[str]:
+def _second_ones(machine: MachineConfig) -> list[str]:
     """Sites and bodies that are called like a second spindle or table: a model says what a body is by its name."""
     spec = mujoco.MjSpec.from_file(str(machine.model_path))
     marks = (SPINDLE_NOSE, TABLE_TOP)
@@ -190,7 +190,7 @@ def _second_ones(machine: Machine) -> list[str]:
     return [f"site '{name}'" for name in sites] + [f"body '{name}'" for name in bodies]
 
 
-def _undriven(machine: Machine) -> list[str]:
+def _undriven(machine: MachineConfig) -> list[str]:
     """Joints and actuators that no axis owns: nothing holds the one or moves with the other."""
     spec = mujoco.MjSpec.from_file(str(machine.model_path))
     owned = {machine.axis(name).joint for name in machine.axes.names}
@@ -202,7 +202,7 @@ def _undriven(machine: Machine) -> list[str]:
     ]
 
 
-def _gains(machine: Machine) -> list[str]:
+def _gains(machine: MachineConfig) -> list[str]:
     """Gains of the MJCF file that a run does not use: it tunes each drive to what the axis moves."""
     written = mujoco.MjSpec.from_file(str(machine.model_path))
     loops = drives(machine, physics_model(machine, build_spec(machine)))
@@ -226,7 +226,7 @@ def _gains(machine: Machine) -> list[str]:
     return faults
 
 
-def _holds_still(machine: Machine) -> list[str]:
+def _holds_still(machine: MachineConfig) -> list[str]:
     travel = [machine.axis(name).travel or (-np.inf, np.inf) for name in machine.axes.names]
     lowest, highest = np.array(travel).T
     joints = _run(machine, np.tile(np.clip(0.0, lowest, highest), (2000, 1)))
@@ -238,7 +238,7 @@ def _holds_still(machine: Machine) -> list[str]:
     ]
 
 
-def _survives_shaking(machine: Machine) -> list[str]:
+def _survives_shaking(machine: MachineConfig) -> list[str]:
     """Sums of sines with pseudo-random phases about mid travel, rising from rest.
 
     Their speeds and accelerations together stay below half of what the axes can do.
@@ -261,7 +261,7 @@ def _survives_shaking(machine: Machine) -> list[str]:
     return [] if np.isfinite(joints).all() else ["the joints left the numbers"]
 
 
-def _run(machine: Machine, position: FloatArray) -> FloatArray:
+def _run(machine: MachineConfig, position: FloatArray) -> FloatArray:
     period = machine.file.servo_period_s
     count = len(position)
     velocity = np.gradient(position, period, axis=0)
@@ -276,7 +276,7 @@ def _run(machine: Machine, position: FloatArray) -> FloatArray:
     return joints
 
 
-def _remedy(machine: Machine, alarm: Alarm) -> str:
+def _remedy(machine: MachineConfig, alarm: Alarm) -> str:
     """What lets two bodies overlap that do so wherever the axes are, such as a head and its guides."""
     model = build_spec(machine)
     geoms = {geom.name: geom for geom in model.geoms if geom.name}

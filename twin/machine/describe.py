@@ -4,7 +4,7 @@ import dataclasses
 import math
 
 from twin.files.shipped import machine_file, machine_names, variant_names
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.load import read_machine
 from twin.machine.model.drives import reflected_inertia
 from twin.machine.model.model import build_spec, drives, physics_model
@@ -54,7 +54,7 @@ class MachineFacts:
         return dataclasses.asdict(self)
 
 
-def describe(machine: Machine, feed: float = 1000.0) -> MachineFacts:
+def describe(machine: MachineConfig, feed: float = 1000.0) -> MachineFacts:
     """Gather a machine's figures.
 
     Args:
@@ -92,7 +92,7 @@ def describe(machine: Machine, feed: float = 1000.0) -> MachineFacts:
     )
 
 
-def shipped_machines() -> tuple[Machine, ...]:
+def shipped_machines() -> tuple[MachineConfig, ...]:
     """The machines that come with the twin, by name, each with its variants after it."""
     names = sorted((*machine_names(), *variant_names()))
     return tuple(read_machine(machine_file(name)) for name in names)

@@ -7,15 +7,18 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from twin.errors import ConfigError
+from twin.files.looked_at import look_at
 from twin.files.shipped import machine_file
 from twin.files.toml import Change, Data, changed, checked, load_toml, merged
 from twin.job.fixture import FixtureTable
 from twin.job.load import Job
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.description.machine_file import MachineFile
 
 
-def load_machine(job: Job, name: str | None = None, changes: Sequence[Change] = ()) -> Machine:
+def load_machine(
+    job: Job, name: str | None = None, changes: Sequence[Change] = ()
+) -> MachineConfig:
     """The machine of a job, with what the job clamps on its table in addition to the stock.
 
     Args:
@@ -32,7 +35,7 @@ def load_machine(job: Job, name: str | None = None, changes: Sequence[Change] = 
 
 def read_machine(
     path: Path, changes: Sequence[Change] = (), fixtures: Sequence[FixtureTable] = ()
-) -> Machine:
+) -> MachineConfig:
     """Read a machine file.
 
     Args:
@@ -51,8 +54,8 @@ def read_machine(
         twice = sorted({name for name in names if names.count(name) > 1})
         if twice:
             raise ConfigError(f"fixture '{twice[0]}' is named twice")
-    machine = Machine(path, file)
-    if not machine.model_path.is_file():
+    machine = MachineConfig(path, file)
+    if not look_at(machine.model_path).is_file():
         raise ConfigError(f"{path}: model '{machine.file.model}' does not exist")
     return machine
 

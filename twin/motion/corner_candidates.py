@@ -20,7 +20,7 @@ from twin.motion.limits import MotionLimits
 from twin.motion.open_chains import OpenChains, first_pieces, slow_arcs
 from twin.motion.phases_of_pieces import seconds_alone
 from twin.motion.pieces.pieces import BATCH, Pieces, blocks_to_cut, cut
-from twin.motion.steps import Step
+from twin.motion.steps import PipelineStage
 from twin.nc.canonical import Chunk, Corner, FloatArray, IntArray
 
 
@@ -52,7 +52,7 @@ class _Span:
     candidates: tuple[_Candidate, ...] = ()
 
 
-class _Spans(Step[Surroundings, _Span]):
+class _Spans(PipelineStage[Surroundings, _Span]):
     """Cuts blocks, and tells between which stops there is something to try.
 
     A path that goes on from the blocks before or to the next ones is tried at once: these depend on what is chosen.
@@ -103,7 +103,7 @@ class _Spans(Step[Surroundings, _Span]):
         yield _Span(pieces[done:])
 
 
-class PiecesOfChunks(Step[_Span, Pieces]):
+class PiecesOfChunks(PipelineStage[_Span, Pieces]):
     """Cuts a program into pieces, dwells included, in order.
 
     Args:

@@ -12,7 +12,7 @@ from twin.motion.phases_of_pieces import phases_of_pieces
 from twin.motion.profile.phases import Phases
 from twin.motion.setpoints.sampling import at_end, sample, standing
 from twin.motion.setpoints.setpoints import Setpoints
-from twin.motion.steps import Step
+from twin.motion.steps import PipelineStage
 from twin.nc.canonical import Chunk, FloatArray
 
 
@@ -69,7 +69,7 @@ def plan(
     yield dataclasses.replace(last, time=time, position=watched.position[None])
 
 
-class WatchedEnd(Step[Chunk, Chunk]):
+class WatchedEnd(PipelineStage[Chunk, Chunk]):
     """Passes chunks on and notes where the program ends: moves too short to take time count too.
 
     Args:

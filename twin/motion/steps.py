@@ -13,7 +13,7 @@ Taken = TypeVar("Taken")
 Made = TypeVar("Made")
 
 
-class Step(abc.ABC, Generic[Taken, Made]):
+class PipelineStage(abc.ABC, Generic[Taken, Made]):
     """Takes parts one by one, as they are asked for, and gives what it makes of them.
 
     Args:
@@ -42,7 +42,7 @@ class Step(abc.ABC, Generic[Taken, Made]):
             Whether the next result is there, or none comes any more.
         """
         if not self._made and not self._over:
-            if isinstance(self._parts, Step) and not self._parts.work():
+            if isinstance(self._parts, PipelineStage) and not self._parts.work():
                 return False
             self._take_next()
         return bool(self._made) or self._over

@@ -12,8 +12,8 @@ from twin.render.encoder import video_writer
 from twin.render.frames import deal, frame_ends
 from twin.render.gauge import Gauge
 from twin.render.hud import HudValues
-from twin.render.scene.scene import Scene
-from twin.render.scene.stage import Stage, stage
+from twin.render.scene.scene import RenderScene
+from twin.render.scene.stage import ScenePlayer, stage
 
 Progress = Callable[[int, int], None]
 """Told how many frames are drawn, and of how many."""
@@ -22,7 +22,9 @@ MOST_FRAMES = 100_000
 """A film of more frames is refused: an hour at 25 frames a second is 90,000."""
 
 
-def film(scene: Scene, *, video: VideoTable, out: Path, progress: Progress | None = None) -> Path:
+def film(
+    scene: RenderScene, *, video: VideoTable, out: Path, progress: Progress | None = None
+) -> Path:
     """Film a recorded run as MP4, GIF or WebP: one camera after the other, or all side by side.
 
     Args:
@@ -68,7 +70,7 @@ def film(scene: Scene, *, video: VideoTable, out: Path, progress: Progress | Non
 
 
 def _frames(
-    play: Stage, gauge: Gauge, video: VideoTable, recording: Recording, ends: IntArray
+    play: ScenePlayer, gauge: Gauge, video: VideoTable, recording: Recording, ends: IntArray
 ) -> Iterator[tuple[Pixels, HudValues]]:
     """Draw a film's frames, with what there is to read off; each is drawn while the next one is cut.
 

@@ -10,7 +10,7 @@ from twin.job.job_file import ToolTable
 from twin.recording.form import ToolLoad
 from twin.recording.reader import Samples
 from twin.render.hud import Display, HudValues, LoadBar
-from twin.render.scene.scene import Scene
+from twin.render.scene.scene import RenderScene
 from twin.units import SECONDS_PER_MINUTE, UM_PER_MM
 
 _INSTANT_S = 1e-6
@@ -20,7 +20,7 @@ _INSTANT_S = 1e-6
 class Gauge:
     """Follows a scene's recording, sample by sample."""
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: RenderScene) -> None:
         self._scene = scene
         self._alarms = sorted(scene.recording.alarms)
         self._last: Samples | None = None

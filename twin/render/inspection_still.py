@@ -13,13 +13,13 @@ from twin.render.drawing.canvas import quality_named
 from twin.render.drawing.renderer import Renderer
 from twin.render.hud import INK, MUTED, PAPER, font, lay_over
 from twin.render.scene.cameras import PART
-from twin.render.scene.scene import Scene
+from twin.render.scene.scene import RenderScene
 from twin.render.scene.stage import stage
 from twin.render.still import save
 
 
 def inspection_still(
-    scene: Scene,
+    scene: RenderScene,
     part: MeasuredPart,
     *,
     out: Path,

@@ -10,7 +10,7 @@ from trimesh.visual import TextureVisuals
 from trimesh.visual.material import PBRMaterial
 
 from twin.job.job_file import StockTable, ToolTable
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.description.kinematics import SPINDLE_NOSE, part_carrier
 from twin.machine.model.model import build_spec
 from twin.machine.model.tool_shape import COLLISION_GROUP, VISUAL_GROUP
@@ -44,7 +44,7 @@ class DrawnMachine:
     """
 
     model: mujoco.MjModel
-    machine: Machine
+    machine: MachineConfig
     placement: Placement
     tool: ToolTable
 
@@ -131,7 +131,7 @@ class DrawnMachine:
 
 
 def drawn_machine(
-    machine: Machine,
+    machine: MachineConfig,
     tool: ToolTable,
     part_frame: PartFrame,
     stock: StockTable | None = None,

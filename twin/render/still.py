@@ -14,7 +14,7 @@ from twin.render.drawing.canvas import Pixels, quality_named
 from twin.render.drawing.renderer import Renderer
 from twin.render.frames import deal
 from twin.render.gauge import Gauge
-from twin.render.scene.scene import Scene
+from twin.render.scene.scene import RenderScene
 from twin.render.scene.stage import stage
 
 
@@ -34,7 +34,7 @@ class Shot:
 
 
 def stills(
-    scene: Scene,
+    scene: RenderScene,
     shots: Sequence[Shot],
     *,
     cameras: Sequence[str] = ("overview",),

@@ -10,7 +10,7 @@ from twin.cutting.axis_load import AxisLoad
 from twin.cutting.heights.height_map import HeightMap
 from twin.cutting.program_summary import ProgramSummary
 from twin.errors import ConfigError
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.model.model import MachineModel
 from twin.machine.simulation.growth import Growth
 from twin.machine.simulation.simulate import Load, simulate
@@ -212,7 +212,7 @@ def cutting_forces(
 
 
 def grown(
-    chunks: Iterable[Samples], machine: Machine, summary: ProgramSummary
+    chunks: Iterable[Samples], machine: MachineConfig, summary: ProgramSummary
 ) -> Iterator[Samples]:
     """Samples of a machine that warms up, with what it has grown."""
     growth = Growth(machine, ProgramOperation(summary).speed)

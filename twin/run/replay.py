@@ -9,7 +9,7 @@ from twin.cutting.recut import recut
 from twin.errors import UsageError
 from twin.machine.model.model import build_spec
 from twin.recording.reader import Recording, RecordingHeader, open_recording
-from twin.render.scene.scene import Scene
+from twin.render.scene.scene import RenderScene
 from twin.run.preparing.preparation import Preparation, prepare_recorded
 
 EVENTS = ("end", "worst", "alarm", "rapid", "gouge")
@@ -31,10 +31,12 @@ def summary_of(preparation: Preparation, header: RecordingHeader) -> ProgramSumm
     return builder.summary()
 
 
-def scene_of(recording: Recording, preparation: Preparation, summary: ProgramSummary) -> Scene:
+def scene_of(
+    recording: Recording, preparation: Preparation, summary: ProgramSummary
+) -> RenderScene:
     """What is to be seen of a recording of a prepared job."""
     job = preparation.job.file
-    return Scene(
+    return RenderScene(
         recording=recording,
         spec=build_spec(preparation.machine, job.tools[0]),
         machine=preparation.machine,
@@ -46,7 +48,9 @@ def scene_of(recording: Recording, preparation: Preparation, summary: ProgramSum
 
 
 @contextlib.contextmanager
-def open_scene(path: Path, *, machine: str | None = None) -> Iterator[tuple[Scene, Preparation]]:
+def open_scene(
+    path: Path, *, machine: str | None = None
+) -> Iterator[tuple[RenderScene, Preparation]]:
     """Open a recording with all that its pictures need.
 
     Args:
@@ -65,7 +69,7 @@ def open_scene(path: Path, *, machine: str | None = None) -> Iterator[tuple[Scen
         )
 
 
-def event_time(scene: Scene, event: str) -> float | None:
+def event_time(scene: RenderScene, event: str) -> float | None:
     """When something happened in a run [s]; None for its end.
 
     Args:

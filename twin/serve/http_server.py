@@ -65,7 +65,7 @@ def application(
         kind = f"multipart/x-mixed-replace;boundary={boundary}"
         if request.method == "HEAD":
             return Response(media_type=kind)  # A stream would go on, though nobody receives it.
-        writer = _Writer(_form(request), boundary)
+        writer = _PartWriter(_form(request), boundary)
         parts = _parts(agent, query, writer, document, following)
         return StreamingResponse(parts, media_type=kind)
 
@@ -128,7 +128,7 @@ def _response(request: Request, document: ET.Element, status: int = 200) -> Resp
     return Response(form.written(document), status, media_type=form.media_type)
 
 
-class _Writer(NamedTuple):
+class _PartWriter(NamedTuple):
     """How the documents of a stream are written."""
 
     form: DocumentFormat
@@ -147,7 +147,7 @@ class _Writer(NamedTuple):
 
 
 async def _parts(
-    agent: Agent, query: Query, writer: _Writer, document: ET.Element, following: int
+    agent: Agent, query: Query, writer: _PartWriter, document: ET.Element, following: int
 ) -> AsyncIterator[bytes]:
     """The documents of a stream: one when something was observed, one when nothing was for long.
 

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from twin.cutting.program_summary import ProgramSummary, Steps
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.watching.alarms import Alarm
 from twin.nc.canonical import Chunk, FloatArray, Function
 from twin.nc.functions import COOLANT_OFF, COOLANT_ON, PROGRAM_ENDS
@@ -49,7 +49,7 @@ class Production(NamedTuple):
         coolant: Whether it flows, by the number of the move.
     """
 
-    machine: Machine
+    machine: MachineConfig
     program: str
     source: Sequence[str]
     summary: ProgramSummary

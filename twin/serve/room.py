@@ -8,7 +8,7 @@ from typing import Literal
 from twin.serve.agent import Agent
 from twin.serve.buffer import NORMAL, Condition, Value
 from twin.serve.device import DOOR_CLOSED
-from twin.training.scene.fault_table import FaultTable
+from twin.training.scene.scene_file import FaultTable
 from twin.training.session.snapshot import Snapshot
 from twin.units import SECONDS_PER_MINUTE
 

@@ -63,7 +63,9 @@ class ToolPlan:
         """
         if not len(move):
             return []
-        first, last = (bisect.bisect_right(self.first_move, max(int(end), 0)) for end in move[[0, -1]])
+        first, last = (
+            bisect.bisect_right(self.first_move, max(int(end), 0)) for end in move[[0, -1]]
+        )
         begins = np.searchsorted(move, self.first_move[first:last]).tolist()
         ends = itertools.pairwise([0, *begins, len(move)])
         tools = self.tools[first - 1 : last]

@@ -20,7 +20,7 @@ from twin.view.live_run import LiveRun
 from twin.view.recorded_run import RecordedRun
 from twin.web.authentication import Authentication, new_tokens
 from twin.web.origin_check import ASSETS, OriginCheck
-from twin.web.server import WebServer, require_three
+from twin.web.server import server_of_views
 
 ROLE = "viewer"
 PAGE = Path(__file__).resolve().parent / "page"
@@ -132,8 +132,7 @@ def open_view(
     Raises:
         UsageError: The port is taken, or the view's library is missing.
     """
-    require_three()
-    server = WebServer(port=port)
+    server = server_of_views(port=port)
     authentication = Authentication(new_tokens((ROLE,)), server.port)
     server.start(
         OriginCheck(view_app(run, report, now), authentication, local=server.local, framed=framed)

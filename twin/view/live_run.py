@@ -9,7 +9,7 @@ import numpy as np
 
 from twin.cutting.cut import Cutter
 from twin.cutting.heights.patches import grid_of, patch_message
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.nc.canonical import FloatArray
 from twin.render.machine_glb import DrawnMachine, drawn_machine
 from twin.run.preparing.preparation import Preparation
@@ -44,7 +44,7 @@ class LiveRun:
         self._moment = moment
 
     @property
-    def _machine(self) -> Machine:
+    def _machine(self) -> MachineConfig:
         return self._preparation.machine
 
     def now(self) -> dict[str, Any]:

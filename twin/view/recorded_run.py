@@ -11,11 +11,11 @@ from twin.cutting.cut import Cutter
 from twin.cutting.heights.patches import grid_of, patch_message
 from twin.cutting.tridexel.material import TriDexelMaterial
 from twin.cutting.tridexel.surface.mesh import mesh_message
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.nc.canonical import FloatArray, IntArray
 from twin.recording.reader import Samples
 from twin.render.machine_glb import DrawnMachine, drawn_machine
-from twin.render.scene.scene import Scene
+from twin.render.scene.scene import RenderScene
 from twin.units import SECONDS_PER_MINUTE
 
 MOST_SAMPLES = 100_000
@@ -31,7 +31,7 @@ CROSSINGS, LAST_CROSSINGS = 5_000, 15_000
 class RecordedRun:
     """A recording with all that its page needs."""
 
-    def __init__(self, scene: Scene, machine: Machine) -> None:
+    def __init__(self, scene: RenderScene, machine: MachineConfig) -> None:
         """Take a recording, which must stay open.
 
         Args:

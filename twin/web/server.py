@@ -234,14 +234,19 @@ def listening(
     raise UsageError(f"cannot listen on {host}, {shown}: {reason}")
 
 
-def require_three() -> None:
-    """Refuse to open a page without the view's library.
+def server_of_views(
+    host: str = LOOPBACK, port: int = 0, certificate: Path | None = None, key: Path | None = None
+) -> WebServer:
+    """A server of pages that show a machine in three dimensions.
 
     Raises:
-        UsageError: It is not there.
+        UsageError: As for ``WebServer``, or the view's library is not there.
     """
+    server = WebServer(host, port, certificate, key)
     if not (THREE / "three.module.js").is_file():
+        server.stop()
         raise UsageError(
             "three.js is missing, which a checkout fetches when it is set up: "
             "run scripts/setup.sh, or python scripts/fetch_three.py"
         )
+    return server

@@ -31,7 +31,7 @@ def work(count):
         total += np.sin(number)
     return Sums(np.zeros(2) + total, count)
 
-def command():
+def command(stopped):
     work(10)
     threading.Timer(0.2, os.kill, (os.getpid(), signal.{name})).start()
     work(60_000_000)
@@ -83,7 +83,7 @@ SWALLOWED = """
 import os, signal, sys
 import twin.__main__, twin.cli
 
-def run():
+def run(stopped):
     import swallows
     for _ in range(1000):
         signal.pause()

@@ -8,7 +8,7 @@ import random
 import numpy as np
 import pytest
 
-from twin.cutting.watching.cut_log import LINES_TOLD, BlockCut, CutLog
+from twin.cutting.watching.cut_log import LINES_REPORTED, BlockCut, CutLog
 from twin.cutting.watching.events import EventLog, Stretches
 from twin.nc.canonical import FloatArray
 
@@ -58,11 +58,11 @@ def test_of_very_many_lines_the_foremost_are_told_of() -> None:
         cut_log.add(*entries)
         enter(book, *entries)
     told = cut_log.blocks
-    assert len(told) == LINES_TOLD
+    assert len(told) == LINES_REPORTED
     assert cut_log.forgotten > 10_000
     assert len(cut_log._kept) <= 4000
-    most = sorted(book, key=lambda line: -book[line].removed_mm3)[: LINES_TOLD // 2]
-    hardest = sorted(book, key=lambda line: -(book[line].force_n or 0.0))[: LINES_TOLD // 2]
+    most = sorted(book, key=lambda line: -book[line].removed_mm3)[: LINES_REPORTED // 2]
+    hardest = sorted(book, key=lambda line: -(book[line].force_n or 0.0))[: LINES_REPORTED // 2]
     assert {*most, *hardest} <= told.keys()
     for line in told:
         assert told[line].removed_mm3 == pytest.approx(book[line].removed_mm3)

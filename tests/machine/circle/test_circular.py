@@ -11,7 +11,7 @@ from twin.files.shipped import machine_file
 from twin.machine.circle.circle_path import PLANES
 from twin.machine.circle.circle_plot import write_circle_plot
 from twin.machine.circle.circular_test import CircularTest, circular_test
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.description.machine_file import MachineFile
 from twin.machine.load import read_machine
 from twin.machine.model.model import build_spec, drives
@@ -21,10 +21,10 @@ from twin.units import MM, UM_PER_MM
 PERFECT = {"velocity_feedforward": 1.0, "acceleration_feedforward": 1.0}
 
 
-def changed(machine: Machine, axis: str, **fields) -> Machine:
+def changed(machine: MachineConfig, axis: str, **fields) -> MachineConfig:
     data = machine.file.model_dump(by_alias=True)
     data["axes"][axis].update(fields)
-    return Machine(machine.path, MachineFile.model_validate(data))
+    return MachineConfig(machine.path, MachineFile.model_validate(data))
 
 
 @pytest.mark.parametrize("plane", [plane for plane in PLANES if plane not in ("ZXB", "YZA")])
@@ -157,7 +157,7 @@ def test_a_table_that_turns_late_is_seen_in_xyc():
     assert max(np.abs(result.radial_deviation_um)) == pytest.approx(expected, rel=0.02)
 
 
-def refuse(match: str, *arguments, machine: Machine | None = None) -> None:
+def refuse(match: str, *arguments, machine: MachineConfig | None = None) -> None:
     with pytest.raises(UsageError, match=match):
         circular_test(machine or shipped_machine(), *arguments)
 

@@ -9,7 +9,7 @@ import pytest
 from twin.errors import ConfigError
 from twin.files.shipped import machine_file, machine_names
 from twin.kinematics import tool_direction, tool_point
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.description.kinematics import in_words
 from twin.machine.description.machine_file import MachineFile
 from twin.machine.load import read_machine
@@ -18,7 +18,7 @@ from twin.units import MM
 
 
 def seen_by_mujoco(
-    machine: Machine, joints: FloatArray, length: float
+    machine: MachineConfig, joints: FloatArray, length: float
 ) -> tuple[FloatArray, FloatArray]:
     """Place of a point of the tool and direction of the tool, against the table's frame of all axes at zero."""
     model = mujoco.MjModel.from_xml_path(str(machine.model_path))
@@ -38,7 +38,7 @@ def seen_by_mujoco(
     return frame @ place / MM, frame @ turn0 @ turn.T @ up
 
 
-def machine_frame(machine: Machine, model: mujoco.MjModel) -> FloatArray:
+def machine_frame(machine: MachineConfig, model: mujoco.MjModel) -> FloatArray:
     """Where the nose goes against the table as X, Y and Z go: rows."""
     rows = []
     for name in "XYZ":
@@ -80,7 +80,7 @@ FIVE_AXES = """
 """  # fmt: skip
 
 
-def made_up(folder: Path, text: str = FIVE_AXES, **axes: dict[str, object]) -> Machine:
+def made_up(folder: Path, text: str = FIVE_AXES, **axes: dict[str, object]) -> MachineConfig:
     folder.joinpath("model.xml").write_text(text)
     turning = {"kind": "rotary"}
     kinds = {"X": {}, "Y": {}, "Z": {}, "B": turning, "A": turning, "C": turning} | axes
@@ -91,7 +91,7 @@ def made_up(folder: Path, text: str = FIVE_AXES, **axes: dict[str, object]) -> M
         "path": {"acceleration": 1.0, "jerk": 1.0},
         "axes": {name: {**AXIS, "joint": name.lower(), **more} for name, more in kinds.items()},
     }
-    return Machine(folder / "machine.toml", MachineFile.model_validate(data))
+    return MachineConfig(folder / "machine.toml", MachineFile.model_validate(data))
 
 
 def test_head_and_tables_with_two_joints_on_a_body_are_where_mujoco_has_them(tmp_path):
@@ -176,7 +176,7 @@ def test_a_table_of_the_machine_file_must_be_that_of_the_model(tmp_path, table, 
     center = table.get("center", (0.0, 0.0)) if told else (float(joint[0]), float(joint[1]))
     data = machine.file.model_dump(by_alias=True)
     data["table"] = {"axis": table["axis"], "center": center}
-    changed = Machine(machine.path, MachineFile.model_validate(data))
+    changed = MachineConfig(machine.path, MachineFile.model_validate(data))
     if told is None:
         assert changed.part_frame.chain is not None
         return

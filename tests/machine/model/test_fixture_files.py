@@ -14,7 +14,7 @@ from twin.files.shipped import machine_file
 from twin.job.fixture import FixtureTable
 from twin.job.job_file import ToolTable
 from twin.job.load import load_job
-from twin.machine.description.config import Blank, Machine
+from twin.machine.description.config import Blank, MachineConfig
 from twin.machine.load import read_machine
 from twin.machine.model.clamping import TALLEST, refuse_overlaps, what_carries
 from twin.machine.model.convex_parts import MOST_PARTS, convex_parts
@@ -87,7 +87,7 @@ def test_a_table_needs_one_shape() -> None:
         FixtureTable(name="vise", file="vise.stl", size=(1.0, 1.0, 1.0))
 
 
-def mill(*fixtures: FixtureTable) -> Machine:
+def mill(*fixtures: FixtureTable) -> MachineConfig:
     return read_machine(machine_file("mill4"), fixtures=fixtures)
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from twin.job.job_file import JobFile
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.load import read_machine
 from twin.machine.model.model import BLANK, MachineModel
 from twin.machine.model.supplied import CAMERAS, supply
@@ -42,7 +42,7 @@ MODEL = """<mujoco>
 AXIS = '[axes.{0}]\njoint = "{0}"\nkind = "{1}"\nvelocity = 300.0\nacceleration = 3000.0\njerk = 30000.0\nkv = 5.0\n'
 
 
-def own_machine(folder: Path, excluded: str = "") -> Machine:
+def own_machine(folder: Path, excluded: str = "") -> MachineConfig:
     kinds = {"X": "linear", "Y": "linear", "Z": "linear", "B": "rotary"}
     text = 'schema = 1\nname = "own"\nmodel = "own.xml"\npath = { acceleration = 3000.0, jerk = 30000.0 }\n'
     text += "".join(AXIS.format(*axis) for axis in kinds.items())

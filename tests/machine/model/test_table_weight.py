@@ -13,7 +13,7 @@ from tests.machine.machine_fixtures import PERIOD, setpoints, shipped_machine, w
 from twin.files.shipped import resource_root
 from twin.job.fixture import FixtureTable
 from twin.job.job_file import JobFile, StockTable
-from twin.machine.description.config import Blank, Machine
+from twin.machine.description.config import Blank, MachineConfig
 from twin.machine.load import read_machine
 from twin.machine.model.model import BLANK, build_spec, drives, moved, physics_model
 from twin.machine.simulation.servo import Servo
@@ -23,12 +23,12 @@ DISC = StockTable(shape="cylinder", diameter=340.0, height=98.21564381, density=
 """70 kg; its inertia about its axis is m r²/2 = 1.01 kg m²."""
 
 
-def blank_of(machine: Machine, stock: StockTable) -> Blank | None:
+def blank_of(machine: MachineConfig, stock: StockTable) -> Blank | None:
     """A stock as it lies on the table."""
     return lay_out(JobFile(program="part.nc", stock=stock), machine).blank
 
 
-def felt(machine: Machine, blank: Blank | None = None) -> dict[str, float]:
+def felt(machine: MachineConfig, blank: Blank | None = None) -> dict[str, float]:
     """What each motor moves, motor and screw included."""
     model = physics_model(machine, build_spec(machine, blank=blank))
     return dict(zip(machine.axes.names, moved(machine, model), strict=True))

@@ -6,7 +6,7 @@ import pytest
 
 from tests.machine.machine_fixtures import PERIOD, circle, line, ramp_up, setpoints, shipped_machine
 from twin.errors import ConfigError
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.model.drives import integral_name
 from twin.machine.model.model import MachineModel, build_spec, drives, physics_model
 from twin.machine.model.transmission import give_stiffness
@@ -18,7 +18,7 @@ from twin.units import MM
 PERFECT = {"velocity_feedforward": 1.0, "acceleration_feedforward": 1.0}
 
 
-def run(machine: Machine, points: Setpoints) -> Samples:
+def run(machine: MachineConfig, points: Setpoints) -> Samples:
     (samples,) = simulate(machine, MachineModel(machine), [points])
     return samples
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from tests.machine.machine_fixtures import PERIOD, circle, line, shipped_machine
 from twin.errors import ConfigError
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.description.machine_file import AxisTable
 from twin.machine.model.model import build_spec, drives, physics_model
 from twin.machine.simulation.drive_kernels import DriveSetpoints
@@ -27,7 +27,7 @@ LATE: dict[str, float] = {
 }  # fmt: skip
 
 
-def run(machine: Machine, points: Setpoints) -> Samples:
+def run(machine: MachineConfig, points: Setpoints) -> Samples:
     simulation = simulate(machine, physics_model(machine, build_spec(machine)), [points])
     (samples,) = simulation
     assert simulation.alarm is None

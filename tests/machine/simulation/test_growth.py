@@ -12,7 +12,7 @@ from tests.machine.machine_fixtures import PERIOD, setpoints
 from twin.errors import ConfigError
 from twin.files.shipped import machine_file
 from twin.machine.circle.circular_test import circular_test
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.description.machine_file import MachineFile
 from twin.machine.load import read_machine
 from twin.machine.simulation.growth import Growth
@@ -26,11 +26,11 @@ SPINDLE = {"source": "spindle", "at": 8000.0, "um": [1.0, 2.0, -12.0], "time_con
 SCREW = {"source": "X", "at": 200.0, "um": [8.0, 0.0, 0.0], "time_constant_s": 1.5}
 
 
-def growing(**thermal: dict[str, Any]) -> Machine:
+def growing(**thermal: dict[str, Any]) -> MachineConfig:
     """``mill4`` that grows."""
     path = machine_file("mill4")
     data = tomllib.loads(path.read_text(encoding="utf-8"))
-    return Machine(path, MachineFile.model_validate(data | {"thermal": thermal}))
+    return MachineConfig(path, MachineFile.model_validate(data | {"thermal": thermal}))
 
 
 def driven(count: int, force: float, speed: float) -> Samples:
@@ -41,7 +41,7 @@ def driven(count: int, force: float, speed: float) -> Samples:
     return Samples(setpoints(zero, velocity, zero), zero, velocity, push)
 
 
-def grown(machine: Machine, samples: Samples, turns: FloatArray, rows: int) -> FloatArray:
+def grown(machine: MachineConfig, samples: Samples, turns: FloatArray, rows: int) -> FloatArray:
     """Growth along a run in chunks of so many rows, shape (n, 3) [µm]."""
     growth = Growth(machine, lambda points: turns[np.searchsorted(time, points.time)])
     time = samples.setpoint.time

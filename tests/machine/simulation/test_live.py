@@ -13,7 +13,7 @@ from twin.errors import ConfigError
 from twin.files.shipped import machine_file
 from twin.job.fixture import FixtureTable
 from twin.job.job_file import ToolTable
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.load import read_machine
 from twin.machine.model.model import MachineModel, build_spec, drives
 from twin.machine.simulation.live import LiveMachine
@@ -113,9 +113,9 @@ def test_an_axis_may_leave_its_limit_switch_after_the_alarm_is_cleared_but_go_no
     assert live.alarm is not None
 
 
-def with_jaw(machine: Machine) -> Machine:
+def with_jaw(machine: MachineConfig) -> MachineConfig:
     jaw = FixtureTable(name="vise jaw", size=(40.0, 40.0, 100.0), position=(150.0, 0.0, 0.0))
-    return Machine(machine.path, machine.file.model_copy(update={"fixtures": (jaw,)}))
+    return MachineConfig(machine.path, machine.file.model_copy(update={"fixtures": (jaw,)}))
 
 
 def test_what_has_met_may_be_driven_apart_but_not_deeper():

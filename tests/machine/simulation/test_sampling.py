@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.machine.machine_fixtures import PERIOD, circle, line, setpoints, shipped_machine
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.model.model import MachineModel, build_spec, drives
 from twin.machine.simulation.sampling import held_acceleration, held_velocity, polyline_node
 from twin.machine.simulation.simulate import simulate
@@ -16,7 +16,7 @@ PERFECT = {"velocity_feedforward": 1.0, "acceleration_feedforward": 1.0}
 F3000, F10000 = 3000.0, 10000.0
 
 
-def run(machine: Machine, points: Setpoints) -> Samples:
+def run(machine: MachineConfig, points: Setpoints) -> Samples:
     simulation = simulate(machine, MachineModel(machine), [points])
     (samples,) = simulation
     assert simulation.alarm is None
@@ -28,7 +28,9 @@ def radius_error_um(samples: Samples, radius: float) -> np.ndarray:
     return (np.hypot(settled[:, 0] + radius, settled[:, 1]) - radius) * 1e3
 
 
-def closed_form_um(machine: Machine, radius: float, feed: float, *, told_velocity: bool) -> float:
+def closed_form_um(
+    machine: MachineConfig, radius: float, feed: float, *, told_velocity: bool
+) -> float:
     """Radius error of a second-order servo on a circle (mujoco-notes: lag servo)."""
     axis = machine.axis("X")
     frequency = 2 * axis.damping_ratio * axis.kv * 1000 / 60

@@ -7,7 +7,7 @@ from tests.machine.machine_fixtures import PERIOD, line, ramp_up, setpoints, shi
 from twin.columns import join
 from twin.job.fixture import FixtureTable
 from twin.job.job_file import ToolTable
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.description.machine_file import MachineFile
 from twin.machine.model.model import MachineModel, build_spec, clearance_model
 from twin.machine.simulation.simulate import simulate
@@ -17,9 +17,9 @@ from twin.motion.setpoints.setpoints import Setpoints
 from twin.recording.reader import Samples
 
 
-def with_fixture(machine: Machine, size, position) -> Machine:
+def with_fixture(machine: MachineConfig, size, position) -> MachineConfig:
     jaw = FixtureTable(name="vise jaw", size=size, position=position)
-    return Machine(
+    return MachineConfig(
         machine.path,
         MachineFile.model_validate(
             machine.file.model_dump(by_alias=True) | {"fixtures": [jaw.model_dump()]}
@@ -46,7 +46,7 @@ def moves(*points: tuple[float, ...], speed: float = 100.0) -> Setpoints:
     return setpoints(*(np.concatenate(column) for column in columns))
 
 
-def alarm_of(machine: Machine, points: Setpoints, tool=None) -> tuple[Alarm, Samples]:
+def alarm_of(machine: MachineConfig, points: Setpoints, tool=None) -> tuple[Alarm, Samples]:
     simulation = simulate(machine, MachineModel(machine, tool), [points])
     *_, last = list(simulation)
     assert simulation.alarm is not None

@@ -19,7 +19,7 @@ from tests.machine.machine_fixtures import (
 )
 from twin.job.fixture import FixtureTable
 from twin.job.job_file import ToolTable
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.model.model import build_spec, clearance_model
 from twin.machine.model.tool_shape import COLLISION_GROUP
 from twin.machine.watching.clearance import Clearance
@@ -76,7 +76,9 @@ def watch(clearance: Clearance, position: FloatArray, size: int = 700) -> str:
     return ""
 
 
-def alone(spec: mujoco.MjSpec, machine: Machine, *names: str) -> tuple[Clearance, mujoco.MjModel]:
+def alone(
+    spec: mujoco.MjSpec, machine: MachineConfig, *names: str
+) -> tuple[Clearance, mujoco.MjModel]:
     """The watch over a few geoms of a machine, as if it had no others."""
     spec = spec.copy()
     for geom in list(spec.geoms):

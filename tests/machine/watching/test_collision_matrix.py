@@ -11,7 +11,7 @@ from twin.errors import ConfigError
 from twin.files.shipped import machine_file, machine_names
 from twin.job.fixture import FixtureTable
 from twin.job.job_file import ToolTable
-from twin.machine.description.config import Blank, Machine
+from twin.machine.description.config import Blank, MachineConfig
 from twin.machine.load import read_machine
 from twin.machine.model.clamping import refuse_overlaps
 from twin.machine.model.model import MachineModel, clearance_model
@@ -64,14 +64,14 @@ PAIRS = [pair for name in MACHINES for pair in all_pairs(name)]
 
 
 @pytest.fixture(scope="module")
-def machines() -> dict[str, tuple[Machine, mujoco.MjSpec]]:
+def machines() -> dict[str, tuple[MachineConfig, mujoco.MjSpec]]:
     models = {name: clamped(name) for name in MACHINES}
     return {name: (model.machine, model.spec) for name, model in models.items()}
 
 
 def lone(
-    machines: dict[str, tuple[Machine, mujoco.MjSpec]], name: str, *kept: str
-) -> tuple[Machine, mujoco.MjSpec]:
+    machines: dict[str, tuple[MachineConfig, mujoco.MjSpec]], name: str, *kept: str
+) -> tuple[MachineConfig, mujoco.MjSpec]:
     machine, spec = machines[name]
     spec = spec.copy()
     for geom in list(spec.geoms):
@@ -88,7 +88,7 @@ def lone(
     ],
 )
 def test_an_overlap_of_a_twentieth_is_seen_and_a_gap_of_one_is_none(
-    machines: dict[str, tuple[Machine, mujoco.MjSpec]], name: str, one: str, two: str
+    machines: dict[str, tuple[MachineConfig, mujoco.MjSpec]], name: str, one: str, two: str
 ) -> None:
     machine, spec = lone(machines, name, one, two)
     for gap, seen in ((0.05, False), (-0.05, True)):

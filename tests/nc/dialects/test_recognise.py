@@ -5,6 +5,7 @@ import pytest
 from tests.nc.running import ROOT, run
 from twin.errors import UsageError
 from twin.nc.dialects import DIALECTS, dialect_named, marks_found, recognise
+from twin.nc.dialects.recognition import raw_text
 from twin.nc.text.source import read_source, source_from_text
 
 OWN = {
@@ -196,3 +197,15 @@ def test_words_of_a_family_ask_which_of_it() -> None:
 @pytest.mark.parametrize("line", ["G12 G2 X10 Y0 I5 J0", "G13 X10 I5", "G12.1 X10. I5."])
 def test_a_mirror_with_an_arc_is_no_round_pocket_of_a_haas(line: str) -> None:
     assert not marks_found(source_from_text(line))["haas"]
+
+
+def test_blocks_and_comments_are_told_apart_line_by_line() -> None:
+    text = "%\r\nO1 (A (B\nG1 X1 (C) Y2 ; D\n\n 12 * - E\n%F\rG0 (G\nX3)\n"
+    found = raw_text(source_from_text(text))
+    assert found.blocks.split("\n") == ["", "O1 (A ", "G1 X1  Y2 ", "", "", "", "G0 ", "X3)", ""]
+    told = ((1, ""), (2, "B"), (3, "C"), (3, "D"), (5, "E"), (6, "F"), (7, "G"))
+    assert found.comments == told
+
+
+def test_a_mark_is_found_in_its_own_line_alone() -> None:
+    assert not any(marks_found(source_from_text("G0 X1 ;\nG1 Y2 (\nG102) C5\n"))["fagor8070"])

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from twin.job.job_file import StockTable
 from twin.render.drawing.canvas import DRAFT
 from twin.render.drawing.chips import FLIGHT_S, GRAVITY, MOST, RISE, SPEED, chips
-from twin.render.scene.scene import Scene
+from twin.render.scene.scene import RenderScene
 from twin.render.scene.stage import stage
 
 TIP = np.array([0.3, -0.2, 0.9])
@@ -37,7 +37,7 @@ def test_chips_lie_within_their_flight(seed: int, rate: float) -> None:
     assert np.array_equal(again.position, flying.position)
 
 
-def test_chips_are_seen_while_stock_is_cut_and_only_then(scene: Scene) -> None:
+def test_chips_are_seen_while_stock_is_cut_and_only_then(scene: RenderScene) -> None:
     assert scene.stock is not None
     far = StockTable(shape="box", size=(10.0, 10.0, 5.0), position=(400.0, 0.0, 0.0))
     bright = []

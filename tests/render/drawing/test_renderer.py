@@ -27,7 +27,7 @@ from twin.render.drawing.studio_light import (
     environment,
     light_studio,
 )
-from twin.render.scene.scene import Scene
+from twin.render.scene.scene import RenderScene
 from twin.render.scene.stage import stage
 from twin.render.still import Shot, stills
 
@@ -101,7 +101,7 @@ def test_geoms_are_told_apart_and_groups_may_change() -> None:
 
 @pytest.mark.usefixtures("filament_driver")
 @pytest.mark.parametrize("camera", ["overview", "top", "part", "riding"])
-def test_both_renderers_frame_the_same_objects(scene: Scene, camera: str) -> None:
+def test_both_renderers_frame_the_same_objects(scene: RenderScene, camera: str) -> None:
     seen = {}
     for renderer in ("opengl", "filament"):
         with stage(scene, SIZE, DRAFT, renderer=renderer) as play:
@@ -114,7 +114,7 @@ def test_both_renderers_frame_the_same_objects(scene: Scene, camera: str) -> Non
 
 
 @pytest.mark.usefixtures("filament_driver")
-def test_cut_stock_and_trail_are_seen(scene: Scene) -> None:
+def test_cut_stock_and_trail_are_seen(scene: RenderScene) -> None:
     with stage(scene, SIZE, DRAFT, renderer="filament") as play:
         before = play.picture("top").astype(int)
         trail = {play.model.geom(i).id for i in range(play.model.ngeom)
@@ -132,7 +132,7 @@ def test_cut_stock_and_trail_are_seen(scene: Scene) -> None:
 
 
 @pytest.mark.usefixtures("filament_driver")
-def test_a_picture_is_bright_but_not_burnt_out(scene: Scene) -> None:
+def test_a_picture_is_bright_but_not_burnt_out(scene: RenderScene) -> None:
     with stage(
         scene, SIZE, Quality(passes=2, drawn_cells=60, drawn_crossings=6_000), renderer="filament"
     ) as play:
@@ -165,7 +165,7 @@ def test_nothing_is_printed(capfd: pytest.CaptureFixture[str]) -> None:
 
 
 @pytest.mark.usefixtures("filament_driver")
-def test_a_still_has_the_display_over_it(make_recording: Record, scene: Scene) -> None:
+def test_a_still_has_the_display_over_it(make_recording: Record, scene: RenderScene) -> None:
     path = make_recording()
     picture = path.with_suffix(".png")
     with open_recording(path) as recording:

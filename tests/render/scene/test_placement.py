@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tests.render.conftest import MODEL, TOOL
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.render.scene.placement import Joints, place, tip_position
 
 reach = st.floats(-200.0, 200.0)
@@ -21,7 +21,7 @@ def shared_model() -> mujoco.MjModel:
 @hypothesis.settings(derandomize=True, max_examples=40)
 @hypothesis.given(reach, reach, reach, st.floats(-800.0, 800.0), reach, reach, st.floats(-90, 90))
 def test_tool_point_is_drawn_where_the_part_frame_says(
-    machine: Machine,
+    machine: MachineConfig,
     model: mujoco.MjModel,
     x: float,
     y: float,
@@ -36,7 +36,7 @@ def test_tool_point_is_drawn_where_the_part_frame_says(
     frame = dataclasses.replace(
         machine.part_frame, center=(center_x, center_y), turn_zero=turn_zero
     )
-    moved = Machine(machine.path, machine.file)
+    moved = MachineConfig(machine.path, machine.file)
     moved.part_frame = frame
     placement = place(moved, model, TOOL.length, frame)
     position = np.array([x, y, z, c])
@@ -49,7 +49,7 @@ def test_tool_point_is_drawn_where_the_part_frame_says(
     np.testing.assert_allclose(world, tip_position(model, data, TOOL.length), atol=1e-9)
 
 
-def test_quaternion_is_the_rotation(machine: Machine) -> None:
+def test_quaternion_is_the_rotation(machine: MachineConfig) -> None:
     model = mujoco.MjModel.from_xml_string(MODEL)
     placement = place(
         machine, model, TOOL.length, dataclasses.replace(machine.part_frame, turn_zero=15.0)

@@ -10,7 +10,7 @@ import trimesh
 from tests.render.conftest import SUMMARY, TOOL, Record
 from twin.cutting.tools import profile
 from twin.job.job_file import StockTable, ToolTable
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.nc.canonical import FloatArray
 from twin.recording.reader import Recording, open_recording
 from twin.render.drawing.canvas import (
@@ -23,8 +23,8 @@ from twin.render.drawing.canvas import (
 )
 from twin.render.frames import deal
 from twin.render.scene.placement import tip_position
-from twin.render.scene.scene import Scene
-from twin.render.scene.stage import Stage, stage
+from twin.render.scene.scene import RenderScene
+from twin.render.scene.stage import ScenePlayer, stage
 from twin.render.scene.tool_body import fluted
 from twin.render.still import moment
 from twin.toolpath.tool_plan import ToolPlan
@@ -32,12 +32,12 @@ from twin.toolpath.tool_plan import ToolPlan
 SIZE = (320, 240)
 
 
-def play_to(play: Stage, recording: Recording, samples: int) -> None:
+def play_to(play: ScenePlayer, recording: Recording, samples: int) -> None:
     for chunk, _ in deal(recording, np.array([samples])):
         play.advance(chunk)
 
 
-def projected(play: Stage, camera: str, point: FloatArray) -> tuple[float, float]:
+def projected(play: ScenePlayer, camera: str, point: FloatArray) -> tuple[float, float]:
     """Column and row of a point of the world."""
     model, data = play.model, play.data
     eye = data.camera(camera)
@@ -48,7 +48,7 @@ def projected(play: Stage, camera: str, point: FloatArray) -> tuple[float, float
 
 @pytest.mark.seconds("a stage is built and drawn")
 @pytest.mark.parametrize("line", [2, 3, 4])
-def test_tool_tip_is_where_the_recording_says(scene: Scene, line: int) -> None:
+def test_tool_tip_is_where_the_recording_says(scene: RenderScene, line: int) -> None:
     with stage(scene, SIZE, DRAFT) as play:
         play_to(play, scene.recording, moment(scene.recording, line=line) - 60)
         tool = play.objects("overview") == int(play.model.geom("cutter_1").id)
@@ -59,7 +59,7 @@ def test_tool_tip_is_where_the_recording_says(scene: Scene, line: int) -> None:
     assert columns[rows > rows.max() - 5].mean() == pytest.approx(column, abs=2)
 
 
-def test_a_change_of_tool_is_seen(scene: Scene) -> None:
+def test_a_change_of_tool_is_seen(scene: RenderScene) -> None:
     long = ToolTable(number=2, kind="drill", diameter=8.0, length=55.0)
     changed = dataclasses.replace(
         scene, summary=dataclasses.replace(SUMMARY, tools=ToolPlan((TOOL, long), (0, 2)))
@@ -104,7 +104,7 @@ def test_drawn_cutter_lies_within_its_profile(tool: ToolTable) -> None:
     assert mesh.volume > 0
 
 
-def stock_pixels(play: Stage, camera: str) -> np.ndarray[tuple[int, int], np.dtype[np.bool_]]:
+def stock_pixels(play: ScenePlayer, camera: str) -> np.ndarray[tuple[int, int], np.dtype[np.bool_]]:
     names = [play.model.geom(number).name.startswith("stock") for number in range(play.model.ngeom)]
     return np.array([*names, False])[play.objects(camera)]
 
@@ -114,14 +114,14 @@ def groove(before: Pixels, after: Pixels) -> np.ndarray[tuple[int, int], np.dtyp
 
 
 @pytest.fixture(params=[False, True], ids=["height map", "tri-dexel"])
-def stocked(scene: Scene, request: pytest.FixtureRequest) -> Scene:
+def stocked(scene: RenderScene, request: pytest.FixtureRequest) -> RenderScene:
     """The same cuts with either description of the material."""
     summary = dataclasses.replace(scene.summary, tilts=request.param)
     return dataclasses.replace(scene, summary=summary)
 
 
 @pytest.mark.seconds("a stage is built and drawn")
-def test_groove_is_where_the_tool_was(stocked: Scene) -> None:
+def test_groove_is_where_the_tool_was(stocked: RenderScene) -> None:
     with stage(stocked, SIZE, DRAFT) as play:
         blank, stock = play.picture("top"), stock_pixels(play, "top")
         play_to(play, stocked.recording, moment(stocked.recording, line=3))
@@ -144,7 +144,7 @@ def test_groove_is_where_the_tool_was(stocked: Scene) -> None:
     assert stock_now.sum() > 0.5 * stock.sum()
 
 
-def test_stock_turns_with_the_table(stocked: Scene) -> None:
+def test_stock_turns_with_the_table(stocked: RenderScene) -> None:
     with stage(stocked, SIZE, DRAFT) as play:
         play_to(play, stocked.recording, moment(stocked.recording, line=1))
         rows, columns = np.nonzero(stock_pixels(play, "top"))
@@ -157,10 +157,10 @@ def test_stock_turns_with_the_table(stocked: Scene) -> None:
     assert standing < 0.85
 
 
-def test_trail_grows(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_trail_grows(scene: RenderScene, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("twin.render.scene.stage.TRAIL_MM", (2.0, 2.0))
 
-    def visible(play: Stage) -> int:
+    def visible(play: ScenePlayer) -> int:
         names = [
             play.model.geom(number).name.startswith("trail") for number in range(play.model.ngeom)
         ]
@@ -177,7 +177,7 @@ def test_trail_grows(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
         assert visible(play) > slot + 10
 
 
-def trail_colour(scene: Scene) -> FloatArray:
+def trail_colour(scene: RenderScene) -> FloatArray:
     """Mean colour of the trail when the run has ended, seen from above."""
     with stage(scene, SIZE, DRAFT) as play:
         play_to(play, scene.recording, 1001)
@@ -191,7 +191,7 @@ def trail_colour(scene: Scene) -> FloatArray:
 def test_trail_shows_the_error(
     make_recording: Record,
     spec: mujoco.MjSpec,
-    machine: Machine,
+    machine: MachineConfig,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr("twin.render.scene.stage.TRAIL_MM", (2.0, 2.0))
@@ -199,7 +199,7 @@ def test_trail_shows_the_error(
     colours = []
     for error in (0.0, 25.0):
         with open_recording(make_recording(np.full(1001, error))) as recording:
-            scene = Scene(
+            scene = RenderScene(
                 recording=recording, spec=spec, machine=machine, summary=feeds, error_scale_um=20.0
             )
             colours.append(trail_colour(scene))
@@ -208,7 +208,7 @@ def test_trail_shows_the_error(
 
 
 @pytest.mark.parametrize("camera", ["part", "riding"])
-def test_part_cameras_see_the_stock_in_the_middle(scene: Scene, camera: str) -> None:
+def test_part_cameras_see_the_stock_in_the_middle(scene: RenderScene, camera: str) -> None:
     middles = []
     with stage(scene, SIZE, DRAFT) as play:
         for samples in (1, 1000):
@@ -225,7 +225,7 @@ def test_part_cameras_see_the_stock_in_the_middle(scene: Scene, camera: str) -> 
 
 
 @pytest.mark.seconds("two stages are built and drawn")
-def test_a_hole_through_the_stock_shows_the_table(stocked: Scene) -> None:
+def test_a_hole_through_the_stock_shows_the_table(stocked: RenderScene) -> None:
     thin = StockTable(shape="box", size=(100.0, 100.0, 4.0), position=(0, 0, -4), cell=0.5)
     with stage(dataclasses.replace(stocked, stock=thin), SIZE, DRAFT) as play:
         plate = int(play.model.geom("plate").id)
@@ -241,7 +241,7 @@ def test_a_hole_through_the_stock_shows_the_table(stocked: Scene) -> None:
     assert after > before + 100
 
 
-def test_a_stock_that_is_cut_away_is_seen_no_more(stocked: Scene) -> None:
+def test_a_stock_that_is_cut_away_is_seen_no_more(stocked: RenderScene) -> None:
     sliver = StockTable(shape="box", size=(60.0, 6.0, 3.0), position=(0.0, 0.0, -1.0), cell=0.5)
     with stage(dataclasses.replace(stocked, stock=sliver), SIZE, DRAFT) as play:
         before = stock_pixels(play, "top").sum()
@@ -254,7 +254,7 @@ def test_a_stock_that_is_cut_away_is_seen_no_more(stocked: Scene) -> None:
 @pytest.mark.seconds("pictures are drawn without a graphics card")
 @pytest.mark.parametrize("quality", [DRAFT, dataclasses.replace(DRAFT, passes=3)])
 def test_frames_that_are_drawn_ahead_are_those_drawn_one_by_one(
-    scene: Scene, quality: Quality
+    scene: RenderScene, quality: Quality
 ) -> None:
     ends = np.linspace(100, 1000, 5).astype(int)
     drawn: list[list[Pixels]] = [[], []]
@@ -278,7 +278,9 @@ def test_frames_that_are_drawn_ahead_are_those_drawn_one_by_one(
     assert not np.array_equal(drawn[0][1], drawn[0][3])
 
 
-def test_the_order_of_drawing_hides_nothing_and_leaves_the_model_as_it_was(scene: Scene) -> None:
+def test_the_order_of_drawing_hides_nothing_and_leaves_the_model_as_it_was(
+    scene: RenderScene,
+) -> None:
     with stage(scene, SIZE, DRAFT) as play:
         play_to(play, scene.recording, 400)
         play.refresh()
@@ -293,7 +295,7 @@ def test_the_order_of_drawing_hides_nothing_and_leaves_the_model_as_it_was(scene
 
 
 @pytest.mark.seconds("pictures are drawn without a graphics card")
-def test_shadows_fall(scene: Scene) -> None:
+def test_shadows_fall(scene: RenderScene) -> None:
     pictures = []
     for quality in (DRAFT, dataclasses.replace(DRAFT, passes=4)):
         with stage(scene, SIZE, quality) as play:
@@ -304,7 +306,7 @@ def test_shadows_fall(scene: Scene) -> None:
 
 
 @pytest.mark.seconds("pictures are drawn without a graphics card")
-def test_passes_smooth_edges_and_shadows(scene: Scene) -> None:
+def test_passes_smooth_edges_and_shadows(scene: RenderScene) -> None:
     """Between the levels of a rough picture lie those of a smooth one."""
     levels = []
     for passes in (1, 8):

@@ -10,10 +10,11 @@ from twin.errors import ConfigError, EmptyProgramError, TwinError, UsageError
 from twin.files.shipped import machine_file
 from twin.nc.canonical import concatenate
 from twin.nc.text.diagnostics.diagnostics import ProgramError
-from twin.run.preparing.assumed_job import AssumedJob, text_beside, with_assumptions
+from twin.run.preparing.assumed_job import AssumedJob, prepare_run, text_beside, with_assumptions
 from twin.run.preparing.preparation import Preparation, prepare
 from twin.run.progress import no_progress
-from twin.run.reading.assumed_tools import SPEED_BY_HAND, numbered_tool, tool_of_comment
+from twin.run.reading.assumed_tools import SPEED_BY_HAND
+from twin.run.reading.tool_comments import numbered_tool, tool_of_comment
 from twin.run.run import Run
 
 CONTOUR = """%
@@ -679,3 +680,16 @@ def test_what_goes_through_a_stock_of_the_program_meets_no_parallels(tmp_path: P
 def alarms_of(preparation: Preparation) -> list[str]:
     outcome = Run(preparation).execute(None, no_progress)
     return [alarm.code for alarm in outcome.alarms]
+
+
+def test_a_guessed_diameter_is_said_and_strict_runs_none(tmp_path: Path) -> None:
+    path = tmp_path / "part.nc"
+    path.write_text(CONTOUR.replace("(T1 D=10. CR=0. - ZMIN=-4. - flat end mill)\n", ""))
+    made, assumed = prepare_run(path)
+    assert assumed is not None
+    assert assumed.guessed_tools == (1,)
+    assert "T1 flat of 10 mm: diameter is a guess" in made.assumptions
+    with pytest.raises(UsageError, match=r"diameter of T1, and --strict .*\(T1 D=10"):
+        prepare_run(path, strict=True)
+    path.write_text(CONTOUR)
+    prepare_run(path, strict=True)

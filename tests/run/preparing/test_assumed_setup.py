@@ -8,13 +8,13 @@ import pytest
 from tests.run.preparing.test_assumed_job import raw
 from twin.errors import UsageError
 from twin.nc.canonical import concatenate
-from twin.nc.dialects.recognition import comments_of
+from twin.nc.dialects.recognition import raw_text
 from twin.nc.text.diagnostics.diagnostics import ProgramError
 from twin.nc.text.source import source_from_text
 from twin.run.preparing.assumed_job import text_beside, with_assumptions
 from twin.run.preparing.preparation import Preparation, prepare
 from twin.run.reading.assumed_machine import assumed_machine, turned_axes
-from twin.run.reading.assumed_tools import tool_of_comment
+from twin.run.reading.tool_comments import tool_of_comment
 
 
 def passes(*heights: float, clear: float = 15.0) -> str:
@@ -223,9 +223,8 @@ def test_tools_that_are_called_by_names_have_the_radius_of_their_comment(tmp_pat
 
 
 def test_open_brackets_of_a_set_up_sheet_tell_the_radius() -> None:
-    assert comments_of("(     T01 TC1: KL+087.000 KR020.000 NZ06") == [
-        "T01 TC1: KL+087.000 KR020.000 NZ06"
-    ]
+    source = source_from_text("G90\n(     T01 TC1: KL+087.000 KR020.000 NZ06")
+    assert raw_text(source).comments == ((2, "T01 TC1: KL+087.000 KR020.000 NZ06"),)
     assert tool_of_comment("TC1: KL+087.000 KR020.000 NZ06", inches=False).diameter == 40.0
 
 

@@ -4,18 +4,18 @@ import pytest
 from twin.errors import ConfigError
 from twin.files.shipped import machine_file
 from twin.job.job_file import JobFile, StockTable, ToolTable
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.load import read_machine
 from twin.run.preparing.layout import WORK_HOLDING_HEIGHT, lay_out
 
 
 @pytest.fixture(scope="module")
-def machine() -> Machine:
+def machine() -> MachineConfig:
     return read_machine(machine_file("mill4"))
 
 
 @pytest.fixture(scope="module")
-def clearance(machine: Machine) -> float:
+def clearance(machine: MachineConfig) -> float:
     return machine.at_zero.spindle_over_table
 
 
@@ -25,7 +25,7 @@ def stock(height: float, top: float = 0.0) -> StockTable:
 
 @pytest.mark.parametrize("top", [0.0, 15.0, -3.0])
 def test_the_default_zero_lies_on_the_stock_that_stands_on_its_jaws(
-    machine: Machine, clearance: float, top: float
+    machine: MachineConfig, clearance: float, top: float
 ):
     tool = ToolTable(number=1, length=80.0)
     zero = lay_out(JobFile(program="a", stock=stock(30.0, top), tools=(tool,)), machine).part_zero
@@ -34,19 +34,19 @@ def test_the_default_zero_lies_on_the_stock_that_stands_on_its_jaws(
     assert tuple(zero[:2]) == machine.part_frame.center
 
 
-def test_without_stock_there_is_room_both_ways(machine: Machine):
+def test_without_stock_there_is_room_both_ways(machine: MachineConfig):
     zero = lay_out(JobFile(program="a"), machine).part_zero
     travel = machine.axis("Z").travel
     assert travel is not None
     assert zero[2] == pytest.approx(sum(travel) / 2)
 
 
-def test_a_given_zero_is_taken_at_its_word(machine: Machine):
+def test_a_given_zero_is_taken_at_its_word(machine: MachineConfig):
     job = JobFile(program="a", part_zero={"X": 12.5, "Z": -200.0, "C": 30.0})
     np.testing.assert_array_equal(lay_out(job, machine).part_zero, [12.5, 0.0, -200.0, 30.0])
 
 
-def test_axes_that_the_machine_lacks_are_refused(machine: Machine):
+def test_axes_that_the_machine_lacks_are_refused(machine: MachineConfig):
     with pytest.raises(ConfigError, match=r"part_zero\.A.*X, Y, Z, C"):
         lay_out(JobFile(program="a", part_zero={"A": 1.0}), machine)
     with pytest.raises(ConfigError, match=r"start\.W"):
@@ -54,7 +54,7 @@ def test_axes_that_the_machine_lacks_are_refused(machine: Machine):
 
 
 def test_a_stock_below_the_table_is_refused_with_the_height_that_fits(
-    machine: Machine,
+    machine: MachineConfig,
 ):
     low = JobFile(program="a", part_zero={"Z": -540.0}, stock=stock(200.0))
     with pytest.raises(ConfigError, match=r"raise part_zero\.Z to") as caught:

@@ -18,9 +18,8 @@ from twin.machine.load import read_machine
 from twin.serve.agent import Agent, Clock
 from twin.serve.buffer import NORMAL, Condition
 from twin.serve.device import device_of
-from twin.serve.opcua.machine_tool import NAMESPACE
-from twin.serve.opcua.node_sets import FOLDER, MACHINE_TOOL, MACHINERY
-from twin.serve.opcua.server import Content, Place, check_place, mirror
+from twin.serve.opcua.machine_tool import FOLDER, MACHINE_TOOL, MACHINERY, NAMESPACE
+from twin.serve.opcua.server import Content, Endpoint, check_place, mirror
 
 pytestmark = [
     pytest.mark.skipif(not FOLDER.is_dir(), reason="no node sets: run scripts/fetch_three.py"),
@@ -77,7 +76,7 @@ async def served() -> AsyncIterator[Served]:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
     content = Content(machine, "part.nc", {1: "flat 10 mm", 7: "drill 6 mm"})
-    task = asyncio.create_task(mirror(agent, Place("127.0.0.1", port), content))
+    task = asyncio.create_task(mirror(agent, Endpoint("127.0.0.1", port), content))
     url = f"opc.tcp://127.0.0.1:{port}"
     for _ in range(200):
         assert not task.done(), task.exception()
@@ -333,12 +332,12 @@ async def test_nonsense_at_the_port_leaves_clients_alone(one: Served) -> None:
 
 def test_without_certificates_only_this_computer_is_served(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="--opcua-trust"):
-        check_place(Place(EVERYWHERE, 4840))
+        check_place(Endpoint(EVERYWHERE, 4840))
     with pytest.raises(UsageError, match="no folder"):
-        check_place(Place(EVERYWHERE, 4840, tmp_path / "none"))
-    check_place(Place(EVERYWHERE, 0, tmp_path))
+        check_place(Endpoint(EVERYWHERE, 4840, tmp_path / "none"))
+    check_place(Endpoint(EVERYWHERE, 0, tmp_path))
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
         taken.listen()
         with pytest.raises(UsageError, match="in use"):
-            check_place(Place("127.0.0.1", taken.getsockname()[1]))
+            check_place(Endpoint("127.0.0.1", taken.getsockname()[1]))

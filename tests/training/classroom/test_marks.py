@@ -9,12 +9,12 @@ import uuid
 import pytest
 
 from twin.errors import UsageError
-from twin.training.classroom.marks import ClassFile, Mark, as_csv, as_statements
+from twin.training.classroom.marks import AttemptResult, ClassFile, as_csv, as_statements
 from twin.training.classroom.recorder import Recorder
 from twin.training.scene.scene_file import read_scene, scene_path
-from twin.training.session.session import Session
+from twin.training.session.session import SceneSession
 
-MARK = Mark(
+MARK = AttemptResult(
     str(uuid.UUID(int=1)), "Anna", "mefi_lead", "The lead", "2026-01-01T08:00:00+01:00",
     "2026-01-01T08:09:00+01:00", 7, 10, True, 1, "collision", 540.0, "out",
 )  # fmt: skip
@@ -86,7 +86,7 @@ def test_marks_are_a_table_and_statements():
 def test_a_mark_is_written_when_it_changes_and_a_session_behind_a_hand_in_is_another_one(tmp_path):
     file = ClassFile(tmp_path)
     recorder = Recorder(file, "Anna", lambda: None)
-    session = Session(read_scene(scene_path("fagor_first_steps")))
+    session = SceneSession(read_scene(scene_path("fagor_first_steps")))
     session.submit({"do": "sign", "name": "Anna"})
     assert recorder.note(session) == ""
     session.advance(100)

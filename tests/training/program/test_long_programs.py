@@ -8,12 +8,12 @@ from twin.motion import corner_candidates
 from twin.training.program.block_tracker import FORGOTTEN_AT_ONCE
 from twin.training.program.program_run import MOVES_AT_ONCE, PLANNED_AT_REST
 from twin.training.scene.scene_file import read_scene, scene_path
-from twin.training.session.session import Session
+from twin.training.session.session import SceneSession
 
 
-def session_of(program: str) -> Session:
+def session_of(program: str) -> SceneSession:
     """The first LinuxCNC scene with another program, without its blank."""
-    session = Session(read_scene(scene_path("linuxcnc_round_corners")))
+    session = SceneSession(read_scene(scene_path("linuxcnc_round_corners")))
     session.room.setup.work = None
     session.room.program.load(program)
     return session

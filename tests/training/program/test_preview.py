@@ -9,23 +9,23 @@ from twin.training.program import preview as module
 from twin.training.program.preview import Preview
 from twin.training.room.run_settings import path_to_come
 from twin.training.scene.scene_file import read_scene, scene_path
-from twin.training.session.session import Session
+from twin.training.session.session import SceneSession
 
 
 @pytest.fixture
-def session() -> Session:
-    return Session(read_scene(scene_path("fagor_first_steps")))
+def session() -> SceneSession:
+    return SceneSession(read_scene(scene_path("fagor_first_steps")))
 
 
-def load(session: Session, text: str) -> None:
+def load(session: SceneSession, text: str) -> None:
     session.room.program.load(text)
 
 
-def drawn(session: Session) -> Preview:
+def drawn(session: SceneSession) -> Preview:
     return path_to_come(session.room).drawn()
 
 
-def driven(session: Session) -> FloatArray:
+def driven(session: SceneSession) -> FloatArray:
     """Every tenth setpoint of the tip while the program runs, in the part's frame."""
     room, found = session.room, []
     do(session, "cycle_start")

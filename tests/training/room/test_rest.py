@@ -4,12 +4,12 @@ import pytest
 
 from twin.training.room.room import SLICE
 from twin.training.scene.scene_file import read_scene, scene_path
-from twin.training.session.session import Session
+from twin.training.session.session import SceneSession
 
 
 @pytest.fixture
 def session():
-    return Session(read_scene(scene_path("fagor_first_steps")))
+    return SceneSession(read_scene(scene_path("fagor_first_steps")))
 
 
 def test_what_rests_is_not_stepped_and_is_awake_with_the_next_command(session, monkeypatch):

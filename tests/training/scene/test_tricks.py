@@ -4,20 +4,20 @@ import pytest
 
 from twin.training.scene.scene_file import read_scene, scene_names, scene_path
 from twin.training.session.commands import TRAINERS
-from twin.training.session.session import Session
+from twin.training.session.session import SceneSession
 
 MOST_SLICES = 3000
 
 
-def opened(name: str) -> Session:
-    return Session(read_scene(scene_path(name)))
+def opened(name: str) -> SceneSession:
+    return SceneSession(read_scene(scene_path(name)))
 
 
-def give(session: Session, what: str, **words: object) -> bool:
+def give(session: SceneSession, what: str, **words: object) -> bool:
     return session.submit({"do": what, **words})
 
 
-def settle(session: Session) -> None:
+def settle(session: SceneSession) -> None:
     """Let time go on until nothing runs and the axes stand."""
     room = session.room
     for _ in range(MOST_SLICES):
@@ -27,7 +27,7 @@ def settle(session: Session) -> None:
     raise AssertionError("the axes never came to rest")
 
 
-def states(session: Session) -> list[str]:
+def states(session: SceneSession) -> list[str]:
     return [verdict.state for verdict in session.room.judge.verdicts]
 
 

@@ -6,7 +6,7 @@ import pytest
 
 from twin.machine.watching.alarms import AlarmCode
 from twin.nc.dialects import DIALECTS
-from twin.training.scene.vocabulary import LANGUAGES, Words, vocabulary
+from twin.training.scene.vocabulary import LANGUAGES, Vocabulary, vocabulary
 
 OWN_ALARMS = ("program", "external")
 
@@ -34,9 +34,9 @@ def test_every_alarm_is_explained(language):
 @pytest.mark.parametrize("language", LANGUAGES)
 @pytest.mark.parametrize("control", sorted(DIALECTS))
 def test_every_control_has_its_title(language, control):
-    assert Words(language, control)["title"]
+    assert Vocabulary(language, control)["title"]
 
 
 def test_controls_have_words_of_their_own():
-    assert Words("cs", "mefi")["mode_auto"] != Words("cs", "gost")["mode_auto"]
-    assert Words("it", "fagor8070")["cycle_start"] == "MARCIA"
+    assert Vocabulary("cs", "mefi")["mode_auto"] != Vocabulary("cs", "gost")["mode_auto"]
+    assert Vocabulary("it", "fagor8070")["cycle_start"] == "MARCIA"

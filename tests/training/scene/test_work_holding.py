@@ -6,7 +6,7 @@ from twin.machine.model.clamping import refuse_overlaps
 from twin.machine.model.model import MachineModel
 from twin.run.preparing.layout import lay_out
 from twin.training.scene.scene_file import Scene, read_scene, scene_names, scene_path
-from twin.training.session.session import Session
+from twin.training.session.session import SceneSession
 
 
 def scene(name: str) -> Scene:
@@ -29,7 +29,7 @@ def test_every_part_is_held_and_nothing_is_in_two_places(name):
 
 @pytest.mark.seconds("a room is stepped")
 def test_a_jaw_is_met():
-    session = Session(scene("fagor_first_steps"))
+    session = SceneSession(scene("fagor_first_steps"))
     for command in (
         {"do": "mode", "mode": "jog"},
         {"do": "jog", "axis": "Y", "direction": -1, "step": 52.0, "feed": 6000.0},

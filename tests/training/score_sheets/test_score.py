@@ -7,7 +7,7 @@ import pytest
 from PIL import Image
 
 from twin.training.scene.scene_file import read_scene, scene_path
-from twin.training.scene.vocabulary import LANGUAGES, Words, vocabulary
+from twin.training.scene.vocabulary import LANGUAGES, Vocabulary, vocabulary
 from twin.training.score_sheets.course import (
     CourseRow,
     Trainee,
@@ -17,13 +17,13 @@ from twin.training.score_sheets.course import (
     trainees,
 )
 from twin.training.score_sheets.score import ScoreSheetWriter, score_page, score_sheet
-from twin.training.session.session import Session
+from twin.training.session.session import SceneSession
 
 
 @pytest.fixture(scope="module")
-def wrecked() -> Session:
+def wrecked() -> SceneSession:
     """A rapid through the blank, twenty millimetres deep."""
-    session = Session(read_scene(scene_path("fagor_first_steps")))
+    session = SceneSession(read_scene(scene_path("fagor_first_steps")))
     session.submit({"do": "sign", "name": " Jan Novák "})
     text = "%X\nN10 G90 S3000 M3\nN20 G0 X0 Y0 Z-5\nN30 M30"
     session.room.program.load(text)
@@ -35,7 +35,7 @@ def wrecked() -> Session:
 
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_what_went_wrong_is_told_with_its_block(wrecked, language):
-    words = Words(language, "fagor8070")
+    words = Vocabulary(language, "fagor8070")
     sheet = score_sheet(wrecked, words, "2026-01-02 03:04")
     assert (sheet["name"], sheet["date"]) == ("Jan Novák", "2026-01-02 03:04")
     wrong, broken = sheet["wrong"]
@@ -65,7 +65,7 @@ def test_every_alarm_says_why_it_matters(language):
 
 
 def test_a_program_that_only_ends_has_finished_nothing():
-    session = Session(read_scene(scene_path("fagor_first_steps")))
+    session = SceneSession(read_scene(scene_path("fagor_first_steps")))
     session.submit({"do": "edit", "line": 2, "text": "N90 M30"})
     session.submit({"do": "cycle_start"})
     session.advance(50)
@@ -74,7 +74,7 @@ def test_a_program_that_only_ends_has_finished_nothing():
 
 
 def test_a_course_lists_the_sheets_of_a_folder(tmp_path, wrecked):
-    writer = ScoreSheetWriter(wrecked, Words("en", "fagor8070"), tmp_path)
+    writer = ScoreSheetWriter(wrecked, Vocabulary("en", "fagor8070"), tmp_path)
     writer.close()
     (tmp_path / "other").mkdir()
     (tmp_path / "other" / "score.json").write_text("{", encoding="utf-8")
@@ -102,8 +102,8 @@ def test_a_course_is_in_the_language_of_most_sheets_and_counts_the_best_of_each_
 
 
 def test_a_sheet_that_was_handed_in_is_kept_when_a_trainer_goes_back(tmp_path):
-    session = Session(read_scene(scene_path("fagor_first_steps")))
-    writer = ScoreSheetWriter(session, Words("en", "fagor8070"), tmp_path)
+    session = SceneSession(read_scene(scene_path("fagor_first_steps")))
+    writer = ScoreSheetWriter(session, Vocabulary("en", "fagor8070"), tmp_path)
     session.submit({"do": "sign", "name": "Eva"})
     session.advance(20)
     session.submit({"do": "finish"})

@@ -9,18 +9,18 @@ from twin.nc.control.executor import Executor
 from twin.training.program import program_run
 from twin.training.program.program_run import BLOCKS_AT_REST, BLOCKS_FOR_PLANNER
 from twin.training.scene.scene_file import read_scene, scene_path
-from twin.training.scene.vocabulary import Words
+from twin.training.scene.vocabulary import Vocabulary
 from twin.training.score_sheets.score import score_sheet
 from twin.training.server.driver import CAUGHT_UP_AT_ONCE_S, HELD_S, MOST_BEHIND_S, Driver
 from twin.training.session.log import Who
-from twin.training.session.session import Session
+from twin.training.session.session import SceneSession
 
 PAGE = 7
 
 
 @pytest.fixture
 def driver():
-    return Driver(Session(read_scene(scene_path("fagor_first_steps"))))
+    return Driver(SceneSession(read_scene(scene_path("fagor_first_steps"))))
 
 
 def run_for(driver: Driver, seconds: float) -> None:
@@ -234,7 +234,7 @@ def test_the_log_keeps_what_was_taken_back_and_names_who(driver):
     ask(driver, "rewind", "trainer", seconds=100.0)
     assert driver.session.room.time_s == 0.0
     assert driver.session.frozen
-    sheet = score_sheet(driver.session, Words("en", "fagor8070"))
+    sheet = score_sheet(driver.session, Vocabulary("en", "fagor8070"))
     assert [(one["who"], one["command"]["do"]) for one in sheet["actions"]] == [
         ("operator", "cycle_start"),
         ("trainer", "rewind"),
@@ -264,7 +264,9 @@ def test_what_is_asked_interrupts_catching_up(driver):
 def test_a_machine_that_loses_time_gives_its_precedence_back(driver, monkeypatch):
     given = []
     monkeypatch.setattr("twin.training.server.driver.take_precedence", lambda: True)
-    monkeypatch.setattr("twin.training.server.driver.give_way", lambda: given.append(driver.lost_s))
+    monkeypatch.setattr(
+        "twin.training.server.driver.release_precedence", lambda: given.append(driver.lost_s)
+    )
     turns = iter(range(100))
 
     def step(_passed):

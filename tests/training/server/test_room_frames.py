@@ -23,7 +23,7 @@ from twin.training.server.frames import (
     path_message,
     state_message,
 )
-from twin.training.session.session import Session
+from twin.training.session.session import SceneSession
 
 
 def heights(message: bytes) -> tuple[slice, slice, np.ndarray]:
@@ -46,7 +46,7 @@ def test_a_page_that_follows_has_the_stock_as_it_is_cut():
     scene = dataclasses.replace(
         read_scene(scene_path("fagor_first_steps")), cells_across=CELLS_ACROSS
     )
-    session = Session(scene)
+    session = SceneSession(scene)
     room, feed = session.room, StockFeed()
     assert room.setup.work is not None
     stock = room.setup.work.map
@@ -78,7 +78,7 @@ def test_a_page_that_follows_has_the_stock_as_it_is_cut():
 
 
 def test_words_are_sent_when_they_change():
-    driver = Driver(Session(read_scene(scene_path("fagor_first_steps"))))
+    driver = Driver(SceneSession(read_scene(scene_path("fagor_first_steps"))))
     changes = Changes()
     first = json.loads(changes.since_last(as_texts(panel_words(driver.look))))
     assert {"program", "mode", "alarm", "verdicts"} <= set(first)
@@ -90,7 +90,7 @@ def test_words_are_sent_when_they_change():
 
 
 def test_a_typing_error_in_mdi_is_told_in_every_language():
-    driver = Driver(Session(read_scene(scene_path("gost_part_zero"))))
+    driver = Driver(SceneSession(read_scene(scene_path("gost_part_zero"))))
     for command in (
         {"do": "mode", "mode": "mdi"},
         {"do": "mdi", "text": "G0 G77"},
@@ -153,7 +153,7 @@ def test_there_is_an_end_to_pages_and_to_what_one_may_say():
 
 
 def test_a_path_is_a_head_and_then_its_points():
-    session = Session(read_scene(scene_path("fagor_first_steps")))
+    session = SceneSession(read_scene(scene_path("fagor_first_steps")))
     preview = path_to_come(session.room).drawn()
     message = path_message(preview, {"en": "a word", "cs": "slovíčko"})
     (length,) = struct.unpack("<I", message[:4])
@@ -171,7 +171,7 @@ def test_a_path_is_a_head_and_then_its_points():
 
 
 def test_the_machine_answers_between_two_slices_and_outlives_a_question_that_fails():
-    driver = Driver(Session(read_scene(scene_path("fagor_first_steps"))))
+    driver = Driver(SceneSession(read_scene(scene_path("fagor_first_steps"))))
     tick, failing = driver.inquire(lambda room: room.tick), driver.inquire(lambda _room: 1 / 0)
     assert not tick.done()
     driver._step(0.0)

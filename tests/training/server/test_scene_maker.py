@@ -13,7 +13,7 @@ from twin.training.scene.vocabulary import Language
 from twin.training.server.driver import Driver
 from twin.training.server.program_check import ProgramCheck
 from twin.training.server.scene_maker import scene_of, write_scene
-from twin.training.session.session import Session
+from twin.training.session.session import SceneSession
 
 GROOVE = "N10 G0 X0 Y0 Z10\nN20 M3 S1000\nN30 G1 Z-1 F200\nN40 G1 X-5\nN50 G0 Z20\nN60 M30\n"
 
@@ -25,7 +25,7 @@ def made(room: Room, language: Language, title: str, folder: Path) -> Path:
 
 @pytest.fixture
 def session():
-    return Session(read_scene(scene_path("fagor_first_steps")))
+    return SceneSession(read_scene(scene_path("fagor_first_steps")))
 
 
 @pytest.mark.seconds("a program is run twice")
@@ -43,7 +43,7 @@ def test_what_the_teacher_has_cut_is_what_the_pupil_must_cut(session, tmp_path):
     assert scene.file.title == {"cs": 'Drážka: "5 mm"'}
     assert scene.file.part is not None
     assert scene.file.part.points
-    played = Session(scene)
+    played = SceneSession(scene)
     assert played.room.program.lines == tuple(GROOVE.splitlines())
     assert played.room.setup.tables.zero.tolist() == pytest.approx(
         session.room.setup.tables.zero.tolist()
@@ -53,7 +53,7 @@ def test_what_the_teacher_has_cut_is_what_the_pupil_must_cut(session, tmp_path):
     played.advance(1200)
     played.submit({"do": "finish"})
     assert played.room.judge.score == scene.points
-    lazy = Session(scene)
+    lazy = SceneSession(scene)
     lazy.submit({"do": "load", "text": GROOVE.replace("X-5", "X-2")})
     lazy.submit({"do": "cycle_start"})
     lazy.advance(1200)
@@ -64,7 +64,7 @@ def test_what_the_teacher_has_cut_is_what_the_pupil_must_cut(session, tmp_path):
 def test_a_room_that_is_no_scene_of_its_own_is_refused_and_leaves_nothing(session, tmp_path):
     with pytest.raises(UsageError, match="a title"):
         made(session.room, "en", " ", tmp_path)
-    own = Session(read_scene(scene_path("fagor_climb")))
+    own = SceneSession(read_scene(scene_path("fagor_climb")))
     with pytest.raises(UsageError, match="not a complete scene by itself"):
         made(own.room, "en", "With a machine of its own", tmp_path)
     (tmp_path / "file").touch()

@@ -9,7 +9,7 @@ from tests.loaded_kernels import loaded
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.server.attempts import Attempts
 from twin.training.server.launch import warm_up
-from twin.training.session.session import Session
+from twin.training.session.session import SceneSession
 
 PRESSED = (
     ({"do": "cycle_start"}, 400), ({"do": "feed_hold"}, 50), ({"do": "cycle_start"}, 30), ({"do": "emergency_stop"}, 50),
@@ -25,7 +25,7 @@ def main() -> int:
     """Press the keys; how many of them were refused or loaded a kernel."""
     scene = Attempts.prepared(read_scene(scene_path("fagor_first_steps")))
     warm_up(scene)
-    session, late = Session(scene), 0
+    session, late = SceneSession(scene), 0
     for command, slices in PRESSED:
         before = loaded()
         who = "trainer" if command["do"] in ("rewind", "go_on") else "operator"

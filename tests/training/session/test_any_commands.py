@@ -14,7 +14,7 @@ from hypothesis import Phase, given, settings
 
 from twin.training.room.room import Room
 from twin.training.scene.scene_file import Scene, read_scene, scene_path
-from twin.training.session.session import Session
+from twin.training.session.session import SceneSession
 from twin.training.session.snapshot import take_snapshot
 
 AXES = st.sampled_from(["X", "Y", "Z", "C", "W"])
@@ -82,7 +82,7 @@ def state(room: Room) -> list[Any]:
     ])  # fmt: skip
 
 
-def live(session: Session, what: dict[str, Any], slices: int, who: Any) -> None:
+def live(session: SceneSession, what: dict[str, Any], slices: int, who: Any) -> None:
     before, room = state(session.room), session.room
     if not session.submit(what, who):
         assert session.refusal
@@ -99,7 +99,7 @@ def live(session: Session, what: dict[str, Any], slices: int, who: Any) -> None:
 @given(STEPS)
 @settings(max_examples=examples(12), derandomize=True, deadline=None, phases=[Phase.generate])
 def test_random_commands_never_end_the_room_and_leave_no_trace_where_they_are_refused(steps):
-    session = Session(scene())
+    session = SceneSession(scene())
     for step in steps:
         live(session, *step)
     recover(session)
@@ -108,7 +108,7 @@ def test_random_commands_never_end_the_room_and_leave_no_trace_where_they_are_re
 @pytest.mark.seconds("hundreds of commands at a running machine")
 @pytest.mark.parametrize("seed", range(3))
 def test_after_a_long_quarrel_with_its_panel_the_machine_can_be_started_again(seed):
-    session, chance = Session(scene()), random.Random(seed)  # noqa: S311 (no cryptography)
+    session, chance = SceneSession(scene()), random.Random(seed)  # noqa: S311 (no cryptography)
     names = [("jog", {"axis": "X", "direction": 1}), ("jog", {"axis": "Z", "direction": -1, "step": 30.0}),
              ("handwheel", {"axis": "X", "clicks": -40, "step": 1.0}), ("reference", {}), ("jog_stop", {}),
              ("cycle_start", {}), ("cycle_start", {}), ("feed_hold", {}), ("return_to_path", {}), ("reset", {}),
@@ -120,7 +120,7 @@ def test_after_a_long_quarrel_with_its_panel_the_machine_can_be_started_again(se
     recover(session)
 
 
-def recover(session: Session) -> None:
+def recover(session: SceneSession) -> None:
     """Turn the button free, reset, drive off a switch and out of the part, and run a block."""
     session.submit({"do": "end_replay"}, "trainer")
     session.submit({"do": "go_on"}, "trainer")

@@ -5,7 +5,7 @@ import pytest
 
 from tests.training.session.commanding import do, refused
 from twin.training.scene.scene_file import read_scene, scene_path
-from twin.training.session.session import Session
+from twin.training.session.session import SceneSession
 
 MOST_SLICES = 4000
 WRITTEN = 1e-6
@@ -13,14 +13,14 @@ WRITTEN = 1e-6
 
 
 @pytest.fixture
-def session() -> Session:
+def session() -> SceneSession:
     """A machine in manual jog."""
-    made = Session(read_scene(scene_path("fagor_first_steps")))
+    made = SceneSession(read_scene(scene_path("fagor_first_steps")))
     do(made, "mode", mode="jog")
     return made
 
 
-def rest(session: Session) -> None:
+def rest(session: SceneSession) -> None:
     """Until nothing runs and nothing moves."""
     for _ in range(MOST_SLICES):
         session.advance()
@@ -29,7 +29,7 @@ def rest(session: Session) -> None:
     raise AssertionError("the axes never came to rest")
 
 
-def held(session: Session) -> None:
+def held(session: SceneSession) -> None:
     """A program that was held in its cut and may be left by jogging."""
     do(session, "mode", mode="auto")
     do(session, "cycle_start")
@@ -118,7 +118,7 @@ def test_a_handwheel_beyond_the_travel_comes_back_with_the_first_click(session):
 
 
 def test_a_jog_that_is_refused_leaves_the_drives_of_an_axis_on_its_switch_off():
-    session = Session(read_scene(scene_path("fagor_overtravel")))
+    session = SceneSession(read_scene(scene_path("fagor_overtravel")))
     do(session, "mode", mode="jog")
     for given in ({"axis": "X", "direction": 1}, {"axis": "Y", "direction": 1}):
         assert refused(session, "jog", **given)
@@ -126,7 +126,7 @@ def test_a_jog_that_is_refused_leaves_the_drives_of_an_axis_on_its_switch_off():
 
 
 def test_a_reset_stops_a_way_off_the_switch_and_leaves_the_alarm():
-    session = Session(read_scene(scene_path("fagor_overtravel")))
+    session = SceneSession(read_scene(scene_path("fagor_overtravel")))
     do(session, "mode", mode="jog")
     do(session, "jog", axis="X", direction=-1)
     session.advance(5)

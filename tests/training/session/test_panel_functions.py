@@ -15,17 +15,17 @@ from twin.training.room.observed import block_number
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.session import checkpoints
 from twin.training.session.commands import LONGEST_TEXT
-from twin.training.session.session import Session
+from twin.training.session.session import SceneSession
 
 pytestmark = pytest.mark.seconds("programs are run at a panel")
 
 
 @pytest.fixture
-def session() -> Session:
-    return Session(read_scene(scene_path("fagor_first_steps")))
+def session() -> SceneSession:
+    return SceneSession(read_scene(scene_path("fagor_first_steps")))
 
 
-def rest(session: Session) -> None:
+def rest(session: SceneSession) -> None:
     """Until nothing moves and nothing goes on by itself."""
     still = 0
     for _ in range(4000):
@@ -38,17 +38,17 @@ def rest(session: Session) -> None:
     raise AssertionError(f"the axes never came to rest: {session.room.alarm}")
 
 
-def load(session: Session, text: str) -> None:
+def load(session: SceneSession, text: str) -> None:
     session.room.program.load(text)
 
 
-def at(session: Session) -> tuple[float, ...]:
+def at(session: SceneSession) -> tuple[float, ...]:
     """The tip, part coordinates [mm]."""
     room = session.room
     return tuple(np.round(room.machine.position - room.setup.tables.zero, 2)[:3])
 
 
-def seconds(session: Session, text: str) -> float:
+def seconds(session: SceneSession, text: str) -> float:
     """Machine time of a program [s]."""
     load(session, text)
     do(session, "cycle_start")
@@ -57,7 +57,7 @@ def seconds(session: Session, text: str) -> float:
     return session.room.time_s - began
 
 
-def second_tool(session: Session) -> float:
+def second_tool(session: SceneSession) -> float:
     """Give the scene a second tool; how long its change takes [s]."""
     session.room.setup.tables.tools[2] = session.room.setup.tables.tool.model_copy(
         update={"number": 2}
@@ -489,7 +489,7 @@ def test_coolant_closes_with_an_alarm_and_stays_closed(session):
 
 
 def test_the_limit_alarm_stands_until_the_axis_has_left_its_switch():
-    session = Session(read_scene(scene_path("fagor_overtravel")))
+    session = SceneSession(read_scene(scene_path("fagor_overtravel")))
     refusal = refused(session, "reset")
     assert refusal == "X is on its limit switch: jog it back first"
     do(session, "mode", mode="jog")
@@ -539,7 +539,7 @@ def test_time_counts_from_the_first_touch():
     scene = read_scene(scene_path("fagor_first_steps"))
     task = scene.file.tasks[0].model_copy(update={"held": (), "within_s": 1.0})
     file = scene.file.model_copy(update={"tasks": (task,), "time_limit_s": 2.0})
-    session = Session(dataclasses.replace(scene, file=file))
+    session = SceneSession(dataclasses.replace(scene, file=file))
     session.advance(500)
     assert session.room.judge.verdicts[0].state == "open"
     do(session, "coolant", on=True)
@@ -575,7 +575,7 @@ def test_at_a_program_stop_the_axes_can_be_jogged_and_come_back(session):
 
 def test_going_back_to_a_program_stop_with_jogged_axes(session, monkeypatch):
     monkeypatch.setattr(checkpoints, "APART_S", 0.1)
-    session = Session(session.scene)
+    session = SceneSession(session.scene)
     load(session, "N10 G90 G1 F500 X1\nN20 M0\nN30 G1 X3\nN40 M30")
     do(session, "cycle_start")
     rest(session)
@@ -664,7 +664,7 @@ def test_a_reset_stops_spindle_and_coolant_in_every_state(session, state):
 )  # fmt: skip
 def test_a_search_comes_to_where_its_block_begins(text, line, begins, ends):
     """What is before the block is computed, its first pass counts (SINUMERIK: block search)."""
-    session = Session(read_scene(scene_path("linuxcnc_round_corners")))
+    session = SceneSession(read_scene(scene_path("linuxcnc_round_corners")))
     load(session, text)
     do(session, "search", line=line)
     do(session, "cycle_start")

@@ -16,19 +16,19 @@ from twin.training.session import checkpoints
 from twin.training.session import session as session_module
 from twin.training.session.commands import command_from
 from twin.training.session.log import relive
-from twin.training.session.session import Session
+from twin.training.session.session import SceneSession
 
 
 @pytest.fixture
-def session() -> Session:
-    return Session(read_scene(scene_path("fagor_first_steps")))
+def session() -> SceneSession:
+    return SceneSession(read_scene(scene_path("fagor_first_steps")))
 
 
-def do(session: Session, name: str, **arguments: object) -> None:
+def do(session: SceneSession, name: str, **arguments: object) -> None:
     assert session.submit({"do": name, **arguments}), session.refusal
 
 
-def run_to_line(session: Session, line: int) -> None:
+def run_to_line(session: SceneSession, line: int) -> None:
     for _ in range(2000):
         if int(session.room.machine.setpoint.line[0]) == line:
             return
@@ -36,7 +36,7 @@ def run_to_line(session: Session, line: int) -> None:
     raise AssertionError(f"line {line} never ran: {session.room.alarm}")
 
 
-def rest(session: Session) -> None:
+def rest(session: SceneSession) -> None:
     session.advance(5)
     for _ in range(2000):
         session.advance()
@@ -52,7 +52,7 @@ def heights_of(room: Room) -> FloatArray:
     return room.setup.work.map.heights
 
 
-def speed(session: Session) -> float:
+def speed(session: SceneSession) -> float:
     """What the axes are commanded [mm/min]: the joints tremble under the teeth."""
     return 60.0 * float(np.linalg.norm(session.room.samples.setpoint.velocity[-1, :3]))
 
@@ -317,7 +317,7 @@ def test_a_spindle_starts_at_its_last_speed_and_without_one_not_at_all(session):
 
 def test_going_back_from_a_copy_is_the_same_to_the_last_bit(session, monkeypatch):
     monkeypatch.setattr(checkpoints, "APART_S", 0.3)
-    session = Session(session.scene)
+    session = SceneSession(session.scene)
     do(session, "cycle_start")
     session.advance(70)
     do(session, "override", dial="feed", percent=70)
@@ -384,7 +384,7 @@ def test_going_far_back_restores_a_checkpoint_without_living_it_again(session, m
     monkeypatch.setattr(checkpoints, "DENSE", 2)
     monkeypatch.setattr(checkpoints, "APART_S", 1.0)
     monkeypatch.setattr(session_module, "LIVED_AGAIN_S", 0.5)
-    session = Session(session.scene)
+    session = SceneSession(session.scene)
     for _ in range(48):
         session.advance(10)
     session.rewind(0.3)
@@ -396,7 +396,7 @@ def test_going_far_back_restores_a_checkpoint_without_living_it_again(session, m
 def test_copies_are_bounded_in_number_and_the_beginning_is_kept(session, monkeypatch):
     for name, value in (("DENSE", 2), ("MOST", 4), ("SPREAD", 0.0), ("APART_S", 0.02)):
         monkeypatch.setattr(checkpoints, name, value)
-    session = Session(session.scene)
+    session = SceneSession(session.scene)
     session.advance(10)
     for _ in range(10):
         session.advance(2)

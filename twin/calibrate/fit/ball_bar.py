@@ -78,14 +78,14 @@ def fit_ball_bar(log: BallBarLog) -> BallBarFit:
 def circle_line(circle: BallBarFit) -> str:
     """What a circle came to, in words."""
     lost = ", ".join(f"{name} {1e3 * one.value:.2f} µm" for name, one in circle.lost.items())
-    told = f"{circle.log}: circle {circle.plane}: lost where the axes turn round: {lost}; "
+    text = f"{circle.log}: circle {circle.plane}: lost where the axes turn round: {lost}; "
     if circle.squareness is None or circle.lag is None:
-        told += ONE_DIRECTION
+        text += ONE_DIRECTION
     else:
         first, second = circle.plane
-        told += f"squareness {circle.squareness.value:.2f} µm/m; "
-        told += f"{first} lags {1e3 * circle.lag.value:.4g} ms more than {second}"
-    return f"{told}; {1e3 * circle.left_rms:.2f} of {1e3 * circle.logged_rms:.2f} µm are left"
+        text += f"squareness {circle.squareness.value:.2f} µm/m; "
+        text += f"{first} lags {1e3 * circle.lag.value:.4g} ms more than {second}"
+    return f"{text}; {1e3 * circle.left_rms:.2f} of {1e3 * circle.logged_rms:.2f} µm are left"
 
 
 _SCALE, _SQUARE, _LAG = 3, 4, 5

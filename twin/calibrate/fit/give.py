@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.signal import savgol_filter
 
-from twin.calibrate.fit.parameters import Parameters
+from twin.calibrate.fit.parameters import AxisParameters
 from twin.calibrate.fit.solve import BATCHES, Interval, linear_intervals
 from twin.calibrate.fit.stretch import Stretch
 from twin.nc.canonical import FloatArray
@@ -50,7 +50,7 @@ NO_SECOND_ENCODER = "no second encoder at the axis: the log has no column 'load'
 def fit_give(
     kind: AxisKind,
     stretches: Sequence[Stretch],
-    parameters: Parameters,
+    parameters: AxisParameters,
     carried: float,
     friction: Interval | None,
 ) -> Give:
@@ -82,7 +82,7 @@ def fit_give(
 def _fit(
     kind: AxisKind,
     stretches: Sequence[Stretch],
-    parameters: Parameters,
+    parameters: AxisParameters,
     carried: float,
     smoothed_s: float,
 ) -> tuple[Interval, Interval] | None:
@@ -99,7 +99,7 @@ def _fit(
 
 
 def _columns(
-    kind: AxisKind, stretch: Stretch, parameters: Parameters, carried: float, smoothed_s: float
+    kind: AxisKind, stretch: Stretch, parameters: AxisParameters, carried: float, smoothed_s: float
 ) -> tuple[FloatArray, FloatArray]:
     """One, half the side, the force, of samples whose side is known; and how far the motor is ahead."""
     assert stretch.load is not None

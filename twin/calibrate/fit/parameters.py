@@ -7,7 +7,7 @@ from twin.machine.description.machine_file import AxisTable
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Parameters:
+class AxisParameters:
     """One axis, in the units of the machine file; those of the log come last."""
 
     kv: float
@@ -108,13 +108,13 @@ def coordinates(kind: str, force_scale: float) -> dict[str, Coordinate]:
     }  # fmt: skip
 
 
-def of_base(axis: AxisTable, mass: float) -> Parameters:
+def of_base(axis: AxisTable, mass: float) -> AxisParameters:
     """The base's own parameters.
 
     Args:
         mass: What its motor feels [kg or kg m²].
     """
-    return Parameters(
+    return AxisParameters(
         kv=axis.kv,
         damping_ratio=axis.damping_ratio,
         mass=mass,

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twin.calibrate.fit.parameters import Parameters
+from twin.calibrate.fit.parameters import AxisParameters
 from twin.calibrate.fit.solve import Problem, Solution, slope
 from twin.nc.canonical import FloatArray
 
@@ -37,7 +37,7 @@ _MOST = 8
 """Searches at a time."""
 
 
-def started(parameters: Parameters, name: str) -> Parameters:
+def started(parameters: AxisParameters, name: str) -> AxisParameters:
     """These, with some of a parameter where they have none of it."""
     value = getattr(parameters, name) or _USUAL.get(name, 0.0)
     return dataclasses.replace(parameters, **{name: value})
@@ -58,7 +58,7 @@ class Core:
     """
 
     names: tuple[str, ...]
-    unset: Parameters
+    unset: AxisParameters
     forced: bool
 
     @property
@@ -90,7 +90,7 @@ class Promise(NamedTuple):
     extras: tuple[str, ...]
     cost: float
     """What it may leave, in the units of a solution's cost."""
-    start: Parameters
+    start: AxisParameters
     """Where a search begins."""
 
 

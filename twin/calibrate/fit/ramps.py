@@ -10,7 +10,7 @@ import dataclasses
 
 import numpy as np
 
-from twin.calibrate.fit.parameters import Parameters
+from twin.calibrate.fit.parameters import AxisParameters
 from twin.calibrate.fit.simulation import AxisCommand, seen_at, simulate_axis
 from twin.logs.machine_log import AxisLog, MachineLog
 from twin.nc.canonical import FloatArray
@@ -175,7 +175,7 @@ def _difference(values: FloatArray, window: int) -> FloatArray:
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Seen:
+class RampSignals:
     """What the model has at a ramp's sample: lag of velocity, velocity, acceleration."""
 
     lag: float
@@ -183,7 +183,7 @@ class Seen:
     acceleration: float
 
 
-def predict_ramp(parameters: Parameters, ramp: Ramp) -> Seen:
+def predict_ramp(parameters: AxisParameters, ramp: Ramp) -> RampSignals:
     """Run the model through a ramp, and see it as the log does."""
     command = ramp.command
     # Over milliseconds of a ramp friction matters little, and its state is not known.
@@ -196,4 +196,4 @@ def predict_ramp(parameters: Parameters, ramp: Ramp) -> Seen:
     place = ramp.place
     own = _averaged(command.position[:, 1], ramp.window)[place]
     done = _averaged(velocity, ramp.window)[place]
-    return Seen(float(own - done), float(done), float(change[place]))
+    return RampSignals(float(own - done), float(done), float(change[place]))

@@ -16,7 +16,7 @@ from scipy.interpolate import CubicSpline, PchipInterpolator
 from scipy.linalg import expm
 
 from twin.calibrate.fit.axis_kernels import read_cubics, step_axis
-from twin.calibrate.fit.parameters import Parameters
+from twin.calibrate.fit.parameters import AxisParameters
 from twin.nc.canonical import BoolArray, FloatArray
 from twin.units import AxisKind, kv_per_second, to_si
 
@@ -142,7 +142,7 @@ def _start(since: FloatArray, actual: FloatArray, first: FloatArray) -> tuple[fl
     return float(origin), float(slope)
 
 
-def simulate_axis(parameters: Parameters, command: AxisCommand) -> Response:
+def simulate_axis(parameters: AxisParameters, command: AxisCommand) -> Response:
     """Run an axis along a command."""
     inertia = parameters.mass * to_si(command.kind)
     system = _system(parameters, inertia)
@@ -187,7 +187,7 @@ def _held(command: FloatArray, step: float) -> FloatArray:
     return inputs
 
 
-def _bulge(parameters: Parameters, system: "_System") -> float:
+def _bulge(parameters: AxisParameters, system: "_System") -> float:
     """Of the force at an input over its mean around it: per commanded acceleration, in units of h²/12.
 
     The speed that is told stands still over a step: of the speed that it makes the inputs see the lowest,
@@ -225,7 +225,7 @@ class _System(NamedTuple):
     """What it would be without the dead time."""
 
 
-def _system(parameters: Parameters, inertia: float) -> _System:
+def _system(parameters: AxisParameters, inertia: float) -> _System:
     """The law of ``twin.machine.model.drives`` over mass, every signal as a row over states and inputs."""
     added = [name for name in _OPTIONAL if getattr(parameters, name) > _FASTEST_FILTER_S]
     places = {name: 2 + number for number, name in enumerate(added)}
@@ -269,7 +269,7 @@ def _system(parameters: Parameters, inertia: float) -> _System:
 
 
 def _start_state(
-    parameters: Parameters, system: _System, command: FloatArray, start: tuple[float, float]
+    parameters: AxisParameters, system: _System, command: FloatArray, start: tuple[float, float]
 ) -> FloatArray:
     """The states at the first input: filters that have settled, an integrator that holds the axis."""
     place, speed = start

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from twin.calibrate.fit.parameters import Parameters, coordinates
+from twin.calibrate.fit.parameters import AxisParameters, coordinates
 from twin.calibrate.fit.ramps import Ramp, predict_ramp
 from twin.calibrate.fit.solve import BATCHES, Interval, Problem, Solution, solve
 from twin.calibrate.fit.stages import AxisFit
@@ -65,7 +65,9 @@ def commanded_speed(
     return np.where(known, speed, 0.0), known
 
 
-def fit_slow(kind: AxisKind, logs: Sequence[SlowLog], base: Parameters, fastest: float) -> AxisFit:
+def fit_slow(
+    kind: AxisKind, logs: Sequence[SlowLog], base: AxisParameters, fastest: float
+) -> AxisFit:
     """Fit what slow logs say about an axis; everything else stays at the base's value.
 
     Args:
@@ -119,11 +121,11 @@ def fit_slow(kind: AxisKind, logs: Sequence[SlowLog], base: Parameters, fastest:
     )
 
 
-def _fit_ramps(kind: AxisKind, ramps: list[Ramp], base: Parameters) -> Solution:
+def _fit_ramps(kind: AxisKind, ramps: list[Ramp], base: AxisParameters) -> Solution:
     """Delay of the columns and share of feed-forward, from lags of velocity within ramps."""
     typical = max(float(np.median([abs(ramp.lag) for ramp in ramps])) * 0.1, 1e-6)
 
-    def residuals(parameters: Parameters) -> FloatArray:
+    def residuals(parameters: AxisParameters) -> FloatArray:
         left = np.array([predict_ramp(parameters, ramp).lag - ramp.lag for ramp in ramps]) / typical
         size = np.abs(left) / _OUTLIER
         return left * np.where(
@@ -141,7 +143,7 @@ def _fit_ramps(kind: AxisKind, ramps: list[Ramp], base: Parameters) -> Solution:
     return min(tried, key=lambda solution: solution.cost)
 
 
-def _fit_trail(kind: AxisKind, logs: Sequence[SlowLog], base: Parameters) -> Solution:
+def _fit_trail(kind: AxisKind, logs: Sequence[SlowLog], base: AxisParameters) -> Solution:
     """Delay of the columns, from the lag of position over the speed."""
     lags, speeds = [], []
     for log in logs:
@@ -153,14 +155,14 @@ def _fit_trail(kind: AxisKind, logs: Sequence[SlowLog], base: Parameters) -> Sol
     typical = max(float(np.std(lag)), 1e-9)
     loop = (1.0 - base.velocity_feedforward) / kv_per_second(base.kv)
 
-    def residuals(parameters: Parameters) -> FloatArray:
+    def residuals(parameters: AxisParameters) -> FloatArray:
         return (lag - speed * (loop + parameters.delay)) / typical
 
     batch: IntArray = (np.arange(len(lag)) * BATCHES // len(lag)).astype(np.int64)
     return solve(Problem(residuals, batch, coordinates(kind, 1.0)), base, ["delay"])
 
 
-def kinematics(log: SlowLog, parameters: Parameters) -> tuple[FloatArray, FloatArray]:
+def kinematics(log: SlowLog, parameters: AxisParameters) -> tuple[FloatArray, FloatArray]:
     """Speed and acceleration of every row, as the model has them; shape (n,) each."""
     speed = log.speed.copy()
     change = np.zeros(len(speed))
@@ -171,7 +173,7 @@ def kinematics(log: SlowLog, parameters: Parameters) -> tuple[FloatArray, FloatA
 
 
 def slow_force(
-    log: SlowLog, parameters: Parameters, kind: AxisKind
+    log: SlowLog, parameters: AxisParameters, kind: AxisKind
 ) -> tuple[FloatArray, BoolArray]:
     """Force of the drive in every row [N or N m], and which rows move; shape (n,) each."""
     speed, change = kinematics(log, parameters)
@@ -186,8 +188,8 @@ def slow_force(
 
 
 def _fit_friction(
-    kind: AxisKind, logs: Sequence[SlowLog], at: Parameters, *, viscous: bool
-) -> tuple[Parameters, dict[str, tuple[Interval, tuple[str, ...]]]]:
+    kind: AxisKind, logs: Sequence[SlowLog], at: AxisParameters, *, viscous: bool
+) -> tuple[AxisParameters, dict[str, tuple[Interval, tuple[str, ...]]]]:
     """Friction from the current of rows that move, for the force per ampere that ramps suggest."""
     rows = [_friction_rows(log, at) for log in logs]
     columns = np.vstack([part[0] for part in rows])
@@ -204,7 +206,7 @@ def _fit_friction(
     rest = shown - columns @ found
     typical = max(float(np.std(rest)), 1e-9)
 
-    def residuals(parameters: Parameters) -> FloatArray:
+    def residuals(parameters: AxisParameters) -> FloatArray:
         weights = np.array([
             inertia / parameters.current_scale,
             parameters.viscous_friction / parameters.current_scale,
@@ -227,7 +229,7 @@ def _fit_friction(
     }
 
 
-def _friction_rows(log: SlowLog, at: Parameters) -> tuple[FloatArray, FloatArray]:
+def _friction_rows(log: SlowLog, at: AxisParameters) -> tuple[FloatArray, FloatArray]:
     """Columns of acceleration, speed, its sign and one, of rows that move; and their current."""
     speed, change = kinematics(log, at)
     moves = np.abs(speed) > _STILL * np.abs(speed).max(initial=1e-9)

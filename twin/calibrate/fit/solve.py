@@ -16,7 +16,7 @@ from scipy.optimize import least_squares
 from scipy.stats import t as student
 from threadpoolctl import ThreadpoolController
 
-from twin.calibrate.fit.parameters import Coordinate, Parameters
+from twin.calibrate.fit.parameters import AxisParameters, Coordinate
 from twin.nc.canonical import FloatArray, IntArray
 
 BATCHES = 40
@@ -66,7 +66,7 @@ class Solution:
         covariance: Of the coordinates, shape (p, p), in the order of ``free``.
     """
 
-    parameters: Parameters
+    parameters: AxisParameters
     free: tuple[str, ...]
     cost: float
     squares: FloatArray
@@ -84,7 +84,7 @@ class Solution:
         return joint
 
 
-Residuals = Callable[[Parameters], FloatArray]
+Residuals = Callable[[AxisParameters], FloatArray]
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -103,7 +103,7 @@ class Problem:
 
 
 def solve(
-    problem: Problem, start: Parameters, free: Sequence[str], *, until: float = EXACT
+    problem: Problem, start: AxisParameters, free: Sequence[str], *, until: float = EXACT
 ) -> Solution:
     """Fit some parameters and keep the others.
 
@@ -121,7 +121,7 @@ def solve(
         ]
     )
 
-    def at(point: FloatArray) -> Parameters:
+    def at(point: FloatArray) -> AxisParameters:
         values = {
             name: coordinate.outside(float(value))
             for name, coordinate, value in zip(free, coordinates, point, strict=True)
@@ -281,7 +281,7 @@ def _as_far_as_straight(
     return share
 
 
-def _inside(problem: Problem, parameters: Parameters, names: Sequence[str]) -> FloatArray:
+def _inside(problem: Problem, parameters: AxisParameters, names: Sequence[str]) -> FloatArray:
     coordinates = [problem.coordinates[name] for name in names]
     return np.array(
         [
@@ -291,7 +291,7 @@ def _inside(problem: Problem, parameters: Parameters, names: Sequence[str]) -> F
     )
 
 
-def slope(problem: Problem, at: Parameters, name: str, here: FloatArray) -> FloatArray:
+def slope(problem: Problem, at: AxisParameters, name: str, here: FloatArray) -> FloatArray:
     """Derivative of the residuals by a coordinate, shape (n,).
 
     Args:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from twin.calibrate.fit.parameters import Parameters, coordinates
+from twin.calibrate.fit.parameters import AxisParameters, coordinates
 from twin.calibrate.fit.promising import EXTRAS, INTEGRATOR, Core, started
 from twin.calibrate.fit.simulation import drawn_otherwise
 from twin.calibrate.fit.solve import (
@@ -58,7 +58,7 @@ class AxisFit:
         tried: Structures that were looked at, the chosen one first; none where nothing more was asked for.
     """
 
-    parameters: Parameters
+    parameters: AxisParameters
     fitted: dict[str, Interval]
     conditional: dict[str, tuple[Interval, tuple[str, ...]]]
     undetermined: dict[str, str]
@@ -69,7 +69,7 @@ class AxisFit:
 
 @on_one_thread
 def fit_axis(
-    kind: AxisKind, stretches: Sequence[Stretch], base: Parameters, *, filtered: bool = False
+    kind: AxisKind, stretches: Sequence[Stretch], base: AxisParameters, *, filtered: bool = False
 ) -> AxisFit:
     """Fit one axis.
 
@@ -111,7 +111,7 @@ def fit_axis(
 
 
 def _core_fits(
-    problem: Problem, start: Parameters, names: Sequence[str], *, forced: bool
+    problem: Problem, start: AxisParameters, names: Sequence[str], *, forced: bool
 ) -> list[tuple[Solution, Core]]:
     """Optima of gain, damping, friction and mass, with and without an integrator.
 
@@ -121,7 +121,7 @@ def _core_fits(
     unset = dataclasses.replace(start, reset_time_s=0.0)
     plain, base = Core(tuple(names), unset, forced), Core(tuple(names), start, forced)
 
-    def best(parameters: Parameters, free: Sequence[str]) -> Solution:
+    def best(parameters: AxisParameters, free: Sequence[str]) -> Solution:
         starts = (dataclasses.replace(parameters, damping_ratio=z) for z in _DAMPINGS)
         return min(
             (solve(problem, one, free, until=ROUGH) for one in starts),
@@ -184,7 +184,7 @@ def _allowing_for_drawing(
     }
 
 
-def _share_left(stretches: Sequence[Stretch], parameters: Parameters) -> float:
+def _share_left(stretches: Sequence[Stretch], parameters: AxisParameters) -> float:
     """What the model leaves of the following error, as a share."""
     left = np.concatenate([columns[0] for columns in _columns_left(stretches, parameters)])
     lag = np.concatenate([stretch.lag for stretch in stretches])
@@ -204,7 +204,9 @@ def _has(stretches: Sequence[Stretch], role: str) -> bool:
     return all(getattr(stretch, role) is not None for stretch in stretches)
 
 
-def _first_guess(kind: AxisKind, stretches: Sequence[Stretch], base: Parameters) -> Parameters:
+def _first_guess(
+    kind: AxisKind, stretches: Sequence[Stretch], base: AxisParameters
+) -> AxisParameters:
     """Loop gain from the lag over speed, mass or scale from force over acceleration."""
     speed, change = np.vstack([_kinematics(stretch)[stretch.seen] for stretch in stretches]).T
     lag = np.concatenate([stretch.lag for stretch in stretches])
@@ -233,17 +235,17 @@ def _kinematics(stretch: Stretch) -> FloatArray:
     return stretch.command.kinematics
 
 
-def _force_scale(kind: AxisKind, stretches: Sequence[Stretch], of: Parameters) -> float:
+def _force_scale(kind: AxisKind, stretches: Sequence[Stretch], of: AxisParameters) -> float:
     change = np.concatenate([_kinematics(stretch)[:, 1] for stretch in stretches])
     return max(of.mass * to_si(kind) * float(np.sqrt(np.mean(change**2))), 1e-9)
 
 
-def _weighted(kind: AxisKind, stretches: Sequence[Stretch], at: Parameters) -> Problem:
+def _weighted(kind: AxisKind, stretches: Sequence[Stretch], at: AxisParameters) -> Problem:
     """The problem, every column weighted by what is left of it at some parameters."""
     left = [np.concatenate(column) for column in zip(*_columns_left(stretches, at), strict=True)]
     weights = [1.0 / max(float(np.sqrt(np.mean(column**2))), 1e-9) for column in left]
 
-    def residuals(parameters: Parameters) -> FloatArray:
+    def residuals(parameters: AxisParameters) -> FloatArray:
         # A loop that swings up by itself has no finite end, and is as wrong as can be.
         with np.errstate(over="ignore", invalid="ignore"):
             parts = _columns_left(stretches, parameters)
@@ -260,7 +262,9 @@ def _weighted(kind: AxisKind, stretches: Sequence[Stretch], at: Parameters) -> P
     )  # fmt: skip
 
 
-def _columns_left(stretches: Sequence[Stretch], parameters: Parameters) -> list[list[FloatArray]]:
+def _columns_left(
+    stretches: Sequence[Stretch], parameters: AxisParameters
+) -> list[list[FloatArray]]:
     """What the model leaves, by stretch and by logged column."""
     forced, shown = _has(stretches, "force"), _has(stretches, "current")
     parts = []
@@ -288,7 +292,7 @@ def _batches(stretches: Sequence[Stretch], *, forced: bool) -> IntArray:
 
 
 def _without_undetermined(
-    problem: Problem, best: Solution, base: Parameters
+    problem: Problem, best: Solution, base: AxisParameters
 ) -> tuple[Solution, dict[str, str]]:
     """Let go of what is anybody's guess, the worst first; it stays at the base's value."""
     reasons: dict[str, str] = {}

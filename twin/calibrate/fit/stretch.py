@@ -4,7 +4,7 @@ import dataclasses
 
 import numpy as np
 
-from twin.calibrate.fit.parameters import Parameters
+from twin.calibrate.fit.parameters import AxisParameters
 from twin.calibrate.fit.simulation import AxisCommand, command_of, seen_at, simulate_axis
 from twin.logs.machine_log import AxisLog
 from twin.nc.canonical import BoolArray, FloatArray
@@ -157,7 +157,7 @@ class Prediction:
     current: FloatArray
 
 
-def predict(parameters: Parameters, stretch: Stretch) -> Prediction:
+def predict(parameters: AxisParameters, stretch: Stretch) -> Prediction:
     """Run the model along a stretch and see it as the log does."""
     command = stretch.command
     motion = simulate_axis(parameters, command)

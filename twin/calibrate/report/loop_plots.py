@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from twin.calibrate.fit.parameters import Parameters
+from twin.calibrate.fit.parameters import AxisParameters
 from twin.calibrate.report.plots import drawn
 from twin.calibrate.result import LogFigures, TimeSeries
 from twin.compare.report.plot_style import BLUE, INK, LIMIT, new_figure, styled
@@ -54,13 +54,13 @@ def whiteness(course: TimeSeries) -> str:
         return "Too few samples in a row tell whether what is left is noise."
     band = _SURE / np.sqrt(len(course.time))
     outside = int(np.count_nonzero(np.abs(found) > band))
-    told = (
+    text = (
         f"Neighbours in what is left correlate by {found[0]:.2f}; {outside} of {_LAGS} shifts lie outside "
         f"the 95 % band of ±{band:.3f} (2 would by chance)"
     )
     if outside <= _LAGS // 10:
-        return f"{told}: it is as good as noise."
-    return f"{told}: something is left that the model does not have, however small."
+        return f"{text}: it is as good as noise."
+    return f"{text}: something is left that the model does not have, however small."
 
 
 @styled
@@ -77,7 +77,7 @@ def whiteness_plot(figures: LogFigures) -> str:
     return drawn(figure)
 
 
-def open_loop(found: Parameters, kind: AxisKind, frequency: FloatArray) -> ComplexArray:
+def open_loop(found: AxisParameters, kind: AxisKind, frequency: FloatArray) -> ComplexArray:
     """The position loop of an axis of a kind cut open, at frequencies [Hz].
 
     The loop is a second-order system of gain ``kv`` and damping (see ``AxisTable``): its velocity loop has the
@@ -95,7 +95,7 @@ def open_loop(found: Parameters, kind: AxisKind, frequency: FloatArray) -> Compl
     return velocity * (gain + behind) * np.exp(-s * found.loop_delay_s) / (s * (s + damping))
 
 
-def margins(found: Parameters, kind: AxisKind) -> Margins:
+def margins(found: AxisParameters, kind: AxisKind) -> Margins:
     """Where the open loop crosses 1, and how far its phase is from -180 degrees there."""
     frequency = np.geomspace(0.05, 2000.0, 4000)
     loop = open_loop(found, kind, frequency)
@@ -105,7 +105,7 @@ def margins(found: Parameters, kind: AxisKind) -> Margins:
 
 
 @styled
-def bode_plot(found: Parameters, kind: AxisKind) -> str:
+def bode_plot(found: AxisParameters, kind: AxisKind) -> str:
     """Magnitude and phase of the position loop, cut open."""
     crossover = margins(found, kind).crossover_hz
     frequency = np.geomspace(crossover / 50.0, crossover * 50.0, 200)
@@ -150,7 +150,7 @@ def friction_points(figures: LogFigures, mass: float) -> tuple[FloatArray, Float
 
 
 @styled
-def friction_plot(figures: LogFigures, found: Parameters) -> str:
+def friction_plot(figures: LogFigures, found: AxisParameters) -> str:
     """What was logged where the axis runs evenly, and the friction that was fitted."""
     speed, force = friction_points(figures, found.mass)
     linear = figures.kind == "linear"

@@ -9,7 +9,7 @@ import jinja2
 import markupsafe
 
 from twin.calibrate.fit.ball_bar import circle_line
-from twin.calibrate.fit.parameters import Parameters
+from twin.calibrate.fit.parameters import AxisParameters
 from twin.calibrate.fit.solve import Interval
 from twin.calibrate.fit.structure import Tried
 from twin.calibrate.report.loop_plots import (
@@ -84,19 +84,19 @@ def _unexplained(logs: tuple[LogFigures, ...]) -> list[str]:
     def places(bad: Sequence[LogFigures]) -> str:
         return "; ".join(f"{Path(one.log).name}, {one.axis}" for one in bad)
 
-    told = []
+    warnings = []
     if lags := [one for one in logs if one.lag_is_unexplained]:
-        told.append(
+        warnings.append(
             f"More than half of the logged lag is left unexplained ({places(lags)}): what was fitted is "
             "not to be relied upon. What the log lacks is listed below."
         )
     if forces := [one for one in logs if one.force_is_unexplained]:
-        told.append(
+        warnings.append(
             f"More than half of the logged force is left unexplained ({places(forces)}): mass and "
             "friction are not to be relied upon. Is the column this axis's force, is its unit right, is "
             "something injected that the map does not name (external_force)?"
         )
-    return told
+    return warnings
 
 
 def _axis(name: str, axis: AxisResult, logs: tuple[LogFigures, ...]) -> dict[str, Any]:
@@ -157,7 +157,7 @@ def _judged_force(figures: LogFigures) -> str:
     return f"{name}: {100 * share:.0f} % of the logged force are left: mass and friction are not to be relied upon."
 
 
-def _log(figures: LogFigures, found: Parameters) -> dict[str, Any]:
+def _log(figures: LogFigures, found: AxisParameters) -> dict[str, Any]:
     course = figures.course
     drawn = len(course.time) > 1
     points = friction_points(figures, found.mass)[0]

@@ -23,7 +23,7 @@ from twin.run.run import Run
 
 if TYPE_CHECKING:
     from twin.job.job_file import JobFile
-    from twin.machine.description.config import Machine
+    from twin.machine.description.config import MachineConfig
     from twin.serve.agent import Agent
     from twin.serve.device import Component
     from twin.serve.playback import Playhead, Production
@@ -206,8 +206,8 @@ def _serve_room(
             seen = observe_room(agent, observer, lambda: room.driver.look.now)
             program = scene.preparation.source.name
             tools = _tools(scene.preparation.job.file)
-            told = _with_opcua(seen, agent, source, (machine, program, tools))
-            return told if line is None else _beside(GrblLine(room.driver).serve(line), told)
+            serving = _with_opcua(seen, agent, source, (machine, program, tools))
+            return serving if line is None else _beside(GrblLine(room.driver).serve(line), serving)
 
         with (
             _served(agent, observe, listener, stop, room.stop),
@@ -257,11 +257,11 @@ def _check_opcua(source: Reported) -> None:
             raise UsageError("--opcua-trust is for --opcua PORT")
         return
     require_extra("opcua", "twin serve --opcua")
-    from twin.serve.opcua.node_sets import require_node_sets
-    from twin.serve.opcua.server import Place, check_place
+    from twin.serve.opcua.machine_tool import require_node_sets
+    from twin.serve.opcua.server import Endpoint, check_place
 
     require_node_sets()
-    check_place(Place(source.host, source.opcua_port, source.opcua_trust))
+    check_place(Endpoint(source.host, source.opcua_port, source.opcua_trust))
 
 
 def _say(text: str) -> None:
@@ -270,15 +270,15 @@ def _say(text: str) -> None:
 
 async def _with_opcua(
     observe: Coroutine[Any, Any, None], agent: "Agent", source: Reported,
-    named: tuple["Machine", str, dict[int, str]],
+    named: tuple["MachineConfig", str, dict[int, str]],
 ) -> None:  # fmt: skip
     """Observe a machine, and tell it in OPC UA too where that is asked for."""
     if source.opcua_port is None:
         await observe
         return
-    from twin.serve.opcua.server import Content, Place, mirror
+    from twin.serve.opcua.server import Content, Endpoint, mirror
 
-    place = Place(source.host, source.opcua_port, source.opcua_trust)
+    place = Endpoint(source.host, source.opcua_port, source.opcua_trust)
     await _beside(mirror(agent, place, Content(*named), _say), observe)
 
 
@@ -352,14 +352,13 @@ def _served(
         raise failures[0]
 
 
-def _device(machine: "Machine") -> "Component":
+def _device(machine: "MachineConfig") -> "Component":
     """The machine as monitors see it.
 
     Raises:
         ConfigError: Its model is no mill.
     """
-    from twin.serve.device import device_of
-    from twin.serve.motions import motions_of
+    from twin.serve.device import device_of, motions_of
 
     endless = {name for name in machine.axes.names if machine.axis(name).periodic}
     motions = motions_of(machine.axes, machine.kinematics, endless)

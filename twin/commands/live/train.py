@@ -84,7 +84,7 @@ def language_named(name: str | None) -> Language | None:
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
-class Place:
+class PageAddress:
     """Where pages are served, and in which language.
 
     Attributes:
@@ -112,7 +112,7 @@ def _require_folder(out: Path) -> None:
             return
 
 
-def train(name: str, place: Place, out: Path | None) -> ExitCode:
+def train(name: str, place: PageAddress, out: Path | None) -> ExitCode:
     """Open a scene and play it until it is closed.
 
     Returns:
@@ -160,7 +160,7 @@ def teach(
     scene: str,
     roster: Path | None,
     seats: int | None,
-    place: Place,
+    place: PageAddress,
     out: Path | None,
     cluster: str | None = None,
 ) -> None:

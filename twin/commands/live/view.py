@@ -11,13 +11,13 @@ from twin.commands.runs.run import run_and_print
 from twin.compilation.announcement import announce_compilation
 from twin.errors import ExitCode, UsageError
 from twin.extras import require_extra
-from twin.render.scene.scene import Scene
+from twin.render.scene.scene import RenderScene
 from twin.run.replay import open_scene
 
 RECORDING_SUFFIX = ".h5"
 
 
-def report_of(scene: Scene, recording: Path) -> Path | None:
+def report_of(scene: RenderScene, recording: Path) -> Path | None:
     """The report beside a recording; None: there is none, or it is that of another program."""
     report = recording.parent / "report.html"
     try:

@@ -21,7 +21,7 @@ from twin.job.job_file import VideoTable
 from twin.render.encoder import FORMATS
 from twin.render.film import film
 from twin.render.inspection_still import inspection_still
-from twin.render.scene.scene import Scene
+from twin.render.scene.scene import RenderScene
 from twin.render.still import Shot, moment, stills
 from twin.run.progress import shown_progress
 from twin.run.replay import event_time, open_scene
@@ -103,7 +103,7 @@ def render_and_print(
 class _Maker:
     """Makes what is wanted of one scene and says so."""
 
-    def __init__(self, scene: Scene, folder: Path, wanted: Wanted, video: VideoTable) -> None:
+    def __init__(self, scene: RenderScene, folder: Path, wanted: Wanted, video: VideoTable) -> None:
         self._scene, self._folder, self._wanted = scene, folder, wanted
         self._video = _changed(video, wanted.video)
 

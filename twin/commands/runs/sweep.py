@@ -74,8 +74,8 @@ def _print(outcomes: Sequence[CheckOutcome], keys: Sequence[str], *, to_stderr: 
         values = [_shown(value) for _, value in outcome.changes] or ["?"] * len(keys)
         table.add_row(*values, *row[1:])
     table_console(stderr=to_stderr).print(table)
-    told = (each for outcome in outcomes for each in (*outcome.warnings, *outcome.findings))
-    for text in dict.fromkeys(map(str, told)):
+    messages = (each for outcome in outcomes for each in (*outcome.warnings, *outcome.findings))
+    for text in dict.fromkeys(map(str, messages)):
         typer.echo(text, err=True)
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from twin.cutting.watching.cut_log import LINES_REMEMBERED, LINES_TOLD
+from twin.cutting.watching.cut_log import LINES_REMEMBERED, LINES_REPORTED
 from twin.nc.canonical import FloatArray
 from twin.recording.form import Samples, ToolLoad
 from twin.units import UM_PER_MM
@@ -73,7 +73,7 @@ class LoadLog:
         """The greatest figures of the foremost lines that cut, by line."""
         return [
             {"line": line, **dict(zip(FIGURES, values.tolist(), strict=True))}
-            for line, values in sorted(self._foremost(LINES_TOLD).items())
+            for line, values in sorted(self._foremost(LINES_REPORTED).items())
         ]
 
     def _foremost(self, count: int) -> dict[int, FloatArray]:

@@ -208,6 +208,6 @@ def _misfit(nominal: FloatArray, blank: FloatArray, allowed: float) -> str | Non
         return f"the nominal part reaches {beyond.max():.3g} mm out of the stock along {axis}"
     size, whole = (np.diff(corners, axis=0)[0] for corners in (nominal, blank))
     if (size < SMALL * whole).all():
-        told = (" x ".join(f"{side:.3g}" for side in sides) for sides in (size, whole))
-        return "the nominal part has {} mm in a stock of {} mm".format(*told)
+        sizes = (" x ".join(f"{side:.3g}" for side in sides) for sides in (size, whole))
+        return "the nominal part has {} mm in a stock of {} mm".format(*sizes)
     return None

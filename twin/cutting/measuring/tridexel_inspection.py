@@ -32,7 +32,7 @@ _MAIN = 3.0**-0.5
 _ROUNDING = 1e-9
 
 
-class Crossings(NamedTuple):
+class LineCrossings(NamedTuple):
     """Where lines cross the surface of a stock: of each piece of it those of the line that is most upright on it.
 
     Attributes:
@@ -47,12 +47,12 @@ class Crossings(NamedTuple):
     line: IntArray
     along: IntArray
 
-    def only(self, rows: BoolArray) -> "Crossings":
+    def only(self, rows: BoolArray) -> "LineCrossings":
         """Some of them."""
-        return Crossings(self.points[rows], self.facet[rows], self.line[rows], self.along[rows])
+        return LineCrossings(self.points[rows], self.facet[rows], self.line[rows], self.along[rows])
 
 
-def crossings(stock: TriDexel, box: FloatArray | None = None) -> Crossings:
+def crossings(stock: TriDexel, box: FloatArray | None = None) -> LineCrossings:
     """Where lines cross the surface of a stock.
 
     Args:
@@ -77,7 +77,7 @@ def crossings(stock: TriDexel, box: FloatArray | None = None) -> Crossings:
     points[rows, along] = ends
     points[rows, u] = lattice.origin[u] + lattice.cell * (number % lattice.shape[u])
     points[rows, v] = lattice.origin[v] + lattice.cell * (number // lattice.shape[u])
-    return Crossings(points, facet, line, along)
+    return LineCrossings(points, facet, line, along)
 
 
 def _lines_within(lattice: Lattice, box: FloatArray) -> IntArray:

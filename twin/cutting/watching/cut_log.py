@@ -16,7 +16,7 @@ TIME_BINS = 512
 
 FIRST_BIN_S = 0.01
 
-LINES_TOLD = 1000
+LINES_REPORTED = 1000
 """Lines that are reported at most: those that took off the most or met the greatest force."""
 CHUNKS_FRESH = 64
 """Chunks that are entered before they are put together: a live cut comes in thirty a second."""
@@ -189,8 +189,8 @@ class CutLog:
     def blocks(self) -> Mapping[int, BlockCut]:
         """What the foremost lines that removed something took off, by line."""
         self._tidy()
-        told = self._kept.foremost(LINES_TOLD)
-        columns = [getattr(told, field.name).tolist() for field in dataclasses.fields(told)]
+        reported = self._kept.foremost(LINES_REPORTED)
+        columns = [getattr(reported, field.name).tolist() for field in dataclasses.fields(reported)]
         return {
             line: BlockCut(removed, path, depth, width, None if math.isnan(force) else force)
             for line, removed, path, depth, width, force in zip(*columns, strict=True)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from twin.errors import UsageError
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
 from twin.recording.form import Samples
@@ -48,7 +48,7 @@ class CirclePath:
         direction: 1 counter-clockwise, -1 clockwise.
     """
 
-    machine: Machine
+    machine: MachineConfig
     plane: str
     radius: float
     feed: float

@@ -19,7 +19,7 @@ import numpy as np
 
 from twin.errors import UsageError
 from twin.machine.circle.circle_path import PLANES, RUN_IN, CirclePath
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.model.model import build_spec, physics_model
 from twin.machine.simulation.growth import Growth
 from twin.machine.simulation.simulate import simulate
@@ -84,7 +84,9 @@ class CircularTest:
         }
 
 
-def circular_test(machine: Machine, radius: float, feed: float, plane: str = "XY") -> CircularTest:
+def circular_test(
+    machine: MachineConfig, radius: float, feed: float, plane: str = "XY"
+) -> CircularTest:
     """Run the circular test.
 
     Args:

@@ -46,7 +46,7 @@ class Blank(NamedTuple):
     relief: float = 0.0
 
 
-class Machine:
+class MachineConfig:
     """A machine file that was read, with what other packages need of it.
 
     Attributes:
@@ -142,7 +142,7 @@ class Machine:
         """The table of one axis."""
         return self.file.axes[name]
 
-    def changed(self, axis: str, **fields: Any) -> "Machine":
+    def changed(self, axis: str, **fields: Any) -> "MachineConfig":
         """A copy of the machine with some fields of one axis changed.
 
         Args:
@@ -155,4 +155,4 @@ class Machine:
             raise ConfigError(f"{self.file.name} has the axes {', '.join(self.axes.names)}")
         data = self.file.model_dump(by_alias=True)
         data["axes"][axis].update(fields)
-        return Machine(self.path, checked(data, MachineFile, self.file.name))
+        return MachineConfig(self.path, checked(data, MachineFile, self.file.name))

@@ -4,11 +4,11 @@ import mujoco
 import numpy as np
 
 from twin.errors import ConfigError
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.nc.canonical import FloatArray
 
 
-def set_measured_masses(spec: mujoco.MjSpec, machine: Machine) -> None:
+def set_measured_masses(spec: mujoco.MjSpec, machine: MachineConfig) -> None:
     """Give every axis with a measured ``mass`` that mass at its motor.
 
     The axis's own body, its motor and its screw are scaled by one factor; what it carries beyond (the

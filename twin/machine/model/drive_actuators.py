@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 
 from twin.errors import ConfigError
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.description.machine_file import AxisTable
 from twin.machine.model.drives import (
     Drive,
@@ -40,7 +40,7 @@ _POSITION_INPUT, _VELOCITY_INPUT = 1, 2
 """What MuJoCo calls ``input="pos"`` and ``input="vel"``."""
 
 
-def add_drives(spec: mujoco.MjSpec, machine: Machine, found: Sequence[Drive]) -> None:
+def add_drives(spec: mujoco.MjSpec, machine: MachineConfig, found: Sequence[Drive]) -> None:
     """Give every axis its drive, its friction and its give.
 
     Args:
@@ -164,7 +164,7 @@ class _Need(NamedTuple):
     substeps: int
 
 
-def _needs(machine: Machine, name: str, drive: Drive) -> Iterator[_Need]:
+def _needs(machine: MachineConfig, name: str, drive: Drive) -> Iterator[_Need]:
     axis, period = machine.axis(name), machine.file.servo_period_s
     fastest = drive.velocity_gain / directly_driven(axis, drive.moved) * period
     yield _Need("kv", math.ceil(fastest / FASTEST))
@@ -175,7 +175,7 @@ def _needs(machine: Machine, name: str, drive: Drive) -> Iterator[_Need]:
         yield _Need(key, math.ceil(period / lag.time_s / _LAG_STEP))
 
 
-def _refuse_unstable(machine: Machine, name: str, drive: Drive) -> None:
+def _refuse_unstable(machine: MachineConfig, name: str, drive: Drive) -> None:
     """A loop whose lags make it grow by itself is no drive that anybody runs."""
     if not drive.lags or not is_unstable(drive):
         return
@@ -204,7 +204,7 @@ def stiffest(axis: AxisTable, moved: float, period_s: float) -> float:
     return swinging(axis, moved) * fastest**2 * to_si(axis.kind)
 
 
-def _refuse_what_outruns_the_clock(machine: Machine, name: str, drive: Drive) -> None:
+def _refuse_what_outruns_the_clock(machine: MachineConfig, name: str, drive: Drive) -> None:
     """A loop or a spring that swings within a step cannot be simulated with it."""
     axis = machine.axis(name)
     period = machine.file.servo_period_s

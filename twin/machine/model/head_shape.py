@@ -7,7 +7,7 @@ import mujoco
 import numpy as np
 
 from twin.job.job_file import ToolTable
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.description.kinematics import SPINDLE_NOSE, TABLE_TOP
 from twin.machine.model.tool_shape import (
     COLLISION_GROUP,
@@ -51,7 +51,7 @@ class HeadShape:
     a cylinder that does not go with the spindle.
     """
 
-    def __init__(self, machine: Machine, model: mujoco.MjModel) -> None:
+    def __init__(self, machine: MachineConfig, model: mujoco.MjModel) -> None:
         """Measure the solids of a machine with all axes at zero; the tool in its spindle is passed over."""
         self._flange = machine.file.spindle.flange_diameter
         data = mujoco.MjData(model)
@@ -89,7 +89,7 @@ class HeadShape:
         return (*flange, *raised)
 
 
-def _axes_beyond(machine: Machine, model: mujoco.MjModel) -> dict[int, tuple[int, ...]]:
+def _axes_beyond(machine: MachineConfig, model: mujoco.MjModel) -> dict[int, tuple[int, ...]]:
     """Bodies that carry the spindle, itself among them: columns of the axes between it and each."""
     columns = {machine.axis(name).joint: at for at, name in enumerate(machine.axes.names)}
     body = int(model.body_weldid[int(model.site(SPINDLE_NOSE).bodyid[0])])

@@ -8,7 +8,7 @@ import numpy as np
 from twin.errors import ConfigError
 from twin.job.fixture import Weight
 from twin.job.job_file import ToolTable
-from twin.machine.description.config import Blank, Machine
+from twin.machine.description.config import Blank, MachineConfig
 from twin.machine.description.kinematics import SPINDLE_NOSE, TABLE_TOP
 from twin.machine.description.measured_mass import set_measured_masses
 from twin.machine.model.drive_actuators import add_drives
@@ -56,7 +56,7 @@ class MachineModel:
     """
 
     def __init__(
-        self, machine: Machine, tool: ToolTable | None = None, blank: Blank | None = None
+        self, machine: MachineConfig, tool: ToolTable | None = None, blank: Blank | None = None
     ) -> None:
         """Build the model.
 
@@ -105,7 +105,7 @@ class MachineModel:
 
 
 def build_spec(
-    machine: Machine, tool: ToolTable | None = None, blank: Blank | None = None
+    machine: MachineConfig, tool: ToolTable | None = None, blank: Blank | None = None
 ) -> mujoco.MjSpec:
     """The editable model of a ``MachineModel``: machine, lights, cameras, drives, tool.
 
@@ -118,7 +118,7 @@ def build_spec(
     return MachineModel(machine, tool, blank).spec
 
 
-def _read(machine: Machine) -> mujoco.MjSpec:
+def _read(machine: MachineConfig) -> mujoco.MjSpec:
     try:
         spec = mujoco.MjSpec.from_file(str(machine.model_path))
     except ValueError as error:
@@ -128,7 +128,7 @@ def _read(machine: Machine) -> mujoco.MjSpec:
     return spec
 
 
-def _without_tool(machine: Machine, blank: Blank | None) -> mujoco.MjSpec:
+def _without_tool(machine: MachineConfig, blank: Blank | None) -> mujoco.MjSpec:
     """The model with an empty spindle."""
     spec = _read(machine)
     _require_mesh_files(spec, machine)
@@ -139,11 +139,11 @@ def _without_tool(machine: Machine, blank: Blank | None) -> mujoco.MjSpec:
     return spec
 
 
-def _incomplete(machine: Machine, error: ValueError) -> ConfigError:
+def _incomplete(machine: MachineConfig, error: ValueError) -> ConfigError:
     return ConfigError(f"{machine.model_path}: cannot be completed: {error}")
 
 
-def _complete(spec: mujoco.MjSpec, machine: Machine, blank: Blank | None) -> None:
+def _complete(spec: mujoco.MjSpec, machine: MachineConfig, blank: Blank | None) -> None:
     supply(spec, machine)
     add_materials(spec)
     _set_clock(spec, machine)
@@ -158,14 +158,14 @@ def _complete(spec: mujoco.MjSpec, machine: Machine, blank: Blank | None) -> Non
         _add_blank(spec, blank)
 
 
-def _require(machine: Machine, what: str, name: str, known: list[str]) -> None:
+def _require(machine: MachineConfig, what: str, name: str, known: list[str]) -> None:
     if name not in known:
         raise ConfigError(
             f"{machine.model_path}: has no {what} '{name}'; it has {', '.join(filter(None, known))}"
         )
 
 
-def _require_mesh_files(spec: mujoco.MjSpec, machine: Machine) -> None:
+def _require_mesh_files(spec: mujoco.MjSpec, machine: MachineConfig) -> None:
     """The lean model that is compiled first looks at no mesh that is only seen."""
     folder = machine.model_path.parent / spec.meshdir
     for mesh in spec.meshes:
@@ -173,7 +173,7 @@ def _require_mesh_files(spec: mujoco.MjSpec, machine: Machine) -> None:
             raise ConfigError(f"{machine.model_path}: there is no mesh '{folder / mesh.file}'")
 
 
-def _set_clock(spec: mujoco.MjSpec, machine: Machine) -> None:
+def _set_clock(spec: mujoco.MjSpec, machine: MachineConfig) -> None:
     """RK4 at the servo period: ``sampling`` says why, and its tests hold it to 0.1 µm.
 
     Drives that are faster than that make the step shorter (``drive_actuators``).
@@ -183,7 +183,7 @@ def _set_clock(spec: mujoco.MjSpec, machine: Machine) -> None:
     spec.option.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
 
 
-def _set_inertia(spec: mujoco.MjSpec, machine: Machine) -> None:
+def _set_inertia(spec: mujoco.MjSpec, machine: MachineConfig) -> None:
     for name in machine.axes.names:
         axis = machine.axis(name)
         _require(machine, "joint", axis.joint, [joint.name for joint in spec.joints])
@@ -196,7 +196,7 @@ def _set_inertia(spec: mujoco.MjSpec, machine: Machine) -> None:
     set_measured_masses(spec, machine)
 
 
-def _add_fixtures(spec: mujoco.MjSpec, machine: Machine) -> None:
+def _add_fixtures(spec: mujoco.MjSpec, machine: MachineConfig) -> None:
     taken = [geom.name for geom in spec.geoms]
     for fixture in machine.file.fixtures:
         if fixture.name in taken:
@@ -275,7 +275,7 @@ def _hold_against_clamped(spec: mujoco.MjSpec) -> None:
             geom.conaffinity |= CLAMPED_SIDE
 
 
-def compiled(spec: mujoco.MjSpec, machine: Machine) -> mujoco.MjModel:
+def compiled(spec: mujoco.MjSpec, machine: MachineConfig) -> mujoco.MjModel:
     """Compile a specification.
 
     Raises:
@@ -297,7 +297,7 @@ def compiled(spec: mujoco.MjSpec, machine: Machine) -> mujoco.MjModel:
         ) from error
 
 
-def drives(machine: Machine, model: mujoco.MjModel) -> tuple[Drive, ...]:
+def drives(machine: MachineConfig, model: mujoco.MjModel) -> tuple[Drive, ...]:
     """Derive every axis's position loop from the masses of the compiled model at home.
 
     They are those of the empty table: what a job clamps there changes no gain, as no control is
@@ -314,7 +314,7 @@ def drives(machine: Machine, model: mujoco.MjModel) -> tuple[Drive, ...]:
     )
 
 
-def moved(machine: Machine, model: mujoco.MjModel) -> FloatArray:
+def moved(machine: MachineConfig, model: mujoco.MjModel) -> FloatArray:
     """What the motors feel of a compiled model at home, with all that is on the table.
 
     Returns:
@@ -328,7 +328,7 @@ def moved(machine: Machine, model: mujoco.MjModel) -> FloatArray:
     return np.array([inertia[dof, dof] for dof in (int(joint.dofadr[0]) for joint in joints)])
 
 
-def physics_model(machine: Machine, spec: mujoco.MjSpec) -> mujoco.MjModel:
+def physics_model(machine: MachineConfig, spec: mujoco.MjSpec) -> mujoco.MjModel:
     """Compile the model without its geoms: the same motion, in less time.
 
     Every moving body has its own inertial, so that geoms weigh nothing; what may not meet is
@@ -345,7 +345,7 @@ def physics_model(machine: Machine, spec: mujoco.MjSpec) -> mujoco.MjModel:
     return compiled(lean, machine)
 
 
-def clearance_model(machine: Machine, spec: mujoco.MjSpec) -> mujoco.MjModel:
+def clearance_model(machine: MachineConfig, spec: mujoco.MjSpec) -> mujoco.MjModel:
     """Compile the model with only those geoms that may not meet.
 
     Raises:

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 import mujoco
 import numpy as np
 
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.description.kinematics import SPINDLE_NOSE, TABLE_TOP
 from twin.machine.model.tool_shape import (
     COLLISION_GROUP,
@@ -39,7 +39,7 @@ _FROM = {
 """From what a camera looks at to the camera: to the right, to the back and up, seen from the front."""
 
 
-def supply(spec: mujoco.MjSpec, machine: Machine) -> list[str]:
+def supply(spec: mujoco.MjSpec, machine: MachineConfig) -> list[str]:
     """Complete a model that leaves out actuators, what may not meet, cameras, or light.
 
     Args:
@@ -51,7 +51,7 @@ def supply(spec: mujoco.MjSpec, machine: Machine) -> list[str]:
     return [*_actuators(spec, machine), *_solids(spec), *_cameras(spec), *_light(spec)]
 
 
-def _actuators(spec: mujoco.MjSpec, machine: Machine) -> Iterator[str]:
+def _actuators(spec: mujoco.MjSpec, machine: MachineConfig) -> Iterator[str]:
     known = {actuator.name for actuator in spec.actuators}
     joints = {joint.name for joint in spec.joints}
     for name in machine.axes.names:

@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.model.drives import Drive, feedforward_name, integral_name
 from twin.machine.model.model import moved
 from twin.machine.model.transmission import directly_driven, give_name, has_give
@@ -15,7 +15,9 @@ from twin.nc.canonical import IntArray
 from twin.units import kv_per_second
 
 
-def drive_columns(machine: Machine, model: mujoco.MjModel, loops: tuple[Drive, ...]) -> Drives:
+def drive_columns(
+    machine: MachineConfig, model: mujoco.MjModel, loops: tuple[Drive, ...]
+) -> Drives:
     """Gains of the drives, and where their inputs, joints and states are in the model.
 
     Args:

@@ -13,7 +13,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.simulation.setpoint_filter import relax
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
@@ -25,7 +25,7 @@ class Growth:
     """Follows a run from cold on, chunk by chunk."""
 
     def __init__(
-        self, machine: Machine, spindle_speed: Callable[[Setpoints], FloatArray] | None = None
+        self, machine: MachineConfig, spindle_speed: Callable[[Setpoints], FloatArray] | None = None
     ) -> None:
         """Begin with a cold machine.
 

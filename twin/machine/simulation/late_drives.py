@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import mujoco
 import numpy as np
 
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.model.drive_actuators import LagActuator, lag_actuator
 from twin.machine.model.drives import Drive, lag_name
 from twin.machine.simulation.drive_kernels import Drives, DriveSetpoints, read_states
@@ -14,7 +14,7 @@ from twin.machine.simulation.setpoint_filter import SetpointFilter
 from twin.nc.canonical import FloatArray
 
 
-class Told(NamedTuple):
+class SeenSetpoints(NamedTuple):
     """What drives see of setpoints, n + 1 rows: the last of what went before, and n that follow."""
 
     points: DriveSetpoints
@@ -43,7 +43,7 @@ class LateDrives:
     """
 
     def __init__(
-        self, machine: Machine, loops: tuple[Drive, ...], drives: Drives, places: dict[str, int],
+        self, machine: MachineConfig, loops: tuple[Drive, ...], drives: Drives, places: dict[str, int],
         step: float,
     ) -> None:  # fmt: skip
         """Begin at rest.
@@ -67,7 +67,7 @@ class LateDrives:
             for name, lag in zip(_lag_names(machine, index, loop), loop.lags, strict=True)
         ]
 
-    def follow(self, past: DriveSetpoints, points: DriveSetpoints) -> Told:
+    def follow(self, past: DriveSetpoints, points: DriveSetpoints) -> SeenSetpoints:
         """Setpoints as the drives see them.
 
         Args:
@@ -80,7 +80,7 @@ class LateDrives:
             )
         )
         filtered = self._command_filter.follow(rows)
-        return Told(filtered, self._delay.follow(filtered))
+        return SeenSetpoints(filtered, self._delay.follow(filtered))
 
     def go_to(self, row: int) -> None:
         """Stand at a row of what was followed last."""
@@ -102,19 +102,19 @@ class LateDrives:
         self._command_filter.stand(trails[0])
         self._delay.stand(trails[1])
 
-    def held_force(self, told: Told) -> FloatArray:
+    def held_force(self, seen: SeenSetpoints) -> FloatArray:
         """Force to add over each step because of the dead time, shape (n, k) [N or N m]."""
-        now, late = (self._held(points) for points in told)
+        now, late = (self._held(points) for points in seen)
         return self._drives.scale * self._force(now, late)
 
-    def force(self, told: Told, speed: FloatArray, states: FloatArray) -> FloatArray:
+    def force(self, seen: SeenSetpoints, speed: FloatArray, states: FloatArray) -> FloatArray:
         """Force that is added at the instants of setpoints, shape (n, k) [N or N m].
 
         Args:
             speed: Of the motors, shape (n, k) [mm/s or deg/s].
             states: Of the actuators, shape (n, width).
         """
-        now, late = told
+        now, late = seen
         scale = self._drives.scale
         force = scale * self._force(
             (now.velocity, now.acceleration), (late.velocity, late.acceleration)
@@ -148,38 +148,38 @@ class LateDrives:
         return np.asarray(force)
 
     def read(
-        self, told: Told, states: FloatArray, first_act: int
+        self, seen: SeenSetpoints, states: FloatArray, first_act: int
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Position, velocity and force of the axes in states.
 
         Args:
-            told: What the drives saw until then; the last rows of it belong to the states.
+            seen: What the drives saw until then; the last rows of it belong to the states.
             states: Shape (n, width).
             first_act: Column of the first actuator's state.
         """
         drives = self._drives
-        seen = Told(
-            *(DriveSetpoints(*(column[-len(states) :] for column in part)) for part in told)
+        last = SeenSetpoints(
+            *(DriveSetpoints(*(column[-len(states) :] for column in part)) for part in seen)
         )
         unlimited = drives._replace(limit=np.full(len(drives.scale), np.inf))
-        position, velocity, force = read_states(unlimited, seen.points, states)
+        position, velocity, force = read_states(unlimited, last.points, states)
         speed = states[:, drives.qvel] / drives.scale
-        force += np.sign(drives.scale) * self.force(seen, speed, states[:, first_act:])
+        force += np.sign(drives.scale) * self.force(last, speed, states[:, first_act:])
         return position, velocity, np.clip(force, -drives.limit, drives.limit)
 
 
-def is_late(machine: Machine, loops: tuple[Drive, ...]) -> bool:
+def is_late(machine: MachineConfig, loops: tuple[Drive, ...]) -> bool:
     """Whether anything of a machine's drives is late."""
     filters = any(machine.axis(name).command_filter_s for name in machine.axes.names)
     return filters or any(loop.lags for loop in loops)
 
 
-def _lag_names(machine: Machine, index: int, loop: Drive) -> list[str]:
+def _lag_names(machine: MachineConfig, index: int, loop: Drive) -> list[str]:
     return [lag_name(machine.axes.names[index], number) for number in range(len(loop.lags))]
 
 
 def late_drives(
-    machine: Machine, model: mujoco.MjModel, loops: tuple[Drive, ...], drives: Drives
+    machine: MachineConfig, model: mujoco.MjModel, loops: tuple[Drive, ...], drives: Drives
 ) -> LateDrives | None:
     """What is late in the drives; None where nothing is.
 

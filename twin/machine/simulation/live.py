@@ -6,7 +6,7 @@ import numpy as np
 
 from twin.errors import ConfigError
 from twin.job.job_file import ToolTable
-from twin.machine.description.config import Blank, Machine
+from twin.machine.description.config import Blank, MachineConfig
 from twin.machine.model.model import MachineModel
 from twin.machine.simulation.process import Process
 from twin.machine.simulation.servo import Servo
@@ -54,7 +54,7 @@ class LiveMachine:
 
     def __init__(
         self,
-        machine: Machine,
+        machine: MachineConfig,
         tool: ToolTable | None = None,
         position: FloatArray | None = None,
         blank: Blank | None = None,
@@ -177,7 +177,7 @@ class LiveMachine:
         """
         if self.alarm is not None:
             raise AlarmStandsError(f"{self.alarm.code} has not been cleared")
-        self._servo.begin_anew()
+        self._servo.restart()
         self._stand = self._servo.follow(_standing(position))
         self._watch.acknowledge(self.position)
         return self._stand
@@ -241,7 +241,7 @@ class LiveMachine:
         model = MachineModel(self.machine, tool, self._blank)
         self._clearance = Clearance(self.machine, model.solids)
 
-    def _rebuild(self, machine: Machine) -> None:
+    def _rebuild(self, machine: MachineConfig) -> None:
         servo = Servo(machine, MachineModel(machine, None, self._blank).physics)
         servo.take_over(self._servo)
         self.machine, self._servo = machine, servo

@@ -8,7 +8,7 @@ import numpy as np
 from mujoco.rollout import Rollout
 
 from twin.columns import join
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.model.model import drives
 from twin.machine.model.timers import switch_off_timers
 from twin.machine.model.transmission import give_stiffness
@@ -20,7 +20,7 @@ from twin.machine.simulation.drive_kernels import (
     hold_pushes,
     read_states,
 )
-from twin.machine.simulation.late_drives import Told, late_drives
+from twin.machine.simulation.late_drives import SeenSetpoints, late_drives
 from twin.machine.simulation.process import Physics, Process
 from twin.machine.simulation.sampling import polyline_node
 from twin.machine.simulation.stepping import stepper
@@ -70,7 +70,7 @@ class Servo:
         process: What the tool does, which pushes the axes while they are stepped; None: nothing.
     """
 
-    def __init__(self, machine: Machine, model: mujoco.MjModel) -> None:
+    def __init__(self, machine: MachineConfig, model: mujoco.MjModel) -> None:
         switch_off_timers()
         self.model, self._period = model, machine.file.servo_period_s
         self._data = mujoco.MjData(model)
@@ -134,12 +134,12 @@ class Servo:
             load = None if load is None else load[1:]
         else:
             past = _points(self._chunk)
-        told = None if self._late is None else self._late.follow(past, ahead)
-        states, tool = self._roll(past, ahead, told, load, following)
+        seen = None if self._late is None else self._late.follow(past, ahead)
+        states, tool = self._roll(past, ahead, seen, load, following)
         states = np.concatenate([*begun, states]) if begun else states
         self._chunk, self._states = chunk, states
         loads += [] if tool is None else [tool]
-        return Samples(chunk, *self._read(points, told, states), join(loads) if loads else None)
+        return Samples(chunk, *self._read(points, seen, states), join(loads) if loads else None)
 
     @property
     def _is_lean(self) -> bool:
@@ -168,14 +168,14 @@ class Servo:
         self._warmstart = self._solver[None].copy()
 
     def _read(
-        self, points: DriveSetpoints, told: Told | None, states: FloatArray
+        self, points: DriveSetpoints, seen: SeenSetpoints | None, states: FloatArray
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Position, velocity and force of the axes in states."""
-        if self._late is None or told is None:
+        if self._late is None or seen is None:
             return read_states(self._drives, points, states)
-        return self._late.read(told, states, 1 + self.model.nq + self.model.nv)
+        return self._late.read(seen, states, 1 + self.model.nq + self.model.nv)
 
-    def begin_anew(self) -> None:
+    def restart(self) -> None:
         """Forget all that was followed: the next chunk is the first of all."""
         self._chunk = None
         self._warmstart = np.zeros((1, self.model.nv))
@@ -333,7 +333,7 @@ class Servo:
         self,
         past: DriveSetpoints,
         points: DriveSetpoints,
-        told: Told | None,
+        seen: SeenSetpoints | None,
         load: FloatArray | None,
         setpoints: Setpoints,
     ) -> tuple[FloatArray, ToolLoad | None]:
@@ -344,7 +344,7 @@ class Servo:
         """
         if len(points.position) == 0:
             return np.zeros((0, len(self._state))), None
-        controls, tool = self._controls(past, points, told), None
+        controls, tool = self._controls(past, points, seen), None
         self._warned[:] = 0
         if self.process is None:
             states = self._roll_alone(controls, load)
@@ -379,16 +379,16 @@ class Servo:
         return rolled[0] if steps == 1 else rolled[0][steps - 1 :: steps]
 
     def _controls(
-        self, past: DriveSetpoints, points: DriveSetpoints, told: Told | None
+        self, past: DriveSetpoints, points: DriveSetpoints, seen: SeenSetpoints | None
     ) -> FloatArray:
         """Controls to hold during the step to each setpoint, shape (n, nu), SI."""
-        if self._late is None or told is None:
+        if self._late is None or seen is None:
             return hold_controls(self._drives, past, points, self.model.nu)
         before, after = (
-            DriveSetpoints(*(column[part] for column in told.points)) for part in _PARTS
+            DriveSetpoints(*(column[part] for column in seen.points)) for part in _PARTS
         )
         controls = hold_controls(self._drives, before, after, self.model.nu)
-        controls[:, self._drives.force_input] += self._late.held_force(told)
+        controls[:, self._drives.force_input] += self._late.held_force(seen)
         return controls
 
     def _refuse_warnings(self) -> None:

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable, Iterator
 import mujoco
 import numpy as np
 
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.model.model import MachineModel
 from twin.machine.simulation.process import Process
 from twin.machine.simulation.servo import Servo
@@ -34,7 +34,7 @@ class Simulation:
 
     def __init__(
         self,
-        machine: Machine,
+        machine: MachineConfig,
         model: mujoco.MjModel,
         clearance: Clearance | ToolClearances | None,
         setpoints: Iterable[Setpoints],
@@ -108,7 +108,7 @@ class Simulation:
 
 
 def simulate(
-    machine: Machine,
+    machine: MachineConfig,
     model: MachineModel | mujoco.MjModel,
     setpoints: Iterable[Setpoints],
     tools: ToolPlan | None = None,

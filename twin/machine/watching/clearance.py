@@ -24,7 +24,7 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.model.fixture_shape import fixture_of
 from twin.machine.model.tool_shape import (
     COLLISION_GROUP,
@@ -132,7 +132,7 @@ class Clearance:
             part has none: it may come as close to a jaw as the part asks for.
     """
 
-    def __init__(self, machine: Machine, model: mujoco.MjModel) -> None:
+    def __init__(self, machine: MachineConfig, model: mujoco.MjModel) -> None:
         self.near_miss: NearMiss | None = None
         self._model = model
         self._data = mujoco.MjData(model)

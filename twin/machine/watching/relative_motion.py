@@ -20,7 +20,7 @@ an axis [m]."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Seen:
+class RelativeGeom:
     """A geom as seen from a body that it moves against.
 
     Attributes:
@@ -59,23 +59,23 @@ class RelativeMotion:
         mujoco.mj_kinematics(model, self._data)
         hinge = mujoco.mjtJoint.mjJNT_HINGE
         self._hinge = [mujoco.mjtJoint(model.jnt_type[joint]) == hinge for joint in joints]
-        self.seen: list[Seen] = []
+        self.seen: list[RelativeGeom] = []
         self.chain = self._carriers(scale)
 
-    def follow(self, seen: Seen) -> int:
+    def follow(self, seen: RelativeGeom) -> int:
         """Follow something; return the number of its track."""
         if seen not in self.seen:
             self.seen.append(seen)
         return self.seen.index(seen)
 
-    def view(self, geom: int, frame: int) -> Seen:
+    def view(self, geom: int, frame: int) -> RelativeGeom:
         """A geom as seen from a body."""
         model, data = self._model, self._data
         body = int(model.geom_bodyid[geom])
         between = self._axes_of(body) ^ self._axes_of(frame)
         turning = tuple(sorted(axis for axis in between if self._hinge[axis]))
         if not turning:
-            return Seen(frame, body, (0.0, 0.0, 0.0), (), 0.0)
+            return RelativeGeom(frame, body, (0.0, 0.0, 0.0), (), 0.0)
         point = data.geom_xpos[geom] - data.xpos[body]
         round_geom = mujoco.mjtGeom(model.geom_type[geom]) == mujoco.mjtGeom.mjGEOM_SPHERE
         if len(turning) == 1:
@@ -85,7 +85,7 @@ class RelativeMotion:
         point = data.xmat[body].reshape(3, 3).T @ point
         x, y, z = (float(value) for value in np.round(point, 12) + 0.0)
         reach = 0.0 if round_geom else float(model.geom_rbound[geom]) / MM
-        return Seen(frame, body, (x, y, z), turning, reach)
+        return RelativeGeom(frame, body, (x, y, z), turning, reach)
 
     def _turns_in_itself(self, geom: int, about: FloatArray) -> bool:
         """Whether a geom is a body of revolution about a direction."""

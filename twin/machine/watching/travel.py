@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.watching.alarms import Alarm
 from twin.nc.canonical import FloatArray, Moves, Shape
 
@@ -103,7 +103,7 @@ def _extreme_points(arcs: Moves) -> FloatArray:
     return np.array(points)
 
 
-def soft_limit_alarm(machine: Machine, moves: Moves, part_zero: FloatArray) -> Alarm | None:
+def soft_limit_alarm(machine: MachineConfig, moves: Moves, part_zero: FloatArray) -> Alarm | None:
     """Find the first move of a chunk that leaves the travel.
 
     Args:

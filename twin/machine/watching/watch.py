@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.description.machine_file import AxisTable
 from twin.machine.watching.alarms import Alarm, AlarmCode
 from twin.machine.watching.watch_kernels import AxisWatch, Raised, find_raised
@@ -21,7 +21,7 @@ _AT_LIMIT = 1.0 - 1e-9
 class Watch:
     """Looks at chunks of samples for the first that raises an alarm."""
 
-    def __init__(self, machine: Machine) -> None:
+    def __init__(self, machine: MachineConfig) -> None:
         axes = [machine.axis(name) for name in machine.axes.names]
         self._names = machine.axes.names
         self._units = ["mm" if kind == "linear" else "deg" for kind in machine.axes.kinds]

@@ -7,7 +7,7 @@ import numpy as np
 
 from twin.columns import Columns, join
 from twin.compilation.kernel import array_kernel
-from twin.motion.steps import Step
+from twin.motion.steps import PipelineStage
 from twin.nc.canonical import (
     Chunk,
     CodeArray,
@@ -98,7 +98,7 @@ class Blocks(Columns):
     geometry: Geometry
 
 
-class BlocksOfChunks(Step[Chunk, Blocks]):
+class BlocksOfChunks(PipelineStage[Chunk, Blocks]):
     """The blocks of a program, in order.
 
     The path comes to rest before and after rapids, dwells and functions, as the conventions of
@@ -257,7 +257,7 @@ class Surroundings:
     to_the_end: bool
 
 
-class WithNeighbours(Step[Blocks, Surroundings]):
+class WithNeighbours(PipelineStage[Blocks, Surroundings]):
     """Regroups blocks: ``batch`` at a time, with up to ``context`` known on either side.
 
     Groups are counted from the start of the program, whatever parts the blocks come in. They are

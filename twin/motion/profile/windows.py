@@ -12,7 +12,7 @@ import numpy as np
 from twin.columns import join
 from twin.motion.pieces.pieces import Pieces
 from twin.motion.profile.segment_kernels import find_segments, merge_limits
-from twin.motion.steps import Step
+from twin.motion.steps import PipelineStage
 from twin.nc.canonical import FloatArray, IntArray
 
 LOOK_AHEAD = 2000
@@ -113,7 +113,7 @@ class _Batch:
     limits: FloatArray
 
 
-class Windows(Step[Pieces, Window]):
+class Windows(PipelineStage[Pieces, Window]):
     """Windows of a program; each begins where the one before it had its ``due``.
 
     Args:
@@ -158,7 +158,7 @@ def _window(batches: list[_Batch], due: int) -> Window:
     )
 
 
-class _Batches(Step[Pieces, Pieces]):
+class _Batches(PipelineStage[Pieces, Pieces]):
     """Regroups pieces: so many blocks at a time, or ``MAX_PIECES`` if these are fewer."""
 
     def __init__(self, parts: Iterable[Pieces], blocks: int) -> None:

@@ -162,14 +162,12 @@ def marks_found(source: Source) -> dict[str, list[str]]:
     }
     found: set[tuple[str, str]] = set()
     seen: set[str] = set()
-    for line in source.lines:
-        shape = _VALUES.sub(
-            "0", _REMARK.sub("; remark", _BRACKETS.sub(" ", _SLASHES.sub("", line)))
-        )
-        if shape not in seen:
-            found |= {mark for mark, pattern in patterns.items() if pattern.search(shape)}
-            if len(seen) < _MOST_SHAPES:
-                seen.add(shape)
+    for page in source.lines.pages():
+        text = _REMARK.sub("; remark", _BRACKETS.sub(" ", _SLASHES.sub("", page.joined)))
+        shapes = set(_VALUES.sub("0", text).split("\n")) - seen
+        found |= {mark for mark, pattern in patterns.items() if any(map(pattern.search, shapes))}
+        if len(seen) < _MOST_SHAPES:
+            seen |= shapes
     decided = {
         dialect.name
         for dialect in DIALECTS.values()
@@ -185,11 +183,11 @@ def marks_found(source: Source) -> dict[str, list[str]]:
     }
 
 
-_BRACKETS = re.compile(r"\([^()]*\)")
+_BRACKETS = re.compile(r"\([^()\n]*\)")
 """A comment in every dialect: what it says decides nothing."""
-_SLASHES = re.compile(r"^[ \t]*//.*")
+_SLASHES = re.compile(r"^[ \t]*//.*", re.MULTILINE)
 """A line of comment for some controls: two slashes begin a block nowhere."""
-_REMARK = re.compile(r";(?![ \t]*\$PATH)[ \t]*[^ \t;].*")
+_REMARK = re.compile(r";(?![ \t]*\$PATH)[ \t]*[^ \t;\n].*")
 """Text behind ; likewise, but for what names a SINUMERIK's folder."""
 _VALUES = re.compile(
     r"(?<=[XYZABCIJKRUVWN])(?!360(?![0-9.]))[-+]?(?=[.]?[0-9])[0-9.]+(?![0-9.]|[ \t]*=)",

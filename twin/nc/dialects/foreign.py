@@ -20,7 +20,7 @@ from twin.errors import UsageError
 from twin.nc.text.source import LEADER
 
 
-class _Entry(pydantic.BaseModel):
+class _ForeignKind(pydantic.BaseModel):
     model_config = pydantic.ConfigDict(extra="forbid", frozen=True)
 
     name: str
@@ -29,7 +29,7 @@ class _Entry(pydantic.BaseModel):
     """What to do with it, a key of ``[advice]``."""
 
 
-class BinaryKind(_Entry):
+class BinaryKind(_ForeignKind):
     """A file that is no text, by bytes that are written as the characters of Latin 1."""
 
     begins: str
@@ -40,7 +40,7 @@ class BinaryKind(_Entry):
     """Further bytes, anywhere in its head."""
 
 
-class TextKind(_Entry):
+class TextKind(_ForeignKind):
     """A text, by what its lines hold."""
 
     pattern: str

@@ -1,7 +1,8 @@
 """Which dialects a raw program may be written in, by its words and by what its head calls itself."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
 from itertools import islice
 from typing import NamedTuple
 
@@ -29,7 +30,12 @@ _NAMES: Mapping[str, str] = {
 _SHARED_CODES = ("linuxcnc",)
 """A dialect among whose marks are codes that controls like Fanuc's have too, such as G61.1."""
 
-_COMMENT = re.compile(r"\(([^()]*)(?:\)|$)|;(.*)|^%(.*)|^\s*\d*\s*\*\s*-(.*)")
+MOST_LINES = 200_000
+"""So many lines of blocks are looked at."""
+_COMMENT = re.compile(
+    r"\(([^()\n]*)(?:\)|$)|;(.*)|^%(.*)|^[^\S\n]*\d*[^\S\n]*\*[^\S\n]*-(.*)", re.MULTILINE
+)
+"""Comments, as most controls and posts write them."""
 
 
 class Reading(NamedTuple):
@@ -57,7 +63,7 @@ def reading_of(source: Source) -> Reading:
             return Reading((dialect.name,), "by the end of its file's name")
     if not any(line.strip().strip(_TAPE).strip() for line in source.lines):
         raise EmptyProgramError(f"{source.name}: the program is empty")
-    if not any(without_comments(line).strip() for line in source.lines):
+    if not any(text.strip() for text in block_pages(source)):
         raise EmptyProgramError(f"{source.name}: the program is empty: it holds comments alone")
     marks = {name: shown for name, shown in marks_found(source).items() if shown}
     everything = {mark for shown in marks.values() for mark in shown}
@@ -87,16 +93,48 @@ def reading_of(source: Source) -> Reading:
 
 def head_of(source: Source) -> str:
     """The comments at a program's beginning, a line each."""
-    return "\n".join(
-        each for line in islice(source.lines, HEAD_LINES) for each in comments_of(line)
-    )
+    return "\n".join(text for line, text in raw_text(source).comments if line <= HEAD_LINES)
 
 
-def comments_of(line: str) -> list[str]:
-    """The comments of a line, as most controls and posts write them."""
-    return [" ".join(filter(None, match.groups())).strip() for match in _COMMENT.finditer(line)]
+class RawText(NamedTuple):
+    """A program, with its comments apart from its blocks.
+
+    Attributes:
+        blocks: Its first ``MOST_LINES`` lines without comments.
+        comments: All of them, each with its line, from 1.
+    """
+
+    blocks: str
+    comments: tuple[tuple[int, str], ...]
 
 
-def without_comments(line: str) -> str:
-    """A line without what ``comments_of`` gives."""
-    return _COMMENT.sub("", line)
+@lru_cache(maxsize=2)
+def raw_text(source: Source) -> RawText:
+    """The text of a program, read once for all that look at it."""
+    blocks: list[str] = []
+    comments: list[tuple[int, str]] = []
+    for page in source.lines.pages():
+        text, line, passed = page.joined, page.lines.start + 1, 0
+        for found in _COMMENT.finditer(text):
+            line, passed = line + text.count("\n", passed, found.start()), found.start()
+            comments.append((line, " ".join(filter(None, found.groups())).strip()))
+        room = MOST_LINES - page.lines.start
+        if room > 0:
+            text = _COMMENT.sub("", text)
+            whole = len(page.lines) <= room
+            blocks.append(text if whole else "\n".join(text.split("\n", room)[:room]))
+    return RawText("".join(blocks), tuple(comments))
+
+
+def block_pages(source: Source) -> Iterator[str]:
+    """All lines without comments, in texts of many lines each."""
+    return (_COMMENT.sub("", page.joined) for page in source.lines.pages())
+
+
+def lines_with(text: str, pattern: re.Pattern[str]) -> Iterator[str]:
+    """The lines of a text in which a pattern is found that matches no line ends."""
+    at = 0
+    while (found := pattern.search(text, at)) is not None:
+        begin, at = text.rfind("\n", 0, found.start()) + 1, text.find("\n", found.end())
+        at = at if at >= 0 else len(text)
+        yield text[begin:at]

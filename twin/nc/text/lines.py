@@ -56,6 +56,11 @@ class Page:
         self._first_divided = -_DIVIDED
         self._divided: list[str] = []
 
+    @property
+    def joined(self) -> str:
+        """Its lines as one text, with LF between them."""
+        return self.text.decode(_UTF_8, SURROGATES).replace("\r\n", "\n").replace("\r", "\n")
+
     def line(self, number: int) -> str:
         """One of its lines without its end."""
         at = number - self.lines.start
@@ -151,21 +156,20 @@ class Lines(Sequence[str]):
         pages = range(len(self._pages))
         return any(pattern.search(self._utf_8(number)) is not None for number in pages)
 
-    def holding(self, mark: str) -> Iterator[tuple[int, str]]:
-        """The lines in which a text occurs, with their numbers from 0."""
-        wanted = mark.encode(_UTF_8, SURROGATES)
+    def holding(self, mark: "str | re.Pattern[bytes]") -> Iterator[tuple[int, str]]:
+        """The lines in which a text or a pattern, which must not match line ends, occurs, with their numbers from 0."""
+        pattern = (
+            re.compile(re.escape(mark.encode(_UTF_8, SURROGATES)))
+            if isinstance(mark, str)
+            else mark
+        )
         for number, first in enumerate(self._firsts):
-            if wanted in self._utf_8(number):
+            if pattern.search(self._utf_8(number)) is not None:
                 page, at = self.page_of(first), 0
-                while (at := page.text.find(wanted, at)) >= 0:
-                    index = int(np.searchsorted(page.starts, at, side="right")) - 1
+                while (found := pattern.search(page.text, at)) is not None:
+                    index = int(np.searchsorted(page.starts, found.start(), side="right")) - 1
                     yield first + index, page.line(first + index)
                     at = int(page.ends[index])
-
-    @property
-    def text(self) -> bytes:
-        """All lines with their ends, as UTF-8."""
-        return b"".join(self._utf_8(number) for number in range(len(self._pages)))
 
 
 def _whole_lines(pieces: Iterable[bytes]) -> Iterator[bytes]:

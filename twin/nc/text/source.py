@@ -56,8 +56,7 @@ class Source:
     @property
     def text(self) -> str:
         """All lines, ended by newlines."""
-        text = self.lines.text.decode("utf-8", SURROGATES)
-        return text.replace("\r\n", "\n").replace("\r", "\n")
+        return "".join(page.joined for page in self.lines.pages())
 
 
 def read_source(path: Path, dialect: Language | None = None) -> Source:

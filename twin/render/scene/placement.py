@@ -5,7 +5,7 @@ import dataclasses
 import mujoco
 import numpy as np
 
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.description.kinematics import SPINDLE_NOSE, part_carrier
 from twin.nc.canonical import FloatArray
 from twin.toolpath.part_frame import PartFrame
@@ -56,7 +56,7 @@ class Placement(FrameOnBody):
 class Joints:
     """Sets the drawn machine's joints from machine coordinates."""
 
-    def __init__(self, machine: Machine, model: mujoco.MjModel) -> None:
+    def __init__(self, machine: MachineConfig, model: mujoco.MjModel) -> None:
         names = machine.axes.names
         self._address = [int(model.joint(machine.axis(name).joint).qposadr[0]) for name in names]
         self._factor = machine.joint_scale
@@ -67,7 +67,7 @@ class Joints:
 
 
 def place(
-    machine: Machine, model: mujoco.MjModel, tool_length: float, part_frame: PartFrame
+    machine: MachineConfig, model: mujoco.MjModel, tool_length: float, part_frame: PartFrame
 ) -> Placement:
     """Find the part's frame on the machine: by moving the tool point along its axes.
 

@@ -8,19 +8,19 @@ import mujoco
 from twin.cutting.program_summary import ProgramSummary
 from twin.errors import RenderError
 from twin.job.job_file import StockTable
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.recording.reader import Recording
 from twin.render.scene.cameras import PART_CAMERAS
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
-class Scene:
+class RenderScene:
     """What is to be seen: a recording, and the machine and job that it was made with."""
 
     recording: Recording
     spec: mujoco.MjSpec
     """Machine, tool and named cameras, as the machine room builds it; it is not changed."""
-    machine: Machine
+    machine: MachineConfig
     summary: ProgramSummary
     """What is in the spindle when, which moves are rapids, what the screen shows."""
     source: Sequence[str] = ()

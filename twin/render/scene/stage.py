@@ -22,7 +22,7 @@ from twin.render.drawing.renderer import Renderer, open_canvas, prepare
 from twin.render.scene.cameras import PART_CAMERAS, SMALLEST_MM, add_part_cameras, framed
 from twin.render.scene.dexel_surface import Deviations, DexelSurface
 from twin.render.scene.placement import Joints, Placement, place, tip_position
-from twin.render.scene.scene import Scene
+from twin.render.scene.scene import RenderScene
 from twin.render.scene.stock_surface import StockSurface
 from twin.render.scene.stock_texture import StockTexture
 from twin.render.scene.tool_body import ToolBodies
@@ -77,12 +77,12 @@ class _Props(NamedTuple):
         self.tools.bind(model)
 
 
-class Stage:
+class ScenePlayer:
     """Plays a scene; open it with ``stage``."""
 
     def __init__(
         self,
-        scene: Scene,
+        scene: RenderScene,
         model: mujoco.MjModel,
         props: _Props,
         drawing: Canvas,
@@ -213,14 +213,14 @@ class Stage:
 
 @contextlib.contextmanager
 def stage(
-    scene: Scene,
+    scene: RenderScene,
     size: tuple[int, int],
     quality: Quality,
     *,
     renderer: Renderer = "opengl",
     paint: Colours | Deviations | None = None,
     trail: bool = True,
-) -> Iterator[Stage]:
+) -> Iterator[ScenePlayer]:
     """Build the drawn machine and open the canvas.
 
     Args:
@@ -238,12 +238,12 @@ def stage(
     model = spec.compile()
     props.bind(model)
     with open_canvas(model, renderer, size, quality) as drawing:
-        yield Stage(scene, model, props, drawing, size)
+        yield ScenePlayer(scene, model, props, drawing, size)
 
 
 def _build_props(
     spec: mujoco.MjSpec,
-    scene: Scene,
+    scene: RenderScene,
     quality: Quality,
     paint: Colours | Deviations | None,
     *,

@@ -8,7 +8,7 @@ from twin.cutting.watching.cut_log import CutResult
 from twin.cutting.watching.cut_watch import CutSlip
 from twin.job.job_file import JobFile, ToolTable
 from twin.job.tolerance import ToleranceTable
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.run.dry_run.dry_run import DryRun
 from twin.run.dry_run.program_watch import ProgramWatch, ToothFeed
 from twin.run.machining import Machining
@@ -130,7 +130,9 @@ def unjudged_limit_notices(job: JobFile, watch: ProgramWatch) -> Iterator[Notice
 _LIMITS_OF_FORCE = ("force_limit", "torque_limit", "thrust_limit")
 
 
-def tolerance_notices(tolerance: ToleranceTable, lines: int, machine: Machine) -> Iterator[Notice]:
+def tolerance_notices(
+    tolerance: ToleranceTable, lines: int, machine: MachineConfig
+) -> Iterator[Notice]:
     """Ranges of lines behind the program's last line, and tolerances of the motion that nothing fails.
 
     Args:
@@ -159,7 +161,7 @@ def tolerance_notices(tolerance: ToleranceTable, lines: int, machine: Machine) -
             yield Notice("tolerance-too-wide", 0, message)
 
 
-def _widest_errors(machine: Machine) -> dict[str, float]:
+def _widest_errors(machine: MachineConfig) -> dict[str, float]:
     """How far what a tolerance limits can be off before a following error stops the machine [mm or deg].
 
     A tool is off the path by what all axes together are off at most, a rotary one as far from its axis as the

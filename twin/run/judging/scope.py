@@ -10,7 +10,7 @@ from twin.cutting.measuring.inspection import Inspection
 from twin.cutting.watching.cut_log import TRI_DEXEL, CutResult
 from twin.job.job_file import JobFile
 from twin.job.load import DEFAULT
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.watching.alarms import Alarm
 from twin.nc.control.settings import ControlSettings
 from twin.run.dry_run.dry_run import DryRun
@@ -151,7 +151,7 @@ def scope_of(
     )
 
 
-def _without_limits(machine: Machine, *, forces: bool) -> Iterator[Unwatched]:
+def _without_limits(machine: MachineConfig, *, forces: bool) -> Iterator[Unwatched]:
     """Limits that the machine file does not give, so that nothing is held to them."""
     axes = {name: machine.axis(name) for name in machine.axes.names}
     for what, key in (("following error", "following_error_limit"), ("force", "force_limit")):

@@ -10,12 +10,13 @@ from pathlib import Path
 
 import numpy as np
 
+from twin.errors import UsageError
 from twin.files.shipped import machine_file, machine_names, variant_names
 from twin.job.job_file import JobFile, StockTable
 from twin.job.load import ASSUMED, Job, Layer
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.nc.canonical import Chunk, FloatArray, Function, Motion, Moves, concatenate
-from twin.nc.dialects.recognition import comments_of, without_comments
+from twin.nc.dialects.recognition import block_pages, raw_text
 from twin.nc.functions import SPINDLE_SPEED, SPINDLE_STARTS, TOOL_CHANGE
 from twin.nc.interpreter import Interpretation
 from twin.nc.text.diagnostics.diagnostics import ProgramError
@@ -29,13 +30,20 @@ from twin.run.preparing.written import (
     written_zero_lines,
 )
 from twin.run.reading.assumed_heights import MARGIN, Cuts, top_of_stock, turns_about_x
-from twin.run.reading.assumed_reading import AssumedReading
+from twin.run.reading.assumed_reading import table_lines, unit_lines
 from twin.run.reading.assumed_stock import assumed_stock, bar_ends
-from twin.run.reading.assumed_tools import BELOW, SPEED_BY_HAND, named_tools, tool_lines
+from twin.run.reading.assumed_tools import BELOW, SPEED_BY_HAND, tool_lines
 from twin.run.reading.declared import declared_stock, declared_tools, table_tools
+from twin.run.reading.tool_comments import named_tools
 
 _MACHINE_ZERO_UNKNOWN = "no-machine-zero"
 """The finding of a program that counts from machine zero, where no job says where that lies."""
+_OFFSET_UNKNOWN = "no-offset"
+"""The finding of a program that is fed in several work offsets, where no job says how they lie."""
+_PLACE_OF_OFFSETS = (
+    "it feeds in several work offsets, and how they lie to each other no program says: "
+    "write it into a twin.toml beside it, such as [offsets.G55] and under that X = 100.0"
+)
 _RELIEF = 1.0
 """So much deeper than the path it is free below a stock that the path goes through [mm]."""
 _RAPID_TOLERANCE_UM = 200.0
@@ -48,10 +56,12 @@ class AssumedJob:
 
     Attributes:
         assumptions: What was assumed and from what, for people, a line each.
+        guessed_tools: Numbers of the tools whose diameter nothing tells.
     """
 
     text: str
     assumptions: tuple[str, ...]
+    guessed_tools: tuple[int, ...] = ()
 
     @property
     def tables(self) -> dict[str, object]:
@@ -93,8 +103,17 @@ def with_assumptions(
 
     Raises:
         ProgramError: The program is wrong.
+        UsageError: The diameter of a tool is a guess, and ``strict`` runs none.
     """
-    assumed, found = assumed_job(preparation), preparation.job
+    leniently = dataclasses.replace(preparation.settings, strict=False)
+    assumed = assumed_job(dataclasses.replace(preparation, settings=leniently))
+    found = preparation.job
+    if strict and assumed.guessed_tools and "tools" not in found.file.model_fields_set:
+        guessed = ", ".join(f"T{number}" for number in assumed.guessed_tools)
+        raise UsageError(
+            f"{found.program}: no comment tells the diameter of {guessed}, and --strict runs no guess: "
+            f"write one, such as (T{assumed.guessed_tools[0]} D=10. - flat end mill), or a job by twin init"
+        )
     given = found.file.model_dump(exclude_unset=True)
     taken = {key: value for key, value in assumed.tables.items() if key not in given}
     file = JobFile.model_validate({**taken, **given, "dialect": preparation.dialect.name})
@@ -124,7 +143,7 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
     if calls_lengths:
         moves = at_the_tips(moves, calls, preparation.settings.tools)
     inches, lacking = interpretation.programs_in_inches, _lacking_axes(preparation)
-    comments = list(_comments(preparation))
+    comments = raw_text(preparation.source).comments
     functions = [each for chunk in chunks for each in chunk.events if isinstance(each, Function)]
     named = named_tools(interpretation.tool_names, inches=inches)
     in_table = table_tools(own, [number for number, _, _ in calls], calls_lengths=calls_lengths)
@@ -136,7 +155,7 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
     top = top_of_stock(cuts) if blank is None else float(blank.top[2])
     worn = {number for number, tool in preparation.settings.tools.items() if not tool.radius}
     by_hand = _speed_is_set_by_hand(functions)
-    tools, told, diameter = tool_lines(
+    tools = tool_lines(
         calls,
         comments,
         moves,
@@ -147,7 +166,9 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
         worn=worn,
         by_hand=by_hand,
     )
-    stock, position, said = blank or assumed_stock(cuts, comments, diameter / 2.0, inches=inches)
+    stock, position, said = blank or assumed_stock(
+        cuts, comments, tools.largest / 2.0, inches=inches
+    )
     stock, said = _with_relief(stock, said, moves, position)
     lines = [
         f'program = "{preparation.job.program.name}"',
@@ -158,15 +179,15 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
             moves,
             position,
             stock,
-            [*stock, *tools] if counts_from_machine_zero else None,
+            [*stock, *tools.lines] if counts_from_machine_zero else None,
         ),
         *written_zero_lines(written),
-        *_unit_lines(preparation.reading),
+        *unit_lines(preparation.reading),
         "",
         *_start_lines(moves, position),
         *stock,
-        *tools,
-        *_reading_lines(preparation.reading),
+        *tools.lines,
+        *table_lines(preparation.reading),
         *(
             ["[axes]", *(f'{word} = "{IGNORED_AT_ZERO}"' for word in lacking), ""]
             if lacking
@@ -174,14 +195,15 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
         ),
         *_tolerance_lines(moves, preparation.job.file.tolerance.contour_um),
     ]
+    notes = tools.notes
     if written:
         place = " ".join(f"{axis}{value:g}" for axis, value in written.items())
-        told.append(f"the zero that the program writes ({place}) lies at part zero")
+        notes.append(f"the zero that the program writes ({place}) lies at part zero")
     left_out = tuple(f"{word} stays at 0: the machine has no such axis" for word in lacking)
     rapids = f"rapids may leave their path by {_RAPID_TOLERANCE_UM:g} µm"
-    told += [rapids] if (moves.motion == Motion.RAPID).any() else []
+    notes += [rapids] if (moves.motion == Motion.RAPID).any() else []
     rounding = _rounding_um(moves)
-    told += (
+    notes += (
         [
             f"feeds may leave their path by {rounding:g} µm more: so far the program lets corners be rounded"
         ]
@@ -189,8 +211,9 @@ def assumed_job(preparation: Preparation) -> AssumedJob:
         else []
     )
     speed = f"the spindle turns at {SPEED_BY_HAND:g} /min, set by hand, where the program starts it: it holds no S"
-    told += [speed] if by_hand else []
-    return AssumedJob("\n".join(lines), (*preparation.reading.notes, said, *told, *left_out))
+    notes += [speed] if by_hand else []
+    assumptions = (*preparation.reading.notes, said, *notes, *left_out)
+    return AssumedJob("\n".join(lines), assumptions, tools.guessed)
 
 
 def _speed_is_set_by_hand(functions: Iterable[Function]) -> bool:
@@ -200,7 +223,7 @@ def _speed_is_set_by_hand(functions: Iterable[Function]) -> bool:
     return bool(started) and not speeds
 
 
-def _least_length(machine: Machine, moves: Moves) -> float:
+def _least_length(machine: MachineConfig, moves: Moves) -> float:
     """How long a tool must be to reach a part on a table that turns about a level axis; 0 where it does not [mm]."""
     frame, travel = machine.part_frame, machine.axis("Z").travel
     if frame.chain is None or frame.table_about(2) is not None or travel is None or not len(moves):
@@ -246,9 +269,9 @@ def _tolerance_lines(moves: Moves, contour_um: float) -> list[str]:
     """The tolerances, those alone that some move of the program is held to."""
     rapid = moves.motion == Motion.RAPID
     rounding = _rounding_um(moves)
-    told = f"  # {rounding:g} of it the program lets corners be rounded by" if rounding else ""
+    comment = f"  # {rounding:g} of it the program lets corners be rounded by" if rounding else ""
     total = round(contour_um + rounding, 3)
-    feeds = [f"contour_um = {total}{told}"] if (~rapid).any() or not rapid.any() else []
+    feeds = [f"contour_um = {total}{comment}"] if (~rapid).any() or not rapid.any() else []
     rapids = [f"rapid_contour_um = {_RAPID_TOLERANCE_UM}  # a guess"] if rapid.any() else []
     return ["[tolerance]", *feeds, *rapids, ""]
 
@@ -273,49 +296,14 @@ def _interpreted(preparation: Preparation) -> tuple[Interpretation, list[Chunk],
     return (somewhere, placed, True) if depends else (interpretation, chunks, False)
 
 
-def _unit_lines(reading: AssumedReading) -> list[str]:
-    """The units, and what numbers without a point and angles count, where that was assumed."""
-    comments = {
-        "decimal_point": "  # increments: X10 is 0.010 mm",
-        "units": "",
-        "rollover": "  # sign: in the direction of their sign",
-    }
-    return [
-        f'{key} = "{reading.keys[key]}"{comment}'
-        for key, comment in comments.items()
-        if key in reading.keys
-    ]
-
-
-def _reading_lines(reading: AssumedReading) -> list[str]:
-    """Tables of the work offsets and M codes that were assumed."""
-    lines: list[str] = []
-    offsets, functions = reading.keys.get("offsets"), reading.keys.get("m_functions")
-    rows = reading.keys.get("offset_rows")
-    if isinstance(offsets, dict):
-        lines += [line for name in offsets for line in (f"[offsets.{name}]", "")]
-    if isinstance(rows, dict):
-        lines += ["[offset_rows]", *(f"{row} = {tool}" for row, tool in rows.items()), ""]
-    if isinstance(functions, dict):
-        lines += ["[m_functions]", *(f'{code} = "{does}"' for code, does in functions.items()), ""]
-    return lines
-
-
 def _lacking_axes(preparation: Preparation) -> list[str]:
     """Words of axes that the machine lacks and the program names at 0."""
     words = "|".join(sorted(preparation.settings.axis_words))
     if not words:
         return []
     written = re.compile(rf"(?<![A-Z\[#])({words})[ \t]*[-+]?[.0-9]", re.IGNORECASE)
-    lines = map(without_comments, preparation.source.lines)
-    return sorted({found[1].upper() for line in lines for found in written.finditer(line)})
-
-
-def _comments(preparation: Preparation) -> Iterator[tuple[int, str]]:
-    """Every comment with its line, from 1, as long as lists of tools and tool changes may stand there."""
-    for number, line in enumerate(preparation.source.lines, 1):
-        for comment in comments_of(line):
-            yield number, comment
+    texts = block_pages(preparation.source)
+    return sorted({found[1].upper() for text in texts for found in written.finditer(text)})
 
 
 def _zero_line(
@@ -355,7 +343,7 @@ def _zero_line(
     return [f"part_zero = {{ {values} }}  # mm in machine coordinates"]
 
 
-def _machine_name(machine: Machine) -> str:
+def _machine_name(machine: MachineConfig) -> str:
     """As a job beside the program may call it: a shipped machine by its name, another by its path."""
     for name in (*machine_names(), *variant_names()):
         if machine_file(name) == machine.path:
@@ -363,7 +351,7 @@ def _machine_name(machine: Machine) -> str:
     return machine.path.resolve().as_posix()
 
 
-def _height(file: JobFile, machine: Machine) -> float:
+def _height(file: JobFile, machine: MachineConfig) -> float:
     return float(lay_out(file, machine).part_zero[machine.axes.index("Z")])
 
 
@@ -386,7 +374,8 @@ def read_as(error: ProgramError, preparation: Preparation) -> ProgramError:
         return error
     finding = error.diagnostic
     said = f"{_reading_line(preparation)}; another control: --dialect NAME"
-    hint = f"{finding.hint}; {said}" if finding.hint else said
+    place = _PLACE_OF_OFFSETS if finding.code == _OFFSET_UNKNOWN else None
+    hint = "; ".join(filter(None, (place or finding.hint, said)))
     return ProgramError(dataclasses.replace(finding, hint=hint))
 
 

@@ -5,7 +5,7 @@ import numpy as np
 from twin.errors import ConfigError
 from twin.job.job_file import JobFile
 from twin.job.load import VARIED, Job, layer_of
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.nc.control.dialect import JobKey
 from twin.nc.control.settings import Consulted, ControlSettings, MachineFunction, ToolData
 from twin.nc.dialects import DIALECTS, Dialect
@@ -14,7 +14,7 @@ from twin.run.preparing.layout import Layout, require_axes
 
 
 def control_settings(
-    job: Job, machine: Machine, layout: Layout, *, strict: bool
+    job: Job, machine: MachineConfig, layout: Layout, *, strict: bool
 ) -> ControlSettings:
     """What the interpreter has to know of job and machine.
 
@@ -68,7 +68,7 @@ def control_settings(
     )
 
 
-def refuse_taken_functions(job: Job, machine: Machine, dialect: Dialect) -> None:
+def refuse_taken_functions(job: Job, machine: MachineConfig, dialect: Dialect) -> None:
     """Refuse M codes of the machine's builder that control or machine act upon: the declaration would change nothing.
 
     Raises:
@@ -109,7 +109,7 @@ def says_itself(job: Job, key: str) -> bool:
     return not job.layers or layer_of(job.layers, key) in (VARIED, job.path)
 
 
-def _setup(job: Job, machine: Machine, layout: Layout) -> PartOnMachine | None:
+def _setup(job: Job, machine: MachineConfig, layout: Layout) -> PartOnMachine | None:
     """The part on the machine; None where no axis turns."""
     if "rotary" not in machine.axes.kinds:
         return None
@@ -124,7 +124,7 @@ def _block_skip_levels(file: JobFile) -> frozenset[int]:
     return frozenset() if isinstance(file.block_skip, bool) else frozenset(file.block_skip)
 
 
-def _change_height(job: Job, machine: Machine) -> float | None:
+def _change_height(job: Job, machine: MachineConfig) -> float | None:
     """Where Z goes before a tool changes; the job comes before the machine."""
     own = job.file.tool_change.height
     return machine.file.tool_change.height if own is None else own
@@ -135,7 +135,7 @@ IGNORED_AT_ZERO = "ignored at 0"
 _ROTARY_WORDS = "ABC"
 
 
-def _axis_words(job: Job, machine: Machine) -> dict[str, str | None]:
+def _axis_words(job: Job, machine: MachineConfig) -> dict[str, str | None]:
     """Words of axes that the machine lacks; those of a raw program's rotary axes are passed over at 0.
 
     Raises:
@@ -155,7 +155,7 @@ def _axis_words(job: Job, machine: Machine) -> dict[str, str | None]:
     return {w: None if axis == IGNORED_AT_ZERO else axis for w, axis in job.file.axes.items()}
 
 
-def _machine_zero(job: Job, machine: Machine) -> dict[str, float] | None:
+def _machine_zero(job: Job, machine: MachineConfig) -> dict[str, float] | None:
     """Part coordinates of machine zero; None where the job leaves the height of part zero open."""
     if "Z" not in job.file.part_zero:
         return None

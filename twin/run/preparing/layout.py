@@ -12,7 +12,7 @@ from twin.errors import ConfigError
 from twin.files.stl import read_stl
 from twin.job.fixture import Weight, upright_weight
 from twin.job.job_file import JobFile, StockTable
-from twin.machine.description.config import Blank, Machine
+from twin.machine.description.config import Blank, MachineConfig
 from twin.nc.canonical import FloatArray
 from twin.toolpath.part_frame import PartFrame
 from twin.units import MM
@@ -83,7 +83,7 @@ class Layout(NamedTuple):
     start: FloatArray
 
 
-def lay_out(job: JobFile, machine: Machine) -> Layout:
+def lay_out(job: JobFile, machine: MachineConfig) -> Layout:
     """Lay a job out on its machine.
 
     An axis that the job's ``part_zero`` names is where that says. Otherwise program zero lies on
@@ -165,7 +165,7 @@ def bore_of(job: JobFile) -> float | None:
     return math.inf if job.stock.shape == "stl" else job.stock.bore
 
 
-def require_axes(names: Iterable[str], machine: Machine, key: str) -> None:
+def require_axes(names: Iterable[str], machine: MachineConfig, key: str) -> None:
     """Hold the axes that a table of the job names to those of its machine.
 
     Raises:
@@ -177,13 +177,15 @@ def require_axes(names: Iterable[str], machine: Machine, key: str) -> None:
             raise ConfigError(f"job key '{key}.{name}': {machine.file.name} has the axes {known}")
 
 
-def _write_axes(row: FloatArray, values: dict[str, float], machine: Machine, key: str) -> None:
+def _write_axes(
+    row: FloatArray, values: dict[str, float], machine: MachineConfig, key: str
+) -> None:
     require_axes(values, machine, key)
     for name, value in values.items():
         row[machine.axes.index(name)] = value
 
 
-def _default_height(job: JobFile, machine: Machine, over_table: float) -> float:
+def _default_height(job: JobFile, machine: MachineConfig, over_table: float) -> float:
     if job.stock is not None:
         top = WORK_HOLDING_HEIGHT + job.stock.extent[2] - job.stock.position[2]
         return top + job.tools[0].length - over_table

@@ -12,9 +12,9 @@ from twin.errors import RecordingError
 from twin.files.toml import Change
 from twin.job.job_file import JobFile
 from twin.job.load import Job, load_job
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.load import load_machine
-from twin.nc.control.settings import ControlSettings, MachineFunction, ToolData
+from twin.nc.control.settings import Consulted, ControlSettings, MachineFunction, ToolData
 from twin.nc.dialects import Dialect, dialect_named
 from twin.nc.dialects.foreign import require_text
 from twin.nc.functions import SpindleState, acts
@@ -29,11 +29,13 @@ from twin.run.preparing.control_settings import (
 )
 from twin.run.preparing.layout import Layout, lay_out
 from twin.run.reading.assumed_machine import assumed_machine
+from twin.run.reading.assumed_offsets import notes_of_offsets, offsets_of_one_zero
 from twin.run.reading.assumed_reading import (
     NOTHING_ASSUMED,
     UNKNOWN_FUNCTION,
     AssumedReading,
     assumed_reading,
+    functions_of,
     unknown_functions,
 )
 from twin.run.reading.dialect_choice import chosen_dialect
@@ -51,7 +53,7 @@ class Preparation:
     """
 
     job: Job
-    machine: Machine
+    machine: MachineConfig
     layout: Layout
     source: Source
     dialect: Dialect
@@ -108,7 +110,7 @@ def prepare(
 
     if reading is None:
         return made_with({})
-    return _with_functions(*_with_radii(made_with, reading))
+    return _with_offsets(_with_functions(*_with_radii(made_with, reading)))
 
 
 def _assumed(job: Job, machine: str | None) -> tuple[Job, AssumedReading]:
@@ -182,10 +184,26 @@ def _with_keys(job: Job, keys: Mapping[str, object]) -> Job:
     return job.with_file(JobFile.model_validate({**keys, **given}))
 
 
+def _with_offsets(made: Preparation) -> Preparation:
+    """A raw program whose work offsets lie at program zero, where it feeds in one of them alone."""
+    reading, given = made.reading, made.job.file.offsets
+    if "offsets" not in reading.keys or given != reading.keys["offsets"]:
+        return made
+    names = offsets_of_one_zero(tuple(given), made.source, made.dialect, made.settings)
+    offsets: dict[str, dict[str, float]] = {name: {} for name in names}
+    file = made.job.file.model_dump(exclude_unset=True) | {"offsets": offsets}
+    job = made.job.with_file(JobFile.model_validate(file))
+    settings = dataclasses.replace(made.settings, offsets=Consulted(offsets))
+    keys = {**reading.keys, "offsets": offsets}
+    reading = reading._replace(keys=keys, notes=(*reading.notes, *notes_of_offsets(names)))
+    return dataclasses.replace(made, job=job, settings=settings, reading=reading)
+
+
 def _with_functions(made: Preparation, reading: AssumedReading) -> Preparation:
     """A raw program whose M codes that nobody knows do nothing."""
     reading = reading.as_read_by(made.dialect, made.settings)
-    unknown = unknown_functions(made.source, made.dialect, frozenset(made.settings.m_functions))
+    declared_functions = frozenset(made.settings.m_functions)
+    unknown = unknown_functions(functions_of(made.source), made.dialect, declared_functions)
     if not unknown:
         return dataclasses.replace(made, reading=reading)
     meanings = {number: acts(number) or UNKNOWN_FUNCTION for number in unknown}

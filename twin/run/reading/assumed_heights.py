@@ -145,16 +145,16 @@ def _down(moves: Moves) -> BoolArray:
 
 def aside(moves: Moves) -> BoolArray:
     """Which moves go along X or Y, shape (n,)."""
-    way = np.abs(moves.end[:, :2] - moves.start[:, :2])
-    return (way > BELOW).any(axis=1) | (moves.sweep != 0.0)
+    travel = np.abs(moves.end[:, :2] - moves.start[:, :2])
+    return (travel > BELOW).any(axis=1) | (moves.sweep != 0.0)
 
 
 def _sloping(moves: Moves, low: float, high: float) -> float:
     """Length in the plane of feeds that rise or fall to a height between two [mm]."""
-    way, ends = moves.end[:, :3] - moves.start[:, :3], moves.end[:, 2]
-    rows = (moves.motion == Motion.FEED) & (np.abs(way[:, 2]) >= BELOW)
+    travel, ends = moves.end[:, :3] - moves.start[:, :3], moves.end[:, 2]
+    rows = (moves.motion == Motion.FEED) & (np.abs(travel[:, 2]) >= BELOW)
     rows &= (ends > low + BELOW) & (ends < high - BELOW)
-    return float(np.hypot(way[rows, 0], way[rows, 1]).sum())
+    return float(np.hypot(travel[rows, 0], travel[rows, 1]).sum())
 
 
 def _level(moves: Moves) -> BoolArray:
@@ -169,9 +169,9 @@ def levels_of(moves: Moves) -> tuple[FloatArray, FloatArray]:
     last = np.maximum.accumulate(np.where(np.abs(drop) >= BELOW, rows, -1))
     feeds = moves.motion == Motion.FEED
     cuts = feeds & _level(moves) & (last >= 0) & feeds[last] & (drop[last] < 0.0)
-    ways = np.hypot(*(moves.end[cuts, :2] - moves.start[cuts, :2]).T)
+    travelled = np.hypot(*(moves.end[cuts, :2] - moves.start[cuts, :2]).T)
     arcs = np.nan_to_num(moves.radius[cuts]) * np.radians(np.abs(moves.sweep[cuts]))
-    ways = np.maximum(ways, arcs)
+    travelled = np.maximum(travelled, arcs)
     levels, at = np.unique(moves.end[cuts, 2].round(3), return_inverse=True)
-    lengths = np.bincount(at, ways, minlength=len(levels)).astype(np.float64)
+    lengths = np.bincount(at, travelled, minlength=len(levels)).astype(np.float64)
     return levels[::-1], lengths[::-1]

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from twin.files.shipped import machine_file, machine_names
 from twin.job.job_file import DEFAULT_MACHINE
 from twin.machine.load import read_machine
-from twin.nc.dialects.recognition import without_comments
+from twin.nc.dialects.recognition import block_pages, lines_with
 from twin.nc.text.source import Source
 
 _ROTARY = re.compile(
@@ -48,11 +48,11 @@ def turned_axes(source: Source) -> set[str]:
 def _rotary_words(source: Source) -> Iterator[tuple[str, str]]:
     if not source.lines.any_holds(_ANYWHERE):
         return
-    for line in source.lines:
-        block = without_comments(line)
-        if not _OTHER_USE.search(block):
-            for found in _ROTARY.finditer(block):
-                yield found[1].upper(), found[2].lstrip("= \t")
+    for text in block_pages(source):
+        for block in lines_with(text, _ROTARY):
+            if not _OTHER_USE.search(block):
+                for found in _ROTARY.finditer(block):
+                    yield found[1].upper(), found[2].lstrip("= \t")
 
 
 def _is_zero(value: str) -> bool:

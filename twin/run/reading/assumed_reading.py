@@ -1,31 +1,26 @@
 """How a raw program is read: what its job would say, as far as the program's text shows it."""
 
 import dataclasses
+import json
 import re
-from collections.abc import Callable, Iterator, Mapping
-from itertools import islice
+from collections.abc import Callable, Mapping, Set
 from types import MappingProxyType
 from typing import NamedTuple
 
 from twin.nc.control.dialect import Dialect, JobKey
 from twin.nc.control.settings import ControlSettings, ToolData
-from twin.nc.dialects.recognition import comments_of, without_comments
+from twin.nc.dialects.recognition import lines_with, raw_text
 from twin.nc.geometry.arcs import TURN
 from twin.nc.text.source import Source
-from twin.run.reading.assumed_tools import (
-    USUAL_LENGTH,
-    ToolComment,
-    listed_tools,
-    tool_of_call,
-)
+from twin.run.reading.assumed_offsets import named_offsets
+from twin.run.reading.assumed_tools import USUAL_LENGTH
+from twin.run.reading.tool_comments import ToolComment, listed_tools, tool_of_call
 
-_MOST_LINES = 200_000
-"""So many lines are looked at."""
 _LENGTH = re.compile(
     r"(?<![A-Z#\[])([XYZABCIJKRF])[ \t]*[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)", re.IGNORECASE
 )
-_OFFSET = re.compile(
-    r"(?<![A-Z0-9.])G[ \t]*(5[4-9](?:\.[1-3])?)(?![0-9.])(?![ \t]*P)", re.IGNORECASE
+_WITH_POINT_AT_END = re.compile(
+    r"(?<![A-Z#\[])[XYZABCIJKRF][ \t]*[-+]?[0-9]+\.(?![0-9])", re.IGNORECASE
 )
 _FUNCTION = re.compile(r"(?<![A-Z_#\[])M[ \t]*([0-9]{1,4})(?![0-9.\[#])", re.IGNORECASE)
 _TOOL = re.compile(r"(?<![A-Z#\[])T[ \t]*([0-9]{1,4})(?![0-9.])", re.IGNORECASE)
@@ -46,11 +41,13 @@ _ROW = re.compile(r"(?<![A-Z#\[])[HD][ \t]*0*([1-9][0-9]{0,3})(?![0-9.])", re.IG
 _ROWS_TOLD, _ROLLOVER_TOLD = "offsets H and D: ", "rotary axes roll over: "
 _OF_SOME = {JobKey.OFFSET_ROWS: _ROWS_TOLD, JobKey.ROLLOVER: _ROLLOVER_TOLD}
 """Keys that some dialects alone have a setting for, and how their notes begin."""
+_TOOL_OR_OFFSET = re.compile(
+    "|".join(each.pattern for each in (_TOOL, _CHANGE, _CALLS_OFFSET)), re.IGNORECASE
+)
 _ANGLE = re.compile(r"(?<![A-Z#\[])([ABC])[ \t]*([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))", re.IGNORECASE)
 _MOTION = re.compile(r"(?<![A-Z0-9.])G[ \t]*0?([0-3])(?![0-9.])", re.IGNORECASE)
 _NEARLY_A_TURN = 350.0
 """What no axis turns back by in a cut, whose neighbours are some degrees apart [deg]."""
-_USUAL_OFFSET = "G54"
 UNKNOWN_FUNCTION = "not known here: taken to do nothing"
 
 
@@ -97,11 +94,10 @@ def assumed_reading(source: Source) -> AssumedReading:
         notes.append(
             f"{bare} counts whole units: the program never writes a whole number with a point"
         )
-    offsets = {f"G{found[1]}" for line in _blocks(source) for found in _OFFSET.finditer(line)}
-    if len(offsets) == 1 and _USUAL_OFFSET not in offsets:
-        (offset,) = offsets
-        keys["offsets"] = {offset: {}}
-        notes.append(f"{offset} lies at program zero: the program names no other work offset")
+    blocks = raw_text(source).blocks
+    offsets = named_offsets(blocks)
+    if offsets:
+        keys["offsets"] = {offset: {} for offset in offsets}
     tool = _tool_in_inches(source)
     if tool:
         keys["units"] = "inch"
@@ -109,25 +105,51 @@ def assumed_reading(source: Source) -> AssumedReading:
     rows = _offset_rows(source)
     if rows:
         keys["offset_rows"] = rows
-        told = ", ".join(f"{row} that of tool {tool}" for row, tool in rows.items())
-        notes.append(f"{_ROWS_TOLD}{told}, which was in the spindle then")
+        listed = ", ".join(f"{row} that of tool {tool}" for row, tool in rows.items())
+        notes.append(f"{_ROWS_TOLD}{listed}, which was in the spindle then")
     turn = _turn_within_a_cut(source)
     if turn:
         keys["rollover"] = "shorter"
         notes.append(f"{_ROLLOVER_TOLD}{turn}")
-    inches = bool(tool) or any(_INCHES.search(line) for line in _blocks(source))
+    inches = bool(tool) or _INCHES.search(blocks) is not None
     return AssumedReading(
         keys, tuple(notes), _commented_tools(source, inches=inches), _named_tools(source, inches)
     )
+
+
+def unit_lines(reading: AssumedReading) -> list[str]:
+    """The units, and what numbers without a point and angles count, where that was assumed."""
+    comments = {
+        "decimal_point": "  # increments: X10 is 0.010 mm",
+        "units": "",
+        "rollover": "  # sign: in the direction of their sign",
+    }
+    return [
+        f'{key} = "{reading.keys[key]}"{comment}'
+        for key, comment in comments.items()
+        if key in reading.keys
+    ]
+
+
+def table_lines(reading: AssumedReading) -> list[str]:
+    """Tables of the work offsets and M codes that were assumed."""
+    lines: list[str] = []
+    offsets, functions = reading.keys.get("offsets"), reading.keys.get("m_functions")
+    rows = reading.keys.get("offset_rows")
+    if isinstance(offsets, dict):
+        lines += [line for name in offsets for line in (f"[offsets.{json.dumps(name)}]", "")]
+    if isinstance(rows, dict):
+        lines += ["[offset_rows]", *(f"{row} = {tool}" for row, tool in rows.items()), ""]
+    if isinstance(functions, dict):
+        lines += ["[m_functions]", *(f'{code} = "{does}"' for code, does in functions.items()), ""]
+    return lines
 
 
 def _named_tools(source: Source, inches: bool) -> Callable[[str, int], ToolData | None]:
     """What tells a tool by its name and the line that calls it."""
 
     def tool(name: str, line: int) -> ToolData | None:
-        lines = enumerate(islice(source.lines, _MOST_LINES), 1)
-        comments = [(at, each) for at, text in lines for each in comments_of(text)]
-        found = tool_of_call(name, line, comments, inches=inches)
+        found = tool_of_call(name, line, raw_text(source).comments, inches=inches)
         return None if found is None else _data_of(found)
 
     return tool
@@ -141,8 +163,10 @@ def _data_of(tool: ToolComment) -> ToolData | None:
 def _turn_within_a_cut(source: Source) -> str:
     """Where a cut goes on from one end of a turn to the other, as for a control whose axes count 0 to 360; empty: nowhere."""
     angles: dict[str, float] = {}
-    motion, found = "", ""
-    for line, text in enumerate(_blocks(source), 1):
+    motion, found, blocks = "", "", raw_text(source).blocks
+    if _ANGLE.search(blocks) is None:
+        return ""
+    for line, text in enumerate(blocks.split("\n"), 1):
         motion = next((each[1] for each in _MOTION.finditer(text)), motion)
         for word in _ANGLE.finditer(text):
             letter, angle = word[1].upper(), float(word[2])
@@ -157,10 +181,10 @@ def _turn_within_a_cut(source: Source) -> str:
 
 def _offset_rows(source: Source) -> dict[int, int]:
     """Rows of H and D that are no tool's number, and the tool that was in the spindle where each came first."""
-    numbers = {int(found[1]) for line in _blocks(source) for found in _TOOL.finditer(line)}
+    numbers, blocks = _tool_numbers(source), raw_text(source).blocks
     rows: dict[int, int] = {}
     selected = spindle = 0
-    for line in _blocks(source):
+    for line in lines_with(blocks, _TOOL_OR_OFFSET):
         for found in _TOOL.finditer(line):
             selected = int(found[1])
         if _CHANGE.search(line):
@@ -174,9 +198,9 @@ def _offset_rows(source: Source) -> dict[int, int]:
 
 def _tool_in_inches(source: Source) -> str:
     """The first comment of a tool in inches of a program that names no units; empty: its lengths are millimetres."""
-    if any(_UNITS.search(line) for line in _blocks(source)):
+    if _UNITS.search(raw_text(source).blocks):
         return ""
-    comments = list(_comments(source))
+    comments = [text for _, text in raw_text(source).comments]
     if any(map(_MILLIMETRES.search, comments)) or _farthest(source) > _FARTHEST_INCHES:
         return ""
     return next(filter(_TOOL_IN_INCHES.search, comments), "")
@@ -184,34 +208,32 @@ def _tool_in_inches(source: Source) -> str:
 
 def _farthest(source: Source) -> float:
     """The largest number behind X, Y or Z."""
-    numbers = (found for line in _blocks(source) for found in _LENGTH.finditer(line))
+    numbers = _LENGTH.finditer(raw_text(source).blocks)
     return max((float(each[2]) for each in numbers if each[1] in "XYZxyz"), default=0.0)
 
 
-def _comments(source: Source) -> Iterator[str]:
-    return (each for line in islice(source.lines, _MOST_LINES) for each in comments_of(line))
+def _tool_numbers(source: Source) -> set[int]:
+    return {int(found[1]) for found in _TOOL.finditer(raw_text(source).blocks)}
 
 
 def _commented_tools(source: Source, *, inches: bool) -> dict[int, ToolData]:
     """The tools of comments whose radius they tell, by number."""
-    numbers = {int(found[1]) for line in _blocks(source) for found in _TOOL.finditer(line)}
-    listed = listed_tools(_comments(source), numbers, inches=inches)
+    comments = (text for _, text in raw_text(source).comments)
+    listed = listed_tools(comments, _tool_numbers(source), inches=inches)
     data = {number: _data_of(tool) for number, tool in listed.items()}
     return {number: each for number, each in data.items() if each is not None}
 
 
+def functions_of(source: Source) -> set[int]:
+    """The M codes of a program."""
+    return {int(found[1]) for found in _FUNCTION.finditer(raw_text(source).blocks)}
+
+
 def unknown_functions(
-    source: Source, dialect: Dialect, declared: frozenset[int]
+    numbers: Set[int], dialect: Dialect, declared: frozenset[int]
 ) -> tuple[int, ...]:
-    """M codes of a program that neither its dialect nor the machine's builder gives a meaning."""
-    if dialect.codes.any_m:
-        return ()
-    numbers = {int(found[1]) for line in _blocks(source) for found in _FUNCTION.finditer(line)}
-    return tuple(sorted(numbers - set(dialect.codes.m) - declared))
-
-
-def _blocks(source: Source) -> Iterator[str]:
-    return map(without_comments, islice(source.lines, _MOST_LINES))
+    """M codes that neither a dialect nor the machine's builder gives a meaning."""
+    return () if dialect.codes.any_m else tuple(sorted(numbers - set(dialect.codes.m) - declared))
 
 
 def _bare_number(source: Source) -> str:
@@ -223,17 +245,17 @@ def _bare_number(source: Source) -> str:
     and as whole units it fits a mill. Empty: it is none.
     """
     first, fractions, largest, highest = "", False, 0.0, 0.0
-    for line in _blocks(source):
-        for found in _LENGTH.finditer(line):
-            number, letter = found[2], found[1].upper()
-            if number.endswith("."):
-                return ""
-            if "." in number:
-                fractions = True
-            elif float(number):
-                first = first or found[0]
-                largest = max(largest, float(number) if letter != "F" else 0.0)
-                highest = max(highest, float(number) if letter == "Z" else 0.0)
+    blocks = raw_text(source).blocks
+    if _WITH_POINT_AT_END.search(blocks):
+        return ""
+    for found in _LENGTH.finditer(blocks):
+        number, letter = found[2], found[1].upper()
+        if "." in number:
+            fractions = True
+        elif float(number):
+            first = first or found[0]
+            largest = max(largest, float(number) if letter != "F" else 0.0)
+            highest = max(highest, float(number) if letter == "Z" else 0.0)
     flat = 0.0 < highest < _INCREMENTS and largest <= _LARGEST_PART
     return first if fractions or flat or 0.0 < largest < _INCREMENTS else ""
 

@@ -1,6 +1,7 @@
 """The stock that is assumed for a raw program: of a comment in its head, or of its path."""
 
 import re
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -48,7 +49,7 @@ _ROUND = re.compile(
 
 
 def assumed_stock(
-    cuts: Cuts, comments: list[tuple[int, str]], radius: float, *, inches: bool
+    cuts: Cuts, comments: Sequence[tuple[int, str]], radius: float, *, inches: bool
 ) -> tuple[list[str], FloatArray | None, str]:
     """Lines of the stock, the centre of its top face, and how it came about."""
     moves = cuts.moves
@@ -57,14 +58,14 @@ def assumed_stock(
     if not len(points):
         return _under_rapids(cuts)
     low, high = points.min(axis=0), points.max(axis=0)
-    told = _told(comments, inches=inches)
+    stated = _stated(comments, inches=inches)
     if turns_about_x(moves):
-        return _bar(cuts) if told is None else _told_bar(moves, told)
+        return _bar(cuts) if stated is None else _stated_bar(moves, stated)
     found = heights(cuts, low[2])
-    if told is not None:
-        center = _center_of(told.size, low, high)
-        top = 0.0 if found is not None and found[0] == 0.0 else float(told.size[2])
-        return _placed(told, np.array([*center, top]), _OF_HEAD)
+    if stated is not None:
+        center = _center_of(stated.size, low, high)
+        top = 0.0 if found is not None and found[0] == 0.0 else float(stated.size[2])
+        return _placed(stated, np.array([*center, top]), _OF_HEAD)
     if found is None:
         return _no_stock("no feed goes below Z0")
     around = _around(moves, low, high, found, radius)
@@ -82,7 +83,7 @@ def assumed_stock(
 _OF_HEAD = "a comment in the program's head"
 
 
-class _Told(NamedTuple):
+class _StatedStock(NamedTuple):
     """A blank of a comment.
 
     Attributes:
@@ -94,7 +95,7 @@ class _Told(NamedTuple):
     axis: int | None = None
 
 
-def _told(comments: list[tuple[int, str]], *, inches: bool) -> _Told | None:
+def _stated(comments: Sequence[tuple[int, str]], *, inches: bool) -> _StatedStock | None:
     """What comments in the program's head say of the blank."""
     unit = 25.4 if inches else 1.0
     head = "\n".join(text for line, text in comments if line <= HEAD_LINES).upper()
@@ -102,27 +103,27 @@ def _told(comments: list[tuple[int, str]], *, inches: bool) -> _Told | None:
     cylinder = _ROUND.search(head) if box is None else None
     if box is not None:
         size = np.array([float(value) for value in box.groups()]) * unit
-        return _Told(size) if (size > 0.0).all() else None
+        return _StatedStock(size) if (size > 0.0).all() else None
     if cylinder is not None:
         across, along = (float(value) * unit for value in cylinder.groups())
         size = np.array([across, across, along])
-        return _Told(size, 2) if (size > 0.0).all() else None
+        return _StatedStock(size, 2) if (size > 0.0).all() else None
     return None
 
 
-def _told_bar(moves: Moves, told: _Told) -> tuple[list[str], FloatArray, str]:
+def _stated_bar(moves: Moves, stated: _StatedStock) -> tuple[list[str], FloatArray, str]:
     """A bar of a comment that axis A turns about program zero: the one side that differs lies along X."""
-    size = told.size
-    if told.axis is not None or size[0] == size[1] != size[2]:
+    size = stated.size
+    if stated.axis is not None or size[0] == size[1] != size[2]:
         size = size[[2, 0, 1]]
     elif size[0] == size[2] != size[1]:
         size = size[[1, 0, 2]]
     _, last = bar_ends(moves)
     top = np.array([last - size[0] / 2.0, 0.0, size[2] / 2.0])
-    return _placed(_Told(size, None if told.axis is None else 0), top, _OF_HEAD)
+    return _placed(_StatedStock(size, None if stated.axis is None else 0), top, _OF_HEAD)
 
 
-def _placed(blank: _Told, top: FloatArray, source: str) -> tuple[list[str], FloatArray, str]:
+def _placed(blank: _StatedStock, top: FloatArray, source: str) -> tuple[list[str], FloatArray, str]:
     """A blank by the centre of its top face."""
     if blank.axis is None:
         return _box(blank.size, top, source)
@@ -214,21 +215,21 @@ def _clipped(
     fed: dict[tuple[float, float], float] = {}
     rapid, drop = moves.motion == Motion.RAPID, moves.start[:, 2] - moves.end[:, 2]
     retracts = (drop < 0.0) & ~aside(moves)
-    for row in np.flatnonzero(moves.end[:, 2] < top - BELOW):
-        x, y, z = moves.end[row, :3].round(3).tolist()
+    deep = np.flatnonzero(moves.end[:, 2] < top - BELOW)
+    for row, (x, y, z) in zip(deep, moves.end[deep, :3].round(3).tolist(), strict=True):
         if not rapid[row]:
             fed[x, y] = min(z, fed.get((x, y), z))
             continue
         plunges = drop[row] > BELOW
         if retracts[row] or (plunges and fed.get((x, y), top) <= z + _CLEARED):
             continue
-        ways = moves.end[row : row + 1, :2] if plunges else _along(moves, int(row))
-        ways = np.array(
-            [each for each in ways if not _fed_before(moves, int(row), each, z, radius)]
+        places = moves.end[row : row + 1, :2] if plunges else _along(moves, int(row))
+        places = np.array(
+            [each for each in places if not _fed_before(moves, int(row), each, z, radius)]
         )
-        if not len(ways):
+        if not len(places):
             continue
-        low, high = ways.min(axis=0) - radius, ways.max(axis=0) + radius
+        low, high = places.min(axis=0) - radius, places.max(axis=0) + radius
         if not ((corner < high).all() and (far > low).all()):
             continue
         clipped, share = _cut_away(corner, far, low, high)
@@ -267,11 +268,11 @@ def _fed_before(moves: Moves, row: int, place: FloatArray, height: float, radius
     height += _CLEARED
     feeds = moves.motion[:row] == Motion.FEED
     feeds &= (moves.start[:row, 2] <= height) & (moves.end[:row, 2] <= height)
-    begin, way = moves.start[:row][feeds, :2], (moves.end - moves.start)[:row][feeds, :2]
+    begin, travel = moves.start[:row][feeds, :2], (moves.end - moves.start)[:row][feeds, :2]
     to = place - begin
-    length = np.maximum((way * way).sum(axis=1), BELOW)
-    share = np.clip((to * way).sum(axis=1) / length, 0.0, 1.0)
-    return bool((np.hypot(*(to - share[:, None] * way).T) <= radius).any())
+    length = np.maximum((travel * travel).sum(axis=1), BELOW)
+    share = np.clip((to * travel).sum(axis=1) / length, 0.0, 1.0)
+    return bool((np.hypot(*(to - share[:, None] * travel).T) <= radius).any())
 
 
 _MOST_AT_EDGE = 0.2

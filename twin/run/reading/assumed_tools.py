@@ -1,216 +1,45 @@
-"""The tools that are assumed for a raw program: of the lists and comments of posts, and of what they do.
-
-Posts write ``(T1 D=10. CR=0. - ZMIN=-5. - flat end mill)`` and its relatives.
-"""
+"""The tools that are assumed for a raw program: of the comments of posts, and of what they do."""
 
 import json
 import re
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from twin.nc.canonical import Motion, Moves
-from twin.nc.dialects.recognition import HEAD_LINES
-
-_INCH = 25.4
-_NUMBER = r"[0-9]*[.,]?[0-9]+|[0-9]+[.,]"
-
-_LISTED = (
-    re.compile(r"^\s*T\s*([0-9]{1,6})\s*(?:\||-|:|=|,|\s)\s*(.*\S)", re.IGNORECASE),
-    re.compile(
-        r"\bTOOL\s*(?:NO\.?|NUMBER|#|-|=|:)?\s*([0-9]{1,6})\b\s*[-:=,|]*\s*(.*)", re.IGNORECASE
-    ),
-    re.compile(r"^\s*#\s*([0-9]{1,6})\s+(D\s*=.*\S)", re.IGNORECASE),
-    re.compile(r"^\s*([0-9]{1,6})\s*=\s*(.*\b(?:MILL|DRILL|BIT|TAP)\b.*)", re.IGNORECASE),
-)
-"""Comments that begin with the tool's number."""
-
-_KINDS: tuple[tuple[str, str], ...] = (
-    (
-        r"SPOT|CENT(?:ER|RE) ?DRILL|CHAMFER|COUNTERSINK|C'?SINK|\bV[- ]?(?:BIT|CARVE|TOOL)|ENGRAV|FASE",
-        "chamfer",
-    ),
-    (r"(?<!SLOT)(?<!SLOT )DRILL|BOHRER|\bTAP\b|\bTAPPING|REAM", "drill"),
-    (r"BULL|CORNER RAD|RADIUSED|TOROID", "bull"),
-    (r"BALL|SPHER|\bKUGEL", "ball"),
-)
-"""Words of comments, and the kind that they tell; other tools are end mills."""
-
-_WHAT = r"MILL|DRILL|TAP|REAMER|FRAESER|FRÄSER|BOHRER"
-_DIAMETERS = (
-    rf"(?<![A-Z0-9])(?:DIA(?:METER|M)?\.?|DM?(?=\s*[=:]))[\s\"]*(?:OFF\.?\s*-?\s*[0-9]+\s*(?:LEN\.?\s*-?\s*[0-9]+\s*)?(?:DIA\.?)\s*)?[-=:]?\s*({_NUMBER})\s*(MM|IN(?:CH)?\b|\")?",
-    rf"[ØøΦ⌀]\s*({_NUMBER})\s*(MM|IN(?:CH)?\b|\")?",
-    rf"\{{\s*({_NUMBER})\s*(MM|IN(?:CH)?)?",
-    rf"({_NUMBER})\s*(MM|IN(?:CH)?\b|\")",
-    rf"(?<![A-Z0-9./])({_NUMBER})()(?=\s*(?:\w+\s+){{0,2}}(?:END ?MILL|MILL|DRILL|BALL|BULL|TAP|CUTTER|REAMER|CHAMFER|FLAT|SPOT|DIA))",
-    rf"^\s*({_NUMBER})()\s*$",
-    rf"^(?!.*\bH\s*[0-9]).*\bD\s*({_NUMBER})()(?![0-9.])",
-)
-_FRACTION = re.compile(r"(?<![0-9.])([0-9]{1,4})/([0-9]{1,4})(?![0-9])")
-_GAUGE = re.compile(r"(?:#|\bNO\.?)\s*([1-9][0-9]?)\s+(?:\w+\s+)?DRILL")
-_GAUGES = (
-    *(228.0, 221.0, 213.0, 209.0, 205.5, 204.0, 201.0, 199.0, 196.0, 193.5),
-    *(191.0, 189.0, 185.0, 182.0, 180.0, 177.0, 173.0, 169.5, 166.0, 161.0),
-    *(159.0, 157.0, 154.0, 152.0, 149.5, 147.0, 144.0, 140.5, 136.0, 128.5),
-    *(120.0, 116.0, 113.0, 111.0, 110.0, 106.5, 104.0, 101.5, 99.5, 98.0),
-    *(96.0, 93.5, 89.0, 86.0, 82.0, 81.0, 78.5, 76.0, 73.0, 70.0),
-    *(67.0, 63.5, 59.5, 55.0, 52.0, 46.5, 43.0, 42.0, 41.0, 40.0),
-)
-"""Diameters of number drills 1 to 60, ASME B94.11M [inch/1000]."""
-_CENTERS = re.compile(r"SPOT|CENT(?:ER|RE) ?DRILL", re.IGNORECASE)
-"""Tools of the kind chamfer that cut over their centre."""
-_THREAD = re.compile(r"\bM([0-9]+(?:\.[0-9]+)?)(?:\s*[Xx][0-9.]+)?\s*(?:TAP|GEWINDE)")
-_CORNER = re.compile(
-    rf"\b(?:CR|R|RAD(?:IUS)?|CORNER RAD(?:IUS)?)\s*[=:.-]?\s*({_NUMBER})", re.IGNORECASE
-)
-_WHOLE_LENGTH = re.compile(rf"\bTL\s*=\s*({_NUMBER})")
-"""What hyperMILL writes from the spindle nose to the tip."""
-_RADIUS = re.compile(r"\bKR\s*[+]?([0-9]+\.[0-9]*)")
-"""What the set-up sheets of Keller write of a tool's radius."""
-_WEAR = re.compile(r"\bWEAR\b")
-_COMPENSATION = re.compile(r"\b(?:WEAR|CONTROL|COMPUTER) COMP")
-"""What posts write of how the radius is compensated: by the control, or in the program and the wear by the control."""
-
-
-class ToolComment(NamedTuple):
-    """What a comment says about a tool.
-
-    Attributes:
-        kind: As ``ToolTable`` has it; empty: it is not stated.
-        diameter: [mm]; None: it is not stated.
-        corner: Radius of a bull-nose's corner [mm].
-        wear: Its contours are the path of its centre, so that D holds its wear alone; None: that is not told.
-        name: By which the program calls it; empty: by its number.
-        source: What says so, for people.
-        length: That the program writes, into the control's table or a comment [mm]; None: it writes none.
-    """
-
-    kind: str
-    diameter: float | None
-    corner: float | None
-    text: str
-    wear: bool | None = None
-    name: str = ""
-    length: float | None = None
-    source: str = "its comment"
-
-    @property
-    def table_radius(self) -> float | None:
-        """What it has as its radius in the control's table [mm]; None: it is not known."""
-        whole = None if self.diameter is None else self.diameter / 2.0
-        return 0.0 if self.wear else whole
-
-
-def numbered_tool(comment: str) -> tuple[int, str] | None:
-    """The number of the tool that a comment lists, and what it says of it; None: it lists none."""
-    for pattern in _LISTED:
-        found = pattern.search(comment)
-        if found is not None and found[2]:
-            return int(found[1]), found[2]
-    return None
-
-
-def tool_of_comment(text: str, *, inches: bool) -> ToolComment:
-    """What a comment says about a tool; numbers without a unit are the program's."""
-    upper = text.upper()
-    kind = next((kind for words, kind in _KINDS if re.search(words, upper)), "")
-    diameter = _diameter(upper, inches=inches)
-    corner = _CORNER.search(upper)
-    radius = None if corner is None else _value(corner[1]) * (_INCH if inches else 1.0)
-    if diameter and radius and kind in ("", "bull") and "CR=" in upper.replace(" ", ""):
-        kind = "ball" if 2.0 * radius >= diameter * 0.999 else "bull"
-    if not kind and re.search(
-        r"MILL|[0-9] ?MM[ _]FACE|CUTTER|FRÄSER|FRAESER|SLOT ?DRILL|FLAT|ROUTER|UPCUT|DOWNCUT|COMPRESSION",
-        upper,
-    ):
-        kind = "flat"
-    if not kind and diameter and corner and "CR=" in upper.replace(" ", ""):
-        kind = "flat"
-    if kind == "bull" and (not diameter or not radius or 2.0 * radius > diameter):
-        kind, radius = "flat", None
-    wear = bool(_WEAR.search(upper)) if _COMPENSATION.search(upper) else None
-    whole = _WHOLE_LENGTH.search(upper)
-    length = None if whole is None else _value(whole[1]) * (_INCH if inches else 1.0)
-    return ToolComment(
-        kind, diameter, radius if kind == "bull" else None, text.strip(), wear, length=length
-    )
-
-
-def named_tools(names: Mapping[int, str], *, inches: bool) -> dict[int, ToolComment]:
-    """What the names by which a program calls tools say about them, by number: ``T="MILL_D16"``, ``T="MILL_16"``."""
-    return {
-        number: tool_of_comment(_spaced(name), inches=inches)._replace(name=name)
-        for number, name in names.items()
-    }
-
-
-def tool_of_call(
-    name: str, line: int, comments: list[tuple[int, str]], *, inches: bool
-) -> ToolComment | None:
-    """What the name by which a line calls a tool says about it, or a comment next to that; None: neither does."""
-    own = tool_of_comment(_spaced(name), inches=inches)
-    return own if own.diameter else _near_comment(0, [(0, line, 0)], comments, inches=inches)
-
-
-def _spaced(name: str) -> str:
-    """A name as a comment would be: a number at the end of what it is, such as MILL_16, is its diameter."""
-    alone = re.fullmatch(rf"([A-Z_-]*?(?:{_WHAT}))[_-]?({_NUMBER})", name, re.IGNORECASE)
-    return (f"{alone[1]} D={alone[2]}" if alone else name).replace("_", " ")
-
-
-def _diameter(text: str, *, inches: bool) -> float | None:
-    thread = _THREAD.search(text)
-    if thread is not None:
-        return float(thread[1])
-    gauge = _GAUGE.search(text)
-    if gauge is not None and int(gauge[1]) <= len(_GAUGES):
-        return round(_GAUGES[int(gauge[1]) - 1] * _INCH / 1000.0, 4)
-    radius = _RADIUS.search(text)
-    if radius is not None:
-        return 2.0 * float(radius[1])
-    fraction = _FRACTION.search(text)
-    if fraction is not None and int(fraction[2]) in (2, 4, 8, 16, 32, 64):
-        return int(fraction[1]) / int(fraction[2]) * _INCH
-    for pattern in _DIAMETERS:
-        found = re.search(pattern, text)
-        if found is None:
-            continue
-        by_unit = bool(found[2]) and not found[2].startswith("M")
-        inch = by_unit or (inches and not found[2] and _ALWAYS_MM not in text)
-        diameter = _value(found[1]) * (_INCH if inch else 1.0)
-        if 0.0 < diameter <= _LARGEST_DIAMETER:
-            return diameter
-    return None
-
-
-def _value(text: str) -> float:
-    return float(text.replace(",", "."))
-
+from twin.run.reading.tool_comments import ToolComment, listed_tools, near_comment, while_in_spindle
 
 _USUAL_DIAMETER = 10.0
-_LARGEST_DIAMETER = 160.0
-"""Numbers that would be larger diameters are none: so large are face mills [mm]."""
-_ALWAYS_MM = "COMPENSATED TOOL PATH"
-"""FreeCAD's comment counts millimetres whatever the program does."""
-_SAYS_DIAMETER = re.compile(
-    rf"{_ALWAYS_MM}. DIAMETER|\b(?:TOOL|CUTTER|BIT|MILL|DRILL)(?:\b.*\b|_)(?:DIA|DIAMETER|DIAM)\b",
-    re.IGNORECASE,
-)
-"""Comments that speak of a tool's diameter."""
 USUAL_LENGTH, _USUAL_FLUTE = 60.0, 25.0
 SPEED_BY_HAND = 10_000.0
 """What a spindle turns at whose speed no program sets: the dials of trim routers reach from there to 30,000 [1/min]."""
 _SPEED_LINE = f"speed = {SPEED_BY_HAND}  # 1/min: a guess"
-_NEAR_LINES = 3
-"""So far from the call of a tool a comment may stand that describes it."""
+_CENTERS = re.compile(r"SPOT|CENT(?:ER|RE) ?DRILL", re.IGNORECASE)
+"""Tools of the kind chamfer that cut over their centre."""
 BELOW = 1e-6
 """Ways and depths that are less are none [mm]."""
 
 
+class ToolLines(NamedTuple):
+    """The tools of a program.
+
+    Attributes:
+        lines: Of the job file.
+        notes: How each came about, for people.
+        largest: The largest diameter [mm].
+        guessed: Numbers of those whose diameter nothing tells.
+    """
+
+    lines: list[str]
+    notes: list[str]
+    largest: float
+    guessed: tuple[int, ...]
+
+
 def tool_lines(
     calls: list[tuple[int, int, int]],
-    comments: list[tuple[int, str]],
+    comments: Sequence[tuple[int, str]],
     moves: Moves,
     declared: Mapping[int, ToolComment],
     *,
@@ -219,8 +48,8 @@ def tool_lines(
     least_length: float,
     worn: Collection[int] = (),
     by_hand: bool = False,
-) -> tuple[list[str], list[str], float]:
-    """Lines of the tools that the program calls, how each came about, and the largest diameter [mm].
+) -> ToolLines:
+    """The tools that the program calls.
 
     Args:
         calls: Number, line and next move of every tool that comes.
@@ -235,7 +64,8 @@ def tool_lines(
     numbers = [number for number in called if number or _feeds(0, calls, moves)] or [1]
     listed = listed_tools((comment for _, comment in comments), numbers, inches=inches)
     lines: list[str] = []
-    told: list[str] = []
+    notes: list[str] = []
+    guessed: list[int] = []
     largest = 0.0
     for number in numbers:
         own = declared.get(number)
@@ -243,8 +73,8 @@ def tool_lines(
         tool = (
             tool
             or listed.get(number)
-            or _near_comment(number, calls, comments, inches=inches)
-            or _while_in_spindle(number, calls, comments, inches=inches)
+            or near_comment(number, calls, comments, inches=inches)
+            or while_in_spindle(number, calls, comments, inches=inches)
             or own
         )
         if own and tool:
@@ -254,68 +84,10 @@ def tool_lines(
             (number, tool), moves, rows, top=top, least_length=least_length, worn=number in worn
         )
         lines += [*more, *([_SPEED_LINE] if by_hand else []), ""]
-        told.append(said)
+        notes.append(said)
+        guessed += [] if tool and tool.diameter else [number]
         largest = max(largest, diameter)
-    return lines, told, largest
-
-
-def listed_tools(
-    comments: Iterable[str], numbers: Collection[int], *, inches: bool
-) -> dict[int, ToolComment]:
-    """What comments that begin with a tool's number say about the tools, by number."""
-    listed: dict[int, ToolComment] = {}
-    for comment in comments:
-        found = numbered_tool(comment)
-        if found is not None and found[0] in numbers:
-            tool = tool_of_comment(found[1], inches=inches)
-            if tool.diameter is not None or tool.kind:
-                listed.setdefault(found[0], tool)
-    return listed
-
-
-def _near_comment(
-    number: int,
-    calls: list[tuple[int, int, int]],
-    comments: list[tuple[int, str]],
-    *,
-    inches: bool,
-) -> ToolComment | None:
-    """What a comment next to a tool's call says about it; without a list, and one tool alone, any comment of the head."""
-    lines = [line for each, line, _ in calls if each == number]
-    near = [
-        (abs(line - call), text)
-        for line, text in comments
-        for call in lines
-        if abs(line - call) <= _NEAR_LINES
-    ]
-    if not lines:
-        near = [(line, text) for line, text in comments if line <= HEAD_LINES]
-    for distance, text in sorted(near):
-        tool = tool_of_comment(text, inches=inches)
-        on_line = not distance and lines
-        if (tool.diameter is not None and (tool.kind or on_line)) or (tool.kind and on_line):
-            return tool
-    return None
-
-
-def _while_in_spindle(
-    number: int,
-    calls: list[tuple[int, int, int]],
-    comments: list[tuple[int, str]],
-    *,
-    inches: bool,
-) -> ToolComment | None:
-    """What the first comment says that speaks of a diameter before another tool comes; with one tool or none any one."""
-    alone = len({each for each, _, _ in calls}) <= 1
-    for line, text in comments:
-        if not _SAYS_DIAMETER.search(text):
-            continue
-        before = [each for each, call, _ in calls if call <= line]
-        if alone or (before and before[-1] == number):
-            tool = tool_of_comment(text, inches=inches)
-            if tool.diameter is not None:
-                return tool
-    return None
+    return ToolLines(lines, notes, largest, tuple(guessed))
 
 
 def _rows_of(number: int, calls: list[tuple[int, int, int]], count: int) -> list[int]:
@@ -346,10 +118,13 @@ def _tool_table(
 ) -> tuple[list[str], str, float]:
     """A tool's lines, how it came about, and its diameter [mm]."""
     number, tool = called
-    feeds = [row for row in rows if moves.motion[row] == Motion.FEED]
-    ways = moves.end[feeds, :2] - moves.start[feeds, :2]
-    drills = bool(feeds) and bool((np.abs(ways) < BELOW).all() and not moves.sweep[feeds].any())
-    depth = max(0.0, top - float(moves.end[feeds, 2].min())) if feeds else 0.0
+    at = np.array(rows, np.int64)
+    feeds = at[moves.motion[at] == Motion.FEED]
+    travel = moves.end[feeds, :2] - moves.start[feeds, :2]
+    drills = len(feeds) > 0 and bool(
+        (np.abs(travel) < BELOW).all() and not moves.sweep[feeds].any()
+    )
+    depth = max(0.0, top - float(moves.end[feeds, 2].min())) if len(feeds) else 0.0
     kind = (tool.kind if tool else "") or ("drill" if drills else "flat")
     diameter = (tool.diameter if tool else None) or _USUAL_DIAMETER
     flute = max(_USUAL_FLUTE, np.ceil(depth + 5.0))

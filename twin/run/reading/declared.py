@@ -8,7 +8,7 @@ import numpy as np
 from twin.errors import UsageError
 from twin.nc.canonical import FloatArray, Function
 from twin.nc.functions import BLANK
-from twin.run.reading.assumed_tools import ToolComment
+from twin.run.reading.tool_comments import ToolComment
 
 _RADIUS = "R"
 
@@ -26,7 +26,7 @@ class DeclaredStock(NamedTuple):
 
     lines: list[str]
     top: FloatArray
-    told: str
+    description: str
 
 
 def declared_stock(functions: Iterable[Function]) -> DeclaredStock | None:

@@ -17,9 +17,10 @@ from twin.nc.dialects import DIALECTS
 from twin.nc.dialects.foreign import require_program
 from twin.nc.dialects.recognition import head_of, reading_of
 from twin.nc.interpreter import Interpretation
+from twin.nc.line_kernel.plain_state import LineKernel, usual_kernel
 from twin.nc.text.diagnostics.diagnostics import Diagnostic, ProgramError
 from twin.nc.text.source import Source, read_source
-from twin.run.reading.assumed_reading import UNKNOWN_FUNCTION, unknown_functions
+from twin.run.reading.assumed_reading import UNKNOWN_FUNCTION, functions_of, unknown_functions
 
 BoolArray = npt.NDArray[np.bool_]
 _PREFERENCE = ("fanuc", "haas", "linuxcnc")
@@ -61,7 +62,7 @@ class DialectChoice:
 
 
 @dataclasses.dataclass(frozen=True)
-class _Trial:
+class _Candidate:
     """What one dialect makes of a program."""
 
     name: str
@@ -103,6 +104,7 @@ def chosen_dialect(
         return DialectChoice(DIALECTS[candidates[0]], reading.reason)
     if len(source.lines) > _MOST_LINES:
         raise UsageError(f"{source.name}: could be {_either(candidates)}; {_type(candidates)}")
+    settings = dataclasses.replace(settings, strict=False)
     if settings.machine_zero is None:  # the dialect does not depend on where that lies
         zero = dict.fromkeys(settings.axes.names, 0.0)
         settings = dataclasses.replace(settings, machine_zero=zero)
@@ -115,31 +117,32 @@ def chosen_dialect(
     candidates = rolling if rolls else candidates
     common = [name for name in candidates if name in _PREFERENCE]
     rare = [name for name in candidates if name not in _PREFERENCE]
-    trials = [_tried(path, DIALECTS[name], settings) for name in (common or rare)]
-    good = [trial for trial in trials if trial.error is None]
-    refusing = [trial for trial in trials if trial.error is not None]
-    if refusing and all(0.0 < trial.fastest < _CRAWLS for trial in good):
-        good, trials = [], refusing
+    trying = _Trying(path, settings, functions_of(source), len(common or rare))
+    tried = [trying.read_as(DIALECTS[name]) for name in (common or rare)]
+    good = [each for each in tried if each.error is None]
+    refusing = [each for each in tried if each.error is not None]
+    if refusing and all(0.0 < each.fastest < _CRAWLS for each in good):
+        good, tried = [], refusing
     numbered = any(map(_PROGRAM_NUMBER.match, source.lines))
     if not good and _ROUTERS in rare and not numbered:
-        router = _tried(path, DIALECTS[_ROUTERS], settings)
+        router = trying.read_as(DIALECTS[_ROUTERS])
         if router.error is None:
-            return DialectChoice(DIALECTS[_ROUTERS], f"it alone reads it; {_first_refusal(trials)}")
+            return DialectChoice(DIALECTS[_ROUTERS], f"it alone reads it; {_first_refusal(tried)}")
     if not good:
-        further = [_tried(path, DIALECTS[name], settings) for name in rare] if common else []
-        raise _refused(trials, [trial.name for trial in further if trial.error is None])
-    quick = [trial for trial in good if not any(_crawls(trial, other) for other in good)]
-    least = min(len(trial.unknown) for trial in quick)
-    meant = [trial for trial in quick if len(trial.unknown) == least]
+        further = [trying.read_as(DIALECTS[name]) for name in rare] if common else []
+        raise _refused(tried, [each.name for each in further if each.error is None])
+    quick = [each for each in good if not any(_crawls(each, other) for other in good)]
+    least = min(len(each.unknown) for each in quick)
+    meant = [each for each in quick if len(each.unknown) == least]
     why = _dropped(good, quick, meant)
-    left = [trial for trial in meant if (trial.name in _NUMBERED) == numbered]
+    left = [each for each in meant if (each.name in _NUMBERED) == numbered]
     apart = any(_difference(meant[0], other) for other in meant[1:])
     if apart and left and (numbered or not any(_paths_apart(meant[0], each) for each in meant)):
-        others = [trial.name for trial in meant if trial not in left]
+        others = [each.name for each in meant if each not in left]
         reason = f"programs of {_either(_NUMBERED, 'and')} begin with their number, O"
         meant, why = left, "; ".join(filter(None, (why, reason if others else "")))
     post = _POSTS.search(head_of(source)) if apart and not numbered else None
-    own = [trial for trial in meant if trial.name == _OF_POSTS]
+    own = [each for each in meant if each.name == _OF_POSTS]
     if post is not None and own:
         meant, why = own, f"its head names {post[0]}, which writes {_OF_POSTS}'s language"
     return _choice(source.name, meant, why or (_ROLLS if rolls else ""))
@@ -148,7 +151,7 @@ def chosen_dialect(
 _ROLLS = "it alone of those that may be meant has rotary axes that roll over"
 
 
-def _crawls(one: _Trial, other: _Trial) -> bool:
+def _crawls(one: _Candidate, other: _Candidate) -> bool:
     """Whether a dialect counts feeds of which another makes at least two hundred times as much."""
     slow, fast = one.moves.feed, other.moves.feed
     if len(slow) != len(fast):
@@ -156,42 +159,44 @@ def _crawls(one: _Trial, other: _Trial) -> bool:
     return bool(((slow < _CRAWLS * _INCH) & (slow < fast * _TOO_SLOW)).any())
 
 
-def _farthest(trials: Sequence[_Trial]) -> _Trial:
+def _farthest(tried: Sequence[_Candidate]) -> _Candidate:
     """The one that reads a program farthest before it refuses it."""
-    return max(trials, key=lambda trial: trial.error.line if trial.error else 0)
+    return max(tried, key=lambda each: each.error.line if each.error else 0)
 
 
-def _first_refusal(trials: Sequence[_Trial]) -> str:
-    farthest = _farthest(trials)
+def _first_refusal(tried: Sequence[_Candidate]) -> str:
+    farthest = _farthest(tried)
     assert farthest.error is not None
     return f"{farthest.name}, which reads it farthest of others, refuses line {farthest.error.line}: {farthest.error.message}"
 
 
-def _refused(trials: Sequence[_Trial], others: Sequence[str]) -> ProgramError:
+def _refused(tried: Sequence[_Candidate], others: Sequence[str]) -> ProgramError:
     """The error of the dialect that reads a program farthest, and what else may be tried."""
-    farthest, name = _farthest(trials).error, _farthest(trials).name
+    farthest, name = _farthest(tried).error, _farthest(tried).name
     assert farthest is not None
     message = f"read as {name}, which reads it farthest: {farthest.message}"
     further = f"; {_either(others, 'and')} would read it" if others else ""
-    elsewhere = [trial for trial in trials if trial.error and trial.error.line != farthest.line]
-    names = [trial.name for trial in elsewhere] + list(others)
+    elsewhere = [each for each in tried if each.error and each.error.line != farthest.line]
+    names = [each.name for each in elsewhere] + list(others)
     another = f"another control: {_type(names)}{further}" if names else ""
     hint = "; ".join(filter(None, (farthest.hint, another)))
     return ProgramError(dataclasses.replace(farthest, message=message, hint=hint or None))
 
 
-def _dropped(good: Sequence[_Trial], quick: Sequence[_Trial], meant: Sequence[_Trial]) -> str:
+def _dropped(
+    good: Sequence[_Candidate], quick: Sequence[_Candidate], meant: Sequence[_Candidate]
+) -> str:
     """Why some of the dialects that read a program are not the one that was meant; empty: all may be."""
-    slow = [trial for trial in good if trial not in quick]
-    ignorant = [trial.name for trial in quick if trial not in meant]
-    reasons = [f"{trial.name} would feed {trial.slowest:g} mm/min" for trial in slow]
+    slow = [each for each in good if each not in quick]
+    ignorant = [each.name for each in quick if each not in meant]
+    reasons = [f"{each.name} would feed {each.slowest:g} mm/min" for each in slow]
     if ignorant:
         lack = "lack" if len(ignorant) > 1 else "lacks"
         reasons.append(f"{_either(ignorant, 'and')} {lack} some of its M codes")
     return "; ".join(reasons)
 
 
-def _choice(name: str, meant: Sequence[_Trial], why: str) -> DialectChoice:
+def _choice(name: str, meant: Sequence[_Candidate], why: str) -> DialectChoice:
     """The dialect that is taken of those that may be meant."""
     slightly = ""
     for other in meant[1:]:
@@ -204,7 +209,7 @@ def _choice(name: str, meant: Sequence[_Trial], why: str) -> DialectChoice:
                 f"{name}: could be {_either(names)}, and they would not move alike: "
                 f"{difference}; {_type(names)}"
             )
-    names = [trial.name for trial in meant]
+    names = [each.name for each in meant]
     if len(names) == 1:
         return DialectChoice(DIALECTS[names[0]], why or "no other reads it without an error")
     same = f"{_either(names, 'and')} make the same moves of it"
@@ -225,32 +230,50 @@ def _type(names: Sequence[str]) -> str:
     return f"type {_either([f'--dialect {name}' for name in names])}"
 
 
-def _tried(path: Path, dialect: Dialect, settings: ControlSettings) -> _Trial:
-    """What a dialect makes of a program."""
-    source = read_source(path, dialect)
-    unknown = unknown_functions(source, dialect, frozenset(settings.m_functions))
-    functions_of_the_builder = dict.fromkeys(unknown, MachineFunction(UNKNOWN_FUNCTION))
-    settings = dataclasses.replace(
-        settings, m_functions={**settings.m_functions, **functions_of_the_builder}
-    )
-    chunks, error = [], None
-    try:
-        if dialect.library is not None:
-            source = dialect.library(source, path.parent, dialect)
-        chunks.extend(Interpretation(source, dialect, settings).chunks())
-    except ProgramError as raised:
-        error = raised.diagnostic
-    functions = [
-        (event.line, f"{event.word} {sorted(event.arguments.items())}")
-        for chunk in chunks
-        for event in chunk.events
-        if isinstance(event, Function)
-    ]
-    moves = concatenate((chunk.moves for chunk in chunks), settings.axes)
-    return _Trial(dialect.name, moves, functions, unknown, error)
+@dataclasses.dataclass(frozen=True)
+class _Trying:
+    """A program that several dialects read.
+
+    Attributes:
+        functions: Its M codes.
+        times: How many read it.
+    """
+
+    path: Path
+    settings: ControlSettings
+    functions: set[int]
+    times: int
+
+    def read_as(self, dialect: Dialect) -> _Candidate:
+        """What a dialect makes of it."""
+        source, declared = read_source(self.path, dialect), self.settings.m_functions
+        unknown = unknown_functions(self.functions, dialect, frozenset(declared))
+        functions_of_the_builder = dict.fromkeys(unknown, MachineFunction(UNKNOWN_FUNCTION))
+        settings = dataclasses.replace(
+            self.settings, m_functions={**declared, **functions_of_the_builder}
+        )
+        chunks, error = [], None
+        try:
+            if dialect.library is not None:
+                source = dialect.library(source, self.path.parent, dialect)
+            chunks.extend(Interpretation(source, dialect, settings, kernel=self._kernel).chunks())
+        except ProgramError as raised:
+            error = raised.diagnostic
+        functions = [
+            (event.line, f"{event.word} {sorted(event.arguments.items())}")
+            for chunk in chunks
+            for event in chunk.events
+            if isinstance(event, Function)
+        ]
+        moves = concatenate((chunk.moves for chunk in chunks), settings.axes)
+        return _Candidate(dialect.name, moves, functions, unknown, error)
+
+    def _kernel(self, lines: int) -> LineKernel | None:
+        """What runs its plain lines: the compiler pays as for a program that is as long as all of the readings."""
+        return usual_kernel(lines * self.times)
 
 
-def _difference(one: _Trial, other: _Trial) -> str:
+def _difference(one: _Candidate, other: _Candidate) -> str:
     """The first thing that two dialects make differently; empty: none."""
     paths = _paths_apart(one, other)
     if paths:
@@ -264,7 +287,7 @@ def _difference(one: _Trial, other: _Trial) -> str:
     return ""
 
 
-def _paths_apart(one: _Trial, other: _Trial) -> str:
+def _paths_apart(one: _Candidate, other: _Candidate) -> str:
     """The first move that two dialects make differently; empty: none."""
     a, b = one.moves, other.moves
     count = min(len(a), len(b))
@@ -277,10 +300,10 @@ def _paths_apart(one: _Trial, other: _Trial) -> str:
         row = int(differing[0]) if len(differing) else count
         longer = a if len(a) > row else b
         goals = " and ".join(
-            f"{trial.name} goes to {_place(trial.moves, row)}"
-            if len(trial.moves) > row
-            else f"{trial.name} does not move"
-            for trial in (one, other)
+            f"{each.name} goes to {_place(each.moves, row)}"
+            if len(each.moves) > row
+            else f"{each.name} does not move"
+            for each in (one, other)
         )
         return f"in line {longer.line[row]} {goals}"
     return ""
@@ -294,7 +317,7 @@ def _pecks_apart(a: Moves, b: Moves, count: int) -> BoolArray:
     return rapid & others & (off[:, 2] > _SAME) & (off[:, 2] < _CLEARANCE)
 
 
-def _slight_difference(one: _Trial, other: _Trial) -> str:
+def _slight_difference(one: _Candidate, other: _Candidate) -> str:
     """What two dialects make differently that asks nobody; empty: nothing."""
     a, b = one.moves, other.moves
     pecks = np.flatnonzero(_pecks_apart(a, b, min(len(a), len(b))))
@@ -305,7 +328,7 @@ def _slight_difference(one: _Trial, other: _Trial) -> str:
     return _feeds_apart(one, other)
 
 
-def _feeds_apart(one: _Trial, other: _Trial, share: float = _SAME) -> str:
+def _feeds_apart(one: _Candidate, other: _Candidate, share: float = _SAME) -> str:
     """The first feed that two dialects make differently; empty: none."""
     a, b = one.moves, other.moves
     apart = np.flatnonzero(~np.isclose(a.feed, b.feed, rtol=share, equal_nan=True))

@@ -14,7 +14,7 @@ from twin.nc.text.diagnostics.diagnostics import ProgramError
 from twin.nc.text.source import source_from_text
 from twin.serve.grbl import realtime
 from twin.serve.grbl.codes import Error, alarm_of
-from twin.serve.grbl.reports import BUILD, HELP, WELCOME, ParserState, Reporter, parser_state
+from twin.serve.grbl.reports import BUILD, HELP, WELCOME, ParserState, ReportWriter, parser_state
 from twin.serve.grbl.serial_buffer import SerialBuffer, cleaned
 from twin.serve.grbl.settings import GrblSettings
 from twin.serve.grbl.stream import MOST_AHEAD, GrblStream
@@ -38,7 +38,7 @@ class GrblController:
         """Switch it on."""
         self.serial = SerialBuffer()
         self.settings = GrblSettings(room.machine.machine)
-        self._reporter = Reporter(self.settings)
+        self._reporter = ReportWriter(self.settings)
         self._out: list[str] = []
         self._stream: GrblStream | None = None
         self._run: ProgramRun | None = None

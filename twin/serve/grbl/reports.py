@@ -47,7 +47,7 @@ def parser_state(state: ParserState, spindle: SpindleState, *, coolant: bool) ->
     return f"[GC:{' '.join([*codes, *words])}]"
 
 
-class Reporter:
+class ReportWriter:
     """Writes reports of one control."""
 
     def __init__(self, settings: GrblSettings) -> None:

@@ -1,6 +1,6 @@
 """Grbl's settings ($$) as the machine file says them; those of the report can be changed."""
 
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.nc.dialects.grbl import JUNCTION_DEVIATION
 from twin.serve.grbl.codes import Error
 from twin.units import SECONDS_PER_MINUTE
@@ -24,7 +24,7 @@ def _thousandths(value: float) -> str:
 class GrblSettings:
     """The settings by number."""
 
-    def __init__(self, machine: Machine) -> None:
+    def __init__(self, machine: MachineConfig) -> None:
         fastest = machine.file.spindle.max_speed or _FASTEST
         self.values: dict[int, float] = {
             0: 10, 1: 255, 2: 0, 3: 0, 4: 0, 5: 0, 6: 0, REPORT: 1, 11: JUNCTION_DEVIATION, 12: 0.002,

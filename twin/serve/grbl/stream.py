@@ -4,7 +4,7 @@ import time
 from collections.abc import Container
 from typing import NamedTuple
 
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.nc.control.control import Control
 from twin.nc.control.executor import Executor
 from twin.nc.control.modal import Modal
@@ -49,7 +49,7 @@ class GrblStream:
         last_received: When the last byte came, by ``time.monotonic`` [s].
     """
 
-    def __init__(self, serial: SerialBuffer, machine: Machine, *, jogging: bool) -> None:
+    def __init__(self, serial: SerialBuffer, machine: MachineConfig, *, jogging: bool) -> None:
         self.serial = serial
         self.answers: list[str] = []
         self.jogging = jogging

@@ -72,8 +72,8 @@ class ConditionNode:
         if value == self._last or value.level not in _SEVERITIES:
             return
         # What has ended is named once more.
-        told = self._last if value.level == "Normal" else value
-        self._change(value, told.code, told.text)
+        shown = self._last if value.level == "Normal" else value
+        self._change(value, shown.code, shown.text)
         self._last = value
         await self._generator.trigger(when)
         await self._show()

@@ -6,17 +6,54 @@ namespace below Monitoring, as analogue items with engineering units.
 
 import datetime as dt
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import asyncua.ua
 from asyncua.common.node import Node
 from asyncua.server.server import Server
 
-from twin.machine.description.config import Machine
+from twin.errors import UsageError
+from twin.machine.description.config import MachineConfig
 from twin.serve.buffer import Condition, Observation
 from twin.serve.device import UNAVAILABLE
 from twin.serve.opcua.alarm import ConditionNode
-from twin.serve.opcua.node_sets import DI, MACHINE_TOOL, MACHINERY
+
+FOLDER = Path(__file__).with_name("nodesets")
+DI = "http://opcfoundation.org/UA/DI/"
+MACHINERY = "http://opcfoundation.org/UA/Machinery/"
+MACHINE_TOOL = "http://opcfoundation.org/UA/MachineTool/"
+_VERSION = FOLDER / "VERSION"
+"""Written when all are there."""
+
+
+def require_node_sets() -> None:
+    """Refuse where they are missing.
+
+    Raises:
+        UsageError: They are.
+    """
+    if not _VERSION.is_file():
+        raise UsageError(
+            f"OPC UA's node sets are missing ({FOLDER}): run python scripts/fetch_three.py"
+        )
+
+
+async def import_node_sets(server: Server) -> None:
+    """Give a server the types of machine tools.
+
+    Args:
+        server: Before it is started.
+
+    Raises:
+        UsageError: The node sets are not there.
+    """
+    require_node_sets()
+    # By their numbers: each builds on those before it.
+    for file in sorted(FOLDER.glob("*.xml")):
+        # Some nodes of DI are for design tools only and have no parent: they are left out.
+        await server.import_xml(str(file), strict_mode=False)
+
 
 ua: Any = asyncua.ua
 """Its declared types are narrower than what its own calls take."""
@@ -81,7 +118,7 @@ def _number_in(table: Mapping[str, int]) -> Callable[[str], Any]:
 class MachineTool:
     """A machine in a server's address space."""
 
-    def __init__(self, server: Server, machine: Machine) -> None:
+    def __init__(self, server: Server, machine: MachineConfig) -> None:
         """Begin with nothing; ``build`` makes the nodes.
 
         Args:

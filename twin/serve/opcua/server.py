@@ -22,10 +22,9 @@ from asyncua.server.user_managers import UserManager
 from cryptography.x509.oid import ExtendedKeyUsageOID
 
 from twin.errors import UsageError
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.serve.agent import Agent
-from twin.serve.opcua.machine_tool import MachineTool
-from twin.serve.opcua.node_sets import import_node_sets
+from twin.serve.opcua.machine_tool import MachineTool, import_node_sets
 
 ua: Any = asyncua.ua
 _URI = "urn:mill-twin:server"
@@ -36,7 +35,7 @@ _PATIENCE_S = 5.0
 """A connection that opens no session for so long is closed [s]."""
 
 
-class Place(NamedTuple):
+class Endpoint(NamedTuple):
     """Where a server listens.
 
     Attributes:
@@ -66,7 +65,7 @@ class Content(NamedTuple):
         tools: Names of its tools by their numbers.
     """
 
-    machine: Machine
+    machine: MachineConfig
     program: str
     tools: Mapping[int, str]
 
@@ -81,7 +80,7 @@ class _Readers(UserManager):
         return User(role=UserRole.User)
 
 
-def check_place(place: Place) -> None:
+def check_place(place: Endpoint) -> None:
     """Refuse what would be open to anybody, or cannot be listened at.
 
     Raises:
@@ -104,7 +103,7 @@ def check_place(place: Place) -> None:
 
 
 @asynccontextmanager
-async def opcua_server(place: Place, content: Content) -> AsyncIterator[MachineTool]:
+async def opcua_server(place: Endpoint, content: Content) -> AsyncIterator[MachineTool]:
     """A server, until the block ends.
 
     Raises:
@@ -131,7 +130,7 @@ async def opcua_server(place: Place, content: Content) -> AsyncIterator[MachineT
             yield tool
 
 
-async def _secure(server: Server, place: Place, folder: Path) -> None:
+async def _secure(server: Server, place: Endpoint, folder: Path) -> None:
     """A certificate of its own; away from this computer nothing but sign and encrypt."""
     key, certificate = folder / "key.pem", folder / "certificate.der"
     await setup_self_signed_certificate(
@@ -153,7 +152,7 @@ async def _secure(server: Server, place: Place, folder: Path) -> None:
 
 
 async def mirror(
-    agent: Agent, place: Place, content: Content, ready: Callable[[str], None] = lambda _: None
+    agent: Agent, place: Endpoint, content: Content, ready: Callable[[str], None] = lambda _: None
 ) -> None:
     """Tell what an agent observes, until this is cancelled.
 
@@ -163,12 +162,12 @@ async def mirror(
     items = [item.id for part in agent.device.walk() for item in part.items]
     async with opcua_server(place, content) as tool:
         ready(f"opc.tcp://{place.host}:{place.port}")
-        told = 0
+        newest = 0
         while True:
-            found = [one for one in agent.buffer.current(items) if one.sequence > told]
+            found = [one for one in agent.buffer.current(items) if one.sequence > newest]
             for observation in found:
                 await tool.update(observation)
-            told = max((one.sequence for one in found), default=told)
+            newest = max((one.sequence for one in found), default=newest)
             await asyncio.sleep(_PERIOD_S)
 
 

@@ -23,14 +23,20 @@ from twin.errors import TwinError
 from twin.files.toml import Table
 from twin.training.classroom.door import HEADER, Door
 from twin.training.classroom.hosts import RoomError
-from twin.training.classroom.marks import MADE_SCENES, ClassFile, Mark, as_csv, as_statements
+from twin.training.classroom.marks import (
+    MADE_SCENES,
+    AttemptResult,
+    ClassFile,
+    as_csv,
+    as_statements,
+)
 from twin.training.classroom.rooms import Rooms, Seat
 from twin.training.scene.scene_file import read_scene, scene_names, scene_path
-from twin.training.scene.vocabulary import LANGUAGES, Language, Words
+from twin.training.scene.vocabulary import LANGUAGES, Language, Vocabulary
 from twin.training.server.app import PAGE, static_routes
 
 TEACHER = "teacher"
-TOLD_EVERY_S = 0.5
+REPORT_EVERY_S = 0.5
 """Between two looks at the class for the teacher's page [s]."""
 ALARM_S, IDLE_S = 60.0, 180.0
 """A pupil is stuck when an alarm has stood for so long, or when so long nothing was done while nothing ran
@@ -138,7 +144,7 @@ class ClassApp:
         language = request.path_params["language"]
         if language not in LANGUAGES:
             return Response(status_code=404)
-        return JSONResponse(Words(language, "").as_data())
+        return JSONResponse(Vocabulary(language, "").as_data())
 
     async def _class(self, _request: Request) -> Response:
         scenes = await anyio.to_thread.run_sync(self._scenes)
@@ -196,20 +202,20 @@ class ClassApp:
 
     async def _tell(self, page: WebSocket) -> None:
         """Tell the teacher's page of the class, where it has changed."""
-        told = ""
+        sent = ""
         with contextlib.suppress(WebSocketDisconnect, RuntimeError):
             while True:
                 marks = await anyio.to_thread.run_sync(self._file.marks)
                 now = json.dumps({"seats": self._seen(marks)})
-                if now != told:
-                    told = now
+                if now != sent:
+                    sent = now
                     await page.send_text(now)
-                await asyncio.sleep(TOLD_EVERY_S)
+                await asyncio.sleep(REPORT_EVERY_S)
 
-    def _seen(self, marks: list[Mark]) -> list[dict[str, Any]]:
+    def _seen(self, marks: list[AttemptResult]) -> list[dict[str, Any]]:
         """The class as the page shows it."""
         attempts = Counter((mark.pupil, mark.scene) for mark in marks)
-        best: dict[tuple[str, str], Mark] = {}
+        best: dict[tuple[str, str], AttemptResult] = {}
         for mark in sorted(marks, key=lambda mark: mark.points):
             if mark.handed_in:
                 best[mark.pupil, mark.scene] = mark

@@ -16,7 +16,7 @@ from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.scene.vocabulary import Language
 from twin.web.authentication import Authentication, new_tokens
 from twin.web.origin_check import OriginCheck
-from twin.web.server import LOOPBACK, WebServer, require_three
+from twin.web.server import LOOPBACK, server_of_views
 
 
 class OpenClass(NamedTuple):
@@ -52,11 +52,10 @@ def open_class(
     Raises:
         TwinError: The scene is wrong, the port is taken, the folder is in use, or no cluster answers.
     """
-    require_three()
     first = read_scene(scene_path(scene))
     file = ClassFile(folder)
     with _alone(folder):
-        server = WebServer(host, port or file.number("port"), certificate, key)
+        server = server_of_views(host, port or file.number("port"), certificate, key)
         file.keep_number("port", server.port)
         rooms_host = ForkHost() if cluster is None else ClusterHost(cluster)
         rooms = Rooms(pupils, scene, language, file, rooms_host)

@@ -33,7 +33,7 @@ CREATE TABLE IF NOT EXISTS marks (
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Mark:
+class AttemptResult:
     """What came of one attempt at a scene.
 
     Attributes:
@@ -61,7 +61,7 @@ class Mark:
     sheet: str
 
 
-_COLUMNS = tuple(field.name for field in dataclasses.fields(Mark))
+_COLUMNS = tuple(field.name for field in dataclasses.fields(AttemptResult))
 
 
 class ClassFile:
@@ -130,7 +130,7 @@ class ClassFile:
         with self._open() as file:
             file.execute("INSERT OR REPLACE INTO scenes VALUES (?, ?)", (pupil, scene))
 
-    def record(self, mark: Mark) -> None:
+    def record(self, mark: AttemptResult) -> None:
         """Write a mark; of the same attempt the newest counts, and none after it was handed in."""
         places = ", ".join("?" * len(_COLUMNS))
         fresh = ", ".join(f"{name} = excluded.{name}" for name in _COLUMNS[1:])
@@ -141,7 +141,7 @@ class ClassFile:
                 dataclasses.astuple(mark),
             )
 
-    def marks(self) -> list[Mark]:
+    def marks(self) -> list[AttemptResult]:
         """All marks, by pupil and time."""
         with self._open() as file:
             rows = cast(
@@ -150,7 +150,7 @@ class ClassFile:
                     f"SELECT {', '.join(_COLUMNS)} FROM marks ORDER BY pupil, began"  # noqa: S608 (our own names)
                 ).fetchall(),
             )
-        marks = (Mark(*row) for row in rows)
+        marks = (AttemptResult(*row) for row in rows)
         return [dataclasses.replace(mark, handed_in=bool(mark.handed_in)) for mark in marks]
 
 
@@ -163,7 +163,7 @@ _FORMULA_BEGINS = tuple("=+-@\t\r")
 """Spreadsheets calculate a cell that begins so (OWASP, CSV injection); an apostrophe makes it text."""
 
 
-def as_csv(marks: list[Mark]) -> str:
+def as_csv(marks: list[AttemptResult]) -> str:
     """Marks as a table for spreadsheets, with their columns' names above; no text is a formula."""
     text = io.StringIO()
     table = csv.writer(text)
@@ -177,7 +177,7 @@ def _no_formula(value: object) -> object:
     return f"'{value}" if dangerous else value
 
 
-def as_statements(marks: list[Mark], home: str) -> list[dict[str, Any]]:
+def as_statements(marks: list[AttemptResult], home: str) -> list[dict[str, Any]]:
     """Marks that were handed in as statements of the Experience API (IEEE 9274.1.1, xAPI 1.0.3).
 
     Args:

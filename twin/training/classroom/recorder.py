@@ -5,9 +5,9 @@ import uuid
 from collections.abc import Callable
 from pathlib import Path
 
-from twin.training.classroom.marks import ClassFile, Mark, now_text
+from twin.training.classroom.marks import AttemptResult, ClassFile, now_text
 from twin.training.scene.vocabulary import in_language
-from twin.training.session.session import Session
+from twin.training.session.session import SceneSession
 
 
 class Recorder:
@@ -20,11 +20,11 @@ class Recorder:
             sheet: Says where the score sheet of the present attempt is written.
         """
         self._file, self._pupil, self._sheet = file, pupil, sheet
-        self._session: Session | None = None
+        self._session: SceneSession | None = None
         self._mark: tuple[int, bool, int, tuple[str, ...]] | None = None
         self._attempt = self._began = ""
 
-    def note(self, session: Session) -> str:
+    def note(self, session: SceneSession) -> str:
         """Write the mark of a session where it has changed.
 
         A session that nobody has touched has none. What goes on behind a hand-in, as where a teacher
@@ -49,10 +49,10 @@ class Recorder:
         return ""
 
     def _described(
-        self, session: Session, points: int, over: bool, hints: int, alarms: tuple[str, ...]
-    ) -> Mark:
+        self, session: SceneSession, points: int, over: bool, hints: int, alarms: tuple[str, ...]
+    ) -> AttemptResult:
         scene, sheet = session.scene, self._sheet()
-        return Mark(
+        return AttemptResult(
             attempt=self._attempt,
             pupil=self._pupil,
             scene=scene.name,

@@ -28,7 +28,7 @@ MOST_MEMORY = 2_000_000_000
 """Of one room's process [bytes]; a room that is used all day stays below a third of it."""
 NICE = 5
 """How much later than the class's server a room gets the processor, where both want it."""
-TOLD_EVERY_S = 0.5
+REPORT_EVERY_S = 0.5
 """Between two looks at a room for the teacher's page [s]."""
 
 
@@ -88,7 +88,9 @@ def run_room(order: RoomOrder, pipe: Connection) -> None:
     server = SocketServer(listener)
     server.start(opened_by(door.secret, app.asgi) if door.secret else app.asgi)
     pipe.send({"door": door, "node": order.node})
-    threading.Thread(target=_hear, args=(pipe, driver, app), daemon=True, name="class").start()
+    threading.Thread(
+        target=_serve_class, args=(pipe, driver, app), daemon=True, name="class"
+    ).start()
     try:
         with prompt_threads():
             driver.serve()
@@ -108,12 +110,12 @@ def _listening(order: RoomOrder) -> tuple[socket.socket, Door]:
     return listener, Door("", order.host, int(listener.getsockname()[1]), secrets.token_urlsafe(16))
 
 
-def _hear(pipe: Connection, driver: Driver, app: RoomApp) -> None:
+def _serve_class(pipe: Connection, driver: Driver, app: RoomApp) -> None:
     """Tell the class what there is, and do what it says; end with the class."""
-    told: dict[str, Any] = {}
+    sent: dict[str, Any] = {}
     try:
         while True:
-            if pipe.poll(TOLD_EVERY_S):
+            if pipe.poll(REPORT_EVERY_S):
                 said = pipe.recv()
                 if "end" in said:
                     break
@@ -122,9 +124,9 @@ def _hear(pipe: Connection, driver: Driver, app: RoomApp) -> None:
                 else:
                     driver.ask(said, "trainer", 0)
             now = _status(driver.look, app, driver)
-            if now != told:
+            if now != sent:
                 pipe.send(now)
-                told = now
+                sent = now
     except (EOFError, OSError):
         pass  # The class is gone; what it had to know is in its file.
     driver.stop()

@@ -94,9 +94,9 @@ def _columns(
     if "name" in head:
         unknown = [name for name in head if name not in _COLUMNS]
         if unknown or len(set(head)) < len(head):
-            told = f"no column '{unknown[0]}'" if unknown else "a column occurs twice"
+            problem = f"no column '{unknown[0]}'" if unknown else "a column occurs twice"
             raise ConfigError(
-                f"{path}, line {rows[0][0]}: {told}: a roster has {' and '.join(_COLUMNS)}"
+                f"{path}, line {rows[0][0]}: {problem}: a roster has {' and '.join(_COLUMNS)}"
             )
         return head, rows[1:]
     wide = next((line for line, row in rows if len(row) > 1), None)

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from twin.errors import TwinError
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.nc.canonical import FloatArray, Motion, Moves
 from twin.nc.control.dialect import Dialect
 from twin.nc.control.settings import ControlSettings
@@ -78,7 +78,7 @@ class PathToCome:
     source: Source
     dialect: Dialect
     settings: ControlSettings
-    machine: Machine
+    machine: MachineConfig
     search: int
     stand: FloatArray
     zero: FloatArray

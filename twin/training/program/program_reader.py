@@ -12,7 +12,7 @@ from typing import Literal
 
 import numpy as np
 
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.watching.travel import soft_limit_alarm
 from twin.nc.canonical import Chunk, Event, FloatArray, Function, Motion, Moves
 from twin.nc.control.dialect import Dialect
@@ -106,7 +106,7 @@ class ProgramReader:
         source: Source,
         dialect: Dialect,
         settings: ControlSettings,
-        machine: Machine,
+        machine: MachineConfig,
         options: RunOptions,
     ) -> None:
         """Read a program from its beginning.

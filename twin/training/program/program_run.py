@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.motion.blocks.corners import CONTEXT
 from twin.motion.live.live_motion import LiveMotion
 from twin.motion.profile.windows import LOOK_AHEAD
@@ -68,7 +68,7 @@ class ProgramRun:
         source: Source,
         dialect: Dialect,
         settings: ControlSettings,
-        machine: Machine,
+        machine: MachineConfig,
         options: RunOptions,
     ) -> None:
         """Read a program from its beginning; see ``ProgramReader`` for arguments and errors."""

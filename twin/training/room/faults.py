@@ -5,7 +5,7 @@ from typing import Any
 from twin.errors import ConfigError
 from twin.machine.description.machine_file import AxisTable
 from twin.training.room.observed import Observed, RoomAlarm
-from twin.training.scene.fault_table import FaultTable
+from twin.training.scene.scene_file import FaultTable
 
 
 class Faults:

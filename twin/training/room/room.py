@@ -26,7 +26,7 @@ from twin.training.room.control.program_slot import Kind, ProgramSlot
 from twin.training.room.control.tables import Tables
 from twin.training.room.faults import Faults
 from twin.training.room.judging.alarm_log import AlarmLog
-from twin.training.room.judging.inspection import Inspection, inspect_part, moment_of
+from twin.training.room.judging.inspection import PartInspection, inspect_part, moment_of
 from twin.training.room.judging.judge import Judge
 from twin.training.room.observed import RoomAlarm
 from twin.training.room.rest import Rest
@@ -73,7 +73,7 @@ class Room:
         self.rest = Rest()
         self.tick = 0
         self.samples = self.machine.hold(1)
-        self.handed_in: Inspection | None = None
+        self.handed_in: PartInspection | None = None
         for fault in file.faults:
             self.faults.inject(self, fault)
         if file.start.alarm:

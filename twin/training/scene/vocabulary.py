@@ -38,7 +38,7 @@ class VocabularyFile(Table):
     controls: dict[str, dict[str, str]]
 
 
-class Words:
+class Vocabulary:
     """The words of one control in one language."""
 
     def __init__(self, language: Language, control: str) -> None:

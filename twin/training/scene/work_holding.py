@@ -9,7 +9,7 @@ import math
 from collections.abc import Iterator
 
 from twin.job.fixture import FixtureTable
-from twin.machine.description.config import Blank, Machine
+from twin.machine.description.config import Blank, MachineConfig
 from twin.run.preparing.preparation import Preparation
 
 GRIP_SHARE, GRIP_MM = 0.3, (2.0, 8.0)
@@ -46,7 +46,7 @@ def with_work_holding(preparation: Preparation) -> Preparation:
     return dataclasses.replace(
         preparation,
         job=job.with_file(job.file.model_copy(update=holding)),
-        machine=Machine(machine.path, machine.file.model_copy(update=holding)),
+        machine=MachineConfig(machine.path, machine.file.model_copy(update=holding)),
     )
 
 

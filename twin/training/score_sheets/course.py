@@ -169,6 +169,6 @@ def course_page(rows: list[CourseRow], language: Language) -> str:
         trainees=trainees(rows),
         titles=titles,
         words={key: words.labels[key] for key in _LABELS},
-        alarms={code: told.name for code, told in words.alarms.items()},
+        alarms={code: wording.name for code, wording in words.alarms.items()},
         language=language,
     )

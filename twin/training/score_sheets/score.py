@@ -12,11 +12,11 @@ from typing import Any
 import jinja2
 
 from twin.files.atomic import write_text
-from twin.training.room.judging.inspection import AlarmMoment, Inspection
+from twin.training.room.judging.inspection import AlarmMoment, PartInspection
 from twin.training.scene.phrases import finding_in, translated
 from twin.training.scene.scene_file import Scene
-from twin.training.scene.vocabulary import Words, in_language
-from twin.training.session.session import Session
+from twin.training.scene.vocabulary import Vocabulary, in_language
+from twin.training.session.session import SceneSession
 from twin.version import __version__
 
 LOG_FILE = "log.jsonl"
@@ -30,7 +30,7 @@ _LABELS = (
 _TEMPLATE = Path(__file__).with_name("score.html.j2")
 
 
-def score_sheet(session: Session, words: Words, date: str = "") -> dict[str, Any]:
+def score_sheet(session: SceneSession, words: Vocabulary, date: str = "") -> dict[str, Any]:
     """The score sheet as plain data."""
     scene, room = session.scene, session.room
     period = room.machine.machine.file.servo_period_s
@@ -77,9 +77,9 @@ def score_sheet(session: Session, words: Words, date: str = "") -> dict[str, Any
     }
 
 
-def _wrong(moment: AlarmMoment, words: Words) -> dict[str, Any]:
+def _wrong(moment: AlarmMoment, words: Vocabulary) -> dict[str, Any]:
     """What went wrong: at which block, why it matters, and what would have been right."""
-    alarm, told = moment.alarm, words.alarm(moment.alarm.code)
+    alarm, wording = moment.alarm, words.alarm(moment.alarm.code)
     finding = alarm.finding
     said = (
         finding_in(finding, words.language)
@@ -88,24 +88,24 @@ def _wrong(moment: AlarmMoment, words: Words) -> dict[str, Any]:
     )
     return {
         "code": alarm.code,
-        "name": told.name,
+        "name": wording.name,
         "time_s": round(alarm.time_s, 3),
         "line": alarm.line,
         "block": alarm.block,
         "text": moment.text,
         "message": said,
-        "why": told.why,
-        "right": told.advice,
+        "why": wording.why,
+        "right": wording.advice,
     }
 
 
-def _fell_into_it(session: Session) -> bool:
+def _fell_into_it(session: SceneSession) -> bool:
     """Whether the scene was handed in with a task that failed."""
     judge = session.room.judge
     return judge.over and any(verdict.state == "failed" for verdict in judge.verdicts)
 
 
-def _lesson(scene: Scene, words: Words) -> dict[str, str] | None:
+def _lesson(scene: Scene, words: Vocabulary) -> dict[str, str] | None:
     """The scene's trap: what went wrong, what it does, and what would have been right."""
     lesson = scene.file.lesson
     if lesson is None:
@@ -114,7 +114,7 @@ def _lesson(scene: Scene, words: Words) -> dict[str, str] | None:
     return {"cause": cause, "consequence": consequence, "right": right}
 
 
-def _measured(part: Inspection) -> dict[str, Any]:
+def _measured(part: PartInspection) -> dict[str, Any]:
     """What was measured at the part that was handed in [mm, mm³]."""
     return {
         "places": [
@@ -131,7 +131,7 @@ def _measured(part: Inspection) -> dict[str, Any]:
 
 def score_page(
     sheet: dict[str, Any],
-    words: Words,
+    words: Vocabulary,
     pictures: Sequence[bytes | None] = (),
     part: bytes | None = None,
 ) -> str:
@@ -152,7 +152,7 @@ def score_page(
 class ScoreSheetWriter:
     """Keeps the log and the score sheet of a session on disk, on a thread of its own."""
 
-    def __init__(self, session: Session, words: Words, out: Path | None) -> None:
+    def __init__(self, session: SceneSession, words: Vocabulary, out: Path | None) -> None:
         """Choose a folder of its own for the session.
 
         Args:
@@ -186,7 +186,7 @@ class ScoreSheetWriter:
             names = (f"{name}_{number}" if number else name for number in itertools.count())
             self.folder = next(each for each in map(self._out.joinpath, names) if not each.exists())
 
-    def page(self, words: Words) -> str:
+    def page(self, words: Vocabulary) -> str:
         """The sheet as it is now, as a page in a language, with its pictures."""
         sheet = score_sheet(self._session, words, self._date)
         room = self._session.room

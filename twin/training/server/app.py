@@ -25,15 +25,15 @@ from twin.render.machine_glb import DrawnMachine, drawn_machine
 from twin.training.program.preview import Preview
 from twin.training.room.run_settings import path_to_come
 from twin.training.room.setup.edge_finder import BODY_MM
-from twin.training.scene.fault_table import FAULT_DEFAULTS
 from twin.training.scene.phrases import finding_in, translated
 from twin.training.scene.scene_file import (
+    FAULT_DEFAULTS,
     FEED_OVERRIDES,
     MODES,
     RAPID_OVERRIDES,
     SPINDLE_OVERRIDES,
 )
-from twin.training.scene.vocabulary import LANGUAGES, Words
+from twin.training.scene.vocabulary import LANGUAGES, Vocabulary
 from twin.training.server.attempts import Attempt, Attempts, next_scene
 from twin.training.server.connections import Connections, OpenPage
 from twin.training.server.driver import Driver, Look
@@ -156,7 +156,7 @@ class RoomApp:
         language = request.path_params["language"]
         if language not in LANGUAGES:
             return Response(status_code=404)
-        words = Words(language, self._driver.session.scene.preparation.dialect.name)
+        words = Vocabulary(language, self._driver.session.scene.preparation.dialect.name)
         return JSONResponse(words.as_data())
 
     async def _sheet(self, request: Request) -> Response:
@@ -164,7 +164,7 @@ class RoomApp:
         language = request.query_params.get("language", "")
         if language not in LANGUAGES or not self._driver.session.room.judge.over:
             return Response(status_code=404)
-        words = Words(language, self._driver.session.scene.preparation.dialect.name)
+        words = Vocabulary(language, self._driver.session.scene.preparation.dialect.name)
         page = await anyio.to_thread.run_sync(self.attempt.writer.page, words)
         return HTMLResponse(page)
 

@@ -5,9 +5,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 from twin.training.scene.scene_file import Scene, read_scene, scene_names, scene_path
-from twin.training.scene.vocabulary import Language, Words
+from twin.training.scene.vocabulary import Language, Vocabulary
 from twin.training.score_sheets.score import ScoreSheetWriter
-from twin.training.session.session import Session
+from twin.training.session.session import SceneSession
 
 CELLS_ACROSS = 400
 """Cells of the live stock along its shorter side, at least: a step of 0.2 mm can be seen."""
@@ -23,7 +23,7 @@ class Attempt(NamedTuple):
 
     number: int
     scene: Scene
-    session: Session
+    session: SceneSession
     writer: ScoreSheetWriter
 
 
@@ -57,8 +57,8 @@ class Attempts:
         Raises:
             ConfigError: The scene does not fit its machine.
         """
-        session = Session(self.prepared(scene))
-        words = Words(self.language, scene.preparation.dialect.name)
+        session = SceneSession(self.prepared(scene))
+        words = Vocabulary(self.language, scene.preparation.dialect.name)
         return Attempt(number, scene, session, ScoreSheetWriter(session, words, self._out))
 
     def after(self, attempt: Attempt, name: str) -> Attempt:

@@ -11,10 +11,10 @@ from concurrent.futures import Future
 from typing import Any, TypeVar
 
 from twin.errors import TwinError
-from twin.processor import give_way, take_precedence
+from twin.processor import release_precedence, take_precedence
 from twin.training.room.room import Room
 from twin.training.session.log import Who
-from twin.training.session.session import Session
+from twin.training.session.session import SceneSession
 from twin.training.session.snapshot import Snapshot
 
 ResultT = TypeVar("ResultT")
@@ -60,7 +60,7 @@ class Driver:
         look: The last look at the machine.
     """
 
-    def __init__(self, session: Session, changed: Callable[[], None] = lambda: None) -> None:
+    def __init__(self, session: SceneSession, changed: Callable[[], None] = lambda: None) -> None:
         """Prepare a session.
 
         Args:
@@ -70,7 +70,7 @@ class Driver:
         self.speed = 1.0
         self.lost_s = 0.0
         self.trouble: Callable[[], str] = str
-        self.noted: Callable[[Session], str] = lambda _session: ""
+        self.noted: Callable[[SceneSession], str] = lambda _session: ""
         self._changed = changed
         self._questions: queue.SimpleQueue[tuple[Callable[[Room], Any], Future[Any]]] = (
             queue.SimpleQueue()
@@ -114,7 +114,7 @@ class Driver:
         return answer
 
     def change(
-        self, session: Session, changed: Callable[[], None], trouble: Callable[[], str]
+        self, session: SceneSession, changed: Callable[[], None], trouble: Callable[[], str]
     ) -> "Future[None]":
         """Play another session from the next slice on, from any thread.
 
@@ -159,12 +159,12 @@ class Driver:
             self._step(passed)
             if precedes and self.lost_s > 0.0:
                 precedes = False
-                give_way()
+                release_precedence()
             due = self.session.room.slice_s - self._owed_s - (time.perf_counter() - now)
             self._wake.wait(RESTING_S if self._rests else max(due / self.speed, SHORTEST_REST_S))
             self._wake.clear()
         if precedes:
-            give_way()
+            release_precedence()
 
     @property
     def _rests(self) -> bool:

@@ -12,10 +12,10 @@ from twin.training.server.app import ROLES, RoomApp
 from twin.training.server.attempts import Attempts
 from twin.training.server.driver import Driver
 from twin.training.session.log import Who
-from twin.training.session.session import Session
+from twin.training.session.session import SceneSession
 from twin.web.authentication import Authentication, new_tokens
 from twin.web.origin_check import OriginCheck
-from twin.web.server import LOOPBACK, WebServer, require_three
+from twin.web.server import LOOPBACK, server_of_views
 
 TURNS_S = 0.0005
 """How long a thread keeps the interpreter while another waits for it [s]: a press must not wait."""
@@ -69,7 +69,7 @@ class OpenRoom:
         self.addresses = addresses
 
     @property
-    def session(self) -> Session:
+    def session(self) -> SceneSession:
         """What is played now."""
         return self.driver.session
 
@@ -110,8 +110,7 @@ def open_room(
     Raises:
         TwinError: The scene does not fit its machine, the port is taken.
     """
-    require_three()
-    server = WebServer(host, port, certificate, key)
+    server = server_of_views(host, port, certificate, key)
     spoken = language or scene.file.language
     attempts = Attempts(spoken, out)
     warm_up(attempts.prepared(scene))
@@ -152,7 +151,7 @@ def prompt_threads() -> Iterator[None]:
 
 def warm_up(scene: Scene) -> None:
     """Work a machine that nobody sees, so that nothing is compiled or loaded when a key is pressed."""
-    session = Session(scene)
+    session = SceneSession(scene)
     middle = len(session.room.program.lines) // 2
     search: tuple[Who, dict[str, object]] = ("operator", {"do": "search", "line": middle})
     session.submit({"do": "mode", "mode": "auto"})

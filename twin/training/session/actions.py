@@ -24,7 +24,7 @@ DRY_RUN_FEED = 3000.0
 """What all feeds are replaced by in a dry run [mm/min]."""
 HAND_FEED = 2000.0
 """Of the handwheel, of the moves to the reference point and back to the path [mm/min or deg/min]."""
-_NO_TOUCH = (c.Sign, c.Answer, c.Hint, c.Inject, c.Repair)
+_NO_TOUCH = (c.Sign, c.AnswerQuestion, c.Hint, c.Inject, c.Repair)
 """What does not begin a scene's time."""
 ENDLESS = 3600.0
 """How far a jog goes at most that lasts while its key is held [mm or deg]."""
@@ -322,7 +322,7 @@ def _sign(_room: Room, _command: c.Sign) -> None:
     """Only the score sheet needs it."""
 
 
-def _answer(room: Room, command: c.Answer) -> None:
+def _answer(room: Room, command: c.AnswerQuestion) -> None:
     room.judge.answer(command.task, command.choice)
 
 
@@ -370,7 +370,7 @@ _ACTIONS: dict[type, Callable[[Room, Any], None]] = {
     c.SetTool: _set_tool,
     c.AddTool: _add_tool,
     c.Sign: _sign,
-    c.Answer: _answer,
+    c.AnswerQuestion: _answer,
     c.Hint: _hint,
     c.Finish: _finish,
     c.Inject: _inject,

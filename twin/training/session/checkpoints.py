@@ -18,7 +18,7 @@ from pydantic import BaseModel
 from twin.copies import copied
 from twin.cutting.heights.height_map import HeightMap
 from twin.cutting.heights.outline import BlankOutline
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.machine.model.head_shape import HeadShape
 from twin.machine.watching.relative_motion import RelativeMotion
 from twin.motion.retiming.run_kernels import RunPieces
@@ -41,7 +41,7 @@ TILE = 64
 """Cells along a side of a tile of the stock."""
 
 _SHARED = (
-    Machine,
+    MachineConfig,
     BaseModel,
     mujoco.MjModel,
     HeadShape,

@@ -12,11 +12,11 @@ from pydantic import Field
 
 from twin.errors import UsageError
 from twin.files.toml import Table
-from twin.training.scene.fault_table import FaultTable
 from twin.training.scene.scene_file import (
     FEED_OVERRIDES,
     RAPID_OVERRIDES,
     SPINDLE_OVERRIDES,
+    FaultTable,
     Mode,
 )
 
@@ -269,7 +269,7 @@ class Sign(Table):
     name: Annotated[str, Field(max_length=80)]
 
 
-class Answer(Table):
+class AnswerQuestion(Table):
     """Answer a scene's question."""
 
     do: Literal["answer"] = "answer"
@@ -341,7 +341,7 @@ SessionCommand = Freeze | Unfreeze | Rewind | StartReplay | EndReplay
 Command = (
     SelectMode | CycleStart | FeedHold | Reset | EmergencyStop | Override | Jog | JogStop
     | Handwheel | Reference | ReturnToPath | Search | Switch | Enter | Edit | Load | Undo | Reload
-    | Spindle | Coolant | ChangeTool | NewBlank | SetZero | SetOffset | SetTool | AddTool | Sign | Answer | Hint
+    | Spindle | Coolant | ChangeTool | NewBlank | SetZero | SetOffset | SetTool | AddTool | Sign | AnswerQuestion | Hint
     | Finish | Inject | Repair | SessionCommand
 )  # fmt: skip
 

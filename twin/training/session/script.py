@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from twin.errors import TwinError
 from twin.training.room.room import Room
 from twin.training.scene.scene_file import Scene, StepTable
-from twin.training.session.session import Session
+from twin.training.session.session import SceneSession
 
 PATIENCE_S = 600.0
 """How long a step is waited for, in machine time [s]."""
@@ -16,7 +16,7 @@ class ScriptError(TwinError):
     """A step cannot be done, or what it waits for does not come."""
 
 
-def play(session: Session, steps: Iterable[StepTable], *, hand_in: bool = True) -> None:
+def play(session: SceneSession, steps: Iterable[StepTable], *, hand_in: bool = True) -> None:
     """Play steps to their end.
 
     Args:
@@ -67,7 +67,7 @@ def rehearse(scene: Scene) -> list[Rehearsal]:
             raise ScriptError(
                 f"{scene.name}: no {what} to rehearse; write its steps into the scene"
             )
-        session = Session(scene)
+        session = SceneSession(scene)
         play(session, steps)
         judge = session.room.judge
         states = [verdict.state for verdict in judge.verdicts]
@@ -78,7 +78,7 @@ def rehearse(scene: Scene) -> list[Rehearsal]:
     return found
 
 
-def _wait(session: Session, step: StepTable, number: int) -> None:
+def _wait(session: SceneSession, step: StepTable, number: int) -> None:
     room = session.room
     end = room.time_s + (step.value if step.wait == "seconds" else PATIENCE_S)
     while not _has_come(room, step, end):

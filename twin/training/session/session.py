@@ -14,7 +14,7 @@ from twin.training.session.actions import carry_out
 from twin.training.session.checkpoints import Checkpoints
 from twin.training.session.commands import (
     TRAINERS,
-    Answer,
+    AnswerQuestion,
     Command,
     EmergencyStop,
     EndReplay,
@@ -36,7 +36,7 @@ LIVED_AGAIN_S = 4.0
 """Machine time that going back lives again at most [s]."""
 
 
-class Session:
+class SceneSession:
     """A scene that is being played.
 
     Attributes:
@@ -100,7 +100,7 @@ class Session:
     def _require_allowed(self, command: Command, who: Who) -> None:
         if isinstance(command, TRAINERS) and who != "trainer":
             raise TwinError("only the trainer can do that")
-        if self.room.judge.over and isinstance(command, Answer | Finish | Hint):
+        if self.room.judge.over and isinstance(command, AnswerQuestion | Finish | Hint):
             raise TwinError("the scene has been handed in already")
         if self.replay is not None and not isinstance(command, EndReplay | EmergencyStop):
             raise TwinError("the session is being shown again: end that first")

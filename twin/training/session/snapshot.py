@@ -11,8 +11,7 @@ from twin.training.room.judging.judge import TaskState
 from twin.training.room.observed import RoomAlarm
 from twin.training.room.room import Room
 from twin.training.room.setup.live_cut import SliceLoads
-from twin.training.scene.fault_table import FaultTable
-from twin.training.scene.scene_file import Mode
+from twin.training.scene.scene_file import FaultTable, Mode
 from twin.units import SECONDS_PER_MINUTE
 
 Row = tuple[float, ...]

@@ -12,7 +12,7 @@ from twin.cutting.tridexel.surface.mesh import MESH, mesh_message
 from twin.job.job_file import ToolTable
 from twin.training.room.setup.any_side import seen_from_above, surface_off, touch_any_side
 from twin.training.scene.scene_file import read_scene, scene_path
-from twin.training.session.session import Session
+from twin.training.session.session import SceneSession
 
 BLOCK = box(np.array([-20.0, -15.0, -20.0]), np.array([20.0, 15.0, 0.0]), 0.5)
 TOOL = ToolTable(number=1, diameter=10.0, length=60.0, flute=16.0)
@@ -78,7 +78,7 @@ def test_the_mesh_of_a_block_has_its_volume():
 
 @pytest.mark.seconds("a room is stepped")
 def test_going_back_brings_the_part_back_as_it_was():
-    session = Session(read_scene(scene_path("fanuc_second_side")))
+    session = SceneSession(read_scene(scene_path("fanuc_second_side")))
     session.submit({"do": "cycle_start"})
     for _ in range(800):
         session.advance()

@@ -10,14 +10,14 @@ from twin.job.job_file import StockTable
 from twin.training.room.setup.edge_finder import OVERTRAVEL_MM, TIP_MM, EdgeFinder, edge_finder
 from twin.training.room.setup.touch import CONTACT_MM, Touch, touch
 from twin.training.scene.scene_file import read_scene, scene_path
-from twin.training.session.session import Session
+from twin.training.session.session import SceneSession
 
 BLOCK = StockTable(shape="box", size=(40.0, 30.0, 20.0), cell=0.2)
 ROUND = StockTable(shape="cylinder", diameter=40.0, height=20.0, cell=0.2)
 BELOW = -5.0
 
 
-def held(session: Session, **what: object) -> None:
+def held(session: SceneSession, **what: object) -> None:
     assert session.submit(what), session.refusal
     room = session.room
     for _ in range(3000):
@@ -27,14 +27,14 @@ def held(session: Session, **what: object) -> None:
     raise AssertionError("the axes never came to rest")
 
 
-def jog(session: Session, axis: str, way: float, feed: float = 6000.0) -> None:
+def jog(session: SceneSession, axis: str, way: float, feed: float = 6000.0) -> None:
     direction = 1 if way > 0.0 else -1
     held(session, do="jog", axis=axis, direction=direction, step=abs(way), feed=feed)
 
 
-def beside_the_part() -> Session:
+def beside_the_part() -> SceneSession:
     """The finder in the spindle, left of the part, 3 mm before it touches, its tip below the top face."""
-    session = Session(read_scene(scene_path("gost_part_zero")))
+    session = SceneSession(read_scene(scene_path("gost_part_zero")))
     held(session, do="mode", mode="jog")
     held(session, do="change_tool", number=99)
     jog(session, "X", -68.0)
@@ -90,7 +90,7 @@ def test_it_must_stand_when_it_touches():
 
 
 def test_a_length_is_not_measured_by_another_tool():
-    session = Session(read_scene(scene_path("codesys_tool_length")))
+    session = SceneSession(read_scene(scene_path("codesys_tool_length")))
     held(session, do="mode", mode="jog")
     held(session, do="change_tool", number=99)
     session.submit({"do": "finish"})

@@ -8,7 +8,7 @@ import pytest
 
 from twin.training.scene.scene_file import read_scene, scene_names, scene_path
 from twin.training.server.attempts import CELLS_ACROSS
-from twin.training.session.session import Session
+from twin.training.session.session import SceneSession
 
 SCENE = """
 schema = 1
@@ -37,24 +37,24 @@ SLOT = "%S\nN10 G90 S4000 M3\nN20 G0 X-40 Y0 Z-2\nN30 G1 X20 F{feed}\nN40 G0 Z50
 
 def session_of(
     folder: Path, feed: float, material: str = 'material = "C45"', slot: str = SLOT
-) -> Session:
+) -> SceneSession:
     (folder / "p.nc").write_text(slot.format(feed=feed))
     (folder / "scene.toml").write_text(SCENE.format(material=material))
-    return Session(read_scene(folder / "scene.toml"))
+    return SceneSession(read_scene(folder / "scene.toml"))
 
 
-def do(session: Session, what: str, /, **arguments: object) -> None:
+def do(session: SceneSession, what: str, /, **arguments: object) -> None:
     assert session.submit({"do": what, **arguments}), session.refusal
     session.advance()
 
 
-def finish(session: Session) -> None:
+def finish(session: SceneSession) -> None:
     while session.room.slot.run is not None or session.room.machine.moving:
         session.advance()
         assert session.room.time_s < 60.0
 
 
-def run_to_end(session: Session) -> None:
+def run_to_end(session: SceneSession) -> None:
     do(session, "cycle_start")
     finish(session)
 
@@ -162,7 +162,7 @@ def test_every_shipped_scene_cuts_a_named_material():
 @pytest.mark.parametrize("cells_across", [0, CELLS_ACROSS])
 def test_the_spindle_stalls_before_the_teeth_break_on_the_pages_fine_grid_too(cells_across):
     scene = dataclasses.replace(read_scene(scene_path("mefi_stall")), cells_across=cells_across)
-    session = Session(scene)
+    session = SceneSession(scene)
     assert session.submit({"do": "cycle_start"})
     while session.room.slot.running and session.room.alarm is None:
         session.advance(10)

@@ -76,7 +76,7 @@ _LET = re.compile(
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Subprogram:
+class SubprogramHeading:
     """A subprogram's heading.
 
     Attributes:
@@ -107,7 +107,7 @@ class CodesysMemory:
     smoothing: float = 0.0
     smoothed_by: BlendKind | None = None
     periods: dict[int, float] = dataclasses.field(default_factory=dict)
-    subprograms: dict[str, Subprogram] | None = None
+    subprograms: dict[str, SubprogramHeading] | None = None
 
 
 def memory_of(control: Control) -> CodesysMemory:

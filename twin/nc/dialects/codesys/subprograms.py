@@ -4,7 +4,13 @@ import re
 from collections.abc import Container, Iterator
 
 from twin.nc.control.control import Control
-from twin.nc.dialects.codesys.program import COUNTER, Subprogram, assign, memory_of, read_variable
+from twin.nc.dialects.codesys.program import (
+    COUNTER,
+    SubprogramHeading,
+    assign,
+    memory_of,
+    read_variable,
+)
 from twin.nc.text.blocks import Location, Statement, Word
 from twin.nc.text.library import Library
 from twin.nc.text.source import Source
@@ -49,7 +55,7 @@ def own_lines(control: Control) -> Container[int]:
     return next((lines for lines in bodies if here in lines), _Outside(control))
 
 
-def _subprograms(control: Control) -> dict[str, Subprogram]:
+def _subprograms(control: Control) -> dict[str, SubprogramHeading]:
     known = memory_of(control)
     if known.subprograms is None:
         known.subprograms = {}
@@ -65,7 +71,7 @@ def _subprograms(control: Control) -> dict[str, Subprogram]:
                     if each.strip()
                 )
                 ends = (end for end, each in matches if each[1] and end > line)
-                known.subprograms[heading[1].upper()] = Subprogram(
+                known.subprograms[heading[1].upper()] = SubprogramHeading(
                     range(line + 1, next(ends, len(lines))), formals, heading[3] is not None
                 )
     return known.subprograms

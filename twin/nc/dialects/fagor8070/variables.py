@@ -90,7 +90,7 @@ def is_local(name: str) -> bool:
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Assignment:
+class StatementAssignment:
     """One assignment of a statement.
 
     Attributes:
@@ -105,13 +105,15 @@ class Assignment:
     column: int
 
 
-def assignments(control: Control, statement: Statement) -> tuple[list[Assignment], Block | None]:
+def assignments(
+    control: Control, statement: Statement
+) -> tuple[list[StatementAssignment], Block | None]:
     """Read ``P1 = 5``, ``P[P2] += 1``, ``V.P.depth = 3``; several on a line.
 
     Returns:
         The assignments, and the words of a block that follow them on the line, if any.
     """
-    found: list[Assignment] = []
+    found: list[StatementAssignment] = []
     name, text, at = statement.keyword.strip(), statement.text, 0
     begin = statement.text_column
     while True:
@@ -124,7 +126,7 @@ def assignments(control: Control, statement: Statement) -> tuple[list[Assignment
         value, end = control.statements.longest(text, match.end(), begin)
         name = name.replace(" ", "").replace("\t", "").upper()
         value = _joined(name, index, match[1], value)
-        found.append(Assignment(name, index, begin + index_at, value, begin + match.end()))
+        found.append(StatementAssignment(name, index, begin + index_at, value, begin + match.end()))
         separator = _SEPARATOR.match(text, end)
         assert separator is not None
         at = separator.end()
@@ -179,7 +181,7 @@ def _joined(name: str, index: Expression | None, operator: str, value: Expressio
     return Expression(value.text, Computed(operator, compute, (old, value.tree)))
 
 
-def _write_live(control: Control, statement: Statement, assignment: Assignment) -> None:
+def _write_live(control: Control, statement: Statement, assignment: StatementAssignment) -> None:
     """Write a variable of the control."""
     name, value = assignment.name, control.compute(assignment.value, assignment.column)
     try:

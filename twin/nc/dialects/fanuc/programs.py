@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from typing import TypeAlias
 
 from twin.nc.control.control import Control
-from twin.nc.dialects.fanuc.memory import holds_any, letter_patterns, memory_of
+from twin.nc.dialects.fanuc.memory import memory_of
 from twin.nc.text.blocks import Location, Statement, Word
 from twin.nc.text.library import Library
 from twin.nc.text.lines import Lines
@@ -24,7 +24,7 @@ NAME, NAMED_HEADING = "<", "O<"
 NAMED, NAMED_BEGIN = r"(O?<)[^<>]*>", r"(O<)[^<>]*>"
 """How they are written; the second, where programs have names and are not called by them."""
 _HEADING = re.compile(r"[ \t]*(?:[O:][ \t]*([0-9]{1,8})(?![0-9.])|O<([^<>]*)>)", re.IGNORECASE)
-_HEADING_SOMEWHERE = (*letter_patterns("O", rb"(?:[ \t]*[0-9]|<)"), re.compile(rb":[ \t]*[0-9]"))
+_HEADING_SOMEWHERE = re.compile(rb"[Oo](?:[ \t]*[0-9]|<)|:[ \t]*[0-9]")
 _CALL = re.compile(
     r"^[^(]*?(?:M0*98|G0*6[56])(?![0-9.])(?:[ \t]*<([^<>]*)>|[^(]*?P[ \t]*([0-9]{1,8})(?![0-9.]))",
     re.IGNORECASE,
@@ -76,9 +76,7 @@ def _calls(source: Source) -> Iterator[str]:
 
 def _headings(lines: Lines) -> Iterator[tuple[int, Key]]:
     """Lines of headings, from 0, and the programs that they begin."""
-    if not holds_any(lines, _HEADING_SOMEWHERE):
-        return
-    for line, text in enumerate(lines):
+    for line, text in lines.holding(_HEADING_SOMEWHERE):
         if (match := _HEADING.match(text)) is not None:
             yield line, _key_of(match[2]) if match[1] is None else int(match[1])
 

@@ -17,7 +17,7 @@ INCH_FEEDS = 0.1
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Parameters:
+class CycleParameters:
     """What a cycle was given, in the program's units.
 
     Attributes:
@@ -48,12 +48,12 @@ class Parameters:
             return None
         return value if self.unit == 1.0 else value * INCH_FEEDS
 
-    def replaced(self, values: Mapping[int, float]) -> "Parameters":
+    def replaced(self, values: Mapping[int, float]) -> "CycleParameters":
         """The same with other values."""
         return dataclasses.replace(self, values={**self.values, **values})
 
 
-Cycle = Callable[[Control, Parameters], None]
+Cycle = Callable[[Control, CycleParameters], None]
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -115,7 +115,7 @@ class KlartextMemory:
     defined: dict[int, ToolData] = dataclasses.field(default_factory=dict)
     blank: list[float] | None = None
     cycle: Cycle | None = None
-    parameters: Parameters | None = None
+    parameters: CycleParameters | None = None
     steps: dict[int, float] = dataclasses.field(default_factory=dict)
     step: int = 0
     calls_always: bool = False

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twin.machine.description.config import Machine
+from twin.machine.description.config import MachineConfig
 from twin.nc.canonical import FloatArray
 from twin.training.program.program_run import ProgramRun
 
@@ -64,7 +64,7 @@ class ManualMotion:
         """Forget all moves."""
         self.moves.clear()
 
-    def next_move(self, machine: Machine, stand: FloatArray) -> tuple[JogMove, float] | None:
+    def next_move(self, machine: MachineConfig, stand: FloatArray) -> tuple[JogMove, float] | None:
         """The first move that leads anywhere, with its distance [mm or deg]; None: all are done.
 
         Args:
@@ -78,7 +78,7 @@ class ManualMotion:
         return None
 
 
-def within_travel(machine: Machine, axis: str, position: float, target: float) -> float:
+def within_travel(machine: MachineConfig, axis: str, position: float, target: float) -> float:
     """How far an axis goes by hand: to the end of its travel; from beyond it only back.
 
     Args:

@@ -121,7 +121,7 @@ class MeasuredPlace(NamedTuple):
     good: bool
 
 
-class Inspection(NamedTuple):
+class PartInspection(NamedTuple):
     """A part that was handed in.
 
     Attributes:
@@ -159,9 +159,9 @@ def measured_places(room: Observed) -> tuple[MeasuredPlace, ...]:
     return tuple(found)
 
 
-def inspect_part(room: Observed, moment: AlarmMoment) -> Inspection:
+def inspect_part(room: Observed, moment: AlarmMoment) -> PartInspection:
     """Measure what is handed in."""
     part, work = room.scene.file.part, room.setup.work
     if part is None or work is None:
-        return Inspection(moment)
-    return Inspection(moment, measured_places(room), work.removed, part.removed_mm3)
+        return PartInspection(moment)
+    return PartInspection(moment, measured_places(room), work.removed, part.removed_mm3)

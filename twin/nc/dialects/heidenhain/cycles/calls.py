@@ -2,7 +2,7 @@
 
 from twin.nc.control.codes import Interpolation
 from twin.nc.control.control import Control
-from twin.nc.dialects.heidenhain.memory import Parameters, memory_of
+from twin.nc.dialects.heidenhain.memory import CycleParameters, memory_of
 from twin.nc.dialects.heidenhain.paths.paths import LINE
 from twin.nc.iso.cycle_moves import go_to_height
 from twin.nc.text.blocks import Statement
@@ -21,7 +21,7 @@ def call_cycle(control: Control) -> None:
     _run(control, parameters)
 
 
-def _run(control: Control, parameters: Parameters) -> None:
+def _run(control: Control, parameters: CycleParameters) -> None:
     """Run the cycle that was defined last; a depth of 0 runs nothing (manual)."""
     if parameters.values.get(DEPTH) == 0.0:
         control.report.warn(
@@ -94,7 +94,7 @@ def call_pattern(control: Control, statement: Statement) -> None:
         run_raised(control, z)
 
 
-def defined(control: Control) -> Parameters:
+def defined(control: Control) -> CycleParameters:
     """The parameters of the cycle that was defined last, as Q parameters have them now."""
     parameters = memory_of(control).parameters
     if parameters is None:

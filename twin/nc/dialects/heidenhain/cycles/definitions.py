@@ -18,10 +18,10 @@ from twin.nc.dialects.heidenhain.cycles import (
 from twin.nc.dialects.heidenhain.cycles import transformations as frames
 from twin.nc.dialects.heidenhain.cycles.parameters import take_parameters
 from twin.nc.dialects.heidenhain.cycles.transformations import DefinitionStep
-from twin.nc.dialects.heidenhain.memory import Parameters, memory_of
+from twin.nc.dialects.heidenhain.memory import CycleParameters, memory_of
 from twin.nc.text.blocks import Statement, Word
 
-Perform = Callable[[Control, Parameters], None]
+Perform = Callable[[Control, CycleParameters], None]
 
 _NUMBER = re.compile(r"[ \t]*([0-9]{1,3})(?:[ \t]*\.[ \t]*([0-9]{1,2}))?(?![0-9])[ \t]*")
 

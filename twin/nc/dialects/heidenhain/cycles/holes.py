@@ -5,7 +5,7 @@ Decisions, since the manuals leave them open or the twin does not follow them: t
 """
 
 from twin.nc.control.control import Control
-from twin.nc.dialects.heidenhain.memory import Parameters
+from twin.nc.dialects.heidenhain.memory import CycleParameters
 from twin.nc.iso.cycle_moves import at_feed, descend, go, go_to_height
 from twin.nc.iso.drilling.hole import (
     MOST_PECKS,
@@ -22,7 +22,7 @@ _ASIDE = {0: (0.0, 0.0), 1: (-1.0, 0.0), 2: (0.0, -1.0), 3: (1.0, 0.0), 4: (0.0,
 """Which way the tool leaves the wall, by Q214."""
 
 
-def heights(control: Control, given: Parameters) -> tuple[float, float, float, float]:
+def heights(control: Control, given: CycleParameters) -> tuple[float, float, float, float]:
     """Surface, reference plane, bottom, and where the tool goes back to [mm]."""
     surface = given.length(203)
     reference, bottom = surface + given.length(200), surface + given.length(201)
@@ -32,7 +32,7 @@ def heights(control: Control, given: Parameters) -> tuple[float, float, float, f
     return surface, reference, bottom, max(reference, surface + given.length(204))
 
 
-def _hole(control: Control, given: Parameters, **changes: object) -> Hole:
+def _hole(control: Control, given: CycleParameters, **changes: object) -> Hole:
     """A hole that is drilled at once; changes are fields of it."""
     surface, reference, bottom, back = heights(control, given)
     dwell = _seconds(control, given, 211)
@@ -40,7 +40,7 @@ def _hole(control: Control, given: Parameters, **changes: object) -> Hole:
     return plain._replace(**changes)
 
 
-def _seconds(control: Control, given: Parameters, parameter: int) -> float:
+def _seconds(control: Control, given: CycleParameters, parameter: int) -> float:
     seconds = given.number(parameter)
     if seconds < 0.0:
         control.fail("dwell", f"{given.name} cannot wait {seconds:g} seconds (Q{parameter})")
@@ -48,7 +48,7 @@ def _seconds(control: Control, given: Parameters, parameter: int) -> float:
 
 
 def _pecked(
-    control: Control, given: Parameters, hole: Hole, reduction: float = 0.0, least: float = 0.0
+    control: Control, given: CycleParameters, hole: Hole, reduction: float = 0.0, least: float = 0.0
 ) -> Hole:
     """A hole in pecks of Q202, each less deep than the one before by a reduction, down to a least."""
     peck = given.length(202)
@@ -78,13 +78,13 @@ def _drilling_feed(control: Control, feed: float | None) -> float:
     return feed
 
 
-def drilling(control: Control, given: Parameters) -> None:
+def drilling(control: Control, given: CycleParameters) -> None:
     """200: in pecks, each time back to the clearance, where it waits Q210."""
     hole = _hole(control, given, rest=_seconds(control, given, 210))
     _drill(control, _pecked(control, given, hole), given.feed(206))
 
 
-def reaming(control: Control, given: Parameters) -> None:
+def reaming(control: Control, given: CycleParameters) -> None:
     """201: back with Q208, or 0 as it went down."""
     down, back = given.feed(206), given.feed(208)
     retract = Retract.RAPID if back is None else Retract.FEED
@@ -92,7 +92,7 @@ def reaming(control: Control, given: Parameters) -> None:
     _drill(control, _hole(control, given, retract=retract, faster=faster), down)
 
 
-def universal_drilling(control: Control, given: Parameters) -> None:
+def universal_drilling(control: Control, given: CycleParameters) -> None:
     """203: chips are broken Q213 times by a lift of Q256 before the tool comes out; out with Q208."""
     breaks, lift = int(given.number(213)), given.length(256)
     hole = _hole(control, given, rest=_seconds(control, given, 210))
@@ -106,7 +106,7 @@ def universal_drilling(control: Control, given: Parameters) -> None:
     _drill(control, hole, down)
 
 
-def universal_pecking(control: Control, given: Parameters) -> None:
+def universal_pecking(control: Control, given: CycleParameters) -> None:
     """205: in pecks, in each of which the chip is broken every Q257; back into the hole to Q258 above its bottom."""
     hole = _hole(control, given, clearance=given.length(258))
     start = given.length(379)
@@ -120,7 +120,7 @@ def universal_pecking(control: Control, given: Parameters) -> None:
         _drill(control, hole, given.feed(206))
 
 
-def _break_chips(control: Control, given: Parameters, hole: Hole, breaking: float) -> None:
+def _break_chips(control: Control, given: CycleParameters, hole: Hole, breaking: float) -> None:
     """Deep drilling whose pecks are made of shorter ones."""
     lift, depth, peck = given.length(256) or ADVANCE, hole.surface, hole.peck
     if (hole.surface - hole.bottom) / breaking > MOST_PECKS:
@@ -143,7 +143,7 @@ def _break_chips(control: Control, given: Parameters, hole: Hole, breaking: floa
         peck = max(peck - hole.reduction, hole.least)
 
 
-def boring(control: Control, given: Parameters) -> None:
+def boring(control: Control, given: CycleParameters) -> None:
     """202: at the bottom the spindle is stopped, the tool leaves the wall by Q214, and comes back with Q208."""
     direction = _ASIDE.get(int(given.number(214)))
     if direction is None:
@@ -164,7 +164,7 @@ def boring(control: Control, given: Parameters) -> None:
     go(control, (x, y), rapid=True)
 
 
-def back_boring(control: Control, given: Parameters) -> None:
+def back_boring(control: Control, given: CycleParameters) -> None:
     """204: beside its axis, the spindle standing at Q336, the tool goes through the hole, and bores from below.
 
     Its tooth lies Q252 above its tip and reaches Q251 beyond its shank. Decision: it comes out of the counterbore with
@@ -208,17 +208,17 @@ def back_boring(control: Control, given: Parameters) -> None:
     go(control, (x, y), rapid=True)
 
 
-def tapping(control: Control, given: Parameters) -> None:
+def tapping(control: Control, given: CycleParameters) -> None:
     """206: with a floating chuck, at the feed Q206."""
     _drill(control, _hole(control, given, retract=Retract.REVERSED), given.feed(206))
 
 
-def rigid_tapping(control: Control, given: Parameters) -> None:
+def rigid_tapping(control: Control, given: CycleParameters) -> None:
     """207: the feed follows from the pitch Q239, below 0 of a left-hand thread."""
     _tap(control, given, _hole(control, given, dwell=0.0))
 
 
-def tapping_with_breaks(control: Control, given: Parameters) -> None:
+def tapping_with_breaks(control: Control, given: CycleParameters) -> None:
     """209: the chip is broken every Q257; back by Q256 times the pitch, or out of the hole; out Q403 times as fast."""
     hole, depth = _hole(control, given, dwell=0.0), given.length(257)
     if depth > 0.0:
@@ -232,7 +232,7 @@ def tapping_with_breaks(control: Control, given: Parameters) -> None:
     _tap(control, given, hole._replace(faster=given.number(403) or 1.0))
 
 
-def _tap(control: Control, given: Parameters, hole: Hole) -> None:
+def _tap(control: Control, given: CycleParameters, hole: Hole) -> None:
     """Tap with the spindle's speed."""
     pitch, speed = given.length(239), control.motion.spindle
     if pitch == 0.0:
@@ -246,7 +246,7 @@ def _tap(control: Control, given: Parameters, hole: Hole) -> None:
     _drill(control, hole._replace(retract=retract), feed)
 
 
-def centring(control: Control, given: Parameters) -> None:
+def centring(control: Control, given: CycleParameters) -> None:
     """240: to the depth Q201."""
     if given.number(343) != 0.0:
         message = (
@@ -256,7 +256,7 @@ def centring(control: Control, given: Parameters) -> None:
     _drill(control, _hole(control, given), given.feed(206))
 
 
-def single_lip_drilling(control: Control, given: Parameters) -> None:
+def single_lip_drilling(control: Control, given: CycleParameters) -> None:
     """241: slowly to the deepened start Q379, with Q253; there the speed Q428, and drilled; back with Q208."""
     surface, reference, bottom, back = heights(control, given)
     if 0.0 < given.length(202) < surface - bottom:

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator, Mapping
 
 from twin.nc.control.control import Control
-from twin.nc.dialects.heidenhain.memory import RAPID, Parameters, memory_of
+from twin.nc.dialects.heidenhain.memory import RAPID, CycleParameters, memory_of
 from twin.nc.text.blocks import Location, Statement
 
 _PARAMETER = re.compile(
@@ -38,7 +38,7 @@ def continued(control: Control, *, while_: re.Pattern[str] | None) -> Iterator[t
 
 def take_parameters(
     control: Control, statement: Statement, name: str, known: Mapping[int, str]
-) -> Parameters:
+) -> CycleParameters:
     """Take the parameters of a definition and give Q their values."""
     line, values = control.block.line, {}
     begin = statement.text_column
@@ -59,7 +59,7 @@ def take_parameters(
             values[parameter] = _value(control, match, text, column)
             control.variables.write(f"Q{parameter}", values[parameter])
     control.report.line = line
-    return Parameters(name, values, control.modal.unit, line)
+    return CycleParameters(name, values, control.modal.unit, line)
 
 
 def _value(control: Control, match: re.Match[str], text: str, column: int) -> float:

@@ -12,7 +12,7 @@ from twin.nc.dialects.heidenhain.cycles.calls import (
     run_raised,
 )
 from twin.nc.dialects.heidenhain.cycles.parameters import continued
-from twin.nc.dialects.heidenhain.memory import Parameters, memory_of
+from twin.nc.dialects.heidenhain.memory import CycleParameters, memory_of
 from twin.nc.geometry.arcs import Point
 from twin.nc.iso.cycle_moves import circle, grid, row
 from twin.nc.text.blocks import Statement
@@ -27,7 +27,7 @@ def _count(control: Control, value: float, name: str) -> int:
     return int(value)
 
 
-def polar_pattern(control: Control, given: Parameters) -> None:
+def polar_pattern(control: Control, given: CycleParameters) -> None:
     """220: Q241 places on the circle of the diameter Q244, from Q245 on, Q247 apart or up to Q246."""
     center, radius = (given.length(216), given.length(217)), given.length(244) / 2.0
     first, last, step = given.number(245), given.number(246), given.number(247)
@@ -43,7 +43,7 @@ def polar_pattern(control: Control, given: Parameters) -> None:
     _machine(control, given, circle(center, radius, first, step, count))
 
 
-def linear_pattern(control: Control, given: Parameters) -> None:
+def linear_pattern(control: Control, given: CycleParameters) -> None:
     """221: Q242 columns and Q243 lines, every other line backwards, turned by Q224 about the first place."""
     start = (given.length(225), given.length(226))
     columns = _count(control, given.number(242), "Q242")
@@ -53,7 +53,7 @@ def linear_pattern(control: Control, given: Parameters) -> None:
     _machine(control, given, grid(start, (angle, angle), spacing, (columns, lines)))
 
 
-def _machine(control: Control, given: Parameters, places: list[Point]) -> None:
+def _machine(control: Control, given: CycleParameters, places: list[Point]) -> None:
     """Run the cycle that was defined before at all places, with the clearances and the surface of the pattern."""
     memory = memory_of(control)
     own = {each: given.values[each] for each in (200, 203, 204) if each in given.values}

@@ -8,7 +8,7 @@ X, and cleared inwards.
 
 from twin.nc.control.control import Control
 from twin.nc.dialects.heidenhain.cycles.holes import heights
-from twin.nc.dialects.heidenhain.memory import Parameters
+from twin.nc.dialects.heidenhain.memory import CycleParameters
 from twin.nc.dialects.heidenhain.tools import compensation_radius
 from twin.nc.geometry.arcs import Point, turned
 from twin.nc.iso.cycle_moves import along
@@ -34,7 +34,9 @@ _PLACES = {1: 0.0, 2: 0.5, 3: 1.0}
 """At which share of a curved slot the tool is when it is called, by Q367."""
 
 
-def _choice(control: Control, given: Parameters, parameter: int, known: dict[int, Point]) -> Point:
+def _choice(
+    control: Control, given: CycleParameters, parameter: int, known: dict[int, Point]
+) -> Point:
     """What a parameter asks for by its number."""
     chosen = known.get(int(given.number(parameter)))
     if chosen is None:
@@ -43,7 +45,9 @@ def _choice(control: Control, given: Parameters, parameter: int, known: dict[int
     return chosen
 
 
-def _middle(control: Control, given: Parameters, halves: Point, corners: dict[int, Point]) -> Point:
+def _middle(
+    control: Control, given: CycleParameters, halves: Point, corners: dict[int, Point]
+) -> Point:
     """The middle of what is milled, turned with it about the place of the call."""
     corner = _choice(control, given, 367, corners)
     here = _here(control)
@@ -55,7 +59,7 @@ def _here(control: Control) -> Point:
     return control.modal.plane.point(control.motion.programmed)
 
 
-def _clearing(control: Control, given: Parameters, floor: float) -> Clearing:
+def _clearing(control: Control, given: CycleParameters, floor: float) -> Clearing:
     """What the parameters say of the passes; the floor of a stud has no stock."""
     surface, reference, bottom, back = heights(control, given)
     kind, radius = int(given.number(215)), compensation_radius(control)
@@ -89,16 +93,16 @@ def _clearing(control: Control, given: Parameters, floor: float) -> Clearing:
     )
 
 
-def _clear(control: Control, given: Parameters, outline: Outline) -> None:
+def _clear(control: Control, given: CycleParameters, outline: Outline) -> None:
     clear_pocket(control, outline, _clearing(control, given, given.length(369)))
 
 
-def _clockwise(given: Parameters) -> bool:
+def _clockwise(given: CycleParameters) -> bool:
     """Which way around a pocket: Q351 asks for climb milling with 1, and with 0 as well."""
     return given.number(351, 1.0) < 0.0
 
 
-def rectangular_pocket(control: Control, given: Parameters) -> None:
+def rectangular_pocket(control: Control, given: CycleParameters) -> None:
     """251: Q218 by Q219, corners of Q220."""
     radius = compensation_radius(control)
     length, width, corner = given.length(218) / 2.0, given.length(219) / 2.0, given.length(220)
@@ -110,13 +114,13 @@ def rectangular_pocket(control: Control, given: Parameters) -> None:
     _clear(control, given, Rectangle(middle, *sides, angle, _clockwise(given), shape))
 
 
-def circular_pocket(control: Control, given: Parameters) -> None:
+def circular_pocket(control: Control, given: CycleParameters) -> None:
     """252: of the diameter Q223."""
     room = given.length(223) / 2.0 - compensation_radius(control)
     _clear(control, given, Circle(_here(control), room, _clockwise(given)))
 
 
-def slot(control: Control, given: Parameters) -> None:
+def slot(control: Control, given: CycleParameters) -> None:
     """253: Q218 long, Q219 wide, with round ends, turned by Q374."""
     radius = compensation_radius(control)
     length, width = given.length(218) / 2.0, given.length(219) / 2.0
@@ -131,7 +135,7 @@ def slot(control: Control, given: Parameters) -> None:
     _clear(control, given, Rectangle(middle, *sides, angle, _clockwise(given), shape))
 
 
-def curved_slot(control: Control, given: Parameters) -> None:
+def curved_slot(control: Control, given: CycleParameters) -> None:
     """254: slots Q219 wide on the pitch circle Q375, from Q376 on Q248 long, Q377 of them Q378 apart.
 
     With Q367 0 the pitch circle lies about Q216 and Q217; with 1, 2 or 3 the tool is over the first end, the middle
@@ -162,7 +166,7 @@ _MOST_SLOTS = 360
 # --- studs
 
 
-def rectangular_stud(control: Control, given: Parameters) -> None:
+def rectangular_stud(control: Control, given: CycleParameters) -> None:
     """256: from Q424 by Q425 to Q218 by Q219, corners of Q220."""
     radius = compensation_radius(control)
     length, width = given.length(218) / 2.0, given.length(219) / 2.0
@@ -176,7 +180,7 @@ def rectangular_stud(control: Control, given: Parameters) -> None:
     _clear_around(control, given, outline, length + left, angle)
 
 
-def circular_stud(control: Control, given: Parameters) -> None:
+def circular_stud(control: Control, given: CycleParameters) -> None:
     """257: from the diameter Q222 to Q223, begun at the angle Q376."""
     room = given.length(223) / 2.0 + compensation_radius(control)
     angle = max(given.number(376), 0.0)
@@ -185,7 +189,11 @@ def circular_stud(control: Control, given: Parameters) -> None:
 
 
 def _clear_around(
-    control: Control, given: Parameters, outline: Rectangle | Circle, blank: float, angle: float
+    control: Control,
+    given: CycleParameters,
+    outline: Rectangle | Circle,
+    blank: float,
+    angle: float,
 ) -> None:
     """Mill around a stud; how far its blank reaches at the angle where the tool goes down."""
     clearing = _clearing(control, given, 0.0)

@@ -8,7 +8,7 @@ import re
 from twin.nc.control.control import Control
 from twin.nc.dialects.heidenhain.cycles import holes, pockets
 from twin.nc.dialects.heidenhain.cycles.transformations import DefinitionStep
-from twin.nc.dialects.heidenhain.memory import Parameters, memory_of
+from twin.nc.dialects.heidenhain.memory import CycleParameters, memory_of
 
 _VALUES = re.compile(r"[-+]?[ \t]*(?:[0-9]*\.?[0-9]+|Q[LR]?[0-9]+)(?=[ \t]|$|[A-Z])", re.IGNORECASE)
 _STEPS: dict[int, tuple[tuple[int, ...], ...]] = {
@@ -55,11 +55,11 @@ def _define(control: Control, cycle: int) -> None:
     if _DIAMETER in values:
         values[_DIAMETER] *= 2.0
 
-    def perform(control: Control, given: Parameters) -> None:
+    def perform(control: Control, given: CycleParameters) -> None:
         surface = control.motion.programmed[2] / given.unit - given.number(_CLEARANCE)
         newer(control, given.replaced({_SURFACE: surface}))
 
     memory.cycle, memory.calls_always = perform, False
-    memory.parameters = Parameters(
+    memory.parameters = CycleParameters(
         f"cycle {cycle}", values, control.modal.unit, control.block.line, live=False
     )

@@ -7,7 +7,7 @@ Decision: 263 with a clearance Q357 beside the wall is refused, since the core d
 
 from twin.nc.control.control import Control
 from twin.nc.dialects.heidenhain.cycles.holes import heights, universal_pecking
-from twin.nc.dialects.heidenhain.memory import Parameters
+from twin.nc.dialects.heidenhain.memory import CycleParameters
 from twin.nc.dialects.heidenhain.tools import compensation_radius
 from twin.nc.iso.cycle_moves import at_feed, descend, go_to_height, turn
 from twin.nc.iso.milling.threads import (
@@ -19,7 +19,7 @@ from twin.nc.iso.milling.threads import (
 )
 
 
-def bore_milling(control: Control, given: Parameters) -> None:
+def bore_milling(control: Control, given: CycleParameters) -> None:
     """208: on a helix of the pitch Q334 to the depth, once around there, and out by the middle."""
     _, reference, bottom, back = heights(control, given)
     radius, pitch = given.length(335) / 2.0 - compensation_radius(control), abs(given.length(334))
@@ -34,12 +34,12 @@ def bore_milling(control: Control, given: Parameters) -> None:
     go_to_height(control, back)
 
 
-def thread_milling(control: Control, given: Parameters) -> None:
+def thread_milling(control: Control, given: CycleParameters) -> None:
     """262: an inside thread of the diameter Q335."""
     _mill(control, given, clockwise=given.number(351, 1.0) < 0.0)
 
 
-def thread_milling_and_countersinking(control: Control, given: Parameters) -> None:
+def thread_milling_and_countersinking(control: Control, given: CycleParameters) -> None:
     """263: the hole is countersunk to Q356, and at its front, then the thread is milled."""
     if given.length(357) != 0.0:
         message = "263 with a clearance beside the wall (Q357) is not followed"
@@ -54,7 +54,7 @@ def thread_milling_and_countersinking(control: Control, given: Parameters) -> No
     thread_milling(control, given)
 
 
-def thread_drilling_and_milling(control: Control, given: Parameters) -> None:
+def thread_drilling_and_milling(control: Control, given: CycleParameters) -> None:
     """264: the hole is drilled to Q356 and countersunk at its front, then the thread is milled."""
     if given.length(356) < 0.0:
         universal_pecking(control, given.replaced({201: given.number(356), 204: 0.0}))
@@ -62,7 +62,7 @@ def thread_drilling_and_milling(control: Control, given: Parameters) -> None:
     thread_milling(control, given)
 
 
-def helical_thread_drilling(control: Control, given: Parameters) -> None:
+def helical_thread_drilling(control: Control, given: CycleParameters) -> None:
     """265: the thread is milled downwards on one helix, its front countersunk before (Q360=0) or after it."""
     after = given.number(360) != 0.0
     if not after:
@@ -74,7 +74,7 @@ def helical_thread_drilling(control: Control, given: Parameters) -> None:
     go_to_height(control, max(reference, back))
 
 
-def outside_thread_milling(control: Control, given: Parameters) -> None:
+def outside_thread_milling(control: Control, given: CycleParameters) -> None:
     """267: an outside thread."""
     if given.length(358) != 0.0:
         message = "267 with a countersink (Q358) is not followed"
@@ -82,7 +82,9 @@ def outside_thread_milling(control: Control, given: Parameters) -> None:
     _mill(control, given, clockwise=given.number(351, 1.0) >= 0.0, inside=False)
 
 
-def _mill(control: Control, given: Parameters, *, clockwise: bool, inside: bool = True) -> None:
+def _mill(
+    control: Control, given: CycleParameters, *, clockwise: bool, inside: bool = True
+) -> None:
     """Mill a thread: Q355 0 in one turn, 1 in as many as it has, else every so many threads."""
     surface, reference, bottom, back = heights(control, given)
     tool, nominal, pitch = compensation_radius(control), given.length(335) / 2.0, given.length(239)
@@ -110,7 +112,7 @@ def _mill(control: Control, given: Parameters, *, clockwise: bool, inside: bool 
     go_to_height(control, back)
 
 
-def _countersink_front(control: Control, given: Parameters) -> None:
+def _countersink_front(control: Control, given: CycleParameters) -> None:
     """Once around on a circle of the radius Q359 at the depth Q358; half circles lead to it and back."""
     depth, offset = given.length(358), given.length(359)
     if depth == 0.0:

@@ -17,7 +17,7 @@ from twin.nc.text.expressions.expressions import (
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Assignment:
+class MultipleAssignment:
     """One assignment of a statement: to what, where that stands, and the values.
 
     SET has several, None where it leaves an element as it is; REP has one, and how many elements get it.
@@ -45,9 +45,9 @@ def assign(control: Control, statement: Statement) -> None:
         _assign(control, each)
 
 
-def _assignments(control: Control, statement: Statement) -> list[Assignment]:
+def _assignments(control: Control, statement: Statement) -> list[MultipleAssignment]:
     line = statement.keyword + statement.text
-    column, at, found = statement.column, 0, list[Assignment]()
+    column, at, found = statement.column, 0, list[MultipleAssignment]()
     variable = control.program_counter.lexer.expressions.variable
     while at < len(line.rstrip()):
         if variable.match(line, at) is None:
@@ -73,7 +73,7 @@ def _assignments(control: Control, statement: Statement) -> list[Assignment]:
 
 def _work_offset(
     control: Control, line: str, frame: re.Match[str], column: int, target: Expression
-) -> tuple[list[Assignment], int]:
+) -> tuple[list[MultipleAssignment], int]:
     """``$P_UIFR[1]=CTRANS(X,10,Y,5)``: the shifts of all axes, 0 where it names none."""
     begin, shown = frame.end() - 1, column + frame.start()
     inner, at, length = bracketed(control, line[begin:], column + begin)
@@ -94,23 +94,25 @@ def _work_offset(
         text, place = given.get(axis, ("0", shown))
         value = control.statements.expression(text, place)
         name = f"{offset[1]},{axis},TR]"
-        shifts.append(Assignment(Expression(name, Variable(name)), shown, ((value, place),)))
+        shifts.append(
+            MultipleAssignment(Expression(name, Variable(name)), shown, ((value, place),))
+        )
     return shifts, end
 
 
 def _value_of(
     control: Control, line: str, at: int, column: int, target: Expression, begin: int
-) -> tuple[Assignment, int]:
+) -> tuple[MultipleAssignment, int]:
     quoted, many = _QUOTED.match(line, at), _MANY.match(line, at)
     if quoted is not None:
-        return Assignment(target, begin, (), quoted[0]), quoted.end()
+        return MultipleAssignment(target, begin, (), quoted[0]), quoted.end()
     name = target.tree.name if isinstance(target.tree, Variable) else ""
     if memory_of(control).calls[-1].types.get(name) is VariableType.AXIS:
         axis, end = axis_at(control, line, at, column)
-        return Assignment(target, begin, (), axis), end
+        return MultipleAssignment(target, begin, (), axis), end
     if many is None:
         value, end = control.statements.longest(line, at, column)
-        return Assignment(target, begin, ((value, column + at),)), end
+        return MultipleAssignment(target, begin, ((value, column + at),)), end
     inner, begin_inner, end = bracketed(control, line[many.end() - 1 :], column + many.end() - 1)
     given = tuple(
         (
@@ -123,10 +125,10 @@ def _value_of(
     if repeats and (len(given) > 2 or None in (each for each, _ in given)):
         message = "REP has a value, and how many elements get it"
         control.report.fail("assignment", message, begin, many.end() - at, "REP(0) or REP(0,12)")
-    return Assignment(target, begin, given, repeats=repeats), many.end() - 1 + end
+    return MultipleAssignment(target, begin, given, repeats=repeats), many.end() - 1 + end
 
 
-def _assign(control: Control, each: Assignment) -> None:
+def _assign(control: Control, each: MultipleAssignment) -> None:
     tree, call = each.target.tree, memory_of(control).calls[-1]
     assert isinstance(tree, Variable | NumberedVariable)
     if each.text or call.types.get(tree.name) in TEXTS:
@@ -154,7 +156,7 @@ def _assign(control: Control, each: Assignment) -> None:
 
 
 def _fill(
-    control: Control, each: Assignment, name: str, index: float, values: list[float | None]
+    control: Control, each: MultipleAssignment, name: str, index: float, values: list[float | None]
 ) -> None:
     """SET(...) gives the elements of a table from one on their values, the last index first; REP(...) one value."""
     rows, columns = memory_of(control).calls[-1].sizes[name]
@@ -172,7 +174,7 @@ def _fill(
             write_variable(control, name, row + column * SECOND, value)
 
 
-def _assign_text(control: Control, each: Assignment, name: str) -> None:
+def _assign_text(control: Control, each: MultipleAssignment, name: str) -> None:
     call = memory_of(control).calls[-1]
     text = each.text.strip('"') if each.text else _named_text(call, each)
     if call.types.get(name) not in TEXTS or text is None:
@@ -186,7 +188,7 @@ def _assign_text(control: Control, each: Assignment, name: str) -> None:
     call.texts[name] = text
 
 
-def _named_text(call: CallFrame, each: Assignment) -> str | None:
+def _named_text(call: CallFrame, each: MultipleAssignment) -> str | None:
     value = each.values[0][0]
     if value is None or not isinstance(value.tree, Variable):
         return None

@@ -13,9 +13,8 @@ from twin.machine.description.kinematics import SPINDLE_NOSE, TABLE_TOP
 from twin.machine.load import read_machine
 from twin.nc.canonical import FloatArray
 from twin.serve.agent import Agent, Clock
-from twin.serve.device import device_of
+from twin.serve.device import device_of, motions_of
 from twin.serve.forms import JSON
-from twin.serve.motions import motions_of
 from twin.units import MM
 
 

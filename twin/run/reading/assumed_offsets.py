@@ -1,0 +1,77 @@
+"""Work offsets of a raw program: the one that it feeds in lies at program zero."""
+
+import dataclasses
+import re
+from collections.abc import Iterator
+
+import numpy as np
+
+from twin.nc.canonical import FloatArray, Motion, concatenate
+from twin.nc.control.dialect import Dialect
+from twin.nc.control.settings import Consulted, ControlSettings
+from twin.nc.interpreter import Interpretation
+from twin.nc.text.diagnostics.diagnostics import ProgramError
+from twin.nc.text.source import Source
+
+USUAL = "G54"
+"""Which lies at program zero in any case."""
+_G = r"(?<![A-Z0-9.])G[ \t]*"
+_NAMES = (
+    (rf"{_G}(5[4-9](?:\.[1-3])?|11[0-9]|12[0-9]|50[5-9]|5[1-9][0-9])(?![0-9.])(?![ \t]*P)", "G{}"),
+    (rf"{_G}(?:54(?:\.1)?|154)[ \t]*P[ \t]*0*([1-9][0-9]{{0,2}})(?![0-9.])", "G54.1 P{}"),
+    (r"\bCYCL DEF 7\.1 *#[ \t]*([1-9][0-9]{0,3})(?![0-9.])", "DATUM{}"),
+    (r"\bQ339[ \t]*=[ \t]*\+?([1-9][0-9]{0,3})(?![0-9.])", "PRESET{}"),
+)
+"""How programs write work offsets, and how jobs call these."""
+_APART = 1.0
+"""So far from each other offsets are put to see in which of them the program feeds [mm]."""
+
+
+def named_offsets(blocks: str) -> tuple[str, ...]:
+    """The work offsets that a program's blocks name besides the usual one; some dialects mean other things by some."""
+    found = {
+        form.format(match[1])
+        for pattern, form in _NAMES
+        for match in re.finditer(pattern, blocks, re.IGNORECASE)
+    }
+    return tuple(sorted(found - {USUAL}))
+
+
+def offsets_of_one_zero(
+    names: tuple[str, ...], source: Source, dialect: Dialect, settings: ControlSettings
+) -> tuple[str, ...]:
+    """Those of the work offsets that a dialect reads, where the program feeds in one offset alone; else none.
+
+    It is run twice: where offsets lie apart from each other, each feed shows in which of them it is.
+    """
+    if settings.machine_zero is None:  # where that lies changes nothing
+        zero = dict.fromkeys(settings.axes.names, 0.0)
+        settings = dataclasses.replace(settings, machine_zero=zero)
+    axis = settings.axes.names[0]
+    together = Consulted({name: {axis: 0.0} for name in names})
+    apart = Consulted({name: {axis: at * _APART} for at, name in enumerate(names, 1)})
+    try:
+        first, second = (
+            _ends_of_feeds(source, dialect, dataclasses.replace(settings, offsets=offsets))
+            for offsets in (together, apart)
+        )
+    except ProgramError:
+        return tuple(name for name in names if name not in together.unread)
+    same = len(first) == len(second) and (
+        len(first) == 0 or np.ptp(second[:, 0] - first[:, 0]) < _APART / 2.0
+    )
+    return tuple(name for name in names if name not in together.unread) if same else ()
+
+
+def _ends_of_feeds(source: Source, dialect: Dialect, settings: ControlSettings) -> FloatArray:
+    chunks = list(Interpretation(source, dialect, settings).chunks())
+    moves = concatenate((chunk.moves for chunk in chunks), settings.axes)
+    return moves.end[moves.motion == Motion.FEED]
+
+
+def notes_of_offsets(names: tuple[str, ...]) -> Iterator[str]:
+    """What was assumed of work offsets, a line."""
+    if len(names) == 1:
+        yield f"{names[0]} lies at program zero: the program feeds in no other work offset"
+    elif names:
+        yield f"{', '.join(names)} lie at program zero: the program feeds in one work offset alone"
