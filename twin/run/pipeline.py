@@ -13,7 +13,7 @@ from twin.errors import ConfigError
 from twin.machine.description.config import MachineConfig
 from twin.machine.model.model import MachineModel
 from twin.machine.simulation.growth import Growth
-from twin.machine.simulation.simulate import Load, simulate
+from twin.machine.simulation.simulate import Load, Stepped, simulate
 from twin.machine.watching.alarms import Alarm, NearMiss
 from twin.motion.planner import plan
 from twin.motion.setpoints.sampling import settle
@@ -82,10 +82,10 @@ class PlannedMoves:
         return taken
 
 
-class _Stepped(NamedTuple):
-    """A chunk of samples with what was known when it was stepped."""
+class _Ahead(NamedTuple):
+    """A chunk with what was known when it was stepped."""
 
-    samples: Samples
+    stepped: Stepped
     moves: list[Moves]
     planned_s: float | None
 
@@ -142,19 +142,19 @@ class ProgramMotion(MachineMotion):
         yield from self._simulation.watched(self._arriving())
         self.alarm = self._simulation.alarm
 
-    def _arriving(self) -> Iterator[Samples]:
-        """Samples, with what was planned for them."""
-        for stepped in made_ahead(self._stepped()):
-            self.planned_s = stepped.planned_s
+    def _arriving(self) -> Iterator[Stepped]:
+        """Take note of what was planned for each chunk when it comes to those who look."""
+        for ahead in made_ahead(self._ahead()):
+            self.planned_s = ahead.planned_s
             if self._moves is not None:
-                for moves in stepped.moves:
+                for moves in ahead.moves:
                     self._moves.expect(moves)
-            yield stepped.samples
+            yield ahead.stepped
 
-    def _stepped(self) -> Iterator[_Stepped]:
-        for samples in self._simulation.stepped():
+    def _ahead(self) -> Iterator[_Ahead]:
+        for stepped in self._simulation.stepped():
             moves = [] if self._moves is None else self._moves.take()
-            yield _Stepped(samples, moves, self._planned_until_s)
+            yield _Ahead(stepped, moves, self._planned_until_s)
 
     def _noted(self) -> Iterator[Setpoints]:
         for chunk in self._setpoints:

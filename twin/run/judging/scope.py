@@ -179,8 +179,12 @@ def _never_read(settings: ControlSettings) -> Iterator[Unwatched]:
 
 
 def _never_run(stopped: Alarm | None) -> Iterator[Unwatched]:
-    if stopped is not None:
+    if stopped is None:
+        return
+    if stopped.time_s:
         yield Unwatched(f"all behind line {stopped.line}", "the alarm ended the run")
+    else:
+        yield Unwatched("every line", "the alarm was raised before anything moved")
 
 
 def _expected(job: JobFile) -> Iterator[Unwatched]:
