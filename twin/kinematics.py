@@ -49,8 +49,8 @@ class ToolPoses(NamedTuple):
 
     Attributes:
         tip: Shape (n, 3) [mm].
-        along_x: Which way machine X points on the tool, with which a head turns it, shape (n, 3).
-        axis: Which way the tool points from its tip to the spindle, shape (n, 3).
+        along_x: Direction of machine X on the tool, which turns with a head, shape (n, 3).
+        axis: Direction from the tip of the tool to the spindle, shape (n, 3).
     """
 
     tip: _Floats
@@ -80,7 +80,7 @@ def tool_point(chain: Kinematics, joints: _Floats, length: float | _Floats = 0.0
 
 
 def tool_direction(chain: Kinematics, joints: _Floats) -> _Floats:
-    """Which way the tool points from its tip to the spindle, seen from the part.
+    """Direction from the tip of the tool to the spindle, seen from the part.
 
     Returns:
         Unit vectors, shape (n, 3).
@@ -128,8 +128,8 @@ def with_rotary_at_rest(
 def counted_from(chain: Kinematics, zero: _Floats, length: float) -> Kinematics:
     """The chain of a part that was measured with a tool while the rotary axes were at a part zero.
 
-    Its frame is that of the machine while the axes that turn the part stand there: their joints are told
-    where they lie then, and their coordinates count from there. Its origin is the tip of the tool with X, Y
+    Its frame is that of the machine while the axes that turn the part are there: their joints have
+    the places that they have then, and their coordinates count from there. Its origin is the tip of the tool with X, Y
     and Z at zero.
 
     Args:

@@ -85,7 +85,7 @@ def moves_per_second(cell: float) -> float:
 
     def cut() -> None:
         part.heights[:] = part.top
-        sweep_lines(part, points, edge, cores=1)
+        sweep_lines(part, points, edge)
 
     return (len(points) - 1) / median_cpu_seconds(cut)
 

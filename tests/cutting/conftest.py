@@ -12,13 +12,19 @@ from twin.recording.reader import Samples
 Motion = Callable[..., Samples]
 
 
-def samples(position: FloatArray, line: int | FloatArray = 1, start: float = 0.0) -> Samples:
-    """Samples at 1 ms of axes that stand exactly where they were told to."""
+def samples(
+    position: FloatArray,
+    line: int | FloatArray = 1,
+    start: float = 0.0,
+    commanded: FloatArray | None = None,
+) -> Samples:
+    """Samples at 1 ms of axes that stand where they were told to, or off it."""
     position = np.asarray(position, np.float64)
     still, column = np.zeros_like(position), np.zeros(len(position))
     lines = np.broadcast_to(np.asarray(line, np.int64), len(position)).copy()
     time = start + 1e-3 * np.arange(len(position), dtype=np.float64)
-    setpoint = Setpoints(time, lines, lines - 1, column, position, still, still)
+    wanted = position if commanded is None else np.asarray(commanded, np.float64)
+    setpoint = Setpoints(time, lines, lines - 1, column, wanted, still, still)
     return Samples(setpoint, position.copy(), still, still)
 
 

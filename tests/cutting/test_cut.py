@@ -307,10 +307,12 @@ def test_what_the_machine_is_off_its_path_is_no_chip(samples: Motion) -> None:
     angle = np.linspace(0.0, 4.0 * np.pi, 6001)
     radius = 20.0 + np.where(angle > 2.0 * np.pi, 6e-3 * np.sin(3.0 * angle), 0.0)
     motion = path(radius * np.cos(angle), radius * np.sin(angle), -1.0)
+    wanted = path(20.0 * np.cos(angle), 20.0 * np.sin(angle), -1.0)
     cutter = Cutter(plate(0.4), ToolTable(number=1, diameter=10.0, flute=10.0), FRAME, ZERO)
     for begin in range(0, 6000, 500):
-        part = motion[begin : begin + 501]
-        cutter.add(samples(part, start=begin * 1e-3), np.zeros(len(part), np.bool_))
+        part = slice(begin, begin + 501)
+        moved = samples(motion[part], start=begin * 1e-3, commanded=wanted[part])
+        cutter.add(moved, np.zeros(len(moved), np.bool_))
     assert cutter.result().air_share == pytest.approx(0.5, abs=0.01)
 
 

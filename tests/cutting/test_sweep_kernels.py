@@ -50,7 +50,7 @@ def swept(
     points: FloatArray, cutter: Profile, shape: tuple[int, int]
 ) -> tuple[FloatArray, Removal, Rectangle]:
     part, marked = board(shape), board(shape)
-    removal, changed = sweep_lines(part, points, cutter, cores=1)
+    removal, changed = sweep_lines(part, points, cutter)
     marks = np.zeros(shape)
     mark = np.arange(1, len(points), dtype=np.float64)
     sweep_lines(marked, points, cutter, Marks(marks, mark))
@@ -111,20 +111,6 @@ def test_what_is_passed_over_was_cut_before(
         assert depth[i] == pytest.approx(one.depth[0], abs=1e-9)
     np.testing.assert_allclose(whole, part.heights, atol=1e-12)
     np.testing.assert_array_equal(whole, known.heights)
-
-
-@pytest.mark.parametrize("cutter", PROFILES)
-def test_two_cores_change_no_bit(cutter: Profile) -> None:
-    random = np.random.default_rng(7)
-    path = np.cumsum(random.normal(scale=0.2, size=(3000, 3)), axis=0) * [1.0, 1.0, 0.05]
-    path += [9.0, 9.0, -1.0] - path.mean(axis=0)
-    alone, together = board((50, 47)), board((50, 47))
-    one, changed = sweep_lines(alone, path, cutter, cores=1)
-    two, changed_by_two = sweep_lines(together, path, cutter, cores=2)
-    np.testing.assert_array_equal(together.heights, alone.heights)
-    np.testing.assert_array_equal(two, one)
-    assert changed == changed_by_two
-    assert (one.volume > 0.0).any()
 
 
 def test_level_sweep_is_the_stadium() -> None:

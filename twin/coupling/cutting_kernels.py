@@ -22,10 +22,10 @@ from twin.coupling.turning_tool import (
     time_of_tooth,
     turn_spindle,
 )
-from twin.cutting.kernels.covered_cells import Cells, Marks
-from twin.cutting.kernels.sweep import ALL_ROWS, sweep
+from twin.cutting.kernels.covered_cells import Cells, Marks, Sum
+from twin.cutting.kernels.sweep import sweep
 from twin.cutting.kernels.tooth_forces import tooth_forces
-from twin.cutting.kernels.walls import Material, leave_walls, lose_trace, no_trace
+from twin.cutting.kernels.walls import WalledMap, leave_walls, lose_trace, no_trace
 from twin.machine.simulation.process import Physics
 from twin.nc.canonical import FloatArray
 from twin.units import MM
@@ -50,7 +50,7 @@ class PartTransform(NamedTuple):
 class Cut(NamedTuple):
     """A tool in a height map, which is cut, and where the part is."""
 
-    material: Material
+    material: WalledMap
     cells: Cells
     tool: TurningTool
     place: PartTransform
@@ -62,7 +62,7 @@ class CutProgress(NamedTuple):
     Attributes:
         tips: Where it was cut up to, shape (2, 3); the second row is the later [mm].
         trace: Where it has left walls up to, of ``leave_walls``.
-        sums: What ``sweep`` adds to, shape (1, 2, 4).
+        sums: What ``sweep`` adds to, shape (1, 4).
     """
 
     tips: FloatArray
@@ -74,7 +74,7 @@ class CutProgress(NamedTuple):
 def nothing_swept() -> CutProgress:
     """Of a tool that has been nowhere."""
     marks = Marks(np.zeros((0, 0)), np.zeros(1))
-    return CutProgress(np.zeros((2, 3)), no_trace(), np.zeros((1, 2, 4)), marks)
+    return CutProgress(np.zeros((2, 3)), no_trace(), np.zeros((1, len(Sum))), marks)
 
 
 @threaded_kernel
@@ -167,7 +167,7 @@ def _look(period: float, cut: Cut, memory: Memory, swept: CutProgress) -> None:
     material, cutter = cut.material, cut.tool.cutter
     sweep(
         cut.cells, tips, cutter.profile,
-        swept.sums, swept.marks, numbers[CutNumber.STOOD] > 0.0, ALL_ROWS,
+        swept.sums, swept.marks, numbers[CutNumber.STOOD] > 0.0, False,
     )  # fmt: skip
     numbers[CutNumber.STOOD] = 1.0
     leave_walls(material, swept.trace, tips[1], cutter.profile.radius, cutter.side_from)

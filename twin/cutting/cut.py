@@ -238,7 +238,7 @@ class Cutter:
         removal = Removal(*np.zeros((3, 1)))
         tip = np.repeat(stand.ends.tip, 2, axis=0)
         stretches = Stretches(
-            tip, stand.time, np.array([line]), stand.rapid, *removal, stand.ends.axis
+            tip, stand.time, np.array([line]), stand.rapid, *removal, stand.off, stand.ends.axis
         )
         self._gouges.note(("arrival", line), "arrival", stretches, 0, depth)
         if self._halts:
@@ -265,6 +265,7 @@ class Cutter:
         Returns:
             Force on the tool during each sample that was cut along, shape (m, 3) [N].
         """
+        stood = self._last is not None
         before, since = (motion.ends[:1], motion.time[0]) if self._last is None else self._last
         self._last = motion.ends[-1:].copy(), float(motion.time[-1])
         points = before.followed_by(motion.ends)
@@ -277,7 +278,7 @@ class Cutter:
         rapids = self._rapids.suspects(tip, rapid, lag, ends, reach)
         standing = self._standing.suspects(tip, ~rapid & off, lag, ends, reach)
         suspect = (rapids > 0) | (standing > 0)
-        found, met = self._take_off(points, cutter, suspect, edge=edge)
+        found, met = self._take_off(points, cutter, suspect, edge=edge, stood=stood)
         count = len(found.volume)
         points, sample = points[: count + 1], sample[:count]
         rapids, standing = rapids[:count], standing[:count]
@@ -286,7 +287,9 @@ class Cutter:
         self._removed[self.tool.number] = so_far + float(found.volume.sum())
         time, line = motion.time[sample], motion.line[sample]
         axis = None if points.axis is None else points.axis[1:]
-        stretches = Stretches(points.tip, time, line, rapid[:count], *found, axis)
+        stretches = Stretches(
+            points.tip, time, line, rapid[:count], *found, motion.off[sample], axis
+        )
         latest = self._note_contacts(stretches, met)
         reached = met.pop(EDGE, np.zeros(count))
         hits = reached > 0.0
@@ -300,7 +303,7 @@ class Cutter:
         return np.repeat(force, np.diff(sample, prepend=-1), axis=0)
 
     def _take_off(
-        self, points: Points, cutter: Profile, suspect: BoolArray, *, edge: bool
+        self, points: Points, cutter: Profile, suspect: BoolArray, *, edge: bool, stood: bool
     ) -> tuple[Removal, dict[str, FloatArray]]:
         """Take off what the tool meets, up to where something meets that must not, if that halts.
 
@@ -308,6 +311,7 @@ class Cutter:
             points: Ends of n stretches.
             suspect: In which of them the edge must not cut, shape (n,).
             edge: As for ``_cut``.
+            stood: Whether the tool has been at the first of them.
 
         Returns:
             What each stretch took off, and by name how deep something was in the material that
@@ -323,7 +327,7 @@ class Cutter:
         # Against the material as the stretches before have left it.
         for k in flagged.tolist():
             if edge:
-                self._sweep(points, cutter, removal, mark, slice(done, k))
+                self._sweep(points, cutter, removal, mark, slice(done, k), stood=stood)
             done = k
             here = slice(k, k + 1)
             for name, overlap in contact.measure(points[k : k + 2], suspect[here]).items():
@@ -332,18 +336,25 @@ class Cutter:
                 count = k + 1
                 break
         if edge:
-            self._sweep(points, cutter, removal, mark, slice(done, count))
+            self._sweep(points, cutter, removal, mark, slice(done, count), stood=stood)
         removal = Removal(*(column[:count] for column in removal))
         return removal, {name: depth[:count] for name, depth in met.items()}
 
     def _sweep(
-        self, points: Points, cutter: Profile, removal: Removal, mark: FloatArray, part: slice
+        self,
+        points: Points,
+        cutter: Profile,
+        removal: Removal,
+        mark: FloatArray,
+        part: slice,
+        *,
+        stood: bool,
     ) -> None:
         """Take off what some of the stretches meet."""
         if part.start >= part.stop:
             return
-        path = points[part.start : part.stop + 1]
-        found = self.material.take_off(path, self.tool, cutter, mark[part], stood=part.start > 0)
+        path, stood = points[part.start : part.stop + 1], stood or part.start > 0
+        found = self.material.take_off(path, self.tool, cutter, mark[part], stood=stood)
         for column, swept in zip(removal, found, strict=True):
             column[part] = swept
 

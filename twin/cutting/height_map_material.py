@@ -9,9 +9,7 @@ from twin.cutting.heights.part import part_picture, write_glb, write_stl
 from twin.cutting.heights.sweeping import Rectangle, sweep_lines, union
 from twin.cutting.kernels.covered_cells import Marks
 from twin.cutting.kernels.simplify import simplify
-from twin.cutting.kernels.sweep import Removal
-from twin.cutting.kernels.tool_height import profile_height
-from twin.cutting.kernels.wall_distance import add_walls, note_walls
+from twin.cutting.kernels.sweep import Removal, settle
 from twin.cutting.material import (
     LONGEST_SHARE,
     MOST_JOINED,
@@ -24,12 +22,6 @@ from twin.cutting.tools import Profile
 from twin.cutting.watching.stock_contact import StockContact
 from twin.job.job_file import ToolTable
 from twin.nc.canonical import FloatArray, IntArray
-
-WALL_SHARE = 0.02
-WALL_MM = 4e-3
-WALL_JOINED = 32
-"""As ``STRAIGHT_SHARE``, ``STRAIGHT_MM`` and ``MOST_JOINED``, for walls beside the way, which are looked at for more
-stretches together."""
 
 
 class HeightMapMaterial:
@@ -78,15 +70,11 @@ class HeightMapMaterial:
     ) -> Removal:
         """Cut what a tool meets, and note the walls that it leaves."""
         del tool
-        material, way = self.map, points.tip
-        found = sweep_lines(material, way, edge, Marks(self.marks, travelled), stood=stood)
+        marks = Marks(self.marks, travelled)
+        found = sweep_lines(self.map, points.tip, edge, marks, stood=stood, walls=True)
         self.changed = union(self.changed, found.changed)
-        off = min(WALL_SHARE * material.cell, WALL_MM)
-        rows = simplify(way[None], np.zeros(len(way), np.int64), off, edge.radius, WALL_JOINED)
-        side, volume = profile_height(edge.radius, *edge), found.removal.volume
-        walls, path = np.zeros(len(volume)), np.linalg.norm(np.diff(way, axis=0), axis=1)
-        note_walls(material.cells, way, rows, edge.radius, edge.flat, side, walls)
-        self._owed = add_walls(volume, walls, path, edge.radius, self._owed)
+        volume = found.removal.volume
+        self._owed = settle(volume, np.ones(len(volume), np.bool_), self._owed)
         return found.removal
 
     def write_stl(self, path: Path, zero: FloatArray) -> None:

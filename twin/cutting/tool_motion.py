@@ -19,6 +19,7 @@ class ToolMotion(Columns):
 
     Attributes:
         ends: Where it was at each.
+        off: From its tip to the setpoint's, shape (n, 3) [mm].
         lag: How far it trails its setpoint, shape (n,) [mm].
         time: Shape (n,) [s].
         line: Source line, shape (n,).
@@ -27,6 +28,7 @@ class ToolMotion(Columns):
     """
 
     ends: Points
+    off: FloatArray
     lag: FloatArray
     time: FloatArray
     line: IntArray
@@ -67,13 +69,12 @@ def tool_motion(
     tilts = reach is not None
     carried = {axes: _places(_at_zero(joints, axes), frame, tilts=tilts) for axes in carriers}
     ends = dataclasses.replace(_places(joints, frame, tilts=tilts), carriers=carried)
-    if reach is None or ends.axis is None:
-        lag = np.abs(frame.position(setpoint.position) - ends.tip).sum(axis=1)
-    else:
-        tip, _, axis = frame.poses(setpoint.position)
-        lag = np.abs(tip - ends.tip).sum(axis=1)
-        lag += reach * np.linalg.norm(ends.axis - axis, axis=1)
-    return ToolMotion(ends, lag, setpoint.time, setpoint.line, rapid, standing)
+    wanted = _places(setpoint.position, frame, tilts=tilts)
+    off = wanted.tip - ends.tip
+    lag = np.abs(off).sum(axis=1)
+    if reach is not None and ends.axis is not None and wanted.axis is not None:
+        lag += reach * np.linalg.norm(ends.axis - wanted.axis, axis=1)
+    return ToolMotion(ends, off, lag, setpoint.time, setpoint.line, rapid, standing)
 
 
 def _at_zero(joints: FloatArray, axes: tuple[int, ...]) -> FloatArray:

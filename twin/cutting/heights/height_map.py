@@ -63,7 +63,7 @@ class HeightMap:
     @property
     def volume(self) -> float:
         """Material that is left, up to the very walls [mm³]."""
-        _, lowest, near, down_to, far, _ = np.moveaxis(self.behind, -1, 0)
+        _, lowest, near, down_to, far, *_ = np.moveaxis(self.behind, -1, 0)
         cut = near * np.maximum(self.heights - down_to, 0.0)
         cut += far * np.maximum(np.minimum(self.heights, down_to) - lowest, 0.0)
         return float((self.heights - self.bottom - cut).sum()) * self.cell**2
@@ -140,7 +140,7 @@ def blank(stock: StockTable, corner: FloatArray, cell: float) -> HeightMap:
         inside = edge.inside(result.x, result.y[:, None])
         beside = within & (inside <= cell)
         off, share = inside[beside] / cell, _share_outside(result, beside)
-        raw = np.broadcast_arrays(off + KNOWN, bottom, share, bottom, 0.0, 0.0)
+        raw = np.broadcast_arrays(off + KNOWN, bottom, share, bottom, 0.0, 0.0, 0.0)
         behind[beside] = np.column_stack(raw)
     if stock.file is not None:
         mesh = read_stl(Path(stock.file))
@@ -150,7 +150,7 @@ def blank(stock: StockTable, corner: FloatArray, cell: float) -> HeightMap:
         heights[:], behind[:] = bottom, 0.0
         rasterize(heights, result.origin, cell, triangles)
         result.uncut = heights.copy()
-        behind[_beside_lower(heights, bottom)] = KNOWN, bottom, 0.0, bottom, 0.0, 0.0
+        behind[_beside_lower(heights, bottom)] = KNOWN, bottom, 0.0, bottom, 0.0, 0.0, 0.0
     return result
 
 

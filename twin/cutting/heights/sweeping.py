@@ -1,26 +1,14 @@
-"""Sweep the tool through a height map, on another core too where there is one."""
+"""Sweep the tool through a height map."""
 
-from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
 
 import numpy as np
 
 from twin.cutting.heights.height_map import HeightMap
-from twin.cutting.kernels.covered_cells import Marks
-from twin.cutting.kernels.sweep import (
-    ALL_ROWS,
-    EVEN_ROWS,
-    ODD_ROWS,
-    Removal,
-    removal_of_sums,
-    sweep,
-)
+from twin.cutting.kernels.covered_cells import Marks, Sum
+from twin.cutting.kernels.sweep import Removal, removal_of_sums, sweep
 from twin.cutting.tools import Profile
 from twin.nc.canonical import FloatArray
-from twin.processor import available_cores
-
-FEWEST_LINES = 1000
-"""Lines that are worth another thread: it takes as long to begin as a hundred lines."""
 
 Rectangle = tuple[int, int, int, int]
 """Row, row end, column, column end of cells."""
@@ -44,34 +32,22 @@ def sweep_lines(
     marks: Marks | None = None,
     *,
     stood: bool = False,
-    cores: int | None = None,
+    walls: bool = False,
 ) -> Swept:
     """Cut the material that a tool meets along its path from point to point.
-
-    Two threads take every other row of the map each, and each row's share of what a line took off
-    is added up in one order: the result does not depend on how many cores there are.
 
     Args:
         points: Tool tip positions, shape (n, 3) [mm].
         marks: What each line leaves where it cut; None: nothing.
         stood: Whether the tool has been at the first point, and has cut what it meets there.
-        cores: Cores to use, by default those that this process may run on.
+        walls: Whether the walls that it leaves are noted, and what they are off whole cells counts.
     """
     count = max(len(points) - 1, 0)
-    sums, grid = np.zeros((count, 2, 4)), material.grid
+    sums = np.zeros((count, len(Sum)))
     marks = Marks(np.zeros((0, 0)), np.zeros(count)) if marks is None else marks
-
-    def cut(rows: tuple[int, int]) -> Rectangle:
-        return sweep(material.cells, points, edge, sums, marks, stood, rows)
-
-    if count >= FEWEST_LINES and (available_cores() if cores is None else cores) > 1:
-        with ThreadPoolExecutor(1, "sweep") as other:
-            odd = other.submit(cut, ODD_ROWS)
-            changed = union(cut(EVEN_ROWS), odd.result())
-    else:
-        changed = cut(ALL_ROWS)
+    changed = sweep(material.cells, points, edge, sums, marks, stood, walls)
     removal = Removal(*np.zeros((3, count)))
-    removal_of_sums(sums, points, grid, removal)
+    removal_of_sums(sums, points, material.grid, removal)
     return Swept(removal, changed)
 
 

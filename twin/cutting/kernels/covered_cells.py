@@ -1,5 +1,6 @@
 """Which cells of a height map a tool covers along a straight line, row by row."""
 
+import enum
 import math
 from typing import NamedTuple
 
@@ -36,7 +37,7 @@ class Cells(NamedTuple):
 
     Attributes:
         heights: Of the material over each cell, shape (ny, nx) [mm].
-        behind: How far the middles of cells are behind walls, shape (ny, nx, 6); see ``wall_distance``.
+        behind: How far the middles of cells are behind walls, shape (ny, nx, 7); see ``wall_distance``.
     """
 
     heights: FloatArray
@@ -56,6 +57,18 @@ class Marks(NamedTuple):
     mark: FloatArray
 
 
+class Sum(enum.IntEnum):
+    """What a line took off: columns of ``Scratch.sums``."""
+
+    LOST = 0
+    """Height [mm], of columns of which a wall has left a part by that part."""
+    COLUMNS = 1
+    """That times the number of the column."""
+    ROWS = 2
+    DEEPEST = 3
+    """Greatest height [mm]."""
+
+
 class Scratch(NamedTuple):
     """What is at hand while lines are swept.
 
@@ -63,7 +76,6 @@ class Scratch(NamedTuple):
         heights: The height map, shape (ny, nx) [mm].
         behind: What is known of its walls.
         marks: As ``sweep`` has them.
-        rows: Of the map, which are cut: the first, and how far it is to the next.
         low: Row at which the disc that the tool covers begins, at either end of a line, shape (2,).
         spans: First column of that disc in each of its rows and the one after its last, shape (2, 2, m).
         lowest: Heights of the tool over a run of cells, shape (RUN,) [mm].
@@ -76,7 +88,6 @@ class Scratch(NamedTuple):
     grid: Grid
     profile: Profile
     marks: Marks
-    rows: tuple[int, int]
     low: IntArray
     spans: FloatArray
     lowest: FloatArray
@@ -135,7 +146,7 @@ class SweptOutline(NamedTuple):
         before: Which of the bench's discs is that at the beginning.
         after: Which is that at the end.
         right: The side to the right of the line.
-        low: First row, of those that are cut.
+        low: First row.
         high: The one after the last.
     """
 
@@ -149,16 +160,16 @@ class SweptOutline(NamedTuple):
 
 @arithmetic_kernel
 def outline_of(scratch: Scratch, a: FloatArray, b: FloatArray, line: int) -> SweptOutline:
-    """The outline of what a tool covers from a to b, in the rows that are cut."""
+    """The outline of what a tool covers from a to b."""
     before, after = line % 2, (line + 1) % 2
-    low_a, low_b, (begin, step) = scratch.low[before], scratch.low[after], scratch.rows
+    low_a, low_b = scratch.low[before], scratch.low[after]
     low = max(0, min(low_a, low_b))
     high = min(scratch.heights.shape[0], max(low_a, low_b) + scratch.spans.shape[2])
     right, left = (
         side_of(scratch, a, b, scratch.profile.radius),
         side_of(scratch, a, b, -scratch.profile.radius),
     )
-    return SweptOutline(before, after, right, left, low + (begin - low) % step, high)
+    return SweptOutline(before, after, right, left, low, high)
 
 
 @arithmetic_kernel

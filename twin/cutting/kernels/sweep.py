@@ -1,6 +1,5 @@
 """Hot loops of cutting: sweep the tool along straight stretches."""
 
-import enum
 import math
 from typing import NamedTuple
 
@@ -13,6 +12,7 @@ from twin.cutting.kernels.covered_cells import (
     Grid,
     Marks,
     Scratch,
+    Sum,
     columns_of,
     lay_disc,
     outline_of,
@@ -20,28 +20,11 @@ from twin.cutting.kernels.covered_cells import (
 )
 from twin.cutting.kernels.run_heights import lowest_in_run
 from twin.cutting.kernels.tool_height import Profile
-from twin.cutting.kernels.wall_distance import cut_of_column
-from twin.nc.canonical import FloatArray
+from twin.cutting.kernels.wall_distance import cut_of_column, note_walls
+from twin.nc.canonical import BoolArray, FloatArray
 
 RUN = 128
 """Cells that are looked at together."""
-
-ALL_ROWS = (0, 1)
-EVEN_ROWS = (0, 2)
-ODD_ROWS = (1, 2)
-"""For ``sweep``: all, or what two threads take that cut together."""
-
-
-class _Sum(enum.IntEnum):
-    """What a line took off: columns of ``sums``."""
-
-    LOST = 0
-    """Height [mm], of columns of which a wall has left a part by that part."""
-    COLUMNS = 1
-    """That times the number of the column."""
-    ROWS = 2
-    DEEPEST = 3
-    """Greatest height [mm]."""
 
 
 class Removal(NamedTuple):
@@ -67,7 +50,7 @@ def sweep(
     sums: FloatArray,
     marks: Marks,
     stood: bool,
-    rows: tuple[int, int],
+    walls: bool,
 ) -> tuple[int, int, int, int]:
     """Cut the material that the tool meets along its path from point to point.
 
@@ -77,23 +60,21 @@ def sweep(
     Args:
         cells: The height map, whose heights are changed.
         points: Tool tip positions, shape (n, 3) [mm].
-        sums: What each line took off of rows of even and of odd number is added to it, shape
-            (n - 1, 2, 4): height [mm], that times the number of the column and of the row, and the
-            greatest height. ``removal_of_sums`` reads it.
+        sums: What each line took off is added to it, shape (n - 1, 4); see ``Sum``. ``removal_of_sums`` reads it.
         marks: What each leaves where it cut.
         stood: Whether the tool has been at the first point, and has cut what it meets there.
-        rows: Of the map, which are cut: the first, and how far it is to the next.
+        walls: Whether the walls that it leaves are noted, and what they are off whole cells counts.
 
     Returns:
         First and last-but-one row, first and last-but-one column of the cells that changed.
     """
     count = int(2.0 * profile.radius / cells.grid.cell) + 2
     scratch = Scratch(
-        cells.heights, cells.behind, cells.grid, profile, marks, rows, np.zeros(2, np.int64),
+        cells.heights, cells.behind, cells.grid, profile, marks, np.zeros(2, np.int64),
         np.zeros((2, 2, count)), np.zeros(RUN), sums, np.zeros(4, np.int64),
     )  # fmt: skip
     scratch.changed[0], scratch.changed[2] = cells.heights.shape
-    _sweep_lines(scratch, points, stood)
+    _sweep_lines(scratch, points, stood, walls)
     return scratch.changed[0], scratch.changed[1], scratch.changed[2], scratch.changed[3]
 
 
@@ -102,28 +83,45 @@ def removal_of_sums(sums: FloatArray, points: FloatArray, grid: Grid, removal: R
     """Say what each line took off.
 
     Args:
-        sums: Of ``sweep``, shape (n - 1, 2, 4).
+        sums: Of ``sweep``, shape (n - 1, 4).
         points: Tool tip positions, shape (n, 3) [mm].
         removal: Set to it.
     """
     for i in range(len(sums)):
-        even, odd = sums[i, 0], sums[i, 1]
-        lost = even[_Sum.LOST] + odd[_Sum.LOST]
+        lost = sums[i, Sum.LOST]
         removal.volume[i] = lost * grid.cell * grid.cell
-        removal.depth[i] = max(even[_Sum.DEEPEST], odd[_Sum.DEEPEST])
+        removal.depth[i] = sums[i, Sum.DEEPEST]
         removal.aside[i] = 0.0
         dx, dy = points[i + 1, 0] - points[i, 0], points[i + 1, 1] - points[i, 1]
         length = math.hypot(dx, dy)
         if lost > 0.0 and length > 0.0:
-            column = (even[_Sum.COLUMNS] + odd[_Sum.COLUMNS]) / lost
-            row = (even[_Sum.ROWS] + odd[_Sum.ROWS]) / lost
-            x = grid.origin[0] + column * grid.cell - points[i, 0]
-            y = grid.origin[1] + row * grid.cell - points[i, 1]
+            x = grid.origin[0] + sums[i, Sum.COLUMNS] / lost * grid.cell - points[i, 0]
+            y = grid.origin[1] + sums[i, Sum.ROWS] / lost * grid.cell - points[i, 1]
             removal.aside[i] = (y * dx - x * dy) / length
 
 
 @arithmetic_kernel
-def _sweep_lines(scratch: Scratch, points: FloatArray, stood: bool) -> None:
+def settle(volume: FloatArray, cuts: BoolArray, owed: float) -> float:
+    """Let stretches that only cut the grid, or take less than nothing, leave what they took to those that follow.
+
+    Args:
+        volume: Of n stretches that follow each other [mm³]; changed.
+        cuts: Which of them cut, shape (n,).
+        owed: What stretches before them have left [mm³].
+
+    Returns:
+        What these leave.
+    """
+    for i in range(len(volume)):
+        owed += volume[i]
+        volume[i] = owed if cuts[i] and owed > 0.0 else 0.0
+        owed -= volume[i]
+    return owed
+
+
+@arithmetic_kernel
+def _sweep_lines(scratch: Scratch, points: FloatArray, stood: bool, walls: bool) -> None:
+    cells = Cells(scratch.heights, scratch.behind, scratch.grid)
     known, flat = False, scratch.profile.flat >= scratch.profile.radius
     for i in range(len(points) - 1):
         a, b = points[i], points[i + 1]
@@ -140,6 +138,8 @@ def _sweep_lines(scratch: Scratch, points: FloatArray, stood: bool) -> None:
             _sweep_level(scratch, a, b, i)
         else:
             _sweep_line(scratch, a, b, i, done)
+        if walls:
+            note_walls(cells, a, b, scratch.profile, done, scratch.sums[i])
 
 
 @arithmetic_kernel
@@ -151,7 +151,7 @@ def _sweep_level(scratch: Scratch, a: FloatArray, b: FloatArray, line: int) -> N
     """
     heights, z = scratch.heights, max(a[2], scratch.grid.bottom)
     outline = outline_of(scratch, a, b, line)
-    for row in range(outline.low, outline.high, scratch.rows[1]):
+    for row in range(outline.low, outline.high):
         first, end = columns_of(scratch, outline, row)
         done, done_end = span_of(scratch, outline.before, row)
         if done >= done_end:
@@ -187,7 +187,7 @@ def _sweep_line(scratch: Scratch, a: FloatArray, b: FloatArray, line: int, done:
     flat, outline = scratch.profile.flat >= scratch.profile.radius, outline_of(scratch, a, b, line)
     begins_lower = a[2] <= b[2]
     lower = a if begins_lower else b
-    for row in range(outline.low, outline.high, scratch.rows[1]):
+    for row in range(outline.low, outline.high):
         first, end = columns_of(scratch, outline, row)
         if first >= end:
             continue
@@ -264,10 +264,10 @@ def _add(
     scratch: Scratch, line: int, row: int, run: tuple[int, int], cut: tuple[float, float, float]
 ) -> None:
     """Add what a run of cells lost: in all, that times the columns' numbers, and at most [mm]."""
-    sums, changed = scratch.sums[line, row % 2], scratch.changed
-    sums[_Sum.LOST] += cut[0]
-    sums[_Sum.COLUMNS] += cut[1]
-    sums[_Sum.ROWS] += cut[0] * row
-    sums[_Sum.DEEPEST] = max(sums[_Sum.DEEPEST], cut[2])
+    sums, changed = scratch.sums[line], scratch.changed
+    sums[Sum.LOST] += cut[0]
+    sums[Sum.COLUMNS] += cut[1]
+    sums[Sum.ROWS] += cut[0] * row
+    sums[Sum.DEEPEST] = max(sums[Sum.DEEPEST], cut[2])
     changed[0], changed[1] = min(changed[0], row), max(changed[1], row + 1)
     changed[2], changed[3] = min(changed[2], run[0]), max(changed[3], run[1])

@@ -17,14 +17,15 @@ import numpy.typing as npt
 
 from twin.compilation.compilable import inlined
 from twin.compilation.kernel import kernel
-from twin.cutting.kernels.covered_cells import Cells, chord
-from twin.nc.canonical import FloatArray, IntArray
+from twin.cutting.kernels.covered_cells import Cells, Sum, chord
+from twin.cutting.kernels.tool_height import Profile, profile_height
+from twin.nc.canonical import FloatArray
 
 WallDistance = npt.NDArray[np.float32]
 """By cell: distance of its middle from the nearest tool that passed [cells], plus ``KNOWN``, and the
 lowest that one of these was [mm], 0: none has passed. Then which share of the column is cut off by the nearest, how deep it
 has passed [mm], which share is cut off by others below that, and the distance from the nearest of those that passed lowest, as
-the first. Shape (ny, nx, 6)."""
+the first; then from the nearest of all that passed below the second of these depths. Shape (ny, nx, 7)."""
 
 KNOWN = 1.0
 """Added to distances, so that 0 can say that none is known [cells]."""
@@ -35,7 +36,7 @@ HALF = 0.5
 _LEVEL_SHARE = 0.01
 """Rise of a way below which it counts as level."""
 _DOUBT = 0.05
-"""What paths that are simplified for cells and for walls may be off each other, and more [cells]."""
+"""What a tool may be off when it comes along a wall again [cells]."""
 _SAME_SHARE = 0.005
 """Share of its column by which a wall has to come nearer to be cut again."""
 EQUAL_MM = 1e-3
@@ -44,7 +45,7 @@ EQUAL_MM = 1e-3
 
 def no_walls_known(heights: FloatArray) -> WallDistance:
     """Of a height map that no tool has cut."""
-    return np.zeros((*heights.shape, 6), np.float32)
+    return np.zeros((*heights.shape, 7), np.float32)
 
 
 @inlined
@@ -63,9 +64,20 @@ def share_before(off, widest):
 
 @inlined
 def cut_of_column(behind, row, column, height, lower):
-    """What a column loses that is cut from a height to a lower one, as of a whole column [mm]."""
+    """What a column loses that is cut from a height to a lower one, as of a whole column [mm].
+
+    With what the nearest wall has passed gone, the walls below it are the nearest, if there are any.
+    """
     told = behind[row, column]
-    return height - lower - (cut_before(told, height) - cut_before(told, lower))
+    gone = height - lower - (cut_before(told, height) - cut_before(told, lower))
+    if lower < height and told[0] > 0.0:
+        if lower <= told[1]:
+            told[0], told[1], told[2], told[3] = 0.0, 0.0, 0.0, 0.0
+            told[4], told[5], told[6] = 0.0, 0.0, 0.0
+        elif told[6] > 0.0 and lower <= told[3]:
+            told[0], told[2], told[3] = told[6], told[4], told[1]
+            told[4], told[5], told[6] = 0.0, 0.0, 0.0
+    return gone
 
 
 @inlined
@@ -82,6 +94,7 @@ class _Passing(NamedTuple):
         side: How far above its tip its side begins [mm].
         lowest: Below which it has passed nothing [mm].
         highest: Of what it has cut [mm].
+        done: Whether what it is beside at the beginning has been noted.
     """
 
     begin: FloatArray
@@ -90,132 +103,91 @@ class _Passing(NamedTuple):
     side: float
     lowest: float
     highest: float
+    done: bool
 
 
 @kernel
 def note_walls(
     cells: Cells,
-    points: FloatArray,
-    rows: IntArray,
-    radius: float,
-    flat: float,
-    side: float,
-    volume: FloatArray,
+    begin: FloatArray,
+    end: FloatArray,
+    profile: Profile,
+    done: bool,
+    sums: FloatArray,
 ) -> None:
-    """Note what a tool has passed by.
+    """Note what a tool has passed by on a straight way, as far as walls are off whole cells.
 
     Of a top that it has made a slope nothing is reported: deeper, it goes on before the cell's middle.
 
     Args:
-        cells: The height map, cut along the way, whose walls are written.
-        points: Tool tip positions, shape (n + 1, 3) [mm].
-        rows: Those between which it went straight, the first and the last among them.
-        radius: Of the tool [mm].
-        flat: Radius of the level part of its lower end [mm].
-        side: How far above its tip its side begins [mm].
-        volume: What walls are off whole cells is added to that of each of the n stretches [mm³].
+        cells: The height map, cut up to the end of the way, whose walls are written.
+        begin: Tool tip at its beginning, shape (3,) [mm].
+        end: At its end.
+        done: Whether what it is beside at the beginning has been noted.
+        sums: What walls are off whole cells is added to it, shape (4,); see ``Sum``.
     """
-    (heights, behind, grid), cell = cells, cells.grid.cell
+    (heights, behind, grid), cell, (radius, flat, corner, slope) = cells, cells.grid.cell, profile
     outer = radius + FARTHEST * cell
-    for i in range(len(rows) - 1):
-        a, b, stretches = points[rows[i]], points[rows[i + 1]], rows[i + 1] - rows[i]
-        level = max(min(a[2], b[2]), grid.bottom) + EQUAL_MM
-        if level >= grid.top:
-            continue
-        rise, way = abs(b[2] - a[2]), math.hypot(b[0] - a[0], b[1] - a[1])
-        slopes = flat < radius or (way > 0.0 and rise > _LEVEL_SHARE * way)
-        low = max(0, math.ceil((min(a[1], b[1]) - outer - grid.origin[1]) / cell))
-        high = math.floor((max(a[1], b[1]) + outer - grid.origin[1]) / cell)
-        passing = _Passing(a, b, radius, side, level, max(a[2], b[2]) + side + EQUAL_MM)
-        for row in range(low, min(high, heights.shape[0] - 1) + 1):
-            left, right = chord(a[0], a[1], b[0], b[1], outer, grid.origin[1] + row * cell)
-            first = max(0, math.ceil((left - grid.origin[0]) / cell))
-            end = min(heights.shape[1], math.floor((right - grid.origin[0]) / cell) + 1)
-            # From either side up to what the tool covers.
-            while first < end:
-                off, gone, t = _pass_by(cells, row, first, passing)
-                if off <= -_DOUBT:
-                    break
-                volume[rows[i] + min(int(t * stretches), stretches - 1)] += gone * cell * cell
-                first += 1
-            while end > first:
-                off, gone, t = _pass_by(cells, row, end - 1, passing)
-                if off <= -_DOUBT:
-                    break
-                volume[rows[i] + min(int(t * stretches), stretches - 1)] += gone * cell * cell
-                end -= 1
-            if slopes:
-                for column in range(first, end):
+    level = max(min(begin[2], end[2]), grid.bottom) + EQUAL_MM
+    if level >= grid.top:
+        return
+    rise, way = abs(end[2] - begin[2]), math.hypot(end[0] - begin[0], end[1] - begin[1])
+    slopes = flat < radius or (way > 0.0 and rise > _LEVEL_SHARE * way)
+    low = max(0, math.ceil((min(begin[1], end[1]) - outer - grid.origin[1]) / cell))
+    high = math.floor((max(begin[1], end[1]) + outer - grid.origin[1]) / cell)
+    side = profile_height(radius, radius, flat, corner, slope)
+    highest = max(begin[2], end[2]) + side + EQUAL_MM
+    passing = _Passing(begin, end, radius, side, level, highest, done)
+    middle_x, middle_y = 0.5 * (begin[0] + end[0]), 0.5 * (begin[1] + end[1])
+    around = (outer + 0.5 * way) ** 2
+    for row in range(low, min(high, heights.shape[0] - 1) + 1):
+        y = grid.origin[1] + row * cell
+        if way > cell:
+            left, right = chord(begin[0], begin[1], end[0], end[1], outer, y)
+        else:
+            half = math.sqrt(max(around - (y - middle_y) ** 2, 0.0))
+            left, right = middle_x - half, middle_x + half
+        first = max(0, math.ceil((left - grid.origin[0]) / cell))
+        last = min(heights.shape[1] - 1, math.floor((right - grid.origin[0]) / cell))
+        # From either side up to what the tool covers.
+        while first <= last and _pass_by(cells, row, first, passing, sums):
+            first += 1
+        while first <= last and _pass_by(cells, row, last, passing, sums):
+            last -= 1
+        if slopes:
+            dx, before = end[0] - begin[0], (y - begin[1]) * (end[1] - begin[1])
+            for column in range(first, last + 1):
+                along = (grid.origin[0] + column * cell - begin[0]) * dx + before
+                if along > 0.0 or not done:
                     note_wall(heights, behind, row, column, level, 0.0)
-
-
-@kernel
-def add_walls(
-    volume: FloatArray, walls: FloatArray, path: FloatArray, reach: float, owed: float
-) -> float:
-    """Add what walls are off whole cells to what stretches took off by these.
-
-    A wall is looked at while the tool comes towards it, comes by it and goes on: that it was taken for farther away at first
-    is no chip, so each part of it is spread over what was cut within reach. Stretches that took off less than nothing have it
-    from those that follow.
-
-    Args:
-        volume: Of n stretches that follow each other, by whole cells [mm³]; changed.
-        walls: From ``note_walls``, shape (n,) [mm³].
-        path: Length of each, shape (n,) [mm].
-        reach: How far before and behind its place a part is spread [mm].
-        owed: What stretches before them could not have, not above 0 [mm³].
-
-    Returns:
-        What these could not.
-    """
-    for i in range(len(walls)):
-        if walls[i] == 0.0:
-            continue
-        first, last, before, behind = i, i, 0.5 * path[i], 0.5 * path[i]
-        while first > 0 and before < reach:
-            first -= 1
-            before += path[first]
-        while last < len(walls) - 1 and behind < reach:
-            last += 1
-            behind += path[last]
-        length = 0.0
-        for k in range(first, last + 1):
-            if volume[k] != 0.0 or walls[k] != 0.0:
-                length += path[k]
-        if length == 0.0:
-            volume[i] += walls[i]
-            continue
-        for k in range(first, last + 1):
-            if volume[k] != 0.0 or walls[k] != 0.0:
-                volume[k] += walls[i] * path[k] / length
-    for i in range(len(volume)):
-        owed += volume[i]
-        volume[i] = max(owed, 0.0)
-        owed = min(owed, 0.0)
-    return owed
+                    if behind[row, column, 6] > 0.0:
+                        behind[row, column, 6] = KNOWN
 
 
 @inlined
-def _pass_by(cells, row, column, passing):
+def _pass_by(cells, row, column, passing, sums):
     """Note a wall that a tool has passed along beside the middle of a cell, if it stands.
 
     Returns:
-        How far the middle is from the tool's side [cells], what of the column is gone now, as of a whole one [mm],
-        and at which share of its path it passed.
+        Whether the tool does not cover the middle.
     """
     a, b, grid = passing.begin, passing.end, cells.grid
     x, y = grid.origin[0] + column * grid.cell - a[0], grid.origin[1] + row * grid.cell - a[1]
     dx, dy = b[0] - a[0], b[1] - a[1]
-    squared, t, tip = dx * dx + dy * dy, 0.0, min(a[2], b[2])
+    squared, along, t, tip = dx * dx + dy * dy, x * dx + y * dy, 0.0, min(a[2], b[2])
     if squared > 0.0:
-        t = min(1.0, max(0.0, (x * dx + y * dy) / squared))
+        t = 0.0 if along <= 0.0 else 1.0 if along >= squared else along / squared
         tip = a[2] + t * (b[2] - a[2])
     x, y = x - t * dx, y - t * dy
-    apart = math.sqrt(x * x + y * y)
+    apart, covered = x * x + y * y, passing.radius - _DOUBT * grid.cell
+    if apart <= covered * covered:
+        return False
+    if (passing.done and along <= 0.0) or cells.heights[row, column] <= passing.lowest:
+        return True
+    apart = math.sqrt(apart)
     off = (apart - passing.radius) / grid.cell
-    if off <= -_DOUBT or cells.heights[row, column] <= passing.lowest:
-        return off, 0.0, t
+    if off > FARTHEST:
+        return True
     widest = max(abs(x), abs(y)) / apart
     first = off <= widest - _DOUBT
     if not first and off < widest + _DOUBT:
@@ -227,7 +199,16 @@ def _pass_by(cells, row, column, passing):
         first = inside and cells.heights[next_row, next_column] <= passing.highest
     share = share_before(off, widest) if first else 0.0
     foot = max(tip, grid.bottom) + EQUAL_MM + passing.side
-    return off, _note_cut(cells, (row, column), passing.lowest, (off, share, foot)), t
+    gone, depth = _note_cut(cells, (row, column), passing.lowest, (off, share, foot))
+    if passing.lowest < foot - passing.side - EQUAL_MM:
+        # It goes down, or has come up.
+        _note_below(cells.behind[row, column], KNOWN + max(off, 0.0))
+    sums[Sum.LOST] += gone
+    sums[Sum.COLUMNS] += gone * column
+    sums[Sum.ROWS] += gone * row
+    if gone > 0.0:
+        sums[Sum.DEEPEST] = max(sums[Sum.DEEPEST], depth)
+    return True
 
 
 @inlined
@@ -239,33 +220,43 @@ def _note_cut(cells, place, level, wall):
         wall: How far the middle is behind it [cells], which share of the cell lies before it, and its foot [mm].
 
     Returns:
-        What of the cell's column is gone now, as of a whole column [mm].
+        What of the cell's column is gone now, as of a whole column, and how deep it is gone at most [mm].
     """
     height, told, (off, share, foot) = cells.heights[place], cells.behind[place], wall
     before, lowest, down_to = cut_before(told, height), told[1], told[3]
+    below = height
     if told[0] == 0.0 or lowest >= height:
         before = 0.0
-        told[2], told[3], told[4], told[5] = share, foot, 0.0, 0.0
+        told[2], told[3], told[4], told[5], told[6] = share, foot, 0.0, 0.0, 0.0
     elif KNOWN + off < told[0] and abs(share - told[2]) > _SAME_SHARE:
         if foot > down_to:
-            below = told[2] * (foot - down_to) + told[4] * (down_to - lowest)
-            told[4] = below / (foot - lowest)
+            cut = told[2] * (foot - down_to) + told[4] * (down_to - lowest)
+            told[4] = cut / (foot - lowest)
+            if foot > down_to + EQUAL_MM:
+                _note_below(told, told[0])
         told[2], told[3] = share, foot
     elif KNOWN + off < told[0] + _SAME_SHARE:
         # The same wall again: what the machine is off is no chip.
-        told[3] = min(foot, down_to)
+        told[3], below = min(foot, down_to), min(height, down_to)
     elif foot < down_to:
-        nearer = KNOWN + off < told[5]
+        nearer, below = KNOWN + off < told[5], min(height, down_to)
+        _note_below(told, KNOWN + off)
         if nearer:
             # What came towards the cell comes by it now.
-            below = share * (down_to - foot) + told[4] * max(foot - lowest, 0.0)
+            cut = share * (down_to - foot) + told[4] * max(foot - lowest, 0.0)
         else:
-            below = told[4] * (down_to - lowest) + share * max(lowest - foot, 0.0)
-        told[4] = below / (down_to - min(foot, lowest))
+            cut = told[4] * (down_to - lowest) + share * max(lowest - foot, 0.0)
+        told[4] = cut / (down_to - min(foot, lowest))
         if nearer or foot < lowest:
             told[5] = KNOWN + off
     note_wall(cells.heights, cells.behind, place[0], place[1], level, max(off, 0.0))
-    return cut_before(told, height) - before
+    return cut_before(told, height) - before, below - foot
+
+
+@inlined
+def _note_below(told, distance):
+    """Note the distance of one that has passed below the nearest wall's foot."""
+    told[6] = distance if told[6] == 0.0 else min(told[6], distance)
 
 
 @inlined
@@ -276,9 +267,14 @@ def note_wall(heights, behind, row, column, level, off):
         return
     told = behind[row, column]
     if told[0] == 0.0 or told[1] >= height:
-        told[0], told[1] = KNOWN + off, level
-    else:
-        told[0], told[1] = min(told[0], KNOWN + off), min(told[1], level)
+        told[0], told[1], told[4] = KNOWN + off, level, 0.0
+        return
+    told[0] = min(told[0], KNOWN + off)
+    if level < told[1]:
+        # What is cut off below the nearest reaches farther down, and is no more for that.
+        down_to = min(height, told[3])
+        told[4] *= max(down_to - told[1], 0.0) / max(down_to - level, EQUAL_MM)
+        told[1] = level
 
 
 @inlined

@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from twin.cutting.height_map_material import WALL_MM
 from twin.cutting.heights.height_map import HeightMap
-from twin.cutting.kernels.surface_distance import FoundBy, Surface, surface_distances
+from twin.cutting.kernels.surface_distance import FoundBy, MapSurface, surface_distances
 from twin.cutting.kernels.wall_distance import KNOWN, WallDistance
+from twin.cutting.material import STRAIGHT_MM
 from twin.errors import ConfigError
 from twin.nc.canonical import BoolArray, FloatArray
 from twin.units import UM_PER_MM
@@ -16,7 +16,7 @@ from twin.units import UM_PER_MM
 STEEPEST = 1.0
 """Slope up to which the distance between surfaces follows from the difference of their heights: a wall
 that is displaced by a hair's breadth differs by its whole height."""
-WALL_ERROR_MM = 2.0 * WALL_MM
+WALL_ERROR_MM = 2.0 * STRAIGHT_MM
 """What the places of two walls that tools have left are off by at most [mm]."""
 _BESIDE = 0.75
 """Every wall has a cell behind it whose middle is as near [cells]."""
@@ -125,7 +125,7 @@ def inspect(part: HeightMap, nominal: HeightMap, tolerance_um: float) -> Inspect
     upright = (_beside_walls(part) | _beside_walls(nominal)) & ~edge
     rest = (touched & ~edge | upright) & ~gentle
     found_by = np.full(rest.shape, FoundBy.HEIGHT)
-    one, other = (Surface(each.heights, _without(each.behind, edge)) for each in (part, nominal))
+    one, other = (MapSurface(each.heights, _without(each.behind, edge)) for each in (part, nominal))
     surface_distances(
         one,
         other,

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from twin.cutting.heights.part import export_glb
 from twin.cutting.kernels.overlap import Overlap
 from twin.cutting.kernels.simplify import simplify
-from twin.cutting.kernels.sweep import Removal
+from twin.cutting.kernels.sweep import Removal, settle
 from twin.cutting.material import (
     AIR_MM,
     EDGE,
@@ -50,7 +50,7 @@ class TriDexelMaterial:
 
     def __init__(self, stock: TriDexel) -> None:
         self.stock = stock
-        self._scraped = 0.0
+        self._owed = 0.0
         self.changed = False
 
     @property
@@ -98,12 +98,9 @@ class TriDexelMaterial:
         length = np.linalg.norm(left, axis=1)
         middle = found.middle - 0.5 * (poses.tip[1:] + poses.tip[:-1])
         aside = (middle * left).sum(axis=1) / np.where(length > 0.0, length, 1.0)
-        # A hair's breadth about a node counts for a part of its cell: it is added to the next real cut.
-        cuts = found.longest > AIR_MM
-        scraped = self._scraped + np.cumsum(np.where(cuts, 0.0, found.volume))
-        volume = np.where(cuts, found.volume, 0.0)
-        volume[cuts] += np.diff(scraped[cuts], prepend=0.0)
-        self._scraped = float(scraped[-1] - volume[cuts].sum() + found.volume[cuts].sum())
+        # A hair's breadth about a node counts for a part of its cell.
+        cuts, volume = found.longest > AIR_MM, found.volume.copy()
+        self._owed = settle(volume, cuts, self._owed)
         seen = cuts & (length > 0.0)
         return Removal(volume, np.where(cuts, found.depth, 0.0), np.where(seen, aside, 0.0))
 

@@ -17,9 +17,9 @@ as the lag at its beginning, and so much more. The same holds for a feed after t
 SCRAPE_MM = 0.01
 """Depth below which a removal is the grid's doing [mm]."""
 
-SHAVED_MM2 = 0.02
-"""Cross-section below which no chip is seen, where no cell is lost [mm²]: some µm that a machine is off its path, beside a wall
-of a few mm that it has cut before."""
+THINNEST_MM = 1e-3
+"""What is thinner is no chip [mm]: samples that are joined are off their line by half of it. Nor is what is
+thinner than twice what the machine is off its path, here and where the wall was cut that it comes along again."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -54,6 +54,7 @@ class Stretches:
         removed: Material taken off, shape (n,) [mm³].
         depth: Greatest depth of it, shape (n,) [mm].
         aside: How far left of the path it lay in the mean, shape (n,) [mm].
+        off: From the tip to its setpoint at the end of each, shape (n, 3) [mm].
         axis: Direction from the tool's tip to the spindle at the end of each, shape (n, 3); None: +Z.
     """
 
@@ -64,6 +65,7 @@ class Stretches:
     removed: FloatArray
     depth: FloatArray
     aside: FloatArray
+    off: FloatArray
     axis: FloatArray | None = None
 
     def in_air(self, cell: float) -> BoolArray:
@@ -72,8 +74,13 @@ class Stretches:
         Args:
             cell: Side of the material's cells [mm].
         """
-        shaved = (self.depth == 0.0) & (self.removed < SHAVED_MM2 * self.path)
-        return shaved | (self.removed < AIR_MM * cell**2)
+        path = self.path
+        way = np.diff(self.points, axis=0) / np.maximum(path, 1e-12)[:, None]
+        beside = np.linalg.norm(np.cross(self.off, way), axis=1)
+        # Beside a wall a stretch takes a cell's share more or less than its own.
+        most = np.maximum((path + cell) * self.depth, 1e-12)
+        thin = np.minimum(self.removed / most, self.depth)
+        return (thin < THINNEST_MM + 2.0 * beside) | (self.removed < AIR_MM * cell**2)
 
     @property
     def travel(self) -> FloatArray:
@@ -165,7 +172,6 @@ class StockWatch:
     """Finds moves that take material although they must not; one event per move."""
 
     def __init__(self, what: str) -> None:
-        """Watch for one kind of misuse."""
         self._what = what
         self._log = EventLog()
         self._runs = 0

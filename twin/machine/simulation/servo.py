@@ -25,9 +25,9 @@ from twin.machine.simulation.process import Physics, Process
 from twin.machine.simulation.sampling import polyline_node
 from twin.machine.simulation.stepping import stepper
 from twin.machine.simulation.tick_kernels import follow_setpoints, loop_of, step_held
-from twin.machine.watching.alarms import SimulationError
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray, IntArray
+from twin.recording.alarms import SimulationError
 from twin.recording.form import Samples, ToolLoad
 from twin.units import to_si
 
@@ -161,7 +161,7 @@ class Servo:
         return Samples(chunk, followed.position, followed.velocity, followed.force)
 
     def _came_to(self, state: FloatArray) -> None:
-        """Stand in a state that was stepped to; refuse what MuJoCo warned of on the way."""
+        """Take over a state that was stepped to; refuse what MuJoCo warned of meanwhile."""
         if any(self._warned.tolist()):
             self._refuse_warnings()
         self._state = state
@@ -229,7 +229,7 @@ class Servo:
         return copied
 
     def take_over(self, other: "Servo") -> None:
-        """Go on where a servo of the same axes, tuned or built otherwise, has come to.
+        """Take over the state of a servo of the same axes, tuned or built otherwise.
 
         The axes stand and move as they did; where the transmission gave and no longer does, the
         motor goes with the axis.

@@ -9,14 +9,14 @@ SMOOTH_COSINE = 0.8
 that steps look like steps."""
 
 OPPOSED = -0.5
-"""A wall's face takes the wall's direction unless it looks the other way (cosine)."""
+"""A wall's face takes the wall's direction unless it points the opposite way (cosine)."""
 
 WALL_RADIUS = 3
 """Vertices on either side that the direction of a wall is taken from: the grid's stairs vanish."""
 
 
 def corner_normals(
-    heights: FloatArray, rows: slice, columns: slice, spacing: float, corner: FloatArray,
+    heights: FloatArray, rows: slice, columns: slice, spacing: float, faces: FloatArray,
     corners: IntArray,
 ) -> FloatArray:  # fmt: skip
     """Normals for every corner of every face of a tile.
@@ -26,13 +26,12 @@ def corner_normals(
         rows: The tile's rows of the mesh.
         columns: The tile's columns of the mesh.
         spacing: Between vertices [mm].
-        corner: Corners of the tile's faces, shape (m, 3, 3) [mm].
-        corners: Their numbers within the tile, shape (m, 3).
+        faces: Normals of the tile's faces, shape (m, 3).
+        corners: Numbers of their corners within the tile, shape (m, 3).
 
     Returns:
         Shape (m, 3, 3).
     """
-    faces = face_normals(corner)
     slope_x = _gentler(np.diff(heights[rows], axis=1), 1)[:, columns]
     slope_y = _gentler(np.diff(heights[:, columns], axis=0), 0)[rows]
     smooth = np.stack([-slope_x / spacing, -slope_y / spacing, np.ones_like(slope_x)], -1)
