@@ -69,6 +69,7 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> Recorded:
     return Recorded(run, whole)
 
 
+@pytest.mark.seconds("simulates a program, and compares it in many divisions")
 @settings(max_examples=examples(40), derandomize=True, deadline=None)
 @given(st.data())
 def test_a_division_into_chunks_changes_no_bit(recorded: Recorded, data: st.DataObject):
