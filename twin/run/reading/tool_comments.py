@@ -58,6 +58,10 @@ _THREAD = re.compile(r"\bM([0-9]+(?:\.[0-9]+)?)(?:\s*[Xx][0-9.]+)?\s*(?:TAP|GEWI
 _CORNER = re.compile(
     rf"\b(?:CR|R|RAD(?:IUS)?|CORNER RAD(?:IUS)?)\s*[=:.-]?\s*({_NUMBER})", re.IGNORECASE
 )
+_SIMULATED = re.compile(rf"\s*TOOL/(MILL|DRILL|CHAMFER)\s*,\s*({_NUMBER})\s*(?:,\s*({_NUMBER}))?")
+"""What Carbide Create and others write for CutViewer: diameter, and of a mill its corner radius."""
+_SIMULATED_LINES = 10
+"""So far before its call such a comment may stand."""
 _WHOLE_LENGTH = re.compile(rf"\bTL\s*=\s*({_NUMBER})")
 """What hyperMILL writes from the spindle nose to the tip."""
 _RADIUS = re.compile(r"\bKR\s*[+]?([0-9]+\.[0-9]*)")
@@ -108,6 +112,9 @@ def numbered_tool(comment: str) -> tuple[int, str] | None:
 def tool_of_comment(text: str, *, inches: bool) -> ToolComment:
     """What a comment says about a tool; numbers without a unit are the program's."""
     upper = text.upper()
+    simulated = _SIMULATED.match(upper)
+    if simulated is not None:
+        return _simulated_tool(simulated, text, _INCH if inches else 1.0)
     kind = next((kind for words, kind in _KINDS if re.search(words, upper)), "")
     diameter = _diameter(upper, inches=inches)
     corner = _CORNER.search(upper)
@@ -129,6 +136,15 @@ def tool_of_comment(text: str, *, inches: bool) -> ToolComment:
     return ToolComment(
         kind, diameter, radius if kind == "bull" else None, text.strip(), wear, length=length
     )
+
+
+def _simulated_tool(found: re.Match[str], text: str, unit: float) -> ToolComment:
+    diameter, corner = _value(found[2]) * unit, 0.0
+    kind = {"DRILL": "drill", "CHAMFER": "chamfer"}.get(found[1], "flat")
+    if kind == "flat" and found[3]:
+        corner = _value(found[3]) * unit
+        kind = "ball" if 2.0 * corner >= diameter * 0.999 else "bull" if corner else "flat"
+    return ToolComment(kind, diameter, corner if kind == "bull" else None, text.strip())
 
 
 def named_tools(names: Mapping[int, str], *, inches: bool) -> dict[int, ToolComment]:
@@ -223,6 +239,7 @@ def near_comment(
         for line, text in comments
         for call in lines
         if abs(line - call) <= _NEAR_LINES
+        or (0 < call - line <= _SIMULATED_LINES and _SIMULATED.match(text.upper()))
     ]
     if not lines:
         near = [(line, text) for line, text in comments if line <= HEAD_LINES]
