@@ -487,3 +487,14 @@ def test_a_short_bar_of_a_comment_keeps_holder_and_table_apart(tmp_path: Path) -
     chain = made.machine.part_frame.chain
     assert chain is not None
     assert made.job.file.part_zero["X"] == pytest.approx(float(chain.table[0]) + 40.0)
+
+
+def test_rows_of_a_list_in_columns_are_of_their_own_tools(tmp_path: Path) -> None:
+    text = (
+        "%\nO0056\n(TOOL NO.   DESCRIPTION      DIA.     H    D)\n(   3       FLAT ENDMILL     12.00    3    3)\n"
+        "(   8       CENTER DRILL      3.00    8    8)\nG90 G94 G17 G21\nT3 M6\nS3000 M3\nG54 G0 X-15. Y0.\nG43 Z15. H3\n"
+        "G1 Z-2. F200.\nX40. F600.\nG0 Z15.\nT8 M6\nS3000 M3\nG0 X10. Y10.\nG43 Z15. H8\nG81 Z-1. R2. F100.\nG80\nM30\n%\n"
+    )
+    made, _ = raw(tmp_path, text)
+    tools = [(tool.number, tool.kind, tool.diameter) for tool in made.job.file.tools]
+    assert tools == [(3, "flat", 12.0), (8, "chamfer", 3.0)]

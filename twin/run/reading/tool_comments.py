@@ -12,6 +12,10 @@ from twin.nc.dialects.recognition import HEAD_LINES
 _INCH = 25.4
 _NUMBER = r"[0-9]*[.,]?[0-9]+|[0-9]+[.,]"
 
+_COLUMNS = re.compile(
+    r"^\s*([0-9]{1,4})\s{2,}(\S.*(?:MILL|DRILL|TAP|REAMER|CUTTER|BAR|CHAMFER)\b.*)", re.IGNORECASE
+)
+"""A row of a list in columns: number, name, diameter."""
 _LISTED = (
     re.compile(r"^\s*T\s*([0-9]{1,6})\s*(?:\||-|:|=|,|\s)\s*(.*\S)", re.IGNORECASE),
     re.compile(
@@ -19,6 +23,7 @@ _LISTED = (
     ),
     re.compile(r"^\s*#\s*([0-9]{1,6})\s+(D\s*=.*\S)", re.IGNORECASE),
     re.compile(r"^\s*([0-9]{1,6})\s*=\s*(.*\b(?:MILL|DRILL|BIT|TAP)\b.*)", re.IGNORECASE),
+    _COLUMNS,
 )
 """Comments that begin with the tool's number."""
 
@@ -40,6 +45,7 @@ _DIAMETERS = (
     rf"\{{\s*({_NUMBER})\s*(MM|IN(?:CH)?)?",
     rf"({_NUMBER})\s*(MM|IN(?:CH)?\b|\")",
     rf"(?<![A-Z0-9./])({_NUMBER})()(?=\s*(?:\w+\s+){{0,2}}(?:END ?MILL|MILL|DRILL|BALL|BULL|TAP|CUTTER|REAMER|CHAMFER|FLAT|SPOT|DIA))",
+    rf"(?:MILL|DRILL|TAP|REAMER|CUTTER|BAR|CHAMFER)\s{{2,}}({_NUMBER})()(?![0-9./])",
     rf"^\s*({_NUMBER})()\s*$",
     rf"^(?!.*\bH\s*[0-9]).*\bD\s*({_NUMBER})()(?![0-9.])",
 )
@@ -238,8 +244,11 @@ def near_comment(
         (abs(line - call), text)
         for line, text in comments
         for call in lines
-        if abs(line - call) <= _NEAR_LINES
-        or (0 < call - line <= _SIMULATED_LINES and _SIMULATED.match(text.upper()))
+        if (
+            abs(line - call) <= _NEAR_LINES
+            or (0 < call - line <= _SIMULATED_LINES and _SIMULATED.match(text.upper()))
+        )
+        and not _lists_another(text, number)
     ]
     if not lines:
         near = [(line, text) for line, text in comments if line <= HEAD_LINES]
@@ -249,6 +258,12 @@ def near_comment(
         if (tool.diameter is not None and (tool.kind or on_line)) or (tool.kind and on_line):
             return tool
     return None
+
+
+def _lists_another(text: str, number: int) -> bool:
+    """Whether a comment is the row of another tool in a list."""
+    row = _COLUMNS.match(text)
+    return row is not None and int(row[1]) != number
 
 
 def while_in_spindle(
