@@ -9,7 +9,7 @@ from twin.cutting.tridexel.dexels import DIRECTIONS, TriDexel
 from twin.cutting.tridexel.intervals import Node, total_worth
 from twin.cutting.tridexel.solids.moving_solid import Poses
 from twin.cutting.tridexel.solids.solids import Solid
-from twin.cutting.tridexel.sweep import MEASURE, Sum, sweep
+from twin.cutting.tridexel.sweep import MEASURE, StepColumn, sweep
 from twin.nc.canonical import BoolArray, FloatArray, IntArray
 
 STEP_SHARE = 0.1
@@ -94,15 +94,15 @@ def cut(stock: TriDexel, poses: Poses, edge: Sequence[Solid], tool: int) -> Enga
         tool: Number that the cut surface remembers, from 1 to ``normals.MOST_TOOLS``.
     """
     sums = _swept(stock, poses, edge, tool)
-    length = sums[:, Sum.LENGTH]
+    length = sums[:, StepColumn.LENGTH]
     touched = length > 0.0
     some = np.where(touched, length, 1.0)
     return Engagement(
-        sums[:, Sum.VOLUME],
+        sums[:, StepColumn.VOLUME],
         touched,
-        np.where(touched, sums[:, Sum.HIGHEST] - sums[:, Sum.LOWEST], 0.0),
-        sums[:, Sum.MOMENT : Sum.MOMENT + 3] / some[:, None],
-        sums[:, Sum.LONGEST : Sum.LONGEST + 3].max(axis=1, initial=0.0),
+        np.where(touched, sums[:, StepColumn.HIGHEST] - sums[:, StepColumn.LOWEST], 0.0),
+        sums[:, StepColumn.MOMENT : StepColumn.MOMENT + 3] / some[:, None],
+        sums[:, StepColumn.LONGEST : StepColumn.LONGEST + 3].max(axis=1, initial=0.0),
     )
 
 
@@ -113,7 +113,9 @@ def met(stock: TriDexel, poses: Poses, solid: Solid) -> FloatArray:
     is any, and the shortest of these counts: on a face that looks along an axis it is the depth below the
     face, on one that looks between all three at most 1.73 times as much.
     """
-    longest = _swept(stock, poses, (solid,), MEASURE)[:, Sum.LONGEST : Sum.LONGEST + 3]
+    longest = _swept(stock, poses, (solid,), MEASURE)[
+        :, StepColumn.LONGEST : StepColumn.LONGEST + 3
+    ]
     least = np.where(longest > 0.0, longest, np.inf).min(axis=1, initial=np.inf)
     return np.where(np.isfinite(least), least, 0.0)
 
@@ -121,8 +123,8 @@ def met(stock: TriDexel, poses: Poses, solid: Solid) -> FloatArray:
 def _swept(stock: TriDexel, poses: Poses, solids: Sequence[Solid], tool: int) -> FloatArray:
     """Bring solids along steps, in shorter ones where they are long; what each step did."""
     short, step = in_short_steps(poses, solids)
-    sums = np.zeros((len(step), Sum.COLUMNS))
-    sums[:, Sum.LOWEST], sums[:, Sum.HIGHEST] = np.inf, -np.inf
+    sums = np.zeros((len(step), StepColumn.COLUMNS))
+    sums[:, StepColumn.LOWEST], sums[:, StepColumn.HIGHEST] = np.inf, -np.inf
     bodies, done = np.array(solids, np.float64), 0
     while True:
         done = sweep(stock.dexels, stock.lattice, short, bodies, sums, tool, done)
@@ -133,6 +135,6 @@ def _swept(stock: TriDexel, poses: Poses, solids: Sequence[Solid], tool: int) ->
         return sums
     first = np.flatnonzero(np.diff(step, prepend=-1))
     whole = np.add.reduceat(sums, first)
-    whole[:, Sum.LOWEST] = np.minimum.reduceat(sums[:, Sum.LOWEST], first)
-    whole[:, Sum.HIGHEST :] = np.maximum.reduceat(sums[:, Sum.HIGHEST :], first)
+    whole[:, StepColumn.LOWEST] = np.minimum.reduceat(sums[:, StepColumn.LOWEST], first)
+    whole[:, StepColumn.HIGHEST :] = np.maximum.reduceat(sums[:, StepColumn.HIGHEST :], first)
     return whole
