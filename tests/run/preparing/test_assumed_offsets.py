@@ -71,7 +71,7 @@ def test_zero_is_at_the_offset_that_is_fed_in(
         (iso("G54", then=OTHER.format("G55")), 14),
         (iso("", then=OTHER.format("G55")), 14),
         (iso("G55", then=OTHER.format("G56")), 7),
-        ("O1\nG90 G0 X0. Y0.\nG55\nX150. Y90.\nM30\n", 3),
+        ("O1\nG90 G0 X10. Y0.\nG55\nX150. Y90.\nM30\n", 3),
     ],
 )
 def test_several_offsets_that_are_fed_in_are_asked_for(
