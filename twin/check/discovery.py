@@ -14,7 +14,7 @@ NC_SUFFIXES = frozenset(
 )
 """What a file must end in to be taken for an NC program when a folder is searched."""
 _KLARTEXT = re.compile(rb"^[ \t]*\d*[ \t]*BEGIN[ \t]+PGM\b", re.IGNORECASE | re.MULTILINE)
-"""What tells a Klartext program from the headers of C, whose names end in .h as well."""
+"""What distinguishes a Klartext program from the headers of C, whose names end in .h as well."""
 _HEAD_BYTES = 4096
 
 _FOREIGN_FOLDERS = frozenset({"node_modules", "site-packages", "__pycache__"})
