@@ -219,6 +219,16 @@ def test_the_right_slot_keeps_its_nominal_part(tmp_path: Path) -> None:
     assert not codes(run(tmp_path, CUT_, {"more": NOMINAL + "standing_um = 100.0"}))
 
 
+@pytest.mark.seconds("a program is run whole")
+def test_a_gouge_is_no_deeper_than_it_was_cut(tmp_path: Path) -> None:
+    """A half circle out of the slot: where it leaves the slot's wall it was reported 2.23 mm deep."""
+    arc = "G0 X-30. Y0.\nG0 Z-2.\nG1 X-15. F600.\nG3 X15. Y0. I15. J0.\nG0 Z20.\nM30\n"
+    outcome = run(tmp_path, HEAD + arc, {"more": NOMINAL + "gouge_um = 1990.0"})
+    assert codes(outcome) == {"gouge_um": 7}
+    assert outcome.gouge is not None
+    assert outcome.gouge.depth_mm == pytest.approx(2.0, abs=2e-3)
+
+
 @pytest.mark.parametrize(
     ("scale", "shift", "match"),
     [(1 / 25.4, 0.0, "1.57 x 1.57 x 0.394 mm"), (1.0, 5.0, "5 mm out of the stock along X")],

@@ -101,4 +101,6 @@ class HeightMapNominalWatch(NominalWatch[HeightMap]):
         flat = np.maximum(steepness(heights, cell), steepness(nominal, cell)) <= STEEPEST
         part, whole = MapSurface(heights, behind), MapSurface(nominal, walls)
         surface_distances(part, whole, cell, wanted, flat, found, found_by)
-        return np.where(found_by == FoundBy.CELLS, -found - cell, -found)
+        depth = np.where(found_by == FoundBy.CELLS, -found - cell, -found)
+        # The nearest surface is no farther than the one straight above or that of the wall.
+        return np.minimum(depth, np.maximum(nominal - heights, before))
