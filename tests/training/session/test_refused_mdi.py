@@ -96,5 +96,7 @@ def test_a_corner_before_a_tool_change_is_refused_before_that() -> None:
     )
     was = session.snapshot().tool
     assert not typed(session, f"G91 G1 X1. F500. T{other} M6 ,R.5\nY5.")
-    assert "blend" in session.room.alarm.message
+    alarm = session.room.alarm
+    assert alarm is not None
+    assert "blend" in alarm.message
     assert session.snapshot().tool == was
