@@ -8,7 +8,7 @@ import numpy as np
 
 from twin.cutting.forces.direction import tool_force
 from twin.cutting.forces.materials import kienzle
-from twin.cutting.forces.mean_force import cutting_load, cutting_width
+from twin.cutting.forces.mean_force import MeanPieces, Pieces, cutting_load, each_alone
 from twin.cutting.height_map_material import HeightMapMaterial
 from twin.cutting.heights.height_map import BoolArray, HeightMap, blank
 from twin.cutting.heights.sweeping import Rectangle
@@ -28,6 +28,7 @@ from twin.nc.canonical import FloatArray
 from twin.recording.reader import Samples
 from twin.toolpath.part_frame import PartFrame
 from twin.toolpath.tool_plan import ToolPlan
+from twin.units import SECONDS_PER_MINUTE
 
 
 class Cutter:
@@ -104,6 +105,7 @@ class Cutter:
         self._carriers = {each.beyond for each in above_edge(self.tool, head) if each.beyond}
         self.halted: CutEvent | None = None
         self._cut_log = CutLog()
+        self._pieces = MeanPieces(self.material.cell)
         self.watch = CutWatch(self.material.cell)
         self.start_depth = 0.0
 
@@ -139,9 +141,7 @@ class Cutter:
             )
             if self.halted is not None:
                 break
-            if tool.number != self.tool.number:
-                self._last = None
-            self.tool = tool
+            self._take(tool)
             for part, edge in by_edge(samples, run):
                 force = self._cut(
                     motion[part].lowered(self.plan.length_difference(tool)), edge=edge
@@ -193,6 +193,7 @@ class Cutter:
 
     def result(self) -> CutResult:
         """What was cut so far."""
+        self._note_means(self._pieces.rest())
         bin_s, over_time = self._cut_log.over_time
         return CutResult(
             removed_mm3=sum(self._removed.values()),
@@ -225,10 +226,19 @@ class Cutter:
                 return
             self._changes += 1
             if change.tool.number != self.tool.number:
-                self.tool, self._last = change.tool, None
+                self._take(change.tool)
                 self._note_arrival(
                     stand.lowered(self.plan.length_difference(change.tool)), change.line
                 )
+
+    def _take(self, tool: ToolTable) -> None:
+        """Have a tool in the spindle, or the same one at another speed."""
+        if tool == self.tool:
+            return
+        self._note_means(self._pieces.end())
+        if tool.number != self.tool.number:
+            self._last = None
+        self.tool = tool
 
     def _note_arrival(self, stand: ToolMotion, line: int) -> None:
         """Note that the tool which has just come into the spindle is in the material."""
@@ -382,15 +392,26 @@ class Cutter:
         self.watch.add(stretches, self.tool)
         self._feed_path += float(path[~stretches.rapid].sum())
         self._air_path += float(path[~stretches.rapid & air].sum())
-        force, pushed = None, np.zeros((len(path), 3))
-        if self._material is not None and self.tool.speed is not None and len(duration):
-            load = cutting_load(stretches, duration, self.tool, self._material)
+        self._cut_log.add(stretches)
+        alone, speed = each_alone(stretches, duration), self.tool.speed
+        self._note_means(self._pieces.add(alone, SECONDS_PER_MINUTE / speed if speed else 0.0))
+        if self._material is None or not speed:
+            return np.zeros((len(path), 3))
+        width = alone.width(self.tool.diameter)
+        force = cutting_load(alone, self.tool, self._material).force
+        return tool_force(stretches, width, force, self.tool, self._material)
+
+    def _note_means(self, pieces: Pieces) -> None:
+        """Enter width of cut and force of pieces that the tool in the spindle has cut."""
+        pieces, force = pieces[pieces.removed > 0.0], None
+        if not len(pieces):
+            return
+        if self._material is not None and self.tool.speed is not None:
+            load = cutting_load(pieces, self.tool, self._material)
             force = load.force
             self._force = max(self._force or 0.0, float(force.max()))
             self._power = max(self._power or 0.0, float(load.power.max()))
-            pushed = tool_force(stretches, force, self.tool, self._material)
-        self._cut_log.add(stretches, cutting_width(stretches, self.tool.diameter), force)
-        return pushed
+        self._cut_log.add_means(pieces.line, pieces.width(self.tool.diameter), force)
 
 
 def _lengths(points: FloatArray) -> FloatArray:
