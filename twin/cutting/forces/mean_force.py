@@ -85,13 +85,10 @@ class MeanPieces:
         count, self._whole = _gather(columns, self._open, self._whole, (self._cell, turn), ended)
         return _pieces(ended[:count])
 
-    def rest(self) -> Pieces:
-        """What is left of a line that is shorter than a piece, which is its only one."""
-        return _pieces(self._open[None] if self._open[2] and not self._whole else np.zeros((0, 5)))
-
     def end(self) -> Pieces:
-        """What is left; the next stretch begins another piece."""
-        rest = self.rest()
+        """What is left of a line that is shorter than a piece; what follows begins another one."""
+        only = self._open[2] > 0.0 and not self._whole
+        rest = _pieces(self._open[None].copy() if only else np.zeros((0, len(self._open))))
         self._open[:], self._whole = 0.0, False
         return rest
 
