@@ -13,9 +13,10 @@ from twin.cutting.height_map_material import HeightMapMaterial
 from twin.cutting.heights.height_map import BoolArray, HeightMap, blank
 from twin.cutting.heights.sweeping import Rectangle
 from twin.cutting.kernels.sweep import Removal
-from twin.cutting.material import EDGE, Head, Material, Points
+from twin.cutting.material import EDGE, Contact, Head, Material, Points
+from twin.cutting.taking_off import TakingOff
 from twin.cutting.tool_motion import ToolMotion, by_edge, tool_motion
-from twin.cutting.tools import Profile, default_cell, profile
+from twin.cutting.tools import default_cell, profile
 from twin.cutting.tridexel import blanks
 from twin.cutting.tridexel.material import TriDexelMaterial
 from twin.cutting.watching.cut_log import HEIGHT_MAP, TRI_DEXEL, CutResult
@@ -125,6 +126,8 @@ class Cutter:
             Material that was taken off [mm³].
         """
         before = sum(self._totals.removed.values())
+        if not goes_on:
+            self.catch_up()
         self.material.begin_chunk()
         self.force = np.zeros((len(samples), 3))
         if not len(samples):
@@ -275,8 +278,7 @@ class Cutter:
             stand: Where its tip is, one sample.
         """
         here = stand.ends[np.zeros(2, np.int64)]
-        contact = self.material.contact(self.tool, profile(self.tool), self._head)
-        met = contact.measure(here, np.ones(1, np.bool_))
+        met = self._contact().measure(here, np.ones(1, np.bool_))
         return max((float(overlap.depth[0]) for overlap in met.values()), default=0.0)
 
     def _cut(self, motion: ToolMotion, *, edge: bool, wait: bool = False) -> FloatArray:
@@ -333,14 +335,15 @@ class Cutter:
         stood, (before, since) = self._last is not None, self._before(motion)
         self._last = motion.ends[-1:].copy(), float(motion.time[-1])
         self.until = float(motion.time[-1])
-        cutter = profile(self.tool)
         points, sample = before.followed_by(motion.ends)[chosen], chosen[1:] - 1
         rapid, off, lag = motion.rapid[sample], motion.standing[sample], motion.lag[sample]
         tip, ends, reach = points.tip, points.axis, self.tool.flute
         rapids = self._rapids.suspects(tip, rapid, lag, ends, reach)
         standing = self._standing.suspects(tip, ~rapid & off, lag, ends, reach)
         suspect = (rapids > 0) | (standing > 0)
-        found, met = self._take_off(points, cutter, suspect, edge=edge, stood=stood)
+        taking = TakingOff(self.material, self.tool, self._contact(), edge, self._halts)
+        mark = self._travelled + np.cumsum(_lengths(points.tip))
+        found, met = taking.along(points, suspect, mark, stood=stood)
         count = len(found.volume)
         points, sample = points[: count + 1], sample[:count]
         rapids, standing = rapids[:count], standing[:count]
@@ -370,64 +373,12 @@ class Cutter:
         ways = points.tip, motion.lag[-1:], points.axis, self.tool.flute
         suspect = copy.copy(self._rapids).suspects(ways[0], rapid, *ways[1:]) > 0
         suspect |= copy.copy(self._standing).suspects(ways[0], ~rapid & off, *ways[1:]) > 0
-        contact = self.material.contact(self.tool, profile(self.tool), self._head)
-        return any(overlap.depth.any() for overlap in contact.measure(points, suspect).values())
+        met = self._contact().measure(points, suspect)
+        return any(overlap.depth.any() for overlap in met.values())
 
-    def _take_off(
-        self, points: Points, cutter: Profile, suspect: BoolArray, *, edge: bool, stood: bool
-    ) -> tuple[Removal, dict[str, FloatArray]]:
-        """Take off what the tool meets, up to where something meets that must not, if that halts.
-
-        Args:
-            points: Ends of n stretches.
-            suspect: In which of them the edge must not cut, shape (n,).
-            edge: As for ``_cut``.
-            stood: Whether the tool has been at the first of them.
-
-        Returns:
-            What each stretch took off, and by name how deep something was in the material that
-            must not be, shape (n,) [mm]; fewer than n stretches where cutting halted.
-        """
-        contact = self.material.contact(self.tool, cutter, self._head)
-        doubtful = contact.measure(points, suspect, doubtful=True)
-        count, done = len(suspect), 0
-        removal = Removal(*np.zeros((3, count)))
-        met = {name: np.zeros(count) for name in doubtful}
-        mark = self._travelled + np.cumsum(_lengths(points.tip))
-        flagged = np.flatnonzero(np.any([o.depth for o in doubtful.values()], axis=0) & (count > 0))
-        # Against the material as the stretches before have left it.
-        for k in flagged.tolist():
-            if edge:
-                self._sweep(points, cutter, removal, mark, slice(done, k), stood=stood)
-            done = k
-            here = slice(k, k + 1)
-            for name, overlap in contact.measure(points[k : k + 2], suspect[here]).items():
-                met[name][here] = overlap.depth
-            if self._halts and any(depth[k] for depth in met.values()):
-                count = k + 1
-                break
-        if edge:
-            self._sweep(points, cutter, removal, mark, slice(done, count), stood=stood)
-        removal = Removal(*(column[:count] for column in removal))
-        return removal, {name: depth[:count] for name, depth in met.items()}
-
-    def _sweep(
-        self,
-        points: Points,
-        cutter: Profile,
-        removal: Removal,
-        mark: FloatArray,
-        part: slice,
-        *,
-        stood: bool,
-    ) -> None:
-        """Take off what some of the stretches meet."""
-        if part.start >= part.stop:
-            return
-        path, stood = points[part.start : part.stop + 1], stood or part.start > 0
-        found = self.material.take_off(path, self.tool, cutter, mark[part], stood=stood)
-        for column, swept in zip(removal, found, strict=True):
-            column[part] = swept
+    def _contact(self) -> Contact:
+        """What measures the tool in the spindle, and what is above it, against the material."""
+        return self.material.contact(self.tool, profile(self.tool), self._head)
 
     def _note_contacts(
         self, stretches: Stretches, met: Mapping[str, FloatArray]
