@@ -60,12 +60,12 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    """What a user calls; the rooms behind it are imported by their names."""
+    """The public names; packages are imported by their own names."""
     return sorted(__all__)
 
 
 class _Package(ModuleType):
-    """Keeps ``twin.run`` and ``twin.compare`` functions, although rooms bear these names."""
+    """Keeps ``twin.run`` and ``twin.compare`` functions, although packages have these names."""
 
     def __setattr__(self, name: str, value: object) -> None:
         if not (name in __all__ and isinstance(value, ModuleType)):

@@ -1,4 +1,4 @@
-"""``twin`` and ``python -m twin``: the command line, and what an early end of it says.
+"""``twin`` and ``python -m twin``: the command line, interrupted at any time.
 
 A signal may come while the libraries are still being loaded: even then a sentence is said.
 """

@@ -1,4 +1,4 @@
-"""``twin``: the commands together, and what is said when one of them fails."""
+"""``twin``: all commands, and the message when one of them fails."""
 
 import traceback
 from collections.abc import Sequence

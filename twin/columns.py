@@ -1,4 +1,4 @@
-"""Tables held as columns: the form in which chunks go from room to room."""
+"""Tables held as columns: the form in which packages exchange chunks."""
 
 import dataclasses
 import functools

@@ -1,4 +1,4 @@
-"""Independent copies of running state: what never changes is shared, and what is seen twice stays one.
+"""Independent copies of running state: immutable parts are shared, references stay references.
 
 ``copy.deepcopy`` makes of a view of a NumPy array an array of its own, and cannot copy a
 ``memoryview``; an interpreter refers to its columns through many of both. So they are found first, and

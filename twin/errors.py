@@ -1,4 +1,4 @@
-"""The errors a user can meet, each with the exit code that ``contract`` promises for it."""
+"""The errors that a user can meet, each with its exit code."""
 
 import enum
 

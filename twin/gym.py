@@ -62,7 +62,7 @@ class FeedEnv(gymnasium.Env[Observation, Action]):
 
         Args:
             program: As ``twin.run`` takes it.
-            dialect: One of ``twin dialects``; told by the program's words by default.
+            dialect: One of ``twin dialects``; recognised from the program by default.
             machine: A shipped machine's name, or a machine file; the job's by default.
             period_s: Time between two choices [s].
             warm_up_s: An episode begins up to so much later in the program, drawn by its seed [s].
@@ -102,7 +102,7 @@ class FeedEnv(gymnasium.Env[Observation, Action]):
         return self._seen(step), self._info(step)
 
     def step(self, action: Action) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
-        """Go on for a period at an override."""
+        """Advance by a period at an override."""
         session = self._session
         session.feed_override = float(np.clip(action[0], LOWEST, HIGHEST))
         step = session.step(self._periods)

@@ -49,8 +49,8 @@ class ToolPoses(NamedTuple):
 
     Attributes:
         tip: Shape (n, 3) [mm].
-        along_x: Which way machine X points on the tool, with which a head turns it, shape (n, 3).
-        axis: Which way the tool points from its tip to the spindle, shape (n, 3).
+        along_x: Direction of machine X on the tool, which turns with a head, shape (n, 3).
+        axis: Direction from the tip of the tool to the spindle, shape (n, 3).
     """
 
     tip: _Floats
@@ -80,7 +80,7 @@ def tool_point(chain: Kinematics, joints: _Floats, length: float | _Floats = 0.0
 
 
 def tool_direction(chain: Kinematics, joints: _Floats) -> _Floats:
-    """Which way the tool points from its tip to the spindle, seen from the part.
+    """Direction from the tip of the tool to the spindle, seen from the part.
 
     Returns:
         Unit vectors, shape (n, 3).

@@ -1,4 +1,4 @@
-"""The one border between the shop's units and SI.
+"""Conversion between the shop's units and SI.
 
 Outside MuJoCo lengths are millimetres and angles degrees; inside they are metres and radians.
 """

@@ -86,7 +86,7 @@ def test_an_axis_that_the_base_lacks_is_refused(log: MachineLog) -> None:
     ("rows", "clock", "told"),
     [
         (slice(0, 10), 1.0, "has 10 samples; a fit needs 50"),
-        (slice(None), 0.0, "clock stands or runs back at 3999 of 4000 samples"),
+        (slice(None), 0.0, "clock stops or jumps back at 3999 of 4000 samples"),
         (slice(None), -1.0, "give the map a 'period' in place of 'time'"),
         (slice(None), np.where(np.arange(4000) % 40, 1.0, 20.0), "without a gap"),
     ],

@@ -13,8 +13,8 @@ from twin.commands.explain import codes, explain, overview
 from twin.cutting.forces.materials import materials
 from twin.errors import UsageError
 from twin.job.tolerance import ToleranceTable
-from twin.machine.watching.alarms import AlarmCode
 from twin.nc.text.diagnostics.explain import findings
+from twin.recording.alarms import AlarmCode
 
 PACKAGE = Path(twin.commands.explain.__file__).parents[1]
 ROOMS = ("check", "commands", "compare", "run", "machine")

@@ -7,7 +7,7 @@ from tests.fmu.recorded import START, Recorded
 from twin.files.shipped import machine_file
 from twin.fmu.machine_unit import MachineUnit
 from twin.machine.load import read_machine
-from twin.machine.watching.alarms import SimulationError
+from twin.recording.alarms import SimulationError
 
 
 @pytest.mark.seconds("a program is run whole, and its machine stepped period by period")

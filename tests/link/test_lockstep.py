@@ -17,8 +17,8 @@ from twin.machine.description.config import MachineConfig
 from twin.machine.model.model import MachineModel
 from twin.machine.simulation.live import LiveMachine
 from twin.machine.simulation.simulate import simulate
-from twin.machine.watching.alarms import Alarm
 from twin.nc.canonical import FloatArray
+from twin.recording.alarms import Alarm
 from twin.recording.form import Samples
 
 START = np.array([10.0, 5.0, -100.0, 0.0])

@@ -40,7 +40,10 @@ NUMBERS = [
 ]
 LETTERS = (*string.ascii_uppercase, *string.ascii_lowercase, ",R", ",C", "$", "@", "Ж", "")
 WORDS = st.builds(str.__add__, st.sampled_from(LETTERS), st.sampled_from(NUMBERS))
-BLOCKS = ("G1 X30 F1000", "G0 X30", "G2 X30 R15 F1000", "X30", "M3 S100", "G81 X30 Z-5 R2 F100")
+BLOCKS = (
+    "G1 X30 F1000", "G0 X30", "G2 X30 R15 F1000", "X30", "M3 S100", "G81 X30 Z-5 R2 F100",
+    "M3 S100 G1 X30 F1000", "M8 X30", "T1 M6 G0 X30",
+)  # fmt: skip
 LINE = 3
 TOOL = ToolData(2.0, 60.0)
 
@@ -134,6 +137,34 @@ def test_a_corner_without_a_feed_move_before_it_is_refused_in_its_own_block(
     error = bad(text, dialect)
     assert (error.code, error.line) == ("blend", 3)
     assert 3 not in run(text, dialect).moves.line
+
+
+@pytest.mark.parametrize(
+    ("dialect", "block"),
+    [
+        ("fanuc", "M3 S1000 G1 X30. F100. ,C.5"),
+        ("haas", "M3 S1000 M8 G1 X30. F100. ,R.5"),
+        ("sinumerik", "M3 S1000 G1 X30 F100 RND=2"),
+    ],
+)
+@pytest.mark.parametrize("behind", ["", "M9\n", "G0 X50.\n", "E5 Q7 G77\n"])
+def test_a_corner_that_cannot_be_made_starts_no_spindle(
+    dialect: str, block: str, behind: str
+) -> None:
+    text = f"M8\nG90 G1 X20. F500.\n{block}\n{behind}M30\n"
+    outcome = run(text, dialect)
+    assert outcome.error is not None
+    assert outcome.error.line == (4 if behind[:1] in ("G", "E") else 3)
+    assert [event.line for event in outcome.events] == [1]
+    assert 3 not in outcome.moves.line
+
+
+def test_what_a_block_with_a_corner_does_comes_before_its_move() -> None:
+    text = "M8\nG90 G1 X20. F500.\nM3 S1000 X30. ,R2.\nY20.\nM30\n"
+    outcome = run(text, "fanuc")
+    assert outcome.error is None
+    assert outcome.moves.line.tolist() == [2, 3, 3, 4]
+    assert [(event.line, event.before) for event in outcome.events] == [(1, 0), (3, 1), (5, 4)]
 
 
 def test_what_was_let_go_of_earlier_blocks_stays() -> None:

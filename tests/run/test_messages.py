@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from twin.machine.watching.alarms import NearMiss
 from twin.machine.watching.clearance import TOUCH
 from twin.nc.text.source import read_source
+from twin.recording.alarms import NearMiss
 from twin.run.messages import near_miss_diagnostic
 
 

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from twin.machine.watching.alarms import Alarm
+from twin.recording.alarms import Alarm
 from twin.recording.reader import open_recording
 from twin.run.preparing.preparation import prepare
 from twin.run.progress import no_progress

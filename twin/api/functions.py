@@ -25,7 +25,7 @@ def interpret(program: Program, *, dialect: str | None = None, machine: str | No
 
     Args:
         program: NC program, job file, a shipped program's name (``mefi/helix``), NC text, or a ``twin.Job``.
-        dialect: One of ``twin dialects``; told by the program's words by default.
+        dialect: One of ``twin dialects``; recognised from the program by default.
         machine: A shipped machine's name, or a machine file; the job's by default.
 
     Returns:
@@ -54,7 +54,7 @@ def plan(program: Program, *, dialect: str | None = None, machine: str | None = 
 
     Args:
         program: NC program, job file, a shipped program's name, NC text, or a ``twin.Job``.
-        dialect: One of ``twin dialects``; told by the program's words by default.
+        dialect: One of ``twin dialects``; recognised from the program by default.
         machine: A shipped machine's name, or a machine file; the job's by default.
 
     Returns:
@@ -100,7 +100,7 @@ def run(
             zero of a program without a job are assumed, as ``twin run`` does (``Result.assumptions``).
         out: Folder for what ``twin run`` writes: result, report, recording, part, and for the program where
             that is text; made when missing. None: one that goes away with the result.
-        dialect: One of ``twin dialects``; told by the program's words by default.
+        dialect: One of ``twin dialects``; recognised from the program by default.
         machine: A shipped machine's name, or a machine file; the job's by default.
 
     Raises:

@@ -1,4 +1,4 @@
-"""A machine as those who know MuJoCo want it."""
+"""A machine as a MuJoCo model."""
 
 from collections.abc import Mapping
 from functools import cached_property

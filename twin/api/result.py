@@ -1,4 +1,4 @@
-"""What a run came to, for a person at a prompt: columns by their names, frames, the part, pictures."""
+"""The result of a run for interactive use: columns by name, data frames, the part, pictures."""
 
 import contextlib
 import dataclasses
@@ -15,9 +15,9 @@ import numpy.typing as npt
 
 from twin.errors import ExitCode, RecordingError, UsageError
 from twin.extras import require_extra
-from twin.machine.watching.alarms import Alarm
 from twin.nc.canonical import FloatArray
 from twin.nc.text.diagnostics.diagnostics import Diagnostic
+from twin.recording.alarms import Alarm
 from twin.recording.form import COLUMNS, GROWTH, JOINT_COLUMNS, TOOL_COLUMNS
 from twin.recording.reader import open_recording
 from twin.run.judging.outcome import Outcome
@@ -147,7 +147,7 @@ class Result:
         return pd.DataFrame({name: self[name] for name in self.columns if self[name].ndim == 1})
 
     def by_line(self) -> "pd.DataFrame":
-        """What became of every source line of the program, in the order of the lines.
+        """Figures of every source line of the program, in the order of the lines.
 
         Columns ``seconds``, ``contour_um`` (greatest), ``contour_rms_um``, and the greatest following error of
         every axis, ``following/X`` [µm or mdeg].

@@ -1,4 +1,4 @@
-"""A machine at work on a program, a few servo periods at a time, with commands in between."""
+"""A program run a few servo periods at a time, with commands in between."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -10,9 +10,9 @@ from twin.compare.comparison import Comparison
 from twin.compare.figures import Figures
 from twin.coupling.operations import program_process
 from twin.machine.simulation.live import LiveMachine
-from twin.machine.watching.alarms import Alarm
 from twin.motion.live.live_motion import LARGEST_OVERRIDE, LiveMotion
 from twin.nc.canonical import Chunk, FloatArray
+from twin.recording.alarms import Alarm
 from twin.recording.form import Samples
 from twin.run.run import Run
 
@@ -31,7 +31,7 @@ class Step(NamedTuple):
 
 
 class Command(NamedTuple):
-    """What was turned or pressed, and when.
+    """An operator's command and its time.
 
     Attributes:
         tick: Servo periods that had passed.
@@ -70,11 +70,11 @@ class Session:
         machine: str | None = None,
         largest_override: float = LARGEST_OVERRIDE,
     ) -> None:
-        """Bring a program and its machine to their begin.
+        """Prepare a program and its machine at its start.
 
         Args:
             program: As ``twin.run`` takes it; or one that was prepared already.
-            dialect: One of ``twin dialects``; told by the program's words by default.
+            dialect: One of ``twin dialects``; recognised from the program by default.
             machine: A shipped machine's name, or a machine file; the job's by default.
             largest_override: Highest feed override; with 1 the setpoints are those of ``twin.run`` to the bit,
                 with more the look-ahead leaves room for it.

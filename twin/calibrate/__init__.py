@@ -1,1 +1,1 @@
-"""From logs of a real machine to its machine file: what they tell, how well, and what they do not."""
+"""A machine file from logs of a real machine: what they determine, how well, and what they do not."""

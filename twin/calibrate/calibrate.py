@@ -110,7 +110,7 @@ def _masses(machine: MachineConfig) -> dict[str, float]:
 def _axis_findings(
     machine: MachineConfig, item: PreparedLog, names: Sequence[str]
 ) -> tuple[LogFinding, ...]:
-    """Refuse what cannot be, tell what is poor."""
+    """Refuse columns that cannot be right, report poor ones."""
     found: list[LogFinding] = []
     for name in names:
         if name not in item.log.axes:

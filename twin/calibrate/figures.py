@@ -59,7 +59,7 @@ class _Judged(NamedTuple):
 
 
 def _joined(parts: Iterable[_Judged], most: int) -> _Judged:
-    """Parts one after the other, each of which is let go as soon as it is copied.
+    """Parts joined; the memory of each is freed once it is copied.
 
     Args:
         parts: Of one axis.

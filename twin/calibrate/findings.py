@@ -1,4 +1,4 @@
-"""What a person should know about a log."""
+"""Findings about a log."""
 
 import dataclasses
 
@@ -9,7 +9,7 @@ from twin.nc.canonical import FloatArray
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class LogFinding:
-    """Something about a log that a person should know.
+    """A finding about a log, for the user.
 
     Attributes:
         code: ``gap``, ``missing``, ``clock-jump``, ``slow``, ``coarse``, ``held``, ``uneven``, ``skew``,

@@ -104,7 +104,7 @@ def look_at_clock(log: MachineLog) -> Health:
         findings.append(
             LogFinding(
                 "clock-jump",
-                f"the clock stands or jumps back {np.count_nonzero(jumps)} times, first at "
+                f"the clock stops or jumps back {np.count_nonzero(jumps)} times, first at "
                 f"{first:.6g} s; what lies between is fitted piece by piece",
             )
         )
@@ -162,7 +162,7 @@ def refuse_broken_clock(log: MachineLog, health: Health) -> None:
     standing = int(np.count_nonzero(np.diff(log.time) <= 0))
     if standing:
         raise UsageError(
-            f"{log.name}: its clock stands or runs back at {standing} of {count} samples: where they "
+            f"{log.name}: its clock stops or jumps back at {standing} of {count} samples: where they "
             "are even, give the map a 'period' in place of 'time'; else log time with more digits"
         )
     raise UsageError(
@@ -316,9 +316,9 @@ def _feed_forward(name: str, delay: Interval) -> LogFinding:
     return LogFinding(
         "feed-forward",
         f"{name}: actual position seems to be logged {abs(delay.value) * 1e3:.3g} ms earlier than the "
-        f"command ({_milliseconds(delay)}): unless the columns are that far apart, the drive is told the "
+        f"command ({_milliseconds(delay)}): unless the columns are that far apart, the drive receives the "
         "speed of the command (velocity_feedforward), and kv, damping_ratio and the share of "
-        "feed-forward are not told apart; where it is the log, give the map a delay_s of the column",
+        "feed-forward cannot be separated; if the log is late, give the map a delay_s of the column",
     )
 
 

@@ -1,4 +1,4 @@
-"""Rows of a slow log at which positions jump as no axis moves: there is no speed to be had there."""
+"""Rows of a slow log at which positions jump faster than any axis moves: they give no speed."""
 
 import numpy as np
 
@@ -45,7 +45,7 @@ def _fastest(axis: AxisLog) -> float:
 
 
 def look_at_jumps(log: MachineLog, jumps: BoolArray) -> list[LogFinding]:
-    """Tell of them, where there are any."""
+    """Report jumps, where there are any."""
     if not jumps.any():
         return []
     first = int(np.flatnonzero(jumps)[0])

@@ -101,7 +101,7 @@ def _give_lines(axis: AxisResult) -> Iterator[str]:
 
 
 def _motor_line(axis: AxisResult) -> str:
-    """The mass as inertia of the motor: behind a gap or spring a file has nothing else to say it by."""
+    """The mass as inertia of the motor: behind a gap or spring a file has no other key for it."""
     base, mass = axis.base, axis.fit.parameters.mass
     assert base.lead is not None
     turns = (2.0 * math.pi / (base.lead * to_si(axis.kind))) ** 2

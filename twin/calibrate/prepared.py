@@ -80,7 +80,7 @@ class PreparedLog:
             yield from stretches_of(self.log.axes[name], self.log.time, (part,), sound)
 
     def fitted(self, name: str) -> list[Stretch]:
-        """What a fit of an axis runs along: of a long log the parts in which it is told the most."""
+        """What a fit of an axis runs along: of a long log the parts in which it moves most."""
         rows, period = self.rows(name), self.health.period_s
         if sum(end - begin for begin, end in rows) <= MOST_FITTED:
             return self.stretches(name)

@@ -1,7 +1,7 @@
 """Test programs for a real machine: ten minutes in the air that show what a fit needs.
 
-Strokes at five feeds and at rapid tell the loop, slow reversals friction, circles the reversals under
-way, a square with exact stops its corners, a rapid of three axes the planner's limits, dwells the
+Strokes at five feeds and at rapid tell the loop, slow reversals friction, circles the reversals in
+motion, a square with exact stops its corners, a rapid of three axes the planner's limits, dwells the
 noise and whatever pulls at rest. Rotary axes make the same strokes in degrees, with Z at its upper end. Every
 dialect gets the same motion.
 """
@@ -218,7 +218,7 @@ def _turns(machine: MachineConfig, wording: Wording) -> Iterator[str]:
 
 def _circles(machine: MachineConfig, wording: Wording) -> Iterator[str]:
     radius = min(_ends(machine, "X")[1], _ends(machine, "Y")[1], 50.0)
-    yield _comment(wording, "circles both ways")
+    yield _comment(wording, "circles in both directions")
     yield _line(wording, "G0", X=radius, Y=0.0)
     for feed in CIRCLE_FEEDS:
         for code in ("G2", "G3"):

@@ -1,4 +1,4 @@
-"""Logs that cannot be what they are said to be: swapped columns, another axis, another unit."""
+"""Logs whose columns are mislabelled: swapped, of another axis, in another unit."""
 
 import numpy as np
 

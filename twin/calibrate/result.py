@@ -1,4 +1,4 @@
-"""What a calibration came to: by axis what was fitted, by log how well it is predicted."""
+"""The result of a calibration: by axis what was fitted, by log how well it is predicted."""
 
 import dataclasses
 import math
@@ -255,7 +255,7 @@ def verdict_sentence(name: str, axis: AxisResult, logs: tuple[LogFigures, ...]) 
     what = f"lag of velocity in {ramps} ramps" if ramps else "lag"
     if not judged:
         names = ", ".join(axis.fit.fitted) or "nothing"
-        return f"{name}: of a ball-bar alone, which tells {names}."
+        return f"{name}: from a ball-bar only, which determines {names}."
     shares = max((figures.judged_share for figures in judged), default=math.inf)
     seen = "of a log that it has not seen" if unseen else "of the fitted log"
     left = f"{100 * shares:.3g} %"

@@ -1,4 +1,4 @@
-"""What gives between motor and axis, as logs of a second encoder or ball-bars tell it."""
+"""Backlash and stiffness from logs of a second encoder or of ball-bars."""
 
 import dataclasses
 from collections.abc import Sequence
@@ -76,7 +76,7 @@ def with_give(
             given.insert(0, "mass")
         conditional["stiffness"] = (stiffness, tuple(given))
         undetermined["stiffness"] = (
-            "only its ratio to what lies behind the gap is told; "
+            "only its ratio to the mass behind the gap is determined; "
             f"{stiffness.value:.4g} holds for {mass - reflected_inertia(axis):.5g} "
             f"of {mass:.5g} behind it, as the base's motor and screw have it, and for friction there"
         )

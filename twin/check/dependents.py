@@ -1,7 +1,7 @@
 """Which jobs and programs have to do with files that a commit changes.
 
 What a run reads is what it depends on: what the loaders of its job and its machine look at, the parts of the machine's
-model, its program, and the files beside it that the program calls. Where that cannot be told without running it, it
+model, its program, and the files beside it that the program calls. Where that is not known without running it, it
 counts as dependent.
 """
 

@@ -1,4 +1,4 @@
-"""What became of one program of many."""
+"""The outcome of one program of many."""
 
 import dataclasses
 from typing import Any, Literal
@@ -12,7 +12,7 @@ CheckVerdict = Literal["pass", "fail", "alarm", "error", "empty"]
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Finding:
-    """One thing to tell about a program.
+    """A finding about a program.
 
     Attributes:
         code: The diagnostic's, alarm's or tolerance's stable name.
@@ -81,7 +81,7 @@ class CheckOutcome:
 
 
 def died(task: str) -> CheckOutcome:
-    """What became of a task whose process died."""
+    """The outcome of a task whose process died."""
     message = "the process that ran it died; out of memory?"
     return CheckOutcome(
         program=task,

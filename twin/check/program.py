@@ -16,9 +16,9 @@ from twin.compare.verdict import Reason
 from twin.errors import ConfigError, EmptyProgramError, ExitCode, TwinError, UsageError
 from twin.files.toml_lines import place_of_key
 from twin.job.load import Job
-from twin.machine.watching.alarms import Alarm
 from twin.nc.canonical import Chunk
 from twin.nc.text.diagnostics.diagnostics import Diagnostic, ProgramError
+from twin.recording.alarms import Alarm
 from twin.recording.reader import LONGEST_TEXT
 from twin.run.judging.outcome import Outcome
 from twin.run.messages import alarm_diagnostic, reason_text

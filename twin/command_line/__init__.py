@@ -1,1 +1,1 @@
-"""The arguments and options of each command; the rooms are loaded when a command runs."""
+"""The arguments and options of each command; other packages are loaded when a command runs."""

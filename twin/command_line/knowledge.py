@@ -1,4 +1,4 @@
-"""What the twin knows of itself: ``twin dialects``, ``explain`` and ``doctor``."""
+"""Help and diagnosis: ``twin dialects``, ``explain`` and ``doctor``."""
 
 from typing import Annotated
 
@@ -32,11 +32,11 @@ def doctor(
     compile_now: Annotated[
         bool,
         typer.Option(
-            "--compile", help="Compile all kernels first: into the installation, for images."
+            "--compile", help="Compile all kernels into the installation first, as for images."
         ),
     ] = False,
 ) -> None:
-    """Say what this computer can do: libraries, compiled kernels, off-screen pictures, video."""
+    """Report what this computer can do: libraries, compiled kernels, off-screen pictures, video."""
     from twin.commands.doctor import print_doctor
 
     raise typer.Exit(print_doctor(compile_now=compile_now))

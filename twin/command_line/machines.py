@@ -10,7 +10,7 @@ from twin.command_line.options import FormatOption, JsonOption, MachineArgument,
 
 machine_app = typer.Typer(
     no_args_is_help=True,
-    help="Look at machines, check them, run circles.",
+    help="List, show and check machines; run circular tests.",
     epilog=epilog("machine"),
 )
 
@@ -67,19 +67,21 @@ def calibrate(
         list[Path] | None, typer.Argument(help="Logs to fit.", show_default=False)
     ] = None,
     base: Annotated[
-        str, typer.Option("--base", help="Machine whose values stay where the logs determine none.")
+        str,
+        typer.Option("--base", help="Base machine: its values stay where the logs determine none."),
     ] = "mill4",
     columns: Annotated[
         Path | None, typer.Option("--columns", help="Map of columns and units (TOML).")
     ] = None,
     hold_out: Annotated[
-        list[Path] | None, typer.Option("--hold-out", help="Log to judge by; again for more.")
+        list[Path] | None,
+        typer.Option("--hold-out", help="Log that is not fitted but judges the fit; repeatable."),
     ] = None,
-    axes: Annotated[str | None, typer.Option("--axes", help="Only these: X,Y.")] = None,
-    out: Annotated[Path | None, typer.Option("--out", help="Write the machine file there.")] = None,
+    axes: Annotated[str | None, typer.Option("--axes", help="Fit only these axes: X,Y.")] = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Machine file to write.")] = None,
     json_file: JsonOption = None,
     form: FormatOption = "text",
-    report: Annotated[Path | None, typer.Option("--report", help="Write the page there.")] = None,
+    report: Annotated[Path | None, typer.Option("--report", help="HTML report to write.")] = None,
     require: Annotated[
         float | None,
         typer.Option("--require", help="Exit 1 if more of a held-out lag than this share is left."),
@@ -90,10 +92,10 @@ def calibrate(
     ] = None,
     programs: Annotated[
         Path | None,
-        typer.Option("--programs", help="Write test programs for the real machine there."),
+        typer.Option("--programs", help="Folder for test programs for the real machine."),
     ] = None,
 ) -> None:
-    """Fit a machine's drives to logs of a real one, and say what the logs do not tell."""
+    """Fit a machine's drives to logs of a real one, and report what the logs do not determine."""
     from twin.commands.calibrate import CalibrationRequest, calibrate_and_print
 
     request = CalibrationRequest(

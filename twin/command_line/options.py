@@ -18,16 +18,21 @@ ProgramOrJob = Annotated[
     ),
 ]
 DialectOption = Annotated[
-    str | None, typer.Option("--dialect", help="Default: recognised by its words.")
+    str | None,
+    typer.Option("--dialect", help="Dialect of the program; default: recognised from it."),
 ]
-OutOption = Annotated[Path | None, typer.Option("--out", help="Folder; default out/<program>.")]
+OutOption = Annotated[
+    Path | None, typer.Option("--out", help="Folder for results; default out/<program>.")
+]
 MachineOption = Annotated[str | None, typer.Option("--machine", help="Name, or a machine.toml.")]
 MachineArgument = Annotated[
     str, typer.Argument(help="A shipped machine's name, or a machine.toml.", show_default=False)
 ]
 JobsOption = Annotated[
     int | None,
-    typer.Option("--jobs", min=1, help="How many at a time; default: all cores, where that pays."),
+    typer.Option(
+        "--jobs", min=1, help="Processes at a time; default: all cores, where that is faster."
+    ),
 ]
 ClusterOption = Annotated[
     str | None,
@@ -35,7 +40,7 @@ ClusterOption = Annotated[
 ]
 JsonOption = Annotated[
     Path | None,
-    typer.Option("--json", help="Write JSON there; -: as --format json, to the standard output."),
+    typer.Option("--json", help="JSON file to write; -: the standard output, as --format json."),
 ]
 FormatOption = Annotated[str, typer.Option("--format", help="text or json.")]
 StrictOption = Annotated[bool, typer.Option("--strict", help="Turn warnings into errors.")]

@@ -16,9 +16,9 @@ _Recording = Annotated[
     ),
 ]
 _Out = Annotated[Path | None, typer.Option("--out", help="Folder; default: the recording's.")]
-_Format = Annotated[str, typer.Option("--format", help="Of the film: mp4, gif or webp.")]
+_Format = Annotated[str, typer.Option("--format", help="Format of the film: mp4, gif or webp.")]
 _Film = Annotated[
-    bool, typer.Option("--film", help="Film although stills, --glb or --inspect are given.")
+    bool, typer.Option("--film", help="Make a film in addition to stills, --glb or --inspect.")
 ]
 _At = Annotated[
     list[float] | None, typer.Option("--at", help="Draw a still at this time (s); repeatable.")
@@ -33,7 +33,9 @@ _Event = Annotated[
 ]
 _Camera = Annotated[
     list[str] | None,
-    typer.Option("--camera", help="One after the other; part and riding fit any machine."),
+    typer.Option(
+        "--camera", help="Camera; repeatable, one after the other. part and riding fit any machine."
+    ),
 ]
 _Split = Annotated[bool, typer.Option("--split", help="Show all cameras at once.")]
 _Display = Annotated[
@@ -46,7 +48,7 @@ _Renderer = Annotated[
     typer.Option("--renderer", help="opengl, or filament: physically based and slower."),
 ]
 _Seconds = Annotated[float | None, typer.Option("--seconds", help="Length of the film (s).")]
-_Speed = Annotated[float | None, typer.Option("--speed", help="Times faster than in reality.")]
+_Speed = Annotated[float | None, typer.Option("--speed", help="Times faster than real time.")]
 _FramesPerSecond = Annotated[int | None, typer.Option("--fps", help="Frames per second.")]
 _Size = Annotated[str | None, typer.Option("--size", help="Such as 1280x720.")]
 _Glb = Annotated[bool, typer.Option("--glb", help="Write the part in colours, part.glb.")]

@@ -52,7 +52,7 @@ def run(
     strict: StrictOption = False,
     save_job: Annotated[
         Path | None,
-        typer.Option("--save-job", help="Keep the job that is assumed for a raw program."),
+        typer.Option("--save-job", help="Write the job that is assumed for a raw program."),
     ] = None,
 ) -> None:
     """Interpret, plan, simulate, compare and cut; write the results and print the verdict."""
@@ -70,7 +70,7 @@ def init(
     machine: MachineOption = None,
     force: Annotated[bool, typer.Option("--force", help="Replace a job file.")] = False,
 ) -> None:
-    """Write a first job file beside a program: stock and tools as the program tells them."""
+    """Write a first job file beside a program, with stock and tools derived from the program."""
     from twin.commands.programs.init import init_and_print
 
     code = init_and_print(program, dialect=dialect, machine=machine, force=force)

@@ -1,4 +1,4 @@
-"""What goes on until it is interrupted: ``twin train``, ``twin view``, ``twin serve`` and ``twin link``."""
+"""Commands that run until they are interrupted: ``twin train``, ``view``, ``serve`` and ``link``."""
 
 from pathlib import Path
 from typing import Annotated
@@ -16,7 +16,8 @@ def train(
     ] = "fagor_first_steps",
     list_scenes: Annotated[bool, typer.Option("--list", help="List the shipped scenes.")] = False,
     rehearse: Annotated[
-        bool, typer.Option("--rehearse", help="Play the scene's solution and mistake, no page.")
+        bool,
+        typer.Option("--rehearse", help="Play the scene's solution and mistake without a page."),
     ] = False,
     course: Annotated[
         Path | None,
@@ -33,7 +34,7 @@ def train(
         ),
     ] = None,
     seats: Annotated[
-        int | None, typer.Option("--seats", help="A class of so many pupils without names.")
+        int | None, typer.Option("--seats", help="A class with this number of unnamed pupils.")
     ] = None,
     language: Annotated[
         str | None,
@@ -56,12 +57,12 @@ def train(
         Path | None,
         typer.Option(
             "--out",
-            help="Logs and score sheets; default out/training, of a class out/class/ROSTER.",
+            help="Folder for logs and score sheets; default out/training, for a class out/class/ROSTER.",
         ),
     ] = None,
     cluster: ClusterOption = None,
 ) -> None:
-    """Run a machine, and wreck it, in a browser: the training room."""
+    """Run a machine, and crash it, in a browser: the training room."""
     from twin.commands.live import train as room
 
     if list_scenes:
@@ -96,7 +97,7 @@ def view(
         int, typer.Option("--port", min=0, max=65535, help="0: the first free from 8080.")
     ] = 0,
 ) -> None:
-    """Look at a run in a browser: play, scrub, by line, with its contour error and its part."""
+    """Show a run in a browser: play, scrub, jump by line, with its contour error and its part."""
     from twin.commands.live.view import view as show
 
     raise typer.Exit(show(recording, port))
@@ -107,12 +108,12 @@ def serve(
         Path | None,
         typer.Argument(
             metavar="PROGRAM|JOB.toml",
-            help="Program or job, run again and again.",
+            help="Program or job, which is repeated.",
             show_default=False,
         ),
     ] = None,
     scene: Annotated[
-        str | None, typer.Option("--scene", help="Open this training room in place of a program.")
+        str | None, typer.Option("--scene", help="Open this training room instead of a program.")
     ] = None,
     host: Annotated[str, typer.Option("--host", help="Address to listen at.")] = "127.0.0.1",
     port: Annotated[
@@ -141,14 +142,14 @@ def serve(
         typer.Option(
             "--grbl",
             metavar="PORT|pty",
-            help="Take programs from Grbl's senders, at the job's machine.",
+            help="Accept programs from Grbl senders, on the job's machine.",
         ),
     ] = None,
     view: Annotated[bool, typer.Option("--view", help="Show the job's machine on a page.")] = False,
     dialect: DialectOption = None,
     machine: MachineOption = None,
 ) -> None:
-    """Tell monitors over MTConnect of a machine that runs a job again and again, or of a room."""
+    """Serve a machine over MTConnect: one that repeats a job, or that of a training room."""
     from twin.commands.live import serve as agent
 
     source = agent.Reported(

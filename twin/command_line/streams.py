@@ -1,4 +1,4 @@
-"""The command's output: a reader who goes away, and a terminal that knows no µ."""
+"""The command's output: a pipe that is closed, and a terminal that cannot show µ."""
 
 import codecs
 import io

@@ -21,7 +21,7 @@ from twin.errors import UsageError
 
 def check(
     paths: Annotated[list[str], typer.Argument(help="Programs, job files, folders, globs.")],
-    junit: Annotated[Path | None, typer.Option("--junit", help="Write JUnit XML there.")] = None,
+    junit: Annotated[Path | None, typer.Option("--junit", help="JUnit XML file to write.")] = None,
     json_file: JsonOption = None,
     form: FormatOption = "text",
     baseline: Annotated[
@@ -30,17 +30,17 @@ def check(
     ] = None,
     update_baseline: Annotated[
         bool,
-        typer.Option("--update-baseline", help="Store baselines in place of comparing with them."),
+        typer.Option("--update-baseline", help="Store baselines instead of comparing with them."),
     ] = False,
     changed: Annotated[
         bool,
         typer.Option(
             "--changed",
-            help="Of files that a commit changes, the programs and jobs, and jobs that use the others; there may be none.",
+            help="PATHS are files that a commit changes: check the programs and jobs among them, and the jobs that read the others.",
         ),
     ] = False,
     reports: Annotated[
-        Path | None, typer.Option("--reports", help="Write a report on every program there.")
+        Path | None, typer.Option("--reports", help="Folder for a report on each program.")
     ] = None,
     jobs: JobsOption = None,
     cluster: ClusterOption = None,
@@ -85,7 +85,7 @@ def sweep(
         list[str],
         typer.Option(
             "--vary",
-            help="machine.KEY=VALUES or job.KEY=VALUES: a,b,c or FROM:TO:COUNT; again for more.",
+            help="machine.KEY=VALUES or job.KEY=VALUES: a,b,c or FROM:TO:COUNT; repeatable.",
         ),
     ],
     json_file: JsonOption = None,
@@ -119,7 +119,8 @@ def compare(
         float | None, typer.Option("--period", help="Sample period of logs without time (s).")
     ] = None,
     offset: Annotated[
-        float | None, typer.Option("--offset", help="Known offset in time (s); default: found.")
+        float | None,
+        typer.Option("--offset", help="Known offset in time (s); default: found by alignment."),
     ] = None,
     tolerance: Annotated[
         float | None, typer.Option("--tolerance", help="Largest actual difference (mm or deg).")
@@ -151,7 +152,7 @@ def export(
         typer.Option(
             "--fmu",
             metavar="MACHINE",
-            help="Write a unit for co-simulation (FMI 3) in place of CSV.",
+            help="Write a unit for co-simulation (FMI 3) instead of CSV.",
         ),
     ] = None,
 ) -> None:

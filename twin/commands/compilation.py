@@ -1,4 +1,4 @@
-"""Kernels compiled before anybody waits for them.
+"""Compilation of kernels ahead of their first use.
 
 ``twin doctor --compile`` compiles every kernel. A run that finds one missing compiles one after the other as its
 stages come to them, the planner's first, then those of drives, cut and comparison: these last ones are compiled in a
@@ -205,7 +205,7 @@ def _end_with_parent() -> None:
 
 
 def later_motion(run: Run) -> ProgramMotion:
-    """A motion that goes aslant into the middle of the blank and needs no planner."""
+    """A sloping motion into the middle of the blank, without a planner."""
     summary = run.dry_run.summary
     forces = cutting_forces(run.preparation, summary)
     return ProgramMotion(_aslant(run, run.dry_run.program), run.model, summary, forces)

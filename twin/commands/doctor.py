@@ -13,7 +13,7 @@ LIBRARIES = ("mujoco", "numpy", "numba", "h5py", "trimesh", "av", "pillow", "mat
 
 
 def print_doctor(*, compile_now: bool = False) -> ExitCode:
-    """Print what was found; pictures that cannot be made are an error, the rest runs without.
+    """Print the findings; missing pictures are an error, everything else is optional.
 
     Args:
         compile_now: Compile every kernel before anything else is done.

@@ -57,7 +57,7 @@ def _first(text: str) -> str:
 
 
 def explain(code: str) -> str:
-    """Text for a person about one code, or about a material of a job.
+    """Explanation of one code, or of a material of a job.
 
     Raises:
         UsageError: There is no such code; the message names the nearest.

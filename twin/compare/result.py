@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 
 from twin.compare.figures import ArcFigures, AxisTracking, BlockFigures, Figures
-from twin.compare.verdict import PRINTED_DIGITS, AlarmLike, Verdict
+from twin.compare.verdict import PRINTED_DIGITS, Verdict
 from twin.files.atomic import write_text
 from twin.job.tolerance import ToleranceTable
+from twin.recording.alarms import Alarm
 from twin.units import AxisKind
 
 SCHEMA = 1
@@ -60,7 +61,7 @@ def result(
     figures: Figures,
     tolerance: ToleranceTable,
     verdict: Verdict,
-    alarms: Sequence[AlarmLike] = (),
+    alarms: Sequence[Alarm] = (),
 ) -> dict[str, Any]:
     """Put the result of a run together, ready for JSON.
 

@@ -2,40 +2,17 @@
 
 import dataclasses
 from collections.abc import Iterator, Sequence
-from typing import Literal, Protocol
+from typing import Literal
 
 import numpy as np
 
 from twin.compare.figures import Figures
 from twin.errors import ExitCode
 from twin.job.tolerance import ToleranceTable
+from twin.recording.alarms import Alarm
 
 Outcome = Literal["pass", "fail", "alarm"]
 EXIT_CODES = {"pass": ExitCode.OK, "fail": ExitCode.FAILED, "alarm": ExitCode.ALARM}
-
-
-class AlarmLike(Protocol):
-    """What the verdict needs of an alarm of the machine."""
-
-    @property
-    def code(self) -> str:
-        """Stable name, such as ``soft-limit``."""
-        ...
-
-    @property
-    def line(self) -> int:
-        """Program line at which it was raised."""
-        ...
-
-    @property
-    def time_s(self) -> float:
-        """When [s]."""
-        ...
-
-    @property
-    def message(self) -> str:
-        """What happened."""
-        ...
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -139,7 +116,7 @@ class Verdict:
 def judge(
     figures: Figures,
     tolerance: ToleranceTable,
-    alarms: Sequence[AlarmLike] = (),
+    alarms: Sequence[Alarm] = (),
     *,
     cycle_time_s: float | None = None,
     more: Sequence[Check] = (),

@@ -38,7 +38,7 @@ _announcer = _Announcer()
 def announce_compilation(
     is_first: Callable[[], bool] = lambda: True, meanwhile: Callable[[], object] = lambda: None
 ) -> None:
-    """From now on, say so on stderr at the first compilation of this process.
+    """Print a message on stderr at the first compilation of this process.
 
     Args:
         is_first: Whether no other process has said so; asked once.

@@ -85,7 +85,7 @@ def _whole(file: str) -> Path:
 
 
 def is_compiled(kernel: Any, arguments: Iterable[object]) -> bool:
-    """Whether a call of a kernel with these arguments would have to wait for no compiler."""
+    """Whether a kernel is compiled for these arguments."""
     types = tuple(map(kernel.typeof_pyval, arguments))
     return types in kernel.overloads or kernel._cache.holds(types, kernel.targetctx)  # noqa: SLF001 - Numba has no public place for it
 

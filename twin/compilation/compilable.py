@@ -1,4 +1,4 @@
-"""Functions of two speeds: CPython runs them as they stand, kernels compile them into themselves.
+"""Functions that CPython runs as they are and that kernels compile into themselves.
 
 To declare one costs nothing: Numba is loaded by the first kernel, and with it what was declared
 becomes known to the compiler. Such a function has one source for both speeds, and no compiled form
@@ -44,7 +44,7 @@ def inlined(function: Function) -> Function:
 
 
 def take_declared() -> list[Declared]:
-    """What was declared since this was asked last."""
+    """What was declared since the last call."""
     taken = _declared.copy()
     _declared.clear()
     return taken

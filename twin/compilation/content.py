@@ -1,4 +1,4 @@
-"""What a compiled kernel was made from, as one hash: it is the kernel's only mark of age.
+"""What a compiled kernel was made from, as one hash: the only key of the cache.
 
 Times and paths do not count: a moved, restored or copied environment finds what was compiled before.
 """

@@ -1,4 +1,4 @@
-"""Whether the kernels are compiled already, for those who ask before they run anything."""
+"""Whether all kernels are compiled already."""
 
 import hashlib
 import os
@@ -40,8 +40,8 @@ class Inventory(NamedTuple):
             return f"compiled, in {self.folder}"
         if not self.lasts:
             return (
-                "compiled again by each process, for there is no folder to keep them in: set "
-                "NUMBA_CACHE_DIR to a folder that is yours alone"
+                "compiled again by each process, because no folder can keep them: set "
+                "NUMBA_CACHE_DIR to a folder that only you can write to"
             )
         return (
             f"compiled when first used, two to three minutes in all, into {self.folder}; "

@@ -1,4 +1,4 @@
-"""Two things that Numba does at length while it compiles, done shortly.
+"""Two slow steps of Numba's compilation, replaced by faster ones.
 
 Options of a compilation are compared at once. Numba looks every function that compiled code calls up by its options, a
 hundred thousand times a minute: its own hash of them is that of their names, which all options share, and its

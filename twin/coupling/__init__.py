@@ -1,1 +1,1 @@
-"""The machine and the cut together: the force of the teeth acts on the axes while they move."""
+"""Coupling of machine and cut: the force of the teeth acts on the axes while they move."""

@@ -16,9 +16,9 @@ from twin.cutting.forces.tool_strength import ToolStrength, tool_strength
 from twin.job.job_file import ToolTable
 from twin.machine.description.machine_file import SpindleTable
 from twin.machine.simulation.process import Physics
-from twin.machine.watching.alarms import Alarm
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
+from twin.recording.alarms import Alarm
 from twin.recording.form import ToolLoad
 from twin.toolpath.part_frame import PartFrame
 from twin.units import SECONDS_PER_MINUTE
@@ -115,7 +115,6 @@ class CuttingProcess(abc.ABC):
     """
 
     def __init__(self, setting: CutSetting) -> None:
-        """Begin with the spindle as it turns."""
         self.breaks: list[ToolBreak] = []
         self.alarm: Alarm | None = None
         self._resists, self._operation = setting.resists, setting.operation
@@ -138,13 +137,13 @@ class CuttingProcess(abc.ABC):
         self._memory.numbers[CutNumber.SPEED] = speed
 
     def renew(self, number: int) -> None:
-        """Put a new tool into the place of one, which may have lost its edge."""
+        """Replace a tool, which may have lost its edge, by a new one."""
         self.breaks = [found for found in self.breaks if found.tool != number]
         if self._tool is not None and self._tool.number == number:
             self._tool = None
 
     def lift(self) -> None:
-        """Take the tool off what it cut: what comes next is no travel of it."""
+        """Lift the tool: what comes next is no travel of it."""
         memory = self._memory
         memory.numbers[CutNumber.FRESH] = 1.0
         for column in (memory.load, memory.bend, memory.looked, memory.scratch.figures):

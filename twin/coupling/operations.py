@@ -23,7 +23,7 @@ class ProgramOperation:
     """What a program brings into the spindle."""
 
     def __init__(self, summary: ProgramSummary) -> None:
-        """Go by what a whole program says in addition to its moves."""
+        """Read tools and speeds off the summary of a program."""
         self._tools = summary.tools
         self._first_move = np.array(summary.spindle.first_move)
         self._speed = np.array([_known(speed) for speed in summary.spindle.values])

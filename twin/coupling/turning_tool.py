@@ -116,7 +116,7 @@ class ToolLoads(NamedTuple):
 
 
 def new_memory(axes: int) -> Memory:
-    """Nothing is known of where the tool was."""
+    """Memory before the first period."""
     numbers = np.zeros(len(CutNumber))
     numbers[CutNumber.FRESH] = 1.0
     three = [np.zeros(3) for _ in range(6)]

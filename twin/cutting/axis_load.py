@@ -15,7 +15,7 @@ from twin.toolpath.part_frame import PartFrame
 from twin.units import DEGREE, MM
 
 _STEP = 1e-3
-"""By which an axis is moved to see which way the tip goes [mm or deg]."""
+"""By which an axis is moved to find the direction in which the tip moves [mm or deg]."""
 
 
 class AxisLoad:

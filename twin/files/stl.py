@@ -1,4 +1,4 @@
-"""Solids that come as STL files, and go."""
+"""Reading and writing STL files."""
 
 import functools
 import logging

@@ -1,4 +1,4 @@
-"""The line of a key in a TOML file, which its parser does not report."""
+"""The line of a key in a TOML file, which the parser does not report."""
 
 import re
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""A machine that another simulator steps: a setpoint of every axis in, a servo period, joints and loads out.
+"""A machine that another simulator steps by servo periods: setpoints in, joints and loads out.
 
 What happens in a period is what ``twin run`` does with the same setpoint, to the last bit (``LiveMachine``). An alarm
 is latched, and brakes the axes; what the setpoints ask for counts no more then.
@@ -10,9 +10,9 @@ import numpy as np
 
 from twin.machine.description.config import MachineConfig
 from twin.machine.simulation.live import LiveMachine
-from twin.machine.watching.alarms import SimulationError
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
+from twin.recording.alarms import SimulationError
 
 _SAME_STEP = 1e-6
 """How far a step may differ from the servo period, as a share of it."""
@@ -80,7 +80,7 @@ class MachineUnit:
             raise SimulationError("the machine is not switched on")
         if not math.isclose(step_s, self.period_s, rel_tol=_SAME_STEP):
             raise SimulationError(
-                f"a step of {step_s:g} s: this machine goes on by its servo period, {self.period_s:g} s"
+                f"a step of {step_s:g} s: this machine steps by its servo period, {self.period_s:g} s"
             )
         self._tick += 1
         samples = live.brake(1) if live.alarm is not None else live.follow(self._setpoint())

@@ -75,7 +75,7 @@ class MachineSlave(fmi.Fmi3Slave):
         self.register_variable(
             fmi.String(
                 "alarm", causality=causality.output, variability=variability.discrete,
-                description="code of the alarm that stands; empty: none",
+                description="code of the active alarm; empty: none",
                 getter=lambda: self.unit.alarm,
             ),
             nested=False,
@@ -110,7 +110,7 @@ class MachineSlave(fmi.Fmi3Slave):
         self.unit.begin()
 
     def do_step(self, current_time: float, step_size: float) -> Any:
-        """Go on by a servo period; what is wrong is logged, and fails the step."""
+        """Advance by a servo period; an error is logged and fails the step."""
         try:
             self.unit.step(step_size)
         except TwinError as error:

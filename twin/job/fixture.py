@@ -1,4 +1,4 @@
-"""What is clamped to the table, and what it weighs: jaws, clamps, stops."""
+"""Fixtures on the table and their weight: jaws, clamps, stops."""
 
 from pathlib import Path
 from typing import Annotated, NamedTuple

@@ -154,7 +154,7 @@ class ToolTable(Table):
     speed: Positive | None = None
     """Spindle speed for the cutting force [1/min]; none: no force is computed."""
     hand: Literal["right", "left"] = "right"
-    """Which way it cuts, seen from the spindle: ``right`` clockwise (M3)."""
+    """Direction of rotation in which it cuts, seen from the spindle: ``right`` clockwise (M3)."""
     center_cutting: bool | None = None
     """Whether an end mill cuts over its centre, so that it may plunge; none: with two or three teeth it
     does, as slot drills after DIN 327 do, with more nobody knows."""

@@ -89,7 +89,7 @@ def _axis(machine: MachineConfig, name: str, settings: Settings) -> dict[str, An
 def _require_axes(machine: MachineConfig) -> None:
     strange = [name for name in machine.axes.names if name not in LETTERS]
     if strange:
-        raise ConfigError(f"LinuxCNC has no axis {strange[0]}: it knows {', '.join(LETTERS)}")
+        raise ConfigError(f"LinuxCNC has no axis {strange[0]}: it has {', '.join(LETTERS)}")
     wrong = [
         name
         for name in machine.axes.names

@@ -17,16 +17,16 @@ from pathlib import Path
 from typing import Any, TextIO
 
 ANSWER_S = 60.0
-"""How long LinuxCNC may take to do what it is told."""
+"""How long LinuxCNC may take to carry out a command [s]."""
 PAUSE_S = 0.02
 
 
 class FailedError(Exception):
-    """LinuxCNC does not do what it is told, or stopped."""
+    """LinuxCNC does not carry out a command, or stopped."""
 
 
 class LinuxcncClient:
-    """Works LinuxCNC through its own Python module."""
+    """Operates LinuxCNC through its own Python module."""
 
     def __init__(self, linuxcnc: Any, log: TextIO, twin: int) -> None:
         self._linuxcnc = linuxcnc
@@ -90,7 +90,7 @@ class LinuxcncClient:
         line = status.current_line
         self.tell(
             "message",
-            f"after line {line} the program stops (M0, M1 or M60); nobody is here, it goes on",
+            f"after line {line} the program stops (M0, M1 or M60); there is no operator, so it continues",
         )
         self._command.auto(linuxcnc.AUTO_RESUME)
         self._wait("go on", lambda: status.interp_state != linuxcnc.INTERP_PAUSED)
@@ -126,7 +126,7 @@ class LinuxcncClient:
 
 
 def main() -> int:
-    """Do it all; 1 where it failed."""
+    """Run a program and leave; the exit code."""
     import linuxcnc
 
     parser = argparse.ArgumentParser()

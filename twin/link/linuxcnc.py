@@ -72,7 +72,7 @@ class LinuxCnc:
         return not self.lost
 
     def events(self) -> list[Event]:
-        """What its operator had to say so far."""
+        """The lines of its operator's log so far."""
         path = operator_log(self.folder)
         lines = path.read_text(encoding="utf-8").splitlines() if path.is_file() else []
         return [Event(**json.loads(line)) for line in lines]

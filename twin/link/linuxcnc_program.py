@@ -109,8 +109,8 @@ class _ProgramWriter:
         principal = (int(x), int(y), int(z))
         if principal not in _PLANES or np.max(np.abs(np.abs(normal) - principal)) > _TURN_ROUNDING:
             raise UsageError(
-                f"{self._named(int(moves.line[row]))}: an arc in an inclined plane; LinuxCNC has them in the "
-                "planes of X Y, Z X and Y Z alone"
+                f"{self._named(int(moves.line[row]))}: an arc in an inclined plane; LinuxCNC has arcs only "
+                "in the planes XY, ZX and YZ"
             )
         if (plane := _PLANES[principal]) != self._plane:
             self._line(plane)

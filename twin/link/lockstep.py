@@ -30,9 +30,9 @@ from twin.link.packet import (
 )
 from twin.link.place import Places
 from twin.machine.simulation.live import LiveMachine
-from twin.machine.watching.alarms import Alarm, AlarmStandsError, NearMiss
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
+from twin.recording.alarms import Alarm, AlarmStandsError, NearMiss
 from twin.recording.form import STEPS, Samples
 from twin.run.pipeline import MachineMotion
 
@@ -150,10 +150,10 @@ class LockstepMotion(MachineMotion):
         missed: How many questions never came, by their numbers.
         greatest_disagreement: Largest difference between the following error that the control saw
             and the one that is recorded for the same instant [mm or deg].
-        left: Whether the control took its leave; else nobody answers it any more.
+        left: Whether the control disconnected; it is no longer answered then.
         goes_on: Asked while nothing comes: whether the control is still there.
-        last_word: Asked when the control has left: the alarm that it raised itself, told when [s]
-            and in which line the samples ended.
+        last_word: Asked when the control has left, with the time [s] and the line at which the samples
+            ended: the alarm that it raised itself.
     """
 
     def __init__(
@@ -196,11 +196,9 @@ class LockstepMotion(MachineMotion):
         self.port = int(self._socket.getsockname()[1])
 
     def __enter__(self) -> Self:
-        """Listen until the block ends."""
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Answer nobody any more."""
         self._socket.close()
 
     @property

@@ -1,4 +1,4 @@
-"""What LinuxCNC and the twin tell each other once a servo period: one layout, declared once.
+"""The packets that LinuxCNC and the twin exchange every servo period: one layout, declared once.
 
 The component of LinuxCNC is compiled from C; its structures are written from the declarations here
 (``c_declaration``), so that both sides cannot differ. All numbers are little-endian and lie at

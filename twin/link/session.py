@@ -27,8 +27,8 @@ from twin.link.lockstep import LockstepMotion
 from twin.link.place import Places
 from twin.link.program_reading import Listing
 from twin.machine.simulation.live import LiveMachine
-from twin.machine.watching.alarms import Alarm, AlarmCode, AlarmStandsError
 from twin.nc.canonical import FloatArray, concatenate
+from twin.recording.alarms import Alarm, AlarmCode, AlarmStandsError
 from twin.run.dry_run.dry_run import InterpretedProgram
 from twin.run.judging.outcome import Outcome
 from twin.run.preparing.preparation import Preparation
@@ -41,7 +41,7 @@ class _EnoughError(Exception):
 
 
 def rehearse(run: Run, tool: ToolTable, position: FloatArray) -> None:
-    """Call what a linked run will call, unless all of it is compiled already; nothing of it is kept.
+    """Compile all that a linked run calls, by a short run that is discarded.
 
     Kernels compile when they are first called, which takes a minute in a new installation, and LinuxCNC's
     component gives up on a twin that is silent for two seconds.
@@ -103,11 +103,11 @@ def run_on_twin(
         nullcontext()
     ),
 ) -> tuple[Outcome, dict[str, float]]:
-    """Let LinuxCNC work the twin; there can be one of both on a computer.
+    """Let LinuxCNC drive the twin; one pair at a time on a computer.
 
     Args:
         folder: For the results; LinuxCNC's own files go into a folder in it.
-        say: Told what LinuxCNC says.
+        say: Called with what LinuxCNC prints.
         meanwhile: Open while the control drives the machine, such as a page that shows it.
 
     Returns:

@@ -20,9 +20,9 @@ from twin.machine.model.drives import reflected_inertia
 from twin.machine.model.model import MachineModel, build_spec, compiled, drives, physics_model
 from twin.machine.model.supplied import supply
 from twin.machine.simulation.simulate import simulate
-from twin.machine.watching.alarms import Alarm, SimulationError
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
+from twin.recording.alarms import Alarm, SimulationError
 
 SECTIONS = (
     "compiler", "option", "default", "asset", "worldbody", "contact", "equality", "actuator",
@@ -162,7 +162,7 @@ def _compiles(machine: MachineConfig) -> list[str]:
 
 
 def _carries_tool_and_part(machine: MachineConfig) -> list[str]:
-    """Axes on the way neither to tool nor to part, and second spindles; a model that is no mill raises."""
+    """Axes that carry neither tool nor part, and second spindles; a model that is no mill raises."""
     carried = {machine.axes.names[column] for column in machine.kinematics.column}
     idle = [name for name in machine.axes.names if name not in carried]
     return [f"axis {name} moves neither tool nor part" for name in idle] + [

@@ -1,4 +1,4 @@
-"""Steps of planning that pull parts of a program: each remembers as an object where it is.
+"""Stages of planning that pull parts of a program; each keeps its state in an object.
 
 A generator could not be copied, and a plan under an operator's hands is: a training room goes back to
 copies of it.
@@ -14,7 +14,7 @@ Made = TypeVar("Made")
 
 
 class PipelineStage(abc.ABC, Generic[Taken, Made]):
-    """Takes parts one by one, as they are asked for, and gives what it makes of them.
+    """A stage: takes parts one by one, on demand, and gives what it makes of them.
 
     Args:
         parts: What it takes, in order.

@@ -4,7 +4,7 @@ The verbs between a dialect and the rest of the twin are few: straight moves and
 an arc that also advances along its normal), dwells, and functions such as M3. Every one carries
 the source line that caused it.
 
-Conventions, once for all rooms:
+Conventions, for all packages:
 
 * Positions are the part's (program zero of the job), in mm and degrees, continuous: a table that
   turned twice is at 720.

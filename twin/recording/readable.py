@@ -1,4 +1,4 @@
-"""Whether HDF5 comes to an end with a recording: a process of its own tries it.
+"""Whether HDF5 can read a file without hanging: tried in a process of its own.
 
 A damaged file can make HDF5 search for ever or crash, which no exception reports. Recordings carry
 a checksum trailer against that; one that lost it, because it was cut short or because another program

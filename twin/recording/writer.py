@@ -160,7 +160,7 @@ class RecordingWriter:
         self._write(columns)
 
     def finish(self) -> None:
-        """Write what waits.
+        """Write the buffered rows.
 
         Raises:
             OSError: The disk is full.

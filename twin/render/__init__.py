@@ -1,1 +1,1 @@
-"""Pictures of a recording. The only room that touches OpenGL."""
+"""Pictures of a recording. The only package that uses OpenGL."""

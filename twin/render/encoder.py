@@ -80,7 +80,7 @@ class VideoWriter:
         self._waiting.append(self._thread.submit(self._encode, frame))
 
     def finish(self) -> None:
-        """Write what waits, and the end of the file.
+        """Write the buffered frames, and the end of the file.
 
         Raises:
             OSError, FFmpegError: Something could not be encoded or written.
@@ -91,7 +91,7 @@ class VideoWriter:
         self._container.close()
 
     def give_up(self) -> None:
-        """End the thread, whatever waits, and close the file."""
+        """End the thread, drop the buffered frames and close the file."""
         self._thread.shutdown(cancel_futures=True)
         with contextlib.suppress(OSError, FFmpegError):
             self._container.close()

@@ -16,7 +16,7 @@ from twin.render.scene.scene import RenderScene
 from twin.render.scene.stage import ScenePlayer, stage
 
 Progress = Callable[[int, int], None]
-"""Told how many frames are drawn, and of how many."""
+"""Called with the number of frames that are drawn, and the number of all."""
 
 MOST_FRAMES = 100_000
 """A film of more frames is refused: an hour at 25 frames a second is 90,000."""

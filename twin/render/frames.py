@@ -1,4 +1,4 @@
-"""A recording, dealt out frame by frame without holding all of it."""
+"""A recording frame by frame, without all of it in memory."""
 
 from collections.abc import Iterator
 
@@ -15,7 +15,7 @@ def frame_ends(count: int, frames: int) -> IntArray:
 
 
 def deal(recording: Recording, ends: IntArray) -> Iterator[tuple[Samples, bool]]:
-    """Deal out samples in order, split at frames.
+    """Yield samples in order, split at frames.
 
     Args:
         ends: How many samples lie behind each frame, never falling, shape (n,).

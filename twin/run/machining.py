@@ -19,8 +19,8 @@ from twin.cutting.watching.events import CutEvent
 from twin.job.job_file import JobFile, ToolTable
 from twin.machine.model.model import MachineModel
 from twin.machine.simulation.tool_changes import REMEDY
-from twin.machine.watching.alarms import Alarm
 from twin.nc.canonical import FloatArray
+from twin.recording.alarms import Alarm
 from twin.recording.form import Samples
 from twin.run.dry_run.program_watch import Stop
 from twin.run.observers import Observer

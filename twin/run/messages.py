@@ -5,11 +5,11 @@ import re
 from collections.abc import Iterable, Iterator
 
 from twin.compare.verdict import Reason
-from twin.machine.watching.alarms import Alarm, NearMiss
 from twin.machine.watching.clearance import TOUCH
 from twin.nc.functions import SPINDLE_LIMITED
 from twin.nc.text.diagnostics.diagnostics import Diagnostic, ProgramError, Severity
 from twin.nc.text.source import Source
+from twin.recording.alarms import Alarm, NearMiss
 
 _FIRST_WORD = re.compile(r"\S+")
 _SPEED_WORD = re.compile(r"S\d*\s*=?\s*[\d.#$]\S*", re.IGNORECASE)

@@ -14,8 +14,8 @@ from twin.compare.trace import Trace
 from twin.cutting.forces.load_log import LoadLog
 from twin.cutting.watching.cut_log import CutResult
 from twin.job.job_file import ToolTable
-from twin.machine.watching.alarms import Alarm
 from twin.nc.canonical import FloatArray
+from twin.recording.alarms import Alarm
 from twin.recording.reader import RecordingWriter, Samples
 from twin.run.progress import StageClock
 from twin.toolpath.tool_plan import ToolPlan
@@ -42,13 +42,13 @@ class Observer(abc.ABC):
 
     @abc.abstractmethod
     def result(self) -> object:
-        """What it has come to."""
+        """The result so far."""
 
 
 def observed(
     motion: Iterable[Samples], observers: Sequence[Observer], clock: StageClock
 ) -> Iterator[Samples]:
-    """Let a motion be followed until one of the observers stops it.
+    """Pass the samples of a motion to observers until one of them stops it.
 
     Args:
         observers: In the order in which they see each chunk.

@@ -14,12 +14,12 @@ from twin.machine.description.config import MachineConfig
 from twin.machine.model.model import MachineModel
 from twin.machine.simulation.growth import Growth
 from twin.machine.simulation.simulate import Load, simulate
-from twin.machine.watching.alarms import Alarm, NearMiss
 from twin.motion.planner import plan
 from twin.motion.setpoints.sampling import settle
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Chunk, Moves
 from twin.processor import made_ahead
+from twin.recording.alarms import Alarm, NearMiss
 from twin.recording.reader import Samples
 from twin.run.dry_run.dry_run import InterpretedProgram
 from twin.run.preparing.preparation import Preparation
@@ -95,7 +95,7 @@ class ProgramMotion(MachineMotion):
     """Setpoints of a program, held at their end and followed by the simulated drives.
 
     The machine is stepped one chunk ahead of those who look at it, on another core where there is one. What it has come to
-    is told with the chunk that it belongs to, so that an alarm finds all as it was then.
+    is reported with the chunk that it belongs to, so that an alarm finds all as it was then.
     """
 
     def __init__(

@@ -1,4 +1,4 @@
-"""How far a run is, on stderr, and how long each of its stages takes."""
+"""Progress of a run on stderr, and the time of each of its stages."""
 
 import contextlib
 import sys

@@ -11,8 +11,8 @@ from twin.compare.trace import Trace
 from twin.coupling.operations import speeds_are_known
 from twin.machine.model.clamping import refuse_overlaps, what_carries
 from twin.machine.model.model import MachineModel
-from twin.machine.watching.alarms import Alarm
 from twin.nc.text.source import Source
+from twin.recording.alarms import Alarm
 from twin.recording.reader import LONGEST_TEXT, RecordingHeader, RecordingWriter, record
 from twin.run.dry_run.dry_run import interpret_all
 from twin.run.judging.outcome import Followers, Outcome, outcome_of, refuse_unjudged_loads

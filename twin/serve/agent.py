@@ -1,4 +1,4 @@
-"""What the agent answers: requests after MTConnect Part 1, without the network around them."""
+"""The agent's answers to requests after MTConnect Part 1, without the network."""
 
 import dataclasses
 import datetime as dt
@@ -112,7 +112,6 @@ class Agent:
         size: int = BUFFER_SIZE,
         tools: Iterable[ToolTable] = (),
     ) -> None:
-        """Start with nothing observed."""
         self.device = device
         self.clock = clock
         self.observed_s = 0.0
@@ -188,9 +187,7 @@ class Agent:
         heartbeat = _number(parameters, "heartbeat", 1, LONGEST_PAUSE_MS)
         count = _number(parameters, "count")
         if interval is not None and count is not None and count < 0:
-            raise RequestError(
-                "INVALID_REQUEST", "a stream ('interval') goes on: 'count' is above 0"
-            )
+            raise RequestError("INVALID_REQUEST", "a stream ('interval') needs a 'count' above 0")
         return Query(
             request=request,
             wanted=self._wanted(parameters.get("path")),

@@ -47,7 +47,7 @@ class DocumentFormat(NamedTuple):
 
 
 def accepted_form(accept: str) -> DocumentFormat:
-    """The form that a client asks for; XML where it has no wish, or likes both alike.
+    """The form that a client asks for; XML where it names none, or both with the same weight.
 
     Args:
         accept: The header of that name (RFC 9110, section 12.5.1); empty where there is none.

@@ -13,9 +13,9 @@ import numpy as np
 
 from twin.cutting.program_summary import ProgramSummary, Steps
 from twin.machine.description.config import MachineConfig
-from twin.machine.watching.alarms import Alarm
 from twin.nc.canonical import Chunk, FloatArray, Function
 from twin.nc.functions import COOLANT_OFF, COOLANT_ON, PROGRAM_ENDS
+from twin.recording.alarms import Alarm
 from twin.recording.form import Samples
 from twin.recording.reader import Recording, open_recording
 from twin.serve.agent import Agent

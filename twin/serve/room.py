@@ -1,4 +1,4 @@
-"""An open training room as a machine for the agent to observe; nobody who reads can touch it."""
+"""An open training room as a machine for the agent to observe, read-only."""
 
 import asyncio
 import math
@@ -28,7 +28,6 @@ class RoomObserver:
     """Turns looks at the room into values of data items, and counts the parts."""
 
     def __init__(self, program: str) -> None:
-        """Begin with no part made."""
         self._program = program
         self._parts = 0
         self._was_running = False

@@ -1,4 +1,4 @@
-"""Where the tool really is: what the machine's geometry adds to where its axes stand.
+"""Geometric errors of the machine, added to the positions of its axes.
 
 Names and signs follow ISO 230-1: E, then the direction of the error, then the axis whose motion brings
 it. EXX is the positioning error of X (its pitch), EYX the straightness of X along Y, ECC the
@@ -59,7 +59,6 @@ class MachineGeometry:
     origin: tuple[float, ...] = ()
 
     def __bool__(self) -> bool:
-        """Whether there is any error."""
         return bool(self.terms) or self.has_table
 
     @property

@@ -128,7 +128,7 @@ class PartFrame:
         return np.asarray(part_zero[:3]) - np.array([*self.center, 0.0])
 
     def direction(self, joints: FloatArray) -> FloatArray:
-        """Which way machine X points, seen from the part, in its XY plane.
+        """Direction of machine X, seen from the part, in its XY plane.
 
         Args:
             joints: Machine coordinates of all axes, shape (n, k) [mm or deg].
@@ -144,7 +144,7 @@ class PartFrame:
         return np.stack([np.cos(angle), np.sin(angle)], axis=1)
 
     def tool_direction(self, joints: FloatArray) -> FloatArray:
-        """Which way the tool points from its tip to the spindle, seen from the part, shape (n, 3)."""
+        """Direction from the tip of the tool to the spindle, seen from the part, shape (n, 3)."""
         if self.chain is not None:
             return self.poses(joints).axis
         return np.tile([0.0, 0.0, 1.0], (len(joints), 1))

@@ -1,6 +1,6 @@
-"""Where a chain of joints has the tool, and which way it looks: one pass over the joints for all of a pose.
+"""Position and direction of the tool at the end of a chain of joints, in one pass over the joints.
 
-The rule is that of ``twin.kinematics``, which programs are translated with where no compiler is loaded.
+The rule is that of ``twin.kinematics``, which is used where programs are translated without a compiler.
 """
 
 import math

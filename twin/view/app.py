@@ -38,7 +38,7 @@ def view_app(
     report: Path | None = None,
     now: Callable[[], dict[str, Any]] | None = None,
 ) -> Starlette:
-    """What the page of a run is served; everything is made once, when it is asked for.
+    """The application that serves the page of a run; each response is made once, on demand.
 
     Args:
         report: Its report, to be read beside it; None: there is none.

@@ -1,1 +1,1 @@
-"""Web pages of our own: who may come in, the server, the view of a machine in three dimensions."""
+"""Web pages: access control, the server, the view of a machine in three dimensions."""

@@ -1,4 +1,4 @@
-"""The server: uvicorn on a thread of its own, on one port, with bounds on whoever comes."""
+"""The server: uvicorn on a thread of its own, on one port, with limits on clients."""
 
 import asyncio
 import collections
@@ -36,7 +36,7 @@ LONGEST_MESSAGE = 262_144
 
 
 class BoundedProtocol(H11Protocol):
-    """HTTP with an end to lines that say nothing, or only little by little."""
+    """HTTP with a timeout for connections that send nothing, or too slowly."""
 
     _waiting: ClassVar["collections.OrderedDict[BoundedProtocol, None]"] = collections.OrderedDict()
 
@@ -100,7 +100,7 @@ class SocketServer:
         """Serve an application until ``stop``.
 
         Args:
-            promptly: Whether to ask the system for precedence, as what is told must not wait.
+            promptly: Whether to ask the system for precedence, as messages must not wait.
         """
         config = uvicorn.Config(
             app,
@@ -190,8 +190,8 @@ def _require_certificate(
             raise UsageError("--key belongs to a --certificate, and there is none")
         if not local:
             raise UsageError(
-                f"--host {host} lets other computers in: give --certificate and --key, without "
-                "which tokens would be readable on the way; or lead them here through ssh -L"
+                f"--host {host} is reachable from other computers: give --certificate and --key, without "
+                "which tokens are sent unencrypted; or forward the port with ssh -L"
             )
         return
     try:

@@ -18,9 +18,9 @@ from twin.machine.load import read_machine
 from twin.machine.model.model import MachineModel, build_spec, drives
 from twin.machine.simulation.live import LiveMachine
 from twin.machine.simulation.simulate import simulate
-from twin.machine.watching.alarms import AlarmStandsError
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
+from twin.recording.alarms import AlarmStandsError
 from twin.recording.reader import Samples
 from twin.units import MM
 

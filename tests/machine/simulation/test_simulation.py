@@ -11,8 +11,8 @@ from twin.machine.load import read_machine
 from twin.machine.model.model import MachineModel, build_spec, physics_model
 from twin.machine.simulation.sampling import held_velocity, polyline_node
 from twin.machine.simulation.simulate import simulate
-from twin.machine.watching.alarms import SimulationError
 from twin.motion.setpoints.setpoints import Setpoints
+from twin.recording.alarms import SimulationError
 from twin.units import DEGREE, MM
 
 

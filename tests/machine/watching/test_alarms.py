@@ -11,9 +11,9 @@ from twin.machine.description.config import MachineConfig
 from twin.machine.description.machine_file import MachineFile
 from twin.machine.model.model import MachineModel, build_spec, clearance_model
 from twin.machine.simulation.simulate import simulate
-from twin.machine.watching.alarms import Alarm
 from twin.machine.watching.clearance import NEAR_STEP, TOUCH, Clearance
 from twin.motion.setpoints.setpoints import Setpoints
+from twin.recording.alarms import Alarm
 from twin.recording.reader import Samples
 
 

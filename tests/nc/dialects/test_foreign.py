@@ -146,10 +146,17 @@ FOREIGN: dict[str, list[bytes]] = {
         b'POST_NAME = "Mill (mm) (*.nc)"\nFILE_EXTENSION = "nc"\n',
     ],
     "Syntec": [b"%@MACRO\n#1 := 10.;\nEND_IF;\nM30\n"],
-    "Fadal": [b'%\nN1O5(PART\nN2 G0 E1 X0 S3000.1 M3\n#PRINT "DONE"\nM5\n'],
+    "Fadal": [
+        b'%\nN1O5(PART\nN2 G0 E1 X0 S3000.1 M3\n#PRINT "DONE"\nM5\n',
+        b"N3T1M6\nN4S3000M3E1X1.Y1.\nN5H1M8Z1.\n",
+        b"N2 H1 M7 Z.1\nN3 L9101R1+1.R2+3.\n",
+    ],
     "OSAI": [b"N1 (UAO,1)\nG0 X0\n(RPT,5)\nG1 X1\n(ERP)\n"],
     "ProtoTRAK": [b"ProtoTRAK MX3\n1 DRILL X0 Y0 T1\n2 MILL XB0 YB0 Z-1\n"],
-    "a Centroid": [b"; CNC12 - Intercon v5\nT1 M6\nM94/1\nG0 X1\n"],
+    "a Centroid": [
+        b"; CNC12 - Intercon v5\nT1 M6\nM94/1\nG0 X1\n",
+        b'M225 #100 "Check the clamp"\nG0 X1\n',
+    ],
     "Swiss": [b"$1\nG600\nT2000\n!2L1\n$2\nG650\n"],
     "Denso": [b"10 OVRD 50\n20 MOV P1\n30 DLY 0.5\n40 END\n", b"TAKEARM\nMOVE L, @0 P2\nGIVEARM\n"],
     "PLC": [b"FUNCTION FC 1 : VOID\nBEGIN\n  U E 0.0;\nEND_FUNCTION\n"],
@@ -166,7 +173,11 @@ FOREIGN: dict[str, list[bytes]] = {
     "PostScript": [b"\xc5\xd0\xd3\xc6\x1e\0\0\0"],
     "parameters": [b"%\nN00000Q1P01000000\nN00001Q1P00000000\n%"],
     "table of a Heidenhain": [b"BEGIN TOOL .T MM\nT NAME L R R2\n1 D10 100 5 0\n[END]\n"],
-    "NUM": [b"%100\nE80000=10\nG77 N10 N20\nM02\n", b"%10\nN10 L1=5\nN30 G79 L1=0 N50\nM2\n"],
+    "NUM": [
+        b"%100\nE80000=10\nG77 N10 N20\nM02\n",
+        b"%10\nN10 L1=5\nN30 G79 L1=0 N50\nM2\n",
+        b"%10\nN20 T1 D1 M6\nN50 G81 X20 Y20 ER2 Z-15 F100\nM2\n",
+    ],
     "HP-GL/2": [
         b"BPINPS23760,33640;ECNP256PALA1,4,2,4TR0PE<=x;PW0.10PE<qm;",
         b"\x1b%-1BBPINPS1,2;PU;",
@@ -183,6 +194,30 @@ FOREIGN: dict[str, list[bytes]] = {
     "PLCopen": [
         b'<?xml version="1.0"?>\n<project xmlns="http://www.plcopen.org/xml/tc6_0201">\n</project>\n'
     ],
+    "Maho": [
+        b"N1000\nN2 G98 X-10 Y-10 Z10 I120 J120 K-60\nN4 G81 Y2 Z-20\nN5 G79 X10 Y10 Z0\n",
+        b"N1 G17\nN4 G195 X-10 Y-10 Z-30 I120 J100 K35\n",
+    ],
+    "802S": [b"N30 R101=4 R102=2 R103=0 R104=-35\nN40 LCYC82\nN50 M2\n"],
+    "8055": [
+        b"(P100=1,P101=5)\nG0 X0\n(IF P100 LT P101 GOTO N10)\n(CALL 10)\nM30\n(SUB 10)\n(RET)\n"
+    ],
+    "TwinCAT": [b"%main\n#VAR\nV.L.A : REAL64 = 5\n#ENDVAR\nL CYCLE [NAME=FACE.ecy @P1=0]\nM30\n"],
+    "subroutines": [b"SUB hole\nG81 R2 Z-5\nENDSUB\nGOSUB hole\nM30\n"],
+    "Kflop": [b"(BUF,SetBitBuf29)\nG1 X1 F10\nM2\n"],
+    "PMAC": [b"CLOSE\n&1\n#1->1000X\nOPEN PROG 1 CLEAR\nX10 Y10\nCLOSE\n"],
+    "Aerotech": [b"DVAR $SPEED\nENABLE X Y\nVELOCITY ON\nG1 X10 F5\nLINEAR X20 F$SPEED\n"],
+    "Trio": [b"BASE(0,1)\nSPEED=100\nMOVEABS(10,20)\nWAIT IDLE\n"],
+    "wire": [
+        b"H000 = +000000010 H001 = +000000110 ;\nG54 ; G92 X0Y0 ;\nG01 X10.0 ;\n",
+        b"G92 X0 Y0\nM80\nM82\nM84\nG1 X1.\n",
+    ],
+    "plasma cutter": [b"G21\nG91\nG59 V504 F6.\nM07\nG01 X10.\nM08\n"],
+    "ESSI": [b"3\n4\n+500+300\n+1200\n-340+55+12-8+\n7\n+10+20\n+33-10\n"],
+    "Trumpf": [b"BD\nSET_METRIC\nBEGIN_EINRICHTEPLAN_INFO\nC\nZA,MM,11\nED\n"],
+    "Maestro": [b'SelectWorkplane("Top");\nCreateDrill("D1",32,50,12,8);\n'],
+    "IMA": [b'[PGKOPF40]\nFTL="600"\n[VBDMES40]\nDM="8"\n'],
+    "BTL": [b"VERSION BTL V10\n[GENERAL]\n[PART]\nPROCESSKEY: 1-010-4 Cut\n"],
     "table": [b"time,X,Y\n0.0,1.0,2.0\n0.1,1.1,2.0\n"],
 }
 HEADS: dict[str, list[bytes]] = {

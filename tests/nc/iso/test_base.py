@@ -20,7 +20,8 @@ WITHOUT_C = ("grbl",)
     ],
 )
 def test_jog_goes_by_its_distance_at_its_feed(dialect: str, axis: str, distance: float) -> None:
-    outcome = run(jog_block(dialect_named(dialect), axis, distance, 600.0), dialect)
+    block = jog_block(dialect_named(dialect), axis, distance, 600.0)
+    outcome = run(f"{block}\nM2" if dialect == "linuxcnc" else block, dialect)
     assert outcome.error is None
     assert len(outcome.moves) == 1
     delta = outcome.delta(0)

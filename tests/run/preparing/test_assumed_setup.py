@@ -399,7 +399,7 @@ def test_no_dialect_is_offered_that_refuses_the_same_line(tmp_path: Path) -> Non
     with pytest.raises(ProgramError) as raised:
         prepare(path, assuming=True)
     assert raised.value.diagnostic.hint == (
-        "close the first comment before, or leave the inner ( ) out"
+        "close the first comment first, or leave out the inner ( )"
     )
 
 
@@ -409,7 +409,7 @@ def test_a_program_that_a_router_alone_reads_is_its(tmp_path: Path) -> None:
     made, _ = raw(tmp_path, arc)
     assert made.dialect.name == "grbl"
     assert (
-        "it alone reads it; fanuc, which reads it farthest of others, refuses line 5"
+        "no other control reads it; fanuc, which reads it farthest of others, refuses line 5"
         in made.dialect_reason
     )
     with pytest.raises(ProgramError, match="read as fanuc"):

@@ -4,8 +4,8 @@ import typing
 
 import pytest
 
-from twin.machine.watching.alarms import AlarmCode
 from twin.nc.dialects import DIALECTS
+from twin.recording.alarms import AlarmCode
 from twin.training.scene.vocabulary import LANGUAGES, Vocabulary, vocabulary
 
 OWN_ALARMS = ("program", "external")

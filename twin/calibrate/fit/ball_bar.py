@@ -1,4 +1,4 @@
-"""What a ball-bar's circle tells: backlash, squareness, and by how much one axis lags more than the other.
+"""Backlash, squareness and the difference in lag of two axes, from a ball-bar's circle.
 
 The tool is off the circle, outward, by the radial part of what each axis is off. With the angle a, the
 direction d (1 counter-clockwise, -1 clockwise), the radius R and the speed F (ISO 230-4):
@@ -76,7 +76,7 @@ def fit_ball_bar(log: BallBarLog) -> BallBarFit:
 
 
 def circle_line(circle: BallBarFit) -> str:
-    """What a circle came to, in words."""
+    """The figures of a circle in a sentence."""
     lost = ", ".join(f"{name} {1e3 * one.value:.2f} µm" for name, one in circle.lost.items())
     text = f"{circle.log}: circle {circle.plane}: lost where the axes turn round: {lost}; "
     if circle.squareness is None or circle.lag is None:

@@ -1,4 +1,4 @@
-"""What gives between motor and axis: backlash and stiffness, from an encoder on either side.
+"""Backlash and stiffness between motor and axis, from an encoder on either side.
 
 The motor is ahead of the axis by half of the gap on the side that pushes, and by the transmitted force over the
 stiffness,
@@ -63,7 +63,7 @@ def fit_give(
     """
     fits = [_fit(kind, stretches, parameters, carried, over) for over in _SMOOTHED_S]
     if fits[0] is None or fits[1] is None:
-        return Give(None, None, "the axis is not pushed both ways for long enough")
+        return Give(None, None, "the axis is not pushed in both directions for long enough")
     gap, softness = (
         one.widened(abs(one.value - other.value)) for one, other in zip(*fits, strict=True)
     )

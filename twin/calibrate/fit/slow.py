@@ -37,7 +37,7 @@ class SlowLog:
     Attributes:
         rows: First and last row, exclusive, of each stretch.
         ramps: Its samples that fell into ramps.
-        speed: Commanded, of every row, 0 where it is not told [mm/s or deg/s].
+        speed: Commanded, of every row, 0 where it is not logged [mm/s or deg/s].
         known: Rows whose speed is known.
     """
 
@@ -91,7 +91,7 @@ def fit_slow(
     of_ramps = {} if feed is None else {"velocity_feedforward": (feed, ("kv",))}
     if feed is not None:
         reasons["velocity_feedforward"] = (
-            f"only the lag that it leaves is told; {feed.value:.3g} holds for the base's kv "
+            f"only the lag that it leaves is determined; {feed.value:.3g} holds for the base's kv "
             f"{parameters.kv:.4g}"
         )
     if all("current" in log.axis.more for log in logs):
@@ -99,7 +99,7 @@ def fit_slow(
         reaches = reached >= _REACHES * fastest
         parameters, conditional = _fit_friction(kind, logs, parameters, viscous=reaches)
         reasons |= {
-            name: f"only its ratio to the force per ampere is told; {interval.value:.4g} holds for "
+            name: f"only its ratio to the force per ampere is determined; {interval.value:.4g} holds for "
             f"current_scale {parameters.current_scale:.4g}"
             for name, (interval, _) in conditional.items()
         }

@@ -350,7 +350,7 @@ def _intervals(
 
 
 def _end(coordinate: Coordinate, value: float) -> float:
-    """Value at the end of an interval; open where a rate may be none."""
+    """Value at the end of an interval; infinite where a rate may be zero."""
     low, high = coordinate.bounds
     if coordinate.reciprocal and value <= 0.0:
         return float("inf")

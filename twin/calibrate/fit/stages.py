@@ -45,7 +45,7 @@ alone are logged, the loop gain may be so much higher than fitted, and its dampi
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class AxisFit:
-    """What the logs of one axis came to.
+    """The fit of one axis.
 
     Attributes:
         parameters: Those of the machine file and of the log.
@@ -294,7 +294,7 @@ def _batches(stretches: Sequence[Stretch], *, forced: bool) -> IntArray:
 def _without_undetermined(
     problem: Problem, best: Solution, base: AxisParameters
 ) -> tuple[Solution, dict[str, str]]:
-    """Let go of what is anybody's guess, the worst first; it stays at the base's value."""
+    """Leave undetermined parameters at the base's value, the worst first."""
     reasons: dict[str, str] = {}
     while True:
         widths = {
@@ -363,7 +363,7 @@ def _explained(
             if name in fitted:
                 conditional[name] = (fitted.pop(name), ("mass",))
                 reasons[name] = (
-                    f"only its ratio to the mass is told; {conditional[name][0].value:.4g} holds "
+                    f"only its ratio to the mass is determined; {conditional[name][0].value:.4g} holds "
                     f"for the base's {mass:.5g}"
                 )
         if not known and "viscous_friction" not in best.free:

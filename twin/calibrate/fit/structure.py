@@ -132,7 +132,7 @@ def _rivals(best: Solution, others: Sequence[Solution], core: Core) -> tuple[Sol
 
 
 def _without_idle(problem: Problem, best: Solution, core: Core) -> Solution:
-    """Give up what was taken in and adds nothing to the rest."""
+    """Drop extras that no longer improve the fit."""
     for name in core.extras_of(best):
         free = core.free([other for other in core.extras_of(best) if other != name])
         stays = dataclasses.replace(best.parameters, **core.unset_where(free))

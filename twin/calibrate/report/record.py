@@ -1,4 +1,4 @@
-"""From what a calibration was made, so that somebody can sign for it."""
+"""The sources of a calibration, so that somebody can sign for it."""
 
 import datetime as dt
 import hashlib
@@ -28,7 +28,7 @@ class Record(NamedTuple):
     """What a page is made of.
 
     Attributes:
-        map_text: The map of columns; empty where the headings told.
+        map_text: The map of columns; empty where the headings sufficed.
     """
 
     date: str
@@ -41,7 +41,7 @@ class Record(NamedTuple):
 def record_of(
     machine: tuple[str, Path], columns: Path | None, logs: Sequence[tuple[str, Path, MachineLog]]
 ) -> Record:
-    """Note from what a calibration is made.
+    """Collect the sources of a calibration.
 
     Args:
         machine: The base as it was named, and its file.

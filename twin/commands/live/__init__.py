@@ -1,1 +1,1 @@
-"""Commands that go on until somebody ends them."""
+"""Commands that run until they are interrupted."""

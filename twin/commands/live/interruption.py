@@ -1,4 +1,4 @@
-"""What Ctrl+C does to a command that goes on until somebody ends it."""
+"""Ctrl+C in commands that run until they are interrupted."""
 
 import contextlib
 import signal
@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 
 @contextlib.contextmanager
 def stop_on_sigint(stop: Callable[[], None]) -> Iterator[list[int]]:
-    """Let the first Ctrl+C, or an asked end, be the regular end, wherever the command is just then.
+    """Stop on the first SIGINT or SIGTERM: the command ends regularly.
 
     The second interrupts whatever is being done, as everywhere else.
 

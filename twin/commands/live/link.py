@@ -55,7 +55,7 @@ def link_linuxcnc(
     following_error_limit: float | None,
     view: bool = False,
 ) -> ExitCode:
-    """Let LinuxCNC work the twin, and judge what it did as any run.
+    """Let LinuxCNC drive the twin, and judge that as any run.
 
     Args:
         headless: NC program or job file to run without a screen.

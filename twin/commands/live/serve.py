@@ -102,7 +102,7 @@ def serve_job(path: Path, source: Reported) -> ExitCode:
 
 
 def serve_scene(name: str, source: Reported) -> ExitCode:
-    """Open a training room, and tell monitors of its machine; they only read.
+    """Open a training room and report its machine to monitors, which only read.
 
     Args:
         name: A shipped scene's name, or a scene file.
@@ -127,7 +127,7 @@ def serve_scene(name: str, source: Reported) -> ExitCode:
 
 
 def serve_grbl(job: Path | None, source: Reported) -> ExitCode:
-    """Let Grbl's senders stream programs to the machine of a job, and tell monitors of it.
+    """Let Grbl's senders stream programs to the machine of a job, and report it to monitors.
 
     Args:
         job: NC program or job file: machine, blank, tool; none: of the shipped one.
@@ -167,7 +167,7 @@ def _grbl_line(source: Reported) -> "Iterator[socket.socket | int]":
         return
     if source.host not in LOCAL_NAMES:
         raise UsageError(
-            f"Grbl's protocol knows no passwords: --grbl listens at this computer alone, not at {source.host}"
+            f"Grbl's protocol has no passwords: --grbl listens on this computer only, not at {source.host}"
         )
     if source.grbl is None or not source.grbl.isdecimal() or not 0 < int(source.grbl) < 1 << 16:
         raise UsageError(f"--grbl {source.grbl}: give a port from 1 to 65535, or {PSEUDO_TERMINAL}")
@@ -182,7 +182,7 @@ def _serve_room(
     scene: "Scene", source: Reported, listener: socket.socket, description: str,
     line: "socket.socket | int | None" = None,
 ) -> None:  # fmt: skip
-    """Open a room, tell monitors of its machine, and let senders drive it where there is a line for them."""
+    """Open a room, report its machine to monitors, and let senders drive it where there is a line for them."""
     from twin.serve.agent import Agent, Clock
     from twin.serve.grbl.server import GrblLine
     from twin.serve.room import RoomObserver, observe_room

@@ -1,4 +1,4 @@
-"""``twin view``: a run on a page."""
+"""``twin view``: a run in a browser."""
 
 import contextlib
 import threading

@@ -1,1 +1,1 @@
-"""What commands do with a program that is not run: first job, check, moves, plan."""
+"""Commands on programs: first job, check, moves, plan."""

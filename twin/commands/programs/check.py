@@ -1,4 +1,4 @@
-"""``twin check``: many programs, a table for a person, and what the build server wants."""
+"""``twin check``: many programs, a table, and files for build servers."""
 
 import functools
 import os
@@ -39,7 +39,7 @@ def check_and_print(
     cluster: str | None = None,
     environment: Mapping[str, str] = os.environ,
 ) -> ExitCode:
-    """Check programs and tell how they came out.
+    """Check programs and print their outcomes.
 
     Interrupted, it reports those that are complete.
 
@@ -100,7 +100,7 @@ def check_and_print(
 def write_forms(
     outcomes: Sequence[CheckOutcome], junit: Path | None, json_file: Path | None
 ) -> OSError | None:
-    """Write each file that was asked for; what keeps one from being written keeps no other.
+    """Write each file that was asked for, also where another cannot be written.
 
     Args:
         outcomes: How the programs came out; none where nothing was checked.

@@ -1,1 +1,1 @@
-"""What commands do with runs and their recordings: run, repeat, draw, export, compare."""
+"""Commands on runs and recordings: run, sweep, render, export, compare."""

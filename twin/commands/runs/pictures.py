@@ -50,7 +50,7 @@ def film_run(run: Run, folder: Path, progress: Progress) -> None:
 
 
 def draw_contact(run: Run, folder: Path, line: int) -> None:
-    """Draw the moment at which two things met, which is the last of its recording, near and from afar.
+    """Draw a collision, which is the end of its recording, from near and from afar.
 
     Args:
         folder: Where ``recording.h5`` lies and the picture goes.

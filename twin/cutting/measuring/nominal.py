@@ -25,7 +25,7 @@ SMALL = 0.2
 part: a centimetre is a tenth of what it should be, an inch a twenty-fifth."""
 
 OUTSIDE = 1e-3
-"""Share of a nominal part outside its blank from which on it is told of: less is the grid's doing."""
+"""Share of a nominal part outside its blank from which it is reported: less is due to the grid."""
 
 Nominal = HeightMap | TriDexel
 """What a part should be, on the grid of the part."""

@@ -1,1 +1,1 @@
-"""What a cut did and must not do, noted by the line of the program."""
+"""Records of a cut, by program line: what it removed, and what it must not do."""

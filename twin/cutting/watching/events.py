@@ -172,7 +172,6 @@ class StockWatch:
     """Finds moves that take material although they must not; one event per move."""
 
     def __init__(self, what: str) -> None:
-        """Watch for one kind of misuse."""
         self._what = what
         self._log = EventLog()
         self._runs = 0

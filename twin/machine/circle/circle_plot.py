@@ -87,7 +87,7 @@ def _cross(axes: "Axes", result: CircularTest) -> None:
 def _show_direction(
     axes: "Axes", angle: FloatArray, curve: tuple[FloatArray, FloatArray], colour: str, at: float
 ) -> None:
-    """An arrow on a curve, the way it was run; it points away from 0°."""
+    """An arrow on a curve, in its direction of travel; it points away from 0°."""
     here = int(np.argmin(np.abs(angle - at % 360.0)))
     there = here + round(np.sign(at) * len(angle) / 180.0)
     x, y = curve

@@ -69,7 +69,7 @@ class AxisTable(Table):
     dry_friction: NonNegative = 0.0
     """Coulomb friction of guides and screw [N or N m]."""
     constant_force: float = 0.0
-    """What pulls the axis whichever way it goes, positive along + [N or N m]: weight that no
+    """A force on the axis in either direction of travel, positive along + [N or N m]: weight that no
     counterbalance carries, a cable, a cover's spring."""
     lugre: LuGreTable | None = None
     """Refines ``dry_friction``; none: Coulomb's law."""

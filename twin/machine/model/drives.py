@@ -15,7 +15,7 @@ states that trail as the loop gain Kv = speed/lag, hence
 
     w = 2 z Kv.
 
-Told a share s of the setpoint's velocity and a share r of its acceleration,
+With feed-forward of a share s of the setpoint's velocity and a share r of its acceleration,
 
     ff = s kv p' + r m p'',
 

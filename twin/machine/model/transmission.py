@@ -1,4 +1,4 @@
-"""What lies between motor and axis, and what holds the axis back: inertia, play, friction.
+"""Transmission and resistance of an axis: inertia, backlash, stiffness, friction.
 
 A rigid axis is one joint that carries the motor's inertia as armature. Backlash or a springy screw
 splits it in two coincident joints: the first is the motor (with the armature, and the position loop

@@ -1,4 +1,4 @@
-"""What is late in drives: the filter of the command, dead time, the filter of the measured speed."""
+"""Delays of drives: the filter of the command, dead time, the filter of the measured speed."""
 
 from typing import Any, NamedTuple
 
@@ -36,7 +36,7 @@ class PlayedLag(NamedTuple):
 
 
 class LateDrives:
-    """Drives of which some are late, carried from chunk to chunk.
+    """Drives with delays, carried from chunk to chunk.
 
     Attributes:
         lags: Of speeds, as the model has them.
@@ -98,7 +98,7 @@ class LateDrives:
         self.stand((still, still))
 
     def stand(self, trails: tuple[FloatArray, FloatArray]) -> None:
-        """Stand so far behind, as far as an axis has a lag."""
+        """Set how far the filters are behind, where an axis has a lag."""
         self._command_filter.stand(trails[0])
         self._delay.stand(trails[1])
 
@@ -169,7 +169,7 @@ class LateDrives:
 
 
 def is_late(machine: MachineConfig, loops: tuple[Drive, ...]) -> bool:
-    """Whether anything of a machine's drives is late."""
+    """Whether any drive of a machine has a delay."""
     filters = any(machine.axis(name).command_filter_s for name in machine.axes.names)
     return filters or any(loop.lags for loop in loops)
 
@@ -181,7 +181,7 @@ def _lag_names(machine: MachineConfig, index: int, loop: Drive) -> list[str]:
 def late_drives(
     machine: MachineConfig, model: mujoco.MjModel, loops: tuple[Drive, ...], drives: Drives
 ) -> LateDrives | None:
-    """What is late in the drives; None where nothing is.
+    """The delays of the drives; None where there are none.
 
     Args:
         loops: One per axis.

@@ -10,11 +10,11 @@ from twin.machine.description.config import Blank, MachineConfig
 from twin.machine.model.model import MachineModel
 from twin.machine.simulation.process import Process
 from twin.machine.simulation.servo import Servo
-from twin.machine.watching.alarms import Alarm, AlarmCode, AlarmStandsError, NearMiss
 from twin.machine.watching.clearance import Clearance
 from twin.machine.watching.watch import Watch, limit_switches
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
+from twin.recording.alarms import Alarm, AlarmCode, AlarmStandsError, NearMiss
 from twin.recording.reader import Samples
 
 STANDSTILL = 0.01
@@ -145,13 +145,13 @@ class LiveMachine:
         return samples[:end]
 
     def step_with(self, process: Process | None) -> None:
-        """Let the axes be pushed by what the tool does from now on; None: by nothing."""
+        """Let a process push the axes from now on; None: no process."""
         if process is not None:
             process.begin(self.position)
         self._servo.process = process
 
     def hold(self, ticks: int) -> Samples:
-        """Step without being asked for anything: the axes come to rest where they are, and stay.
+        """Step without setpoints: the axes come to rest where they are, and stay.
 
         This is no feed hold: that keeps to the path, and is the planner's.
 
@@ -164,7 +164,7 @@ class LiveMachine:
         return self.follow(self._ramp(ticks))
 
     def stand_at(self, position: FloatArray) -> Samples:
-        """Stand at rest somewhere, as when the machine was switched on there.
+        """Put the axes at rest at a position, as when the machine was switched on there.
 
         Args:
             position: Machine coordinates, shape (k,) [mm or deg].

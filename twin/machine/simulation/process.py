@@ -1,12 +1,12 @@
-"""What goes on between tool and part while the machine is stepped, as far as the drives must know."""
+"""The interface of a cutting process with which the drives are stepped."""
 
 from typing import NamedTuple, Protocol
 
 from twin.machine.simulation.drive_kernels import Drives
 from twin.machine.simulation.stepping import Stepper
-from twin.machine.watching.alarms import Alarm
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
+from twin.recording.alarms import Alarm
 from twin.recording.form import ToolLoad
 
 

@@ -25,9 +25,9 @@ from twin.machine.simulation.process import Physics, Process
 from twin.machine.simulation.sampling import polyline_node
 from twin.machine.simulation.stepping import stepper
 from twin.machine.simulation.tick_kernels import follow_setpoints, loop_of, step_held
-from twin.machine.watching.alarms import SimulationError
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray, IntArray
+from twin.recording.alarms import SimulationError
 from twin.recording.form import Samples, ToolLoad
 from twin.units import to_si
 
@@ -229,7 +229,7 @@ class Servo:
         return copied
 
     def take_over(self, other: "Servo") -> None:
-        """Go on where a servo of the same axes, tuned or built otherwise, has come to.
+        """Take over the state of a servo of the same axes, tuned or built otherwise.
 
         The axes stand and move as they did; where the transmission gave and no longer does, the
         motor goes with the axis.

@@ -120,7 +120,7 @@ class SetpointFilter:
             self.trail[self._lags] = self._trails[row]
 
     def stand(self, trail: FloatArray) -> None:
-        """Stand so far behind the setpoint, shape (k,) [mm or deg]; an axis without a lag never does."""
+        """Set how far the lags are behind the setpoint, shape (k,) [mm or deg]; 0 for an axis without one."""
         self.trail[self._lags] = trail[self._lags]
 
 

@@ -10,11 +10,11 @@ from twin.machine.model.model import MachineModel
 from twin.machine.simulation.process import Process
 from twin.machine.simulation.servo import Servo
 from twin.machine.simulation.tool_changes import ToolClearances
-from twin.machine.watching.alarms import Alarm, NearMiss
 from twin.machine.watching.clearance import Clearance
 from twin.machine.watching.watch import Watch
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
+from twin.recording.alarms import Alarm, NearMiss
 from twin.recording.reader import Samples
 from twin.toolpath.tool_plan import ToolPlan
 

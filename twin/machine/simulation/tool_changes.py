@@ -5,8 +5,8 @@ import dataclasses
 from twin.job.job_file import ToolTable
 from twin.machine.model.model import MachineModel
 from twin.machine.model.tool_shape import tool_cylinders
-from twin.machine.watching.alarms import Alarm, NearMiss
 from twin.machine.watching.clearance import Clearance
+from twin.recording.alarms import Alarm, NearMiss
 from twin.recording.reader import Samples
 from twin.toolpath.tool_plan import ToolPlan
 

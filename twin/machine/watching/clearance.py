@@ -34,7 +34,6 @@ from twin.machine.model.tool_shape import (
     STOCK_SIDE,
     TOOL_SIDE,
 )
-from twin.machine.watching.alarms import Alarm, NearMiss
 from twin.machine.watching.plane_kernels import (
     PlaneColumns,
     find_suspects,
@@ -45,6 +44,7 @@ from twin.machine.watching.plane_kernels import (
 )
 from twin.machine.watching.relative_motion import RelativeMotion
 from twin.nc.canonical import FloatArray, IntArray
+from twin.recording.alarms import Alarm, NearMiss
 from twin.recording.reader import Samples
 from twin.units import MM
 

@@ -1,4 +1,4 @@
-"""How things on a machine move as seen from one another.
+"""Relative motion of the bodies of a machine.
 
 Axes slide and turn; whatever hangs on them moves rigidly. Of two things the clearance needs only how
 a point of the one goes in the frame of the other, and by what angle the two turn against each other.

@@ -3,8 +3,8 @@
 import numpy as np
 
 from twin.machine.description.config import MachineConfig
-from twin.machine.watching.alarms import Alarm
 from twin.nc.canonical import FloatArray, Moves, Shape
+from twin.recording.alarms import Alarm
 
 ROUNDING = 1e-6
 """What an axis may exceed its travel by before it counts [mm or deg]: far below any control's

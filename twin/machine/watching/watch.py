@@ -4,9 +4,9 @@ import numpy as np
 
 from twin.machine.description.config import MachineConfig
 from twin.machine.description.machine_file import AxisTable
-from twin.machine.watching.alarms import Alarm, AlarmCode
 from twin.machine.watching.watch_kernels import AxisWatch, Raised, find_raised
 from twin.nc.canonical import FloatArray
+from twin.recording.alarms import Alarm, AlarmCode
 from twin.recording.reader import Samples
 
 OVERTRAVEL = 2.0

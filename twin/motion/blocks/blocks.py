@@ -237,7 +237,7 @@ def _check_joined(position: FloatArray, moves: Moves) -> None:
         row = int(np.argmax(np.any(gaps > JOIN_TOLERANCE, axis=1)))
         raise ValueError(
             f"line {moves.line[row]}: the move begins at {moves.start[row]}, "
-            f"but the axes stand at {before[row]}"
+            f"but the axes are at {before[row]}"
         )
 
 

@@ -1,4 +1,4 @@
-"""Setpoints under an operator's hands: feed override, hold, single block, reset.
+"""Setpoints under an operator's control: feed override, hold, single block, reset.
 
 **How it works.** A program is planned as ``plan`` does it, but only as far as setpoints are asked
 for. The overrides are ceilings of the velocity along the path: of the programmed feed, or of what

@@ -1,1 +1,1 @@
-"""What a plan tells a person."""
+"""The report of a plan."""

@@ -1,4 +1,4 @@
-"""What bounds the velocity of pieces, and what their borders are passed at: for people to read."""
+"""What bounds the velocity of pieces and of their borders, in words."""
 
 import dataclasses
 
@@ -15,7 +15,7 @@ from twin.nc.canonical import FloatArray, IntArray
 FEED = "programmed feed"
 STOP = "stop at a block's end"
 SHORT = "block too short to speed up"
-BESIDE = "curve beside a slower place"
+BESIDE = "curve next to a slower place"
 
 NEAR = 1e-6
 """Share by which two bounds may differ and count as the same."""

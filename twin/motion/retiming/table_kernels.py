@@ -1,4 +1,4 @@
-"""What limits a change of a run's time law, at the instants of a reference that is easily told."""
+"""The limits of a change of a run's time law, at the instants of a simple reference."""
 
 import math
 from typing import NamedTuple

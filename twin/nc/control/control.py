@@ -60,7 +60,6 @@ class Rules:
     before_motion: Callable[["Control", bool], None] | None = None
     after_motion: Callable[["Control"], None] | None = None
     finish: Callable[["Control"], None] | None = None
-    must_end: bool = False
     jog: str = "N1 G91 G1 {axis}{distance} F{feed}"
     read_variable: Callable[["Control", str, float | None], float] | None = None
     write_variable: Callable[["Control", str, float | None, float, Assignment], None] | None = None

@@ -282,10 +282,9 @@ def by_manual(codes: Mapping[float, GCode]) -> dict[float, GCode]:
 def jog_block(dialect: Dialect, axis: str, distance: float, feed: float) -> str:
     """One straight move by a distance [mm or deg] with a feed per minute, in a control's own language."""
     mode = dialect.codes.start_state.get("feed_mode", FeedMode.PER_MINUTE)
-    end = "\nM2" if dialect.rules.must_end else ""
     of_one = feed_per_minute(1.0, mode, distance, True, 1.0, 0.0, (feed, feed))
     number, rate = _written(distance), _written(feed / of_one)
-    return dialect.rules.jog.format(axis=axis, distance=number, feed=rate) + end
+    return dialect.rules.jog.format(axis=axis, distance=number, feed=rate)
 
 
 def _written(number: float) -> str:

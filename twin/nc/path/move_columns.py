@@ -209,6 +209,18 @@ class MoveColumns:
         """Append an event after the moves so far."""
         self.events.append(dataclasses.replace(event, before=self.count))
 
+    def withdraw_events(self, line: int) -> list[Event]:
+        """Take back the events of a line that no move has followed."""
+        first = len(self.events)
+        while first and (self.events[first - 1].line, self.events[first - 1].before) == (
+            line,
+            self.count,
+        ):
+            first -= 1
+        withdrawn = self.events[first:]
+        del self.events[first:]
+        return withdrawn
+
     def refusal(self, line: int) -> Refused:
         """That the block of a line, which comes next, is refused."""
         return Refused(self.count, len(self.events), line)

@@ -135,7 +135,12 @@ class Path:
     def hold_for_blends(self) -> Rounding:
         """From now on moves are kept until their successor is known, by the stage that blends corners."""
         if self._rounding is None:
-            self._rounding = Rounding(self._compensate, self.compensation.event, self._report)
+            self._rounding = Rounding(
+                self._compensate,
+                self.compensation.event,
+                self.columns.withdraw_events,
+                self._report,
+            )
         return self._rounding
 
     def blend_always(self, blend: Blend | None) -> None:

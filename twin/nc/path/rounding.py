@@ -11,19 +11,34 @@ from twin.nc.path.segments import MoveReport
 class Rounding:
     """Blends the corners that it is given to.
 
+    A block whose corner cannot be blended is refused as a whole: what happens before its move waits with it.
+
     Attributes:
         always: Blend of every corner between two moves that it holds for, or None.
         once: Blend of the next corner, or None.
     """
 
     def __init__(
-        self, emit: Callable[[Segment], None], happen: Callable[[Event], None], report: MoveReport
+        self,
+        emit: Callable[[Segment], None],
+        happen: Callable[[Event], None],
+        withdraw: Callable[[int], list[Event]],
+        report: MoveReport,
     ) -> None:
-        self._emit = emit
+        """Stand before the first move.
+
+        Args:
+            emit: Takes moves whose corner is made.
+            happen: Takes events behind them.
+            withdraw: Gives back the events of a line that no move has followed.
+        """
+        self._emit_move = emit
         self._happen = happen
+        self._withdraw = withdraw
         self._report = report
         self._held: Segment | None = None
         self._blend: Blend | None = None
+        self._before: list[Event] = []
         self._waiting: list[Event] = []
         self.always: Blend | None = None
         self.once: Blend | None = None
@@ -41,6 +56,7 @@ class Rounding:
         if held is None or (line is not None and (held.line, held.motion) != (line, Motion.FEED)):
             return False
         self.once = blend
+        self._before = self._withdraw(held.line)
         return True
 
     def add(self, move: Segment) -> None:
@@ -92,6 +108,12 @@ class Rounding:
                 )
             self._emit(held)
         self._let_happen()
+
+    def _emit(self, move: Segment) -> None:
+        before, self._before = self._before, []
+        for event in before:
+            self._happen(event)
+        self._emit_move(move)
 
     def _let_happen(self) -> None:
         waiting, self._waiting = self._waiting, []

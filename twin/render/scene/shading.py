@@ -9,7 +9,7 @@ SMOOTH_COSINE = 0.8
 that steps look like steps."""
 
 OPPOSED = -0.5
-"""A wall's face takes the wall's direction unless it looks the other way (cosine)."""
+"""A wall's face takes the wall's direction unless it points the opposite way (cosine)."""
 
 WALL_RADIUS = 3
 """Vertices on either side that the direction of a wall is taken from: the grid's stairs vanish."""

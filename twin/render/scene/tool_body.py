@@ -100,7 +100,7 @@ class ToolBodies:
 
         Args:
             tool: The one in the spindle.
-            sense: 1 where the spindle turns clockwise seen from above, -1 the other way, 0 not at all.
+            sense: 1 where the spindle turns clockwise seen from above, -1 counter-clockwise, 0 where it stands.
         """
         model = self._model
         self._angle -= sense * np.deg2rad(SPIN_DEG)

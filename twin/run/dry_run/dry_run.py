@@ -9,11 +9,11 @@ from itertools import islice
 from typing import IO
 
 from twin.cutting.program_summary import PlacedPart, ProgramSummary, SummaryBuilder
-from twin.machine.watching.alarms import Alarm
 from twin.machine.watching.travel import soft_limit_alarm
 from twin.nc.canonical import Chunk, FloatArray, Function
 from twin.nc.control.settings import is_work_offset
 from twin.nc.text.diagnostics.diagnostics import Diagnostic
+from twin.recording.alarms import Alarm
 from twin.run.dry_run.program_watch import ProgramWatch
 from twin.run.dry_run.spindle_dwells import with_spindle_dwells
 from twin.run.messages import Notice, shown, speed_notice

@@ -7,7 +7,6 @@ import numpy as np
 
 from twin.cutting.forces.tool_strength import tool_strength
 from twin.job.job_file import JobFile, ToolTable
-from twin.machine.watching.alarms import Alarm
 from twin.nc.canonical import Chunk, FloatArray, Function, IntArray, Motion
 from twin.nc.functions import (
     OPTIONAL_STOP,
@@ -20,6 +19,7 @@ from twin.nc.functions import (
     SpindleState,
 )
 from twin.nc.interpreter import Interpretation
+from twin.recording.alarms import Alarm
 from twin.run.messages import Notice
 
 

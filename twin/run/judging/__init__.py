@@ -1,1 +1,1 @@
-"""What a run came to: warnings, the scope of its verdict, and the outcome."""
+"""The judgement of a run: warnings, the scope of its verdict, and the outcome."""

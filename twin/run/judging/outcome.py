@@ -1,4 +1,4 @@
-"""What a run came to, judged: what result.json, the report and the exit code are made of."""
+"""The outcome of a run, from which result.json, the report and the exit code are made."""
 
 import dataclasses
 from collections.abc import Iterator, Sequence
@@ -15,9 +15,9 @@ from twin.cutting.watching.cut_log import CutResult
 from twin.errors import ConfigError
 from twin.job.job_file import JobFile
 from twin.job.tolerance import ToleranceTable
-from twin.machine.watching.alarms import Alarm, NearMiss
 from twin.nc.canonical import FloatArray
 from twin.nc.text.diagnostics.diagnostics import Diagnostic
+from twin.recording.alarms import Alarm, NearMiss
 from twin.recording.reader import RecordingWriter
 from twin.run.dry_run.dry_run import DryRun
 from twin.run.dry_run.program_watch import ProgramWatch
@@ -49,7 +49,7 @@ from twin.units import UM_PER_MM
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Outcome:
-    """What a run came to.
+    """The outcome of a run.
 
     Attributes:
         cut: What was cut; None without a stock.
@@ -172,7 +172,7 @@ def outcome_of(
 
 
 def refuse_unjudged_loads(tolerance: ToleranceTable) -> None:
-    """A tolerance on what nobody simulates would pass unseen.
+    """Refuse tolerances on loads that are not simulated: they would always pass.
 
     Raises:
         ConfigError: There is one.

@@ -11,8 +11,8 @@ from twin.cutting.watching.cut_log import TRI_DEXEL, CutResult
 from twin.job.job_file import JobFile
 from twin.job.load import DEFAULT
 from twin.machine.description.config import MachineConfig
-from twin.machine.watching.alarms import Alarm
 from twin.nc.control.settings import ControlSettings
+from twin.recording.alarms import Alarm
 from twin.run.dry_run.dry_run import DryRun
 from twin.run.dry_run.program_watch import ProgramWatch
 from twin.run.preparing.preparation import Preparation

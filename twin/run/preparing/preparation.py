@@ -128,12 +128,12 @@ def _assumed(job: Job, machine: str | None) -> tuple[Job, AssumedReading]:
 
 _DOES_NOT_FIT = frozenset({"compensation-gouge", "compensation-radius"})
 _WHOLE_RADIUS = (
-    "radius compensation counts the whole radius: no comment says that D holds the wear alone "
+    "radius compensation counts the whole radius: no comment says that D has only the wear "
     "(else radius_offset = 0.0 of its [[tools]])"
 )
 _RADIUS_IS_A_GUESS = (
-    "no comment tells the tool's diameter: write the job by twin init, correct diameter of its [[tools]], "
-    "or radius_offset = 0.0 where D holds the wear alone"
+    "no comment gives the tool's diameter: write the job with twin init, correct diameter of its [[tools]], "
+    "or set radius_offset = 0.0 where D has only the wear"
 )
 _COMPENSATES = re.compile(rb"G0*4[12](?![0-9])|[ \t]R[LR]\b", re.IGNORECASE)
 

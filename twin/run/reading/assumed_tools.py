@@ -147,7 +147,7 @@ def _tool_table(
             else []
         ),
         *([f"corner = {tool.corner}  # mm"] if tool and tool.corner and kind == "bull" else []),
-        *(["radius_offset = 0.0  # D holds its wear alone"] if worn else []),
+        *(["radius_offset = 0.0  # D has only its wear"] if worn else []),
         f"flute = {flute:.1f}  # mm: a guess",
         f"length = {round(float(length), 4)}  # from the spindle nose to the tip, mm: {length_from}",
     ]
@@ -158,7 +158,7 @@ def _tool_table(
     )
     if length > USUAL_LENGTH and length_from == "a guess":
         said += f"; {length:g} mm long, a guess: so far it must reach"
-    said += "; D holds its wear alone, the contours are the path of its centre" if worn else ""
+    said += "; D has only its wear, the contours are the path of its centre" if worn else ""
     return lines, said, diameter
 
 

@@ -115,6 +115,6 @@ def _require_lengths(lengths: Mapping[int, float], called: Iterable[int]) -> Non
         if number not in lengths:
             one = next(iter(lengths))
             raise UsageError(
-                f"the program writes the length of tool {one} and calls it, and not that of tool {number}: how much "
-                f"longer that is nobody knows; write it too, or {hint}"
+                f"the program writes the length of tool {one} and calls it, and not that of tool {number}: its "
+                f"length is not known; write it too, or {hint}"
             )

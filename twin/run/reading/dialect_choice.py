@@ -62,7 +62,7 @@ class DialectChoice:
 
 
 @dataclasses.dataclass(frozen=True)
-class _Candidate:
+class _DialectReading:
     """What one dialect makes of a program."""
 
     name: str
@@ -127,7 +127,9 @@ def chosen_dialect(
     if not good and _ROUTERS in rare and not numbered:
         router = trying.read_as(DIALECTS[_ROUTERS])
         if router.error is None:
-            return DialectChoice(DIALECTS[_ROUTERS], f"it alone reads it; {_first_refusal(tried)}")
+            return DialectChoice(
+                DIALECTS[_ROUTERS], f"no other control reads it; {_first_refusal(tried)}"
+            )
     if not good:
         further = [trying.read_as(DIALECTS[name]) for name in rare] if common else []
         raise _refused(tried, [each.name for each in further if each.error is None])
@@ -148,10 +150,10 @@ def chosen_dialect(
     return _choice(source.name, meant, why or (_ROLLS if rolls else ""))
 
 
-_ROLLS = "it alone of those that may be meant has rotary axes that roll over"
+_ROLLS = "it is the only one of the possible controls whose rotary axes roll over"
 
 
-def _crawls(one: _Candidate, other: _Candidate) -> bool:
+def _crawls(one: _DialectReading, other: _DialectReading) -> bool:
     """Whether a dialect counts feeds of which another makes at least two hundred times as much."""
     slow, fast = one.moves.feed, other.moves.feed
     if len(slow) != len(fast):
@@ -159,18 +161,18 @@ def _crawls(one: _Candidate, other: _Candidate) -> bool:
     return bool(((slow < _CRAWLS * _INCH) & (slow < fast * _TOO_SLOW)).any())
 
 
-def _farthest(tried: Sequence[_Candidate]) -> _Candidate:
+def _farthest(tried: Sequence[_DialectReading]) -> _DialectReading:
     """The one that reads a program farthest before it refuses it."""
     return max(tried, key=lambda each: each.error.line if each.error else 0)
 
 
-def _first_refusal(tried: Sequence[_Candidate]) -> str:
+def _first_refusal(tried: Sequence[_DialectReading]) -> str:
     farthest = _farthest(tried)
     assert farthest.error is not None
     return f"{farthest.name}, which reads it farthest of others, refuses line {farthest.error.line}: {farthest.error.message}"
 
 
-def _refused(tried: Sequence[_Candidate], others: Sequence[str]) -> ProgramError:
+def _refused(tried: Sequence[_DialectReading], others: Sequence[str]) -> ProgramError:
     """The error of the dialect that reads a program farthest, and what else may be tried."""
     farthest, name = _farthest(tried).error, _farthest(tried).name
     assert farthest is not None
@@ -184,7 +186,9 @@ def _refused(tried: Sequence[_Candidate], others: Sequence[str]) -> ProgramError
 
 
 def _dropped(
-    good: Sequence[_Candidate], quick: Sequence[_Candidate], meant: Sequence[_Candidate]
+    good: Sequence[_DialectReading],
+    quick: Sequence[_DialectReading],
+    meant: Sequence[_DialectReading],
 ) -> str:
     """Why some of the dialects that read a program are not the one that was meant; empty: all may be."""
     slow = [each for each in good if each not in quick]
@@ -196,7 +200,7 @@ def _dropped(
     return "; ".join(reasons)
 
 
-def _choice(name: str, meant: Sequence[_Candidate], why: str) -> DialectChoice:
+def _choice(name: str, meant: Sequence[_DialectReading], why: str) -> DialectChoice:
     """The dialect that is taken of those that may be meant."""
     slightly = ""
     for other in meant[1:]:
@@ -244,7 +248,7 @@ class _Trying:
     functions: set[int]
     times: int
 
-    def read_as(self, dialect: Dialect) -> _Candidate:
+    def read_as(self, dialect: Dialect) -> _DialectReading:
         """What a dialect makes of it."""
         source, declared = read_source(self.path, dialect), self.settings.m_functions
         unknown = unknown_functions(self.functions, dialect, frozenset(declared))
@@ -266,14 +270,14 @@ class _Trying:
             if isinstance(event, Function)
         ]
         moves = concatenate((chunk.moves for chunk in chunks), settings.axes)
-        return _Candidate(dialect.name, moves, functions, unknown, error)
+        return _DialectReading(dialect.name, moves, functions, unknown, error)
 
     def _kernel(self, lines: int) -> LineKernel | None:
         """What runs its plain lines: the compiler pays as for a program that is as long as all of the readings."""
         return usual_kernel(lines * self.times)
 
 
-def _difference(one: _Candidate, other: _Candidate) -> str:
+def _difference(one: _DialectReading, other: _DialectReading) -> str:
     """The first thing that two dialects make differently; empty: none."""
     paths = _paths_apart(one, other)
     if paths:
@@ -287,7 +291,7 @@ def _difference(one: _Candidate, other: _Candidate) -> str:
     return ""
 
 
-def _paths_apart(one: _Candidate, other: _Candidate) -> str:
+def _paths_apart(one: _DialectReading, other: _DialectReading) -> str:
     """The first move that two dialects make differently; empty: none."""
     a, b = one.moves, other.moves
     count = min(len(a), len(b))
@@ -317,7 +321,7 @@ def _pecks_apart(a: Moves, b: Moves, count: int) -> BoolArray:
     return rapid & others & (off[:, 2] > _SAME) & (off[:, 2] < _CLEARANCE)
 
 
-def _slight_difference(one: _Candidate, other: _Candidate) -> str:
+def _slight_difference(one: _DialectReading, other: _DialectReading) -> str:
     """What two dialects make differently that asks nobody; empty: nothing."""
     a, b = one.moves, other.moves
     pecks = np.flatnonzero(_pecks_apart(a, b, min(len(a), len(b))))
@@ -328,7 +332,7 @@ def _slight_difference(one: _Candidate, other: _Candidate) -> str:
     return _feeds_apart(one, other)
 
 
-def _feeds_apart(one: _Candidate, other: _Candidate, share: float = _SAME) -> str:
+def _feeds_apart(one: _DialectReading, other: _DialectReading, share: float = _SAME) -> str:
     """The first feed that two dialects make differently; empty: none."""
     a, b = one.moves, other.moves
     apart = np.flatnonzero(~np.isclose(a.feed, b.feed, rtol=share, equal_nan=True))

@@ -7,11 +7,11 @@ become program runs of the room (``GrblStream``); everything else is done here.
 import time
 
 from twin.errors import TwinError
-from twin.machine.watching.alarms import AlarmStandsError
 from twin.nc.control.executor import Executor
 from twin.nc.dialects.grbl.memory import GrblMemory, memory_of
 from twin.nc.text.diagnostics.diagnostics import ProgramError
 from twin.nc.text.source import source_from_text
+from twin.recording.alarms import AlarmStandsError
 from twin.serve.grbl import realtime
 from twin.serve.grbl.codes import Error, alarm_of
 from twin.serve.grbl.reports import BUILD, HELP, WELCOME, ParserState, ReportWriter, parser_state
@@ -35,7 +35,6 @@ class GrblController:
     """One control; one sender talks to it."""
 
     def __init__(self, room: Room) -> None:
-        """Switch it on."""
         self.serial = SerialBuffer()
         self.settings = GrblSettings(room.machine.machine)
         self._reporter = ReportWriter(self.settings)
@@ -63,7 +62,7 @@ class GrblController:
         self._reporter.refresh()
 
     def work(self, room: Room, data: bytes = b"") -> bytes:
-        """Take bytes from the line, do what they ask for as far as the machine is ready; what is to be sent."""
+        """Take bytes from the line and carry out what the machine is ready for; the bytes to send."""
         if data and self._stream is not None:
             self._stream.last_received = time.monotonic()
         for command in self.serial.receive(data):

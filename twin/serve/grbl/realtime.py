@@ -1,4 +1,4 @@
-"""Real-time commands of Grbl 1.1: single bytes that are obeyed at once, whatever waits in the buffer."""
+"""Real-time commands of Grbl 1.1: single bytes that are carried out before the buffer."""
 
 from typing import Literal
 
@@ -35,7 +35,7 @@ _LEAST_FEED = 10
 
 
 def obey(room: Room, command: int, *, jogging: bool) -> None:
-    """Do what a byte asks for; what makes no sense now is passed over, as in Grbl."""
+    """Carry out a real-time command; one that does not apply now is ignored, as in Grbl."""
     try:
         if command in (HOLD, DOOR, CANCEL_JOG):
             _hold(room, command, jogging=jogging)

@@ -33,7 +33,7 @@ class GrblLine:
         self._taken = False
 
     async def work(self, data: bytes) -> bytes:
-        """Hand bytes to the control; what it has to say."""
+        """Pass bytes to the control; its answer."""
         control = self._control
         question = self._driver.inquire(lambda room: control.work(room, data))
         return await asyncio.wrap_future(question)

@@ -1,1 +1,1 @@
-"""The machine in the plant's language: OPC UA, by the companion specification for machine tools."""
+"""The machine in OPC UA, by the companion specification for machine tools."""

@@ -23,7 +23,6 @@ class ConditionNode:
     """
 
     def __init__(self, server: Server) -> None:
-        """Begin without nodes; ``build`` makes them."""
         self._server = server
         self._last = NORMAL
         self._fields: dict[str, Node] = {}
@@ -64,14 +63,14 @@ class ConditionNode:
         await self._show()
 
     async def observe(self, value: Condition, when: dt.datetime) -> None:
-        """Tell of a change.
+        """Send an event where a condition has changed.
 
         Args:
             when: Since when.
         """
         if value == self._last or value.level not in _SEVERITIES:
             return
-        # What has ended is named once more.
+        # The end of an alarm repeats its code and text.
         shown = self._last if value.level == "Normal" else value
         self._change(value, shown.code, shown.text)
         self._last = value

@@ -1,4 +1,4 @@
-"""``twin serve --opcua``: a server that tells the agent's observations in OPC UA; nobody can change a bit of it."""
+"""``twin serve --opcua``: the agent's observations in OPC UA, read-only."""
 
 import asyncio
 import ipaddress
@@ -154,10 +154,10 @@ async def _secure(server: Server, place: Endpoint, folder: Path) -> None:
 async def mirror(
     agent: Agent, place: Endpoint, content: Content, ready: Callable[[str], None] = lambda _: None
 ) -> None:
-    """Tell what an agent observes, until this is cancelled.
+    """Publish what an agent observes, until this is cancelled.
 
     Args:
-        ready: Told the address once clients may come.
+        ready: Called with the address once clients may connect.
     """
     items = [item.id for part in agent.device.walk() for item in part.items]
     async with opcua_server(place, content) as tool:

@@ -34,7 +34,7 @@ CREATE TABLE IF NOT EXISTS marks (
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class AttemptResult:
-    """What came of one attempt at a scene.
+    """The result of one attempt at a scene.
 
     Attributes:
         title: What it is called, in English where it is.

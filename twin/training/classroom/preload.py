@@ -1,4 +1,4 @@
-"""Loads and works what every room needs, once.
+"""Loads and warms up what every room needs, once.
 
 Rooms that are forked from a process which has imported this begin at once, and share its memory.
 """

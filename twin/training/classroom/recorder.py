@@ -1,4 +1,4 @@
-"""Writes what a room has come to into the class's file, as soon as it changes."""
+"""Writes the marks of a room into the class's file, as soon as they change."""
 
 import sqlite3
 import uuid

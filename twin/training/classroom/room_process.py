@@ -111,7 +111,7 @@ def _listening(order: RoomOrder) -> tuple[socket.socket, Door]:
 
 
 def _serve_class(pipe: Connection, driver: Driver, app: RoomApp) -> None:
-    """Tell the class what there is, and do what it says; end with the class."""
+    """Report to the class and carry out what it sends; end with the class."""
     sent: dict[str, Any] = {}
     try:
         while True:

@@ -33,7 +33,7 @@ class Seat:
         held: The teacher holds it.
         streams: How many pages are open, the teacher's with them.
         left_at: When the last of them was closed, by the monotonic clock [s].
-        status: What its room has told last; empty: there is none.
+        status: The last report of its room; empty: there is none.
         acted_at: When the pupil has done something last, by the monotonic clock [s].
         alarmed_at: Since when an alarm is active, by the monotonic clock [s]; None: none does.
         failed: Why its room could not be begun, or ended by itself; empty: it did not.
@@ -58,7 +58,7 @@ class Seat:
     lock: asyncio.Lock = dataclasses.field(default_factory=asyncio.Lock)
 
     def take(self, status: dict[str, Any]) -> None:
-        """Take what the room tells."""
+        """Take a report of the room."""
         now = time.monotonic()
         if status["done"] != self.status.get("done"):
             self.acted_at = now
@@ -150,7 +150,7 @@ class Rooms:
             self.say(seat, {"do": "freeze"})
 
     def say(self, seat: Seat, what: Mapping[str, Any]) -> None:
-        """Tell a room something, if there is one."""
+        """Send a room a message, if there is one."""
         if seat.pipe is not None:
             with contextlib.suppress(OSError):
                 seat.pipe.send(dict(what))
@@ -168,7 +168,7 @@ class Rooms:
 
     @contextlib.contextmanager
     def watched(self, seat: Seat) -> Iterator[None]:
-        """Keep a seat's room while a page looks at it."""
+        """Keep a seat's room while a page shows it."""
         seat.streams += 1
         try:
             yield

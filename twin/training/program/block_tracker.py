@@ -94,6 +94,12 @@ class BlockTracker(Forkable):
         self._of_event = max(self._of_event - gone, 0)
         self._events = deque((at, block - gone, event) for at, block, event in self._events)
 
+    def forget_refused(self, line: int, move: int) -> None:
+        """The block of a source line that was to begin with a move is refused: nothing of it was in force."""
+        begins = range(bisect.bisect_left(self._marks, move), len(self.blocks))
+        first = next((each for each in begins if self.blocks[each].line == line), len(self.blocks))
+        del self.blocks[first:], self._marks[first:]
+
     def of_move(self, move: int) -> int:
         """Number of the block that a move belongs to, as far as its mark tells; -1: none."""
         return bisect.bisect_right(self._marks, max(move, 0)) - 1

@@ -233,7 +233,10 @@ class ProgramReader:
         if block is None and not control.ended:
             block = control.program_counter.next()
         if block is None:
-            self._executor.finish()
+            if self._options.typed:
+                control.path.finish()
+            else:
+                self._executor.finish()
             self.ending = "end"
             if self._search.line:
                 self._fail(
@@ -271,6 +274,7 @@ class ProgramReader:
     def _end_by(self, finding: Diagnostic) -> None:
         """The program is wrong."""
         self.finding = finding
+        self.tracker.forget_refused(finding.line, self.count)
         self._fail(finding.line, f"{finding.code}: {finding.message}")
 
     def _finish_chunk(self, chunk: Chunk) -> None:
@@ -285,6 +289,7 @@ class ProgramReader:
         if alarm is not None:
             outside = int(np.flatnonzero(chunk.moves.line == alarm.line)[0])
             chunk = Chunk(chunk.moves[:outside], ())
+            self.tracker.forget_refused(alarm.line, self.moves.count + outside)
             self.ending, self.ending_line, self.message = "soft-limit", alarm.line, alarm.message
         # No time passes for a tool that is not there: the change is reported at once.
         changes = self.ending == "tool"

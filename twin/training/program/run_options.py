@@ -94,6 +94,7 @@ class RunOptions:
         search: Source line to begin at: what is before it is only computed. 0: the beginning.
         inherited: What is in force at the beginning; None: what the control begins with.
         stream: Where blocks come from, in place of the source.
+        typed: Blocks that are typed in, or a move by hand: no program that a code would end.
     """
 
     soft_limits: bool = True
@@ -101,3 +102,4 @@ class RunOptions:
     search: int = 0
     inherited: Inherited | None = None
     stream: BlockStream | None = None
+    typed: bool = False

@@ -1,4 +1,4 @@
-"""What the judge and the faults see of a room, so that they depend on no room."""
+"""What the judge and the faults see of a room, so that they do not import it."""
 
 import dataclasses
 from typing import Protocol
@@ -24,7 +24,7 @@ class RoomAlarm:
     """An alarm.
 
     Attributes:
-        code: Stable, searchable name of its kind: those of ``twin.machine.watching.alarms``, and
+        code: Stable, searchable name of its kind: those of ``twin.recording.alarms``, and
             ``program`` (the interpreter refused a block), ``external`` (a safety circuit).
         line: Source line of the program, 0 where none.
         time_s: When, in machine time [s].

@@ -1,4 +1,4 @@
-"""When a machine is left alone, so that its time goes on without being computed."""
+"""When a machine is idle, so that its time goes on without being simulated."""
 
 import numpy as np
 
@@ -19,7 +19,6 @@ class Rest:
     """
 
     def __init__(self) -> None:
-        """Begin awake."""
         self._still_s = 0.0
 
     def wake(self) -> None:

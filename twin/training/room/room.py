@@ -9,12 +9,12 @@ from collections.abc import Iterable
 
 from twin.errors import TwinError, UsageError
 from twin.machine.simulation.live import LiveMachine, moving
-from twin.machine.watching.alarms import Alarm, AlarmCode, AlarmStandsError
 from twin.nc.canonical import FloatArray
 from twin.nc.functions import SPINDLE_LIMITED, SpindleState
 from twin.nc.iso.base import jog_block
 from twin.nc.text.diagnostics.diagnostics import ProgramError
 from twin.nc.text.source import Source, source_from_text
+from twin.recording.alarms import Alarm, AlarmCode, AlarmStandsError
 from twin.recording.reader import Samples
 from twin.training.program.program_run import ProgramRun
 from twin.training.program.run_options import RunOptions
@@ -286,7 +286,8 @@ class Room:
             move, distance = found
             block = jog_block(self.scene.preparation.dialect, move.axis, distance, move.feed)
             # A jog is kept within the travel by itself, and leads back into it.
-            self.start_run(source_from_text(block, "jog"), "jog", RunOptions(soft_limits=False))
+            options = RunOptions(soft_limits=False, typed=True)
+            self.start_run(source_from_text(block, "jog"), "jog", options)
 
     def mount(self, number: int | None) -> None:
         """Put a tool of the scene into the spindle.

@@ -44,7 +44,7 @@ class CourseRow(NamedTuple):
 
 
 class Trainee(NamedTuple):
-    """What one trainee has come to.
+    """The results of one trainee.
 
     Attributes:
         name: As signed; empty: nobody said.
@@ -131,7 +131,7 @@ def language_of(rows: list[CourseRow]) -> Language:
 
 
 def trainees(rows: list[CourseRow]) -> list[Trainee]:
-    """What each trainee has come to, by name: of each scene the best sheet that was handed in."""
+    """The results of each trainee, by name: of each scene the best sheet that was handed in."""
     found = []
     for name in dict.fromkeys(row.name for row in rows):
         theirs = [row for row in rows if row.name == name]

@@ -194,7 +194,7 @@ class ScoreSheetWriter:
         return score_page(sheet, words, [one.picture() for one in tuple(room.alarms.moments)], part)
 
     def changed(self) -> None:
-        """Something was done: the files are due."""
+        """Note a change: the files are written soon."""
         if self.folder is not None:
             self._due.set()
 

@@ -84,7 +84,6 @@ class RoomApp:
     """
 
     def __init__(self, driver: Driver, attempts: Attempts, attempt: Attempt) -> None:
-        """Prepare it."""
         self._driver = driver
         self._attempts = attempts
         self.attempt = attempt

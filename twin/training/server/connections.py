@@ -1,4 +1,4 @@
-"""Open pages and the panel: many pages, one panel. It is asked for and given, and never taken."""
+"""Open pages and the panel: many pages, one panel. A page asks for the panel and is given it."""
 
 import dataclasses
 import itertools

@@ -1,4 +1,4 @@
-"""Lets the machine's time go on with the wall's, on a thread that nothing ends but the room's end."""
+"""Keeps the machine's time with the wall clock, on a thread that lives as long as the room."""
 
 import contextlib
 import dataclasses
@@ -40,7 +40,7 @@ class Look:
     """The machine as the pages show it.
 
     Attributes:
-        lost_s: Time on the wall that the machine did not keep up with so far [s].
+        lost_s: Wall-clock time by which the machine is behind so far [s].
         trouble: What went wrong outside the machine, as with the results' folder.
     """
 
@@ -53,10 +53,10 @@ class Driver:
     """Steps a session and does what the pages ask for.
 
     Attributes:
-        speed: Machine time per time on the wall.
-        lost_s: Time on the wall that the machine did not keep up with so far [s].
-        trouble: Says what is wrong outside the machine.
-        noted: Told of the session before each look at it; says what is wrong with what it keeps.
+        speed: Machine time per wall-clock time.
+        lost_s: Wall-clock time by which the machine is behind so far [s].
+        trouble: Reports what is wrong outside the machine; empty: nothing.
+        noted: Called with the session before each look at it; reports what is wrong with what it keeps.
         look: The last look at the machine.
     """
 
@@ -64,7 +64,7 @@ class Driver:
         """Prepare a session.
 
         Args:
-            changed: Told after everything that was asked for.
+            changed: Called after each request.
         """
         self.session = session
         self.speed = 1.0
@@ -130,11 +130,11 @@ class Driver:
         return self.inquire(take_over)
 
     def beat(self, page: int) -> None:
-        """A page says that its key is still held."""
+        """Note that a page's key is still held."""
         self._beats[page] = time.perf_counter()
 
     def leave(self, page: int) -> None:
-        """A page is gone, and its key with it."""
+        """Release the key of a page that is gone."""
         self._beats.pop(page, None)
         self._wake.set()
 

@@ -1,4 +1,4 @@
-"""What a page is sent: the machine's state as a few numbers, the stock's patches, words on change."""
+"""Messages to a page: the machine's state as numbers, patches of the stock, words on change."""
 
 import dataclasses
 import json

@@ -1,4 +1,4 @@
-"""What each command does at the machine, and why it may be refused."""
+"""The action of each command, and the reasons to refuse it."""
 
 import dataclasses
 from collections.abc import Callable
@@ -35,7 +35,7 @@ REFERENCE = 0.0
 
 
 def carry_out(room: Room, command: c.Command) -> None:
-    """Do what a command asks for.
+    """Carry out a command.
 
     Raises:
         TwinError: The machine refuses, for the reason in the message. Nothing has changed then.
@@ -72,7 +72,7 @@ def _cycle_start(room: Room, _command: c.CycleStart) -> None:
     elif mode == "mdi":
         if not room.panel.entered.strip():
             raise UsageError("the MDI line is empty")
-        options = RunOptions(inherited=slot.inherited)
+        options = RunOptions(inherited=slot.inherited, typed=True)
         room.start_run(source_from_text(room.panel.entered, "MDI"), "mdi", options)
     else:
         _start_program(room)

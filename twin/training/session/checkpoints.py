@@ -138,7 +138,6 @@ class Checkpoints:
     """The copies of a session's room."""
 
     def __init__(self, room: Room) -> None:
-        """Begin with the room as it is."""
         self._kept = [checkpoint(room, 0, ())]
         self._apart = SLICE * round(APART_S / room.slice_s)
 

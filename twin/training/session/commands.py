@@ -197,7 +197,7 @@ class Spindle(Table):
     speed: Annotated[float, Field(ge=SPINDLE_SPEEDS[0], le=SPINDLE_SPEEDS[1])] | None = None
     """[1/min]; none: as it last turned."""
     counter_clockwise: bool = False
-    """Which way, as M4 turns it."""
+    """As M4 turns it."""
 
 
 class Coolant(Table):

@@ -1,4 +1,4 @@
-"""The log of a session, and living it again: the same commands at the same ticks."""
+"""The log of a session, and its replay: the same commands at the same ticks."""
 
 import dataclasses
 from collections.abc import Sequence
@@ -28,7 +28,7 @@ class LogEntry:
 
 
 class Replay:
-    """A session that is lived again, little by little.
+    """A session that is replayed in slices.
 
     Attributes:
         over: It has come to where the session had come to.
@@ -47,7 +47,7 @@ class Replay:
 
     @property
     def over(self) -> bool:
-        """Whether all has been lived again."""
+        """Whether the replay has come to its end."""
         return self.room.tick >= self._end
 
     def advance(self, seconds: float) -> None:
@@ -64,7 +64,7 @@ class Replay:
 
 
 def relive(room: Room, entries: Sequence[LogEntry], tick: int) -> Room:
-    """Live a session again.
+    """Replay a session.
 
     Args:
         room: The machine as it was at the beginning, or later.

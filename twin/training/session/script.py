@@ -39,7 +39,7 @@ def play(session: SceneSession, steps: Iterable[StepTable], *, hand_in: bool = T
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Rehearsal:
-    """What became of a scene's scripted operators.
+    """The results of a scene's scripted operators.
 
     Attributes:
         what: ``solution`` or ``mistake``.

@@ -1,4 +1,4 @@
-"""A session: a room, what was done in it and when; it can be frozen, wound back and lived again.
+"""A session: a room and its log of commands; it can be frozen, wound back and replayed.
 
 The log holds all that was asked for, also what was taken back later. Going back takes a copy of the
 room from a time before and lives the rest again, by the same commands at the same ticks.

@@ -131,7 +131,6 @@ LINUXCNC = Dialect(
         is_local=parameters.is_local,
         given_variable=parameters.given_variable,
         prepare=offsets.begin,
-        must_end=True,
         length_by_code=True,
         finish=_finish,
         acts_on_lines=_acts_on_lines,

@@ -18,7 +18,6 @@ class ProgramMemory:
     """
 
     def __init__(self, source: Source) -> None:
-        """Load the program of a scene."""
         self._original = source
         self.source = source
         self.lines = tuple(source.lines)

@@ -90,7 +90,7 @@ class ProgramSlot:
     def drop(self, setpoint: Setpoints) -> None:
         """Forget what runs; the axes slow down where they are."""
         if self.run is not None and self.running != "jog":
-            self.modal = self.run.modal(int(setpoint.move[0]))
+            self.modal = self.run.modal(int(setpoint.move[0])) or self.modal
         self._empty()
 
     def forget_suspended(self) -> None:

@@ -1,1 +1,1 @@
-"""What a trainee's work was worth: tasks and their conditions, alarms, the finished part."""
+"""Assessment of a trainee: tasks and their conditions, alarms, the finished part."""

@@ -1,4 +1,4 @@
-"""Whether what a task asks for has come about."""
+"""Whether the condition of a task holds."""
 
 import dataclasses
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""The judge: which tasks are done, which have failed, and what that is worth."""
+"""The judge: which tasks are done, which have failed, and the points."""
 
 import dataclasses
 
@@ -23,7 +23,7 @@ class TaskState:
 
 
 class Judge:
-    """Looks after the tasks of a scene while it runs.
+    """Checks the tasks of a scene while it runs.
 
     Attributes:
         verdicts: How each task stands, in the order of the scene.

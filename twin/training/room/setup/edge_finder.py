@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 
 from twin.job.job_file import ToolTable
-from twin.machine.watching.alarms import Alarm
+from twin.recording.alarms import Alarm
 from twin.training.room.setup.touch import Touch
 
 FIRST_NUMBER = 99

@@ -9,9 +9,9 @@ from twin.errors import ConfigError, UsageError
 from twin.job.job_file import StockTable
 from twin.machine.simulation.growth import Growth
 from twin.machine.simulation.live import LiveMachine, moving
-from twin.machine.watching.alarms import Alarm
 from twin.nc.canonical import FloatArray
 from twin.nc.functions import SpindleState
+from twin.recording.alarms import Alarm
 from twin.recording.reader import Samples
 from twin.training.program.program_run import ProgramRun
 from twin.training.room.control.tables import Tables

@@ -12,8 +12,8 @@ from twin.cutting.material import Head
 from twin.cutting.tridexel.dexels import TriDexel
 from twin.cutting.tridexel.material import TriDexelMaterial
 from twin.job.job_file import StockTable, ToolTable
-from twin.machine.watching.alarms import Alarm
 from twin.nc.canonical import FloatArray
+from twin.recording.alarms import Alarm
 from twin.recording.reader import Samples
 from twin.run.machining import stock_alarm
 from twin.toolpath.part_frame import PartFrame
