@@ -16,14 +16,14 @@ from twin.cutting.cut import Cutter
 from twin.cutting.tridexel.material import TriDexelMaterial
 from twin.cutting.watching.cut_log import CutResult
 from twin.job.job_file import StockTable, ToolTable
-from twin.nc.canonical import BoolArray, FloatArray, IntArray
+from twin.nc.canonical import BoolArray, FloatArray
 from twin.toolpath.part_frame import PartFrame
 
 FRAME = PartFrame(rotary=None, center=(0.0, 0.0))
 STOCK = StockTable(shape="box", size=(24.0, 20.0, 8.0), cell=0.4, material="C45")
 
 
-def motion() -> tuple[FloatArray, IntArray, BoolArray]:
+def motion() -> tuple[FloatArray, FloatArray, BoolArray]:
     """Down into the plate in rapid and feed, a slot, an arc, a thin cut beside it, and up; with lines and rapids."""
     angle = np.linspace(0.0, math.pi, 260)
     arc = np.column_stack([4.0 * np.sin(angle), 4.0 * np.cos(angle) - 4.0, -2.0 - 0.2 * angle])
@@ -35,7 +35,7 @@ def motion() -> tuple[FloatArray, IntArray, BoolArray]:
         np.linspace(arc[-1], [-6.0, -8.02, arc[-1, 2]], 200),
         np.linspace([-6.0, -8.02, arc[-1, 2]], [-6.0, -8.02, 5.0], 25),
     ]
-    line = np.repeat(np.arange(len(ways)), [len(way) for way in ways])
+    line = np.repeat(np.arange(6.0), [len(way) for way in ways])
     way = np.concatenate(ways)
     way += np.random.default_rng(3).uniform(-3e-4, 3e-4, way.shape)
     return way, line, (line == 0) | (line == 5)

@@ -101,7 +101,7 @@ class Cutter:
         self._carriers = {each.beyond for each in above_edge(self.tool, head) if each.beyond}
         self.halted: CutEvent | None = None
         self._totals = CutTotals(self.material.cell, kienzle(stock))
-        self.watch = CutWatch(self.material.cell)
+        self.watch = CutWatch()
         self.start_depth = 0.0
         self.until = -np.inf
 
@@ -262,7 +262,7 @@ class Cutter:
         depth = self._depth_at(stand)
         if not depth:
             return
-        removal = Removal(*np.zeros((3, 1)))
+        removal = Removal(*np.zeros((4, 1)))
         tip = np.repeat(stand.ends.tip, 2, axis=0)
         stretches = Stretches(
             tip, stand.time, np.array([line]), stand.rapid, *removal, stand.off, stand.ends.axis

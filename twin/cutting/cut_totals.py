@@ -33,7 +33,7 @@ class CutTotals:
         self.log = CutLog()
         self.force: float | None = None
         self.power: float | None = None
-        self._cell, self._material = cell, material
+        self._material = material
         self._pieces = MeanPieces(cell)
         self._feed_path = 0.0
         self._air_path = 0.0
@@ -56,7 +56,7 @@ class CutTotals:
         path, feeds, number = stretches.path, ~stretches.rapid, tool.number
         self.removed[number] = _added(self.removed.get(number, 0.0), stretches.removed)
         self._feed_path = _added(self._feed_path, path[feeds])
-        self._air_path = _added(self._air_path, path[feeds & stretches.in_air(self._cell)])
+        self._air_path = _added(self._air_path, path[feeds & stretches.in_air])
         self.log.add(stretches)
         alone = each_alone(stretches, duration)
         turn = SECONDS_PER_MINUTE / tool.speed if tool.speed else 0.0

@@ -45,7 +45,7 @@ class TakingOff:
         """
         doubtful = self.contact.measure(points, suspect, doubtful=True)
         count, done = len(suspect), 0
-        removal = Removal(*np.zeros((3, count)))
+        removal = Removal(*np.zeros((4, count)))
         met = {name: np.zeros(count) for name in doubtful}
 
         def sweep(part: slice) -> None:

@@ -21,7 +21,7 @@ def chunk(chance: random.Random, lines: list[int]) -> tuple[Stretches, FloatArra
     points = np.cumsum(np.vstack([np.zeros((1, 3)), values[:, :3]]), axis=0)
     stretches = Stretches(
         points, np.linspace(0.0, 0.01 * (count - 1), count), np.array(lines), np.zeros(count, np.bool_), removed,
-        values[:, 1], np.zeros(count), np.zeros((count, 3)),
+        values[:, 1], np.zeros(count), np.zeros(count), np.zeros((count, 3)),
     )  # fmt: skip
     return stretches, values[:, 2], values[:, 3]
 

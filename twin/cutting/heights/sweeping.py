@@ -46,7 +46,7 @@ def sweep_lines(
     sums = np.zeros((count, len(Sum)))
     marks = Marks(np.zeros((0, 0)), np.zeros(count)) if marks is None else marks
     changed = sweep(material.cells, points, edge, sums, marks, stood, walls)
-    removal = Removal(*np.zeros((3, count)))
+    removal = Removal(*np.zeros((4, count)))
     removal_of_sums(sums, points, material.grid, removal)
     return Swept(removal, changed)
 

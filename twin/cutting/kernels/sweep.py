@@ -35,11 +35,13 @@ class Removal(NamedTuple):
         depth: Greatest depth of it, shape (n,) [mm].
         aside: How far left of the line it lay in the mean, shape (n,) [mm]; 0 for a line straight
             down.
+        thickness: How thick it was across the line at most, shape (n,) [mm]: a chip is no thicker.
     """
 
     volume: FloatArray
     depth: FloatArray
     aside: FloatArray
+    thickness: FloatArray
 
 
 @threaded_kernel
@@ -93,7 +95,12 @@ def removal_of_sums(sums: FloatArray, points: FloatArray, grid: Grid, removal: R
         removal.depth[i] = sums[i, Sum.DEEPEST]
         removal.aside[i] = 0.0
         dx, dy = points[i + 1, 0] - points[i, 0], points[i + 1, 1] - points[i, 1]
-        length = math.hypot(dx, dy)
+        length, way = math.hypot(dx, dy), points[i + 1, 2] - points[i, 2]
+        # Beside a wall a line takes a cell's share more or less than its own.
+        area = (math.hypot(length, way) + grid.cell) * removal.depth[i]
+        removal.thickness[i] = (
+            min(removal.volume[i] / area, removal.depth[i]) if area > 0.0 else 0.0
+        )
         if lost > 0.0 and length > 0.0:
             x = grid.origin[0] + sums[i, Sum.COLUMNS] / lost * grid.cell - points[i, 0]
             y = grid.origin[1] + sums[i, Sum.ROWS] / lost * grid.cell - points[i, 1]
@@ -101,12 +108,13 @@ def removal_of_sums(sums: FloatArray, points: FloatArray, grid: Grid, removal: R
 
 
 @arithmetic_kernel
-def settle(volume: FloatArray, cuts: BoolArray, owed: float) -> float:
-    """Let stretches that only cut the grid, or take less than nothing, leave what they took to those that follow.
+def settle(volume: FloatArray, cuts: BoolArray, least: float, owed: float) -> float:
+    """Let stretches that only cut the grid leave what they took to those that follow.
 
     Args:
         volume: Of n stretches that follow each other [mm³]; changed.
         cuts: Which of them cut, shape (n,).
+        least: Nor does one cut that takes no more than this [mm³].
         owed: What stretches before them have left [mm³].
 
     Returns:
@@ -114,7 +122,7 @@ def settle(volume: FloatArray, cuts: BoolArray, owed: float) -> float:
     """
     for i in range(len(volume)):
         owed += volume[i]
-        volume[i] = owed if cuts[i] and owed > 0.0 else 0.0
+        volume[i] = owed if cuts[i] and owed > least else 0.0
         owed -= volume[i]
     return owed
 
